@@ -1,0 +1,34 @@
+# slalom_add_layer(<name> SOURCES ... [DEPENDS <layers>] [LINK <private libraries>])
+# One layer of the house: the library slalom_<name>, known as slalom::<name> in the build and the install tree.
+function(slalom_add_layer name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS;LINK")
+  add_library(slalom_${name} ${arg_SOURCES})
+  add_library(slalom::${name} ALIAS slalom_${name})
+  set_target_properties(slalom_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+  target_compile_features(slalom_${name} PUBLIC cxx_std_20)
+  target_include_directories(slalom_${name}
+    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  foreach(layer IN LISTS arg_DEPENDS)
+    target_link_libraries(slalom_${name} PUBLIC slalom_${layer})
+  endforeach()
+  foreach(library IN LISTS arg_LINK)
+    target_link_libraries(slalom_${name} PRIVATE ${library})
+  endforeach()
+  slalom_compile_options(slalom_${name})
+  set_property(GLOBAL APPEND PROPERTY SLALOM_LAYERS slalom_${name})
+endfunction()
+
+# Flags of our own targets only; none is exported. Wide packs cross function borders by reference, so the
+# compiler's note about their calling convention (-Wpsabi) says nothing of use.
+function(slalom_compile_options target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-psabi)
+  if(SLALOM_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(SLALOM_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${SLALOM_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${SLALOM_SANITIZE})
+  endif()
+endfunction()

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace slalom {
+
+/// A file could not be read or written, or what it holds breaks a rule. The message reads `file:line: what`, naming
+/// the key, the value and the rule; the line is left out (0) where a file as a whole is meant.
+class IoError : public std::runtime_error {
+ public:
+  IoError(std::string file, int line, const std::string& what)
+      : std::runtime_error(line > 0 ? file + ":" + std::to_string(line) + ": " + what : file + ": " + what),
+        file_(std::move(file)),
+        line_(line) {}
+
+  const std::string& file() const noexcept { return file_; }
+  int line() const noexcept { return line_; }
+
+ private:
+  std::string file_;
+  int line_;
+};
+
+}  // namespace slalom

@@ -1,0 +1,26 @@
+#pragma once
+
+namespace slalom {
+
+/// How a solve ended. Whatever the status, the result holds finite inputs within their bounds.
+enum class Status {
+  ok,                ///< solved as asked
+  deadline,          ///< stopped at the deadline; the result is the best found until then
+  all_collided,      ///< every sample collided; the result is the best of them
+  degenerate,        ///< no usable weights (infinite or NaN costs); the result is the fallback of the method
+  non_finite_state,  ///< the state given is not finite; nothing was solved, the result repeats the last plan
+};
+
+/// The name of a status, as it is written in results.
+constexpr const char* name(Status status) noexcept {
+  switch (status) {
+    case Status::ok: return "ok";
+    case Status::deadline: return "deadline";
+    case Status::all_collided: return "all_collided";
+    case Status::degenerate: return "degenerate";
+    case Status::non_finite_state: return "non_finite_state";
+  }
+  return "unknown";
+}
+
+}  // namespace slalom
