@@ -6,21 +6,22 @@
 
 namespace slalom::maps {
 
-/// The exact Euclidean distance from the centre of every cell to the centre of the nearest obstacle cell, in metres;
-/// 0 on obstacles. What lies outside the grid is no obstacle. Without any obstacle every distance is infinite.
+/// The exact Euclidean distance from the centre of every cell to the centre of the nearest obstacle cell, in
+/// metres; 0 on obstacles. What lies outside the grid is no obstacle. Without any obstacle every distance is
+/// infinite.
 struct DistanceField {
   int width = 0;
   int height = 0;
-  double resolution = 0;  ///< m per cell
-  Pose origin;            ///< as in OccupancyGrid
+  double resolution = 0;         ///< m per cell
+  Pose origin;                   ///< as in OccupancyGrid
   std::vector<double> distance;  ///< height x width, row 0 at the bottom, m
 
   double at(int column, int row) const { return distance[static_cast<std::size_t>(row) * width + column]; }
 };
 
-/// Exact Euclidean distance transform in linear time by lower envelopes of parabolas (Felzenszwalb & Huttenlocher,
-/// "Distance Transforms of Sampled Functions", Theory of Computing 8, 2012). Unknown cells count as obstacles if
-/// `unknown_is_obstacle`.
+/// Exact Euclidean distance transform in linear time by lower envelopes of parabolas (Felzenszwalb &
+/// Huttenlocher, "Distance Transforms of Sampled Functions", Theory of Computing 8, 2012). Unknown cells
+/// count as obstacles if `unknown_is_obstacle`.
 DistanceField distance_transform(const OccupancyGrid& grid, bool unknown_is_obstacle);
 
 }  // namespace slalom::maps

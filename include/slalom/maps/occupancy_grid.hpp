@@ -10,8 +10,8 @@ namespace slalom::maps {
 /// What is known of a cell.
 enum class Occupancy : std::uint8_t { free, occupied, unknown };
 
-/// A map of square cells, row-major, row 0 at the bottom. The pose of the lower left corner of cell (0, 0) in the
-/// map frame is `origin`; its yaw turns the whole grid about that corner.
+/// A map of square cells, row-major, row 0 at the bottom. The pose of the lower left corner of cell (0, 0) in
+/// the map frame is `origin`; its yaw turns the whole grid about that corner.
 struct OccupancyGrid {
   int width = 0;          ///< cells along the grid's x
   int height = 0;         ///< cells along the grid's y
@@ -21,7 +21,9 @@ struct OccupancyGrid {
 
   Occupancy at(int column, int row) const { return cells[static_cast<std::size_t>(row) * width + column]; }
   Occupancy& at(int column, int row) { return cells[static_cast<std::size_t>(row) * width + column]; }
-  bool contains(int column, int row) const { return column >= 0 && row >= 0 && column < width && row < height; }
+  bool contains(int column, int row) const {
+    return column >= 0 && row >= 0 && column < width && row < height;
+  }
 };
 
 }  // namespace slalom::maps

@@ -31,6 +31,8 @@ inline Point inverse_transform(const Pose& frame, const Point& point) {
 }
 
 /// The angle shifted by whole turns into [-pi, pi].
-inline double wrap_angle(double angle) { return std::remainder(angle, 6.283185307179586); }
+inline double wrap_angle(double angle) {
+  return std::remainder(angle, 6.283185307179586);
+}
 
 }  // namespace slalom::maps

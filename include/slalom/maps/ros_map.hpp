@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "slalom/maps/occupancy_grid.hpp"
+
+namespace slalom::maps {
+
+/// How grey becomes occupancy.
+enum class MapRule {
+  /// As ROS map_server: p = (255 - grey) / 255 (grey / 255 with `negate`), occupied where p >
+  /// occupied_thresh, free
+  /// where p < free_thresh, else unknown. In mode `raw` the grey value itself is the occupancy in percent.
+  map_server,
+  /// As f1tenth_gym: a grey of at most `grey_threshold` is an obstacle, all else free, unknown cells too;
+  /// `negate`,
+  /// `mode` and the thresholds of the yaml file are neither used nor needed.
+  grey_threshold,
+};
+
+/// Options of load_ros_map.
+struct MapReading {
+  MapRule rule = MapRule::map_server;
+  int grey_threshold = 128;       ///< largest grey of an obstacle, 0..255; rule grey_threshold only
+  std::string image_extension{};  ///< if set (".png"), the image is the yaml file's name with this extension
+                                  ///< instead of the file the key `image` names; f1tenth_gym looks for it so
+};
+
+/// Loads a map of ROS map_server: a yaml file with `image` (relative to it), `resolution` (m per pixel),
+/// `origin` [x, y, yaw] of the lower left corner (m, m, rad), `negate`, `occupied_thresh`, `free_thresh` and,
+/// if present, `mode` (trinary, scale, raw). The grid keeps three states: what `scale` and `raw` put between
+/// free (0) and occupied (100) is unknown, as AMCL reads it, and so are pixels less than half opaque. Throws
+/// IoError.
+OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, const MapReading& reading = {});
+
+/// Writes `yaml_file` and, beside it, a PNG of the same name, with the greys and thresholds of map_saver.
+/// Throws IoError, std::invalid_argument if the grid's sizes disagree.
+void save_ros_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_file);
+
+}  // namespace slalom::maps

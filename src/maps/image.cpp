@@ -1,0 +1,125 @@
+#include "slalom/maps/image.hpp"
+
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+#include "png_io.hpp"
+#include "slalom/core/error.hpp"
+
+namespace slalom::maps {
+namespace {
+
+/// Walks through the bytes of a PGM file: numbers separated by white space and comments.
+class PgmReader {
+ public:
+  PgmReader(const std::filesystem::path& path, const std::string& bytes) : path_(path), bytes_(bytes) {}
+
+  /// The next number, at most `largest`.
+  std::int64_t number(const char* what, std::int64_t largest) {
+    skip_blank();
+    std::int64_t value = 0;
+    const std::size_t first = position_;
+    while (position_ < bytes_.size() && bytes_[position_] >= '0' && bytes_[position_] <= '9') {
+      value = value * 10 + (bytes_[position_++] - '0');
+      if (value > largest) fail(std::string(what) + " must be at most " + std::to_string(largest));
+    }
+    if (position_ == first)
+      fail(std::string(what) + " is missing or is no number: the PGM is truncated or corrupt");
+    return value;
+  }
+
+  /// The next value of one or two bytes, after skip_one().
+  unsigned binary(int size) {
+    unsigned value = 0;
+    for (int i = 0; i < size; ++i) value = value << 8 | static_cast<unsigned char>(bytes_[position_++]);
+    return value;
+  }
+
+  void skip_one() { ++position_; }
+  std::size_t left() const { return position_ < bytes_.size() ? bytes_.size() - position_ : 0; }
+  [[noreturn]] void fail(const std::string& rule) const { throw IoError(path_.string(), 0, rule); }
+
+ private:
+  void skip_blank() {
+    while (position_ < bytes_.size()) {
+      const char c = bytes_[position_];
+      if (c == '#') {
+        while (position_ < bytes_.size() && bytes_[position_] != '\n') ++position_;
+      } else if (c == ' ' || c == '\t' || c == '\r' || c == '\n') {
+        ++position_;
+      } else {
+        return;
+      }
+    }
+  }
+
+  const std::filesystem::path& path_;
+  const std::string& bytes_;
+  std::size_t position_ = 2;  // behind the magic number
+};
+
+GreyImage read_pgm(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  PgmReader reader(path, bytes);
+  const std::int64_t width = reader.number("the width", max_image_side + 1);
+  const std::int64_t height = reader.number("the height", max_image_side + 1);
+  detail::check_image_size(path, width, height);
+  const std::int64_t largest = reader.number("the largest grey value", 65535);
+  if (largest < 1) reader.fail("the largest grey value must be at least 1");
+
+  const auto pixels = static_cast<std::size_t>(width * height);
+  const bool text = bytes[1] == '2';
+  const std::size_t size = largest > 255 ? 2 : 1;
+  if (!text) reader.skip_one();
+  // A text pixel takes at least a digit and a space, but for the last.
+  if (reader.left() < (text ? 2 * pixels - 1 : size * pixels)) {
+    reader.fail("the PGM is truncated: it must hold " + std::to_string(pixels) + " pixels");
+  }
+  GreyImage image{static_cast<int>(width), static_cast<int>(height), {}, {}};
+  image.grey.resize(pixels);
+  for (auto& grey : image.grey) {
+    const std::int64_t value =
+        text ? reader.number("a pixel", largest) : reader.binary(static_cast<int>(size));
+    if (value > largest) reader.fail("a pixel must be at most " + std::to_string(largest));
+    grey = static_cast<std::uint8_t>((value * 255 + largest / 2) / largest);
+  }
+  return image;
+}
+
+}  // namespace
+
+void detail::check_image_size(const std::filesystem::path& path, std::int64_t width, std::int64_t height) {
+  if (width < 1 || height < 1 || width > max_image_side || height > max_image_side ||
+      width * height > max_image_pixels) {
+    throw IoError(path.string(), 0,
+                  "the image has " + std::to_string(width) + " x " + std::to_string(height) +
+                      " pixels; each side must be within 1 to " + std::to_string(max_image_side) +
+                      ", all pixels at most " + std::to_string(max_image_pixels));
+  }
+}
+
+GreyImage load_image(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(path)) {
+    throw IoError(path.string(), 0, "the image does not exist or cannot be read");
+  }
+  std::array<char, 2> magic{};
+  stream.read(magic.data(), magic.size());
+  if (magic[0] == 'P' && (magic[1] == '2' || magic[1] == '5')) return read_pgm(path);
+  if (magic[0] == '\x89' && magic[1] == 'P') return detail::read_png(path);
+  throw IoError(path.string(), 0, "the image must be a PNG or a grey PGM (P2, P5)");
+}
+
+void save_png(const GreyImage& image, const std::filesystem::path& path) {
+  detail::check_image_size(path, image.width, image.height);
+  if (image.grey.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)) {
+    throw std::invalid_argument("save_png: the image must have width x height pixels");
+  }
+  detail::write_png(image, path);
+}
+
+}  // namespace slalom::maps

@@ -1,0 +1,230 @@
+#include "slalom/maps/ros_map.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <stdexcept>
+
+#include "slalom/core/error.hpp"
+#include "slalom/maps/image.hpp"
+
+namespace slalom::maps {
+namespace {
+
+enum class Mode { trinary, scale, raw };
+
+/// What the yaml file says.
+struct Header {
+  std::string image;
+  double resolution = 0;
+  Pose origin;
+  bool negate = false;
+  double occupied_threshold = 0;
+  double free_threshold = 0;
+  Mode mode = Mode::trinary;
+};
+
+/// Reads keys of one yaml file; every error names the file, the line, the key, the value and the rule.
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& path) : path_(path) {
+    std::ifstream stream(path);
+    if (!stream || std::filesystem::is_directory(path)) {
+      throw IoError(path.string(), 0, "the map's yaml file does not exist or cannot be read");
+    }
+    try {
+      root_ = YAML::Load(stream);
+    } catch (const YAML::Exception& error) {
+      throw IoError(path.string(), error.mark.line + 1, "no valid yaml: " + error.msg);
+    }
+    if (!root_.IsMap()) throw IoError(path.string(), 1, "a map's yaml file must hold `key: value` pairs");
+  }
+
+  std::optional<YAML::Node> find(const char* key) const {
+    const YAML::Node node = root_[key];
+    if (!node.IsDefined() || node.IsNull()) return std::nullopt;
+    return node;
+  }
+
+  YAML::Node need(const char* key) const {
+    if (auto node = find(key)) return *node;
+    throw IoError(path_.string(), 0, std::string("the key `") + key + "` is missing");
+  }
+
+  [[noreturn]] void fail(const char* key, const YAML::Node& node, const char* rule) const {
+    const std::string value = node.IsScalar() ? node.Scalar() : YAML::Dump(node);
+    throw IoError(path_.string(), node.Mark().line + 1,
+                  std::string("`") + key + ": " + value + "`: must be " + rule);
+  }
+
+  double number(const char* key, const YAML::Node& node, const char* rule) const {
+    double value = 0;
+    if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value))
+      fail(key, node, rule);
+    return value;
+  }
+
+ private:
+  std::filesystem::path path_;
+  YAML::Node root_;
+};
+
+double threshold(const Reader& reader, const char* key) {
+  constexpr const char* rule = "a number within 0 to 1";
+  const YAML::Node node = reader.need(key);
+  const double value = reader.number(key, node, rule);
+  if (value < 0 || value > 1) reader.fail(key, node, rule);
+  return value;
+}
+
+bool read_negate(const Reader& reader) {
+  const YAML::Node node = reader.need("negate");
+  bool flag = false;
+  int number = 0;
+  if (YAML::convert<int>::decode(node, number) && (number == 0 || number == 1)) return number == 1;
+  if (YAML::convert<bool>::decode(node, flag)) return flag;
+  reader.fail("negate", node, "0 or 1");
+}
+
+Mode read_mode(const Reader& reader) {
+  const auto node = reader.find("mode");
+  if (!node) return Mode::trinary;
+  const std::string value = node->IsScalar() ? node->Scalar() : "";
+  if (value == "trinary") return Mode::trinary;
+  if (value == "scale") return Mode::scale;
+  if (value == "raw") return Mode::raw;
+  reader.fail("mode", *node, "trinary, scale or raw");
+}
+
+Header read_header(const std::filesystem::path& path, const MapReading& reading) {
+  const Reader reader(path);
+  Header header;
+
+  constexpr const char* positive = "a finite number above 0, at most 1000 (m per pixel)";
+  const YAML::Node resolution = reader.need("resolution");
+  header.resolution = reader.number("resolution", resolution, positive);
+  if (!(header.resolution > 0) || header.resolution > 1000) reader.fail("resolution", resolution, positive);
+
+  constexpr const char* triple = "[x, y, yaw], three finite numbers (m, m, rad)";
+  const YAML::Node origin = reader.need("origin");
+  if (!origin.IsSequence() || origin.size() != 3) reader.fail("origin", origin, triple);
+  std::array<double, 3> values{};
+  for (std::size_t i = 0; i < 3; ++i) values[i] = reader.number("origin", origin[i], triple);
+  header.origin = {values[0], values[1], values[2]};
+
+  if (reading.image_extension.empty()) {
+    const YAML::Node image = reader.need("image");
+    if (!image.IsScalar() || image.Scalar().empty()) reader.fail("image", image, "a file name");
+    header.image = image.Scalar();
+  }
+  if (reading.rule == MapRule::grey_threshold) return header;
+
+  header.negate = read_negate(reader);
+  header.mode = read_mode(reader);
+  header.occupied_threshold = threshold(reader, "occupied_thresh");
+  header.free_threshold = threshold(reader, "free_thresh");
+  if (header.free_threshold > header.occupied_threshold) {
+    reader.fail("free_thresh", reader.need("free_thresh"), "at most occupied_thresh");
+  }
+  return header;
+}
+
+Occupancy classify(const Header& header, int grey) {
+  if (header.negate) grey = 255 - grey;
+  if (header.mode == Mode::raw) {
+    return grey == 0 ? Occupancy::free : grey == 100 ? Occupancy::occupied : Occupancy::unknown;
+  }
+  const double p = (255 - grey) / 255.0;
+  if (p > header.occupied_threshold) return Occupancy::occupied;
+  return p < header.free_threshold ? Occupancy::free : Occupancy::unknown;
+}
+
+/// The occupancy of every grey value.
+std::array<Occupancy, 256> occupancy_table(const Header& header, const MapReading& reading) {
+  std::array<Occupancy, 256> table{};
+  for (int grey = 0; grey < 256; ++grey) {
+    table[static_cast<std::size_t>(grey)] =
+        reading.rule == MapRule::grey_threshold
+            ? (grey <= reading.grey_threshold ? Occupancy::occupied : Occupancy::free)
+            : classify(header, grey);
+  }
+  return table;
+}
+
+/// The shortest text that reads back as the same number.
+std::string text(double value) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+}  // namespace
+
+OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, const MapReading& reading) {
+  if (reading.grey_threshold < 0 || reading.grey_threshold > 255) {
+    throw std::invalid_argument("MapReading::grey_threshold: " + std::to_string(reading.grey_threshold) +
+                                ": must be within 0 to 255");
+  }
+  const Header header = read_header(yaml_file, reading);
+  auto image_file = yaml_file;
+  if (reading.image_extension.empty()) {
+    image_file = yaml_file.parent_path() / header.image;
+  } else {
+    image_file.replace_extension(reading.image_extension);
+  }
+  const GreyImage image = load_image(image_file);
+  const auto table = occupancy_table(header, reading);
+  const bool see_opacity = !image.opacity.empty() && reading.rule == MapRule::map_server;
+
+  OccupancyGrid grid{image.width, image.height, header.resolution, header.origin, {}};
+  grid.cells.resize(image.grey.size());
+  const auto width = static_cast<std::size_t>(image.width);
+  for (int row = 0; row < image.height; ++row) {
+    const std::size_t from = static_cast<std::size_t>(image.height - 1 - row) * width;
+    const std::size_t to = static_cast<std::size_t>(row) * width;
+    for (std::size_t x = 0; x < width; ++x) {
+      const bool transparent = see_opacity && image.opacity[from + x] < 128;
+      grid.cells[to + x] = transparent ? Occupancy::unknown : table[image.grey[from + x]];
+    }
+  }
+  return grid;
+}
+
+void save_ros_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_file) {
+  if (grid.width <= 0 || grid.height <= 0 ||
+      grid.cells.size() != static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height)) {
+    throw std::invalid_argument("save_ros_map: the grid must have width x height cells, at least one");
+  }
+  GreyImage image{grid.width, grid.height, {}, {}};
+  image.grey.resize(grid.cells.size());
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      const Occupancy cell = grid.at(column, row);
+      const int grey = cell == Occupancy::occupied ? 0 : cell == Occupancy::free ? 254 : 205;
+      image.grey[static_cast<std::size_t>(grid.height - 1 - row) * static_cast<std::size_t>(grid.width) +
+                 static_cast<std::size_t>(column)] = static_cast<std::uint8_t>(grey);
+    }
+  }
+  auto image_file = yaml_file;
+  image_file.replace_extension(".png");
+  save_png(image, image_file);
+
+  YAML::Emitter yaml;
+  yaml << YAML::BeginMap << YAML::Key << "image" << YAML::Value << image_file.filename().string();
+  yaml << YAML::Key << "resolution" << YAML::Value << text(grid.resolution);
+  yaml << YAML::Key << "origin" << YAML::Value << YAML::Flow << YAML::BeginSeq << text(grid.origin.x)
+       << text(grid.origin.y) << text(grid.origin.yaw) << YAML::EndSeq;
+  yaml << YAML::Key << "negate" << YAML::Value << 0;
+  yaml << YAML::Key << "occupied_thresh" << YAML::Value << "0.65";
+  yaml << YAML::Key << "free_thresh" << YAML::Value << "0.196" << YAML::EndMap;
+  std::ofstream stream(yaml_file);
+  stream << yaml.c_str() << '\n';
+  stream.flush();
+  if (!stream) throw IoError(yaml_file.string(), 0, "the map's yaml file cannot be written");
+}
+
+}  // namespace slalom::maps

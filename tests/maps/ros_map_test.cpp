@@ -1,0 +1,194 @@
+#include "slalom/maps/ros_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include "maps/temporary_folder.hpp"
+#include "slalom/core/error.hpp"
+#include "slalom/maps/image.hpp"
+
+namespace slalom::maps {
+namespace {
+
+using slalom::testing::TemporaryFolder;
+using Path = std::filesystem::path;
+
+const std::string thresholds = "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+const std::string geometry = "image: map.pgm\nresolution: 0.05\norigin: [-1.5, 2, 0.25]\n";
+/// Three columns, two rows; the upper row first: black, unknown grey, white; white, white, black.
+const std::string pgm = "P2\n# a comment\n3 2\n255\n0 205 254\n255 255 0\n";
+
+class RosMap : public TemporaryFolder {
+ protected:
+  Path map(const std::string& yaml) { return write("map.yaml", yaml); }
+
+  void expect_error(const Path& path, int line, const std::string& part) {
+    try {
+      load_ros_map(path);
+      ADD_FAILURE() << "no error; expected one that says: " << part;
+    } catch (const IoError& error) {
+      EXPECT_EQ(error.line(), line) << error.what();
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+};
+
+TEST_F(RosMap, RowZeroIsTheBottomOfTheImage) {
+  write("map.pgm", pgm);
+  const OccupancyGrid grid = load_ros_map(map(geometry + thresholds));
+  ASSERT_EQ(grid.width, 3);
+  ASSERT_EQ(grid.height, 2);
+  EXPECT_EQ(grid.resolution, 0.05);
+  EXPECT_EQ(grid.origin.x, -1.5);
+  EXPECT_EQ(grid.origin.y, 2);
+  EXPECT_EQ(grid.origin.yaw, 0.25);
+  const auto f = Occupancy::free, o = Occupancy::occupied, u = Occupancy::unknown;
+  EXPECT_EQ(grid.cells, (std::vector<Occupancy>{f, f, o, o, u, f}));
+}
+
+TEST_F(RosMap, NegateSwapsBlackAndWhite) {
+  write("map.pgm", pgm);
+  const OccupancyGrid grid =
+      load_ros_map(map(geometry + "negate: 1\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"));
+  const auto f = Occupancy::free, o = Occupancy::occupied;
+  EXPECT_EQ(grid.cells, (std::vector<Occupancy>{o, o, f, f, o, o}));
+}
+
+TEST_F(RosMap, RawModeReadsPercent) {
+  write("map.pgm", "P2 3 2 255 0 100 50 255 0 100");
+  const OccupancyGrid grid = load_ros_map(map(geometry + thresholds + "mode: raw\n"));
+  const auto f = Occupancy::free, o = Occupancy::occupied, u = Occupancy::unknown;
+  EXPECT_EQ(grid.cells, (std::vector<Occupancy>{u, f, o, f, o, u}));
+}
+
+TEST_F(RosMap, GreyThresholdIgnoresTheYamlRules) {
+  write("map.pgm", "P2 3 2 255 128 129 205 0 1 255");
+  const Path path = map("image: absent.png\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 1\n");
+  const OccupancyGrid grid = load_ros_map(path, {.rule = MapRule::grey_threshold, .image_extension = ".pgm"});
+  const auto f = Occupancy::free, o = Occupancy::occupied;
+  EXPECT_EQ(grid.cells, (std::vector<Occupancy>{o, o, f, o, f, f}));
+  EXPECT_THROW(load_ros_map(path, {.grey_threshold = 256}), std::invalid_argument);
+}
+
+TEST_F(RosMap, BinaryPgmOfOneAndTwoBytes) {
+  write("map.pgm", std::string("P5\n3 1\n100\n") + std::string("\0\x64\x32", 3));
+  EXPECT_EQ(load_image(folder_ / "map.pgm").grey, (std::vector<std::uint8_t>{0, 255, 128}));
+  write("map.pgm", std::string("P5\n2 1\n65535\n") + std::string("\0\0\xff\xff", 4));
+  EXPECT_EQ(load_image(folder_ / "map.pgm").grey, (std::vector<std::uint8_t>{0, 255}));
+}
+
+TEST_F(RosMap, SavedMapsReadBackTheSame) {
+  OccupancyGrid grid{37, 11, 0.0625, {1.0 / 3, -2.7e-5, 3.1}, {}};
+  for (int i = 0; i < 37 * 11; ++i) grid.cells.push_back(static_cast<Occupancy>(i * 7919 % 31 % 3));
+  save_ros_map(grid, folder_ / "saved.yaml");
+  const OccupancyGrid read = load_ros_map(folder_ / "saved.yaml");
+  EXPECT_EQ(read.width, grid.width);
+  EXPECT_EQ(read.height, grid.height);
+  EXPECT_EQ(read.resolution, grid.resolution);
+  EXPECT_EQ(read.origin.x, grid.origin.x);
+  EXPECT_EQ(read.origin.y, grid.origin.y);
+  EXPECT_EQ(read.origin.yaw, grid.origin.yaw);
+  EXPECT_EQ(read.cells, grid.cells);
+  EXPECT_THROW(save_ros_map(grid, folder_ / "absent" / "saved.yaml"), IoError);
+  grid.cells.pop_back();
+  EXPECT_THROW(save_ros_map(grid, folder_ / "saved.yaml"), std::invalid_argument);
+}
+
+TEST_F(RosMap, BadYamlIsNamed) {
+  write("map.pgm", pgm);
+  expect_error(folder_ / "absent.yaml", 0, "does not exist");
+  expect_error(folder_, 0, "does not exist or cannot be read");
+  expect_error(map("image: [\n"), 2, "no valid yaml");
+  expect_error(map("just words\n"), 1, "key: value");
+  expect_error(map(""), 1, "key: value");
+  const std::string image = "image: map.pgm\n";
+  expect_error(map(image + "origin: [0, 0, 0]\n" + thresholds), 0, "`resolution` is missing");
+  for (const char* bad : {"0", "-0.05", ".nan", ".inf", "word", "[1]", "1e9"}) {
+    expect_error(map(image + "resolution: " + bad + "\norigin: [0, 0, 0]\n" + thresholds), 2,
+                 "`resolution: ");
+  }
+  for (const char* bad : {"[0, 0]", "[0, 0, 0, 0]", "5", "{x: 1}"}) {
+    expect_error(map(image + "resolution: 0.05\norigin: " + bad + "\n" + thresholds), 3, "[x, y, yaw]");
+  }
+  for (const char* bad : {"[.nan, 0, 0]", "[0, .inf, 0]", "[0, 0, left]"}) {
+    expect_error(map(image + "resolution: 0.05\norigin: " + bad + "\n" + thresholds), 3, "`origin: ");
+  }
+  expect_error(map("resolution: 0.05\norigin: [0, 0, 0]\n" + thresholds), 0, "`image` is missing");
+  expect_error(map("image: [a]\nresolution: 0.05\norigin: [0, 0, 0]\n" + thresholds), 1, "a file name");
+}
+
+TEST_F(RosMap, BadThresholdsAreNamed) {
+  write("map.pgm", pgm);
+  expect_error(map(geometry + "occupied_thresh: 0.65\nfree_thresh: 0.2\n"), 0, "`negate` is missing");
+  expect_error(map(geometry + "negate: 2\noccupied_thresh: 0.65\nfree_thresh: 0.2\n"), 4,
+               "`negate: 2`: must be 0 or 1");
+  expect_error(map(geometry + "negate: 0\nfree_thresh: 0.2\n"), 0, "`occupied_thresh` is missing");
+  expect_error(map(geometry + "negate: 0\noccupied_thresh: 0.5\n"), 0, "`free_thresh` is missing");
+  expect_error(map(geometry + "negate: 0\noccupied_thresh: 1.5\nfree_thresh: 0.2\n"), 5,
+               "`occupied_thresh: 1.5`");
+  expect_error(map(geometry + "negate: 0\noccupied_thresh: 0.5\nfree_thresh: .nan\n"), 6,
+               "`free_thresh: .nan`");
+  expect_error(map(geometry + "negate: 0\noccupied_thresh: 0.2\nfree_thresh: 0.5\n"), 6,
+               "at most occupied_thresh");
+  expect_error(map(geometry + thresholds + "mode: grey\n"), 7, "`mode: grey`: must be trinary, scale or raw");
+}
+
+TEST_F(RosMap, BadImagesAreNamed) {
+  const Path path = map(geometry + thresholds);
+  expect_error(path, 0, "does not exist");
+  for (const auto& [content, part] : {std::pair<std::string, std::string>{"", "must be a PNG or a grey PGM"},
+                                      {"GIF89a", "must be a PNG or a grey PGM"},
+                                      {"P2", "width"},
+                                      {"P2 3", "height"},
+                                      {"P2 0 3 255", "0 x 3 pixels"},
+                                      {"P2 -3 3 255", "width"},
+                                      {"P2 99999999999999999999 3 255", "width"},
+                                      {"P2 32768 32768 255 0", "all pixels at most"},
+                                      {"P2 2 2 0 0 0 0 0", "largest grey value"},
+                                      {"P2 2 2 70000 0 0 0 0", "largest grey value"},
+                                      {"P2 2 2 255 0 0 0", "truncated"},
+                                      {"P2 2 2 255 0 0 0 256", "at most 255"},
+                                      {"P2 2 2 255 0 0 0 x", "no number"},
+                                      {"P5 2 2 255 abc", "truncated"},
+                                      {"P5 2 2 65535 abcdefg", "truncated"},
+                                      {"P5 2 2 100 zzzz", "at most 100"},
+                                      {"\x89PNG\r\n\x1a\n", "PNG"},
+                                      {"\x89Png", "PNG"}}) {
+    write("map.pgm", content);
+    expect_error(path, 0, part);
+  }
+}
+
+TEST_F(RosMap, ATruncatedPngIsNamed) {
+  GreyImage image{64, 64, {}, {}};
+  for (int i = 0; i < 64 * 64; ++i) image.grey.push_back(static_cast<std::uint8_t>(i * 7919 >> 3));
+  save_png(image, folder_ / "whole.png");
+  EXPECT_EQ(load_image(folder_ / "whole.png").grey, image.grey);
+  std::ifstream stream(folder_ / "whole.png", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  for (const std::size_t length : {std::size_t{10}, std::size_t{30}, std::size_t{60}, bytes.size() / 2}) {
+    EXPECT_THROW(load_image(write("cut.png", bytes.substr(0, length))), IoError) << length;
+  }
+  std::string huge = bytes;
+  huge[16] = huge[20] = '\x7f';  // both sides near 2^31, behind a checksum that no longer fits
+  EXPECT_THROW(load_image(write("huge.png", huge)), IoError);
+}
+
+TEST(RosMapData, PublishedMapsLoad) {
+  const char* root = std::getenv("SLALOM_DATA_DIR");
+  if (!root || !*root) GTEST_SKIP() << "no maps: set SLALOM_DATA_DIR to a folder that has berlin/map.yaml";
+  for (const char* name : {"berlin/map.yaml", "spielberg/map.yaml", "oschersleben/Oschersleben_map.yaml"}) {
+    const OccupancyGrid grid = load_ros_map(Path(root) / name);
+    std::size_t counts[3] = {};
+    for (const Occupancy cell : grid.cells) ++counts[static_cast<int>(cell)];
+    std::cout << name << ": " << grid.width << " x " << grid.height << " at " << grid.resolution
+              << " m; free " << counts[0] << ", occupied " << counts[1] << ", unknown " << counts[2] << '\n';
+    EXPECT_GT(counts[0], 10000u) << name;
+    EXPECT_GT(counts[1], 1000u) << name;
+  }
+}
+
+}  // namespace
+}  // namespace slalom::maps
