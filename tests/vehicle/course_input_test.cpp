@@ -1,0 +1,134 @@
+// Spoiled course folders: each is refused with a message that names the file, the line, the key or column and
+// the rule.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "slalom/core/error.hpp"
+#include "slalom/vehicle/course.hpp"
+#include "vehicle/course_folder.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+using testing::CourseFolder;
+
+struct Spoiled {
+  const char* name;
+  std::function<void(const CourseFolder&)> spoil;
+  std::vector<const char*> message;  ///< what the error must contain
+};
+
+std::function<void(const CourseFolder&)> rows(const char* text) {
+  return [text](const CourseFolder& folder) {
+    folder.write("raceline.csv",
+                 std::string("# s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2\n") + text);
+  };
+}
+
+std::function<void(const CourseFolder&)> file(const char* name, const char* text) {
+  return [name, text](const CourseFolder& folder) { folder.write(name, text); };
+}
+
+std::function<void(const CourseFolder&)> without(const char* name) {
+  return [name](const CourseFolder& folder) { folder.remove(name); };
+}
+
+const std::vector<Spoiled>& cases() {
+  static const std::vector<Spoiled> all = {
+      {"no_folder",
+       [](const CourseFolder& f) { std::filesystem::remove_all(f.path()); },
+       {"ring", "no folder"}},
+      {"no_map", without("map.yaml"), {"ring", "no map"}},
+      {"no_image", without("map.png"), {"map.png"}},
+      {"two_maps",
+       file("other.yaml", "image: map.png\nresolution: 0.1\n"),
+       {"more than one map", "other.yaml"}},
+      {"corrupt_map", file("map.yaml", "image: [map.png\n"), {"map.yaml"}},
+      {"corrupt_image", file("map.png", "\x89PNG\r\n\x1a\nbroken"), {"map.png"}},
+      {"no_waypoints", without("raceline.csv"), {"no waypoint file"}},
+      {"two_waypoint_files",
+       file("more.csv", CourseFolder::raceline),
+       {"more than one waypoint", "more.csv"}},
+      {"empty_file", file("raceline.csv", ""), {"no waypoint file"}},
+      {"no_rows", rows(""), {"raceline.csv", "0 waypoints", "at least 3"}},
+      {"two_rows", rows("0;0;0;0;0;1;0\n0;1;0;0;0;1;0\n"), {"2 waypoints", "at least 3"}},
+      {"two_rows_and_the_first_again",
+       rows("0;0;0;0;0;1;0\n0;1;0;0;0;1;0\n0;0;0;0;0;1;0\n"),
+       {"2 waypoints", "at least 3"}},
+      {"nan", rows("0;0;0;0;0;1;0\n0;nan;0;0;0;1;0\n"), {"raceline.csv:3:", "x_m", "nan", "finite"}},
+      {"infinite", rows("0;0;0;0;0;1;0\n0;1;-inf;0;0;1;0\n"), {"raceline.csv:3:", "y_m", "finite"}},
+      {"infinite_speed", rows("0;0;0;0;0;inf;0\n"), {"raceline.csv:2:", "vx_mps", "finite"}},
+      {"overflow", rows("0;1e999;0;0;0;1;0\n"), {"raceline.csv:2:", "x_m", "1e999"}},
+      {"no_number", rows("0;1;zwei;0;0;1;0\n"), {"raceline.csv:2:", "y_m", "'zwei'"}},
+      {"half_a_number", rows("0;1;2m;0;0;1;0\n"), {"raceline.csv:2:", "'2m'"}},
+      {"empty_cell", rows("0;1; ;0;0;1;0\n"), {"raceline.csv:2:", "y_m", "''"}},
+      {"wrong_columns", rows("0;0;0;0;0;1;0\n0;1;0;0;1;0\n"), {"raceline.csv:3:", "6 columns", "7"}},
+      {"negative_speed", rows("0;0;0;0;0;-1;0\n"), {"raceline.csv:2:", "vx_mps", "-1", "at least 0"}},
+      {"repeated_point",
+       rows("0;0;0;0;0;1;0\n0;1;0;0;0;1;0\n0;1;0;0;0;1;0\n0;2;0;0;0;1;0\n"),
+       {"raceline.csv:4:", "differ"}},
+      {"header_without_speed",
+       file("raceline.csv", "opt_x,opt_y,speed\n1,2,3\n"),
+       {"raceline.csv:1:", "ref_v", "missing"}},
+      {"optimised_line_columns",
+       file("raceline.csv", "opt_x,opt_y,ref_v\n1,2,3\n1,2\n"),
+       {"raceline.csv:3:", "2 columns", "3"}},
+      {"obstacle_cell", file("opp_ref_path.csv", "1,2\n1,x\n"), {"opp_ref_path.csv:2:", "1 (y)", "'x'"}},
+      {"obstacle_columns", file("opp_ref_path.csv", "1\n"), {"opp_ref_path.csv:1:", "x and y"}},
+      {"obstacle_none", file("opp_ref_path.csv", "\n"), {"opp_ref_path.csv", "no points"}},
+      {"course_syntax", file("course.yaml", "name: x\nstart: {x: 1\n"), {"course.yaml", "YAML"}},
+      {"course_list", file("course.yaml", "- 1\n"), {"course.yaml:1:", "map of keys"}},
+      {"course_key", file("course.yaml", "name: x\nstrat: 1\n"), {"course.yaml:2:", "strat", "none of"}},
+      {"start_key", file("course.yaml", "start: {x: 1, y: 1, jaw: 0}\n"), {"course.yaml:1:", "start.jaw"}},
+      {"start_missing",
+       file("course.yaml", "start: {x: 1, y: 1}\n"),
+       {"course.yaml:1:", "start.yaw", "missing"}},
+      {"start_type", file("course.yaml", "\nstart: 3\n"), {"course.yaml:2:", "start", "{x, y, yaw}"}},
+      {"start_nan", file("course.yaml", "start: {x: .nan, y: 1, yaw: 0}\n"), {"start.x", "finite"}},
+      {"start_in_wall",
+       file("course.yaml", "name: x\nstart: {x: 4.95, y: 0, yaw: 0}\n"),
+       {"course.yaml:2:", "start", "wall"}},
+      {"start_off_map",
+       file("course.yaml", "start: {x: 99, y: 0, yaw: 0}\n"),
+       {"course.yaml:1:", "on the map"}},
+      {"timeout", file("course.yaml", "timeout: 0\n"), {"course.yaml:1:", "timeout", "'0'", "above 0"}},
+      {"closed",
+       file("course.yaml", "closed: maybe\n"),
+       {"course.yaml:1:", "closed", "'maybe'", "true or false"}},
+  };
+  return all;
+}
+
+class SpoiledCourse : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(SpoiledCourse, IsRefusedWithAClearMessage) {
+  const CourseFolder folder;
+  ASSERT_NO_THROW(load_course(folder.path())) << "sound before it is spoiled";
+  const Spoiled& spoiled = cases()[GetParam()];
+  spoiled.spoil(folder);
+  try {
+    load_course(folder.path());
+    FAIL() << "loaded although spoiled";
+  } catch (const IoError& error) {
+    for (const char* part : spoiled.message)
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
+          << part << " is not in: " << error.what();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(BadInput, SpoiledCourse, ::testing::Range<std::size_t>(0, cases().size()),
+                         [](const auto& test) { return std::string(cases()[test.param].name); });
+
+TEST(KnownCourse, RefusesASpoiledTable) {
+  const CourseFolder folder;
+  folder.write("known.yaml", "berlin: {start: {x: 0, y: 0, yaw: 0}, timeout: -1}\n");
+  EXPECT_THROW(known_course("berlin", {folder.path()}), IoError);
+  folder.write("known.yaml", "berlin: 5\n");
+  EXPECT_THROW(known_course("berlin", {folder.path()}), IoError);
+  folder.write("known.yaml", "[1]\n");
+  EXPECT_THROW(known_course("berlin", {folder.path()}), IoError);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle
