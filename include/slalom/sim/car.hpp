@@ -1,0 +1,53 @@
+#pragma once
+
+namespace slalom::sim {
+
+/// What a car is made of. The defaults are the 1/10-scale car of f1tenth_gym.
+struct CarParameters {
+  double friction = 1.0489;        ///< mu, between tyre and road
+  double cornering_front = 4.718;  ///< C_Sf, 1/rad, cornering stiffness over axle load
+  double cornering_rear = 5.4562;  ///< C_Sr, 1/rad
+  double front_length = 0.15875;   ///< l_f, m, from the centre of gravity to the front axle
+  double rear_length = 0.17145;    ///< l_r, m
+  double gravity_height = 0.074;   ///< h, m, of the centre of gravity
+  double mass = 3.74;              ///< m, kg
+  double inertia = 0.04712;        ///< I_z, kg m^2, about the vertical axis
+  double steer_min = -0.4189;      ///< rad
+  double steer_max = 0.4189;       ///< rad
+  double steer_rate_max = 3.2;     ///< rad/s, either way
+  double switch_speed = 7.319;     ///< m/s, above it the motor's power limits the acceleration
+  double acceleration_max = 9.51;  ///< m/s^2, and of braking
+  double speed_min = -5.0;         ///< m/s
+  double speed_max = 20.0;         ///< m/s
+  double length = 0.58;            ///< m, of the body, whose middle is the centre of gravity
+  double width = 0.31;             ///< m
+
+  double wheelbase() const { return front_length + rear_length; }
+
+  /// The full-scale car of the CommonRoad vehicle models (parameter set 1, a Ford Escort).
+  static CarParameters full_scale();
+
+  /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
+  void validate() const;
+};
+
+/// The state of a car; its position is that of the centre of gravity.
+struct CarState {
+  double x = 0;         ///< m
+  double y = 0;         ///< m
+  double steer = 0;     ///< delta, rad, angle of the front wheels, to the left positive
+  double speed = 0;     ///< v, m/s, along the direction of travel; negative in reverse
+  double yaw = 0;       ///< psi, rad
+  double yaw_rate = 0;  ///< rad/s
+  double slip = 0;      ///< beta, rad, from the body's axis to the direction of travel
+
+  bool operator==(const CarState&) const = default;
+};
+
+/// What drives the model: both are held over a time step.
+struct DriveInput {
+  double steer_rate = 0;    ///< rad/s
+  double acceleration = 0;  ///< m/s^2
+};
+
+}  // namespace slalom::sim

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "slalom/sim/car.hpp"
+
+namespace slalom::sim {
+
+/// How a car moves: single-track ("bicycle") models, with front and rear wheels merged into one each.
+///
+/// - `kinematic`: no wheel slips sideways; slip = atan(l_r / L tan(steer)), yaw rate = v cos(slip) tan(steer)
+/// / L.
+/// - `single_track`: linear tyres with load transfer, the STM of Althoff & Wuersching, "CommonRoad: Vehicle
+/// Models"
+///   (2020), section 6; below 0.5 m/s the kinematic model. There F_y = mu C_S F_z alpha without bound. With
+///   speed < 0 the slip angle is measured against |v|, which the source does not do (its tyres then push the
+///   wrong way and the state explodes).
+/// - `saturating`: the same car with tyres after Pacejka, "Tire and Vehicle Dynamics", eq. 1.5 with E = 0,
+///   F_y = mu F_z sin(C atan(B alpha)), C = 1.5, B = C_S / C: the same slope at 0, but grip can be exceeded.
+///   What drives or brakes takes its share of mu F_z from what is left sideways (friction ellipse).
+enum class Model { kinematic, single_track, saturating };
+
+enum class Integrator { runge_kutta_4, euler };
+
+struct DynamicsOptions {
+  Model model = Model::single_track;
+  Integrator integrator = Integrator::runge_kutta_4;
+  /// Equal parts into which a time step is cut; 0 takes as many as keep the tyres' fastest mode stable.
+  int substeps = 0;
+  /// f1tenth_gym: below 0.5 m/s the car moves along its axis, the slip stays frozen and the yaw rate is
+  /// integrated beside the yaw that is really driven.
+  bool gym_low_speed = false;
+  /// f1tenth_gym: the last move towards the steering's limit may pass it by steer_rate_max * time step.
+  bool gym_steer_overshoot = false;
+  /// f1tenth_gym: in reverse the tyres push the wrong way, and yaw rate and slip grow without bound.
+  bool gym_reverse = false;
+};
+
+/// Speed (m/s) below which single_track and saturating fall back to the kinematic model.
+inline constexpr double kinematic_below = 0.5;
+inline constexpr double gravity = 9.81;  ///< m/s^2
+
+/// The steering rate that the actuator allows: none further outwards at its limit.
+double limit_steer_rate(const CarParameters& car, double steer, double steer_rate) noexcept;
+
+/// The acceleration that motor and brakes allow: none beyond the limits of speed, less drive above
+/// switch_speed.
+double limit_acceleration(const CarParameters& car, double speed, double acceleration) noexcept;
+
+/// d(state)/dt under a limited input; each field is the derivative of the state's field of that name.
+CarState derivative(const CarParameters& car, const DynamicsOptions& options, const CarState& state,
+                    const DriveInput& input) noexcept;
+
+/// The state after `time_step` (s). The yaw is not wrapped.
+CarState advance(const CarParameters& car, const DynamicsOptions& options, const CarState& state,
+                 const DriveInput& input, double time_step) noexcept;
+
+/// The substeps that `options` mean for a time step (s).
+int substeps(const CarParameters& car, const DynamicsOptions& options, double time_step) noexcept;
+
+}  // namespace slalom::sim
