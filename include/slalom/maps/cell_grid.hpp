@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <new>
+
+namespace slalom::maps {
+
+/// Where the cells of a map around the car lie. The convention is that of ROS grid_map: rows run along x,
+/// columns along y, and row 0, column 0 is the cell with the LARGEST x and y; the upper edges of the map are
+/// inside, the lower ones are not. The formulas keep the order of operations of grid_map 1.6.4, so that a
+/// position on the corner of four cells falls into the same cell.
+struct GridGeometry {
+  int rows = 0;           ///< cells along x
+  int columns = 0;        ///< cells along y
+  double resolution = 0;  ///< m per cell
+  double center_x = 0;    ///< m
+  double center_y = 0;    ///< m
+
+  double length_x() const { return resolution * rows; }     ///< m
+  double length_y() const { return resolution * columns; }  ///< m
+
+  /// x (m) of the centres of a row's cells, y (m) of a column's.
+  double cell_x(int row) const { return center_x + 0.5 * length_x() - 0.5 * resolution - resolution * row; }
+  double cell_y(int column) const {
+    return center_y + 0.5 * length_y() - 0.5 * resolution - resolution * column;
+  }
+
+  /// The row of the cells at x (m), the column of those at y (m); -1 outside the map and for NaN.
+  int row(double x) const { return index(x, center_x, rows); }
+  int column(double y) const { return index(y, center_y, columns); }
+
+ private:
+  int index(double position, double center, int count) const {
+    const double length = resolution * count, half = 0.5 * length;
+    const double from_edge = -((position - center) - half);
+    if (!(from_edge >= 0 && from_edge < length)) return -1;
+    const int i = static_cast<int>(-(((position - half) - center) / resolution));
+    return i < count ? i : count - 1;
+  }
+};
+
+/// Cells of `Layers` float32 values each, row-major, with a ring of cells all round that hold the values for
+/// "outside": an index clamped to [-1, rows] x [-1, columns] needs no mask. The first value is aligned to 64
+/// bytes.
+template <int Layers>
+class CellGrid {
+ public:
+  CellGrid(int rows, int columns)
+      : rows_(rows),
+        stride_(columns + 2),
+        cells_(
+            new (std::align_val_t{64}) float[static_cast<std::size_t>(rows + 2) * (columns + 2) * Layers]()) {
+  }
+
+  /// The values of a cell; row -1 .. rows, column -1 .. columns.
+  float* at(int row, int column) { return cells_.get() + offset(row, column); }
+  const float* at(int row, int column) const { return cells_.get() + offset(row, column); }
+
+  /// The ring's first cell; one row has stride() cells.
+  const float* data() const { return cells_.get(); }
+  int stride() const { return stride_; }
+
+  /// Sets every cell, the ring included.
+  void fill(const float (&values)[Layers]) {
+    float* cell = cells_.get();
+    for (std::size_t i = 0, count = static_cast<std::size_t>(rows_ + 2) * stride_; i < count; ++i) {
+      for (int layer = 0; layer < Layers; ++layer) *cell++ = values[layer];
+    }
+  }
+
+ private:
+  struct Free {
+    void operator()(float* p) const { ::operator delete[](p, std::align_val_t{64}); }
+  };
+  std::size_t offset(int row, int column) const {
+    return (static_cast<std::size_t>(row + 1) * stride_ + static_cast<std::size_t>(column + 1)) * Layers;
+  }
+
+  int rows_;
+  int stride_;
+  std::unique_ptr<float[], Free> cells_;
+};
+
+}  // namespace slalom::maps

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+
+namespace slalom::maps {
+
+/// A LiDAR scan that somebody else owns. Beam i points along angle_min + i * angle_increment,
+/// counter-clockwise, in the frame of the laser.
+struct LaserScanView {
+  std::span<const float> ranges{};  ///< m; NaN, infinite or beyond the limits where there is no reading
+  double angle_min = 0;             ///< rad
+  double angle_increment = 0;       ///< rad
+  double range_min = 0;             ///< m; readings below it are no readings
+  double range_max = 0;             ///< m; readings of it or more mean that nothing was hit
+};
+
+}  // namespace slalom::maps

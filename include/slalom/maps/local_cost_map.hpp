@@ -1,0 +1,121 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "slalom/maps/cell_grid.hpp"
+#include "slalom/maps/laser_scan.hpp"
+#include "slalom/maps/occupancy_grid.hpp"
+
+namespace slalom::maps {
+
+/// How far the car's body reaches from its reference point (the rear axle): metres, all >= 0.
+struct Footprint {
+  double front = 0.47;
+  double rear = 0.14;
+  double left = 0.15;
+  double right = 0.15;
+};
+
+/// Options of LocalCostMap.
+struct LocalCostMapOptions {
+  double length_x = 10;      ///< m, > 0
+  double length_y = 10;      ///< m, > 0
+  double resolution = 0.05;  ///< m per cell, > 0
+  double center_x = 3;       ///< m, the map's centre in the robot's frame
+  double center_y = 0;       ///< m
+  float occupied = 100;      ///< value of a cell where the body would touch an obstacle
+  float outside = 100;       ///< value of the ring of cells round the map
+  Footprint footprint{};     ///< the body by which obstacles are inflated
+  double margin = 0;         ///< m, >= 0, added to every side of the footprint
+  Pose laser{0.275, 0, 0};   ///< the laser's pose in the robot's frame
+  int max_beams = 4096;      ///< a scan may have at most so many; 1 .. 1000000
+
+  /// Drop the points of a scan that lie within the footprint (without margin): the car sees itself.
+  bool drop_points_on_body = true;
+
+  /// Published program: an obstacle's cell is inflated by whole cells, ceil(reach / resolution) to each side
+  /// as a half-open range. That is one cell less towards smaller x and y than towards larger ones: 0.15 m to
+  /// the left, 0.10 m to the right. The default marks every cell in which some position lets the footprint
+  /// touch the point.
+  bool half_open_inflation = false;
+
+  /// Published program: a point outside the map is forgotten, also where its inflation reaches into the map.
+  bool forget_points_outside = false;
+
+  /// The published program's cost map.
+  static LocalCostMapOptions published();
+
+  /// Throws std::invalid_argument naming the field, its value and the rule.
+  void validate() const;
+};
+
+/// A point in the robot's frame: m.
+struct ScanPoint {
+  float x;
+  float y;
+};
+
+/// What became of a scan.
+struct ScanReport {
+  bool accepted =
+      false;  ///< false: empty, too many beams, or a geometry that is not finite; nothing was added
+  int beams = 0;
+  int invalid = 0;  ///< NaN, below range_min (so negative), or range_max and more (so infinite)
+  int on_body = 0;  ///< dropped because they lie within the footprint
+  int used = 0;
+};
+
+/// A map of the free ground around the car, in the car's own frame (x ahead, y to the left), made from one
+/// LiDAR scan: a cell holds `occupied` where the car's reference point cannot be without the body touching an
+/// obstacle, else 0. The heading of the body is taken as that of now, whatever the path does; what lies
+/// behind an obstacle is free. After construction nothing allocates.
+class LocalCostMap {
+ public:
+  /// Throws std::invalid_argument where the options break a rule.
+  explicit LocalCostMap(const LocalCostMapOptions& options = {});
+
+  /// Makes the map anew from a scan. A scan that is not accepted leaves an empty map: look at the report.
+  ScanReport update(const LaserScanView& scan) noexcept;
+
+  /// Marks all cells free.
+  void clear() noexcept;
+
+  /// Adds what a scan, points in the robot's frame (m) or the occupied cells of a grid say; the grid's origin
+  /// and the robot's pose are given in the same frame. Points that are not finite are ignored.
+  ScanReport add_scan(const LaserScanView& scan) noexcept;
+  void add_points(std::span<const Point> points) noexcept;
+  void add_grid(const OccupancyGrid& obstacles, const Pose& robot) noexcept;
+
+  /// The value at a position in the robot's frame, m.
+  float at(double x, double y) const noexcept {
+    const int row = geometry_.row(x), column = geometry_.column(y);
+    return row < 0 || column < 0 ? options_.outside : *cells_.at(row, column);
+  }
+
+  const LocalCostMapOptions& options() const noexcept { return options_; }
+  const GridGeometry& geometry() const noexcept { return geometry_; }
+  const CellGrid<1>& cells() const noexcept { return cells_; }
+
+  /// The points of the last scan that were used.
+  std::span<const ScanPoint> points() const noexcept { return {points_.data(), point_count_}; }
+
+ private:
+  void set_beams(const LaserScanView& scan) noexcept;
+  void mark(double x, double y, double reach) noexcept;
+
+  LocalCostMapOptions options_;
+  GridGeometry geometry_;
+  CellGrid<1> cells_;
+  int box_rows_[2];     ///< cells of a half-open box before and from the point's own cell on, along the rows
+  int box_columns_[2];  ///< and along the columns
+  int last_box_[4] = {0, 0, 0, 0};
+
+  std::vector<double> beam_cos_, beam_sin_;  ///< directions of the beams in the robot's frame
+  int beam_count_ = 0;                       ///< how many of them are valid
+  double beam_start_ = 0, beam_step_ = 0;
+  std::vector<ScanPoint> points_;
+  std::size_t point_count_ = 0;
+};
+
+}  // namespace slalom::maps

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "slalom/maps/cell_grid.hpp"
+#include "slalom/maps/pose.hpp"
+#include "slalom/maps/reference_path.hpp"
+
+namespace slalom::maps {
+
+/// Options of ReferenceField. The defaults are the published program's, but for `points_behind`.
+struct ReferenceFieldOptions {
+  double length_x = 20;        ///< m, > 0
+  double length_y = 20;        ///< m, > 0
+  double resolution = 0.1;     ///< m per cell, > 0
+  int points = 80;             ///< points of the path in the window, from the nearest on; 1 .. 250
+  double spacing = 0.1;        ///< m, >= 0, least distance between successive points of the window
+  ReferenceOutside outside{};  ///< what a look-up off the map returns
+
+  /// Points of the window behind the nearest one, in addition; points + points_behind <= 250. The published
+  /// program has 0: off to the side and behind, the distance is that to the window's first point, not that to
+  /// the path.
+  int points_behind = 10;
+
+  /// The published program's reference field.
+  static ReferenceFieldOptions published();
+
+  /// Throws std::invalid_argument naming the field, its value and the rule.
+  void validate() const;
+};
+
+/// A map centred on the robot, parallel to the map frame, that holds for every cell the distance to the
+/// nearest of a window of the path's points, with that point's yaw and speed. The window begins at the point
+/// nearest to the robot (of the whole path) and wraps at the path's end. It is made anew by every update,
+/// because its cells move with the robot; CourseField, which stays where it is, is cheaper and more exact
+/// where the whole course may be one map.
+///
+/// The nearest points are exact in double arithmetic: along a row of cells the squared distances are
+/// parabolas of which the lower envelope is built (as for the distance transform). After construction nothing
+/// allocates.
+class ReferenceField {
+ public:
+  /// Throws std::invalid_argument where the path or the options break a rule.
+  explicit ReferenceField(std::span<const ReferencePoint> path, const ReferenceFieldOptions& options = {});
+
+  /// Makes the map anew around a position (m). With a finite `reach` only cells within it (m, along each
+  /// axis) are made; the others keep what they held and must not be looked up: a rollout gets no further than
+  /// its duration times its largest speed. False, with nothing changed, if the position is not finite.
+  bool update(const Point& robot, double reach = std::numeric_limits<double>::infinity()) noexcept;
+
+  /// The cell at a position, m.
+  ReferenceCell at(double x, double y) const noexcept;
+
+  const ReferenceFieldOptions& options() const noexcept { return options_; }
+  const GridGeometry& geometry() const noexcept { return geometry_; }
+  const CellGrid<4>& cells() const noexcept { return cells_; }
+
+  /// Index of the path's point nearest to the robot at the last update.
+  int nearest() const noexcept { return nearest_; }
+
+  /// The window's points of the last update as indices into the path, in the path's order.
+  std::span<const int> window() const noexcept { return {window_.data(), window_size_}; }
+
+ private:
+  /// A point of the window, with what the rows need of it.
+  struct Site {
+    double x = 0, y = 0;
+    double u = 0;       ///< its y as a column coordinate, 0 at the centre of column 0
+    double height = 0;  ///< its squared distance from the row, in cells^2
+    float yaw = 0, speed = 0;
+  };
+  struct Parabola {
+    const Site* site = nullptr;
+    double start = 0;  ///< column coordinate from which on it is the lowest
+  };
+
+  int nearest_point(const Point& robot) const noexcept;
+  void choose_window() noexcept;
+  void make_sites() noexcept;
+  int build_envelope(double x) noexcept;
+  void write_row(int row, int begin, int end, int parabolas) noexcept;
+
+  ReferenceFieldOptions options_;
+  GridGeometry geometry_;
+  CellGrid<4> cells_;
+  std::vector<ReferencePoint> path_;
+  std::vector<double> path_x_, path_y_;
+  int nearest_ = 0;
+  std::vector<int> window_;
+  std::size_t window_size_ = 0;
+  std::vector<Site> sites_;
+  std::vector<Parabola> envelope_;
+};
+
+}  // namespace slalom::maps

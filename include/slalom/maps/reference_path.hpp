@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+
+namespace slalom::maps {
+
+/// A point of the path that the car is to follow.
+struct ReferencePoint {
+  double x = 0;      ///< m
+  double y = 0;      ///< m
+  double yaw = 0;    ///< rad, the path's direction there
+  double speed = 0;  ///< m/s
+};
+
+/// What a look-up in a reference map returns: one 16-byte cell, so that one load fetches it.
+struct ReferenceCell {
+  float distance;  ///< m to the path
+  float yaw;       ///< rad, of the path's nearest point
+  float speed;     ///< m/s there
+  float spare;     ///< 0
+};
+static_assert(sizeof(ReferenceCell) == 16);
+
+/// What a look-up off a reference map returns.
+struct ReferenceOutside {
+  double distance = 20;  ///< m
+  double yaw = 2.0;      ///< rad; no meaning of its own, the published program's value
+  double speed = 0;      ///< m/s
+};
+
+/// Throws std::invalid_argument, naming the point, unless there are at least 3 points, all finite, the speeds
+/// >= 0.
+void check_reference_path(std::span<const ReferencePoint> path);
+
+}  // namespace slalom::maps

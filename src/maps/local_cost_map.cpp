@@ -1,0 +1,210 @@
+#include "slalom/maps/local_cost_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include "rules.hpp"
+
+namespace slalom::maps {
+namespace {
+
+GridGeometry geometry_of(const LocalCostMapOptions& options) {
+  options.validate();
+  return {detail::cell_count("length_x", options.length_x, options.resolution),
+          detail::cell_count("length_y", options.length_y, options.resolution), options.resolution,
+          options.center_x, options.center_y};
+}
+
+/// floor() of a cell coordinate, clamped to [low, high] first; far positions would not fit an int.
+int clamped_floor(double cell, int low, int high) {
+  return static_cast<int>(std::floor(std::clamp(cell, static_cast<double>(low), static_cast<double>(high))));
+}
+
+}  // namespace
+
+LocalCostMapOptions LocalCostMapOptions::published() {
+  LocalCostMapOptions options;
+  options.half_open_inflation = true;
+  options.forget_points_outside = true;
+  return options;
+}
+
+void LocalCostMapOptions::validate() const {
+  using detail::require;
+  detail::cell_count("length_x", length_x, resolution);
+  detail::cell_count("length_y", length_y, resolution);
+  require(std::isfinite(center_x), "center_x", center_x, "finite");
+  require(std::isfinite(center_y), "center_y", center_y, "finite");
+  require(std::isfinite(occupied), "occupied", occupied, "finite");
+  require(std::isfinite(outside), "outside", outside, "finite");
+  const auto reach = [](const char* field, double value) {
+    require(std::isfinite(value) && value >= 0 && value <= 100, field, value, "within 0 to 100 m");
+  };
+  reach("footprint.front", footprint.front);
+  reach("footprint.rear", footprint.rear);
+  reach("footprint.left", footprint.left);
+  reach("footprint.right", footprint.right);
+  reach("margin", margin);
+  require(std::isfinite(laser.x), "laser.x", laser.x, "finite");
+  require(std::isfinite(laser.y), "laser.y", laser.y, "finite");
+  require(std::isfinite(laser.yaw), "laser.yaw", laser.yaw, "finite");
+  require(max_beams >= 1 && max_beams <= 1000000, "max_beams", max_beams, "within 1 to 1000000");
+}
+
+LocalCostMap::LocalCostMap(const LocalCostMapOptions& options)
+    : options_(options), geometry_(geometry_of(options)), cells_(geometry_.rows, geometry_.columns) {
+  const auto whole_cells = [&](double reach) {
+    return static_cast<int>(std::ceil((reach + options.margin) / options.resolution));
+  };
+  // Row 0 lies at the largest x: the cells before the point's own are those ahead of it.
+  box_rows_[0] = whole_cells(options.footprint.rear);
+  box_rows_[1] = whole_cells(options.footprint.front);
+  box_columns_[0] = whole_cells(options.footprint.right);
+  box_columns_[1] = whole_cells(options.footprint.left);
+  const auto beams = static_cast<std::size_t>(options.max_beams);
+  beam_cos_.resize(beams);
+  beam_sin_.resize(beams);
+  points_.resize(beams);
+  cells_.fill({options.outside});
+  clear();
+}
+
+void LocalCostMap::clear() noexcept {
+  for (int row = 0; row < geometry_.rows; ++row) std::fill_n(cells_.at(row, 0), geometry_.columns, 0.0F);
+  std::fill(std::begin(last_box_), std::end(last_box_), 0);
+  point_count_ = 0;
+}
+
+ScanReport LocalCostMap::update(const LaserScanView& scan) noexcept {
+  clear();
+  return add_scan(scan);
+}
+
+void LocalCostMap::set_beams(const LaserScanView& scan) noexcept {
+  const int count = static_cast<int>(scan.ranges.size());
+  const bool same = scan.angle_min == beam_start_ && scan.angle_increment == beam_step_;
+  for (int i = same ? beam_count_ : 0; i < count; ++i) {
+    const double angle = scan.angle_min + i * scan.angle_increment + options_.laser.yaw;
+    beam_cos_[static_cast<std::size_t>(i)] = std::cos(angle);
+    beam_sin_[static_cast<std::size_t>(i)] = std::sin(angle);
+  }
+  beam_count_ = same ? std::max(count, beam_count_) : count;
+  beam_start_ = scan.angle_min;
+  beam_step_ = scan.angle_increment;
+}
+
+ScanReport LocalCostMap::add_scan(const LaserScanView& scan) noexcept {
+  ScanReport report;
+  point_count_ = 0;
+  if (scan.ranges.empty() || scan.ranges.size() > points_.size() || !std::isfinite(scan.angle_min) ||
+      !std::isfinite(scan.angle_increment) || !(scan.range_min >= 0) || !(scan.range_max > scan.range_min)) {
+    return report;
+  }
+  set_beams(scan);
+  report.accepted = true;
+  report.beams = static_cast<int>(scan.ranges.size());
+  // Points and the box of the body are float32, as the messages are that carry them: a point right on the
+  // box's edge is then dropped or kept as the published program does.
+  const auto laser_x = static_cast<float>(options_.laser.x), laser_y = static_cast<float>(options_.laser.y);
+  const auto front = static_cast<float>(options_.footprint.front),
+             rear = -static_cast<float>(options_.footprint.rear);
+  const auto left = static_cast<float>(options_.footprint.left),
+             right = -static_cast<float>(options_.footprint.right);
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double range = scan.ranges[i];
+    if (!(range >= scan.range_min && range < scan.range_max)) {
+      ++report.invalid;
+      continue;
+    }
+    const ScanPoint point{static_cast<float>(range * beam_cos_[i]) + laser_x,
+                          static_cast<float>(range * beam_sin_[i]) + laser_y};
+    if (options_.drop_points_on_body && point.x >= rear && point.x <= front && point.y >= right &&
+        point.y <= left) {
+      ++report.on_body;
+      continue;
+    }
+    points_[point_count_++] = point;
+    mark(point.x, point.y, 0);
+  }
+  report.used = static_cast<int>(point_count_);
+  return report;
+}
+
+void LocalCostMap::add_points(std::span<const Point> points) noexcept {
+  for (const Point& point : points) {
+    if (std::isfinite(point.x) && std::isfinite(point.y)) mark(point.x, point.y, 0);
+  }
+}
+
+void LocalCostMap::add_grid(const OccupancyGrid& obstacles, const Pose& robot) noexcept {
+  const Footprint& body = options_.footprint;
+  const double reach =
+      options_.margin + obstacles.resolution + std::max({body.front, body.rear, body.left, body.right});
+  const double half_x = 0.5 * geometry_.length_x() + reach, half_y = 0.5 * geometry_.length_y() + reach;
+  // The part of the grid that can matter: the local map with all it inflates, seen in the grid's frame.
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (const double x : {geometry_.center_x - half_x, geometry_.center_x + half_x}) {
+    for (const double y : {geometry_.center_y - half_y, geometry_.center_y + half_y}) {
+      const Point corner = inverse_transform(obstacles.origin, transform(robot, {x, y}));
+      low[0] = std::min(low[0], corner.x / obstacles.resolution);
+      low[1] = std::min(low[1], corner.y / obstacles.resolution);
+      high[0] = std::max(high[0], corner.x / obstacles.resolution);
+      high[1] = std::max(high[1], corner.y / obstacles.resolution);
+    }
+  }
+  if (!std::isfinite(low[0]) || !std::isfinite(low[1]) || !std::isfinite(high[0]) || !std::isfinite(high[1]))
+    return;
+  const int column_begin = clamped_floor(low[0], 0, obstacles.width),
+            row_begin = clamped_floor(low[1], 0, obstacles.height);
+  const int column_end = clamped_floor(high[0] + 1, 0, obstacles.width);
+  const int row_end = clamped_floor(high[1] + 1, 0, obstacles.height);
+  const double turn = obstacles.origin.yaw - robot.yaw;
+  const double half_cell = 0.5 * obstacles.resolution * (std::abs(std::cos(turn)) + std::abs(std::sin(turn)));
+  for (int row = row_begin; row < row_end; ++row) {
+    for (int column = column_begin; column < column_end; ++column) {
+      if (obstacles.at(column, row) != Occupancy::occupied) continue;
+      const Point cell{(column + 0.5) * obstacles.resolution, (row + 0.5) * obstacles.resolution};
+      const Point point = inverse_transform(robot, transform(obstacles.origin, cell));
+      mark(point.x, point.y, half_cell);
+    }
+  }
+}
+
+/// Marks where the body would touch a square of half width `reach` (m) about (x, y).
+void LocalCostMap::mark(double x, double y, double reach) noexcept {
+  const bool by_cells = options_.half_open_inflation || options_.forget_points_outside;
+  int row = by_cells ? geometry_.row(x) : 0, column = by_cells ? geometry_.column(y) : 0;
+  if (options_.forget_points_outside && (row < 0 || column < 0)) return;
+  const double edge_x = geometry_.center_x + 0.5 * geometry_.length_x();
+  const double edge_y = geometry_.center_y + 0.5 * geometry_.length_y();
+  const double inverse = 1 / geometry_.resolution;
+  int box[4];
+  if (options_.half_open_inflation) {
+    const int more = static_cast<int>(std::ceil(reach * inverse));
+    if (row < 0) row = clamped_floor((edge_x - x) * inverse, -100000, 100000);
+    if (column < 0) column = clamped_floor((edge_y - y) * inverse, -100000, 100000);
+    box[0] = row - box_rows_[0] - more;
+    box[1] = row + box_rows_[1] + more;
+    box[2] = column - box_columns_[0] - more;
+    box[3] = column + box_columns_[1] + more;
+  } else {
+    const double wider = reach + options_.margin;
+    const Footprint& body = options_.footprint;
+    box[0] = clamped_floor((edge_x - (x + body.rear + wider)) * inverse, 0, geometry_.rows);
+    box[1] = clamped_floor((edge_x - (x - body.front - wider)) * inverse, -1, geometry_.rows) + 1;
+    box[2] = clamped_floor((edge_y - (y + body.right + wider)) * inverse, 0, geometry_.columns);
+    box[3] = clamped_floor((edge_y - (y - body.left - wider)) * inverse, -1, geometry_.columns) + 1;
+  }
+  // Neighbouring beams mostly hit the same cell.
+  if (std::equal(box, box + 4, last_box_)) return;
+  std::copy(box, box + 4, last_box_);
+  const int row_begin = std::max(box[0], 0), row_end = std::min(box[1], geometry_.rows);
+  const int column_begin = std::max(box[2], 0), column_end = std::min(box[3], geometry_.columns);
+  if (column_begin >= column_end) return;
+  for (int r = row_begin; r < row_end; ++r) {
+    std::fill_n(cells_.at(r, column_begin), column_end - column_begin, options_.occupied);
+  }
+}
+
+}  // namespace slalom::maps

@@ -1,0 +1,210 @@
+#include "slalom/maps/reference_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "rules.hpp"
+
+namespace slalom::maps {
+namespace {
+
+GridGeometry geometry_of(const ReferenceFieldOptions& options) {
+  options.validate();
+  return {detail::cell_count("length_x", options.length_x, options.resolution),
+          detail::cell_count("length_y", options.length_y, options.resolution), options.resolution, 0, 0};
+}
+
+double squared_distance(const ReferencePoint& a, const ReferencePoint& b) {
+  return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
+}
+
+}  // namespace
+
+void check_reference_path(std::span<const ReferencePoint> path) {
+  detail::require(path.size() >= 3, "reference path: number of points", path.size(), "at least 3");
+  detail::require(path.size() <= 10000000, "reference path: number of points", path.size(),
+                  "at most 10000000");
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const auto check = [&](const char* field, double value, bool holds, const char* rule) {
+      if (!holds)
+        detail::require(false, ("reference path: point " + std::to_string(i) + ": " + field).c_str(), value,
+                        rule);
+    };
+    check("x", path[i].x, std::abs(path[i].x) <= 1e6, "finite, within 1e6 m");
+    check("y", path[i].y, std::abs(path[i].y) <= 1e6, "finite, within 1e6 m");
+    check("yaw", path[i].yaw, std::isfinite(path[i].yaw), "finite");
+    check("speed", path[i].speed, std::isfinite(path[i].speed) && path[i].speed >= 0,
+          "finite and not negative");
+  }
+}
+
+ReferenceFieldOptions ReferenceFieldOptions::published() {
+  ReferenceFieldOptions options;
+  options.points_behind = 0;
+  return options;
+}
+
+void ReferenceFieldOptions::validate() const {
+  using detail::require;
+  detail::cell_count("length_x", length_x, resolution);
+  detail::cell_count("length_y", length_y, resolution);
+  require(points >= 1 && points <= 250, "points", points, "within 1 to 250");
+  require(points_behind >= 0 && points + points_behind <= 250, "points_behind", points_behind,
+          "at least 0, with `points` at most 250");
+  require(std::isfinite(spacing) && spacing >= 0, "spacing", spacing, "finite and not negative");
+  require(std::isfinite(outside.distance), "outside.distance", outside.distance, "finite");
+  require(std::isfinite(outside.yaw), "outside.yaw", outside.yaw, "finite");
+  require(std::isfinite(outside.speed), "outside.speed", outside.speed, "finite");
+}
+
+ReferenceField::ReferenceField(std::span<const ReferencePoint> path, const ReferenceFieldOptions& options)
+    : options_(options), geometry_(geometry_of(options)), cells_(geometry_.rows, geometry_.columns) {
+  check_reference_path(path);
+  path_.assign(path.begin(), path.end());
+  for (const ReferencePoint& point : path) {
+    path_x_.push_back(point.x);
+    path_y_.push_back(point.y);
+  }
+  const auto sites = static_cast<std::size_t>(options.points + options.points_behind);
+  window_.resize(sites);
+  sites_.resize(sites);
+  envelope_.resize(sites + 1);
+  cells_.fill({static_cast<float>(options.outside.distance), static_cast<float>(options.outside.yaw),
+               static_cast<float>(options.outside.speed), 0});
+  update({path[0].x, path[0].y});
+}
+
+bool ReferenceField::update(const Point& robot, double reach) noexcept {
+  if (!std::isfinite(robot.x) || !std::isfinite(robot.y)) return false;
+  geometry_.center_x = robot.x;
+  geometry_.center_y = robot.y;
+  nearest_ = nearest_point(robot);
+  choose_window();
+  make_sites();
+  const double cells = std::clamp(reach / geometry_.resolution, 0.0, 1e6);
+  const int half = static_cast<int>(cells) + 2;
+  const int row_begin = std::max(geometry_.rows / 2 - half, 0);
+  const int row_end = std::min(geometry_.rows / 2 + half, geometry_.rows);
+  const int column_begin = std::max(geometry_.columns / 2 - half, 0);
+  const int column_end = std::min(geometry_.columns / 2 + half, geometry_.columns);
+  for (int row = row_begin; row < row_end; ++row) {
+    const int parabolas = build_envelope(geometry_.cell_x(row));
+    write_row(row, column_begin, column_end, parabolas);
+  }
+  return true;
+}
+
+ReferenceCell ReferenceField::at(double x, double y) const noexcept {
+  const int row = geometry_.row(x), column = geometry_.column(y);
+  const float* cell = row < 0 || column < 0 ? cells_.data() : cells_.at(row, column);
+  return {cell[0], cell[1], cell[2], cell[3]};
+}
+
+int ReferenceField::nearest_point(const Point& robot) const noexcept {
+  double best = std::numeric_limits<double>::infinity();
+  std::size_t index = 0;
+  for (std::size_t i = 0; i < path_x_.size(); ++i) {
+    const double dx = path_x_[i] - robot.x, dy = path_y_[i] - robot.y;
+    const double squared = dx * dx + dy * dy;
+    if (squared < best) {
+      best = squared;
+      index = i;
+    }
+  }
+  return static_cast<int>(index);
+}
+
+void ReferenceField::choose_window() noexcept {
+  const int count = static_cast<int>(path_.size());
+  const double least = options_.spacing * options_.spacing;
+  // One round at most: on a short path the window holds no point twice.
+  const auto next = [&](int from, int step, int& left) {
+    int i = from;
+    while (left > 0) {
+      --left;
+      i = (i + step + count) % count;
+      if (squared_distance(path_[static_cast<std::size_t>(i)], path_[static_cast<std::size_t>(from)]) >=
+          least)
+        return i;
+    }
+    return -1;
+  };
+  int left = count - 1;
+  window_size_ = 0;
+  for (int i = nearest_; i >= 0;) {
+    window_[window_size_++] = i;
+    i = window_size_ < static_cast<std::size_t>(options_.points) ? next(i, 1, left) : -1;
+  }
+  const std::size_t ahead = window_size_;
+  for (int i = nearest_; window_size_ < ahead + static_cast<std::size_t>(options_.points_behind);) {
+    i = next(i, -1, left);
+    if (i < 0) break;
+    window_[window_size_++] = i;
+  }
+  std::reverse(window_.begin() + static_cast<std::ptrdiff_t>(ahead),
+               window_.begin() + static_cast<std::ptrdiff_t>(window_size_));
+  std::rotate(window_.begin(), window_.begin() + static_cast<std::ptrdiff_t>(ahead),
+              window_.begin() + static_cast<std::ptrdiff_t>(window_size_));
+}
+
+void ReferenceField::make_sites() noexcept {
+  const double first = geometry_.cell_y(0);
+  for (std::size_t k = 0; k < window_size_; ++k) {
+    const ReferencePoint& point = path_[static_cast<std::size_t>(window_[k])];
+    sites_[k] = {point.x,
+                 point.y,
+                 (first - point.y) / geometry_.resolution,
+                 0,
+                 static_cast<float>(point.yaw),
+                 static_cast<float>(point.speed)};
+  }
+  std::sort(sites_.begin(), sites_.begin() + static_cast<std::ptrdiff_t>(window_size_),
+            [](const Site& a, const Site& b) { return a.u < b.u; });
+}
+
+/// The lower envelope, along the row of cells at x, of the squared distances to the sites.
+int ReferenceField::build_envelope(double x) noexcept {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  int count = 0;
+  for (std::size_t k = 0; k < window_size_; ++k) {
+    Site& site = sites_[k];
+    const double dx = (x - site.x) / geometry_.resolution;
+    site.height = dx * dx;
+    double start = -infinity;
+    while (count > 0) {
+      const Parabola& last = envelope_[static_cast<std::size_t>(count - 1)];
+      // Two sites in one column give an infinite start of the right sign; coincident ones a NaN, which drops
+      // the first.
+      start = ((site.height - last.site->height) / (site.u - last.site->u) + site.u + last.site->u) * 0.5;
+      if (start > last.start) break;
+      --count;
+      start = -infinity;
+    }
+    envelope_[static_cast<std::size_t>(count++)] = {&site, start};
+  }
+  return count;
+}
+
+void ReferenceField::write_row(int row, int begin, int end, int parabolas) noexcept {
+  const double x = geometry_.cell_x(row);
+  int column = begin;
+  for (int k = 0; k < parabolas && column < end; ++k) {
+    const Site& site = *envelope_[static_cast<std::size_t>(k)].site;
+    const double stop = k + 1 < parabolas ? envelope_[static_cast<std::size_t>(k + 1)].start : end;
+    if (!(stop >= column)) continue;
+    const int last = stop >= end ? end : static_cast<int>(stop) + 1;
+    const double dx = x - site.x;
+    const auto dx2 = static_cast<float>(dx * dx);
+    float* cell = cells_.at(row, column);
+    for (; column < last; ++column, cell += 4) {
+      const auto dy = static_cast<float>(geometry_.cell_y(column) - site.y);
+      cell[0] = std::sqrt(dx2 + dy * dy);
+      cell[1] = site.yaw;
+      cell[2] = site.speed;
+      cell[3] = 0;
+    }
+  }
+}
+
+}  // namespace slalom::maps
