@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "slalom/maps/pose.hpp"
+
+namespace slalom::sim {
+
+/// A closed polyline with its arc length, to measure laps along: a centre line or a raceline.
+class LapPath {
+ public:
+  /// The last point is joined to the first. Throws std::invalid_argument on fewer than 3 points, points that
+  /// are not finite, or no length.
+  explicit LapPath(std::vector<maps::Point> points);
+
+  double length() const noexcept { return start_.back(); }  ///< m, once round
+  std::size_t size() const noexcept { return points_.size(); }
+  const std::vector<maps::Point>& points() const noexcept { return points_; }
+
+  struct Place {
+    std::size_t segment = 0;
+    double arc = 0;       ///< m from the first point, in [0, length)
+    double lateral = 0;   ///< m, to the left positive
+    double distance = 0;  ///< m
+  };
+
+  /// The nearest place of the whole path.
+  Place project(const maps::Point& point) const noexcept;
+
+  /// The nearest place among the segments within `reach` (m) of arc either way of segment `near`.
+  Place project_near(const maps::Point& point, std::size_t near, double reach) const noexcept;
+
+  /// The pose on the path at an arc length (m, any number of turns), facing along it.
+  maps::Pose at(double arc) const noexcept;
+
+ private:
+  Place place(const maps::Point& point, std::size_t segment) const noexcept;
+
+  std::vector<maps::Point> points_;
+  std::vector<double> start_;  ///< arc length at each point, then the whole length
+};
+
+/// Laps of one car by arc length along a path. What is driven backwards must be driven forwards again; the
+/// line is where the car started. Times are interpolated within a step.
+class LapTimer {
+ public:
+  /// `sectors` >= 1 equal parts of the path get split times. Throws std::invalid_argument otherwise.
+  explicit LapTimer(const LapPath& path, int sectors = 3);
+
+  void reset(const LapPath& path, const maps::Point& position, double time) noexcept;
+
+  /// To be called after each step, with the position and the time (s) reached.
+  void update(const LapPath& path, const maps::Point& position, double time) noexcept;
+
+  int laps() const noexcept { return laps_; }             ///< whole laps driven
+  double progress() const noexcept { return progress_; }  ///< m since the start, backwards counts down
+  double last_lap_time() const noexcept { return last_lap_time_; }  ///< s; 0 before the first is complete
+  double best_lap_time() const noexcept { return best_lap_time_; }  ///< s; 0 before the first is complete
+  double lap_start_time() const noexcept { return lap_start_; }     ///< s, when the present lap began
+  /// Times (s) from the lap's start to the end of each sector, of the present lap as far as it has come and
+  /// of the last one beyond that.
+  std::span<const double> splits() const noexcept { return splits_; }
+  double lateral() const noexcept { return place_.lateral; }  ///< m off the path, to the left positive
+  double arc() const noexcept { return place_.arc; }          ///< m along the path from its first point
+
+ private:
+  LapPath::Place place_;
+  double progress_ = 0;
+  double time_ = 0;
+  double lap_start_ = 0;
+  double last_lap_time_ = 0;
+  double best_lap_time_ = 0;
+  int laps_ = 0;
+  int sectors_done_ = 0;
+  std::vector<double> splits_;
+};
+
+/// Laps as f1tenth_gym counts them: a zone 4 m wide and 0.316 m deep round the car's own start, turned as the
+/// first car's start is. Every way in or out is half a lap, in whatever direction, and after two laps the
+/// time stands still.
+class StartZoneLaps {
+ public:
+  /// `own` is the car's start, `heading` (rad) the first car's yaw there.
+  void reset(const maps::Point& own, double heading) noexcept;
+
+  void update(const maps::Point& position, double time) noexcept;
+
+  bool near_start() const noexcept { return near_; }
+  int toggles() const noexcept { return toggles_; }  ///< ways in and out
+  int laps() const noexcept { return toggles_ / 2; }
+  double time() const noexcept { return time_; }  ///< s
+  bool finished() const noexcept { return toggles_ >= 4; }
+
+ private:
+  maps::Point start_;
+  double cosine_ = 1;
+  double sine_ = 0;
+  bool near_ = true;
+  int toggles_ = 0;
+  double time_ = 0;
+};
+
+}  // namespace slalom::sim

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace slalom::sim {
+
+/// The draws of numpy.random.default_rng(seed), bit for bit, as far as f1tenth_gym uses them.
+///
+/// Seeding: SeedSequence after M. E. O'Neill, "Developing a seed_seq Alternative" (2015), with a pool of 4
+/// words. Stream: PCG64, the generator PCG XSL RR 128/64 of O'Neill, "PCG: A Family of Simple Fast
+/// Space-Efficient Statistically Good Algorithms for Random Number Generation", HMC-CS-2014-0905. Whole
+/// numbers: D. Lemire, "Fast Random Integer Generation in an Interval" (2019), over 32 bit. Normal numbers:
+/// the ziggurat of Marsaglia & Tsang (2000) with 256 layers.
+class NumpyRandom {
+ public:
+  explicit NumpyRandom(std::uint64_t seed) noexcept;
+
+  /// The next 64 bits of the stream.
+  std::uint64_t bits() noexcept;
+
+  /// A whole number in [0, count), count >= 1: Generator.integers(count), and the index of Generator.choice.
+  std::uint32_t below(std::uint32_t count) noexcept;
+
+  /// Generator.uniform(low, high).
+  double uniform(double low, double high) noexcept { return low + (high - low) * unit(); }
+
+  /// Generator.normal(0, 1).
+  double normal() noexcept;
+
+  /// SeedSequence(seed).generate_state(4, uint64).
+  static std::array<std::uint64_t, 4> seed_state(std::uint64_t seed) noexcept;
+
+ private:
+  __extension__ using Wide = unsigned __int128;
+
+  void advance() noexcept;
+  double unit() noexcept { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+  std::uint32_t half() noexcept;
+
+  Wide state_ = 0;
+  Wide increment_ = 0;
+  std::uint32_t kept_half_ = 0;  ///< upper half of a number whose lower half was used
+  bool has_half_ = false;
+};
+
+}  // namespace slalom::sim

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "slalom/maps/pose.hpp"
+#include "slalom/sim/plant.hpp"
+
+namespace slalom::sim {
+
+/// A point of a closed path to follow and the speed wanted there.
+struct PathPoint {
+  maps::Point point;
+  double speed = 0;  ///< m/s
+};
+
+struct PurePursuitOptions {
+  double lookahead = 1.0;     ///< m, distance of the point that is aimed at
+  double wheelbase = 0.3302;  ///< m
+  double reacquire = 10.0;    ///< m, farther from the path than this the car is lost
+  double lost_speed = 0.5;    ///< m/s, straight ahead while lost
+  double steer_max = 0.4189;  ///< rad, of the command
+  /// f1tenth_gym: the path is open for the nearest point and closed only for the search ahead, whose segments
+  /// end 1e-6 m off; what is aimed at is the start of the segment found, or of the nearest one with the arc
+  /// for the fixed lookahead; and steering is not bounded.
+  bool gym_compatible = false;
+
+  /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
+  void validate() const;
+};
+
+/// An opponent that follows a path: R. C. Coulter, "Implementation of the Pure Pursuit Path Tracking
+/// Algorithm", CMU-RI-TR-92-01 (1992): the arc that leads from the car through a point of the path at
+/// lookahead distance, tan(steer) = wheelbase 2 y / lookahead^2 with y sideways in the car's frame.
+class PurePursuit {
+ public:
+  /// Throws std::invalid_argument on fewer than 3 points, points that are not finite, or options out of
+  /// range.
+  PurePursuit(std::vector<PathPoint> path, const PurePursuitOptions& options = {});
+
+  struct Nearest {
+    std::size_t segment = 0;  ///< from this row to the next
+    double along = 0;         ///< in [0, 1] of the segment
+    double distance = 0;      ///< m
+  };
+  struct Target {
+    enum class Mode { lookahead, reacquire, lost } mode = Mode::lost;
+    int row = -2;       ///< start of the segment found (-1 the last row); -2 if lost
+    double along = -1;  ///< in [0, 1] of that segment; -1 where it was not searched
+    Nearest nearest;
+    PathPoint aim;  ///< where and how fast
+  };
+
+  Nearest nearest(const maps::Point& position) const noexcept;
+  Target target(const maps::Point& position) const noexcept;
+
+  /// Steering and speed for a car at `pose`.
+  Command command(const maps::Pose& pose) const noexcept;
+
+ private:
+  struct Crossing {
+    int row;
+    double along;
+  };
+  std::optional<Crossing> cross_circle(const maps::Point& middle, std::size_t start,
+                                       double along) const noexcept;
+  std::optional<double> cross_segment(const maps::Point& middle, int row, double least) const noexcept;
+
+  std::vector<PathPoint> path_;
+  PurePursuitOptions options_;
+};
+
+}  // namespace slalom::sim
