@@ -16,9 +16,10 @@ GridGeometry geometry_of(const LocalCostMapOptions& options) {
           options.center_x, options.center_y};
 }
 
-/// floor() of a cell coordinate, clamped to [low, high] first; far positions would not fit an int.
+/// floor() of a cell coordinate, clamped to [low, high] first, since far positions would not fit an int.
+/// Counted from `low` on, no number is negative, so that the conversion truncates downwards.
 int clamped_floor(double cell, int low, int high) {
-  return static_cast<int>(std::floor(std::clamp(cell, static_cast<double>(low), static_cast<double>(high))));
+  return static_cast<int>(std::clamp(cell, static_cast<double>(low), static_cast<double>(high)) - low) + low;
 }
 
 }  // namespace
@@ -57,11 +58,13 @@ LocalCostMap::LocalCostMap(const LocalCostMapOptions& options)
   const auto whole_cells = [&](double reach) {
     return static_cast<int>(std::ceil((reach + options.margin) / options.resolution));
   };
-  // Row 0 lies at the largest x: the cells before the point's own are those ahead of it.
-  box_rows_[0] = whole_cells(options.footprint.rear);
-  box_rows_[1] = whole_cells(options.footprint.front);
-  box_columns_[0] = whole_cells(options.footprint.right);
-  box_columns_[1] = whole_cells(options.footprint.left);
+  // Row 0 lies at the largest x: the car that stands ahead of a point touches it with its rear.
+  cells_ahead_ = whole_cells(options.footprint.rear);
+  cells_behind_ = whole_cells(options.footprint.front);
+  cells_left_ = whole_cells(options.footprint.right);
+  cells_right_ = whole_cells(options.footprint.left);
+  counts_.resize(static_cast<std::size_t>(geometry_.columns));
+  differences_.resize(static_cast<std::size_t>(geometry_.rows + 1) * counts_.size());
   const auto beams = static_cast<std::size_t>(options.max_beams);
   beam_cos_.resize(beams);
   beam_sin_.resize(beams);
@@ -70,15 +73,28 @@ LocalCostMap::LocalCostMap(const LocalCostMapOptions& options)
   clear();
 }
 
-void LocalCostMap::clear() noexcept {
-  for (int row = 0; row < geometry_.rows; ++row) std::fill_n(cells_.at(row, 0), geometry_.columns, 0.0F);
-  std::fill(std::begin(last_box_), std::end(last_box_), 0);
+void LocalCostMap::forget() noexcept {
+  std::fill(differences_.begin(), differences_.end(), 0);
+  last_box_ = {};
   point_count_ = 0;
 }
 
+void LocalCostMap::clear() noexcept {
+  forget();
+  write_cells();
+}
+
 ScanReport LocalCostMap::update(const LaserScanView& scan) noexcept {
-  clear();
-  return add_scan(scan);
+  forget();
+  const ScanReport report = mark_scan(scan);
+  write_cells();
+  return report;
+}
+
+ScanReport LocalCostMap::add_scan(const LaserScanView& scan) noexcept {
+  const ScanReport report = mark_scan(scan);
+  write_cells();
+  return report;
 }
 
 void LocalCostMap::set_beams(const LaserScanView& scan) noexcept {
@@ -94,7 +110,7 @@ void LocalCostMap::set_beams(const LaserScanView& scan) noexcept {
   beam_step_ = scan.angle_increment;
 }
 
-ScanReport LocalCostMap::add_scan(const LaserScanView& scan) noexcept {
+ScanReport LocalCostMap::mark_scan(const LaserScanView& scan) noexcept {
   ScanReport report;
   point_count_ = 0;
   if (scan.ranges.empty() || scan.ranges.size() > points_.size() || !std::isfinite(scan.angle_min) ||
@@ -135,6 +151,7 @@ void LocalCostMap::add_points(std::span<const Point> points) noexcept {
   for (const Point& point : points) {
     if (std::isfinite(point.x) && std::isfinite(point.y)) mark(point.x, point.y, 0);
   }
+  write_cells();
 }
 
 void LocalCostMap::add_grid(const OccupancyGrid& obstacles, const Pose& robot) noexcept {
@@ -169,41 +186,66 @@ void LocalCostMap::add_grid(const OccupancyGrid& obstacles, const Pose& robot) n
       mark(point.x, point.y, half_cell);
     }
   }
+  write_cells();
 }
 
-/// Marks where the body would touch a square of half width `reach` (m) about (x, y).
+/// Counts a square of half width `reach` (m) about (x, y) in every cell where the body would touch it.
 void LocalCostMap::mark(double x, double y, double reach) noexcept {
   const bool by_cells = options_.half_open_inflation || options_.forget_points_outside;
   int row = by_cells ? geometry_.row(x) : 0, column = by_cells ? geometry_.column(y) : 0;
   if (options_.forget_points_outside && (row < 0 || column < 0)) return;
-  const double edge_x = geometry_.center_x + 0.5 * geometry_.length_x();
-  const double edge_y = geometry_.center_y + 0.5 * geometry_.length_y();
-  const double inverse = 1 / geometry_.resolution;
-  int box[4];
+  // The point in units of cells from the corner where row and column 0 begin.
+  const double scale = 1 / geometry_.resolution;
+  const double u = (geometry_.center_x - x) * scale + 0.5 * geometry_.rows;
+  const double v = (geometry_.center_y - y) * scale + 0.5 * geometry_.columns;
+  Box box;
   if (options_.half_open_inflation) {
-    const int more = static_cast<int>(std::ceil(reach * inverse));
-    if (row < 0) row = clamped_floor((edge_x - x) * inverse, -100000, 100000);
-    if (column < 0) column = clamped_floor((edge_y - y) * inverse, -100000, 100000);
-    box[0] = row - box_rows_[0] - more;
-    box[1] = row + box_rows_[1] + more;
-    box[2] = column - box_columns_[0] - more;
-    box[3] = column + box_columns_[1] + more;
+    const int more = static_cast<int>(std::ceil(reach * scale));
+    if (row < 0) row = clamped_floor(u, -100000, 100000);
+    if (column < 0) column = clamped_floor(v, -100000, 100000);
+    box = {row - cells_ahead_ - more, row + cells_behind_ + more, column - cells_left_ - more,
+           column + cells_right_ + more};
   } else {
-    const double wider = reach + options_.margin;
+    // Touching by less than a millionth of a cell is rounding.
+    const double wider = (reach + options_.margin) * scale - 1e-6;
     const Footprint& body = options_.footprint;
-    box[0] = clamped_floor((edge_x - (x + body.rear + wider)) * inverse, 0, geometry_.rows);
-    box[1] = clamped_floor((edge_x - (x - body.front - wider)) * inverse, -1, geometry_.rows) + 1;
-    box[2] = clamped_floor((edge_y - (y + body.right + wider)) * inverse, 0, geometry_.columns);
-    box[3] = clamped_floor((edge_y - (y - body.left - wider)) * inverse, -1, geometry_.columns) + 1;
+    box = {clamped_floor(u - body.rear * scale - wider, 0, geometry_.rows),
+           clamped_floor(u + body.front * scale + wider, -1, geometry_.rows) + 1,
+           clamped_floor(v - body.right * scale - wider, 0, geometry_.columns),
+           clamped_floor(v + body.left * scale + wider, -1, geometry_.columns) + 1};
   }
-  // Neighbouring beams mostly hit the same cell.
-  if (std::equal(box, box + 4, last_box_)) return;
-  std::copy(box, box + 4, last_box_);
-  const int row_begin = std::max(box[0], 0), row_end = std::min(box[1], geometry_.rows);
-  const int column_begin = std::max(box[2], 0), column_end = std::min(box[3], geometry_.columns);
-  if (column_begin >= column_end) return;
-  for (int r = row_begin; r < row_end; ++r) {
-    std::fill_n(cells_.at(r, column_begin), column_end - column_begin, options_.occupied);
+  count(box);
+}
+
+/// Adds 1 to the cells of a box, as differences from row to row: two rows to write instead of all.
+void LocalCostMap::count(const Box& box) noexcept {
+  // Neighbouring beams often hit the same cell.
+  if (box == last_box_) return;
+  last_box_ = box;
+  const int row_begin = std::max(box.row_begin, 0), row_end = std::min(box.row_end, geometry_.rows);
+  const int begin = std::max(box.column_begin, 0), end = std::min(box.column_end, geometry_.columns);
+  if (row_begin >= row_end || begin >= end) return;
+  std::int32_t* first = differences_.data() + static_cast<std::ptrdiff_t>(row_begin) * geometry_.columns;
+  std::int32_t* behind = differences_.data() + static_cast<std::ptrdiff_t>(row_end) * geometry_.columns;
+  for (int column = begin; column < end; ++column) {
+    ++first[column];
+    --behind[column];
+  }
+}
+
+/// Sums the differences up and writes the cells.
+void LocalCostMap::write_cells() noexcept {
+  std::fill(counts_.begin(), counts_.end(), 0);
+  const auto columns = static_cast<std::size_t>(geometry_.columns);
+  const float occupied = options_.occupied;
+  std::int32_t* counts = counts_.data();
+  for (int row = 0; row < geometry_.rows; ++row) {
+    const std::int32_t* differences = differences_.data() + static_cast<std::size_t>(row) * columns;
+    float* cells = cells_.at(row, 0);
+    for (std::size_t column = 0; column < columns; ++column) {
+      counts[column] += differences[column];
+      cells[column] = counts[column] > 0 ? occupied : 0.0F;
+    }
   }
 }
 

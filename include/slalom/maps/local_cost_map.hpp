@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -101,15 +102,28 @@ class LocalCostMap {
   std::span<const ScanPoint> points() const noexcept { return {points_.data(), point_count_}; }
 
  private:
+  /// A range of rows and columns; the ends are excluded.
+  struct Box {
+    int row_begin = 0, row_end = 0, column_begin = 0, column_end = 0;
+    bool operator==(const Box&) const = default;
+  };
+
+  void forget() noexcept;
   void set_beams(const LaserScanView& scan) noexcept;
+  ScanReport mark_scan(const LaserScanView& scan) noexcept;
   void mark(double x, double y, double reach) noexcept;
+  void count(const Box& box) noexcept;
+  void write_cells() noexcept;
 
   LocalCostMapOptions options_;
   GridGeometry geometry_;
   CellGrid<1> cells_;
-  int box_rows_[2];     ///< cells of a half-open box before and from the point's own cell on, along the rows
-  int box_columns_[2];  ///< and along the columns
-  int last_box_[4] = {0, 0, 0, 0};
+  /// How far a half-open box reaches beyond the cell of the point.
+  int cells_ahead_ = 0, cells_behind_ = 0, cells_left_ = 0, cells_right_ = 0;
+  Box last_box_;
+  /// (rows + 1) x columns: the boxes over a cell less those over the cell ahead of it.
+  std::vector<std::int32_t> differences_;
+  std::vector<std::int32_t> counts_;  ///< boxes over the cells of one row
 
   std::vector<double> beam_cos_, beam_sin_;  ///< directions of the beams in the robot's frame
   int beam_count_ = 0;                       ///< how many of them are valid

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "slalom/maps/cell_grid.hpp"
+#include "slalom/maps/reference_path.hpp"
+
+namespace slalom::maps {
+
+/// Options of CourseField.
+struct CourseFieldOptions {
+  double resolution = 0.1;     ///< m per cell, > 0
+  double corridor = 5;         ///< m, > 0: cells further than this from the path count as off the map
+  bool closed = true;          ///< the last point leads on to the first
+  ReferenceOutside outside{};  ///< what a look-up off the map or the corridor returns
+
+  /// Throws std::invalid_argument naming the field, its value and the rule.
+  void validate() const;
+};
+
+/// A map of a whole course, fixed in the map frame, that holds for every cell the distance of its centre to
+/// the path, with the path's yaw and speed there. The path is the polyline through the points: the nearest
+/// point may lie anywhere on a segment, ahead of the car or behind it; yaw and speed are interpolated between
+/// the segment's ends. The direction at a point is the mean of the two segments that meet there; the points'
+/// own `yaw` is not used.
+///
+/// It is made once, so that driving costs nothing, at the price of one blind spot: where two stretches of the
+/// course run within a corridor's width of each other, a car far from its own stretch is drawn to the other.
+/// ReferenceField, which knows only a window of the path, is for such courses.
+class CourseField {
+ public:
+  /// Throws std::invalid_argument where the path or the options break a rule, or the map would have more than
+  /// 2^26 cells.
+  explicit CourseField(std::span<const ReferencePoint> path, const CourseFieldOptions& options = {});
+
+  /// The cell at a position, m.
+  ReferenceCell at(double x, double y) const noexcept;
+
+  const CourseFieldOptions& options() const noexcept { return options_; }
+  const GridGeometry& geometry() const noexcept { return geometry_; }
+  const CellGrid<4>& cells() const noexcept { return cells_; }
+
+ private:
+  void make_cells(std::span<const ReferencePoint> path);
+
+  CourseFieldOptions options_;
+  GridGeometry geometry_;
+  CellGrid<4> cells_;
+};
+
+}  // namespace slalom::maps

@@ -1,0 +1,217 @@
+#include "slalom/maps/reference_field.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "slalom/maps/course_field.hpp"
+
+namespace slalom::maps {
+namespace {
+
+std::vector<ReferencePoint> circle(int count, double radius) {
+  std::vector<ReferencePoint> path;
+  for (int i = 0; i < count; ++i) {
+    const double t = 2 * M_PI * i / count;
+    path.push_back({radius * std::cos(t), radius * std::sin(t), wrap_angle(t + M_PI / 2), 2 + std::cos(t)});
+  }
+  return path;
+}
+
+/// Every cell against all points of the window.
+void expect_nearest(const ReferenceField& field, const std::vector<ReferencePoint>& path, int half = 1000) {
+  const GridGeometry& geometry = field.geometry();
+  for (int row = std::max(0, geometry.rows / 2 - half);
+       row < std::min(geometry.rows, geometry.rows / 2 + half); ++row) {
+    for (int column = std::max(0, geometry.columns / 2 - half);
+         column < std::min(geometry.columns, geometry.columns / 2 + half); ++column) {
+      const double x = geometry.cell_x(row), y = geometry.cell_y(column);
+      double best = 1e300;
+      for (const int i : field.window()) {
+        const ReferencePoint& point = path[static_cast<std::size_t>(i)];
+        best = std::min(best, std::hypot(point.x - x, point.y - y));
+      }
+      const float* cell = field.cells().at(row, column);
+      ASSERT_NEAR(cell[0], best, 1e-5) << row << ' ' << column;
+      // The point whose speed it has is as near as the nearest.
+      bool found = false;
+      for (const int i : field.window()) {
+        const ReferencePoint& point = path[static_cast<std::size_t>(i)];
+        found |= static_cast<float>(point.speed) == cell[2] && static_cast<float>(point.yaw) == cell[1] &&
+                 std::hypot(point.x - x, point.y - y) <= best + 1e-9;
+      }
+      ASSERT_TRUE(found) << row << ' ' << column;
+    }
+  }
+}
+
+TEST(ReferenceField, EqualsBruteForceOnRandomPaths) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-6, 6);
+  for (int trial = 0; trial < 30; ++trial) {
+    std::vector<ReferencePoint> path;
+    // Every third path lies on a lattice: many points share a row or a column, some coincide.
+    const auto draw = [&] { return trial % 3 == 0 ? std::round(uniform(random)) : uniform(random); };
+    for (int i = 0; i < 60; ++i) path.push_back({draw(), draw(), 0.01 * i, 0.1 * i});
+    ReferenceField field(
+        path,
+        {.length_x = 8, .length_y = 6, .resolution = 0.25, .points = 30, .spacing = 0, .points_behind = 9});
+    ASSERT_TRUE(field.update({draw(), draw()}));
+    EXPECT_EQ(field.window().size(), 39u);
+    expect_nearest(field, path);
+  }
+}
+
+TEST(ReferenceField, StraightPathsAlongTheAxes) {
+  for (const bool along_x : {true, false}) {
+    std::vector<ReferencePoint> path;
+    for (int i = 0; i < 100; ++i) {
+      path.push_back(
+          {along_x ? 0.1 * i : 0.0, along_x ? 0.0 : 0.1 * i, along_x ? 0 : M_PI / 2, 1 + 0.01 * i});
+    }
+    ReferenceField field(path, {.points_behind = 20});
+    ASSERT_TRUE(field.update({along_x ? 4.03 : 0.21, along_x ? -0.37 : 5.01}));
+    expect_nearest(field, path);
+  }
+}
+
+TEST(ReferenceField, TheWindowKeepsItsSpacingAndWraps) {
+  const auto path = circle(1000, 3);  // 1.9 cm apart
+  ReferenceField field(path, {.points = 40, .spacing = 0.1, .points_behind = 12});
+  ASSERT_TRUE(field.update({3.2, -0.05}));
+  ASSERT_EQ(field.window().size(), 52u);
+  EXPECT_EQ(field.window()[12], field.nearest());
+  EXPECT_EQ(field.nearest(), 998);  // the point at -0.0126 rad; the robot is at -0.0156
+  for (std::size_t k = 1; k < 52; ++k) {
+    const int step = (field.window()[k] - field.window()[k - 1] + 1000) % 1000;
+    EXPECT_EQ(step, 6) << k;
+  }
+}
+
+TEST(ReferenceField, AShortPathAppearsOnce) {
+  const auto path = circle(7, 1);
+  ReferenceField field(path, ReferenceFieldOptions::published());
+  EXPECT_EQ(field.window().size(), 7u);
+  expect_nearest(field, path);
+}
+
+TEST(ReferenceField, AReachMakesTheCellsWithinIt) {
+  const auto path = circle(600, 5);
+  ReferenceField field(path);
+  ASSERT_TRUE(field.update({5.1, 0}));
+  ASSERT_TRUE(field.update({0, 4.9}, 3.0));
+  expect_nearest(field, path, 30);
+}
+
+TEST(ReferenceField, OutsideAndBadPositions) {
+  const auto path = circle(600, 5);
+  ReferenceField field(path, {.outside = {.distance = 20, .yaw = 2, .speed = 0}});
+  ASSERT_TRUE(field.update({5, 0}));
+  for (const auto& [x, y] :
+       {Point{15.01, 0}, Point{-5.01, 0}, Point{5, 10.01}, Point{NAN, 0}, Point{0, INFINITY}}) {
+    EXPECT_EQ(field.at(x, y).distance, 20);
+    EXPECT_EQ(field.at(x, y).yaw, 2);
+    EXPECT_EQ(field.at(x, y).speed, 0);
+  }
+  const ReferenceCell before = field.at(5, 0.3);
+  EXPECT_FALSE(field.update({NAN, 0}));
+  EXPECT_FALSE(field.update({0, INFINITY}));
+  EXPECT_EQ(field.at(5, 0.3).yaw, before.yaw);
+  EXPECT_TRUE(field.update({1e5, 1e5}));  // far from the path, all the same exact
+  EXPECT_NEAR(field.at(1e5, 1e5).distance, 1e5 * std::sqrt(2.0) - 5, 0.2);
+}
+
+template <class Field>
+void expect_bad_paths_refused() {
+  EXPECT_THROW(Field(circle(2, 1)), std::invalid_argument);
+  EXPECT_THROW(Field({}), std::invalid_argument);
+  for (const double bad : {double{NAN}, double{INFINITY}, 1e9}) {
+    auto path = circle(10, 1);
+    path[4].x = bad;
+    EXPECT_THROW(Field{path}, std::invalid_argument);
+  }
+  auto path = circle(10, 1);
+  path[9].speed = -1;
+  EXPECT_THROW(Field{path}, std::invalid_argument);
+  path[9].speed = NAN;
+  EXPECT_THROW(Field{path}, std::invalid_argument);
+}
+
+TEST(ReferenceField, BadPathsAndOptionsAreRefused) {
+  expect_bad_paths_refused<ReferenceField>();
+  const auto path = circle(10, 1);
+  const auto refused = [&](auto change) {
+    ReferenceFieldOptions options;
+    change(options);
+    EXPECT_THROW(ReferenceField(path, options), std::invalid_argument);
+  };
+  refused([](auto& o) { o.points = 0; });
+  refused([](auto& o) { o.points = 251; });
+  refused([](auto& o) { o.points_behind = -1; });
+  refused([](auto& o) { o.spacing = -1; });
+  refused([](auto& o) { o.resolution = 0; });
+  refused([](auto& o) { o.length_x = NAN; });
+  refused([](auto& o) { o.outside.distance = NAN; });
+}
+
+TEST(CourseField, IsTheDistanceToTheSegments) {
+  // A square of four points: far between them, the nearest point lies inside a segment.
+  const std::vector<ReferencePoint> path{{0, 0, 0, 1}, {4, 0, 0, 3}, {4, 4, 0, 1}, {0, 4, 0, 1}};
+  const CourseField field(path, {.resolution = 0.1, .corridor = 1.5});
+  for (int row = 0; row < field.geometry().rows; ++row) {
+    for (int column = 0; column < field.geometry().columns; ++column) {
+      const double x = field.geometry().cell_x(row), y = field.geometry().cell_y(column);
+      const double outside_x = std::max({-x, x - 4, 0.0}), outside_y = std::max({-y, y - 4, 0.0});
+      const bool inside = outside_x == 0 && outside_y == 0;
+      const double distance = inside ? std::min({x, y, 4 - x, 4 - y}) : std::hypot(outside_x, outside_y);
+      const float* cell = field.cells().at(row, column);
+      if (std::abs(distance - 1.5) < 1e-9) continue;
+      ASSERT_NEAR(cell[0], distance < 1.5 ? distance : 20, 1e-6) << x << ' ' << y;
+    }
+  }
+  EXPECT_NEAR(field.at(1, 0.5).speed, 1.5, 0.03);
+  EXPECT_NEAR(field.at(2, -0.5).speed, 2, 0.03);
+  // Half-way along a side the direction is that of the side, at a corner the mean of both.
+  EXPECT_NEAR(field.at(2, 0.04).yaw, 0, 0.03);
+  EXPECT_NEAR(field.at(4.5, -0.5).yaw, M_PI / 4, 0.03);
+  EXPECT_NEAR(std::abs(field.at(2, 4.04).yaw), M_PI, 0.05);
+  EXPECT_EQ(field.at(2, 2).distance, 20);
+  EXPECT_EQ(field.at(100, 2).distance, 20);
+}
+
+TEST(CourseField, AnOpenPathHasEnds) {
+  const std::vector<ReferencePoint> path{{0, 0, 0, 1}, {2, 0, 0, 1}, {4, 0, 0, 2}};
+  const CourseField field(path, {.closed = false});
+  EXPECT_NEAR(field.at(-3.05, 0.05).distance, 3.05, 0.01);
+  EXPECT_NEAR(field.at(-3.05, 0.05).speed, 1, 1e-6);
+  EXPECT_NEAR(field.at(6.95, 0.05).speed, 2, 1e-6);
+  EXPECT_NEAR(field.at(6.95, 0.05).yaw, 0, 1e-6);
+}
+
+TEST(CourseField, FollowsACircleWithinACellsWidth) {
+  const auto path = circle(500, 6);
+  const CourseField field(path);
+  for (double t = 0; t < 6.28; t += 0.01) {
+    for (const double r : {5.0, 6.0, 7.5}) {
+      const ReferenceCell cell = field.at(r * std::cos(t), r * std::sin(t));
+      EXPECT_NEAR(cell.distance, std::abs(r - 6), 0.075);
+      EXPECT_NEAR(wrap_angle(cell.yaw - t - M_PI / 2), 0, 0.02);
+      EXPECT_NEAR(cell.speed, 2 + std::cos(t), 0.02);
+    }
+  }
+}
+
+TEST(CourseField, BadPathsAndOptionsAreRefused) {
+  expect_bad_paths_refused<CourseField>();
+  const auto path = circle(10, 1);
+  EXPECT_THROW(CourseField(path, {.resolution = 0}), std::invalid_argument);
+  EXPECT_THROW(CourseField(path, {.resolution = 1e-4}), std::invalid_argument);
+  EXPECT_THROW(CourseField(path, {.corridor = NAN}), std::invalid_argument);
+  EXPECT_THROW(CourseField(path, {.corridor = 1e6}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slalom::maps
