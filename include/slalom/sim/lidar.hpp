@@ -1,0 +1,74 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "slalom/maps/pose.hpp"
+#include "slalom/sim/shapes.hpp"
+#include "slalom/sim/track.hpp"
+
+namespace slalom::sim {
+
+struct LidarOptions {
+  int beams = 1080;  ///< 1 to 100000
+  double field_of_view =
+      4.7;                ///< rad, from the first beam to the last, which lie evenly about the sensor's axis
+  double range_max = 30;  ///< m; what is farther, or nothing, reads range_max
+  double noise = 0.01;    ///< m, standard deviation of each range
+  double rate = 0;        ///< Hz, rounded to whole time steps; 0 scans in every step
+  maps::Pose mount{0.10355, 0, 0};  ///< of the sensor on the car, from the centre of gravity
+  double dropout = 0;               ///< share of beams that come back without a return: range_max
+
+  /// f1tenth_gym: a beam walks from cell to cell by the cells' distances to the nearest wall, centre to
+  /// centre, until it is in a wall cell, so that ranges are up to a cell off; outside the map it reads the
+  /// last cell's distance.
+  bool gym_ranges = false;
+  /// f1tenth_gym: directions are taken from a table of 2000 (step 2 pi / 1999), up to 0.003 rad off.
+  bool gym_directions = false;
+  /// f1tenth_gym: noise is numpy's default_rng(12345), begun anew at each reset, the same for every car; it
+  /// is added after the cut at range_max and before other cars are seen, which stay without noise.
+  bool gym_noise = false;
+  /// f1tenth_gym: a car is looked for only in the beams between those nearest to its corners.
+  bool gym_window = false;
+
+  double angle_increment() const { return beams > 1 ? field_of_view / (beams - 1) : 0; }  ///< rad
+  double angle_min() const { return beams > 1 ? -field_of_view / 2 : 0; }                 ///< rad
+
+  /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
+  void validate() const;
+};
+
+/// A planar laser scanner. By default a range is exact: to the outline of the first wall cell on the beam,
+/// found by steps that the clearance of each cell allows (sphere tracing, J. C. Hart, 1996) and from cell to
+/// cell where it allows none.
+class Lidar {
+ public:
+  explicit Lidar(const LidarOptions& options);
+
+  const LidarOptions& options() const noexcept { return options_; }
+  std::span<const double> angles() const noexcept { return angles_; }  ///< rad, in the sensor's frame
+
+  /// The pose of the sensor of a car at `car`.
+  maps::Pose sensor_pose(const maps::Pose& car) const noexcept;
+
+  /// The distances (m) to the walls of the track from a sensor at `sensor`, one per beam, without noise.
+  void scan(const Track& track, const maps::Pose& sensor, std::span<double> ranges) const noexcept;
+
+  /// Shortens ranges to a body where it is nearer. Only beams that can hit it are looked at.
+  void cast(const maps::Pose& sensor, const Box& box, std::span<double> ranges) const noexcept;
+  void cast(const maps::Pose& sensor, const Disc& disc, std::span<double> ranges) const noexcept;
+
+ private:
+  /// Beams [first, last] about a bearing, in the sensor's frame; none if first > last.
+  struct Window {
+    int first, last;
+  };
+  Window window(double bearing, double half_angle) const noexcept;
+  Window gym_window(const maps::Pose& sensor, const Box& box) const noexcept;
+
+  LidarOptions options_;
+  std::vector<double> angles_;
+  std::vector<float> cosines_, sines_;  ///< of the angles, padded to whole packs
+};
+
+}  // namespace slalom::sim

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "slalom/sim/car.hpp"
+#include "slalom/sim/lidar.hpp"
+
+namespace slalom::sim {
+
+/// f1tenth_gym's test for a wall hit: a beam whose range, less the way to the car's outline, is used up in
+/// less than 5 ms at the present speed. The outline is taken (l_f + l_r) / 2 ahead and behind instead of half
+/// a length, a range inside it ahead of the car does not count, and at speed the car moves farther per step
+/// than the test looks. Contacts proper come from Track::touches_wall.
+class TimeToCollision {
+ public:
+  TimeToCollision(const LidarOptions& lidar, const CarParameters& car);
+
+  /// The first beam that says so, -1 if none does.
+  int first_hit(std::span<const double> ranges, double speed) const noexcept;
+
+  /// The way (m) from the centre of gravity to the car's outline, one per beam.
+  std::span<const double> sides() const noexcept { return sides_; }
+  std::span<const double> cosines() const noexcept { return cosines_; }
+
+ private:
+  std::vector<double> cosines_, sides_;
+};
+
+}  // namespace slalom::sim

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "slalom/maps/distance_field.hpp"
+#include "slalom/maps/occupancy_grid.hpp"
+#include "slalom/sim/laps.hpp"
+#include "slalom/sim/shapes.hpp"
+
+namespace slalom::sim {
+
+struct TrackOptions {
+  bool unknown_is_wall = false;  ///< cells of which nothing is known stop cars and beams
+  bool outside_is_wall = true;   ///< so does the border of the map; else a beam that leaves it never returns
+};
+
+/// What does not change in a world: walls, the fields made from them and the path along which laps are
+/// measured. Heavy to make, immutable, and shared by any number of worlds and threads.
+class Track {
+ public:
+  /// Throws std::invalid_argument on a map of no size, a resolution that is not positive, an origin that is
+  /// not finite, a cell count that does not fit, or no free cell.
+  explicit Track(maps::OccupancyGrid grid, std::optional<LapPath> lap_path = {},
+                 const TrackOptions& options = {});
+
+  const maps::OccupancyGrid& grid() const noexcept { return grid_; }
+  const maps::DistanceField& distance() const noexcept { return distance_; }
+  const LapPath* lap_path() const noexcept { return lap_path_ ? &*lap_path_ : nullptr; }
+  const TrackOptions& options() const noexcept { return options_; }
+
+  bool is_wall(int column, int row) const noexcept { return clearance_at(column, row) < 0; }
+
+  /// Whether a point of the map frame lies in a wall.
+  bool in_wall(const maps::Point& point) const noexcept;
+
+  /// Whether a body touches a wall: an overlap of the rectangle with an obstacle cell, as a square, or with
+  /// the outside.
+  bool touches_wall(const Box& box) const noexcept;
+
+  /// The distance (m) from a point to the nearest wall, as far as the field tells: within a cell of the
+  /// truth; 0 in a wall, infinite where there is none.
+  double distance_to_wall(const maps::Point& point) const noexcept;
+
+  /// A point in cells of the grid: column and row with fractions.
+  maps::Point to_cells(const maps::Point& point) const noexcept;
+
+  /// One entry per cell and a ring of cells round the map, row by row, `clearance_stride` a row: how far
+  /// (1/64 cell) from any point of this cell there is no wall in any direction; negative in walls, `exit` on
+  /// the ring where the outside is no wall.
+  const std::vector<std::int16_t>& clearance() const noexcept { return clearance_; }
+  int clearance_stride() const noexcept { return grid_.width + 2; }
+  static constexpr int clearance_scale = 64;
+  static constexpr std::int16_t wall = -1, exit = -2;
+
+ private:
+  std::int16_t clearance_at(int column, int row) const noexcept {
+    return clearance_[static_cast<std::size_t>(row + 1) * static_cast<std::size_t>(clearance_stride()) +
+                      static_cast<std::size_t>(column + 1)];
+  }
+  void make_clearance();
+
+  maps::OccupancyGrid grid_;
+  TrackOptions options_;
+  std::optional<LapPath> lap_path_;
+  maps::DistanceField distance_;
+  std::vector<std::int16_t> clearance_;
+  double cosine_ = 1;  ///< of the grid's yaw
+  double sine_ = 0;
+};
+
+}  // namespace slalom::sim

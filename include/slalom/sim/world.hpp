@@ -1,0 +1,222 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "slalom/sim/laps.hpp"
+#include "slalom/sim/lidar.hpp"
+#include "slalom/sim/noise.hpp"
+#include "slalom/sim/numpy_random.hpp"
+#include "slalom/sim/plant.hpp"
+#include "slalom/sim/shapes.hpp"
+#include "slalom/sim/time_to_collision.hpp"
+#include "slalom/sim/track.hpp"
+
+/// A 2D world of cars with LiDAR on a track:
+///
+///     auto track = std::make_shared<const Track>(maps::load_ros_map("map.yaml"), LapPath(points));
+///     World world({}, track);
+///     world.reset(seed, start_poses, parked_poses);
+///     while (world.laps(0).laps() < 3) {
+///       const Observation seen = world.observe(0);
+///       world.step(std::array{Command{steer, speed}});
+///     }
+///
+/// A world is a value: a copy goes the same way as its original. Its walls are shared with all others of the
+/// track; so thousands run in parallel threads, each thread with worlds of its own.
+namespace slalom::sim {
+
+/// What becomes of a car that touches something.
+enum class ContactResponse {
+  stop,        ///< it is put back to where it was before the step, at rest
+  slide,       ///< it is put back so too and loses the speed into the obstacle, and keeps that along it
+  count_only,  ///< nothing: it drives through
+  gym_zero,  ///< f1tenth_gym at walls: speed, yaw, yaw rate and slip become 0, so that the car turns to +x at
+             ///< once
+};
+
+struct WorldOptions {
+  double time_step = 0.01;  ///< s
+  CarParameters car;
+  PlantOptions plant;
+  LidarOptions lidar;
+  ContactResponse wall_response = ContactResponse::stop;
+  ContactResponse body_response = ContactResponse::stop;  ///< at cars, discs and boxes; not gym_zero
+  int sectors = 3;                                        ///< parts of a lap with a split time
+
+  /// f1tenth_gym: walls are hit by TimeToCollision instead of by the car's outline.
+  bool gym_wall_contact = false;
+  /// f1tenth_gym: reset makes one step with zero commands.
+  bool gym_reset_step = false;
+  /// f1tenth_gym: cars may start in walls and in each other.
+  bool gym_start_anywhere = false;
+
+  /// All gym switches together: the world of f1tenth_gym. Load its map with MapRule::grey_threshold and give
+  /// the track TrackOptions::outside_is_wall = false.
+  static WorldOptions gym_compatible();
+
+  /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
+  void validate() const;
+};
+
+/// What one car knows and what has happened to it. Spans point into the world, until it changes.
+struct Observation {
+  maps::Pose pose;                 ///< of the centre of gravity, map frame
+  maps::Pose sensor;               ///< of the LiDAR when it scanned, map frame
+  double speed = 0;                ///< m/s, along the direction of travel
+  double steer = 0;                ///< rad, of the front wheels
+  double yaw_rate = 0;             ///< rad/s
+  double slip = 0;                 ///< rad
+  double time = 0;                 ///< s since the reset
+  double scan_time = 0;            ///< s since the reset, when `ranges` were taken
+  std::span<const double> ranges;  ///< m, one per beam, from the right (clockwise end) to the left
+  bool wall = false;               ///< touches a wall in this step
+  std::span<const int> touching;   ///< bodies touched in this step, ascending
+
+  bool contact() const { return wall || !touching.empty(); }
+};
+
+enum class StepStatus {
+  ok,
+  missing_command,     ///< fewer commands than cars; the others coasted
+  non_finite_command,  ///< a command was not finite; its car coasted
+};
+
+/// Bodies are numbered: driven cars first, then parked cars in their order, then what was placed later.
+class World {
+ public:
+  /// Throws std::invalid_argument on a missing track or options out of range.
+  World(const WorldOptions& options, std::shared_ptr<const Track> track);
+
+  /// Begins anew: driven cars at rest at `cars`, parked ones at `parked`, all else removed. Throws
+  /// std::invalid_argument on poses that are not finite and on a driven car that starts in a wall or in
+  /// another body.
+  void reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::span<const maps::Pose> parked = {});
+
+  /// Places something that does not move; the number of the body. Throws std::invalid_argument on sizes that
+  /// are not positive and poses that are not finite. It may be placed onto a car.
+  int add_parked_car(const maps::Pose& pose);
+  int add_box(const Box& box);
+  int add_disc(const Disc& disc);
+  /// Moves a parked car, box or disc. Throws std::invalid_argument on a body that does not exist or that
+  /// drives.
+  void move_body(int body, const maps::Pose& pose);
+
+  /// Puts a driven car into a state, as it is; commands under way stay under way.
+  void set_state(std::size_t car, const CarState& state);
+
+  /// Moves by one time step. Command i is for driven car i; cars without one coast as configured.
+  StepStatus step(std::span<const Command> commands) noexcept;
+
+  /// Whether a car scans; all driven ones do unless told otherwise.
+  void set_scanning(std::size_t car, bool scans);
+
+  Observation observe(std::size_t car) const noexcept;
+  const CarState& state(std::size_t car) const noexcept { return cars_[car].plant.state(); }
+  /// Laps by arc length; nullptr where the track has no lap path.
+  const LapTimer* laps(std::size_t car) const noexcept {
+    return cars_[car].timer ? &*cars_[car].timer : nullptr;
+  }
+  /// Laps as f1tenth_gym counts them.
+  const StartZoneLaps& start_zone_laps(std::size_t car) const noexcept { return cars_[car].zone; }
+
+  /// Per body, whether it touches another body in this step, and for driven cars also a wall: f1tenth_gym's
+  /// collision flags. Parked bodies that overlap each other stay flagged.
+  std::span<const std::uint8_t> flags() const noexcept { return flags_; }
+  /// Per body, the last of the bodies it touches, -1 if none: f1tenth_gym's collision_idx.
+  int last_partner(std::size_t body) const noexcept { return partners_[body]; }
+
+  double time() const noexcept { return time_; }  ///< s since the reset
+  std::int64_t steps() const noexcept { return steps_; }
+  std::size_t cars() const noexcept { return cars_.size(); }
+  std::size_t bodies() const noexcept { return cars_.size() + fixed_.size(); }
+  /// The outline of a body; a disc as the square about it.
+  Box outline(std::size_t body) const noexcept;
+  /// The disc that a body is, if it is one.
+  std::optional<Disc> disc(std::size_t body) const noexcept;
+  const WorldOptions& options() const noexcept { return options_; }
+  const Track& track() const noexcept { return *track_; }
+  const Lidar& lidar() const noexcept { return lidar_; }
+
+ private:
+  struct Car {
+    explicit Car(Plant made) : plant(std::move(made)) {}
+    Plant plant;
+    CarState before;
+    StartZoneLaps zone;
+    std::optional<LapTimer> timer;
+    NormalNoise noise;
+    NumpyRandom gym_noise{12345};
+    std::vector<double> ranges;
+    std::vector<int> touching;
+    maps::Pose sensor;
+    double scan_time = 0;
+    bool wall = false;
+    bool scans = true;
+  };
+  /// A parked car, box or disc.
+  struct Fixed {
+    Box box{};
+    double disc_radius = 0;  ///< m, above 0 for discs
+    int last_partner = -1;   ///< among the fixed ones
+  };
+
+  int add(const Fixed& body);
+  void check_start(std::size_t car) const;
+  bool touch(const Box& car, const Fixed& body) const noexcept;
+  void find_fixed_partners() noexcept;
+  void find_contacts() noexcept;
+  void respond(std::size_t car) noexcept;
+  bool is_free(std::size_t car, const maps::Pose& pose) const noexcept;
+  void slide(std::size_t car, const CarState& tried, CarState& state) const noexcept;
+  void scan_walls(Car& car) noexcept;
+  void cast_bodies(std::size_t car) noexcept;
+  void add_noise(Car& car) noexcept;
+  void gym_scan_and_contacts() noexcept;
+  void scan_all() noexcept;
+  bool scan_is_due() const noexcept;
+
+  WorldOptions options_;
+  std::shared_ptr<const Track> track_;
+  Lidar lidar_;
+  TimeToCollision time_to_collision_;
+  std::vector<Car> cars_;
+  std::vector<Fixed> fixed_;
+  std::vector<Box> boxes_;  ///< of driven cars, as moved in this step
+  std::vector<std::uint8_t> flags_;
+  std::vector<int> partners_;
+  double time_ = 0;
+  std::int64_t steps_ = 0;
+  std::int64_t scan_every_ = 1;
+};
+
+/// Counts the contacts of a car over a lap in both ways of counting.
+class ContactLog {
+ public:
+  void reset() noexcept;
+
+  /// To be called after each step.
+  void update(const World& world, std::size_t car);
+
+  /// Different bodies touched, all walls together as one.
+  int bodies_touched() const noexcept { return static_cast<int>(bodies_.size()) + wall_; }
+  bool touched_wall() const noexcept { return wall_; }
+  std::span<const int> bodies() const noexcept { return bodies_; }  ///< ascending
+  int contact_steps() const noexcept { return contact_steps_; }
+  /// As the published evaluation counts: different patterns of the parked cars' collision flags seen while
+  /// the car was in contact; a wall alone is the pattern of no flag, two cars at once are a pattern of their
+  /// own.
+  int published() const noexcept { return static_cast<int>(patterns_.size()); }
+
+ private:
+  std::vector<int> bodies_;
+  std::vector<std::vector<std::uint8_t>> patterns_;
+  bool wall_ = false;
+  int contact_steps_ = 0;
+};
+
+}  // namespace slalom::sim

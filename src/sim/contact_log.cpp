@@ -1,0 +1,31 @@
+#include <algorithm>
+
+#include "slalom/sim/world.hpp"
+
+namespace slalom::sim {
+
+void ContactLog::reset() noexcept {
+  bodies_.clear();
+  patterns_.clear();
+  wall_ = false;
+  contact_steps_ = 0;
+}
+
+void ContactLog::update(const World& world, std::size_t car) {
+  const Observation seen = world.observe(car);
+  if (!seen.contact()) return;
+  ++contact_steps_;
+  wall_ = wall_ || seen.wall;
+  for (const int body : seen.touching) {
+    const auto at = std::lower_bound(bodies_.begin(), bodies_.end(), body);
+    if (at == bodies_.end() || *at != body) bodies_.insert(at, body);
+  }
+  const auto flags = world.flags().subspan(world.cars());
+  const auto same = [&](const std::vector<std::uint8_t>& pattern) {
+    return std::equal(pattern.begin(), pattern.end(), flags.begin(), flags.end());
+  };
+  if (std::none_of(patterns_.begin(), patterns_.end(), same))
+    patterns_.emplace_back(flags.begin(), flags.end());
+}
+
+}  // namespace slalom::sim

@@ -1,0 +1,133 @@
+#include "slalom/sim/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "sim/require.hpp"
+
+namespace slalom::sim {
+namespace {
+
+void check(const maps::OccupancyGrid& grid) {
+  constexpr int most = 32766;
+  detail::require_range("map width", grid.width, 1, most);
+  detail::require_range("map height", grid.height, 1, most);
+  detail::require_positive("map resolution", grid.resolution);
+  detail::require_finite("map origin x", grid.origin.x);
+  detail::require_finite("map origin y", grid.origin.y);
+  detail::require_finite("map origin yaw", grid.origin.yaw);
+  if (grid.cells.size() != static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height))
+    throw std::invalid_argument("map cells = " + std::to_string(grid.cells.size()) +
+                                ": must be width x height");
+}
+
+bool blocks(maps::Occupancy cell, bool unknown_is_wall) {
+  return cell == maps::Occupancy::occupied || (unknown_is_wall && cell == maps::Occupancy::unknown);
+}
+
+}  // namespace
+
+Track::Track(maps::OccupancyGrid grid, std::optional<LapPath> lap_path, const TrackOptions& options)
+    : grid_(std::move(grid)), options_(options), lap_path_(std::move(lap_path)) {
+  check(grid_);
+  const auto is_free = [&](maps::Occupancy cell) { return !blocks(cell, options_.unknown_is_wall); };
+  if (std::none_of(grid_.cells.begin(), grid_.cells.end(), is_free))
+    throw std::invalid_argument("map: must have a free cell");
+  cosine_ = std::cos(grid_.origin.yaw);
+  sine_ = std::sin(grid_.origin.yaw);
+  distance_ = maps::distance_transform(grid_, options_.unknown_is_wall);
+  make_clearance();
+}
+
+void Track::make_clearance() {
+  // A wall is its whole cell, not the cell's centre, and a beam may start anywhere in a cell: between the
+  // outlines of two cells lies one cell less along each axis than between their centres. That is the distance
+  // to the set of walls grown by one cell each way.
+  const int width = grid_.width + 2, height = grid_.height + 2;
+  maps::OccupancyGrid grown;
+  grown.width = width;
+  grown.height = height;
+  grown.resolution = 1;
+  grown.cells.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                     maps::Occupancy::free);
+  const auto outside = [&](int c, int r) { return c < 0 || r < 0 || c >= grid_.width || r >= grid_.height; };
+  const auto stops = [&](int c, int r) {
+    return outside(c, r) || blocks(grid_.at(c, r), options_.unknown_is_wall);
+  };
+  for (int r = -1; r <= grid_.height; ++r)
+    for (int c = -1; c <= grid_.width; ++c) {
+      if (!stops(c, r)) continue;
+      for (int y = std::max(r, 0); y <= std::min(r + 2, height - 1); ++y)
+        for (int x = std::max(c, 0); x <= std::min(c + 2, width - 1); ++x)
+          grown.at(x, y) = maps::Occupancy::occupied;
+    }
+  const maps::DistanceField field = maps::distance_transform(grown, false);
+  clearance_.resize(field.distance.size());
+  for (int r = -1; r <= grid_.height; ++r)
+    for (int c = -1; c <= grid_.width; ++c) {
+      const auto i =
+          static_cast<std::size_t>(r + 1) * static_cast<std::size_t>(width) + static_cast<std::size_t>(c + 1);
+      const double cells = std::min(field.distance[i], 500.0);
+      clearance_[i] = static_cast<std::int16_t>(cells * clearance_scale);
+      if (outside(c, r) && !options_.outside_is_wall)
+        clearance_[i] = exit;
+      else if (stops(c, r))
+        clearance_[i] = wall;
+    }
+}
+
+maps::Point Track::to_cells(const maps::Point& point) const noexcept {
+  const double dx = point.x - grid_.origin.x, dy = point.y - grid_.origin.y;
+  return {(cosine_ * dx + sine_ * dy) / grid_.resolution, (cosine_ * dy - sine_ * dx) / grid_.resolution};
+}
+
+bool Track::in_wall(const maps::Point& point) const noexcept {
+  const maps::Point cell = to_cells(point);
+  if (!(cell.x >= 0 && cell.y >= 0 && cell.x < grid_.width && cell.y < grid_.height))
+    return options_.outside_is_wall;
+  return clearance_at(static_cast<int>(cell.x), static_cast<int>(cell.y)) == wall;
+}
+
+double Track::distance_to_wall(const maps::Point& point) const noexcept {
+  const maps::Point cell = to_cells(point);
+  if (!(cell.x >= 0 && cell.y >= 0 && cell.x < grid_.width && cell.y < grid_.height))
+    return options_.outside_is_wall ? 0 : std::numeric_limits<double>::infinity();
+  double nearest = distance_.at(static_cast<int>(cell.x), static_cast<int>(cell.y));
+  if (options_.outside_is_wall)
+    nearest = std::min(nearest, grid_.resolution * std::min(std::min(cell.x, grid_.width - cell.x),
+                                                            std::min(cell.y, grid_.height - cell.y)));
+  return nearest;
+}
+
+bool Track::touches_wall(const Box& box) const noexcept {
+  const maps::Point middle = to_cells({box.pose.x, box.pose.y});
+  const double l = box.length / 2 / grid_.resolution, w = box.width / 2 / grid_.resolution;
+  const bool inside = middle.x >= 0 && middle.y >= 0 && middle.x < grid_.width && middle.y < grid_.height;
+  if (inside) {
+    const int free = clearance_at(static_cast<int>(middle.x), static_cast<int>(middle.y));
+    if (free > 0 && static_cast<double>(free) / clearance_scale > std::hypot(l, w)) return false;
+  }
+  const double yaw = box.pose.yaw - grid_.origin.yaw, c = std::cos(yaw), s = std::sin(yaw);
+  const double reach_x = l * std::abs(c) + w * std::abs(s), reach_y = l * std::abs(s) + w * std::abs(c);
+  if (options_.outside_is_wall && !(middle.x - reach_x > 0 && middle.y - reach_y > 0 &&
+                                    middle.x + reach_x < grid_.width && middle.y + reach_y < grid_.height))
+    return true;
+  const int left = static_cast<int>(std::max(0.0, std::floor(middle.x - reach_x)));
+  const int right = static_cast<int>(std::min(grid_.width - 1.0, std::floor(middle.x + reach_x)));
+  const int bottom = static_cast<int>(std::max(0.0, std::floor(middle.y - reach_y)));
+  const int top = static_cast<int>(std::min(grid_.height - 1.0, std::floor(middle.y + reach_y)));
+  // The cells' own axes are settled by the loops' limits; left are the box's axes, along which a cell reaches
+  // `half`.
+  const double half = (std::abs(c) + std::abs(s)) / 2;
+  for (int row = bottom; row <= top; ++row)
+    for (int column = left; column <= right; ++column) {
+      if (clearance_at(column, row) != wall) continue;
+      const double dx = column + 0.5 - middle.x, dy = row + 0.5 - middle.y;
+      if (std::abs(c * dx + s * dy) <= l + half && std::abs(c * dy - s * dx) <= w + half) return true;
+    }
+  return false;
+}
+
+}  // namespace slalom::sim

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+
+#include "slalom/maps/ros_map.hpp"
+#include "slalom/sim/lidar.hpp"
+#include "slalom/sim/track.hpp"
+
+namespace slalom::testing {
+
+/// A map of the golden data as f1tenth_gym reads it.
+inline sim::Track gym_track(const std::filesystem::path& folder, const std::string& map) {
+  const auto maps_folder = folder / "maps" / map;
+  const auto yaml = std::filesystem::exists(maps_folder / "map.yaml") ? maps_folder / "map.yaml"
+                                                                      : maps_folder / (map + ".yaml");
+  maps::MapReading reading;
+  reading.rule = maps::MapRule::grey_threshold;
+  return sim::Track(maps::load_ros_map(yaml, reading), {},
+                    {.unknown_is_wall = false, .outside_is_wall = false});
+}
+
+inline sim::LidarOptions gym_lidar() {
+  sim::LidarOptions options;
+  options.mount = {};
+  options.gym_ranges = options.gym_directions = options.gym_noise = options.gym_window = true;
+  return options;
+}
+
+}  // namespace slalom::testing

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "slalom/sim/track.hpp"
+
+namespace slalom::testing {
+
+/// A closed room: walls one cell thick round `width` x `height` cells; the lower left corner of the map at
+/// (0, 0).
+inline maps::OccupancyGrid room(int width, int height, double resolution = 0.05) {
+  maps::OccupancyGrid grid;
+  grid.width = width;
+  grid.height = height;
+  grid.resolution = resolution;
+  grid.cells.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                    maps::Occupancy::free);
+  for (int r = 0; r < height; ++r)
+    for (int c = 0; c < width; ++c)
+      if (r == 0 || c == 0 || r == height - 1 || c == width - 1) grid.at(c, r) = maps::Occupancy::occupied;
+  return grid;
+}
+
+/// A ring road about (10, 10): free between 4 and 7 m from there, on a map of 20 x 20 m.
+inline maps::OccupancyGrid ring_road() {
+  maps::OccupancyGrid grid = room(400, 400);
+  for (int r = 0; r < 400; ++r)
+    for (int c = 0; c < 400; ++c) {
+      const double d = std::hypot(0.05 * (c + 0.5) - 10, 0.05 * (r + 0.5) - 10);
+      if (d < 4 || d > 7) grid.at(c, r) = maps::Occupancy::occupied;
+    }
+  return grid;
+}
+
+inline std::vector<maps::Point> circle(double radius, int points = 200) {
+  std::vector<maps::Point> path;
+  for (int i = 0; i < points; ++i) {
+    const double angle = 2 * 3.141592653589793 * i / points;
+    path.push_back({10 + radius * std::cos(angle), 10 + radius * std::sin(angle)});
+  }
+  return path;
+}
+
+inline std::shared_ptr<const sim::Track> ring_track() {
+  return std::make_shared<const sim::Track>(ring_road(), sim::LapPath(circle(5.5)));
+}
+
+}  // namespace slalom::testing

@@ -1,0 +1,233 @@
+#include "slalom/sim/world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "sim/rooms.hpp"
+#include "slalom/sim/pure_pursuit.hpp"
+
+namespace slalom::sim {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+PurePursuit ring_driver(double speed) {
+  std::vector<PathPoint> path;
+  for (const maps::Point& p : testing::circle(5.5)) path.push_back({p, speed});
+  return PurePursuit(std::move(path));
+}
+
+const std::array start{maps::Pose{15.5, 10, 1.5707963}};
+
+TEST(World, DrivesLapsWithTimes) {
+  World world({}, testing::ring_track());
+  world.reset(1, start);
+  const PurePursuit driver = ring_driver(3);
+  ContactLog contacts;
+  while (world.laps(0)->laps() < 2 && world.time() < 60) {
+    world.step(std::array{driver.command(world.observe(0).pose)});
+    contacts.update(world, 0);
+  }
+  EXPECT_EQ(world.laps(0)->laps(), 2);
+  EXPECT_EQ(contacts.bodies_touched(), 0);
+  // 34.6 m at 3 m/s.
+  EXPECT_NEAR(world.laps(0)->last_lap_time(), 2 * 3.141592653589793 * 5.5 / 3, 0.6);
+  const auto splits = world.laps(0)->splits();
+  EXPECT_NEAR(splits[0], splits[2] / 3, 0.05);
+  EXPECT_DOUBLE_EQ(splits[2], world.laps(0)->last_lap_time());
+}
+
+TEST(World, DrivingBackwardsIsNoLap) {
+  World world({}, testing::ring_track());
+  world.reset(1, std::array{maps::Pose{15.5, 10, -1.5707963}});
+  PurePursuit driver = ring_driver(2);
+  std::vector<PathPoint> reversed;
+  for (const maps::Point& p : testing::circle(5.5)) reversed.insert(reversed.begin(), {p, 2.0});
+  driver = PurePursuit(reversed);
+  for (int i = 0; i < 3000; ++i) world.step(std::array{driver.command(world.observe(0).pose)});
+  EXPECT_EQ(world.laps(0)->laps(), 0);
+  EXPECT_LT(world.laps(0)->progress(), -40);
+}
+
+TEST(World, StopsAtWallsAndReversesAway) {
+  World world({}, testing::ring_track());
+  world.reset(1, std::array{maps::Pose{15.5, 10, 0}});
+  ContactLog contacts;
+  for (int i = 0; i < 300; ++i) {
+    world.step(std::array{Command{0, 4}});
+    contacts.update(world, 0);
+    ASSERT_FALSE(world.track().touches_wall(world.outline(0)));
+  }
+  EXPECT_TRUE(contacts.touched_wall());
+  EXPECT_EQ(contacts.bodies_touched(), 1);
+  EXPECT_EQ(contacts.published(), 1);
+  // The nose stands at the wall, 7 m from the middle of the ring.
+  EXPECT_NEAR(world.state(0).x + 0.29, 17, 0.1);
+  for (int i = 0; i < 100; ++i) world.step(std::array{Command{0, -1}});
+  EXPECT_FALSE(world.observe(0).contact());
+  EXPECT_LT(world.state(0).x, 16.4);
+}
+
+TEST(World, SlidesAlongWalls) {
+  WorldOptions options;
+  options.wall_response = ContactResponse::slide;
+  World world(options, std::make_shared<const Track>(testing::room(400, 100)));
+  world.reset(1, std::array{maps::Pose{2, 4, 0.5}});
+  bool touched = false;
+  for (int i = 0; i < 400; ++i) {
+    world.step(std::array{Command{0, 3}});
+    touched = touched || world.observe(0).wall;
+    ASSERT_FALSE(world.track().touches_wall(world.outline(0)));
+  }
+  EXPECT_TRUE(touched);
+  EXPECT_GT(world.state(0).x, 5);
+}
+
+TEST(World, TellsWhichBodiesAreTouched) {
+  WorldOptions options;
+  options.wall_response = options.body_response = ContactResponse::count_only;
+  World world(options, std::make_shared<const Track>(testing::room(400, 100)));
+  const std::array parked{maps::Pose{4, 2.5, 1.2}, maps::Pose{8, 2.6, 0}, maps::Pose{8.3, 2.6, 0}};
+  world.reset(1, std::array{maps::Pose{1, 2.5, 0}}, parked);
+  const int disc = world.add_disc({{11, 2.5}, 0.2});
+  const int box = world.add_box({{13, 2.7, 0.3}, 0.4, 0.4});
+  ContactLog contacts;
+  while (world.time() < 5) {
+    world.step(std::array{Command{0, 5}});
+    contacts.update(world, 0);
+  }
+  EXPECT_EQ(std::vector<int>(contacts.bodies().begin(), contacts.bodies().end()),
+            (std::vector{1, 2, 3, disc, box}));
+  EXPECT_TRUE(contacts.touched_wall());
+  EXPECT_EQ(contacts.bodies_touched(), 6);
+  // Bodies 2 and 3 overlap and are flagged for ever, with and without the others: {2,3}, +1, +disc, +box.
+  EXPECT_EQ(contacts.published(), 4);
+}
+
+TEST(World, SeesBodiesWhereTheyAre) {
+  WorldOptions options;
+  options.lidar.noise = 0;
+  World world(options, std::make_shared<const Track>(testing::room(400, 100)));
+  world.reset(1, std::array{maps::Pose{2, 2.5, 0}, maps::Pose{12, 2.5, 0}},
+              std::array{maps::Pose{5, 2.5, 0}});
+  const std::size_t ahead = 540;
+  const double sensor = 2 + options.lidar.mount.x;
+  EXPECT_NEAR(world.observe(0).ranges[ahead], 5 - 0.29 - sensor, 1e-4);
+  world.move_body(2, {8, 4, 0});
+  world.step(std::array{Command{}, Command{}});
+  EXPECT_NEAR(world.observe(0).ranges[ahead], 12 - 0.29 - sensor, 1e-4);
+  world.add_disc({{4, 2.5}, 0.1});
+  world.step(std::array{Command{}, Command{}});
+  EXPECT_NEAR(world.observe(0).ranges[ahead], 4 - 0.1 - sensor, 1e-4);
+  // The second car looks at the far wall, whose inner face is one cell short of 20 m.
+  EXPECT_NEAR(world.observe(1).ranges[ahead], 19.95 - 12 - options.lidar.mount.x, 1e-3);
+}
+
+TEST(World, LidarRateHoldsScans) {
+  WorldOptions options;
+  options.lidar.rate = 40;
+  World world(options, testing::ring_track());
+  world.reset(1, start);
+  std::vector<double> times;
+  for (int i = 0; i < 10; ++i) {
+    world.step(std::array{Command{0, 1}});
+    times.push_back(world.observe(0).scan_time);
+  }
+  const std::vector<double> expected{0, 0, 0.03, 0.03, 0.03, 0.06, 0.06, 0.06, 0.09, 0.09};
+  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], expected[i], 1e-12) << i;
+}
+
+TEST(World, CoastsWithoutACommand) {
+  for (const Coast coast : {Coast::roll, Coast::brake, Coast::repeat}) {
+    WorldOptions options;
+    options.plant.coast = coast;
+    World world(options, std::make_shared<const Track>(testing::room(800, 100)));
+    world.reset(1, std::array{maps::Pose{2, 2.5, 0}});
+    for (int i = 0; i < 100; ++i) EXPECT_EQ(world.step(std::array{Command{0, 2}}), StepStatus::ok);
+    const double before = world.state(0).speed;
+    for (int i = 0; i < 50; ++i) EXPECT_EQ(world.step({}), StepStatus::missing_command);
+    const double after = world.state(0).speed;
+    if (coast == Coast::roll) {
+      EXPECT_DOUBLE_EQ(after, before);
+    }
+    if (coast == Coast::brake) {
+      EXPECT_DOUBLE_EQ(after, 0);
+    }
+    if (coast == Coast::repeat) {
+      EXPECT_GT(after, before);
+    }
+    const CarState held = world.state(0);
+    EXPECT_EQ(world.step(std::array{Command{nan, 2}}), StepStatus::non_finite_command);
+    EXPECT_EQ(world.step(std::array{Command{0, std::numeric_limits<double>::infinity()}}),
+              StepStatus::non_finite_command);
+    EXPECT_TRUE(std::isfinite(world.state(0).x));
+    EXPECT_GE(world.state(0).x, held.x);
+  }
+}
+
+TEST(World, RefusesBadStarts) {
+  World world({}, testing::ring_track());
+  EXPECT_THROW(world.reset(1, std::array{maps::Pose{10, 10, 0}}), std::invalid_argument);
+  EXPECT_THROW(world.reset(1, std::array{maps::Pose{16.9, 10, 0}}), std::invalid_argument);
+  EXPECT_THROW(world.reset(1, std::array{maps::Pose{-50, 10, 0}}), std::invalid_argument);
+  EXPECT_THROW(world.reset(1, std::array{maps::Pose{nan, 10, 0}}), std::invalid_argument);
+  EXPECT_THROW(world.reset(1, std::array{start[0], start[0]}), std::invalid_argument);
+  EXPECT_THROW(world.reset(1, start, start), std::invalid_argument);
+  EXPECT_THROW(world.reset(1, start, std::array{maps::Pose{15, 10, nan}}), std::invalid_argument);
+  EXPECT_NO_THROW(world.reset(1, start));
+  EXPECT_THROW(world.add_disc({{12, 12}, 0}), std::invalid_argument);
+  EXPECT_THROW(world.add_disc({{12, 12}, -1}), std::invalid_argument);
+  EXPECT_THROW(world.add_box({{12, nan, 0}, 1, 1}), std::invalid_argument);
+  EXPECT_THROW(world.move_body(0, {}), std::invalid_argument);
+  EXPECT_THROW(world.move_body(1, {}), std::invalid_argument);
+}
+
+TEST(World, RefusesBadOptions) {
+  const auto track = testing::ring_track();
+  const auto refuses = [&](auto change) {
+    WorldOptions options;
+    change(options);
+    EXPECT_THROW(World(options, track), std::invalid_argument);
+  };
+  EXPECT_THROW(World({}, nullptr), std::invalid_argument);
+  refuses([](WorldOptions& o) { o.time_step = 0; });
+  refuses([](WorldOptions& o) { o.time_step = -0.01; });
+  refuses([](WorldOptions& o) { o.time_step = 0.5; });
+  refuses([](WorldOptions& o) { o.time_step = nan; });
+  refuses([](WorldOptions& o) { o.lidar.beams = 0; });
+  refuses([](WorldOptions& o) { o.lidar.beams = 2000000000; });
+  refuses([](WorldOptions& o) { o.lidar.field_of_view = 7; });
+  refuses([](WorldOptions& o) { o.lidar.range_max = 0; });
+  refuses([](WorldOptions& o) { o.lidar.noise = -1; });
+  refuses([](WorldOptions& o) { o.lidar.dropout = 1.5; });
+  refuses([](WorldOptions& o) { o.car.width = 0; });
+  refuses([](WorldOptions& o) { o.car.mass = -1; });
+  refuses([](WorldOptions& o) { o.car.friction = nan; });
+  refuses([](WorldOptions& o) { o.sectors = 0; });
+  refuses([](WorldOptions& o) { o.plant.steering_dead_time = -0.1; });
+  refuses([](WorldOptions& o) { o.body_response = ContactResponse::gym_zero; });
+}
+
+TEST(Track, RefusesBadMaps) {
+  const auto refuses = [](auto change) {
+    maps::OccupancyGrid grid = testing::room(10, 10);
+    change(grid);
+    EXPECT_THROW(Track{grid}, std::invalid_argument);
+  };
+  refuses([](auto& grid) { grid.width = 0; });
+  refuses([](auto& grid) { grid.height = -3; });
+  refuses([](auto& grid) { grid.resolution = 0; });
+  refuses([](auto& grid) { grid.resolution = nan; });
+  refuses([](auto& grid) { grid.origin.yaw = nan; });
+  refuses([](auto& grid) { grid.cells.pop_back(); });
+  refuses([](auto& grid) { grid.cells.assign(grid.cells.size(), maps::Occupancy::occupied); });
+  EXPECT_THROW(LapPath({{0, 0}, {1, 0}}), std::invalid_argument);
+  EXPECT_THROW(LapPath({{0, 0}, {1, 0}, {nan, 1}}), std::invalid_argument);
+  EXPECT_THROW(LapPath({{1, 1}, {1, 1}, {1, 1}}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slalom::sim
