@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "slalom/maps/pose.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// Closed polygons that stand for smooth closed curves. The last point leads on to the first, which is not
+/// repeated.
+using Curve = std::vector<maps::Point>;
+
+inline maps::Point operator+(maps::Point a, maps::Point b) {
+  return {a.x + b.x, a.y + b.y};
+}
+inline maps::Point operator-(maps::Point a, maps::Point b) {
+  return {a.x - b.x, a.y - b.y};
+}
+inline maps::Point operator*(double s, maps::Point a) {
+  return {s * a.x, s * a.y};
+}
+inline double dot(maps::Point a, maps::Point b) {
+  return a.x * b.x + a.y * b.y;
+}
+inline double cross(maps::Point a, maps::Point b) {
+  return a.x * b.y - a.y * b.x;
+}
+
+/// The length, m.
+double length(const Curve& curve);
+
+/// `count` points at equal steps along the curve, by cubics through its points (Catmull and Rom).
+Curve resampled(const Curve& curve, int count);
+
+/// The signed curvature (1/m) at every point: of the circle through it and the points `reach` rows before and
+/// after.
+std::vector<double> curvature(const Curve& curve, int reach);
+
+/// Unit normals to the left, from central differences.
+Curve normals(const Curve& curve);
+
+/// The curve convolved with a Gaussian of standard deviation `width` (m) along its length; its steps must be
+/// equal.
+Curve smoothed(const Curve& curve, double width);
+
+/// The least distance (m) between points that are more than `apart` m of curve away from each other, either
+/// way round.
+double least_gap(const Curve& curve, double apart);
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,27 @@
+// The slalom program: one sub-command per job.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "slalom/core/version.hpp"
+#include "track_command.hpp"
+
+int main(int argc, char** argv) {
+  int exit_status = 0;
+  CLI::App app{
+      "Slalom: sampling-based stochastic optimal control that commits to one good way round an obstacle",
+      "slalom"};
+  app.set_version_flag("--version", std::string("slalom ") + slalom::version());
+  app.require_subcommand(1);
+  slalom::tools::add_track_command(app, exit_status);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int status = app.exit(error);
+    return status == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::cerr << "slalom: " << error.what() << "\n";
+    return 1;
+  }
+  return exit_status;
+}

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "slalom/vehicle/track_generator.hpp"
+
+namespace slalom::tools {
+
+/// Draws a track: map, centre line, raceline coloured by speed, start. Writes a PNG; throws IoError.
+void draw_track(const vehicle::Track& track, const std::string& title, const std::filesystem::path& file);
+
+}  // namespace slalom::tools
