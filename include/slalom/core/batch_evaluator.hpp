@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+
+#include "slalom/core/sequence_batch.hpp"
+
+namespace slalom {
+
+/// The seam between solvers and problems: evaluate a batch of control sequences from the current state.
+/// Solvers see a problem through this alone, so each is written and compiled once; anything that can evaluate
+/// a batch (a problem struct, a physics engine, a callable of another language) can be solved.
+class BatchEvaluator {
+ public:
+  virtual ~BatchEvaluator() = default;
+
+  /// Inputs a step.
+  virtual int inputs() const noexcept = 0;
+
+  /// The cost of each control sequence `first` ... `first + count - 1` of `batch`, started from the current
+  /// state, and whether it collides (1 or 0). `first` is a multiple of `simd::padding`; `costs` and
+  /// `collided` are indexed like the batch and hold its padded length; entries up to the next multiple of
+  /// `simd::padding` may be written. Called from several threads at once for different ranges.
+  virtual void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
+                        std::uint8_t* collided) const noexcept = 0;
+};
+
+}  // namespace slalom

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <cstddef>
+
+#include "slalom/core/math.hpp"
+
+namespace slalom {
+
+/// Nearest-cell look-ups in a map of `Layers` float32 values a cell (1, or 4: then one 128-bit load fetches a
+/// cell), from scalar code and from SIMD lanes alike.
+///
+/// The grid is that of the published program's grid maps: row 0 lies at the largest x, column 0 at the
+/// largest y, and the upper edge of the map is inside, the lower one outside. All round lies a ring of cells
+/// that hold the values for "outside", so an index that is out of range, or made from a NaN, is clamped into
+/// the ring and needs no mask. Storage: (rows + 2) x 2^stride_log2 cells, 2^stride_log2 >= columns + 2, the
+/// ring included.
+template <int Layers>
+class GridView {
+ public:
+  static_assert(Layers == 1 || Layers == 4);
+
+  GridView() = default;
+  /// `rows` cells along x and `columns` along y, without the ring; `resolution` m per cell; `center` m.
+  GridView(const float* cells, int rows, int columns, int stride_log2, double resolution, double center_x,
+           double center_y) noexcept
+      : cells_(cells),
+        rows_(rows),
+        columns_(columns),
+        stride_log2_(stride_log2),
+        resolution_(resolution),
+        center_x_(center_x),
+        center_y_(center_y),
+        scale_(static_cast<float>(-1.0 / resolution)),
+        offset_x_(static_cast<float>((center_x + 0.5 * resolution * rows) / resolution + 1.0)),
+        offset_y_(static_cast<float>((center_y + 0.5 * resolution * columns) / resolution + 1.0)) {}
+
+  const float* cells() const noexcept { return cells_; }
+  int rows() const noexcept { return rows_; }
+  int columns() const noexcept { return columns_; }
+  double resolution() const noexcept { return resolution_; }
+  double center_x() const noexcept { return center_x_; }
+  double center_y() const noexcept { return center_y_; }
+
+  /// The storage index of the cell at (x, y), in the ring for positions outside.
+  template <Scalar T>
+  std::ptrdiff_t index(T x, T y) const {
+    const int row = axis_index(x, center_x_, rows_), column = axis_index(y, center_y_, columns_);
+    return row == 0 || column == 0 ? 0 : (static_cast<std::ptrdiff_t>(row) << stride_log2_) + column;
+  }
+  template <class Target>
+  SLALOM_INLINE simd::IntPack<Target> index(const Pack<Target>& x, const Pack<Target>& y) const {
+    using I = typename simd::IntPack<Target>::Vector;
+    const I row = clamped_index<Target>(x * Pack<Target>(scale_) + Pack<Target>(offset_x_), rows_ + 1);
+    const I column = clamped_index<Target>(y * Pack<Target>(scale_) + Pack<Target>(offset_y_), columns_ + 1);
+    return simd::IntPack<Target>((row << stride_log2_) + column);
+  }
+
+ private:
+  /// Index along one axis, 1 ... count inside, 0 outside. In double this is exactly the order of operations
+  /// of grid_map 1.6.4 (getIndexFromPosition and its inside test).
+  template <Scalar T>
+  int axis_index(T position, double center, int count) const {
+    const T length = static_cast<T>(resolution_ * count), half = T(0.5) * length;
+    const T from_edge = -((position - static_cast<T>(center)) - half);
+    if (!(from_edge >= T(0) && from_edge < length)) return 0;
+    const int cell =
+        static_cast<int>(-(((position - half) - static_cast<T>(center)) / static_cast<T>(resolution_)));
+    return std::min(cell, count - 1) + 1;
+  }
+  /// Truncates; negative values and NaN become huge as unsigned numbers and are clamped into the ring with
+  /// the rest.
+  template <class Target>
+  SLALOM_INLINE static typename simd::IntPack<Target>::Vector clamped_index(const Pack<Target>& cell,
+                                                                            int last) {
+    using I = typename simd::IntPack<Target>::Vector;
+    using U = typename simd::detail::VectorTypes<Target::lanes>::Unsigned;
+    const U index = reinterpret_cast<U>(__builtin_convertvector(cell.v, I));
+    const U bound = U{} + static_cast<unsigned>(last);
+    return reinterpret_cast<I>(index < bound ? index : bound);
+  }
+
+  const float* cells_ = nullptr;
+  int rows_ = 0;
+  int columns_ = 0;
+  int stride_log2_ = 0;
+  double resolution_ = 1;
+  double center_x_ = 0;
+  double center_y_ = 0;
+  float scale_ = 0;
+  float offset_x_ = 0;
+  float offset_y_ = 0;
+};
+
+/// What a look-up of a four-layer cell returns.
+template <class T>
+struct CellValues {
+  T a, b, c, d;
+};
+
+/// The cell at (x, y); m.
+template <Scalar T>
+CellValues<T> look_up(const GridView<4>& grid, T x, T y) {
+  const float* cell = grid.cells() + 4 * grid.index(x, y);
+  return {static_cast<T>(cell[0]), static_cast<T>(cell[1]), static_cast<T>(cell[2]), static_cast<T>(cell[3])};
+}
+template <Scalar T>
+T look_up(const GridView<1>& grid, T x, T y) {
+  return static_cast<T>(grid.cells()[grid.index(x, y)]);
+}
+template <class Target>
+SLALOM_INLINE CellValues<Pack<Target>> look_up(const GridView<4>& grid, const Pack<Target>& x,
+                                               const Pack<Target>& y) {
+  const auto index = grid.index(x, y);
+  CellValues<Pack<Target>> r;
+  simd::Operations<Target>::gather_cells(grid.cells(), index.v, r.a.v, r.b.v, r.c.v, r.d.v);
+  return r;
+}
+template <class Target>
+SLALOM_INLINE Pack<Target> look_up(const GridView<1>& grid, const Pack<Target>& x, const Pack<Target>& y) {
+  const auto index = grid.index(x, y);
+  Pack<Target> r;
+  simd::Operations<Target>::gather(grid.cells(), index.v, r.v);
+  return r;
+}
+
+}  // namespace slalom

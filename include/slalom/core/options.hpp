@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+/// Declarations of options, from which the command line, the configuration files, the bindings and the view's
+/// sliders are all derived.
+///
+/// An options type is a flat aggregate whose fields carry their defaults. Beside it stands one function
+/// template
+///
+///     template <class Options, class Visit>
+///       requires is_options_of<Options, MppiOptions>
+///     void visit_options(Options& options, Visit&& visit) {
+///       visit(options.temperature, Declaration{.name = "temperature", .symbol = "lambda", .min = 1e-6});
+///     }
+///
+/// that names every field. Fields are `bool`, `int`, `std::uint64_t`, `double`, `PerInput` or an enumeration
+/// with a `enum_names(E)` function.
+namespace slalom {
+
+/// What is said of an option besides its type and default.
+struct Declaration {
+  const char* name = "";
+  const char* symbol = "";  ///< the paper's
+  const char* unit = "";
+  const char* help = "";
+  double min = -std::numeric_limits<double>::infinity();  ///< inclusive, per entry
+  double max = std::numeric_limits<double>::infinity();   ///< inclusive, per entry
+};
+
+template <class Options, class Of>
+concept is_options_of = std::is_same_v<std::remove_const_t<Options>, Of>;
+
+/// One value per input, or one for all inputs.
+class PerInput {
+ public:
+  PerInput(double value) : values_{value} {}
+  PerInput(std::initializer_list<double> values) : values_(values) {}
+  PerInput(std::vector<double> values) : values_(std::move(values)) {}
+
+  const std::vector<double>& values() const noexcept { return values_; }
+  /// The value of one input.
+  double operator[](int input) const {
+    return values_.size() == 1 ? values_[0] : values_.at(static_cast<std::size_t>(input));
+  }
+  bool fits(int inputs) const noexcept {
+    return values_.size() == 1 || static_cast<int>(values_.size()) == inputs;
+  }
+  bool operator==(const PerInput&) const = default;
+
+ private:
+  std::vector<double> values_;
+};
+
+namespace detail {
+
+/// Throws std::invalid_argument that names the option, its value and the rule.
+[[noreturn]] void throw_out_of_range(std::string_view where, const Declaration& declaration, double value);
+[[noreturn]] void throw_wrong_count(std::string_view where, const Declaration& declaration, std::size_t count,
+                                    int inputs);
+
+inline void check(std::string_view where, const Declaration& d, double value) {
+  if (!(value >= d.min && value <= d.max)) throw_out_of_range(where, d, value);
+}
+
+}  // namespace detail
+
+/// Checks every option against its declared range and every per-input option against the number of inputs (0:
+/// any). Throws std::invalid_argument, for instance "svg_mppi.samples: 0 is not in [1, 1000000]".
+template <class Options>
+void validate_options(const Options& options, std::string_view where, int inputs = 0) {
+  visit_options(options, [&](const auto& field, const Declaration& declaration) {
+    using Field = std::remove_cvref_t<decltype(field)>;
+    if constexpr (std::is_same_v<Field, PerInput>) {
+      if (inputs > 0 && !field.fits(inputs))
+        detail::throw_wrong_count(where, declaration, field.values().size(), inputs);
+      if (field.values().empty()) detail::throw_wrong_count(where, declaration, 0, inputs);
+      for (const double value : field.values()) detail::check(where, declaration, value);
+    } else if constexpr (std::is_arithmetic_v<Field> && !std::is_same_v<Field, bool>) {
+      detail::check(where, declaration, static_cast<double>(field));
+    }
+  });
+}
+
+}  // namespace slalom

@@ -1,0 +1,142 @@
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <type_traits>
+
+#include "slalom/core/math.hpp"
+
+/// What a problem is: dynamics and cost written once, as templates over the scalar type `T`, which is
+/// `double`, `float` or a pack of SIMD lanes.
+///
+///     struct Pendulum {                                        // angle measured from upright
+///       template <class T> struct State { T angle, rate; };    // rad, rad/s
+///       static constexpr int inputs = 1;                       // torque, N m
+///       template <class T> State<T> step(const State<T>& x, const Input<T, 1>& u) const;
+///       template <class T> T stage_cost(const State<T>& x, const Input<T, 1>& u) const;
+///       template <class T> T terminal_cost(const State<T>& x) const;
+///     };
+///
+/// `State<T>` is an aggregate of `T` (nested arrays are fine). Optional:
+///  - `step` and `stage_cost` may take the step index `int k` (0 ... horizon - 1) as their last argument;
+///  - `template <class T> auto look_up(const State<T>& x) const`: whatever is read from maps at a state. It
+///  is evaluated
+///    once a state and handed, after the state, to `step`, `stage_cost` and `terminal_cost`;
+///  - a cost may be returned as `Cost<T>`, which also says whether the state collides.
+namespace slalom {
+
+/// The `M` inputs of one step.
+template <class T, int M>
+struct Input {
+  T value[M];
+
+  T& operator[](int i) { return value[i]; }
+  const T& operator[](int i) const { return value[i]; }
+  static constexpr int size() { return M; }
+};
+
+/// A cost that also says whether its state collides.
+template <class T>
+struct Cost {
+  T value;
+  mask_t<T> collided;
+};
+
+/// Stands in where a problem looks nothing up.
+struct NoLookUp {};
+
+namespace detail {
+
+template <class P, class T>
+using StateOf = typename P::template State<T>;
+template <class P, class T>
+using InputOf = Input<T, P::inputs>;
+
+template <class P, class T>
+inline constexpr bool looks_up = requires(const P& p, const StateOf<P, T>& x) {
+  p.look_up(x);
+};
+
+template <class P, class T>
+SLALOM_INLINE auto look_up(const P& problem, const StateOf<P, T>& x) {
+  if constexpr (looks_up<P, T>) {
+    return problem.look_up(x);
+  } else {
+    return NoLookUp{};
+  }
+}
+
+template <class P, class T, class L>
+SLALOM_INLINE StateOf<P, T> step(const P& p, const StateOf<P, T>& x, const L& seen, const InputOf<P, T>& u,
+                                 int k) {
+  if constexpr (looks_up<P, T>) {
+    if constexpr (requires { p.step(x, seen, u, k); }) {
+      return p.step(x, seen, u, k);
+    } else {
+      return p.step(x, seen, u);
+    }
+  } else if constexpr (requires { p.step(x, u, k); }) {
+    return p.step(x, u, k);
+  } else {
+    return p.step(x, u);
+  }
+}
+
+template <class P, class T, class L>
+SLALOM_INLINE auto stage_cost(const P& p, const StateOf<P, T>& x, const L& seen, const InputOf<P, T>& u,
+                              int k) {
+  if constexpr (looks_up<P, T>) {
+    if constexpr (requires { p.stage_cost(x, seen, u, k); }) {
+      return p.stage_cost(x, seen, u, k);
+    } else {
+      return p.stage_cost(x, seen, u);
+    }
+  } else if constexpr (requires { p.stage_cost(x, u, k); }) {
+    return p.stage_cost(x, u, k);
+  } else {
+    return p.stage_cost(x, u);
+  }
+}
+
+template <class P, class T, class L>
+SLALOM_INLINE auto terminal_cost(const P& p, const StateOf<P, T>& x, const L& seen) {
+  if constexpr (looks_up<P, T>) {
+    return p.terminal_cost(x, seen);
+  } else {
+    return p.terminal_cost(x);
+  }
+}
+
+/// Adds a cost, plain or with collision, to the running sums of a rollout.
+template <class T>
+SLALOM_INLINE void accumulate(const T& cost, T& total, mask_t<T>&) {
+  total = total + cost;
+}
+template <class T>
+SLALOM_INLINE void accumulate(const Cost<T>& cost, T& total, mask_t<T>& collided) {
+  total = total + cost.value;
+  collided = collided | cost.collided;
+}
+
+/// How many scalars a state has.
+template <class P>
+inline constexpr int state_size = static_cast<int>(sizeof(StateOf<P, double>) / sizeof(double));
+
+}  // namespace detail
+
+/// Problems as described above.
+template <class P>
+concept Problem = requires(const P& p, const detail::StateOf<P, double>& x,
+                           const Input<double, P::inputs>& u) {
+  requires P::inputs >
+  0;
+  requires std::is_trivially_copyable_v<detail::StateOf<P, double>>;
+  requires sizeof(detail::StateOf<P, double>) % sizeof(double) == 0;
+  {
+    detail::step<P, double>(p, x, detail::look_up<P, double>(p, x), u, 0)
+    } -> std::same_as<detail::StateOf<P, double>>;
+  detail::stage_cost<P, double>(p, x, detail::look_up<P, double>(p, x), u, 0);
+  detail::terminal_cost<P, double>(p, x, detail::look_up<P, double>(p, x));
+};
+
+}  // namespace slalom

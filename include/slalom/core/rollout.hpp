@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "slalom/core/problem.hpp"
+#include "slalom/core/sequence_batch.hpp"
+
+/// The rollout loop: one sample a lane, the state in registers, several packs interleaved so that their
+/// latencies hide behind each other.
+namespace slalom::detail {
+
+/// A state whose scalars are all given as float values, spread over the lanes of `T`.
+template <class P, class T, std::size_t... I>
+SLALOM_INLINE StateOf<P, T> broadcast_state(const float* x, std::index_sequence<I...>) {
+  return StateOf<P, T>{T(x[I])...};
+}
+
+template <class P, class F>
+struct Rollout {
+  StateOf<P, F> x;
+  F total;
+  mask_t<F> hit;
+};
+
+template <class P>
+using RolloutFunction = void (*)(const P&, const float*, const SequenceBatch&, int, int, float*,
+                                 std::uint8_t*);
+
+#if defined(__clang__)
+#define SLALOM_UNROLL _Pragma("clang loop unroll(full)")
+#else
+#define SLALOM_UNROLL _Pragma("GCC unroll 8")
+#endif
+
+/// Defines the rollout loop `rollout_<name>` for one instruction set with `packs` packs in flight: enough to
+/// hide latencies, few enough for the registers. It is a macro because clang inlines only the calls that
+/// stand in the body of a `flatten` function itself: so the problem's functions are called right here.
+#define SLALOM_DEFINE_ROLLOUT(name, ATTRIBUTES, Target, packs)                                               \
+  template <class P>                                                                                         \
+  ATTRIBUTES void rollout_##name(const P& problem, const float* initial_state, const SequenceBatch& batch,   \
+                                 int first, int count, float* costs, std::uint8_t* collided) {               \
+    using F = Pack<simd::Target>;                                                                            \
+    static_assert(simd::padding % (packs * F::lanes) == 0);                                                  \
+    const int steps = batch.steps();                                                                         \
+    const std::ptrdiff_t stride = batch.stride();                                                            \
+    for (int sample = first; sample < first + count; sample += packs * F::lanes) {                           \
+      Rollout<P, F> r[packs];                                                                                \
+      SLALOM_UNROLL for (int j = 0; j < packs; ++j) {                                                        \
+        r[j].x = broadcast_state<P, F>(initial_state, std::make_index_sequence<state_size<P>>{});            \
+        r[j].total = F(0.0f);                                                                                \
+        r[j].hit = mask_t<F>(false);                                                                         \
+      }                                                                                                      \
+      const float* row = batch.row(0, 0) + sample;                                                           \
+      for (int k = 0; k < steps; ++k, row += P::inputs * stride) {                                           \
+        SLALOM_UNROLL for (int j = 0; j < packs; ++j) {                                                      \
+          InputOf<P, F> u;                                                                                   \
+          SLALOM_UNROLL for (int i = 0; i < P::inputs; ++i) u[i] = F::load(row + i * stride + j * F::lanes); \
+          const auto seen = look_up<P, F>(problem, r[j].x);                                                  \
+          accumulate<F>(stage_cost<P, F>(problem, r[j].x, seen, u, k), r[j].total, r[j].hit);                \
+          r[j].x = step<P, F>(problem, r[j].x, seen, u, k);                                                  \
+        }                                                                                                    \
+      }                                                                                                      \
+      SLALOM_UNROLL for (int j = 0; j < packs; ++j) {                                                        \
+        const auto seen = look_up<P, F>(problem, r[j].x);                                                    \
+        accumulate<F>(terminal_cost<P, F>(problem, r[j].x, seen), r[j].total, r[j].hit);                     \
+        const int at = sample + j * F::lanes;                                                                \
+        r[j].total.store(costs + at);                                                                        \
+        for (int lane = 0; lane < F::lanes; ++lane) collided[at + lane] = r[j].hit.v[lane] != 0;             \
+      }                                                                                                      \
+    }                                                                                                        \
+  }
+
+SLALOM_DEFINE_ROLLOUT(generic, SLALOM_TARGET_GENERIC, Generic, 2)
+#if SLALOM_X86
+SLALOM_DEFINE_ROLLOUT(sse4, SLALOM_TARGET_SSE4, Sse4, 2)
+SLALOM_DEFINE_ROLLOUT(avx2, SLALOM_TARGET_AVX2, Avx2, 2)
+SLALOM_DEFINE_ROLLOUT(avx512, SLALOM_TARGET_AVX512, Avx512, 4)
+#endif
+
+#undef SLALOM_DEFINE_ROLLOUT
+
+/// The rollout loop of a problem for an instruction set.
+template <class P>
+RolloutFunction<P> rollout_function(simd::Target target) {
+#if SLALOM_X86
+  switch (target) {
+    case simd::Target::avx512:
+      return rollout_avx512<P>;
+    case simd::Target::avx2:
+      return rollout_avx2<P>;
+    case simd::Target::sse4:
+      return rollout_sse4<P>;
+    case simd::Target::generic:
+      break;
+  }
+#else
+  static_cast<void>(target);
+#endif
+  return rollout_generic<P>;
+}
+
+}  // namespace slalom::detail

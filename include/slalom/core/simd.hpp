@@ -1,0 +1,174 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+/// Packs of float32 lanes, so that one piece of template code runs a whole pack of samples at once.
+///
+/// A pack is made of the compiler's own vector types: its operators are ordinary inline functions that carry
+/// no instruction set. A batch loop is compiled once per instruction set as a function with `SLALOM_TARGET_*`
+/// (a target attribute plus `flatten`), into which everything is inlined; the wide vectors then become whole
+/// registers of that set. So a user's own problem runs at full width without any compiler flag, and one
+/// binary serves every processor. Only where the compilers do not find the right instruction (clamped
+/// conversions, square roots, look-ups) does a pack call a function that is itself tied to an instruction
+/// set.
+///
+/// Packs have a copy constructor of their own on purpose: so they are passed by reference in memory wherever
+/// a call is not inlined (unoptimised builds), and the calling convention does not depend on the instruction
+/// set.
+
+#if defined(__x86_64__) || defined(__i386__)
+#define SLALOM_X86 1
+#include <immintrin.h>
+#else
+#define SLALOM_X86 0
+#endif
+
+#if SLALOM_X86
+#define SLALOM_ISA_SSE4 __attribute__((target("sse4.2")))
+#define SLALOM_ISA_AVX2 __attribute__((target("avx2,fma,bmi,bmi2")))
+#define SLALOM_ISA_AVX512 \
+  __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,avx512cd,avx2,fma,bmi,bmi2")))
+#else
+#define SLALOM_ISA_SSE4
+#define SLALOM_ISA_AVX2
+#define SLALOM_ISA_AVX512
+#endif
+
+/// Marks a function as the entry of a batch loop for one instruction set: everything it calls is inlined into
+/// it.
+#define SLALOM_TARGET_GENERIC __attribute__((flatten))
+#define SLALOM_TARGET_SSE4 SLALOM_ISA_SSE4 __attribute__((flatten))
+#define SLALOM_TARGET_AVX2 SLALOM_ISA_AVX2 __attribute__((flatten))
+#define SLALOM_TARGET_AVX512 SLALOM_ISA_AVX512 __attribute__((flatten))
+
+/// On the small functions that make up a batch loop. g++ follows `flatten` all the way down, but only over
+/// functions that are not `always_inline` (for those it settles too early that they cannot take in code of a
+/// wider instruction set); clang inlines only one call deep and needs to be told.
+#if defined(__clang__)
+#define SLALOM_INLINE __attribute__((always_inline)) inline
+#else
+#define SLALOM_INLINE inline
+#endif
+
+#if defined(__clang__)
+/// Lets clang fuse a product and a sum that stand in different inline functions (g++ does by default).
+#define SLALOM_FUSE _Pragma("clang fp contract(fast)")
+#else
+#define SLALOM_FUSE
+#endif
+
+namespace slalom::simd {
+
+/// The instruction sets a batch loop is compiled for.
+enum class Target : std::uint8_t { generic, sse4, avx2, avx512 };
+
+/// Tags of the instruction sets: `lanes` float32 values a pack. `Generic` uses what the build's baseline has
+/// (SSE2 on x86-64, NEON on AArch64).
+struct Generic {
+  static constexpr int lanes = 4;
+};
+struct Sse4 {
+  static constexpr int lanes = 4;
+};
+struct Avx2 {
+  static constexpr int lanes = 8;
+};
+struct Avx512 {
+  static constexpr int lanes = 16;
+};
+
+/// Batches are padded to a multiple of this many samples, whatever the instruction set.
+inline constexpr int padding = 64;
+
+namespace detail {
+
+template <int N>
+struct VectorTypes {
+  typedef float Float __attribute__((vector_size(4 * N)));
+  typedef std::int32_t Int __attribute__((vector_size(4 * N)));
+  typedef std::uint32_t Unsigned __attribute__((vector_size(4 * N)));
+};
+
+}  // namespace detail
+
+/// One truth value per lane.
+template <class T>
+struct Mask {
+  using Vector = typename detail::VectorTypes<T::lanes>::Int;
+  Vector v;  ///< all bits set where true
+
+  Mask() = default;
+  SLALOM_INLINE Mask(const Vector& vector) : v(vector) {}
+  SLALOM_INLINE Mask(const Mask& other) : v(other.v) {}
+  SLALOM_INLINE Mask& operator=(const Mask& other) {
+    v = other.v;
+    return *this;
+  }
+  SLALOM_INLINE explicit Mask(bool value) { v = Vector{} - static_cast<int>(value); }
+
+  SLALOM_INLINE friend Mask operator&(const Mask& a, const Mask& b) { return Mask(a.v & b.v); }
+  SLALOM_INLINE friend Mask operator|(const Mask& a, const Mask& b) { return Mask(a.v | b.v); }
+  SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(~a.v); }
+};
+
+/// A pack of 32-bit integers.
+template <class T>
+struct IntPack {
+  using Vector = typename detail::VectorTypes<T::lanes>::Int;
+  Vector v;
+
+  IntPack() = default;
+  SLALOM_INLINE explicit IntPack(int value) { v = Vector{} + value; }
+  SLALOM_INLINE IntPack(const Vector& vector) : v(vector) {}
+  SLALOM_INLINE IntPack(const IntPack& other) : v(other.v) {}
+  SLALOM_INLINE IntPack& operator=(const IntPack& other) {
+    v = other.v;
+    return *this;
+  }
+};
+
+/// A pack of float32 values: arithmetic like a float's, lane by lane.
+template <class T>
+struct Pack {
+  using Target = T;
+  using Vector = typename detail::VectorTypes<T::lanes>::Float;
+  static constexpr int lanes = T::lanes;
+  Vector v;
+
+  Pack() = default;
+  SLALOM_INLINE Pack(float value) { v = Vector{} + value; }
+  SLALOM_INLINE Pack(double value) : Pack(static_cast<float>(value)) {}
+  SLALOM_INLINE Pack(int value) : Pack(static_cast<float>(value)) {}
+  SLALOM_INLINE Pack(const Vector& vector) : v(vector) {}
+  SLALOM_INLINE Pack(const Pack& other) : v(other.v) {}
+  SLALOM_INLINE Pack& operator=(const Pack& other) {
+    v = other.v;
+    return *this;
+  }
+
+  SLALOM_INLINE static Pack load(const float* from) {
+    Pack p;
+    std::memcpy(&p.v, from, sizeof p.v);
+    return p;
+  }
+  SLALOM_INLINE void store(float* to) const { std::memcpy(to, &v, sizeof v); }
+  float operator[](int lane) const { return v[lane]; }
+
+  SLALOM_INLINE friend Pack operator+(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v + b.v); }
+  SLALOM_INLINE friend Pack operator-(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v - b.v); }
+  SLALOM_INLINE friend Pack operator*(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v * b.v); }
+  SLALOM_INLINE friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.v / b.v); }
+  SLALOM_INLINE friend Pack operator-(const Pack& a) { return Pack(-a.v); }
+  SLALOM_INLINE Pack& operator+=(const Pack& b) { return *this = *this + b; }
+  SLALOM_INLINE Pack& operator-=(const Pack& b) { return *this = *this - b; }
+  SLALOM_INLINE Pack& operator*=(const Pack& b) { return *this = *this * b; }
+  SLALOM_INLINE Pack& operator/=(const Pack& b) { return *this = *this / b; }
+
+  SLALOM_INLINE friend Mask<T> operator<(const Pack& a, const Pack& b) { return Mask<T>(a.v < b.v); }
+  SLALOM_INLINE friend Mask<T> operator<=(const Pack& a, const Pack& b) { return Mask<T>(a.v <= b.v); }
+  SLALOM_INLINE friend Mask<T> operator>(const Pack& a, const Pack& b) { return Mask<T>(a.v > b.v); }
+  SLALOM_INLINE friend Mask<T> operator>=(const Pack& a, const Pack& b) { return Mask<T>(a.v >= b.v); }
+};
+
+}  // namespace slalom::simd

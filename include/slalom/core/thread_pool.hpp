@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <type_traits>
+
+namespace slalom {
+
+/// A fixed set of threads that works through numbered tasks. The caller works too: a pool of one has no other
+/// thread, and running tasks on it takes no lock and makes no system call.
+///
+/// Which thread runs which task is open, so tasks must not depend on it: give each task a slot of its own for
+/// its partial result and combine the slots in order.
+class ThreadPool {
+ public:
+  /// `threads` >= 1, the caller's included. Throws std::invalid_argument otherwise.
+  explicit ThreadPool(int threads);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  int threads() const noexcept { return threads_; }
+
+  /// Calls `task(i)` for every i in [0, count) and returns when all have ended. No allocation; tasks may not
+  /// throw. Workers are woken by a futex after a bounded spin; a pool serves one caller at a time.
+  template <class Task>
+  void run(int count, Task&& task) noexcept {
+    using Plain = std::remove_reference_t<Task>;
+    run_erased(
+        count, [](void* context, int i) { (*static_cast<Plain*>(context))(i); },
+        const_cast<void*>(static_cast<const void*>(&task)));
+  }
+
+ private:
+  using Call = void (*)(void* context, int i);
+  void run_erased(int count, Call call, void* context) noexcept;
+
+  struct Shared;
+  int threads_;
+  std::unique_ptr<Shared> shared_;
+};
+
+}  // namespace slalom

@@ -1,0 +1,113 @@
+#include "slalom/core/thread_pool.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "slalom/core/simd.hpp"
+
+namespace slalom {
+
+namespace {
+
+void pause() noexcept {
+#if SLALOM_X86
+  _mm_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
+
+/// Waits until `value` differs from `seen`: spins for about 20 microseconds, then sleeps on a futex.
+std::uint32_t wait_for_change(const std::atomic<std::uint32_t>& value, std::uint32_t seen) noexcept {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::microseconds(20);
+  for (;;) {
+    for (int i = 0; i < 32; ++i) {
+      const std::uint32_t now = value.load(std::memory_order_acquire);
+      if (now != seen) return now;
+      pause();
+    }
+    if (std::chrono::steady_clock::now() > until) break;
+  }
+  std::uint32_t now;
+  while ((now = value.load(std::memory_order_acquire)) == seen) value.wait(seen, std::memory_order_acquire);
+  return now;
+}
+
+}  // namespace
+
+struct ThreadPool::Shared {
+  alignas(64) std::atomic<std::uint32_t> round{0};
+  /// The round in the upper half, how many of its tasks are not yet taken in the lower: so a worker that
+  /// wakes late cannot take a task of a round it has not seen.
+  alignas(64) std::atomic<std::uint64_t> open{0};
+  alignas(64) std::atomic<std::uint32_t> unfinished{0};
+  Call call =
+      nullptr;  // these two are published by `open`, and kept until the last task taken from it has ended
+  void* context = nullptr;
+  std::atomic<bool> quit{false};
+  std::vector<std::thread> workers;
+
+  void work(std::uint32_t of_round) noexcept {
+    std::uint64_t ticket = open.load(std::memory_order_acquire);
+    while ((ticket >> 32) == of_round && static_cast<std::uint32_t>(ticket) != 0) {
+      if (!open.compare_exchange_weak(ticket, ticket - 1, std::memory_order_acq_rel,
+                                      std::memory_order_acquire))
+        continue;
+      call(context, static_cast<int>(static_cast<std::uint32_t>(ticket) - 1));
+      if (unfinished.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished.notify_one();
+      ticket = open.load(std::memory_order_acquire);
+    }
+  }
+};
+
+ThreadPool::ThreadPool(int threads) : threads_(threads) {
+  if (threads < 1 || threads > 1024) {
+    throw std::invalid_argument("threads: " + std::to_string(threads) + " is not in [1, 1024]");
+  }
+  if (threads == 1) return;
+  shared_ = std::make_unique<Shared>();
+  for (int i = 1; i < threads; ++i) {
+    shared_->workers.emplace_back([shared = shared_.get()] {
+      std::uint32_t seen = 0;
+      for (;;) {
+        seen = wait_for_change(shared->round, seen);
+        if (shared->quit.load(std::memory_order_relaxed)) return;
+        shared->work(seen);
+      }
+    });
+  }
+}
+
+ThreadPool::~ThreadPool() {
+  if (!shared_) return;
+  shared_->quit.store(true, std::memory_order_relaxed);
+  shared_->round.fetch_add(1, std::memory_order_release);
+  shared_->round.notify_all();
+  for (auto& worker : shared_->workers) worker.join();
+}
+
+void ThreadPool::run_erased(int count, Call call, void* context) noexcept {
+  if (!shared_ || count <= 1) {
+    for (int i = 0; i < count; ++i) call(context, i);
+    return;
+  }
+  Shared& s = *shared_;
+  const std::uint32_t tasks = static_cast<std::uint32_t>(count),
+                      round = s.round.load(std::memory_order_relaxed) + 1;
+  s.call = call;
+  s.context = context;
+  s.unfinished.store(tasks, std::memory_order_relaxed);
+  s.open.store(static_cast<std::uint64_t>(round) << 32 | tasks, std::memory_order_release);
+  s.round.store(round, std::memory_order_release);
+  s.round.notify_all();
+  s.work(round);
+  std::uint32_t left = s.unfinished.load(std::memory_order_acquire);
+  while (left != 0) left = wait_for_change(s.unfinished, left);
+}
+
+}  // namespace slalom

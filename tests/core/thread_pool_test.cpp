@@ -1,0 +1,42 @@
+#include "slalom/core/thread_pool.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace slalom {
+namespace {
+
+TEST(ThreadPool, RunsEveryTaskOnceEachTime) {
+  for (const int threads : {1, 2, 7}) {
+    ThreadPool pool(threads);
+    for (int round = 0; round < 2000; ++round) {
+      const int count = round % 13;
+      std::vector<std::atomic<int>> runs(13);
+      pool.run(count, [&](int i) { ++runs[static_cast<std::size_t>(i)]; });
+      for (int i = 0; i < 13; ++i) ASSERT_EQ(runs[static_cast<std::size_t>(i)], i < count ? 1 : 0);
+    }
+  }
+}
+
+TEST(ThreadPool, WorkersThatHaveGoneToSleepWakeAgain) {
+  ThreadPool pool(3);
+  for (int round = 0; round < 20; ++round) {
+    std::atomic<int> sum{0};
+    pool.run(8, [&](int i) { sum += i; });
+    ASSERT_EQ(sum, 28);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+TEST(ThreadPool, RefusesAbsurdSizes) {
+  EXPECT_THROW(ThreadPool(0), std::invalid_argument);
+  EXPECT_THROW(ThreadPool(-3), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slalom
