@@ -63,19 +63,23 @@ namespace slalom::simd {
 /// The instruction sets a batch loop is compiled for.
 enum class Target : std::uint8_t { generic, sse4, avx2, avx512 };
 
-/// Tags of the instruction sets: `lanes` float32 values a pack. `Generic` uses what the build's baseline has
-/// (SSE2 on x86-64, NEON on AArch64).
+/// Tags of the instruction sets: `lanes` float32 values a pack, and whether it multiplies and adds with one rounding.
+/// `Generic` uses what the build's baseline has (SSE2 on x86-64, NEON on AArch64).
 struct Generic {
   static constexpr int lanes = 4;
+  static constexpr bool fused = SLALOM_X86 == 0;
 };
 struct Sse4 {
   static constexpr int lanes = 4;
+  static constexpr bool fused = false;
 };
 struct Avx2 {
   static constexpr int lanes = 8;
+  static constexpr bool fused = true;
 };
 struct Avx512 {
   static constexpr int lanes = 16;
+  static constexpr bool fused = true;
 };
 
 /// Batches are padded to a multiple of this many samples, whatever the instruction set.
