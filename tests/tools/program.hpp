@@ -1,0 +1,32 @@
+#pragma once
+
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+namespace slalom::testing {
+
+/// What a run of the program said and how it ended.
+struct Run {
+  int status = -1;
+  std::string output;  ///< standard output and standard error
+};
+
+/// Runs `slalom` with arguments as a shell reads them, in `folder`.
+inline Run run_program(const std::string& arguments, const std::string& folder = ".") {
+  const std::string command = "cd '" + folder + "' && ( '" SLALOM_PROGRAM "' " + arguments + " ) 2>&1";
+  FILE* pipe = popen(command.c_str(), "r");
+  if (!pipe) throw std::runtime_error("no shell");
+  Run run;
+  std::array<char, 4096> buffer{};
+  while (const std::size_t count = fread(buffer.data(), 1, buffer.size(), pipe))
+    run.output.append(buffer.data(), count);
+  const int ended = pclose(pipe);
+  run.status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
+  return run;
+}
+
+}  // namespace slalom::testing
