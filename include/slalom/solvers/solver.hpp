@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "slalom/core/batch_evaluator.hpp"
+#include "slalom/core/status.hpp"
+
+namespace slalom {
+
+/// What changes from one solve to the next.
+struct SolveRequest {
+  /// Time since the last solve, s; the warm start is shifted by it where the solver shifts.
+  double elapsed = 0;
+  /// Time the solve may take, s of wall clock from the call; what is best so far is returned by then.
+  double deadline = std::numeric_limits<double>::infinity();
+};
+
+/// Wall-clock times of the stages of one solve, s.
+struct StageTimes {
+  double draw = 0;      ///< drawing samples
+  double evaluate = 0;  ///< rollouts of the samples
+  double guide = 0;     ///< moving guide particles or iterating on the distribution
+  double update = 0;    ///< weights, means, covariances
+  double total = 0;
+};
+
+/// One control sequence after another, [sequence][step][input].
+struct SequenceList {
+  std::span<const float> values;
+  int sequences = 0;
+};
+
+/// The outcome of a solve. Its spans point into the solver and stay valid until the next solve or reset.
+struct SolveResult {
+  Status status = Status::ok;
+  std::span<const float> inputs;      ///< the control sequence to apply, [step][input]
+  std::span<const float> nominal;     ///< the nominal sequence (svg_mppi: the best guide), [step][input]
+  std::span<const float> mean;        ///< mean of the resulting distribution, [step][input]
+  std::span<const float> covariance;  ///< its variances, [step][input]
+
+  const SequenceBatch* samples = nullptr;  ///< what was drawn last
+  std::span<const float> costs;            ///< of the samples
+  std::span<const std::uint8_t> collided;  ///< 1 where a sample collides
+  std::span<const float> weights;          ///< of the samples; they sum to 1
+
+  SequenceList guides;               ///< where the guide particles ended (empty without guides)
+  SequenceList guide_path;           ///< all guides after each transport step, [iteration x guide]
+  double minimum_cost = 0;           ///< the least cost of a sample
+  double expected_cost = 0;          ///< weighted mean of the samples' costs
+  double effective_sample_size = 0;  ///< 1 / sum of squared weights
+  double collided_share = 0;         ///< of the samples, 0 ... 1
+  double temperature = 0;            ///< lambda in use
+  int iterations = 0;                ///< guide or distribution updates made
+  StageTimes times;
+};
+
+/// A method that solves any problem behind the seam of `BatchEvaluator`. After construction nothing here
+/// allocates or throws; the same seed gives the same bits on any number of threads.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+
+  /// The method's name, as configurations and results write it: "svg_mppi", ...
+  virtual const char* name() const noexcept = 0;
+  virtual int horizon() const noexcept = 0;  ///< steps
+  virtual int inputs() const noexcept = 0;
+
+  /// Solves from the evaluator's current state. Whatever happens, the result's inputs are finite and within
+  /// bounds.
+  virtual const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept = 0;
+
+  /// Forgets everything and starts the random numbers anew.
+  virtual void reset(std::uint64_t seed) noexcept = 0;
+
+  /// Draws the noise of the next solve ahead, so that it costs nothing inside the deadline; the results do
+  /// not change.
+  virtual void prepare() noexcept {}
+};
+
+}  // namespace slalom
