@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -38,6 +39,15 @@ std::string short_number(double value) {
   return stream.str();
 }
 
+/// A word as a shell reads it back.
+std::string shell_word(const std::string& text) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
 /// The folder's own name, also where the path ends in a slash or is ".".
 std::string folder_name(const std::string& folder) {
   const fs::path path = fs::absolute(folder).lexically_normal();
@@ -59,9 +69,9 @@ std::string command_of(const Arguments& arguments, const TrackOptions& options) 
   add("--braking", options.limits.braking, defaults.limits.braking);
   add("--wall-margin", options.wall_margin, defaults.wall_margin);
   const std::string folder = folder_name(arguments.out);
-  if (arguments.name != folder) text += " --name '" + arguments.name + "'";
-  if (!arguments.description.empty()) text += " --description '" + arguments.description + "'";
-  return text + " --out " + folder;
+  if (arguments.name != folder) text += " --name " + shell_word(arguments.name);
+  if (!arguments.description.empty()) text += " --description " + shell_word(arguments.description);
+  return text + " --out " + shell_word(folder);
 }
 
 nlohmann::ordered_json summary_of(const Track& track, const Arguments& arguments,

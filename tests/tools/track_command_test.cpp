@@ -97,6 +97,17 @@ TEST_F(TrackCommand, WritesEveryFileAndASummary) {
   EXPECT_NEAR(summary["profile_lap_s"].get<double>(), vehicle::profile_time(course), 0.1);
 }
 
+TEST_F(TrackCommand, RecordsWordsThatAShellWouldSplit) {
+  const auto run = track(
+      "--length 40 --no-picture --out 'my course' --name \"the driver's\" --description 'a b' --json s.json");
+  ASSERT_EQ(run.status, 0) << run.output;
+  const auto command = nlohmann::json::parse(content(folder_ / "s.json"))["command"].get<std::string>();
+  const std::string ending = " --name 'the driver'\\''s' --description 'a b' --out 'my course'";
+  ASSERT_GT(command.size(), ending.size());
+  EXPECT_EQ(command.substr(command.size() - ending.size()), ending);
+  EXPECT_EQ(vehicle::load_course(folder_ / "my course").name, "the driver's");
+}
+
 TEST_F(TrackCommand, JsonOnStandardOutputStandsAlone) {
   const auto run = track("--length 40 --no-picture --out x --json - 2>/dev/null");
   ASSERT_EQ(run.status, 0);
