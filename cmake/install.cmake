@@ -14,5 +14,5 @@ if(SLALOM_INSTALL)
   write_basic_package_version_file(slalom-config-version.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/slalom-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/slalom-config-version.cmake
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/slalom)
-  install(DIRECTORY configs courses DESTINATION ${CMAKE_INSTALL_DATADIR}/slalom)
+  install(DIRECTORY configs courses DESTINATION ${CMAKE_INSTALL_DATADIR}/slalom OPTIONAL)
 endif()
