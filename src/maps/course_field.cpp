@@ -71,12 +71,7 @@ std::vector<Segment> segments_of(std::span<const ReferencePoint> path, bool clos
 }  // namespace
 
 void CourseFieldOptions::validate() const {
-  using detail::require;
-  require(detail::positive(resolution), "resolution", resolution, "finite and above 0");
-  require(detail::positive(corridor), "corridor", corridor, "finite and above 0");
-  require(std::isfinite(outside.distance), "outside.distance", outside.distance, "finite");
-  require(std::isfinite(outside.yaw), "outside.yaw", outside.yaw, "finite");
-  require(std::isfinite(outside.speed), "outside.speed", outside.speed, "finite");
+  validate_options(*this, "course_field");
 }
 
 CourseField::CourseField(std::span<const ReferencePoint> path, const CourseFieldOptions& options)

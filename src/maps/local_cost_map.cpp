@@ -32,25 +32,9 @@ LocalCostMapOptions LocalCostMapOptions::published() {
 }
 
 void LocalCostMapOptions::validate() const {
-  using detail::require;
-  detail::cell_count("length_x", length_x, resolution);
-  detail::cell_count("length_y", length_y, resolution);
-  require(std::isfinite(center_x), "center_x", center_x, "finite");
-  require(std::isfinite(center_y), "center_y", center_y, "finite");
-  require(std::isfinite(occupied), "occupied", occupied, "finite");
-  require(std::isfinite(outside), "outside", outside, "finite");
-  const auto reach = [](const char* field, double value) {
-    require(std::isfinite(value) && value >= 0 && value <= 100, field, value, "within 0 to 100 m");
-  };
-  reach("footprint.front", footprint.front);
-  reach("footprint.rear", footprint.rear);
-  reach("footprint.left", footprint.left);
-  reach("footprint.right", footprint.right);
-  reach("margin", margin);
-  require(std::isfinite(laser.x), "laser.x", laser.x, "finite");
-  require(std::isfinite(laser.y), "laser.y", laser.y, "finite");
-  require(std::isfinite(laser.yaw), "laser.yaw", laser.yaw, "finite");
-  require(max_beams >= 1 && max_beams <= 1000000, "max_beams", max_beams, "within 1 to 1000000");
+  validate_options(*this, "local_cost_map");
+  detail::cell_count("local_cost_map.length_x", length_x, resolution);
+  detail::cell_count("local_cost_map.length_y", length_y, resolution);
 }
 
 LocalCostMap::LocalCostMap(const LocalCostMapOptions& options)
@@ -69,7 +53,7 @@ LocalCostMap::LocalCostMap(const LocalCostMapOptions& options)
   beam_cos_.resize(beams);
   beam_sin_.resize(beams);
   points_.resize(beams);
-  cells_.fill({options.outside});
+  cells_.fill({static_cast<float>(options.outside)});
   clear();
 }
 
@@ -237,7 +221,7 @@ void LocalCostMap::count(const Box& box) noexcept {
 void LocalCostMap::write_cells() noexcept {
   std::fill(counts_.begin(), counts_.end(), 0);
   const auto columns = static_cast<std::size_t>(geometry_.columns);
-  const float occupied = options_.occupied;
+  const auto occupied = static_cast<float>(options_.occupied);
   std::int32_t* counts = counts_.data();
   for (int row = 0; row < geometry_.rows; ++row) {
     const std::int32_t* differences = differences_.data() + static_cast<std::size_t>(row) * columns;

@@ -46,16 +46,11 @@ ReferenceFieldOptions ReferenceFieldOptions::published() {
 }
 
 void ReferenceFieldOptions::validate() const {
-  using detail::require;
-  detail::cell_count("length_x", length_x, resolution);
-  detail::cell_count("length_y", length_y, resolution);
-  require(points >= 1 && points <= 250, "points", points, "within 1 to 250");
-  require(points_behind >= 0 && points + points_behind <= 250, "points_behind", points_behind,
-          "at least 0, with `points` at most 250");
-  require(std::isfinite(spacing) && spacing >= 0, "spacing", spacing, "finite and not negative");
-  require(std::isfinite(outside.distance), "outside.distance", outside.distance, "finite");
-  require(std::isfinite(outside.yaw), "outside.yaw", outside.yaw, "finite");
-  require(std::isfinite(outside.speed), "outside.speed", outside.speed, "finite");
+  validate_options(*this, "reference_field");
+  detail::cell_count("reference_field.length_x", length_x, resolution);
+  detail::cell_count("reference_field.length_y", length_y, resolution);
+  detail::require(points + points_behind <= 250, "reference_field.points_behind", points_behind,
+                  "at most 250 together with `points`");
 }
 
 ReferenceField::ReferenceField(std::span<const ReferencePoint> path, const ReferenceFieldOptions& options)

@@ -16,14 +16,8 @@ void require(bool holds, const char* field, const T& value, const char* rule) {
   throw std::invalid_argument(text.str());
 }
 
-inline bool positive(double value) {
-  return std::isfinite(value) && value > 0;
-}
-
-/// How many cells make up a length; throws where there are none or too many.
+/// How many cells make up a length (both above 0); throws where there are none or too many.
 inline int cell_count(const char* field, double length, double resolution) {
-  require(positive(resolution), "resolution", resolution, "finite and above 0");
-  require(positive(length), field, length, "finite and above 0");
   const double count = std::round(length / resolution);
   require(count >= 1 && count <= 20000, field, length, "1 to 20000 cells long");
   return static_cast<int>(count);

@@ -15,6 +15,8 @@ template <int Layers>
 struct GridMap {
   maps::GridGeometry geometry;
   maps::CellGrid<Layers> cells;
+
+  GridView<Layers> view() const { return cells.view(geometry); }
 };
 
 /// Reads one CSV file per layer, row i = index_x, column j = index_y; values are rounded to float32. Layers

@@ -161,6 +161,16 @@ TEST(LocalCostMap, OutsideIsTheRing) {
   }
 }
 
+TEST(LocalCostMap, TheViewLooksUpTheSameCells) {
+  LocalCostMap map({.outside = 7});
+  const std::vector<float> ranges(1080, 3.0F);
+  map.update({ranges, -2.35, 4.7 / 1080, 0, 30});
+  const GridView<1> view = map.view();
+  for (double x = -2.3; x < 8.4; x += 0.0313) {
+    for (double y = -5.2; y < 5.2; y += 0.0417) ASSERT_EQ(look_up(view, x, y), map.at(x, y)) << x << ' ' << y;
+  }
+}
+
 TEST(LocalCostMap, AbsurdOptionsAreRefused) {
   const auto refused = [](auto change) {
     LocalCostMapOptions options;

@@ -124,6 +124,22 @@ TEST(ReferenceField, OutsideAndBadPositions) {
   EXPECT_NEAR(field.at(1e5, 1e5).distance, 1e5 * std::sqrt(2.0) - 5, 0.2);
 }
 
+TEST(ReferenceField, TheViewLooksUpTheSameCells) {
+  const auto path = circle(600, 5);
+  ReferenceField field(path);
+  ASSERT_TRUE(field.update({4.9, 0.7}));
+  const GridView<4> view = field.view();
+  for (double x = -5.4; x < 15.2; x += 0.0931) {
+    for (double y = -9.6; y < 11; y += 0.0777) {
+      const ReferenceCell cell = field.at(x, y);
+      const auto values = look_up(view, x, y);
+      ASSERT_EQ(values.a, cell.distance) << x << ' ' << y;
+      ASSERT_EQ(values.b, cell.yaw);
+      ASSERT_EQ(values.c, cell.speed);
+    }
+  }
+}
+
 template <class Field>
 void expect_bad_paths_refused() {
   EXPECT_THROW(Field(circle(2, 1)), std::invalid_argument);

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <memory>
 #include <new>
+
+#include "slalom/core/grid_view.hpp"
 
 namespace slalom::maps {
 
@@ -41,30 +44,36 @@ struct GridGeometry {
 };
 
 /// Cells of `Layers` float32 values each, row-major, with a ring of cells all round that hold the values for
-/// "outside": an index clamped to [-1, rows] x [-1, columns] needs no mask. The first value is aligned to 64
-/// bytes.
+/// "outside": an index clamped to [-1, rows] x [-1, columns] needs no mask. A row takes a power of two of
+/// cells, so that an index is a shift and an addition. The first value is aligned to 64 bytes.
 template <int Layers>
 class CellGrid {
  public:
   CellGrid(int rows, int columns)
       : rows_(rows),
-        stride_(columns + 2),
-        cells_(
-            new (std::align_val_t{64}) float[static_cast<std::size_t>(rows + 2) * (columns + 2) * Layers]()) {
-  }
+        stride_log2_(std::bit_width(static_cast<unsigned>(columns + 1))),
+        cells_(new (
+            std::align_val_t{64}) float[(static_cast<std::size_t>(rows + 2) << stride_log2_) * Layers]()) {}
 
   /// The values of a cell; row -1 .. rows, column -1 .. columns.
   float* at(int row, int column) { return cells_.get() + offset(row, column); }
   const float* at(int row, int column) const { return cells_.get() + offset(row, column); }
 
-  /// The ring's first cell; one row has stride() cells.
+  /// The ring's first cell; one row has 2^stride_log2() cells.
   const float* data() const { return cells_.get(); }
-  int stride() const { return stride_; }
+  int stride_log2() const { return stride_log2_; }
+
+  /// For the look-ups of rollouts; valid while this lives and the geometry is that of the cells.
+  GridView<Layers> view(const GridGeometry& geometry) const {
+    return {data(),           geometry.rows,       geometry.columns,
+            stride_log2_,     geometry.resolution, geometry.center_x,
+            geometry.center_y};
+  }
 
   /// Sets every cell, the ring included.
   void fill(const float (&values)[Layers]) {
     float* cell = cells_.get();
-    for (std::size_t i = 0, count = static_cast<std::size_t>(rows_ + 2) * stride_; i < count; ++i) {
+    for (std::size_t i = 0, count = static_cast<std::size_t>(rows_ + 2) << stride_log2_; i < count; ++i) {
       for (int layer = 0; layer < Layers; ++layer) *cell++ = values[layer];
     }
   }
@@ -74,11 +83,12 @@ class CellGrid {
     void operator()(float* p) const { ::operator delete[](p, std::align_val_t{64}); }
   };
   std::size_t offset(int row, int column) const {
-    return (static_cast<std::size_t>(row + 1) * stride_ + static_cast<std::size_t>(column + 1)) * Layers;
+    return ((static_cast<std::size_t>(row + 1) << stride_log2_) + static_cast<std::size_t>(column + 1)) *
+           Layers;
   }
 
   int rows_;
-  int stride_;
+  int stride_log2_;
   std::unique_ptr<float[], Free> cells_;
 };
 

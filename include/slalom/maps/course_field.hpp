@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "slalom/core/options.hpp"
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/reference_path.hpp"
 
@@ -18,6 +19,20 @@ struct CourseFieldOptions {
   /// Throws std::invalid_argument naming the field, its value and the rule.
   void validate() const;
 };
+
+template <class Options, class Visit>
+requires is_options_of<Options, CourseFieldOptions>
+void visit_options(Options& options, Visit&& visit) {
+  visit(options.resolution,
+        Declaration{.name = "resolution", .unit = "m", .help = "size of a cell", .min = 1e-4, .max = 100});
+  visit(options.corridor, Declaration{.name = "corridor",
+                                      .unit = "m",
+                                      .help = "half width of the strip round the path",
+                                      .min = 1e-3,
+                                      .max = 1e4});
+  visit(options.closed, Declaration{.name = "closed", .help = "the last point leads on to the first"});
+  visit_reference_outside(options.outside, visit);
+}
 
 /// A map of a whole course, fixed in the map frame, that holds for every cell the distance of its centre to
 /// the path, with the path's yaw and speed there. The path is the polyline through the points: the nearest
@@ -40,6 +55,9 @@ class CourseField {
   const CourseFieldOptions& options() const noexcept { return options_; }
   const GridGeometry& geometry() const noexcept { return geometry_; }
   const CellGrid<4>& cells() const noexcept { return cells_; }
+
+  /// The cells {distance, yaw, speed, 0}, in the map frame, for the look-ups of rollouts.
+  GridView<4> view() const noexcept { return cells_.view(geometry_); }
 
  private:
   void make_cells(std::span<const ReferencePoint> path);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "slalom/core/options.hpp"
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/occupancy_grid.hpp"
@@ -25,8 +26,8 @@ struct LocalCostMapOptions {
   double resolution = 0.05;  ///< m per cell, > 0
   double center_x = 3;       ///< m, the map's centre in the robot's frame
   double center_y = 0;       ///< m
-  float occupied = 100;      ///< value of a cell where the body would touch an obstacle
-  float outside = 100;       ///< value of the ring of cells round the map
+  double occupied = 100;     ///< value of a cell where the body would touch an obstacle
+  double outside = 100;      ///< value of the ring of cells round the map
   Footprint footprint{};     ///< the body by which obstacles are inflated
   double margin = 0;         ///< m, >= 0, added to every side of the footprint
   Pose laser{0.275, 0, 0};   ///< the laser's pose in the robot's frame
@@ -50,6 +51,72 @@ struct LocalCostMapOptions {
   /// Throws std::invalid_argument naming the field, its value and the rule.
   void validate() const;
 };
+
+template <class Options, class Visit>
+requires is_options_of<Options, LocalCostMapOptions>
+void visit_options(Options& options, Visit&& visit) {
+  visit(options.length_x,
+        Declaration{.name = "length_x", .unit = "m", .help = "length of the map", .min = 1e-3, .max = 1e4});
+  visit(options.length_y,
+        Declaration{.name = "length_y", .unit = "m", .help = "width of the map", .min = 1e-3, .max = 1e4});
+  visit(options.resolution,
+        Declaration{.name = "resolution", .unit = "m", .help = "size of a cell", .min = 1e-4, .max = 100});
+  visit(options.center_x, Declaration{.name = "center_x",
+                                      .unit = "m",
+                                      .help = "centre of the map, ahead of the robot",
+                                      .min = -1e4,
+                                      .max = 1e4});
+  visit(options.center_y, Declaration{.name = "center_y",
+                                      .unit = "m",
+                                      .help = "centre of the map, to its left",
+                                      .min = -1e4,
+                                      .max = 1e4});
+  visit(options.occupied,
+        Declaration{.name = "occupied", .help = "value of an occupied cell", .min = -1e30, .max = 1e30});
+  visit(options.outside,
+        Declaration{.name = "outside", .help = "value off the map", .min = -1e30, .max = 1e30});
+  visit(options.footprint.front,
+        Declaration{
+            .name = "footprint_front", .unit = "m", .help = "reach of the body ahead", .min = 0, .max = 100});
+  visit(options.footprint.rear,
+        Declaration{
+            .name = "footprint_rear", .unit = "m", .help = "reach of the body behind", .min = 0, .max = 100});
+  visit(options.footprint.left, Declaration{.name = "footprint_left",
+                                            .unit = "m",
+                                            .help = "reach of the body to the left",
+                                            .min = 0,
+                                            .max = 100});
+  visit(options.footprint.right, Declaration{.name = "footprint_right",
+                                             .unit = "m",
+                                             .help = "reach of the body to the right",
+                                             .min = 0,
+                                             .max = 100});
+  visit(options.margin,
+        Declaration{
+            .name = "margin", .unit = "m", .help = "added to every side of the body", .min = 0, .max = 100});
+  visit(options.laser.x, Declaration{.name = "laser_x",
+                                     .unit = "m",
+                                     .help = "where the laser is, ahead of the reference point",
+                                     .min = -100,
+                                     .max = 100});
+  visit(options.laser.y, Declaration{.name = "laser_y",
+                                     .unit = "m",
+                                     .help = "where the laser is, to the left of it",
+                                     .min = -100,
+                                     .max = 100});
+  visit(
+      options.laser.yaw,
+      Declaration{.name = "laser_yaw", .unit = "rad", .help = "where the laser looks", .min = -7, .max = 7});
+  visit(options.max_beams,
+        Declaration{.name = "max_beams", .help = "most beams of a scan", .min = 1, .max = 1000000});
+  visit(options.drop_points_on_body,
+        Declaration{.name = "drop_points_on_body", .help = "ignore readings within the body"});
+  visit(options.half_open_inflation,
+        Declaration{.name = "half_open_inflation",
+                    .help = "published: inflate by whole cells, one less to one side"});
+  visit(options.forget_points_outside,
+        Declaration{.name = "forget_points_outside", .help = "published: ignore points off the map"});
+}
 
 /// A point in the robot's frame: m.
 struct ScanPoint {
@@ -91,12 +158,15 @@ class LocalCostMap {
   /// The value at a position in the robot's frame, m.
   float at(double x, double y) const noexcept {
     const int row = geometry_.row(x), column = geometry_.column(y);
-    return row < 0 || column < 0 ? options_.outside : *cells_.at(row, column);
+    return row < 0 || column < 0 ? *cells_.data() : *cells_.at(row, column);
   }
 
   const LocalCostMapOptions& options() const noexcept { return options_; }
   const GridGeometry& geometry() const noexcept { return geometry_; }
   const CellGrid<1>& cells() const noexcept { return cells_; }
+
+  /// The cells, in the robot's frame, for the look-ups of rollouts.
+  GridView<1> view() const noexcept { return cells_.view(geometry_); }
 
   /// The points of the last scan that were used.
   std::span<const ScanPoint> points() const noexcept { return {points_.data(), point_count_}; }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "slalom/core/options.hpp"
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/maps/reference_path.hpp"
@@ -32,6 +33,30 @@ struct ReferenceFieldOptions {
   void validate() const;
 };
 
+template <class Options, class Visit>
+requires is_options_of<Options, ReferenceFieldOptions>
+void visit_options(Options& options, Visit&& visit) {
+  visit(options.length_x,
+        Declaration{.name = "length_x", .unit = "m", .help = "length of the map", .min = 1e-3, .max = 1e4});
+  visit(options.length_y,
+        Declaration{.name = "length_y", .unit = "m", .help = "width of the map", .min = 1e-3, .max = 1e4});
+  visit(options.resolution,
+        Declaration{.name = "resolution", .unit = "m", .help = "size of a cell", .min = 1e-4, .max = 100});
+  visit(options.points,
+        Declaration{
+            .name = "points", .help = "points of the window, from the nearest on", .min = 1, .max = 250});
+  visit(options.points_behind, Declaration{.name = "points_behind",
+                                           .help = "points of the window behind the nearest; published: 0",
+                                           .min = 0,
+                                           .max = 249});
+  visit(options.spacing, Declaration{.name = "spacing",
+                                     .unit = "m",
+                                     .help = "least distance between points of the window",
+                                     .min = 0,
+                                     .max = 1e4});
+  visit_reference_outside(options.outside, visit);
+}
+
 /// A map centred on the robot, parallel to the map frame, that holds for every cell the distance to the
 /// nearest of a window of the path's points, with that point's yaw and speed. The window begins at the point
 /// nearest to the robot (of the whole path) and wraps at the path's end. It is made anew by every update,
@@ -57,6 +82,10 @@ class ReferenceField {
   const ReferenceFieldOptions& options() const noexcept { return options_; }
   const GridGeometry& geometry() const noexcept { return geometry_; }
   const CellGrid<4>& cells() const noexcept { return cells_; }
+
+  /// The cells {distance, yaw, speed, 0}, in the map frame, for the look-ups of rollouts; until the next
+  /// update.
+  GridView<4> view() const noexcept { return cells_.view(geometry_); }
 
   /// Index of the path's point nearest to the robot at the last update.
   int nearest() const noexcept { return nearest_; }

@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "slalom/core/options.hpp"
+
 namespace slalom::maps {
 
 /// A point of the path that the car is to follow.
@@ -27,6 +29,21 @@ struct ReferenceOutside {
   double yaw = 2.0;      ///< rad; no meaning of its own, the published program's value
   double speed = 0;      ///< m/s
 };
+
+/// Declares what `outside` holds, for the visit_options of the maps that have one.
+template <class Outside, class Visit>
+void visit_reference_outside(Outside& outside, Visit&& visit) {
+  visit(outside.distance, Declaration{.name = "outside_distance",
+                                      .unit = "m",
+                                      .help = "distance off the map",
+                                      .min = -1e30,
+                                      .max = 1e30});
+  visit(outside.yaw,
+        Declaration{.name = "outside_yaw", .unit = "rad", .help = "yaw off the map", .min = -7, .max = 7});
+  visit(outside.speed,
+        Declaration{
+            .name = "outside_speed", .unit = "m/s", .help = "speed off the map", .min = -1e3, .max = 1e3});
+}
 
 /// Throws std::invalid_argument, naming the point, unless there are at least 3 points, all finite, the speeds
 /// >= 0.
