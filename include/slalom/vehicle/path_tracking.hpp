@@ -1,0 +1,322 @@
+#pragma once
+
+#include "slalom/core/grid_view.hpp"
+#include "slalom/core/options.hpp"
+#include "slalom/core/problem.hpp"
+
+/// The vehicle problem: follow a path and do not touch anything. A kinematic bicycle, steered with a
+/// first-order lag, runs over two maps: the reference field (distance to the path, yaw and speed there) in
+/// the map frame, and the local cost map of the LiDAR scan in the robot's frame.
+///
+///     cost of a state = distance_weight d^2 + yaw_weight e^2 + collision_weight c
+///
+/// with d the distance to the path, e the yaw error, c the value of the cost map (Honda et al., ICRA 2024,
+/// section V-A).
+namespace slalom::vehicle {
+
+/// Where the reference point of the bicycle lies, and so what its yaw gain is.
+enum class BicycleForm {
+  rear_axle,  ///< x' = v cos(yaw), yaw' = v tan(steer) / (lf + lr): the base_link of a car is its rear axle
+  published,  ///< tan(b) = lf/(lf + lr) tan(steer), x' = v cos(yaw + b), yaw' = v sin(b) / lr. The textbook's
+              ///< centre of gravity has lr in the first formula; with this one the yaw gain is off by a
+              ///< factor (published program)
+};
+constexpr const char* const* enum_names(BicycleForm) {
+  static constexpr const char* names[] = {"rear_axle", "published", nullptr};
+  return names;
+}
+
+/// What the model takes the speed of the next step to be.
+enum class SpeedForm {
+  reference,  ///< the reference field's speed at the position
+  constant,   ///< the present speed
+  linear,     ///< towards the reference speed at the start, with constant acceleration
+};
+constexpr const char* const* enum_names(SpeedForm) {
+  static constexpr const char* names[] = {"reference", "constant", "linear", nullptr};
+  return names;
+}
+
+/// Options of the vehicle problem. The defaults are the correct forms; what `published` says of an option is
+/// the reason why it exists.
+struct PathTrackingOptions {
+  double time_step = 0.05;           ///< s, of the prediction
+  double front_length = 0.15875;     ///< m, lf: centre of gravity to front axle
+  double rear_length = 0.17145;      ///< m, lr: centre of gravity to rear axle
+  double steer_time_constant = 0.1;  ///< s, first-order lag of the steering
+  double dead_time = 0.025;          ///< s, from a command to its first effect on the steering
+  BicycleForm bicycle = BicycleForm::rear_axle;
+  SpeedForm speed = SpeedForm::reference;
+  double distance_weight = 1;
+  double yaw_weight = 0.01;
+  double terminal_distance_weight = 1;
+  double terminal_yaw_weight = 0.01;
+  double collision_weight = 1;         ///< times the cost map's values, 100 where occupied
+  double max_acceleration = 5;         ///< m/s^2, for `limit_acceleration` and the linear form
+  double max_deceleration = 3;         ///< m/s^2, likewise
+  double reference_speed = 1.5;        ///< m/s, where no speed profile is used
+  double outside_cost = 100;           ///< cost map value off the local map, stage states
+  double outside_terminal_cost = 100;  ///< the same at the terminal state; published: 10
+
+  bool limit_acceleration = true;  ///< published: false, the speed jumps to the reference field's
+  bool exact_lag =
+      true;  ///< published: false, explicit Euler, of which the factor is time_step / time constant
+  /// Published: true. The dead time is ceil(dead_time / time_step) steps in which the sequence's own first
+  /// input acts (the commands under way are not remembered). Otherwise the state is led ahead by the dead
+  /// time with the commands sent, and the rollout knows no dead time.
+  bool hold_first_input = false;
+  /// Published: true. Collisions are looked up along a second rollout in the robot's frame that starts with
+  /// the wheels straight, whatever their angle.
+  bool straight_local_rollout = false;
+  /// Published: true. In the linear form a car that is too fast speeds up (a sign error of the published
+  /// program).
+  bool linear_sign_error = false;
+  bool localisation_less = false;  ///< drive by the cost map alone, without pose or path
+};
+
+template <class Options, class Visit>
+requires is_options_of<Options, PathTrackingOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.time_step, Declaration{.name = "time_step",
+                                 .symbol = "Delta tau",
+                                 .unit = "s",
+                                 .help = "step of the prediction",
+                                 .min = 1e-3,
+                                 .max = 1});
+  visit(o.front_length, Declaration{.name = "front_length",
+                                    .symbol = "lf",
+                                    .unit = "m",
+                                    .help = "centre of gravity to front axle",
+                                    .min = 1e-3,
+                                    .max = 10});
+  visit(o.rear_length, Declaration{.name = "rear_length",
+                                   .symbol = "lr",
+                                   .unit = "m",
+                                   .help = "centre of gravity to rear axle",
+                                   .min = 1e-3,
+                                   .max = 10});
+  visit(o.steer_time_constant, Declaration{.name = "steer_time_constant",
+                                           .symbol = "tau",
+                                           .unit = "s",
+                                           .help = "first-order lag of the steering",
+                                           .min = 1e-3,
+                                           .max = 10});
+  visit(o.dead_time, Declaration{.name = "dead_time",
+                                 .unit = "s",
+                                 .help = "from a command to its first effect on the steering",
+                                 .min = 0,
+                                 .max = 1});
+  visit(o.bicycle,
+        Declaration{.name = "bicycle", .help = "reference point and yaw gain of the bicycle model"});
+  visit(o.speed, Declaration{.name = "speed", .help = "what the model takes the next speed to be"});
+  visit(o.distance_weight, Declaration{.name = "distance_weight",
+                                       .help = "weight of the squared distance to the path, 1/m^2",
+                                       .min = 0});
+  visit(o.yaw_weight,
+        Declaration{.name = "yaw_weight", .help = "weight of the squared yaw error, 1/rad^2", .min = 0});
+  visit(o.terminal_distance_weight,
+        Declaration{.name = "terminal_distance_weight", .help = "the same at the last state", .min = 0});
+  visit(o.terminal_yaw_weight,
+        Declaration{.name = "terminal_yaw_weight", .help = "the same at the last state", .min = 0});
+  visit(o.collision_weight,
+        Declaration{
+            .name = "collision_weight", .help = "times the cost map's value, 100 where occupied", .min = 0});
+  visit(o.max_acceleration, Declaration{.name = "max_acceleration",
+                                        .unit = "m/s^2",
+                                        .help = "of the speed prediction",
+                                        .min = 0,
+                                        .max = 100});
+  visit(o.max_deceleration, Declaration{.name = "max_deceleration",
+                                        .unit = "m/s^2",
+                                        .help = "of the speed prediction",
+                                        .min = 0,
+                                        .max = 100});
+  visit(o.reference_speed, Declaration{.name = "reference_speed",
+                                       .unit = "m/s",
+                                       .help = "where no speed profile is used",
+                                       .min = 0,
+                                       .max = 100});
+  visit(o.outside_cost,
+        Declaration{.name = "outside_cost", .help = "cost map value off the local map", .min = 0});
+  visit(o.outside_terminal_cost,
+        Declaration{.name = "outside_terminal_cost", .help = "the same at the last state", .min = 0});
+  visit(o.limit_acceleration, Declaration{.name = "limit_acceleration",
+                                          .help = "the predicted speed respects the acceleration limits"});
+  visit(o.exact_lag,
+        Declaration{.name = "exact_lag",
+                    .help = "exact discretisation of the steering lag instead of explicit Euler"});
+  visit(o.hold_first_input, Declaration{.name = "hold_first_input",
+                                        .help = "dead time as steps in which the first input is held"});
+  visit(o.straight_local_rollout,
+        Declaration{.name = "straight_local_rollout",
+                    .help = "collisions along a second rollout that starts with straight wheels"});
+  visit(o.linear_sign_error, Declaration{.name = "linear_sign_error",
+                                         .help = "a car that is too fast speeds up in the linear form"});
+  visit(o.localisation_less, Declaration{.name = "localisation_less",
+                                         .help = "drive by the cost map alone, without pose or path"});
+}
+
+/// What a state meets in the maps.
+template <class T>
+struct Surroundings {
+  T distance;  ///< m to the path
+  T yaw;       ///< rad, of the path
+  T speed;     ///< m/s, reference
+  T obstacle;  ///< cost map value; negative off the map
+};
+
+/// State with one trajectory.
+template <class T>
+struct CarState {
+  T x, y, yaw;  ///< m, m, rad, map frame
+  T speed;      ///< m/s
+  T steer;      ///< rad
+  T held;       ///< rad, the first input while it is held
+};
+/// State with a second trajectory, in the robot's frame.
+template <class T>
+struct CarStateWithLocal {
+  T x, y, yaw, speed, steer, held;
+  T local_x, local_y, local_yaw, local_steer;
+};
+
+/// The problem for the solvers. `separate_local` is `straight_local_rollout` at compile time. Input:
+/// steering, rad.
+template <bool separate_local>
+class PathTracking {
+ public:
+  template <class T>
+  using State = std::conditional_t<separate_local, CarStateWithLocal<T>, CarState<T>>;
+  static constexpr int inputs = 1;
+
+  /// `options` must be valid.
+  explicit PathTracking(const PathTrackingOptions& options);
+
+  const PathTrackingOptions& options() const { return options_; }
+
+  /// Sets the maps. The cost map's cells are 0 (free) or 100, its ring negative; `robot_x, robot_y,
+  /// robot_yaw` is the pose of its frame in the map frame. The reference field's cells are {distance, yaw,
+  /// speed, -}.
+  void set_maps(const GridView<4>& reference, const GridView<1>& obstacles, double robot_x, double robot_y,
+                double robot_yaw);
+  /// The reference speed at the start, for the linear form; m/s.
+  void set_target_speed(double speed) { target_speed_ = static_cast<float>(speed); }
+
+  template <class T>
+  Surroundings<T> look_up(const State<T>& s) const {
+    T local_x, local_y;
+    if constexpr (separate_local) {
+      local_x = s.local_x;
+      local_y = s.local_y;
+    } else {
+      local_x = T(to_local_[0]) * s.x + (T(to_local_[1]) * s.y + T(to_local_[2]));
+      local_y = T(to_local_[3]) * s.x + (T(to_local_[4]) * s.y + T(to_local_[5]));
+    }
+    const T obstacle = slalom::look_up(obstacles_, local_x, local_y);
+    if (options_.localisation_less) return {T(0), T(0), s.speed, obstacle};
+    const CellValues<T> reference = slalom::look_up(reference_, s.x, s.y);
+    return {reference.a, reference.b, reference.c, obstacle};
+  }
+
+  template <class T>
+  State<T> step(const State<T>& s, const Surroundings<T>& seen, const Input<T, 1>& u, int k) const {
+    State<T> next;
+    const T command = k == 0 ? u[0] : k <= held_steps_ ? s.held : u[0];
+    next.held = k == 0 ? u[0] : s.held;
+    next.speed = next_speed(s.speed, seen.speed);
+    const T travelled = s.speed * T(options_.time_step);
+    move(s.x, s.y, s.yaw, s.steer, command, travelled, next.x, next.y, next.yaw, next.steer);
+    if constexpr (separate_local) {
+      move(s.local_x, s.local_y, s.local_yaw, s.local_steer, command, travelled, next.local_x, next.local_y,
+           next.local_yaw, next.local_steer);
+    }
+    return next;
+  }
+
+  template <class T>
+  Cost<T> stage_cost(const State<T>& s, const Surroundings<T>& seen, const Input<T, 1>&) const {
+    return cost(s, seen, options_.distance_weight, options_.yaw_weight, options_.outside_cost);
+  }
+  template <class T>
+  Cost<T> terminal_cost(const State<T>& s, const Surroundings<T>& seen) const {
+    return cost(s, seen, options_.terminal_distance_weight, options_.terminal_yaw_weight,
+                options_.outside_terminal_cost);
+  }
+  /// The collision part of a cost alone.
+  template <class T>
+  T collision_cost(const Surroundings<T>& seen, double outside) const {
+    return T(options_.collision_weight) * select(seen.obstacle < T(0), T(outside), seen.obstacle);
+  }
+
+ private:
+  template <class T>
+  SLALOM_INLINE void move(const T& x, const T& y, const T& yaw, const T& steer, const T& command,
+                          const T& travelled, T& next_x, T& next_y, T& next_yaw, T& next_steer) const {
+    T sin_steer, cos_steer, sin_yaw, cos_yaw;
+    // Without localisation the published program computes the slip angle from the command instead of the
+    // wheels' angle.
+    const bool use_command = options_.localisation_less && options_.bicycle == BicycleForm::published;
+    sin_cos(use_command ? command : steer, sin_steer, cos_steer);
+    sin_cos(yaw, sin_yaw, cos_yaw);
+    if (options_.bicycle == BicycleForm::published) {
+      // sin and cos of b = atan(ratio tan(steer)), without the inverse function.
+      const T opposite = T(slip_ratio_) * sin_steer;
+      const T scale = travelled * reciprocal_sqrt(cos_steer * cos_steer + opposite * opposite);
+      const T along = scale * cos_steer, across = scale * opposite;
+      next_x = x + (along * cos_yaw - across * sin_yaw);
+      next_y = y + (along * sin_yaw + across * cos_yaw);
+      next_yaw = yaw + across * T(inverse_length_);
+    } else {
+      next_yaw = yaw + travelled * T(inverse_length_) * sin_steer / cos_steer;
+      next_x = x + travelled * cos_yaw;
+      next_y = y + travelled * sin_yaw;
+    }
+    next_steer = steer + (command - steer) * T(lag_factor_);
+  }
+
+  template <class T>
+  SLALOM_INLINE T next_speed(const T& speed, const T& reference) const {
+    switch (options_.speed) {
+      case SpeedForm::constant:
+        return speed;
+      case SpeedForm::linear: {
+        const T target = T(target_speed_), faster = min(speed + T(speed_gain_), target);
+        const T slower = max(speed - T(options_.linear_sign_error ? -speed_loss_ : speed_loss_), target);
+        return select(speed <= target, faster, slower);
+      }
+      case SpeedForm::reference:
+        break;
+    }
+    if (!options_.limit_acceleration) return reference;
+    return min(max(reference, speed - T(speed_loss_)), speed + T(speed_gain_));
+  }
+
+  template <class T>
+  SLALOM_INLINE Cost<T> cost(const State<T>& s, const Surroundings<T>& seen, double distance_weight,
+                             double yaw_weight, double outside) const {
+    const T collision = collision_cost(seen, outside);
+    T value = collision;
+    if (!options_.localisation_less) {
+      value = value + (T(distance_weight) * square(seen.distance) +
+                       T(yaw_weight) * square(wrap_angle(s.yaw - seen.yaw)));
+    }
+    return {value, collision > T(0)};
+  }
+
+  PathTrackingOptions options_;
+  GridView<4> reference_;
+  GridView<1> obstacles_;
+  double to_local_[6] = {1, 0, 0, 0, 1, 0};
+  int held_steps_ = 0;
+  double slip_ratio_ = 0;
+  double inverse_length_ = 0;
+  double lag_factor_ = 0;
+  double speed_gain_ = 0;
+  double speed_loss_ = 0;
+  double target_speed_ = 0;
+};
+
+extern template class PathTracking<false>;
+extern template class PathTracking<true>;
+
+}  // namespace slalom::vehicle

@@ -1,0 +1,39 @@
+#include "slalom/vehicle/path_tracking.hpp"
+
+#include <cmath>
+
+namespace slalom::vehicle {
+
+template <bool separate_local>
+PathTracking<separate_local>::PathTracking(const PathTrackingOptions& options)
+    : options_(options),
+      held_steps_(
+          options.hold_first_input ? static_cast<int>(std::ceil(options.dead_time / options.time_step)) : 0),
+      slip_ratio_(options.front_length / (options.front_length + options.rear_length)),
+      inverse_length_(options.bicycle == BicycleForm::published
+                          ? 1 / options.rear_length
+                          : 1 / (options.front_length + options.rear_length)),
+      lag_factor_(options.exact_lag ? 1 - std::exp(-options.time_step / options.steer_time_constant)
+                                    : options.time_step / options.steer_time_constant),
+      speed_gain_(options.max_acceleration * options.time_step),
+      speed_loss_(options.max_deceleration * options.time_step),
+      target_speed_(options.reference_speed) {}
+
+template <bool separate_local>
+void PathTracking<separate_local>::set_maps(const GridView<4>& reference, const GridView<1>& obstacles,
+                                            double robot_x, double robot_y, double robot_yaw) {
+  reference_ = reference;
+  obstacles_ = obstacles;
+  const double c = std::cos(robot_yaw), s = std::sin(robot_yaw);
+  to_local_[0] = c;
+  to_local_[1] = s;
+  to_local_[2] = -c * robot_x - s * robot_y;
+  to_local_[3] = -s;
+  to_local_[4] = c;
+  to_local_[5] = s * robot_x - c * robot_y;
+}
+
+template class PathTracking<false>;
+template class PathTracking<true>;
+
+}  // namespace slalom::vehicle
