@@ -21,8 +21,8 @@ enum class BicycleForm {
               ///< centre of gravity has lr in the first formula; with this one the yaw gain is off by a
               ///< factor (published program)
 };
-constexpr const char* const* enum_names(BicycleForm) {
-  static constexpr const char* names[] = {"rear_axle", "published", nullptr};
+inline const char* const* enum_names(BicycleForm) {
+  static constexpr const char* const names[] = {"rear_axle", "published", nullptr};
   return names;
 }
 
@@ -32,8 +32,8 @@ enum class SpeedForm {
   constant,   ///< the present speed
   linear,     ///< towards the reference speed at the start, with constant acceleration
 };
-constexpr const char* const* enum_names(SpeedForm) {
-  static constexpr const char* names[] = {"reference", "constant", "linear", nullptr};
+inline const char* const* enum_names(SpeedForm) {
+  static constexpr const char* const names[] = {"reference", "constant", "linear", nullptr};
   return names;
 }
 
