@@ -147,11 +147,7 @@ void ReferenceField::make_sites() noexcept {
   const double first = geometry_.cell_y(0);
   for (std::size_t k = 0; k < window_size_; ++k) {
     const ReferencePoint& point = path_[static_cast<std::size_t>(window_[k])];
-    sites_[k] = {point.x,
-                 point.y,
-                 (first - point.y) / geometry_.resolution,
-                 0,
-                 static_cast<float>(point.yaw),
+    sites_[k] = {point.x, point.y, (first - point.y) / geometry_.resolution, static_cast<float>(point.yaw),
                  static_cast<float>(point.speed)};
   }
   std::sort(sites_.begin(), sites_.begin() + static_cast<std::ptrdiff_t>(window_size_),
@@ -161,24 +157,24 @@ void ReferenceField::make_sites() noexcept {
 /// The lower envelope, along the row of cells at x, of the squared distances to the sites.
 int ReferenceField::build_envelope(double x) noexcept {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  int count = 0;
-  for (std::size_t k = 0; k < window_size_; ++k) {
-    Site& site = sites_[k];
-    const double dx = (x - site.x) / geometry_.resolution;
-    site.height = dx * dx;
+  const double scale = 1 / geometry_.resolution;
+  Parabola* const bottom = envelope_.data();
+  Parabola* end = bottom;
+  for (const Site *site = sites_.data(), *stop = site + window_size_; site != stop; ++site) {
+    const double dx = (x - site->x) * scale, height = dx * dx, u = site->u;
     double start = -infinity;
-    while (count > 0) {
-      const Parabola& last = envelope_[static_cast<std::size_t>(count - 1)];
+    while (end != bottom) {
       // Two sites in one column give an infinite start of the right sign; coincident ones a NaN, which drops
       // the first.
-      start = ((site.height - last.site->height) / (site.u - last.site->u) + site.u + last.site->u) * 0.5;
+      const Parabola& last = end[-1];
+      start = ((height - last.height) / (u - last.u) + u + last.u) * 0.5;
       if (start > last.start) break;
-      --count;
+      --end;
       start = -infinity;
     }
-    envelope_[static_cast<std::size_t>(count++)] = {&site, start};
+    *end++ = {u, height, start, site};
   }
-  return count;
+  return static_cast<int>(end - bottom);
 }
 
 void ReferenceField::write_row(int row, int begin, int end, int parabolas) noexcept {

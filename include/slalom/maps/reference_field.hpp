@@ -97,13 +97,14 @@ class ReferenceField {
   /// A point of the window, with what the rows need of it.
   struct Site {
     double x = 0, y = 0;
-    double u = 0;       ///< its y as a column coordinate, 0 at the centre of column 0
-    double height = 0;  ///< its squared distance from the row, in cells^2
+    double u = 0;  ///< its y as a column coordinate, 0 at the centre of column 0
     float yaw = 0, speed = 0;
   };
   struct Parabola {
+    double u = 0;       ///< its site's
+    double height = 0;  ///< squared distance of the site from the row, in cells^2
+    double start = 0;   ///< column coordinate from which on it is the lowest
     const Site* site = nullptr;
-    double start = 0;  ///< column coordinate from which on it is the lowest
   };
 
   int nearest_point(const Point& robot) const noexcept;
