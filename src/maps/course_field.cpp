@@ -77,7 +77,7 @@ void CourseFieldOptions::validate() const {
 CourseField::CourseField(std::span<const ReferencePoint> path, const CourseFieldOptions& options)
     : options_(options), geometry_(geometry_of(path, options)), cells_(geometry_.rows, geometry_.columns) {
   cells_.fill({static_cast<float>(options.outside.distance), static_cast<float>(options.outside.yaw),
-               static_cast<float>(options.outside.speed), 0});
+               static_cast<float>(options.outside.speed), 1});
   make_cells(path);
 }
 

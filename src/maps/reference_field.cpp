@@ -66,7 +66,7 @@ ReferenceField::ReferenceField(std::span<const ReferencePoint> path, const Refer
   sites_.resize(sites);
   envelope_.resize(sites + 1);
   cells_.fill({static_cast<float>(options.outside.distance), static_cast<float>(options.outside.yaw),
-               static_cast<float>(options.outside.speed), 0});
+               static_cast<float>(options.outside.speed), 1});
   update({path[0].x, path[0].y});
 }
 

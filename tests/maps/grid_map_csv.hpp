@@ -61,7 +61,7 @@ inline GridMap<4> load_reference_map(const std::filesystem::path& folder, const 
                                      double robot_x, double robot_y, double resolution = 0.1) {
   return load_grid_map<4>(
       {folder / (id + "_distance.csv"), folder / (id + "_angle.csv"), folder / (id + "_speed.csv")},
-      resolution, robot_x, robot_y, {20, 2, 0, 0});
+      resolution, robot_x, robot_y, {20, 2, 0, 1});
 }
 
 }  // namespace slalom::testing

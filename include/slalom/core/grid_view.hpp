@@ -41,6 +41,12 @@ class GridView {
   double center_x() const noexcept { return center_x_; }
   double center_y() const noexcept { return center_y_; }
 
+  /// Whether a storage index lies in the ring.
+  bool in_ring(std::ptrdiff_t index) const noexcept {
+    const std::ptrdiff_t row = index >> stride_log2_, column = index - (row << stride_log2_);
+    return row == 0 || row == rows_ + 1 || column == 0 || column == columns_ + 1;
+  }
+
   /// The storage index of the cell at (x, y), in the ring for positions outside.
   template <Scalar T>
   std::ptrdiff_t index(T x, T y) const {

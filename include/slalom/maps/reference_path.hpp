@@ -19,14 +19,14 @@ struct ReferenceCell {
   float distance;  ///< m to the path
   float yaw;       ///< rad, of the path's nearest point
   float speed;     ///< m/s there
-  float spare;     ///< 0
+  float outside;   ///< 1 off the map (then `yaw` is the yaw ERROR to assume), else 0
 };
 static_assert(sizeof(ReferenceCell) == 16);
 
 /// What a look-up off a reference map returns.
 struct ReferenceOutside {
   double distance = 20;  ///< m
-  double yaw = 2.0;      ///< rad; no meaning of its own, the published program's value
+  double yaw = 2.0;      ///< rad, the yaw error to assume; the published program's value
   double speed = 0;      ///< m/s
 };
 

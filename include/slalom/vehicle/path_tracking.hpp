@@ -160,24 +160,24 @@ void visit_options(Options& o, Visit&& visit) {
 template <class T>
 struct Surroundings {
   T distance;  ///< m to the path
-  T yaw;       ///< rad, of the path
+  T yaw;       ///< rad, of the path; off the reference map the yaw error to assume
   T speed;     ///< m/s, reference
+  T outside;   ///< 1 off the reference map, else 0
   T obstacle;  ///< cost map value; negative off the map
 };
 
-/// State with one trajectory.
-template <class T>
+/// The state of the car; with `separate_local` also that of a second trajectory in the robot's frame.
+template <class T, bool separate_local>
 struct CarState {
   T x, y, yaw;  ///< m, m, rad, map frame
   T speed;      ///< m/s
   T steer;      ///< rad
   T held;       ///< rad, the first input while it is held
 };
-/// State with a second trajectory, in the robot's frame.
 template <class T>
-struct CarStateWithLocal {
+struct CarState<T, true> {
   T x, y, yaw, speed, steer, held;
-  T local_x, local_y, local_yaw, local_steer;
+  T local_x, local_y, local_yaw, local_steer;  ///< m, m, rad, rad
 };
 
 /// The problem for the solvers. `separate_local` is `straight_local_rollout` at compile time. Input:
@@ -186,7 +186,7 @@ template <bool separate_local>
 class PathTracking {
  public:
   template <class T>
-  using State = std::conditional_t<separate_local, CarStateWithLocal<T>, CarState<T>>;
+  using State = CarState<T, separate_local>;
   static constexpr int inputs = 1;
 
   /// `options` must be valid.
@@ -213,9 +213,9 @@ class PathTracking {
       local_y = T(to_local_[3]) * s.x + (T(to_local_[4]) * s.y + T(to_local_[5]));
     }
     const T obstacle = slalom::look_up(obstacles_, local_x, local_y);
-    if (options_.localisation_less) return {T(0), T(0), s.speed, obstacle};
+    if (options_.localisation_less) return {T(0), T(0), s.speed, T(0), obstacle};
     const CellValues<T> reference = slalom::look_up(reference_, s.x, s.y);
-    return {reference.a, reference.b, reference.c, obstacle};
+    return {reference.a, reference.b, reference.c, reference.d, obstacle};
   }
 
   template <class T>
@@ -297,8 +297,8 @@ class PathTracking {
     const T collision = collision_cost(seen, outside);
     T value = collision;
     if (!options_.localisation_less) {
-      value = value + (T(distance_weight) * square(seen.distance) +
-                       T(yaw_weight) * square(wrap_angle(s.yaw - seen.yaw)));
+      const T yaw_error = select(seen.outside > T(0), seen.yaw, wrap_angle(s.yaw - seen.yaw));
+      value = value + (T(distance_weight) * square(seen.distance) + T(yaw_weight) * square(yaw_error));
     }
     return {value, collision > T(0)};
   }

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "slalom/core/batch_evaluator.hpp"
+#include "slalom/vehicle/path_tracking.hpp"
+#include "slalom/vehicle/planner.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// The costs of a predicted sequence, apart.
+struct PredictedCost {
+  double state = 0;
+  double collision = 0;
+  bool collided = false;
+};
+
+/// The car at the start of a rollout, map frame.
+struct CarStart {
+  maps::Pose pose;
+  double speed = 0;  ///< m/s
+  double steer = 0;  ///< rad
+};
+
+/// The vehicle problem with or without its second trajectory, behind one face.
+class CarRollout {
+ public:
+  static std::unique_ptr<CarRollout> make(const PathTrackingOptions& options);
+  virtual ~CarRollout() = default;
+
+  virtual void set_maps(const GridView<4>& reference, const GridView<1>& obstacles,
+                        const maps::Pose& robot) noexcept = 0;
+  virtual void set_start(const CarStart& start, double target_speed) noexcept = 0;
+  virtual const BatchEvaluator& evaluator() const noexcept = 0;
+  /// The states (inputs.size() + 1 of them) of one control sequence.
+  virtual PredictedCost predict(std::span<const float> inputs,
+                                std::span<PredictedState> states) const noexcept = 0;
+};
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,220 @@
+#include "slalom/vehicle/planner.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "slalom/maps/reference_field.hpp"
+#include "vehicle/car_rollout.hpp"
+#include "vehicle/command_history.hpp"
+
+namespace slalom::vehicle {
+
+namespace {
+
+using detail::CarRollout;
+using detail::CarStart;
+using detail::CommandHistory;
+using detail::PredictedCost;
+
+maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options) {
+  auto made = options.published_maps ? maps::LocalCostMapOptions::published() : maps::LocalCostMapOptions{};
+  made.outside = -1;  // so that the problem can tell "off the map" from "occupied"
+  return made;
+}
+
+maps::ReferenceFieldOptions field_options(const PlannerOptions& options) {
+  return options.published_maps ? maps::ReferenceFieldOptions::published() : maps::ReferenceFieldOptions{};
+}
+
+std::vector<maps::ReferencePoint> capped(std::span<const maps::ReferencePoint> path, double max_speed) {
+  std::vector<maps::ReferencePoint> made(path.begin(), path.end());
+  for (auto& point : made) point.speed = std::min(point.speed, max_speed);
+  return made;
+}
+
+bool finite(const Odometry& o) {
+  return std::isfinite(o.pose.x) && std::isfinite(o.pose.y) && std::isfinite(o.pose.yaw) &&
+         std::isfinite(o.speed);
+}
+
+/// Commands are remembered only where the dead time is compensated; the published observer knows neither.
+double delay_of(const PlannerOptions& options, const PathTrackingOptions& problem) {
+  return options.latency + (problem.hold_first_input ? 0 : problem.dead_time);
+}
+
+}  // namespace
+
+struct Planner::Implementation {
+  PlannerOptions options;
+  PathTrackingOptions problem;
+  std::unique_ptr<Solver> solver;
+  maps::LocalCostMap cost_map;
+  maps::ReferenceField field;
+  std::unique_ptr<CarRollout> rollout;
+  CommandHistory history;
+  std::vector<PredictedState> states, candidate_states;
+  std::vector<float> candidate;
+  PlannerOutput output;
+
+  Implementation(const PlannerOptions& o, const PathTrackingOptions& p,
+                 std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> s)
+      : options(o),
+        problem(p),
+        solver(std::move(s)),
+        cost_map(cost_map_options(o)),
+        field(capped(path, o.max_speed), field_options(o)),
+        rollout(CarRollout::make(p)),
+        history(o.control_period, delay_of(o, p), o.observer_time_constant, p.front_length + p.rear_length),
+        states(static_cast<std::size_t>(solver->horizon()) + 1),
+        candidate_states(states.size()),
+        candidate(static_cast<std::size_t>(solver->horizon())) {}
+
+  /// No plan can be made: the wheels stay as they are, the car stops.
+  void stop(PlannerStatus status) noexcept {
+    output.status = status;
+    output.command = {history.steer(), 0};
+    output.predicted = {};
+    output.solve = nullptr;
+    output.state_cost = output.collision_cost = 0;
+  }
+
+  void plan(const Odometry& odometry) noexcept {
+    const CarStart now{odometry.pose, odometry.speed, history.steer()};
+    const CarStart start = history.lead_ahead(now);
+    const double furthest =
+        std::max(std::abs(odometry.speed), 1.0) + problem.max_acceleration * horizon_time();
+    field.update({start.pose.x, start.pose.y}, options.published_maps
+                                                   ? std::numeric_limits<double>::infinity()
+                                                   : 1 + furthest * horizon_time());
+    const maps::ReferenceCell here = field.at(start.pose.x, start.pose.y);
+    if (!problem.localisation_less && options.stop_when_blocked &&
+        here.distance >= field.options().outside.distance) {
+      return stop(PlannerStatus::off_course);
+    }
+    rollout->set_maps(field.cells().view(field.geometry()), cost_map.cells().view(cost_map.geometry()),
+                      odometry.pose);
+    rollout->set_start(start, problem.localisation_less ? problem.reference_speed : here.speed);
+    SolveRequest request{.elapsed = options.control_period};
+    if (options.deadline > 0) request.deadline = options.deadline;
+    const SolveResult& result = solver->solve(rollout->evaluator(), request);
+    output.solve = &result;
+    output.status =
+        result.status == Status::degenerate ? PlannerStatus::solver_degenerate : PlannerStatus::ok;
+    PredictedCost cost = rollout->predict(result.inputs, states);
+    std::span<const float> sent = result.inputs;
+    if (options.verify_plan && cost.collided) cost = find_free_sequence(result, cost, sent);
+    output.predicted = states;
+    output.state_cost = cost.state;
+    output.collision_cost = cost.collision;
+    output.command.steer =
+        std::clamp(static_cast<double>(sent[0]), -options.steer_limit, options.steer_limit);
+    output.command.speed = command_speed(here.speed);
+    if (cost.collided && options.verify_plan && options.stop_when_blocked) {
+      output.status = PlannerStatus::blocked;
+      output.command.speed =
+          std::max(0.0, odometry.speed - problem.max_deceleration * 2 * options.control_period);
+    }
+  }
+
+  double horizon_time() const noexcept { return problem.time_step * solver->horizon(); }
+
+  double command_speed(double here) const noexcept {
+    if (problem.localisation_less) return std::min(problem.reference_speed, options.max_speed);
+    if (options.speed_lookahead <= 0) return here;
+    const double step =
+        std::min(options.speed_lookahead / problem.time_step, static_cast<double>(states.size() - 1));
+    const PredictedState& ahead = states[static_cast<std::size_t>(step + 0.5)];
+    const maps::ReferenceCell cell = field.at(ahead.pose.x, ahead.pose.y);
+    return cell.distance < field.options().outside.distance ? cell.speed : here;
+  }
+
+  /// The plan collides: tries the nominal, the guides and the best sample that does not; keeps the cheapest.
+  PredictedCost find_free_sequence(const SolveResult& result, const PredictedCost& of_plan,
+                                   std::span<const float>& sent) noexcept {
+    PredictedCost best = of_plan;
+    const auto consider = [&](std::span<const float> inputs) {
+      if (inputs.size() != candidate.size()) return;
+      const PredictedCost cost = rollout->predict(inputs, candidate_states);
+      const bool better = best.collided != cost.collided
+                              ? best.collided
+                              : cost.state + cost.collision < best.state + best.collision;
+      if (!better) return;
+      best = cost;
+      sent = inputs;
+      states.swap(candidate_states);
+      if (!cost.collided) output.status = PlannerStatus::unverified;
+    };
+    consider(result.nominal);
+    for (int g = 0; g < result.guides.sequences; ++g) {
+      consider(
+          result.guides.values.subspan(static_cast<std::size_t>(g) * candidate.size(), candidate.size()));
+    }
+    int cheapest = -1;
+    for (int k = 0; result.samples && k < result.samples->samples(); ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      if (result.collided[i] || !std::isfinite(result.costs[i])) continue;
+      if (cheapest < 0 || result.costs[i] < result.costs[static_cast<std::size_t>(cheapest)]) cheapest = k;
+    }
+    if (cheapest >= 0) {
+      for (std::size_t t = 0; t < candidate.size(); ++t)
+        candidate[t] = result.samples->at(static_cast<int>(t), 0, cheapest);
+      consider(candidate);
+    }
+    return best;
+  }
+};
+
+Planner::Planner(const PlannerOptions& options, const PathTrackingOptions& problem,
+                 std::span<const maps::ReferencePoint> path, bool, std::unique_ptr<Solver> solver) {
+  validate_options(options, "planner");
+  validate_options(problem, "vehicle");
+  if (delay_of(options, problem) > 32 * options.control_period) {
+    throw std::invalid_argument("planner.latency: with vehicle.dead_time it is more than 32 control periods");
+  }
+  if (!solver || solver->inputs() != 1)
+    throw std::invalid_argument("planner: needs a solver of one input, the steering");
+  implementation_ = std::make_unique<Implementation>(options, problem, path, std::move(solver));
+}
+
+Planner::~Planner() = default;
+Planner::Planner(Planner&&) noexcept = default;
+Planner& Planner::operator=(Planner&&) noexcept = default;
+
+const PlannerOutput& Planner::update(const PlannerInput& input) noexcept {
+  const auto begin = std::chrono::steady_clock::now();
+  Implementation& p = *implementation_;
+  PlannerOutput& out = p.output;
+  out.scan = p.cost_map.update(input.scan);
+  p.cost_map.add_points(input.obstacles);
+  out.steer_estimate = p.history.steer();
+  const bool blind = !out.scan.accepted || out.scan.invalid == out.scan.beams;
+  const bool seen_free = out.scan.accepted && input.scan.ranges.size() > 1 && !blind;
+  if (!finite(input.odometry)) {
+    p.stop(PlannerStatus::bad_odometry);
+  } else if (!seen_free) {
+    p.stop(PlannerStatus::bad_scan);
+  } else {
+    p.plan(input.odometry);
+  }
+  p.history.send(out.command.steer);
+  out.tick_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+void Planner::reset(std::uint64_t seed) noexcept {
+  implementation_->history.reset();
+  implementation_->solver->reset(seed);
+  implementation_->cost_map.clear();
+  implementation_->output = {};
+}
+
+const Solver& Planner::solver() const noexcept {
+  return *implementation_->solver;
+}
+const maps::LocalCostMap& Planner::cost_map() const noexcept {
+  return implementation_->cost_map;
+}
+
+}  // namespace slalom::vehicle

@@ -1,0 +1,351 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "golden.hpp"
+#include "maps/grid_map_csv.hpp"
+#include "slalom/core/problem_evaluator.hpp"
+#include "slalom/vehicle/path_tracking.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+using slalom::testing::GridMap;
+
+struct MapPair {
+  GridMap<4> reference;
+  GridMap<1> obstacles;
+  double x, y, yaw;
+};
+
+struct Case {
+  int id = 0, parameters = 0;
+  std::string map;
+  double start[5] = {};
+  std::vector<double> inputs;
+  double state_cost = 0, collision_cost = 0, sample_cost = 0;
+  std::vector<std::vector<double>> states;  // 15 x {x, y, yaw, vel, steer, lx, ly, lyaw, lvel, lsteer}
+};
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+std::vector<Case> load_cases(const std::filesystem::path& folder) {
+  std::vector<Case> cases;
+  std::map<int, std::size_t> index;
+  std::ifstream stream(folder / "cases.csv");
+  std::string line;
+  std::getline(stream, line);
+  while (std::getline(stream, line)) {
+    const auto cell = split(line);
+    Case c;
+    c.id = std::stoi(cell.at(0));
+    c.map = cell[1];
+    c.parameters = std::stoi(cell[2]);
+    for (std::size_t i = 0; i < 5; ++i) c.start[i] = std::stod(cell[3 + i]);
+    for (std::size_t i = 0; i < 14; ++i) c.inputs.push_back(std::stod(cell[8 + i]));
+    c.state_cost = std::stod(cell[22]);
+    c.collision_cost = std::stod(cell[23]);
+    c.sample_cost = std::stod(cell[24]);
+    index[c.id] = cases.size();
+    cases.push_back(c);
+  }
+  for (const auto& row : slalom::testing::read_csv_numbers(folder / "states.csv", true)) {
+    const auto found = index.find(static_cast<int>(row[0]));
+    if (found != index.end()) cases[found->second].states.emplace_back(row.begin() + 2, row.end());
+  }
+  return cases;
+}
+
+PathTrackingOptions options_of(const nlohmann::json& set) {
+  PathTrackingOptions o;
+  o.time_step = set.at("prediction_interval");
+  o.front_length = set.at("lf");
+  o.rear_length = set.at("lr");
+  o.steer_time_constant = set.at("steer_1st_delay");
+  o.dead_time = set.at("steer_delay");
+  o.bicycle = BicycleForm::published;
+  const std::string mode = set.at("speed_prediction_mode");
+  o.speed = mode == "reference"  ? SpeedForm::reference
+            : mode == "constant" ? SpeedForm::constant
+                                 : SpeedForm::linear;
+  o.distance_weight = set.at("q_dist");
+  o.yaw_weight = set.at("q_angle");
+  o.terminal_distance_weight = set.at("q_terminal_dist");
+  o.terminal_yaw_weight = set.at("q_terminal_angle");
+  o.collision_weight = set.at("collision_weight");
+  o.max_acceleration = set.at("max_accel");
+  o.max_deceleration = -set.at("min_accel").get<double>();
+  o.reference_speed = set.at("reference_speed");
+  o.localisation_less = set.at("localize_less");
+  o.outside_cost = o.localisation_less ? 10 : 100;
+  o.outside_terminal_cost = 10;
+  o.limit_acceleration = false;
+  o.exact_lag = false;
+  o.hold_first_input = true;
+  o.straight_local_rollout = !o.localisation_less;
+  o.linear_sign_error = true;
+  return o;
+}
+
+std::map<std::string, MapPair> load_maps(const std::filesystem::path& folder) {
+  std::map<std::string, MapPair> maps;
+  const auto described = nlohmann::json::parse(std::ifstream(folder / "maps.json"));
+  for (const auto& [id, about] : described.items()) {
+    if (!std::filesystem::exists(folder / (id + "_obstacle.csv"))) continue;
+    const double x = about.at("robot_x"), y = about.at("robot_y"), yaw = about.at("robot_yaw");
+    maps.emplace(id, MapPair{slalom::testing::load_reference_map(folder, id, x, y),
+                             slalom::testing::load_obstacle_map(folder, id, 0.05, 3, 0, -1), x, y, yaw});
+  }
+  return maps;
+}
+
+/// The storage cells that a position falls into: {reference, obstacle}.
+struct Cells {
+  long reference, obstacle;
+  bool operator==(const Cells&) const = default;
+};
+
+template <bool separate>
+struct Checked {
+  PathTracking<separate> problem;
+  GridView<4> reference;
+  GridView<1> obstacles;
+
+  Checked(const PathTrackingOptions& options, const MapPair& maps)
+      : problem(options), reference(maps.reference.view()), obstacles(maps.obstacles.view()) {
+    // Without localisation the state itself is in the robot's frame.
+    const bool local = options.localisation_less;
+    problem.set_maps(reference, obstacles, local ? 0 : maps.x, local ? 0 : maps.y, local ? 0 : maps.yaw);
+  }
+
+  template <class T>
+  typename PathTracking<separate>::template State<T> start(const Case& c) const {
+    typename PathTracking<separate>::template State<T> s{};
+    s.x = T(c.start[0]);
+    s.y = T(c.start[1]);
+    s.yaw = T(c.start[2]);
+    s.speed = T(c.start[3]);
+    s.steer = T(c.start[4]);
+    s.held = T(0);
+    if constexpr (separate) s.local_x = s.local_y = s.local_yaw = s.local_steer = T(0);
+    return s;
+  }
+};
+
+template <bool separate>
+void check_in_double(const Checked<separate>& checked, const Case& c, double& worst_state,
+                     double& worst_cost) {
+  const auto& problem = checked.problem;
+  auto s = checked.template start<double>(c);
+  double state = 0, collision = 0;
+  const auto note = [](double& worst, double value, double expected) {
+    worst = std::max(worst, std::abs(value - expected) / std::max(1.0, std::abs(expected)));
+  };
+  for (std::size_t k = 0; k < 15; ++k) {
+    const auto& golden = c.states.at(k);
+    note(worst_state, s.x, golden[0]);
+    note(worst_state, s.y, golden[1]);
+    note(worst_state, std::remainder(s.yaw - golden[2], 2 * std::acos(-1.0)), 0);
+    note(worst_state, s.speed, golden[3]);
+    note(worst_state, s.steer, golden[4]);
+    if constexpr (separate) {
+      note(worst_state, s.local_x, golden[5]);
+      note(worst_state, s.local_y, golden[6]);
+      note(worst_state, std::remainder(s.local_yaw - golden[7], 2 * std::acos(-1.0)), 0);
+      note(worst_state, s.local_steer, golden[9]);
+    }
+    const auto seen = problem.look_up(s);
+    const Input<double, 1> u{{k < 14 ? c.inputs[k] : 0}};
+    const auto cost = k < 14 ? problem.stage_cost(s, seen, u) : problem.terminal_cost(s, seen);
+    const double hit = problem.collision_cost(
+        seen, k < 14 ? problem.options().outside_cost : problem.options().outside_terminal_cost);
+    collision += hit;
+    state += cost.value - hit;
+    if (k < 14) s = problem.step(s, seen, u, static_cast<int>(k));
+  }
+  note(worst_cost, state, c.state_cost);
+  note(worst_cost, collision, c.collision_cost);
+  note(worst_cost, state + collision, c.sample_cost);
+}
+
+template <class F, bool separate>
+void visited_cells(const Checked<separate>& checked, const Case& c, std::vector<Cells>& visited) {
+  auto s = checked.template start<F>(c);
+  for (int k = 0; k < 15; ++k) {
+    F local_x = s.x, local_y = s.y;
+    if constexpr (separate) {
+      local_x = s.local_x;
+      local_y = s.local_y;
+    }
+    const auto r = checked.reference.index(s.x, s.y);
+    const auto o = checked.obstacles.index(local_x, local_y);
+    visited.push_back({r.v[0], o.v[0]});
+    const auto seen = checked.problem.look_up(s);
+    const Input<F, 1> u{{F(k < 14 ? c.inputs[static_cast<std::size_t>(k)] : 0)}};
+    s = checked.problem.step(s, seen, u, k);
+  }
+}
+
+template <bool separate>
+using Visit = void (*)(const Checked<separate>&, const Case&, std::vector<Cells>&);
+template <bool separate>
+SLALOM_TARGET_GENERIC void visit_generic(const Checked<separate>& p, const Case& c, std::vector<Cells>& v) {
+  visited_cells<Pack<simd::Generic>>(p, c, v);
+}
+#if SLALOM_X86
+template <bool separate>
+SLALOM_TARGET_SSE4 void visit_sse4(const Checked<separate>& p, const Case& c, std::vector<Cells>& v) {
+  visited_cells<Pack<simd::Sse4>>(p, c, v);
+}
+template <bool separate>
+SLALOM_TARGET_AVX2 void visit_avx2(const Checked<separate>& p, const Case& c, std::vector<Cells>& v) {
+  visited_cells<Pack<simd::Avx2>>(p, c, v);
+}
+template <bool separate>
+SLALOM_TARGET_AVX512 void visit_avx512(const Checked<separate>& p, const Case& c, std::vector<Cells>& v) {
+  visited_cells<Pack<simd::Avx512>>(p, c, v);
+}
+#endif
+
+template <bool separate>
+Visit<separate> visit_on(simd::Target target) {
+#if SLALOM_X86
+  if (target == simd::Target::avx512) return visit_avx512<separate>;
+  if (target == simd::Target::avx2) return visit_avx2<separate>;
+  if (target == simd::Target::sse4) return visit_sse4<separate>;
+#else
+  static_cast<void>(target);
+#endif
+  return visit_generic<separate>;
+}
+
+/// Whether a position lies within 1e-4 m of an edge between two cells of a grid, along either axis.
+template <int Layers>
+bool near_edge(const GridView<Layers>& grid, double x, double y) {
+  const auto off = [&](double position, double center, int count) {
+    const double cells = (position - center) / grid.resolution() + 0.5 * count;
+    return std::abs(cells - std::round(cells)) * grid.resolution();
+  };
+  return off(x, grid.center_x(), grid.rows()) < 1e-4 || off(y, grid.center_y(), grid.columns()) < 1e-4;
+}
+
+struct FloatTally {
+  int same_cells = 0, other_cells = 0;
+  double worst = 0;
+};
+
+template <bool separate>
+void check_in_float(const Checked<separate>& checked, const Case& c, simd::Target target, FloatTally& tally) {
+  std::vector<Cells> visited;
+  visit_on<separate>(target)(checked, c, visited);
+  bool differs = false;
+  for (std::size_t k = 0; k < 15; ++k) {
+    const auto& golden = c.states[k];
+    const long r = checked.reference.index(golden[0], golden[1]),
+               o = checked.obstacles.index(golden[5], golden[6]);
+    // The ring has many cells of equal value; in double all of them are cell 0.
+    const auto same = [](const auto& grid, long a, long b) { return a == b || (b == 0 && grid.in_ring(a)); };
+    if (!same(checked.reference, visited[k].reference, r)) {
+      differs = true;
+      EXPECT_TRUE(near_edge(checked.reference, golden[0], golden[1])) << "case " << c.id << " step " << k;
+    }
+    if (!same(checked.obstacles, visited[k].obstacle, o)) {
+      differs = true;
+      EXPECT_TRUE(near_edge(checked.obstacles, golden[5], golden[6])) << "case " << c.id << " step " << k;
+    }
+    if (differs) break;  // from here on the rollout may go another way
+  }
+  if (differs) {
+    ++tally.other_cells;
+    return;
+  }
+  ++tally.same_cells;
+  ProblemEvaluator<PathTracking<separate>> evaluator(checked.problem, target);
+  evaluator.set_state(checked.template start<double>(c));
+  SequenceBatch batch(14, 1, 1);
+  for (int t = 0; t < 14; ++t) batch.at(t, 0, 0) = static_cast<float>(c.inputs[static_cast<std::size_t>(t)]);
+  std::vector<float> costs(simd::padding);
+  std::vector<std::uint8_t> collided(simd::padding);
+  evaluator.evaluate(batch, 0, 1, costs.data(), collided.data());
+  const double error = std::abs(costs[0] - c.sample_cost) / std::max(1.0, std::abs(c.sample_cost));
+  tally.worst = std::max(tally.worst, error);
+  EXPECT_LE(error, 1e-4) << "case " << c.id;
+}
+
+template <class Check>
+int for_each_case(const std::filesystem::path& folder, Check&& check) {
+  const auto maps = load_maps(folder / "maps");
+  const auto sets = nlohmann::json::parse(std::ifstream(folder / "rollout_cost" / "param_sets.json"));
+  int compared = 0;
+  for (const Case& c : load_cases(folder / "rollout_cost")) {
+    const auto map = maps.find(c.map);
+    if (map == maps.end()) {
+      ADD_FAILURE() << "case " << c.id << ": there is no map " << c.map;
+      continue;
+    }
+    const PathTrackingOptions options = options_of(sets.at(std::to_string(c.parameters)));
+    // The linear form's target is the reference speed at the start; without localisation there is none.
+    const auto run = [&](auto checked) {
+      double target = options.reference_speed;
+      if (!options.localisation_less) target = slalom::look_up(checked.reference, c.start[0], c.start[1]).c;
+      checked.problem.set_target_speed(target);
+      check(checked, c);
+    };
+    if (options.straight_local_rollout) {
+      run(Checked<true>(options, map->second));
+    } else {
+      run(Checked<false>(options, map->second));
+    }
+    ++compared;
+  }
+  return compared;
+}
+
+TEST(GoldenRollout, Double) {
+  SLALOM_GOLDEN_FOLDER(folder, "controller");
+  double worst_state = 0, worst_cost = 0;
+  const int compared = for_each_case(folder, [&](const auto& checked, const Case& c) {
+    check_in_double(checked, c, worst_state, worst_cost);
+  });
+  std::cout << "rollout_cost, double: " << compared << " cases, largest error of a state " << worst_state
+            << ", of a cost " << worst_cost << "\n";
+  EXPECT_GT(compared, 0);
+  EXPECT_LE(worst_state, 1e-9);
+  EXPECT_LE(worst_cost, 1e-9);
+}
+
+class GoldenRolloutOn : public ::testing::TestWithParam<simd::Target> {};
+
+TEST_P(GoldenRolloutOn, Float) {
+  SLALOM_GOLDEN_FOLDER(folder, "controller");
+  if (!simd::supported(GetParam())) GTEST_SKIP() << "this processor has no " << simd::name(GetParam());
+  FloatTally tally;
+  const int compared = for_each_case(
+      folder, [&](const auto& checked, const Case& c) { check_in_float(checked, c, GetParam(), tally); });
+  std::cout << "rollout_cost, float32 on " << simd::name(GetParam()) << ": " << compared << " cases, "
+            << tally.other_cells
+            << " of them with another cell at an edge; largest relative error of the others " << tally.worst
+            << "\n";
+  EXPECT_LE(tally.other_cells, 0.1 * compared);
+  EXPECT_GT(tally.same_cells, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, GoldenRolloutOn,
+                         ::testing::Values(simd::Target::generic, simd::Target::sse4, simd::Target::avx2,
+                                           simd::Target::avx512),
+                         [](const auto& target) { return simd::name(target.param); });
+
+}  // namespace
+}  // namespace slalom::vehicle
