@@ -128,11 +128,11 @@ void load_obstacle_path(Course& course, const fs::path& folder) {
 
 }  // namespace
 
-Course load_course(const fs::path& folder) {
+Course load_course(const fs::path& folder, const maps::MapReading& reading) {
   if (!fs::is_directory(folder)) throw IoError(folder.string(), 0, "is no folder; a course is one");
   Course course;
   course.name = fs::weakly_canonical(folder).filename().string();
-  course.map = maps::load_ros_map(find_map(folder, course.notes));
+  course.map = maps::load_ros_map(find_map(folder, course.notes), reading);
   load_path(course, folder);
   load_obstacle_path(course, folder);
   const Waypoint& first = course.waypoints.front();

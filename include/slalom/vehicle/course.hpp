@@ -7,6 +7,7 @@
 
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/maps/pose.hpp"
+#include "slalom/maps/ros_map.hpp"
 
 namespace slalom::vehicle {
 
@@ -46,8 +47,8 @@ struct Course {
   std::vector<std::string> notes;  ///< what was left aside and why, one sentence each
 };
 
-/// Loads and checks the course in `folder`. Throws IoError naming file, line, column or key, value and rule.
-Course load_course(const std::filesystem::path& folder);
+/// Loads and checks the course in `folder`; `reading` says how its map is read. Throws IoError naming file, line, column or key, value and rule.
+Course load_course(const std::filesystem::path& folder, const maps::MapReading& reading = {});
 
 /// Lowers every waypoint's speed to at most `max_speed` (m/s, > 0, else std::invalid_argument).
 void cap_speed(Course& course, double max_speed);

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "slalom/core/options.hpp"
+
+/// Options by name and as text, for whatever does not know their types: configuration files, the command
+/// line, bindings, sliders. All of it follows from the declarations.
+namespace slalom {
+
+/// The value of an option of any type; of an enumeration, the enumerator's name.
+using OptionValue = std::variant<bool, int, std::uint64_t, double, std::vector<double>, std::string>;
+
+/// An option of some options aggregate: what is declared of it, its type, its value.
+struct OptionEntry {
+  Declaration declaration;
+  OptionValue value;
+  std::vector<std::string> choices;  ///< of an enumeration: the enumerators' names
+
+  bool operator==(const OptionEntry& other) const { return value == other.value; }
+};
+
+/// "flag", "integer", "number", "numbers" (one per input) or "choice".
+const char* type_name(const OptionEntry& entry);
+
+/// A value as a configuration file has it: `true`, `12`, `0.05`, `[0.1, 0.2]`, `.inf`, `published`.
+/// Numbers are written with as few digits as read back to the same value.
+std::string to_text(const OptionValue& value);
+
+/// The rule of a declared range, for instance "must be in [1, 4096]".
+std::string range_rule(const Declaration& declaration);
+
+namespace detail {
+
+bool parse_flag(std::string_view text);
+int parse_integer(std::string_view text);
+std::uint64_t parse_count(std::string_view text);
+double parse_number(std::string_view text);
+std::vector<double> parse_numbers(std::string_view text);
+int parse_choice(std::string_view text, const char* const* names);
+void check_range(const Declaration& declaration, double value);
+
+template <class Field>
+OptionValue value_of(const Field& field) {
+  if constexpr (std::is_same_v<Field, PerInput>) {
+    return field.values();
+  } else if constexpr (std::is_enum_v<Field>) {
+    return std::string(enum_names(field)[static_cast<int>(field)]);
+  } else {
+    return field;
+  }
+}
+
+template <class Field>
+void parse_into(Field& field, const Declaration& declaration, std::string_view text) {
+  if constexpr (std::is_same_v<Field, bool>) {
+    field = parse_flag(text);
+  } else if constexpr (std::is_enum_v<Field>) {
+    field = static_cast<Field>(parse_choice(text, enum_names(field)));
+  } else if constexpr (std::is_same_v<Field, PerInput>) {
+    std::vector<double> values = parse_numbers(text);
+    for (const double value : values) check_range(declaration, value);
+    field = PerInput(std::move(values));
+  } else if constexpr (std::is_same_v<Field, int>) {
+    const int value = parse_integer(text);
+    check_range(declaration, value);
+    field = value;
+  } else if constexpr (std::is_same_v<Field, std::uint64_t>) {
+    const std::uint64_t value = parse_count(text);
+    check_range(declaration, static_cast<double>(value));
+    field = value;
+  } else {
+    static_assert(std::is_same_v<Field, double>, "a type that options do not have");
+    const double value = parse_number(text);
+    check_range(declaration, value);
+    field = value;
+  }
+}
+
+}  // namespace detail
+
+/// Every option of an aggregate, in the order of their declarations.
+template <class Options>
+std::vector<OptionEntry> list_options(const Options& options) {
+  std::vector<OptionEntry> entries;
+  visit_options(options, [&](const auto& field, const Declaration& declaration) {
+    using Field = std::remove_cvref_t<decltype(field)>;
+    OptionEntry entry{declaration, detail::value_of(field), {}};
+    if constexpr (std::is_enum_v<Field>)
+      for (const char* const* name = enum_names(field); *name; ++name) entry.choices.emplace_back(*name);
+    entries.push_back(std::move(entry));
+  });
+  return entries;
+}
+
+/// Sets one option from text. False if there is none of that name. Throws std::invalid_argument with the
+/// value and the rule it breaks: "'0' must be in [1, 4096]"; the option is unchanged then.
+template <class Options>
+bool set_option(Options& options, std::string_view name, std::string_view text) {
+  bool found = false;
+  visit_options(options, [&](auto& field, const Declaration& declaration) {
+    if (name != declaration.name) return;
+    found = true;
+    detail::parse_into(field, declaration, text);
+  });
+  return found;
+}
+
+/// The name among `names` that `name` was most likely meant to be; empty if none is near.
+std::string nearest_name(std::string_view name, const std::vector<std::string>& names);
+
+}  // namespace slalom

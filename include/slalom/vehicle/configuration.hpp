@@ -1,0 +1,69 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "slalom/core/option_access.hpp"
+#include "slalom/vehicle/path_tracking.hpp"
+#include "slalom/vehicle/planner.hpp"
+
+/// Everything that can be set of a driver: the options of every method, of the vehicle problem and of the
+/// planner, each an aggregate of its own, from which files, command line and listings are derived.
+namespace slalom::vehicle {
+
+/// The sections of a configuration. What a file does not say keeps the defaults of the aggregates.
+struct Configuration {
+  PathTrackingOptions vehicle;
+  PlannerOptions planner;
+};
+
+/// Calls `visit(name, options)` for every section.
+template <class AnyConfiguration, class Visit>
+requires is_options_of<AnyConfiguration, Configuration>
+void visit_sections(AnyConfiguration& configuration, Visit&& visit) {
+  visit("vehicle", configuration.vehicle);
+  visit("planner", configuration.planner);
+}
+
+/// Reads a configuration file: YAML with a map of options for each section,
+///
+///     base: published            # optional: another configuration to start from
+///     svg_mppi:
+///       samples: 4000
+///       variance: [0.1, 0.2]     # one value per input, or a single one for all
+///     vehicle:
+///       max_speed: 6             # another name of planner.max_speed
+///
+/// Throws IoError with file, line, key, value and rule for everything that is not known, not of its type, out
+/// of range or said twice.
+Configuration load_configuration(const std::filesystem::path& file,
+                                 const std::vector<std::filesystem::path>& roots = {});
+
+/// The folders in which configurations are looked for by name: SLALOM_CONFIGS_DIR if set, then, seen from the
+/// folder of the running program, the source tree it was built in and the install's share/slalom/configs.
+/// Only those that exist.
+std::vector<std::filesystem::path> configuration_roots(const std::filesystem::path& program_folder);
+
+/// The file of a configuration: `name_or_file` itself if it is a file, else the first
+/// `root/name_or_file.yaml`. Throws IoError that names the places searched and the configurations known.
+std::filesystem::path find_configuration(const std::string& name_or_file,
+                                         const std::vector<std::filesystem::path>& roots);
+
+/// Sets `section.option` from text; a key without a section means an option of `default_section`. Throws
+/// std::invalid_argument naming key, value and rule, with the nearest known key.
+void set_option(Configuration& configuration, std::string_view key, std::string_view text,
+                std::string_view default_section = {});
+
+/// One section with all its options as they are set.
+struct Section {
+  std::string name;
+  std::vector<OptionEntry> options;
+};
+std::vector<Section> list_sections(const Configuration& configuration);
+
+/// The whole configuration as a file that load_configuration reads back to the same.
+std::string to_yaml(const Configuration& configuration);
+
+}  // namespace slalom::vehicle

@@ -1,0 +1,160 @@
+#include "slalom/core/option_access.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace slalom {
+namespace {
+
+[[noreturn]] void refuse(std::string_view text, const std::string& rule) {
+  std::string message = "'";
+  message.append(text).append("' ").append(rule);
+  throw std::invalid_argument(message);
+}
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::string number_text(double value) {
+  if (std::isnan(value)) return ".nan";
+  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  return {buffer, end};
+}
+
+/// How many single-letter changes lead from one word to the other.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t change = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, change});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+const char* type_name(const OptionEntry& entry) {
+  struct Name {
+    const char* operator()(bool) const { return "flag"; }
+    const char* operator()(int) const { return "integer"; }
+    const char* operator()(std::uint64_t) const { return "integer"; }
+    const char* operator()(double) const { return "number"; }
+    const char* operator()(const std::vector<double>&) const { return "numbers"; }
+    const char* operator()(const std::string&) const { return "choice"; }
+  };
+  return std::visit(Name{}, entry.value);
+}
+
+std::string to_text(const OptionValue& value) {
+  struct Text {
+    std::string operator()(bool v) const { return v ? "true" : "false"; }
+    std::string operator()(int v) const { return std::to_string(v); }
+    std::string operator()(std::uint64_t v) const { return std::to_string(v); }
+    std::string operator()(double v) const { return number_text(v); }
+    std::string operator()(const std::vector<double>& v) const {
+      if (v.size() == 1) return number_text(v[0]);
+      std::string text;
+      for (const double each : v) text.append(text.empty() ? "[" : ", ").append(number_text(each));
+      return text.append("]");
+    }
+    std::string operator()(const std::string& v) const { return v; }
+  };
+  return std::visit(Text{}, value);
+}
+
+std::string range_rule(const Declaration& d) {
+  if (std::isinf(d.min) && std::isinf(d.max)) return "must be a number";
+  if (std::isinf(d.max)) return "must be at least " + number_text(d.min);
+  if (std::isinf(d.min)) return "must be at most " + number_text(d.max);
+  return "must be in [" + number_text(d.min) + ", " + number_text(d.max) + "]";
+}
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& names) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
+  for (const std::string& candidate : names)
+    if (const std::size_t changes = edit_distance(name, candidate); changes < least) {
+      least = changes;
+      best = candidate;
+    }
+  return best;
+}
+
+namespace detail {
+
+bool parse_flag(std::string_view text) {
+  if (text == "true") return true;
+  if (text == "false") return false;
+  refuse(text, "must be true or false");
+}
+
+template <class Integer>
+Integer parse_whole(std::string_view text, const char* rule) {
+  Integer value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) refuse(text, rule);
+  return value;
+}
+
+int parse_integer(std::string_view text) {
+  return parse_whole<int>(text, "must be an integer");
+}
+std::uint64_t parse_count(std::string_view text) {
+  return parse_whole<std::uint64_t>(text, "must be an integer from 0 to 18446744073709551615");
+}
+
+double parse_number(std::string_view text) {
+  if (text == ".inf" || text == "inf") return std::numeric_limits<double>::infinity();
+  if (text == "-.inf" || text == "-inf") return -std::numeric_limits<double>::infinity();
+  const std::string_view digits = !text.empty() && text.front() == '+' ? text.substr(1) : text;
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
+    refuse(text, "must be a number");
+  return value;
+}
+
+std::vector<double> parse_numbers(std::string_view text) {
+  const std::string_view all = trimmed(text);
+  if (all.empty() || all.front() != '[') return {parse_number(all)};
+  if (all.back() != ']') refuse(text, "must be a number or a list [a, b] of one number per input");
+  std::vector<double> values;
+  std::string_view rest = all.substr(1, all.size() - 2);
+  while (true) {
+    const auto comma = rest.find(',');
+    values.push_back(parse_number(trimmed(rest.substr(0, comma))));
+    if (comma == std::string_view::npos) return values;
+    rest.remove_prefix(comma + 1);
+  }
+}
+
+int parse_choice(std::string_view text, const char* const* names) {
+  std::string all;
+  for (int i = 0; names[i]; ++i) {
+    if (text == names[i]) return i;
+    all.append(i > 0 ? ", " : "").append(names[i]);
+  }
+  refuse(text, "must be one of " + all);
+}
+
+void check_range(const Declaration& declaration, double value) {
+  if (!(value >= declaration.min && value <= declaration.max))
+    refuse(number_text(value), range_rule(declaration));
+}
+
+}  // namespace detail
+}  // namespace slalom

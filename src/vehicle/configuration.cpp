@@ -1,0 +1,72 @@
+#include "slalom/vehicle/configuration.hpp"
+
+#include <stdexcept>
+
+namespace slalom::vehicle {
+namespace {
+
+/// `vehicle.max_speed` is what people look for: the cap belongs to the car, though the planner applies it.
+std::string resolved(std::string_view key, std::string_view default_section) {
+  if (key == "vehicle.max_speed") return "planner.max_speed";
+  if (key.find('.') == std::string_view::npos && !default_section.empty())
+    return std::string(default_section) + "." + std::string(key);
+  return std::string(key);
+}
+
+[[noreturn]] void refuse_key(const Configuration& configuration, std::string_view key) {
+  std::string sections;
+  std::vector<std::string> keys = {"vehicle.max_speed"};
+  bool section_known = false;
+  const std::string_view section = key.substr(0, key.find('.'));
+  for (const Section& each : list_sections(configuration)) {
+    sections += (sections.empty() ? "" : ", ") + each.name;
+    section_known = section_known || each.name == section;
+    for (const OptionEntry& entry : each.options) keys.push_back(each.name + "." + entry.declaration.name);
+  }
+  std::string message = "key " + std::string(key) + ": ";
+  if (section_known)
+    message += "is no option of " + std::string(section);
+  else
+    message += "is none of the options, which are section.option with the sections " + sections;
+  if (const std::string near = nearest_name(key, keys); !near.empty())
+    message += "; did you mean " + near + "?";
+  throw std::invalid_argument(message);
+}
+
+}  // namespace
+
+void set_option(Configuration& configuration, std::string_view key, std::string_view text,
+                std::string_view default_section) {
+  const std::string full = resolved(key, default_section);
+  const auto dot = full.find('.');
+  bool found = false;
+  try {
+    visit_sections(configuration, [&](std::string_view section, auto& options) {
+      if (dot != std::string::npos && section == std::string_view(full).substr(0, dot))
+        found = slalom::set_option(options, std::string_view(full).substr(dot + 1), text);
+    });
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("key " + std::string(key) + ": " + error.what());
+  }
+  if (!found) refuse_key(configuration, full);
+}
+
+std::vector<Section> list_sections(const Configuration& configuration) {
+  std::vector<Section> sections;
+  visit_sections(configuration, [&](const char* name, const auto& options) {
+    sections.push_back({name, list_options(options)});
+  });
+  return sections;
+}
+
+std::string to_yaml(const Configuration& configuration) {
+  std::string text;
+  for (const Section& section : list_sections(configuration)) {
+    text += section.name + ":\n";
+    for (const OptionEntry& entry : section.options)
+      text += std::string("  ") + entry.declaration.name + ": " + to_text(entry.value) + "\n";
+  }
+  return text;
+}
+
+}  // namespace slalom::vehicle

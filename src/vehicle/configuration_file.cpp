@@ -1,0 +1,165 @@
+#include <yaml-cpp/yaml.h>
+
+#include <cstdlib>
+#include <set>
+
+#include "slalom/core/error.hpp"
+#include "slalom/vehicle/configuration.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* folder_name = "configs";
+constexpr const char* marker = "published.yaml";  // tells a folder of ours from another of that name
+constexpr int deepest_base = 8;
+
+YAML::Node load(const fs::path& file) {
+  try {
+    return YAML::LoadFile(file.string());
+  } catch (const YAML::BadFile&) {
+    throw IoError(file.string(), 0, "cannot be opened");
+  } catch (const YAML::Exception& error) {
+    throw IoError(file.string(), error.mark.line + 1, "is not YAML: " + error.msg);
+  }
+}
+
+int line_of(const YAML::Node& node) {
+  return node.Mark().line + 1;
+}
+
+[[noreturn]] void refuse(const fs::path& file, const YAML::Node& at, const std::string& key,
+                         const std::string& rule) {
+  const std::string value = at.IsScalar() && !at.Scalar().empty() ? "'" + at.Scalar() + "' " : "";
+  throw IoError(file.string(), line_of(at), "key " + key + ": " + value + rule);
+}
+
+/// An option's value as text: a scalar, or a list of scalars as "[a, b]".
+std::string text_of(const fs::path& file, const std::string& key, const YAML::Node& value) {
+  if (value.IsScalar()) return value.Scalar();
+  if (!value.IsSequence()) refuse(file, value, key, "must have a value, or a list of values");
+  std::string text;
+  for (const YAML::Node& each : value) {
+    if (!each.IsScalar()) refuse(file, each, key, "must be a list of plain values");
+    text += (text.empty() ? "[" : ", ") + each.Scalar();
+  }
+  return text.empty() ? "[]" : text + "]";
+}
+
+bool is_choice(const Configuration& configuration, const std::string& key) {
+  for (const Section& section : list_sections(configuration))
+    for (const OptionEntry& entry : section.options)
+      if (section.name + "." + entry.declaration.name == key) return !entry.choices.empty();
+  return true;
+}
+
+void read_option(Configuration& configuration, const fs::path& file, const std::string& key,
+                 const YAML::Node& at, const YAML::Node& value) {
+  const std::string text = text_of(file, key, value);
+  if (value.IsScalar() && value.Tag() == "!" && !is_choice(configuration, key))
+    refuse(file, value, key, "must stand without quotes");
+  try {
+    set_option(configuration, key, text);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(file.string(), line_of(at), error.what());
+  }
+}
+
+void read_section(Configuration& configuration, const fs::path& file, const std::string& section,
+                  const YAML::Node& options) {
+  if (options.IsNull()) return;
+  if (!options.IsMap()) refuse(file, options, section, "must be a map of options to values");
+  std::set<std::string> seen;
+  for (const auto& entry : options) {
+    if (!entry.first.IsScalar()) refuse(file, entry.first, section, "has a key that is no plain word");
+    const std::string key = section + "." + entry.first.Scalar();
+    if (!seen.insert(key).second)
+      throw IoError(file.string(), line_of(entry.first), "key " + key + ": is said twice");
+    read_option(configuration, file, key, entry.first, entry.second);
+  }
+}
+
+Configuration load_deep(const fs::path& file, const std::vector<fs::path>& roots, int depth) {
+  const YAML::Node root = load(file);
+  Configuration configuration;
+  if (root.IsNull()) return configuration;
+  if (!root.IsMap()) throw IoError(file.string(), line_of(root), "must be a map of sections");
+  if (const YAML::Node base = root["base"]) {
+    if (!base.IsScalar()) refuse(file, base, "base", "must be the name or file of a configuration");
+    if (depth == deepest_base) refuse(file, base, "base", "leads round in circles, or deeper than 8 files");
+    auto places = roots;
+    places.insert(places.begin(), file.parent_path());
+    const fs::path beside = file.parent_path() / base.Scalar();
+    configuration = load_deep(
+        fs::is_regular_file(beside) ? beside : find_configuration(base.Scalar(), places), roots, depth + 1);
+  }
+  std::set<std::string> seen;
+  for (const auto& entry : root) {
+    if (!entry.first.IsScalar())
+      throw IoError(file.string(), line_of(entry.first), "a section's name must be a plain word");
+    const std::string section = entry.first.Scalar();
+    if (!seen.insert(section).second)
+      throw IoError(file.string(), line_of(entry.first), "key " + section + ": is said twice");
+    if (section == "base") continue;
+    bool known = false;
+    std::vector<std::string> names = {"base"};
+    visit_sections(configuration, [&](const char* name, const auto&) {
+      known = known || section == name;
+      names.emplace_back(name);
+    });
+    if (!known) {
+      std::string all;
+      for (const auto& name : names) all += (all.empty() ? "" : ", ") + name;
+      const std::string near = nearest_name(section, names);
+      throw IoError(file.string(), line_of(entry.first),
+                    "key " + section + ": is none of the sections " + all +
+                        (near.empty() ? "" : "; did you mean " + near + "?"));
+    }
+    read_section(configuration, file, section, entry.second);
+  }
+  return configuration;
+}
+
+}  // namespace
+
+Configuration load_configuration(const fs::path& file, const std::vector<fs::path>& roots) {
+  return load_deep(file, roots, 0);
+}
+
+std::vector<fs::path> configuration_roots(const fs::path& program_folder) {
+  std::vector<fs::path> candidates;
+  if (const char* chosen = std::getenv("SLALOM_CONFIGS_DIR"); chosen && *chosen)
+    candidates.emplace_back(chosen);
+  const fs::path program = fs::weakly_canonical(program_folder);
+  fs::path above = program;
+  for (int level = 0; level < 5 && above.has_parent_path(); ++level, above = above.parent_path())
+    if (fs::exists(above / folder_name / marker)) candidates.push_back(above / folder_name);
+  candidates.push_back(program.parent_path() / "share" / "slalom" / folder_name);
+  std::vector<fs::path> roots;
+  for (const auto& candidate : candidates)
+    if (fs::is_directory(candidate)) roots.push_back(candidate);
+  return roots;
+}
+
+fs::path find_configuration(const std::string& name_or_file, const std::vector<fs::path>& roots) {
+  if (name_or_file.empty())
+    throw IoError("config", 0, "the name is empty; give a file or the name of a configuration");
+  if (fs::is_regular_file(name_or_file)) return name_or_file;
+  std::set<std::string> known;
+  std::string searched, names;
+  for (const auto& root : roots) {
+    if (const fs::path file = root / (name_or_file + ".yaml"); fs::is_regular_file(file)) return file;
+    searched += (searched.empty() ? "" : ", ") + root.string();
+    if (!fs::is_directory(root)) continue;
+    for (const auto& entry : fs::directory_iterator(root))
+      if (entry.path().extension() == ".yaml") known.insert(entry.path().stem().string());
+  }
+  for (const auto& name : known) names += (names.empty() ? "" : ", ") + name;
+  throw IoError(
+      name_or_file, 0,
+      "is neither a file nor a configuration known by name (known: " + (names.empty() ? "none" : names) +
+          "; searched: " + (searched.empty() ? "nowhere" : searched) + ")");
+}
+
+}  // namespace slalom::vehicle

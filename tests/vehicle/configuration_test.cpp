@@ -1,0 +1,135 @@
+// Configuration files and keys: every mistake has a message with file, line, key, value and rule.
+#include "slalom/vehicle/configuration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "slalom/core/error.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ConfigurationFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("slalom_configuration.") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  /// The message, without the folder, with which a file of this text is refused.
+  std::string refusal(const std::string& text) const {
+    try {
+      load_configuration(write("x.yaml", text));
+    } catch (const IoError& error) {
+      const std::string message = error.what(), before = (folder_ / "").string();
+      return message.rfind(before, 0) == 0 ? message.substr(before.size()) : message;
+    }
+    return "accepted";
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(ConfigurationFile, SetsWhatItSaysAndKeepsTheRest) {
+  const auto c = load_configuration(
+      write("a.yaml", "vehicle:\n  bicycle: published\n  max_speed: 6\nplanner: {verify_plan: false}\n"));
+  EXPECT_EQ(c.vehicle.bicycle, BicycleForm::published);
+  EXPECT_EQ(c.planner.max_speed, 6);
+  EXPECT_FALSE(c.planner.verify_plan);
+  EXPECT_EQ(c.vehicle.time_step, PathTrackingOptions{}.time_step);
+  EXPECT_NO_THROW(load_configuration(write("empty.yaml", "")));
+}
+
+TEST_F(ConfigurationFile, StartsFromAnother) {
+  write("mother.yaml", "vehicle: {rear_length: 0.135, dead_time: 0.03}\n");
+  const auto c =
+      load_configuration(write("child.yaml", "base: mother\nvehicle: {dead_time: 0.01}\n"), {folder_});
+  EXPECT_EQ(c.vehicle.rear_length, 0.135);
+  EXPECT_EQ(c.vehicle.dead_time, 0.01);
+  EXPECT_NE(refusal("base: x.yaml\n").find("circles"), std::string::npos);
+  EXPECT_NE(refusal("base: nobody\n").find("neither a file nor a configuration"), std::string::npos);
+}
+
+TEST_F(ConfigurationFile, RefusesWithFileLineKeyValueAndRule) {
+  EXPECT_EQ(refusal("vehicle:\n  time_stap: 0.05\n"),
+            "x.yaml:2: key vehicle.time_stap: is no option of vehicle; did you mean vehicle.time_step?");
+  EXPECT_EQ(refusal("vehicle:\n  time_step: fast\n"),
+            "x.yaml:2: key vehicle.time_step: 'fast' must be a number");
+  EXPECT_EQ(refusal("\nvehicle:\n  time_step: 7\n"),
+            "x.yaml:3: key vehicle.time_step: '7' must be in [0.001, 1]");
+  EXPECT_EQ(refusal("vehicle:\n  time_step: \"0.05\"\n"),
+            "x.yaml:2: key vehicle.time_step: '0.05' must stand without quotes");
+  EXPECT_EQ(refusal("vehicle:\n  bicycle: mountain\n"),
+            "x.yaml:2: key vehicle.bicycle: 'mountain' must be one of rear_axle, published");
+  EXPECT_EQ(refusal("vehicle:\n  exact_lag: 1\n"),
+            "x.yaml:2: key vehicle.exact_lag: '1' must be true or false");
+  EXPECT_EQ(refusal("vehicle:\n  dead_time: 0\n  dead_time: 0.01\n"),
+            "x.yaml:3: key vehicle.dead_time: is said twice");
+  EXPECT_EQ(refusal("vehicle: 3\n"), "x.yaml:1: key vehicle: '3' must be a map of options to values");
+  EXPECT_EQ(refusal("vehicle:\n  dead_time: {a: 1}\n"),
+            "x.yaml:2: key vehicle.dead_time: must have a value, or a list of values");
+  EXPECT_NE(refusal("vehicel: {dead_time: 0}\n").find("x.yaml:1: key vehicel: is none of the sections"),
+            std::string::npos);
+  EXPECT_NE(refusal("vehicel: {dead_time: 0}\n").find("did you mean vehicle?"), std::string::npos);
+  EXPECT_EQ(refusal("- 1\n"), "x.yaml:1: must be a map of sections");
+  EXPECT_NE(refusal("vehicle: {a: [}\n").find("x.yaml:1: is not YAML"), std::string::npos);
+  EXPECT_EQ(refusal("vehicle: {dead_time: .nan}\n"),
+            "x.yaml:1: key vehicle.dead_time: '.nan' must be a number");
+}
+
+TEST_F(ConfigurationFile, IsWrittenAsItIsRead) {
+  Configuration c;
+  c.vehicle.bicycle = BicycleForm::published;
+  c.planner.max_speed = 1.0 / 3;
+  const auto back = load_configuration(write("back.yaml", to_yaml(c)));
+  EXPECT_EQ(to_yaml(back), to_yaml(c));
+  EXPECT_EQ(back.planner.max_speed, c.planner.max_speed);
+}
+
+TEST_F(ConfigurationFile, IsFoundByName) {
+  write("mine.yaml", "");
+  EXPECT_EQ(find_configuration("mine", {folder_}), folder_ / "mine.yaml");
+  EXPECT_EQ(find_configuration((folder_ / "mine.yaml").string(), {}), folder_ / "mine.yaml");
+  try {
+    find_configuration("yours", {folder_});
+    FAIL();
+  } catch (const IoError& error) {
+    EXPECT_NE(std::string(error.what()).find("known: mine"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(load_configuration(folder_ / "none.yaml"), IoError);
+}
+
+TEST(ConfigurationKey, IsSetFromText) {
+  Configuration c;
+  set_option(c, "vehicle.max_speed", "6");
+  EXPECT_EQ(c.planner.max_speed, 6);
+  set_option(c, "latency", "0.02", "planner");
+  EXPECT_EQ(c.planner.latency, 0.02);
+  const auto refusal = [&](const char* key, const char* value) -> std::string {
+    try {
+      set_option(c, key, value);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal("vehicle.max_speed", "0"), "key vehicle.max_speed: '0' must be in [0.01, 100]");
+  EXPECT_EQ(refusal("vehicle.max_sped", "5"),
+            "key vehicle.max_sped: is no option of vehicle; did you mean vehicle.max_speed?");
+  EXPECT_NE(refusal("speed", "5").find("section.option"), std::string::npos);
+  EXPECT_EQ(c.planner.max_speed, 6);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle
