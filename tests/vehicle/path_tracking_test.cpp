@@ -1,0 +1,113 @@
+#include "slalom/vehicle/path_tracking.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace slalom::vehicle {
+namespace {
+
+/// Maps of 8 x 8 cells of 1 m round the origin: 2 m off a path along +x at 3 m/s, free of obstacles.
+struct Maps {
+  std::vector<float> reference = std::vector<float>(10 * 16 * 4), obstacles = std::vector<float>(10 * 16);
+  Maps() {
+    for (std::size_t i = 0; i < 160; ++i) {
+      const bool ring = i / 16 == 0 || i / 16 == 9 || i % 16 == 0 || i % 16 >= 9;
+      reference[4 * i] = ring ? 20.0f : 2.0f;
+      reference[4 * i + 1] = ring ? 2.0f : 0.0f;
+      reference[4 * i + 2] = ring ? 0.0f : 3.0f;
+      reference[4 * i + 3] = ring ? 1.0f : 0.0f;
+      obstacles[i] = ring ? -1.0f : 0.0f;
+    }
+  }
+  template <class Problem>
+  void give_to(Problem& problem, double x = 0, double y = 0, double yaw = 0) const {
+    problem.set_maps(GridView<4>(reference.data(), 8, 8, 4, 1, 0, 0),
+                     GridView<1>(obstacles.data(), 8, 8, 4, 1, 0, 0), x, y, yaw);
+  }
+};
+
+using Car = PathTracking<false>;
+
+TEST(PathTracking, RearAxleDrivesTheCircleOfItsSteeringAngle) {
+  PathTrackingOptions options;
+  options.time_step = 0.001;
+  options.speed = SpeedForm::constant;
+  Car car(options);
+  const Maps maps;
+  maps.give_to(car);
+  const double steer = 0.3, radius = 0.3302 / std::tan(steer);
+  Car::State<double> s{0, 0, 0, 1, steer, 0};
+  const double turn = 1.0 / radius;  // after 1 s at 1 m/s
+  for (int k = 0; k < 1000; ++k) s = car.step(s, car.look_up(s), Input<double, 1>{{steer}}, k);
+  EXPECT_NEAR(s.yaw, turn, 1e-9);
+  EXPECT_NEAR(s.x, radius * std::sin(turn), 1e-3);
+  EXPECT_NEAR(s.y, radius * (1 - std::cos(turn)), 1e-3);
+}
+
+TEST(PathTracking, PublishedYawGainIsTooHighBy42Percent) {
+  PathTrackingOptions published;
+  published.bicycle = BicycleForm::published;
+  published.front_length = 0.189;
+  published.rear_length = 0.135;
+  const Maps maps;
+  const auto yaw_gain = [&](const PathTrackingOptions& options) {
+    Car car(options);
+    maps.give_to(car);
+    const Car::State<double> s{0, 0, 0, 1, 1e-4, 0};
+    return (car.step(s, car.look_up(s), Input<double, 1>{{0}}, 0).yaw - s.yaw) /
+           (options.time_step * s.speed * s.steer);
+  };
+  EXPECT_NEAR(yaw_gain(published), 4.32, 0.005);
+  EXPECT_NEAR(yaw_gain({}), 3.03, 0.005);
+}
+
+TEST(PathTracking, CostIsThatOfDistanceYawAndCollision) {
+  PathTrackingOptions options;
+  options.distance_weight = 3;
+  options.yaw_weight = 0.5;
+  options.collision_weight = 2;
+  options.outside_cost = 70;
+  options.outside_terminal_cost = 11;
+  Car car(options);
+  const Maps maps;
+  maps.give_to(car);
+  const Car::State<double> inside{0.2, 0.3, 6.5, 1, 0, 0}, outside{50, 0, 1, 1, 0, 0};
+  const Input<double, 1> u{{0}};
+  const double error = 6.5 - 2 * std::acos(-1.0);
+  EXPECT_NEAR(car.stage_cost(inside, car.look_up(inside), u).value, 3 * 4 + 0.5 * error * error, 1e-12);
+  EXPECT_FALSE(car.stage_cost(inside, car.look_up(inside), u).collided);
+  EXPECT_NEAR(car.stage_cost(outside, car.look_up(outside), u).value, 3 * 400 + 0.5 * 4 + 2 * 70, 1e-12);
+  EXPECT_NEAR(car.terminal_cost(outside, car.look_up(outside)).value, 400 + 0.01 * 4 + 2 * 11, 1e-12);
+  EXPECT_TRUE(car.stage_cost(outside, car.look_up(outside), u).collided);
+}
+
+TEST(PathTracking, SpeedFollowsTheReferenceWithinItsLimits) {
+  PathTrackingOptions options;
+  options.max_acceleration = 4;
+  options.max_deceleration = 2;
+  Car car(options);
+  const Maps maps;
+  maps.give_to(car);
+  const auto next_speed = [&](double speed) {
+    const Car::State<double> s{0, 0, 0, speed, 0, 0};
+    return car.step(s, car.look_up(s), Input<double, 1>{{0}}, 0).speed;
+  };
+  EXPECT_NEAR(next_speed(1), 1.2, 1e-12);
+  EXPECT_NEAR(next_speed(2.9), 3, 1e-12);
+  EXPECT_NEAR(next_speed(5), 4.9, 1e-12);
+}
+
+TEST(PathTracking, LocalPositionIsThatInTheRobotsFrame) {
+  Maps maps;
+  maps.obstacles[static_cast<std::size_t>(3 * 16 + 4)] = 100;  // x in (1, 2], y in (0, 1], robot frame
+  Car car({});
+  maps.give_to(car, 10, -5, std::acos(-1.0) / 2);  // the robot looks along +y of the map
+  const Car::State<double> hit{10 - 0.5, -5 + 1.5, 0, 1, 0, 0}, free{10 + 0.5, -5 + 1.5, 0, 1, 0, 0};
+  EXPECT_EQ(car.look_up(hit).obstacle, 100);
+  EXPECT_EQ(car.look_up(free).obstacle, 0);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle
