@@ -22,7 +22,9 @@
 ///  - `template <class T> auto look_up(const State<T>& x) const`: whatever is read from maps at a state. It
 ///  is evaluated
 ///    once a state and handed, after the state, to `step`, `stage_cost` and `terminal_cost`;
-///  - a cost may be returned as `Cost<T>`, which also says whether the state collides.
+///  - a cost may be returned as `Cost<T>`, which also says whether the state collides;
+///  - a member `dt` or a function `time_step()`: the duration of a step, s. With it solvers shift their last
+///    solution by the time that has passed.
 namespace slalom {
 
 /// The `M` inputs of one step.

@@ -30,6 +30,17 @@ class ProblemEvaluator final : public BatchEvaluator {
 
   int inputs() const noexcept override { return P::inputs; }
 
+  /// The problem's `time_step()` or `dt`, if it has one.
+  double time_step() const noexcept override {
+    if constexpr (requires { problem_.time_step(); }) {
+      return static_cast<double>(problem_.time_step());
+    } else if constexpr (requires { static_cast<double>(problem_.dt); }) {
+      return static_cast<double>(problem_.dt);
+    } else {
+      return 0;
+    }
+  }
+
   void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
                 std::uint8_t* collided) const noexcept override {
     rollout_(problem_, state_, batch, first, count, costs, collided);

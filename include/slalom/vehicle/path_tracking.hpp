@@ -193,6 +193,7 @@ class PathTracking {
   explicit PathTracking(const PathTrackingOptions& options);
 
   const PathTrackingOptions& options() const { return options_; }
+  double time_step() const { return options_.time_step; }  ///< s
 
   /// Sets the maps. The cost map's cells are 0 (free) or 100, its ring negative; `robot_x, robot_y,
   /// robot_yaw` is the pose of its frame in the map frame. The reference field's cells are {distance, yaw,

@@ -1,0 +1,85 @@
+#include "solvers/kernels.hpp"
+
+#include "slalom/core/dispatch.hpp"
+#include "solvers/kernels_body.hpp"
+
+namespace slalom::detail {
+
+namespace {
+
+/// Compiles every kernel for one instruction set.
+#define SLALOM_DEFINE_KERNELS(name, ATTRIBUTES, Target)                                                    \
+  using Pack_##name = Pack<simd::Target>;                                                                  \
+  ATTRIBUTES void place_##name(const Rows<float>& noise, const Rows<float>& samples,                       \
+                               const Placement<float>& to, Range range) {                                  \
+    body::place<Pack_##name>(noise, samples, to, range);                                                   \
+  }                                                                                                        \
+  ATTRIBUTES void add_linear_##name(const Rows<float>& v, const float* coefficient, Range range,           \
+                                    float* totals) {                                                       \
+    body::add_linear<Pack_##name>(v, coefficient, range, totals);                                          \
+  }                                                                                                        \
+  ATTRIBUTES void add_squared_distance_##name(const Rows<float>& v, const float* centre,                   \
+                                              const float* weight, Range range, float* totals) {           \
+    body::add_squared_distance<Pack_##name>(v, centre, weight, range, totals);                             \
+  }                                                                                                        \
+  ATTRIBUTES void make_finite_##name(Range range, float* costs) {                                          \
+    body::make_finite<Pack_##name>(range, costs);                                                          \
+  }                                                                                                        \
+  ATTRIBUTES float minimum_##name(const float* costs, Range range) {                                       \
+    return body::minimum<Pack_##name>(costs, range);                                                       \
+  }                                                                                                        \
+  ATTRIBUTES WeightSums<float> exponential_weights_##name(const float* totals, const float* costs,         \
+                                                          float least, float temperature, Range range,     \
+                                                          float* weights) {                                \
+    return body::exponential_weights<Pack_##name>(totals, costs, least, temperature, range, weights);      \
+  }                                                                                                        \
+  ATTRIBUTES void scale_##name(float factor, Range range, float* values) {                                 \
+    body::scale<Pack_##name>(factor, range, values);                                                       \
+  }                                                                                                        \
+  ATTRIBUTES void weighted_sums_##name(const Rows<float>& v, const float* weights, const float* centre,    \
+                                       Range range, float* sums) {                                         \
+    body::weighted_powers<false, Pack_##name>(v, weights, centre, range, sums);                            \
+  }                                                                                                        \
+  ATTRIBUTES void weighted_squares_##name(const Rows<float>& v, const float* weights, const float* centre, \
+                                          Range range, float* sums) {                                      \
+    body::weighted_powers<true, Pack_##name>(v, weights, centre, range, sums);                             \
+  }                                                                                                        \
+  constexpr Kernels kernels_##name{place_##name,       add_linear_##name,    add_squared_distance_##name,  \
+                                   make_finite_##name, minimum_##name,       exponential_weights_##name,   \
+                                   scale_##name,       weighted_sums_##name, weighted_squares_##name};
+
+SLALOM_DEFINE_KERNELS(generic, SLALOM_TARGET_GENERIC, Generic)
+#if SLALOM_X86
+SLALOM_DEFINE_KERNELS(sse4, SLALOM_TARGET_SSE4, Sse4)
+SLALOM_DEFINE_KERNELS(avx2, SLALOM_TARGET_AVX2, Avx2)
+SLALOM_DEFINE_KERNELS(avx512, SLALOM_TARGET_AVX512, Avx512)
+#endif
+
+#undef SLALOM_DEFINE_KERNELS
+
+}  // namespace
+
+const Kernels& kernels(simd::Target target) {
+#if SLALOM_X86
+  switch (target) {
+    case simd::Target::avx512:
+      return kernels_avx512;
+    case simd::Target::avx2:
+      return kernels_avx2;
+    case simd::Target::sse4:
+      return kernels_sse4;
+    case simd::Target::generic:
+      break;
+  }
+#else
+  static_cast<void>(target);
+#endif
+  return kernels_generic;
+}
+
+const Kernels& kernels() {
+  static const Kernels& chosen = kernels(simd::active_target());
+  return chosen;
+}
+
+}  // namespace slalom::detail

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+
+#include "slalom/core/simd.hpp"
+
+/// The inner loops of the solvers over batches [row][sample], row = step * inputs + input. Each is one
+/// template over its scalar type (kernels_body.hpp): `double` for reference, and packs of float32, compiled
+/// once per instruction set behind the function pointers below.
+namespace slalom::detail {
+
+/// Values [row][sample], rows `stride` apart.
+template <class Real>
+struct Rows {
+  Real* values = nullptr;
+  std::ptrdiff_t stride = 0;
+  int rows = 0;
+
+  Real* row(int r) const { return values + r * stride; }
+};
+
+/// Where standard normal values are moved to: clamp(mean + deviation z, low, high), entries [row].
+template <class Real>
+struct Placement {
+  const Real* mean = nullptr;
+  const Real* deviation = nullptr;
+  const Real* low = nullptr;
+  const Real* high = nullptr;
+  int zero_mean_from = 0;  ///< samples from this index on are placed around zero instead of the mean
+};
+
+/// A run of samples. `first` and `count` are multiples of the lanes.
+struct Range {
+  int first = 0;
+  int count = 0;
+};
+
+/// Sums over the samples of a range.
+template <class Real>
+struct WeightSums {
+  Real weight = 0;   ///< sum of w
+  Real squared = 0;  ///< sum of w^2
+  Real cost = 0;     ///< sum of w times the cost given
+};
+
+/// The float32 kernels of one instruction set.
+struct Kernels {
+  /// Moves normal values to samples; `noise` and `samples` may be the same.
+  void (*place)(const Rows<float>& noise, const Rows<float>& samples, const Placement<float>& to,
+                Range range);
+  /// totals[k] += sum over rows of coefficient[row] v[row][k].
+  void (*add_linear)(const Rows<float>& v, const float* coefficient, Range range, float* totals);
+  /// totals[k] += sum over rows of weight[row] (v[row][k] - centre[row])^2.
+  void (*add_squared_distance)(const Rows<float>& v, const float* centre, const float* weight, Range range,
+                               float* totals);
+  /// Replaces what is not finite by +infinity.
+  void (*make_finite)(Range range, float* costs);
+  float (*minimum)(const float* costs, Range range);
+  /// weights[k] = exp((least - totals[k]) / temperature), and sums over them with `costs` (infinite ones of
+  /// weight 0 count nothing).
+  WeightSums<float> (*exponential_weights)(const float* totals, const float* costs, float least,
+                                           float temperature, Range range, float* weights);
+  /// values[k] *= factor.
+  void (*scale)(float factor, Range range, float* values);
+  /// sums[row] = sum over samples of w[k] (v[row][k] - centre[row]).
+  void (*weighted_sums)(const Rows<float>& v, const float* weights, const float* centre, Range range,
+                        float* sums);
+  /// sums[row] = sum over samples of w[k] (v[row][k] - centre[row])^2.
+  void (*weighted_squares)(const Rows<float>& v, const float* weights, const float* centre, Range range,
+                           float* sums);
+};
+
+/// Those of the instruction set in use.
+const Kernels& kernels();
+/// Those of one instruction set.
+const Kernels& kernels(simd::Target target);
+
+}  // namespace slalom::detail

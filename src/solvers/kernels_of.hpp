@@ -1,0 +1,67 @@
+#pragma once
+
+#include "solvers/kernels.hpp"
+#include "solvers/kernels_body.hpp"
+
+namespace slalom::detail {
+
+/// The kernels for a scalar type, so that what is built from them is written once: float32 through the
+/// instruction set in use, double for reference.
+template <class Real>
+struct KernelsOf;
+
+template <>
+struct KernelsOf<float> {
+  static void add_linear(const Rows<float>& v, const float* coefficient, Range range, float* totals) {
+    kernels().add_linear(v, coefficient, range, totals);
+  }
+  static void add_squared_distance(const Rows<float>& v, const float* centre, const float* weight,
+                                   Range range, float* totals) {
+    kernels().add_squared_distance(v, centre, weight, range, totals);
+  }
+  static void make_finite(Range range, float* costs) { kernels().make_finite(range, costs); }
+  static float minimum(const float* costs, Range range) { return kernels().minimum(costs, range); }
+  static WeightSums<float> exponential_weights(const float* totals, const float* costs, float least,
+                                               float temperature, Range range, float* weights) {
+    return kernels().exponential_weights(totals, costs, least, temperature, range, weights);
+  }
+  static void scale(float factor, Range range, float* values) { kernels().scale(factor, range, values); }
+  static void weighted_sums(const Rows<float>& v, const float* weights, const float* centre, Range range,
+                            float* sums) {
+    kernels().weighted_sums(v, weights, centre, range, sums);
+  }
+  static void weighted_squares(const Rows<float>& v, const float* weights, const float* centre, Range range,
+                               float* sums) {
+    kernels().weighted_squares(v, weights, centre, range, sums);
+  }
+};
+
+template <>
+struct KernelsOf<double> {
+  static void add_linear(const Rows<double>& v, const double* coefficient, Range range, double* totals) {
+    body::add_linear<double>(v, coefficient, range, totals);
+  }
+  static void add_squared_distance(const Rows<double>& v, const double* centre, const double* weight,
+                                   Range range, double* totals) {
+    body::add_squared_distance<double>(v, centre, weight, range, totals);
+  }
+  static void make_finite(Range range, double* costs) { body::make_finite<double>(range, costs); }
+  static double minimum(const double* costs, Range range) { return body::minimum<double>(costs, range); }
+  static WeightSums<double> exponential_weights(const double* totals, const double* costs, double least,
+                                                double temperature, Range range, double* weights) {
+    return body::exponential_weights<double>(totals, costs, least, temperature, range, weights);
+  }
+  static void scale(double factor, Range range, double* values) {
+    body::scale<double>(factor, range, values);
+  }
+  static void weighted_sums(const Rows<double>& v, const double* weights, const double* centre, Range range,
+                            double* sums) {
+    body::weighted_powers<false, double>(v, weights, centre, range, sums);
+  }
+  static void weighted_squares(const Rows<double>& v, const double* weights, const double* centre,
+                               Range range, double* sums) {
+    body::weighted_powers<true, double>(v, weights, centre, range, sums);
+  }
+};
+
+}  // namespace slalom::detail

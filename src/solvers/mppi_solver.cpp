@@ -1,0 +1,71 @@
+#include <algorithm>
+#include <limits>
+
+#include "slalom/solvers/make_solver.hpp"
+#include "solvers/path_integral.hpp"
+
+namespace slalom {
+
+namespace {
+
+/// `mppi`: the closed-form update once, with zero as the nominal sequence.
+class MppiSolver final : public detail::SolverBase {
+ public:
+  MppiSolver(const MppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
+      : SolverBase(options, inputs, std::move(pool)),
+        shift_(options.shift_warm_start),
+        update_(detail::PathIntegral::settings(options), options.horizon, inputs, options.samples),
+        mean_(size()),
+        shifted_(size()),
+        nominal_(size()),
+        variance_(spread(options.variance)) {
+    reset(options.seed);
+  }
+
+  const char* name() const noexcept override { return "mppi"; }
+
+  void reset(std::uint64_t seed) noexcept override {
+    restart(seed);
+    std::fill(mean_.begin(), mean_.end(), 0.0f);
+    clamp(mean_.data());
+    result_ = {};
+    result_.inputs = result_.mean = mean_;
+    result_.nominal = nominal_;
+    result_.covariance = variance_;
+  }
+
+  void prepare() noexcept override { update_.samples().prepare(key(0), pool()); }
+
+  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
+    const auto start = detail::Clock::now();
+    const detail::Deadline deadline(start, request.deadline);
+    result_.times = {};
+    const double shift = shift_ ? detail::warm_start_shift(evaluator, request) : 0;
+    if (shift > 0) {
+      detail::shift_sequence(mean_.data(), horizon(), inputs(), shift, shifted_.data());
+      std::swap_ranges(mean_.begin(), mean_.end(), shifted_.begin());
+    }
+    result_.status = update_.update(evaluator, key(0), nominal_.data(), variance_.data(), low().data(),
+                                    high().data(), pool(), deadline, mean_.data(), result_);
+    result_.iterations = 1;
+    next_solve();
+    result_.times.total = detail::seconds(start, detail::Clock::now());
+    return result_;
+  }
+
+ private:
+  bool shift_;
+  detail::PathIntegral update_;
+  std::vector<float> mean_, shifted_, nominal_, variance_;  ///< [row]
+  SolveResult result_;
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> make_solver(const MppiOptions& options, int inputs,
+                                    std::shared_ptr<ThreadPool> pool) {
+  validate_options(options, "mppi", inputs);
+  return std::make_unique<MppiSolver>(options, inputs, std::move(pool));
+}
+
+}  // namespace slalom

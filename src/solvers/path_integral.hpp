@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+#include "solvers/solver_base.hpp"
+
+namespace slalom::detail {
+
+/// The closed-form update of MPPI (Williams et al., "Information-Theoretic Model Predictive Control", IEEE
+/// T-RO 2018; Honda et al., ICRA 2024, equations (opt_u_by_is) and (weight)):
+///
+///     v_k ~ N(u, Sigma),   J_k = S(v_k) + lambda (1 - alpha) sum_t (u - n)^T Sigma^-1 v_k
+///     w_k = exp(-(J_k - min J) / lambda) / sum,   u <- sum_k w_k v_k
+///
+/// u is the last solution, n the nominal sequence, S the cost of a rollout; alpha = 0 in the papers.
+class PathIntegral {
+ public:
+  struct Settings {
+    double temperature = 1;              ///< lambda
+    double discount = 0;                 ///< alpha
+    double inverse_variance_offset = 0;  ///< 1/input^2
+    double normaliser_offset = 0;
+    double zero_mean_share = 0;
+  };
+  template <class Options>
+  static Settings settings(const Options& o) {
+    return {o.temperature, o.control_cost_discount, o.inverse_variance_offset, o.normaliser_offset,
+            o.zero_mean_share};
+  }
+
+  PathIntegral(const Settings& settings, int horizon, int inputs, int samples);
+
+  SampleSet& samples() noexcept { return samples_; }
+
+  /// Replaces `mean` [row] (u) by the new solution, which is within the bounds. `nominal` and `variance` are
+  /// [row]. Without a single finite cost `mean` stays. Fills the result's statistics and returns its status.
+  Status update(const BatchEvaluator& evaluator, RandomKey key, const float* nominal, const float* variance,
+                const float* low, const float* high, ThreadPool& pool, const Deadline& deadline, float* mean,
+                SolveResult& result) noexcept;
+
+ private:
+  Settings settings_;
+  SampleSet samples_;
+  std::vector<float> deviation_, linear_, zero_;  ///< [row]
+  std::vector<double> sums_;                      ///< [row]
+};
+
+}  // namespace slalom::detail

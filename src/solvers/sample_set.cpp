@@ -1,0 +1,200 @@
+#include "solvers/sample_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slalom::detail {
+
+namespace {
+
+constexpr float infinite = std::numeric_limits<float>::infinity();
+
+/// Samples a tile: their values fill about 32 KiB.
+int tile_size(int rows) {
+  const int fitting = 32768 / (4 * std::max(rows, 1)) / simd::padding * simd::padding;
+  return std::clamp(fitting, simd::padding, 512);
+}
+
+}  // namespace
+
+Deadline::Deadline(Clock::time_point start, double allowed) : start_(start) {
+  limited_ = allowed < 1e6;
+  if (limited_) {
+    end_ = start +
+           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::max(allowed, 0.0)));
+  }
+}
+
+Deadline Deadline::part(double share) const noexcept {
+  Deadline result = *this;
+  if (limited_) {
+    result.end_ = start_ + std::chrono::duration_cast<Clock::duration>(share * (end_ - start_));
+  }
+  return result;
+}
+
+SampleSet::SampleSet(int steps, int inputs, int samples)
+    : values_(steps, inputs, samples),
+      noise_(steps, inputs, samples),
+      costs_(static_cast<std::size_t>(padded(samples))),
+      totals_(static_cast<std::size_t>(padded(samples))),
+      weights_(static_cast<std::size_t>(padded(samples))),
+      collided_(static_cast<std::size_t>(padded(samples))),
+      tile_(tile_size(steps * inputs)),
+      census_(static_cast<std::size_t>(tiles())),
+      weight_sums_(static_cast<std::size_t>(tiles())),
+      row_sums_(static_cast<std::size_t>(tiles()) * static_cast<std::size_t>(steps * inputs)) {}
+
+Range SampleSet::range(int tile) const noexcept {
+  const int first = tile * tile_;
+  return {first, std::min(tile_, values_.stride() - first)};
+}
+
+void SampleSet::prepare(RandomKey key, ThreadPool& pool) noexcept {
+  pool.run(tiles(), [&](int tile) {
+    const Range r = range(tile);
+    fill_normal(noise_, r.first, r.count, key);
+  });
+  prepared_ = true;
+  prepared_key_ = key;
+}
+
+/// Evaluates a tile and brings its costs in order: infinite where not finite and in the padding.
+void SampleSet::finish_tile(int tile, const BatchEvaluator& evaluator, const float* linear,
+                            Census& census) noexcept {
+  const Range r = range(tile);
+  const Kernels& k = kernels();
+  const int count = std::min(r.count, samples() - r.first);
+  evaluator.evaluate(values_, r.first, count, costs_.data(), collided_.data());
+  k.make_finite(r, costs_.data());
+  for (int i = r.first + count; i < r.first + r.count; ++i) {
+    costs_[static_cast<std::size_t>(i)] = infinite;
+    collided_[static_cast<std::size_t>(i)] = 0;
+  }
+  std::copy_n(costs_.data() + r.first, r.count, totals_.data() + r.first);
+  if (linear) {
+    k.add_linear(row_view(), linear, r, totals_.data());
+    k.make_finite(r, totals_.data());
+  }
+  census.minimum_cost = k.minimum(costs_.data(), r);
+  census.minimum_total = k.minimum(totals_.data(), r);
+  census.evaluated = count;
+  for (int i = r.first; i < r.first + count; ++i) {
+    census.finite += totals_[static_cast<std::size_t>(i)] < infinite;
+    census.collided += collided_[static_cast<std::size_t>(i)] != 0;
+  }
+}
+
+void SampleSet::skip_tile(int tile, Census& census) noexcept {
+  const Range r = range(tile);
+  std::fill_n(costs_.data() + r.first, r.count, infinite);
+  std::fill_n(totals_.data() + r.first, r.count, infinite);
+  std::fill_n(collided_.data() + r.first, r.count, std::uint8_t{0});
+  census.minimum_cost = census.minimum_total = infinite;
+}
+
+Census SampleSet::combine() const noexcept {
+  Census all;
+  all.minimum_cost = all.minimum_total = infinite;
+  for (const Census& c : census_) {
+    all.minimum_total = std::min(all.minimum_total, c.minimum_total);
+    all.minimum_cost = std::min(all.minimum_cost, c.minimum_cost);
+    all.finite += c.finite;
+    all.collided += c.collided;
+    all.evaluated += c.evaluated;
+    all.draw_time += c.draw_time;
+    all.evaluate_time += c.evaluate_time;
+  }
+  return all;
+}
+
+Census SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
+                                    const Placement<float>& to, const float* linear, ThreadPool& pool,
+                                    const Deadline& deadline) noexcept {
+  const bool ready = prepared_ && prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
+  prepared_ = false;
+  pool.run(tiles(), [&](int tile) {
+    Census census;
+    if (deadline.passed()) {
+      skip_tile(tile, census);
+    } else {
+      const auto start = Clock::now();
+      const Range r = range(tile);
+      if (!ready) fill_normal(values_, r.first, r.count, key);
+      SequenceBatch& from = ready ? noise_ : values_;
+      kernels().place({from.row(0, 0), from.stride(), rows()}, row_view(), to, r);
+      const auto drawn = Clock::now();
+      finish_tile(tile, evaluator, linear, census);
+      census.draw_time = seconds(start, drawn);
+      census.evaluate_time = seconds(drawn, Clock::now());
+    }
+    census_[static_cast<std::size_t>(tile)] = census;
+  });
+  return combine();
+}
+
+Census SampleSet::evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
+                           const Deadline& deadline) noexcept {
+  pool.run(tiles(), [&](int tile) {
+    Census census;
+    if (deadline.passed()) {
+      skip_tile(tile, census);
+    } else {
+      const auto start = Clock::now();
+      finish_tile(tile, evaluator, linear, census);
+      census.evaluate_time = seconds(start, Clock::now());
+    }
+    census_[static_cast<std::size_t>(tile)] = census;
+  });
+  return combine();
+}
+
+WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& pool) noexcept {
+  pool.run(tiles(), [&](int tile) {
+    weight_sums_[static_cast<std::size_t>(tile)] = kernels().exponential_weights(
+        totals_.data(), costs_.data(), least, temperature, range(tile), weights_.data());
+  });
+  WeightSums<double> all;
+  for (const WeightSums<float>& sums : weight_sums_) {
+    all.weight += static_cast<double>(sums.weight);
+    all.squared += static_cast<double>(sums.squared);
+    all.cost += static_cast<double>(sums.cost);
+  }
+  return all;
+}
+
+WeightSums<double> SampleSet::sum_weights() const noexcept {
+  WeightSums<double> all;
+  for (std::size_t i = 0; i < count(); ++i) {
+    const double w = static_cast<double>(weights_[i]);
+    all.weight += w;
+    all.squared += w * w;
+    if (w > 0) all.cost += w * static_cast<double>(costs_[i]);
+  }
+  return all;
+}
+
+void SampleSet::scale_weights(double factor) noexcept {
+  kernels().scale(static_cast<float>(factor), {0, values_.stride()}, weights_.data());
+}
+
+void SampleSet::sum_rows(RowSums kernel, const float* centre, double* sums, ThreadPool& pool) noexcept {
+  const auto n = static_cast<std::size_t>(rows());
+  pool.run(tiles(), [&](int tile) {
+    kernel(row_view(), weights_.data(), centre, range(tile), &row_sums_[static_cast<std::size_t>(tile) * n]);
+  });
+  std::fill_n(sums, n, 0.0);
+  for (std::size_t tile = 0; tile < static_cast<std::size_t>(tiles()); ++tile)
+    for (std::size_t r = 0; r < n; ++r) sums[r] += static_cast<double>(row_sums_[tile * n + r]);
+}
+
+void SampleSet::weighted_sums(const float* centre, double* sums, ThreadPool& pool) noexcept {
+  sum_rows(kernels().weighted_sums, centre, sums, pool);
+}
+
+void SampleSet::weighted_squares(const float* centre, double* sums, ThreadPool& pool) noexcept {
+  sum_rows(kernels().weighted_squares, centre, sums, pool);
+}
+
+}  // namespace slalom::detail

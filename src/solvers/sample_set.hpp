@@ -1,0 +1,120 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slalom/core/batch_evaluator.hpp"
+#include "slalom/core/random.hpp"
+#include "slalom/core/sequence_batch.hpp"
+#include "slalom/core/thread_pool.hpp"
+#include "solvers/kernels.hpp"
+
+namespace slalom::detail {
+
+using Clock = std::chrono::steady_clock;
+
+/// Seconds from one moment to another.
+inline double seconds(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+/// The moment at which a solve has to end. Without a limit it never looks at the clock.
+class Deadline {
+ public:
+  Deadline() = default;
+  /// `allowed` seconds (infinite: no limit) after `start`.
+  Deadline(Clock::time_point start, double allowed);
+  bool passed() const noexcept { return limited_ && Clock::now() >= end_; }
+  /// One that leaves only the share `share` of the time.
+  Deadline part(double share) const noexcept;
+
+ private:
+  Clock::time_point start_{}, end_{};
+  bool limited_ = false;
+};
+
+/// What a batch of samples turned out to be.
+struct Census {
+  float minimum_total = 0;  ///< least cost with control term; infinite if none is finite
+  float minimum_cost = 0;   ///< least cost without
+  int finite = 0;           ///< samples whose cost is finite
+  int collided = 0;         ///< samples that collide
+  int evaluated = 0;        ///< samples that were drawn and evaluated before the deadline
+  double draw_time = 0;     ///< s, summed over threads
+  double evaluate_time = 0;
+};
+
+/// A set of control sequences with their costs and weights. Work is cut into tiles of samples that fit the
+/// first-level cache; tiles are the same for every number of threads, and what they yield is combined in
+/// their order.
+class SampleSet {
+ public:
+  SampleSet(int steps, int inputs, int samples);
+
+  int samples() const noexcept { return values_.samples(); }
+  int rows() const noexcept { return values_.steps() * values_.inputs(); }
+  const SequenceBatch& values() const noexcept { return values_; }
+  SequenceBatch& values() noexcept { return values_; }
+  Rows<float> row_view() noexcept { return {values_.row(0, 0), values_.stride(), rows()}; }
+
+  /// Costs [sample]; infinite where the evaluator's was not finite or the sample was not reached in time.
+  std::span<const float> costs() const noexcept { return {costs_.data(), count()}; }
+  /// Costs with the control term.
+  std::span<const float> totals() const noexcept { return {totals_.data(), count()}; }
+  std::span<float> totals() noexcept { return {totals_.data(), count()}; }
+  std::span<const std::uint8_t> collided() const noexcept { return {collided_.data(), count()}; }
+  std::span<const float> weights() const noexcept { return {weights_.data(), count()}; }
+  std::span<float> weights() noexcept { return {weights_.data(), count()}; }
+
+  /// Draws the normal values for `key` ahead.
+  void prepare(RandomKey key, ThreadPool& pool) noexcept;
+
+  /// Draws samples, evaluates them and adds sum of linear[row] v[row] to their costs. Tiles that begin after
+  /// the deadline are left out.
+  Census draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key, const Placement<float>& to,
+                           const float* linear, ThreadPool& pool, const Deadline& deadline) noexcept;
+
+  /// Evaluates the values as they are.
+  Census evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
+                  const Deadline& deadline) noexcept;
+
+  /// Sets the weights to exp((least - total) / temperature), not normalised, and returns their sums.
+  WeightSums<double> weigh(float least, float temperature, ThreadPool& pool) noexcept;
+
+  /// The sums of the weights as they are.
+  WeightSums<double> sum_weights() const noexcept;
+
+  /// Multiplies the weights.
+  void scale_weights(double factor) noexcept;
+
+  /// sums[row] = sum of w (v - centre), with w the weights as they are.
+  void weighted_sums(const float* centre, double* sums, ThreadPool& pool) noexcept;
+  /// sums[row] = sum of w (v - centre)^2.
+  void weighted_squares(const float* centre, double* sums, ThreadPool& pool) noexcept;
+
+ private:
+  using RowSums = void (*)(const Rows<float>&, const float*, const float*, Range, float*);
+
+  std::size_t count() const noexcept { return static_cast<std::size_t>(values_.samples()); }
+  int tiles() const noexcept { return (values_.stride() + tile_ - 1) / tile_; }
+  Range range(int tile) const noexcept;
+  void finish_tile(int tile, const BatchEvaluator& evaluator, const float* linear, Census& census) noexcept;
+  void skip_tile(int tile, Census& census) noexcept;
+  Census combine() const noexcept;
+  void sum_rows(RowSums kernel, const float* centre, double* sums, ThreadPool& pool) noexcept;
+
+  SequenceBatch values_;
+  SequenceBatch noise_;
+  bool prepared_ = false;
+  RandomKey prepared_key_;
+  AlignedBuffer costs_, totals_, weights_;
+  std::vector<std::uint8_t> collided_;
+  int tile_;
+  std::vector<Census> census_;                  ///< [tile]
+  std::vector<WeightSums<float>> weight_sums_;  ///< [tile]
+  std::vector<float> row_sums_;                 ///< [tile][row]
+};
+
+}  // namespace slalom::detail

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solvers/kernels_of.hpp"
+
+namespace slalom::detail {
+
+/// The gradient of log E[w] at a particle theta, estimated from samples v_i ~ N(theta, Sigma_g) without any
+/// derivative of the cost (Lambert et al., "Stein Variational Model Predictive Control", CoRL 2020; Honda et
+/// al., ICRA 2024, equation (surrogate_grad)):
+///
+///     g = sum_i w_i Sigma_g^-1 (v_i - theta) / (sum_i w_i + floor),   w_i = exp(-J_i / lambda)
+///
+/// J is the cost S plus what the method adds to it. With `subtract_minimum` the weights are taken relative to
+/// the least J, which matters only beside the floor: without it the floor stops a particle whose samples are
+/// all bad. It is applied to weights relative to the minimum in either case, so that nothing underflows.
+template <class Real>
+struct SurrogateGradient {
+  Real temperature = 1;  ///< lambda
+  bool subtract_minimum = true;
+  double floor = 0;
+  const Real* centre = nullptr;            ///< theta [row]
+  const Real* inverse_variance = nullptr;  ///< of the samples, [row]
+  const Real* linear = nullptr;            ///< J += sum linear[row] v[row]; may be null
+  const Real* distance_centre = nullptr;   ///< J += sum distance_weight (v - distance_centre)^2; may be null
+  const Real* distance_weight = nullptr;
+};
+
+/// Computes g [row] from the samples `block` of `v`, of which the first `samples` count (block.count is a
+/// multiple of the lanes). `totals` holds their costs S and becomes J; `weights` is scratch of its length.
+/// Returns false, with g = 0, if no J is finite.
+template <class Real>
+bool surrogate_gradient(const SurrogateGradient<Real>& s, const Rows<Real>& v, Range block, int samples,
+                        Real* totals, Real* weights, Real* gradient) noexcept {
+  using K = KernelsOf<Real>;
+  constexpr Real infinite = std::numeric_limits<Real>::infinity();
+  if (s.linear) K::add_linear(v, s.linear, block, totals);
+  if (s.distance_centre) K::add_squared_distance(v, s.distance_centre, s.distance_weight, block, totals);
+  K::make_finite(block, totals);
+  std::fill(totals + block.first + samples, totals + block.first + block.count, infinite);
+  const Real least = K::minimum(totals, block);
+  if (!(least < infinite)) {
+    std::fill_n(gradient, v.rows, Real(0));
+    return false;
+  }
+  const double sum = static_cast<double>(
+      K::exponential_weights(totals, totals, least, s.temperature, block, weights).weight);
+  const double floor =
+      s.subtract_minimum
+          ? s.floor
+          : s.floor * std::exp(static_cast<double>(least) / static_cast<double>(s.temperature));
+  K::weighted_sums(v, weights, s.centre, block, gradient);
+  for (int r = 0; r < v.rows; ++r) {
+    gradient[r] = static_cast<Real>(static_cast<double>(s.inverse_variance[r]) *
+                                    static_cast<double>(gradient[r]) / (sum + floor));
+  }
+  return true;
+}
+
+}  // namespace slalom::detail

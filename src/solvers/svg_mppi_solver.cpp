@@ -1,0 +1,100 @@
+#include <algorithm>
+
+#include "slalom/solvers/make_solver.hpp"
+#include "solvers/guides.hpp"
+#include "solvers/path_integral.hpp"
+
+namespace slalom {
+
+namespace {
+
+/// `svg_mppi` (Honda et al., "Stein Variational Guided Model Predictive Path Integral Control", ICRA 2024):
+/// (a) guides move to modes, (b) the best is the nominal sequence, (c) the variances are fitted to its path,
+/// (d) MPPI with that nominal and those variances.
+class SvgMppiSolver final : public detail::SolverBase {
+ public:
+  SvgMppiSolver(const SvgMppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
+      : SolverBase(options, inputs, std::move(pool)),
+        shift_(options.shift_warm_start),
+        use_nominal_(options.use_nominal),
+        adapt_covariance_(options.adapt_covariance),
+        guides_(options, inputs, low(), high()),
+        update_(detail::PathIntegral::settings(options), options.horizon, inputs, options.samples),
+        mean_(size()),
+        shifted_(size()),
+        nominal_(size()),
+        variance_(spread(options.variance)),
+        fixed_variance_(variance_) {
+    reset(options.seed);
+  }
+
+  const char* name() const noexcept override { return "svg_mppi"; }
+
+  void reset(std::uint64_t seed) noexcept override {
+    restart(seed);
+    guides_.restart(key(first_guides));
+    std::fill(mean_.begin(), mean_.end(), 0.0f);
+    std::fill(nominal_.begin(), nominal_.end(), 0.0f);
+    clamp(mean_.data());
+    variance_ = fixed_variance_;
+    result_ = {};
+    result_.inputs = result_.mean = mean_;
+    result_.nominal = nominal_;
+    result_.covariance = variance_;
+  }
+
+  void prepare() noexcept override { update_.samples().prepare(key(samples), pool()); }
+
+  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
+    const auto start = detail::Clock::now();
+    const detail::Deadline deadline(start, request.deadline);
+    result_.times = {};
+    if (shift_) shift(detail::warm_start_shift(evaluator, request));
+
+    // The guides may take half of the time allowed: without samples they are worth nothing.
+    result_.iterations =
+        guides_.move(evaluator, key(gradients), mean_.data(), nominal_.data(), pool(), deadline.part(0.5));
+    if (use_nominal_ && guides_.best_cost() < std::numeric_limits<float>::infinity()) {
+      std::copy_n(guides_.best_sequence().data(), size(), nominal_.data());
+    }
+    if (adapt_covariance_) guides_.fit_variance(variance_.data());
+    result_.times.guide = detail::seconds(start, detail::Clock::now());
+
+    result_.status = update_.update(evaluator, key(samples), nominal_.data(), variance_.data(), low().data(),
+                                    high().data(), pool(), deadline, mean_.data(), result_);
+    result_.guides = guides_.sequences();
+    result_.guide_path = guides_.path();
+    next_solve();
+    result_.times.total = detail::seconds(start, detail::Clock::now());
+    return result_;
+  }
+
+ private:
+  /// The random streams of a solve.
+  enum Stage { first_guides, samples, gradients };
+
+  void shift(double steps) noexcept {
+    if (!(steps > 0)) return;
+    detail::shift_sequence(mean_.data(), horizon(), inputs(), steps, shifted_.data());
+    std::swap_ranges(mean_.begin(), mean_.end(), shifted_.begin());
+    detail::shift_sequence(nominal_.data(), horizon(), inputs(), steps, shifted_.data());
+    std::swap_ranges(nominal_.begin(), nominal_.end(), shifted_.begin());
+    guides_.shift(steps);
+  }
+
+  bool shift_, use_nominal_, adapt_covariance_;
+  detail::Guides guides_;
+  detail::PathIntegral update_;
+  std::vector<float> mean_, shifted_, nominal_, variance_, fixed_variance_;  ///< [row]
+  SolveResult result_;
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> make_solver(const SvgMppiOptions& options, int inputs,
+                                    std::shared_ptr<ThreadPool> pool) {
+  validate_options(options, "svg_mppi", inputs);
+  return std::make_unique<SvgMppiSolver>(options, inputs, std::move(pool));
+}
+
+}  // namespace slalom
