@@ -1,5 +1,6 @@
 #include "sim/gym_scan.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -68,6 +69,20 @@ double walk(const Field& field, double x, double y, double cosine, double sine, 
 
 }  // namespace
 
+GymDirections::GymDirections(double yaw, const LidarOptions& options)
+    : index_(std::fmod(table_size * (yaw + options.angle_min()) / (2 * pi), table_size)),
+      increment_(table_size * options.angle_increment() / (2 * pi)) {
+  while (index_ < 0) index_ += table_size;
+}
+
+maps::Point GymDirections::next() {
+  // A tiny negative angle plus a turn may round to the table's size.
+  const auto entry = std::min(static_cast<std::size_t>(index_), std::size_t{table_size - 1});
+  index_ += increment_;
+  while (index_ >= table_size) index_ -= table_size;
+  return {table().cosine[entry], table().sine[entry]};
+}
+
 double gym_distance(const Track& track, const maps::Point& point) {
   return Field(track).at(point.x, point.y);
 }
@@ -75,21 +90,12 @@ double gym_distance(const Track& track, const maps::Point& point) {
 void gym_scan(const Track& track, const maps::Pose& sensor, const LidarOptions& options,
               std::span<const double> angles, std::span<double> ranges) {
   const Field field(track);
-  double index = std::fmod(table_size * (sensor.yaw + options.angle_min()) / (2 * pi), table_size);
-  while (index < 0) index += table_size;
-  const double increment = table_size * options.angle_increment() / (2 * pi);
+  GymDirections directions(sensor.yaw, options);
   for (std::size_t i = 0; i < ranges.size(); ++i) {
-    double cosine, sine;
-    if (options.gym_directions) {
-      cosine = table().cosine[static_cast<std::size_t>(index)];
-      sine = table().sine[static_cast<std::size_t>(index)];
-      index += increment;
-      while (index >= table_size) index -= table_size;
-    } else {
-      cosine = std::cos(sensor.yaw + angles[i]);
-      sine = std::sin(sensor.yaw + angles[i]);
-    }
-    ranges[i] = walk(field, sensor.x, sensor.y, cosine, sine, options.range_max);
+    const double angle = sensor.yaw + angles[i];
+    const maps::Point to =
+        options.gym_directions ? directions.next() : maps::Point{std::cos(angle), std::sin(angle)};
+    ranges[i] = walk(field, sensor.x, sensor.y, to.x, to.y, options.range_max);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "slalom/sim/lidar.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,11 @@ namespace slalom::sim {
 namespace {
 
 constexpr double pi = 3.141592653589793;
+
+std::size_t padded(int count) {
+  return static_cast<std::size_t>((count + detail::scan_padding - 1) / detail::scan_padding *
+                                  detail::scan_padding);
+}
 
 }  // namespace
 
@@ -27,18 +33,23 @@ void LidarOptions::validate() const {
   detail::require_range("dropout", dropout, 0, 1);
 }
 
-Lidar::Lidar(const LidarOptions& options) : options_(options) {
+Lidar::Lidar(const LidarOptions& options) : options_(options), kernels_(&detail::kernels()) {
   options.validate();
-  const auto padded =
-      static_cast<std::size_t>((options.beams + detail::cone_beams - 1) / detail::cone_beams) *
-      detail::cone_beams;
-  for (int i = 0; i < options.beams; ++i)
-    angles_.push_back(options.angle_min() + i * options.angle_increment());
-  for (std::size_t i = 0; i < padded; ++i) {
-    // Padding repeats the last beam, which costs nothing beyond it.
+  const double first = options.angle_min(), increment = options.angle_increment();
+  for (int i = 0; i < options.beams; ++i) angles_.push_back(first + i * increment);
+  // Padding repeats the last beam, so that it costs nothing beyond it.
+  for (std::size_t i = 0; i < padded(options.beams); ++i) {
     const double angle = angles_[std::min(i, angles_.size() - 1)];
     cosines_.push_back(static_cast<float>(std::cos(angle)));
     sines_.push_back(static_cast<float>(std::sin(angle)));
+  }
+  const int cones = (options.beams + detail::cone_beams - 1) / detail::cone_beams;
+  for (std::size_t i = 0; i < padded(cones); ++i) {
+    const double angle = first + (std::min<double>(static_cast<double>(i), cones - 1) * detail::cone_beams +
+                                  (detail::cone_beams - 1) / 2.0) *
+                                     increment;
+    cone_cosines_.push_back(static_cast<float>(std::cos(angle)));
+    cone_sines_.push_back(static_cast<float>(std::sin(angle)));
   }
 }
 
@@ -47,81 +58,86 @@ maps::Pose Lidar::sensor_pose(const maps::Pose& car) const noexcept {
   return {at.x, at.y, car.yaw + options_.mount.yaw};
 }
 
-void Lidar::scan(const Track& track, const maps::Pose& sensor, std::span<double> ranges) const noexcept {
-  if (options_.gym_ranges) return detail::gym_scan(track, sensor, options_, angles_, ranges);
-  detail::scan(track, sensor, options_, {cosines_, sines_}, ranges);
-}
-
-Lidar::Window Lidar::window(double bearing, double half_angle) const noexcept {
-  const double increment = options_.angle_increment(), first = options_.angle_min();
-  if (options_.beams == 1 || increment == 0) return {0, options_.beams - 1};
-  // A bearing and the same less a turn: the field of view may span more than half of one.
-  Window all{options_.beams, -1};
-  for (const double turn : {-2 * pi, 0.0, 2 * pi}) {
-    const double low = std::ceil((bearing + turn - half_angle - first) / increment - 1e-6);
-    const double high = std::floor((bearing + turn + half_angle - first) / increment + 1e-6);
-    if (low > options_.beams - 1 || high < 0 || low > high) continue;
-    all.first = std::min(all.first, static_cast<int>(std::max(low, 0.0)));
-    all.last = std::max(all.last, static_cast<int>(std::min(high, options_.beams - 1.0)));
-  }
-  return all;
-}
-
-Lidar::Window Lidar::gym_window(const maps::Pose& sensor, const Box& box) const noexcept {
-  Window all{options_.beams - 1, 0};
-  for (const maps::Point& corner : corners(box)) {
-    const double heading = std::atan2(std::sin(sensor.yaw), std::cos(sensor.yaw));
-    const double dx = corner.x - sensor.x, dy = corner.y - sensor.y, distance = std::sqrt(dx * dx + dy * dy);
-    double angle = heading - std::atan2(dy / distance, dx / distance);
-    if (angle > pi) angle -= 2 * pi;
-    if (angle < -pi) angle += 2 * pi;
-    const auto nearer = [&](double a, double b) { return std::abs(a + angle) < std::abs(b + angle); };
-    const auto nearest = std::min_element(angles_.begin(), angles_.end(), nearer);
-    const int beam = static_cast<int>(nearest - angles_.begin());
-    all.first = std::min(all.first, beam);
-    all.last = std::max(all.last, beam);
-  }
-  return all;
-}
-
 namespace {
 
-/// Distance, bearing and half the angle under which a disc of `radius` is seen.
-struct Sight {
-  double distance, bearing, half_angle;
-};
-
-Sight sight(const maps::Pose& sensor, double x, double y, double radius) {
-  const double dx = x - sensor.x, dy = y - sensor.y, distance = std::hypot(dx, dy);
-  const double half = distance > radius ? std::asin(radius / distance) : pi;
-  return {distance, std::remainder(std::atan2(dy, dx) - sensor.yaw, 2 * pi), half};
+/// All of a scan's task but its beams; false if the sensor is not on the map.
+bool prepare(const Track& track, const maps::Pose& sensor, const LidarOptions& options,
+             detail::ScanTask& task) {
+  const maps::Point cell = track.to_cells({sensor.x, sensor.y});
+  const maps::OccupancyGrid& grid = track.grid();
+  if (!(cell.x >= 0 && cell.y >= 0 && cell.x < grid.width && cell.y < grid.height)) return false;
+  const double yaw = sensor.yaw - grid.origin.yaw;
+  task.clearance = track.clearance().data();
+  task.stride = track.clearance_stride();
+  task.x = static_cast<float>(cell.x + 1);
+  task.y = static_cast<float>(cell.y + 1);
+  task.cosine = static_cast<float>(std::cos(yaw));
+  task.sine = static_cast<float>(std::sin(yaw));
+  task.cone_width = static_cast<float>((detail::cone_beams - 1) / 2.0 * options.angle_increment() + 1e-5);
+  task.most = static_cast<float>(options.range_max / grid.resolution);
+  task.beyond = std::max(1e-3f, static_cast<float>(std::max(grid.width, grid.height)) * 5e-7f);
+  task.resolution = static_cast<float>(grid.resolution);
+  task.range_max = static_cast<float>(options.range_max);
+  return true;
 }
 
 }  // namespace
 
-void Lidar::cast(const maps::Pose& sensor, const Box& box, std::span<double> ranges) const noexcept {
-  const double radius = std::hypot(box.length, box.width) / 2;
-  const Sight seen = sight(sensor, box.pose.x, box.pose.y, radius);
-  if (!options_.gym_window && seen.distance - radius > options_.range_max) return;
-  const Window beams = options_.gym_window ? gym_window(sensor, box) : window(seen.bearing, seen.half_angle);
-  for (int i = beams.first; i <= beams.last; ++i) {
-    const auto beam = static_cast<std::size_t>(i);
-    const double angle = sensor.yaw + angles_[beam];
-    const double distance = ray_distance({sensor.x, sensor.y}, std::cos(angle), std::sin(angle), box);
-    if (distance < ranges[beam]) ranges[beam] = distance;
+void Lidar::scan(const Track& track, const maps::Pose& sensor, std::span<float> ranges) const noexcept {
+  detail::ScanTask task{};
+  if (!prepare(track, sensor, options_, task)) {
+    std::fill(ranges.begin(), ranges.end(),
+              track.options().outside_is_wall ? 0.0f : static_cast<float>(options_.range_max));
+    return;
+  }
+  if (options_.gym_directions) return gym_directions_scan(track, sensor, ranges);
+  task.cosines = cosines_.data();
+  task.sines = sines_.data();
+  task.cone_cosines = cone_cosines_.data();
+  task.cone_sines = cone_sines_.data();
+  task.beams = options_.beams;
+  task.ranges = ranges.data();
+  kernels_->scan(task);
+}
+
+void Lidar::gym_directions_scan(const Track& track, const maps::Pose& sensor,
+                                std::span<float> ranges) const noexcept {
+  constexpr std::size_t block = detail::scan_padding;
+  std::array<float, block> cosines, sines, cone_cosines, cone_sines;
+  detail::ScanTask task{};
+  prepare(track, sensor, options_, task);
+  const double turn = track.grid().origin.yaw;
+  task.cosine = static_cast<float>(std::cos(turn));
+  task.sine = static_cast<float>(-std::sin(turn));
+  // A table's entries are off by up to its step.
+  task.cone_width += 0.0035f;
+  detail::GymDirections directions(sensor.yaw, options_);
+  for (std::size_t first = 0; first < angles_.size(); first += block) {
+    const std::size_t here = std::min(block, angles_.size() - first);
+    for (std::size_t i = 0; i < block; ++i) {
+      const auto direction = i < here ? directions.next() : maps::Point{cosines[here - 1], sines[here - 1]};
+      cosines[i] = static_cast<float>(direction.x);
+      sines[i] = static_cast<float>(direction.y);
+    }
+    const double middle = (detail::cone_beams - 1) / 2.0 * options_.angle_increment();
+    for (std::size_t i = 0; i < block; ++i) {
+      const std::size_t beam = std::min(first + i * detail::cone_beams, angles_.size() - 1);
+      const double angle = sensor.yaw + angles_[beam] + middle;
+      cone_cosines[i] = static_cast<float>(std::cos(angle));
+      cone_sines[i] = static_cast<float>(std::sin(angle));
+    }
+    task.cosines = cosines.data();
+    task.sines = sines.data();
+    task.cone_cosines = cone_cosines.data();
+    task.cone_sines = cone_sines.data();
+    task.beams = static_cast<int>(here);
+    task.ranges = ranges.data() + first;
+    kernels_->scan(task);
   }
 }
 
-void Lidar::cast(const maps::Pose& sensor, const Disc& disc, std::span<double> ranges) const noexcept {
-  const Sight seen = sight(sensor, disc.middle.x, disc.middle.y, disc.radius);
-  if (seen.distance - disc.radius > options_.range_max) return;
-  const Window beams = window(seen.bearing, seen.half_angle);
-  for (int i = beams.first; i <= beams.last; ++i) {
-    const auto beam = static_cast<std::size_t>(i);
-    const double angle = sensor.yaw + angles_[beam];
-    const double distance = ray_distance({sensor.x, sensor.y}, std::cos(angle), std::sin(angle), disc);
-    if (distance < ranges[beam]) ranges[beam] = distance;
-  }
+void Lidar::gym_scan(const Track& track, const maps::Pose& sensor, std::span<double> ranges) const noexcept {
+  detail::gym_scan(track, sensor, options_, angles_, ranges);
 }
 
 }  // namespace slalom::sim

@@ -1,22 +1,69 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
-
-#include "slalom/sim/lidar.hpp"
 
 namespace slalom::sim::detail {
 
-/// Beams that are walked together as far as no wall is near any of them. Direction arrays are padded to whole
-/// cones.
+/// Beams that are walked together as far as no wall is near any of them.
 inline constexpr int cone_beams = 16;
+/// Beam arrays and cone arrays are padded to whole multiples of this.
+inline constexpr int scan_padding = 64;
 
-/// Unit vectors in the sensor's frame, one per beam.
-struct Directions {
-  std::span<const float> cosines, sines;
+/// A scan of walls, in cells of the grid with its ring.
+struct ScanTask {
+  const std::int16_t* clearance;
+  int stride;
+  float x, y;            ///< of the sensor, cells, the ring's corner at (0, 0)
+  float cosine, sine;    ///< of the sensor's yaw in the grid
+  const float* cosines;  ///< per beam, in the sensor's frame
+  const float* sines;
+  int beams;                  ///< without padding
+  const float* cone_cosines;  ///< per cone, of its middle
+  const float* cone_sines;
+  float cone_width;  ///< rad, from a cone's middle to its outermost beam
+  float most;        ///< cells, longest range
+  float beyond;      ///< cells, how far past a cell's border the next one surely is
+  float resolution;  ///< m per cell
+  float range_max;   ///< m
+  float* ranges;     ///< out, m, with room for the padding
 };
 
-/// The exact scan of walls.
-void scan(const Track& track, const maps::Pose& sensor, const LidarOptions& options, const Directions& beams,
-          std::span<double> ranges);
+/// A body to look for in beams [first, last].
+struct CastTask {
+  float x, y;            ///< m, of the sensor in the body's frame
+  float cosine, sine;    ///< of the sensor's yaw in the body's frame
+  const float* cosines;  ///< per beam, in the sensor's frame
+  const float* sines;
+  float half_length, half_width;  ///< m, of a box
+  float radius;                   ///< m, above 0 for a disc
+  int first, last;
+  float* ranges;  ///< in and out, m
+};
+
+struct NoiseTask {
+  std::uint32_t key0, key1;
+  float deviation;           ///< m
+  float most;                ///< m
+  std::uint32_t lost_below;  ///< of 2^32: share of lost beams
+  int count;
+  float* ranges;  ///< in and out, m, with room for the padding
+};
+
+/// The loops, for one instruction set. All give the same bits.
+struct Kernels {
+  void (*scan)(const ScanTask&);
+  void (*cast)(const CastTask&);
+  void (*noise)(const NoiseTask&);
+  const char* name;
+};
+
+extern const Kernels kernels_baseline, kernels_avx2, kernels_avx512;
+
+/// Those for simd::active_target(). Throws as that does.
+const Kernels& kernels();
+
+/// All that this processor runs, the widest first.
+std::span<const Kernels> all_kernels();
 
 }  // namespace slalom::sim::detail

@@ -64,7 +64,8 @@ void Track::make_clearance() {
           grown.at(x, y) = maps::Occupancy::occupied;
     }
   const maps::DistanceField field = maps::distance_transform(grown, false);
-  clearance_.resize(field.distance.size());
+  // One more, since look-ups of 16 bits may read 32.
+  clearance_.resize(field.distance.size() + 1);
   for (int r = -1; r <= grid_.height; ++r)
     for (int c = -1; c <= grid_.width; ++c) {
       const auto i =

@@ -93,9 +93,10 @@ void World::reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::spa
       if (!car.timer) car.timer.emplace(*path, options_.sectors);
       car.timer->reset(*path, {state.x, state.y}, 0);
     }
-    car.noise = NormalNoise(seed, i);
+    car.noise.reset(seed, i);
     car.gym_noise = NumpyRandom(12345);
-    car.ranges.assign(beams, options_.lidar.range_max);
+    car.ranges.assign(lidar_.padded_beams(), static_cast<float>(options_.lidar.range_max));
+    if (options_.lidar.gym_ranges) car.gym_ranges.assign(beams, options_.lidar.range_max);
     car.touching.clear();
     car.wall = false;
     boxes_[i].pose = cars[i];
@@ -180,7 +181,12 @@ Observation World::observe(std::size_t index) const noexcept {
           .slip = s.slip,
           .time = time_,
           .scan_time = car.scan_time,
-          .ranges = car.ranges,
+          .scan = {.ranges = std::span(car.ranges).first(static_cast<std::size_t>(options_.lidar.beams)),
+                   .angle_min = options_.lidar.angle_min(),
+                   .angle_increment = options_.lidar.angle_increment(),
+                   .range_min = 0,
+                   .range_max = options_.lidar.range_max},
+          .gym_ranges = car.gym_ranges,
           .wall = car.wall,
           .touching = car.touching};
 }

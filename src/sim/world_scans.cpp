@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "slalom/sim/world.hpp"
 
 namespace slalom::sim {
@@ -6,26 +8,45 @@ void World::scan_walls(Car& car) noexcept {
   const CarState& s = car.plant.state();
   car.sensor = lidar_.sensor_pose({s.x, s.y, s.yaw});
   car.scan_time = time_;
-  lidar_.scan(*track_, car.sensor, car.ranges);
+  if (options_.lidar.gym_ranges)
+    lidar_.gym_scan(*track_, car.sensor, car.gym_ranges);
+  else
+    lidar_.scan(*track_, car.sensor, car.ranges);
 }
 
 void World::cast_bodies(std::size_t index) noexcept {
   Car& car = cars_[index];
+  const auto cast = [&](const auto& body) {
+    if (options_.lidar.gym_ranges)
+      lidar_.gym_cast(car.sensor, body, car.gym_ranges);
+    else
+      lidar_.cast(car.sensor, body, car.ranges);
+  };
   for (std::size_t i = 0; i < cars_.size(); ++i)
-    if (i != index) lidar_.cast(car.sensor, boxes_[i], car.ranges);
+    if (i != index) cast(boxes_[i]);
   for (const Fixed& body : fixed_) {
     if (body.disc_radius > 0)
-      lidar_.cast(car.sensor, Disc{{body.box.pose.x, body.box.pose.y}, body.disc_radius}, car.ranges);
+      cast(Disc{{body.box.pose.x, body.box.pose.y}, body.disc_radius});
     else
-      lidar_.cast(car.sensor, body.box, car.ranges);
+      cast(body.box);
   }
 }
 
 void World::add_noise(Car& car) noexcept {
   const LidarOptions& lidar = options_.lidar;
   if (lidar.noise == 0 && lidar.dropout == 0) return;
-  if (!lidar.gym_noise) return car.noise.add(car.ranges, lidar.noise, lidar.range_max, lidar.dropout);
-  for (double& range : car.ranges) range += lidar.noise * car.gym_noise.normal();
+  if (lidar.gym_noise && lidar.gym_ranges)
+    for (double& range : car.gym_ranges) range += lidar.noise * car.gym_noise.normal();
+  else if (lidar.gym_noise)
+    for (int i = 0; i < lidar.beams; ++i)
+      car.ranges[static_cast<std::size_t>(i)] += static_cast<float>(lidar.noise * car.gym_noise.normal());
+  else
+    car.noise.add(car.ranges, lidar.beams, lidar.noise, lidar.range_max, lidar.dropout);
+}
+
+void World::publish(Car& car) noexcept {
+  std::transform(car.gym_ranges.begin(), car.gym_ranges.end(), car.ranges.begin(),
+                 [](double range) { return static_cast<float>(range); });
 }
 
 void World::scan_all() noexcept {
@@ -34,6 +55,7 @@ void World::scan_all() noexcept {
     scan_walls(cars_[i]);
     if (options_.lidar.gym_noise) add_noise(cars_[i]);
     cast_bodies(i);
+    publish(cars_[i]);
     if (!options_.lidar.gym_noise) add_noise(cars_[i]);
   }
 }
@@ -49,7 +71,9 @@ void World::gym_scan_and_contacts() noexcept {
   for (std::size_t i = 0; i < cars_.size(); ++i) {
     Car& car = cars_[i];
     if (!car.scans) continue;
-    car.wall = time_to_collision_.first_hit(car.ranges, car.plant.state().speed) >= 0;
+    const double speed = car.plant.state().speed;
+    car.wall = (options_.lidar.gym_ranges ? time_to_collision_.first_hit(car.gym_ranges, speed)
+                                          : time_to_collision_.first_hit(car.ranges, speed)) >= 0;
     if (car.wall) {
       flags_[i] = 1;
       // The others still see it where it drove to; its own view of them is from its new yaw.
@@ -60,6 +84,7 @@ void World::gym_scan_and_contacts() noexcept {
       car.sensor = lidar_.sensor_pose({s.x, s.y, s.yaw});
     }
     cast_bodies(i);
+    publish(car);
   }
 }
 

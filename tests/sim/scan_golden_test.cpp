@@ -30,7 +30,7 @@ void compare_scans(const std::filesystem::path& folder, const std::string& map) 
     compared.next_case();
     const auto expected = table.series(row, "r");
     ASSERT_EQ(expected.size(), ranges.size());
-    lidar.scan(track, pose_of(table, row), ranges);
+    lidar.gym_scan(track, pose_of(table, row), ranges);
     for (std::size_t i = 0; i < ranges.size(); ++i) compared.absolute(ranges[i], expected[i]);
     ASSERT_LE(compared.worst(), 1e-9) << "case " << table.text(row, "case");
   }
@@ -81,7 +81,7 @@ TEST(GymScan, RayCast) {
       continue;
     }
     compared.next_case();
-    lidar.cast(pose_of(table, row, "ego_"), Box{pose_of(table, row, "opp_"), 0.58, 0.31}, ranges);
+    lidar.gym_cast(pose_of(table, row, "ego_"), Box{pose_of(table, row, "opp_"), 0.58, 0.31}, ranges);
     for (std::size_t i = 0; i < ranges.size(); ++i) compared.absolute(ranges[i], expected[i]);
     EXPECT_LE(compared.worst(), 1e-9) << "case " << table.text(row, "case");
   }

@@ -38,7 +38,8 @@ TEST(GymWorld, TimeToCollision) {
   Comparison compared("ttc");
   for (std::size_t row = 0; row < table.rows(); ++row) {
     compared.next_case();
-    const int hit = test.first_hit(table.series(row, "r"), table.real(row, "vel"));
+    const auto ranges = table.series(row, "r");
+    const int hit = test.first_hit(std::span<const double>(ranges), table.real(row, "vel"));
     EXPECT_EQ(hit >= 0, table.integer(row, "in_collision") == 1) << "case " << table.text(row, "case");
     compared.absolute(hit, table.integer(row, "first_hit_beam"));
   }
@@ -107,7 +108,7 @@ class TraceRun {
     ranges.next_case();
     const auto expected = scans_.series(scan->second, "r");
     for (std::size_t i = 0; i < expected.size(); ++i)
-      ranges.absolute(world.observe(agent).ranges[i], expected[i]);
+      ranges.absolute(world.observe(agent).gym_ranges[i], expected[i]);
     EXPECT_LE(ranges.worst(), 1e-8) << where();
   }
 

@@ -115,15 +115,15 @@ TEST(World, SeesBodiesWhereTheyAre) {
               std::array{maps::Pose{5, 2.5, 0}});
   const std::size_t ahead = 540;
   const double sensor = 2 + options.lidar.mount.x;
-  EXPECT_NEAR(world.observe(0).ranges[ahead], 5 - 0.29 - sensor, 1e-4);
+  EXPECT_NEAR(world.observe(0).scan.ranges[ahead], 5 - 0.29 - sensor, 1e-4);
   world.move_body(2, {8, 4, 0});
   world.step(std::array{Command{}, Command{}});
-  EXPECT_NEAR(world.observe(0).ranges[ahead], 12 - 0.29 - sensor, 1e-4);
+  EXPECT_NEAR(world.observe(0).scan.ranges[ahead], 12 - 0.29 - sensor, 1e-4);
   world.add_disc({{4, 2.5}, 0.1});
   world.step(std::array{Command{}, Command{}});
-  EXPECT_NEAR(world.observe(0).ranges[ahead], 4 - 0.1 - sensor, 1e-4);
+  EXPECT_NEAR(world.observe(0).scan.ranges[ahead], 4 - 0.1 - sensor, 1e-4);
   // The second car looks at the far wall, whose inner face is one cell short of 20 m.
-  EXPECT_NEAR(world.observe(1).ranges[ahead], 19.95 - 12 - options.lidar.mount.x, 1e-3);
+  EXPECT_NEAR(world.observe(1).scan.ranges[ahead], 19.95 - 12 - options.lidar.mount.x, 1e-3);
 }
 
 TEST(World, LidarRateHoldsScans) {

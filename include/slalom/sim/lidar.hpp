@@ -9,6 +9,10 @@
 
 namespace slalom::sim {
 
+namespace detail {
+struct Kernels;
+}
+
 struct LidarOptions {
   int beams = 1080;  ///< 1 to 100000
   double field_of_view =
@@ -39,36 +43,51 @@ struct LidarOptions {
 };
 
 /// A planar laser scanner. By default a range is exact: to the outline of the first wall cell on the beam,
-/// found by steps that the clearance of each cell allows (sphere tracing, J. C. Hart, 1996) and from cell to
-/// cell where it allows none.
+/// found by steps that the clearance of each cell allows (sphere tracing, J. C. Hart, 1996), for 16
+/// neighbouring beams together as long as they are close to each other, and from cell to cell where it allows
+/// none. In SIMD lanes over beams; every instruction set gives the same bits.
 class Lidar {
  public:
+  /// Throws std::invalid_argument on options out of range.
   explicit Lidar(const LidarOptions& options);
 
   const LidarOptions& options() const noexcept { return options_; }
   std::span<const double> angles() const noexcept { return angles_; }  ///< rad, in the sensor's frame
+  /// Ranges are written to arrays of this size: beams, then padding of no meaning.
+  std::size_t padded_beams() const noexcept { return cosines_.size(); }
 
   /// The pose of the sensor of a car at `car`.
   maps::Pose sensor_pose(const maps::Pose& car) const noexcept;
 
-  /// The distances (m) to the walls of the track from a sensor at `sensor`, one per beam, without noise.
-  void scan(const Track& track, const maps::Pose& sensor, std::span<double> ranges) const noexcept;
+  /// The distances (m) to the walls of the track from a sensor at `sensor`, without noise; padded_beams()
+  /// values.
+  void scan(const Track& track, const maps::Pose& sensor, std::span<float> ranges) const noexcept;
 
-  /// Shortens ranges to a body where it is nearer. Only beams that can hit it are looked at.
-  void cast(const maps::Pose& sensor, const Box& box, std::span<double> ranges) const noexcept;
-  void cast(const maps::Pose& sensor, const Disc& disc, std::span<double> ranges) const noexcept;
+  /// Shortens ranges to a body where it is nearer. Only beams that can hit it are looked at. padded_beams()
+  /// values.
+  void cast(const maps::Pose& sensor, const Box& box, std::span<float> ranges) const noexcept;
+  void cast(const maps::Pose& sensor, const Disc& disc, std::span<float> ranges) const noexcept;
+
+  /// The same with LidarOptions::gym_ranges, in float64; one value per beam.
+  void gym_scan(const Track& track, const maps::Pose& sensor, std::span<double> ranges) const noexcept;
+  void gym_cast(const maps::Pose& sensor, const Box& box, std::span<double> ranges) const noexcept;
+  void gym_cast(const maps::Pose& sensor, const Disc& disc, std::span<double> ranges) const noexcept;
 
  private:
-  /// Beams [first, last] about a bearing, in the sensor's frame; none if first > last.
+  /// Beams [first, last]; none if first > last.
   struct Window {
     int first, last;
   };
-  Window window(double bearing, double half_angle) const noexcept;
+  Window window(const maps::Pose& sensor, const maps::Point& middle, double radius) const noexcept;
   Window gym_window(const maps::Pose& sensor, const Box& box) const noexcept;
+  void gym_directions_scan(const Track& track, const maps::Pose& sensor,
+                           std::span<float> ranges) const noexcept;
 
   LidarOptions options_;
   std::vector<double> angles_;
-  std::vector<float> cosines_, sines_;  ///< of the angles, padded to whole packs
+  std::vector<float> cosines_, sines_;            ///< of the angles, padded
+  std::vector<float> cone_cosines_, cone_sines_;  ///< of the middles of cones of beams, padded
+  const detail::Kernels* kernels_;
 };
 
 }  // namespace slalom::sim

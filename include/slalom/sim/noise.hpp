@@ -8,16 +8,17 @@ namespace slalom::sim {
 /// A stream of normal noise of its own for each (seed, car): call n yields the same values whatever was
 /// called before, on every machine and instruction set.
 ///
-/// 32 random bits by a counter and two rounds of a multiply-and-shift hash, then the transform of Box &
-/// Muller (1958) with the polynomials below; the tails reach 6.6 standard deviations.
+/// Random bits by a counter and two rounds of a multiply-and-shift hash, then the transform of Box & Muller
+/// (1958) in float32; the tails reach 5.9 standard deviations.
 class NormalNoise {
  public:
-  NormalNoise() = default;
-  NormalNoise(std::uint64_t seed, std::uint64_t car) noexcept;
+  /// The stream of one car of one run.
+  void reset(std::uint64_t seed, std::uint64_t car) noexcept;
 
-  /// Adds noise of the given standard deviation to each range, and cuts it to [0, most]. Ranges of `most`
-  /// have no return to be noisy; a `dropout` share of the others is lost and becomes `most`.
-  void add(std::span<double> ranges, double deviation, double most, double dropout) noexcept;
+  /// Adds noise of the given standard deviation (m) to the first `count` ranges and cuts them to [0, most].
+  /// Ranges of `most` have no return to be noisy; a `dropout` share of the others is lost and becomes `most`.
+  /// The array has Lidar::padded_beams() values.
+  void add(std::span<float> ranges, int count, double deviation, double most, double dropout);
 
  private:
   std::uint64_t key_ = 0;

@@ -18,6 +18,7 @@ class TimeToCollision {
 
   /// The first beam that says so, -1 if none does.
   int first_hit(std::span<const double> ranges, double speed) const noexcept;
+  int first_hit(std::span<const float> ranges, double speed) const noexcept;
 
   /// The way (m) from the centre of gravity to the car's outline, one per beam.
   std::span<const double> sides() const noexcept { return sides_; }

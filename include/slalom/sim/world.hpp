@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "slalom/maps/laser_scan.hpp"
 #include "slalom/sim/laps.hpp"
 #include "slalom/sim/lidar.hpp"
 #include "slalom/sim/noise.hpp"
@@ -65,17 +66,18 @@ struct WorldOptions {
 
 /// What one car knows and what has happened to it. Spans point into the world, until it changes.
 struct Observation {
-  maps::Pose pose;                 ///< of the centre of gravity, map frame
-  maps::Pose sensor;               ///< of the LiDAR when it scanned, map frame
-  double speed = 0;                ///< m/s, along the direction of travel
-  double steer = 0;                ///< rad, of the front wheels
-  double yaw_rate = 0;             ///< rad/s
-  double slip = 0;                 ///< rad
-  double time = 0;                 ///< s since the reset
-  double scan_time = 0;            ///< s since the reset, when `ranges` were taken
-  std::span<const double> ranges;  ///< m, one per beam, from the right (clockwise end) to the left
-  bool wall = false;               ///< touches a wall in this step
-  std::span<const int> touching;   ///< bodies touched in this step, ascending
+  maps::Pose pose;           ///< of the centre of gravity, map frame
+  maps::Pose sensor;         ///< of the LiDAR when it scanned, map frame
+  double speed = 0;          ///< m/s, along the direction of travel
+  double steer = 0;          ///< rad, of the front wheels
+  double yaw_rate = 0;       ///< rad/s
+  double slip = 0;           ///< rad
+  double time = 0;           ///< s since the reset
+  double scan_time = 0;      ///< s since the reset, when `scan` was taken
+  maps::LaserScanView scan;  ///< in the frame of `sensor`; where nothing was hit a range is range_max
+  std::span<const double> gym_ranges;  ///< the ranges in float64, with LidarOptions::gym_ranges only
+  bool wall = false;                   ///< touches a wall in this step
+  std::span<const int> touching;       ///< bodies touched in this step, ascending
 
   bool contact() const { return wall || !touching.empty(); }
 };
@@ -151,7 +153,8 @@ class World {
     std::optional<LapTimer> timer;
     NormalNoise noise;
     NumpyRandom gym_noise{12345};
-    std::vector<double> ranges;
+    std::vector<float> ranges;       ///< padded
+    std::vector<double> gym_ranges;  ///< with LidarOptions::gym_ranges only
     std::vector<int> touching;
     maps::Pose sensor;
     double scan_time = 0;
@@ -176,6 +179,7 @@ class World {
   void scan_walls(Car& car) noexcept;
   void cast_bodies(std::size_t car) noexcept;
   void add_noise(Car& car) noexcept;
+  void publish(Car& car) noexcept;
   void gym_scan_and_contacts() noexcept;
   void scan_all() noexcept;
   bool scan_is_due() const noexcept;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "slalom/sim/world.hpp"
+
+namespace slalom::sim {
+
+/// A run as what went into it: start and commands. Replayed in a world of the same options and track it gives
+/// the same states, scans and contacts bit for bit.
+struct Recording {
+  std::uint64_t seed = 0;
+  std::vector<maps::Pose> cars{};
+  std::vector<maps::Pose> parked{};
+  std::vector<Command> commands{};  ///< steps x cars
+
+  /// Resets the world to the recording's start and forgets recorded commands.
+  void begin(World& world);
+
+  /// Steps the world and keeps the commands, one per car. Throws std::invalid_argument on another number.
+  StepStatus step(World& world, std::span<const Command> step_commands);
+
+  /// Runs the whole recording.
+  void replay(World& world) const;
+
+  /// As lines of text; numbers keep all their bits.
+  std::string to_text() const;
+  /// Throws std::invalid_argument naming the line that is wrong.
+  static Recording from_text(std::string_view text);
+};
+
+}  // namespace slalom::sim

@@ -1,0 +1,225 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "sim/rooms.hpp"
+#include "sim/scan.hpp"
+#include "slalom/sim/lidar.hpp"
+#include "slalom/sim/noise.hpp"
+
+namespace slalom::sim {
+namespace {
+
+maps::OccupancyGrid scattered(std::uint32_t seed) {
+  maps::OccupancyGrid grid = testing::room(180, 140);
+  std::mt19937 random(seed);
+  for (int i = 0; i < 60; ++i) {
+    const int x = static_cast<int>(random() % 170), y = static_cast<int>(random() % 130);
+    for (int dx = 0; dx < 5; ++dx)
+      for (int dy = 0; dy < 3; ++dy) grid.at(x + dx, y + dy) = maps::Occupancy::occupied;
+  }
+  grid.origin = {-2, 3, 0.3};
+  return grid;
+}
+
+/// The way to the first wall cell by small steps: never beyond the true one by more than a step.
+double walk(const Track& track, const maps::Pose& sensor, double angle, double most) {
+  const double step = 0.0005, c = std::cos(sensor.yaw + angle), s = std::sin(sensor.yaw + angle);
+  double t = 0;
+  while (t < most && !track.in_wall({sensor.x + t * c, sensor.y + t * s})) t += step;
+  return std::min(t, most);
+}
+
+TEST(ScanProperty, RangesAreTheWaysToTheFirstWallCell) {
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    const Track track(scattered(seed));
+    LidarOptions options;
+    options.beams = 333;
+    options.field_of_view = 6.28;
+    options.range_max = 6;
+    const Lidar lidar(options);
+    std::vector<float> ranges(lidar.padded_beams());
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> along(0, 1);
+    for (int n = 0; n < 12; ++n) {
+      const maps::Point at = maps::transform(track.grid().origin, {9 * along(random), 7 * along(random)});
+      const maps::Pose sensor{at.x, at.y, 6 * along(random)};
+      lidar.scan(track, sensor, ranges);
+      int off = 0;
+      for (std::size_t i = 0; i < lidar.angles().size(); ++i) {
+        const double truth = walk(track, sensor, lidar.angles()[i], options.range_max);
+        const double error = static_cast<double>(ranges[i]) - truth;
+        // A step of the walk may pass over a corner that a beam touches by less; hence a few beams may be
+        // nearer, but none may pass a wall.
+        ASSERT_LE(error, 1e-3) << "beam " << i;
+        if (error < -1e-3) ++off;
+      }
+      EXPECT_LE(off, 3);
+    }
+  }
+}
+
+TEST(ScanProperty, EveryInstructionSetGivesTheSameBits) {
+  const Track track(scattered(7));
+  for (const int beams : {1, 2, 15, 16, 17, 64, 65, 271, 1080, 1100, 3000}) {
+    LidarOptions options;
+    options.beams = beams;
+    const Lidar lidar(options);
+    std::vector<float> cosines(lidar.padded_beams()), sines(cosines), cone_cosines(256), cone_sines(256);
+    for (std::size_t i = 0; i < cosines.size(); ++i) {
+      const double angle = lidar.angles()[std::min(i, lidar.angles().size() - 1)];
+      cosines[i] = static_cast<float>(std::cos(angle));
+      sines[i] = static_cast<float>(std::sin(angle));
+    }
+    for (std::size_t i = 0; i < cone_cosines.size(); ++i) {
+      const double angle =
+          options.angle_min() + (static_cast<double>(i) * 16 + 7.5) * options.angle_increment();
+      cone_cosines[i] = static_cast<float>(std::cos(angle));
+      cone_sines[i] = static_cast<float>(std::sin(angle));
+    }
+    std::vector<float> first;
+    for (const detail::Kernels& kernels : detail::all_kernels()) {
+      std::vector<float> ranges(lidar.padded_beams());
+      kernels.scan({.clearance = track.clearance().data(),
+                    .stride = track.clearance_stride(),
+                    .x = 90.3f,
+                    .y = 70.7f,
+                    .cosine = std::cos(0.4f),
+                    .sine = std::sin(0.4f),
+                    .cosines = cosines.data(),
+                    .sines = sines.data(),
+                    .beams = beams,
+                    .cone_cosines = cone_cosines.data(),
+                    .cone_sines = cone_sines.data(),
+                    .cone_width = static_cast<float>(7.5 * options.angle_increment() + 1e-5),
+                    .most = 600,
+                    .beyond = 1e-3f,
+                    .resolution = 0.05f,
+                    .range_max = 30,
+                    .ranges = ranges.data()});
+      kernels.cast({.x = -2,
+                    .y = 0.3f,
+                    .cosine = std::cos(0.2f),
+                    .sine = std::sin(0.2f),
+                    .cosines = cosines.data(),
+                    .sines = sines.data(),
+                    .half_length = 0.29f,
+                    .half_width = 0.155f,
+                    .radius = 0,
+                    .first = beams / 4,
+                    .last = beams - 1,
+                    .ranges = ranges.data()});
+      kernels.noise({.key0 = 1,
+                     .key1 = 2,
+                     .deviation = 0.01f,
+                     .most = 30,
+                     .lost_below = 1u << 28,
+                     .count = beams,
+                     .ranges = ranges.data()});
+      ranges.resize(static_cast<std::size_t>(beams));
+      if (first.empty()) first = ranges;
+      EXPECT_EQ(std::memcmp(first.data(), ranges.data(), ranges.size() * sizeof(float)), 0)
+          << kernels.name << " with " << beams << " beams";
+    }
+  }
+}
+
+TEST(ScanProperty, MirroredRoomGivesMirroredScan) {
+  maps::OccupancyGrid grid = scattered(4);
+  grid.origin = {0, 0, 0};
+  maps::OccupancyGrid mirrored = grid;
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) mirrored.at(c, grid.height - 1 - r) = grid.at(c, r);
+  const Lidar lidar(LidarOptions{});
+  std::vector<float> a(lidar.padded_beams()), b(a);
+  const double height = grid.height * grid.resolution;
+  const maps::Pose sensor{4.513, 3.377, 0.7};
+  lidar.scan(Track(grid), sensor, a);
+  lidar.scan(Track(mirrored), {sensor.x, height - sensor.y, -sensor.yaw}, b);
+  int off = 0;
+  for (std::size_t i = 0; i < 1080; ++i) off += std::abs(a[i] - b[1079 - i]) > 2e-4f;
+  // A beam that just touches a corner may see it on one side and not on the other.
+  EXPECT_LE(off, 5);
+}
+
+TEST(ScanProperty, TurnedRoomGivesTheSameScan) {
+  maps::OccupancyGrid grid = scattered(5);
+  const Lidar lidar(LidarOptions{});
+  std::vector<float> a(lidar.padded_beams()), b(a);
+  grid.origin = {0, 0, 0};
+  const maps::Pose sensor{4.513, 3.377, 0.7};
+  lidar.scan(Track(grid), sensor, a);
+  const maps::Pose turn{12, -7, 2.1};
+  const maps::Point at = maps::transform(turn, {sensor.x, sensor.y});
+  grid.origin = turn;
+  lidar.scan(Track(grid), {at.x, at.y, sensor.yaw + turn.yaw}, b);
+  int off = 0;
+  for (std::size_t i = 0; i < 1080; ++i) off += std::abs(a[i] - b[i]) > 2e-4f;
+  EXPECT_LE(off, 5);
+}
+
+TEST(ScanProperty, OpenBorderReturnsNothing) {
+  maps::OccupancyGrid grid = testing::room(100, 100);
+  std::fill(grid.cells.begin(), grid.cells.end(), maps::Occupancy::free);
+  const Lidar lidar(LidarOptions{});
+  std::vector<float> ranges(lidar.padded_beams());
+  lidar.scan(Track(grid, {}, {.outside_is_wall = false}), {2, 2, 1}, ranges);
+  EXPECT_TRUE(std::all_of(ranges.begin(), ranges.begin() + 1080, [](float r) { return r == 30.0f; }));
+  lidar.scan(Track(grid, {}, {.outside_is_wall = true}), {2, 2, 0}, ranges);
+  EXPECT_NEAR(ranges[540], 3, 0.01);
+  lidar.scan(Track(grid), {-1, 2, 0}, ranges);
+  EXPECT_EQ(ranges[540], 0);
+}
+
+TEST(NoiseProperty, IsNormalIndependentAndRepeats) {
+  NormalNoise a, b, again;
+  a.reset(5, 0);
+  b.reset(5, 1);
+  again.reset(5, 0);
+  const int count = 1080, scans = 400;
+  double sum = 0, squares = 0, fourths = 0, product = 0, lagged = 0;
+  for (int n = 0; n < scans; ++n) {
+    std::vector<float> x(1088, 50.0f), y(x), z(x);
+    a.add(x, count, 1, 100, 0);
+    b.add(y, count, 1, 100, 0);
+    again.add(z, count, 1, 100, 0);
+    ASSERT_EQ(x, z);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double u = static_cast<double>(x[i]) - 50, v = static_cast<double>(y[i]) - 50;
+      sum += u;
+      squares += u * u;
+      fourths += u * u * u * u;
+      product += u * v;
+      if (i > 0) lagged += u * (static_cast<double>(x[i - 1]) - 50);
+    }
+  }
+  const double total = static_cast<double>(count) * scans, deviation = 1 / std::sqrt(total);
+  EXPECT_NEAR(sum / total, 0, 5 * deviation);
+  EXPECT_NEAR(squares / total, 1, 5 * std::sqrt(2.0) * deviation);
+  EXPECT_NEAR(fourths / total, 3, 5 * std::sqrt(96.0) * deviation);
+  EXPECT_NEAR(product / total, 0, 5 * deviation);
+  EXPECT_NEAR(lagged / total, 0, 5 * deviation);
+}
+
+TEST(NoiseProperty, DropsTheAskedShareAndKeepsLimits) {
+  NormalNoise noise;
+  noise.reset(1, 0);
+  int lost = 0;
+  for (int n = 0; n < 100; ++n) {
+    std::vector<float> ranges(1088, 0.005f);
+    ranges[7] = 30;
+    noise.add(ranges, 1080, 0.01, 30, 0.1);
+    EXPECT_EQ(ranges[7], 30);
+    for (std::size_t i = 0; i < 1080; ++i) {
+      ASSERT_GE(ranges[i], 0);
+      lost += ranges[i] == 30;
+    }
+  }
+  EXPECT_NEAR(lost, 100 + 0.1 * 1079 * 100, 5 * std::sqrt(0.09 * 107900));
+}
+
+}  // namespace
+}  // namespace slalom::sim

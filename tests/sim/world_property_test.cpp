@@ -1,0 +1,253 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <thread>
+
+#include "sim/count_allocations.hpp"
+#include "sim/rooms.hpp"
+#include "slalom/sim/pure_pursuit.hpp"
+#include "slalom/sim/recording.hpp"
+#include "slalom/sim/world.hpp"
+
+namespace slalom::sim {
+namespace {
+
+const std::array two_cars{maps::Pose{15.5, 10, 1.57}, maps::Pose{10, 15.5, 3.14}};
+const std::array parked{maps::Pose{4.5, 10, 0.3}, maps::Pose{10, 4.2, 1.3}};
+
+/// Commands that wander, hit things at times, and are the same for the same step.
+std::array<Command, 2> wander(std::int64_t k) {
+  const double t = 0.01 * static_cast<double>(k);
+  return {Command{0.17 + 0.2 * std::sin(3 * t), 2 + std::sin(t)}, Command{0.18 * std::cos(0.3 * t), 1.5}};
+}
+
+bool same_bits(const World& a, const World& b) {
+  if (a.time() != b.time() || a.cars() != b.cars()) return false;
+  for (std::size_t i = 0; i < a.cars(); ++i) {
+    const Observation x = a.observe(i), y = b.observe(i);
+    if (std::memcmp(&a.state(i), &b.state(i), sizeof(CarState)) != 0) return false;
+    if (std::memcmp(x.scan.ranges.data(), y.scan.ranges.data(), x.scan.ranges.size_bytes()) != 0)
+      return false;
+    if (x.wall != y.wall ||
+        !std::equal(x.touching.begin(), x.touching.end(), y.touching.begin(), y.touching.end()))
+      return false;
+  }
+  return true;
+}
+
+TEST(WorldProperty, StepsDoNotAllocate) {
+  for (const bool gym : {false, true}) {
+    WorldOptions options = gym ? WorldOptions::gym_compatible() : WorldOptions{};
+    if (!gym) options.wall_response = options.body_response = ContactResponse::slide;
+    World world(options, testing::ring_track());
+    world.reset(3, two_cars, parked);
+    world.step(wander(0));
+    const long before = testing::allocations();
+    bool touched = false;
+    for (int k = 1; k < 1500; ++k) {
+      world.step(wander(k));
+      touched = touched || world.observe(0).contact() || world.observe(1).contact();
+    }
+    EXPECT_EQ(testing::allocations(), before);
+    EXPECT_TRUE(touched);
+  }
+}
+
+TEST(WorldProperty, SameSeedSameBitsAndOtherSeedOtherNoise) {
+  World a({}, testing::ring_track()), b = a, c = a;
+  a.reset(3, two_cars, parked);
+  b.reset(3, two_cars, parked);
+  c.reset(4, two_cars, parked);
+  for (int k = 0; k < 500; ++k) {
+    a.step(wander(k));
+    b.step(wander(k));
+    c.step(wander(k));
+    ASSERT_TRUE(same_bits(a, b));
+  }
+  EXPECT_NE(a.observe(0).scan.ranges[300], c.observe(0).scan.ranges[300]);
+  EXPECT_EQ(std::memcmp(&a.state(0), &c.state(0), sizeof(CarState)), 0);
+}
+
+TEST(WorldProperty, CarsHaveNoiseOfTheirOwn) {
+  World world({}, std::make_shared<const Track>(testing::room(200, 200)));
+  world.reset(3, std::array{maps::Pose{3, 5, 0}, maps::Pose{3, 7, 0}});
+  std::vector<float> clean(world.lidar().padded_beams());
+  std::array<std::vector<float>, 2> noise;
+  for (std::size_t car = 0; car < 2; ++car) {
+    const Observation seen = world.observe(car);
+    world.lidar().scan(world.track(), seen.sensor, clean);
+    for (std::size_t i = 400; i < 700; ++i) noise[car].push_back(seen.scan.ranges[i] - clean[i]);
+  }
+  EXPECT_NE(noise[0], noise[1]);
+}
+
+TEST(WorldProperty, ACopyGoesTheSameWay) {
+  World world({}, testing::ring_track());
+  world.reset(3, two_cars, parked);
+  for (int k = 0; k < 200; ++k) world.step(wander(k));
+  World copy = world;
+  for (int k = 200; k < 600; ++k) world.step(wander(k));
+  for (int k = 200; k < 600; ++k) copy.step(wander(k));
+  EXPECT_TRUE(same_bits(world, copy));
+}
+
+TEST(WorldProperty, AnotherThreadGoesTheSameWay) {
+  const auto track = testing::ring_track();
+  const auto run = [&] {
+    World world({}, track);
+    world.reset(9, two_cars, parked);
+    for (int k = 0; k < 400; ++k) world.step(wander(k));
+    return world;
+  };
+  const World here = run();
+  std::optional<World> first, second;
+  std::thread a([&] { first = run(); }), b([&] { second = run(); });
+  a.join();
+  b.join();
+  EXPECT_TRUE(same_bits(here, *first));
+  EXPECT_TRUE(same_bits(here, *second));
+}
+
+TEST(WorldProperty, ReplayEqualsRecordingBitForBit) {
+  const auto track = testing::ring_track();
+  Recording recording{
+      .seed = 11, .cars = {two_cars.begin(), two_cars.end()}, .parked = {parked.begin(), parked.end()}};
+  World world({}, track);
+  recording.begin(world);
+  for (int k = 0; k < 700; ++k) recording.step(world, wander(k));
+  World again({}, track);
+  recording.replay(again);
+  EXPECT_TRUE(same_bits(world, again));
+  // And once more by way of text.
+  const Recording read = Recording::from_text(recording.to_text());
+  World third({}, track);
+  read.replay(third);
+  EXPECT_TRUE(same_bits(world, third));
+  EXPECT_THROW(Recording::from_text("slalom recording 1\ncommands 2 x"), std::invalid_argument);
+  EXPECT_THROW(Recording::from_text("something else"), std::invalid_argument);
+}
+
+TEST(WorldProperty, MirroredDrivingGivesTheMirroredWay) {
+  for (const Model model : {Model::kinematic, Model::single_track, Model::saturating}) {
+    PlantOptions options;
+    options.dynamics.model = model;
+    Plant left({}, options, 0.01), right({}, options, 0.01);
+    left.reset({.yaw = 0.4});
+    right.reset({.yaw = -0.4});
+    for (int k = 0; k < 400; ++k) {
+      const double steer = 0.3 * std::sin(0.05 * k), speed = 3 + 2 * std::sin(0.02 * k);
+      left.step({steer, speed});
+      right.step({-steer, speed});
+      ASSERT_NEAR(left.state().x, right.state().x, 1e-9);
+      ASSERT_NEAR(left.state().y, -right.state().y, 1e-9);
+      ASSERT_NEAR(left.state().slip, -right.state().slip, 1e-9);
+    }
+    EXPECT_GT(left.state().speed, 1);
+  }
+}
+
+TEST(WorldProperty, TheWayDoesNotDependOnWhereOneStarts) {
+  for (const Model model : {Model::kinematic, Model::single_track, Model::saturating}) {
+    PlantOptions options;
+    options.dynamics.model = model;
+    Plant a({}, options, 0.01), b({}, options, 0.01);
+    const maps::Pose moved{3, -4, 1.1};
+    a.reset({});
+    b.reset({.x = moved.x, .y = moved.y, .yaw = moved.yaw});
+    for (int k = 0; k < 300; ++k) {
+      const Command command{0.25 * std::sin(0.03 * k), 4};
+      a.step(command);
+      b.step(command);
+    }
+    const maps::Point expected = maps::transform(moved, {a.state().x, a.state().y});
+    EXPECT_NEAR(b.state().x, expected.x, 1e-9);
+    EXPECT_NEAR(b.state().y, expected.y, 1e-9);
+  }
+}
+
+TEST(WorldProperty, ACoastingCarGainsNoEnergy) {
+  for (const Model model : {Model::kinematic, Model::single_track, Model::saturating}) {
+    PlantOptions options;
+    options.dynamics.model = model;
+    options.coast = Coast::roll;
+    Plant plant({}, options, 0.01);
+    const CarParameters car;
+    plant.reset({.steer = 0.2, .speed = 6});
+    const auto energy = [&] {
+      const CarState& s = plant.state();
+      return 0.5 * car.mass * s.speed * s.speed + 0.5 * car.inertia * s.yaw_rate * s.yaw_rate;
+    };
+    // The linear model has no drag in turns: its speed stays; the yaw rate has to build up first.
+    double last = 0.5 * car.mass * 36;
+    for (int k = 0; k < 300; ++k) {
+      plant.coast();
+      ASSERT_LE(plant.state().speed, 6 + 1e-9);
+      if (model == Model::saturating) {
+        ASSERT_LE(energy(), last + 1e-3);
+        last = energy();
+      }
+    }
+    if (model == Model::saturating) {
+      EXPECT_LT(plant.state().speed, 5.9);
+    }
+  }
+}
+
+TEST(WorldProperty, ReverseStaysTame) {
+  for (const Model model : {Model::kinematic, Model::single_track, Model::saturating}) {
+    PlantOptions options;
+    options.dynamics.model = model;
+    Plant plant({}, options, 0.01);
+    plant.reset({});
+    for (int k = 0; k < 500; ++k) plant.step({0.1, -2});
+    EXPECT_NEAR(plant.state().speed, -2, 0.1);
+    // A circle: yaw rate about v tan(steer) / L, turning right while backing with the wheels to the left.
+    EXPECT_NEAR(plant.state().yaw_rate, -2 * std::tan(0.1) / 0.3302, 0.15);
+    EXPECT_LT(std::abs(plant.state().slip), 0.15);
+  }
+}
+
+TEST(WorldProperty, GripCanBeExceeded) {
+  PlantOptions options;
+  options.dynamics.model = Model::saturating;
+  options.speed_input = SpeedInput::acceleration;
+  Plant plant({}, options, 0.01);
+  plant.reset({.speed = 8});
+  double most = 0;
+  for (int k = 0; k < 100; ++k) {
+    plant.step({0.35, 0});
+    most = std::max(most, std::abs(plant.state().yaw_rate * plant.state().speed));
+  }
+  // Sideways acceleration beyond mu g is not to be had for long; the linear tyres would give 8^2 tan(0.35)/L
+  // = 71.
+  EXPECT_LT(std::abs(plant.state().yaw_rate * plant.state().speed), 1.3 * 1.0489 * 9.81);
+}
+
+TEST(WorldProperty, AccelerationAndSteeringRateInputs) {
+  PlantOptions options;
+  options.steering_input = SteeringInput::rate;
+  options.speed_input = SpeedInput::acceleration;
+  options.steering_dead_time = 0;
+  Plant plant({}, options, 0.01);
+  plant.reset({});
+  for (int k = 0; k < 50; ++k) plant.step({0.4, 2});
+  EXPECT_NEAR(plant.state().speed, 1.0, 1e-9);
+  EXPECT_NEAR(plant.state().steer, 0.2, 1e-9);
+}
+
+TEST(WorldProperty, FullScaleCarIsStable) {
+  PlantOptions options;
+  Plant plant(CarParameters::full_scale(), options, 0.01);
+  plant.reset({});
+  for (int k = 0; k < 1000; ++k) {
+    plant.step({0.05, 10});
+    ASSERT_LT(std::abs(plant.state().slip), 0.5);
+    ASSERT_LT(std::abs(plant.state().yaw_rate), 1.0);
+  }
+  EXPECT_NEAR(plant.state().speed, 10, 0.5);
+}
+
+}  // namespace
+}  // namespace slalom::sim
