@@ -3,6 +3,8 @@
 #include <exception>
 #include <iostream>
 
+#include "drive_command.hpp"
+#include "options_command.hpp"
 #include "slalom/core/version.hpp"
 #include "track_command.hpp"
 
@@ -13,6 +15,8 @@ int main(int argc, char** argv) {
       "slalom"};
   app.set_version_flag("--version", std::string("slalom ") + slalom::version());
   app.require_subcommand(1);
+  slalom::tools::add_drive_command(app, exit_status);
+  slalom::tools::add_options_command(app, exit_status);
   slalom::tools::add_track_command(app, exit_status);
   try {
     app.parse(argc, argv);

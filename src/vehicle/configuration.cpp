@@ -35,6 +35,21 @@ std::string resolved(std::string_view key, std::string_view default_section) {
 
 }  // namespace
 
+std::vector<SolverOptions> Configuration::every_method() {
+  std::vector<SolverOptions> methods;
+  for (const char* method : solver_names()) methods.push_back(solver_options(method));
+  return methods;
+}
+
+std::unique_ptr<Solver> make_solver(const Configuration& configuration, std::string_view method,
+                                    int threads) {
+  SolverOptions chosen = solver_options(method);
+  for (const SolverOptions& each : configuration.methods)
+    if (method == solver_name(each)) chosen = each;
+  std::visit([&](auto& options) { options.threads = threads; }, chosen);
+  return slalom::make_solver(chosen, PathTracking<false>::inputs);
+}
+
 void set_option(Configuration& configuration, std::string_view key, std::string_view text,
                 std::string_view default_section) {
   const std::string full = resolved(key, default_section);

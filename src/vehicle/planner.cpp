@@ -75,6 +75,7 @@ struct Planner::Implementation {
   void stop(PlannerStatus status) noexcept {
     output.status = status;
     output.command = {history.steer(), 0};
+    output.inputs = {};
     output.predicted = {};
     output.solve = nullptr;
     output.state_cost = output.collision_cost = 0;
@@ -105,6 +106,7 @@ struct Planner::Implementation {
     PredictedCost cost = rollout->predict(result.inputs, states);
     std::span<const float> sent = result.inputs;
     if (options.verify_plan && cost.collided) cost = find_free_sequence(result, cost, sent);
+    output.inputs = sent;
     output.predicted = states;
     output.state_cost = cost.state;
     output.collision_cost = cost.collision;

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "slalom/core/option_access.hpp"
+#include "slalom/solvers/make_solver.hpp"
 #include "slalom/vehicle/path_tracking.hpp"
 #include "slalom/vehicle/planner.hpp"
 
@@ -17,6 +20,9 @@ namespace slalom::vehicle {
 struct Configuration {
   PathTrackingOptions vehicle;
   PlannerOptions planner;
+  std::vector<SolverOptions> methods = every_method();  ///< one of each, in the order of solver_names()
+
+  static std::vector<SolverOptions> every_method();
 };
 
 /// Calls `visit(name, options)` for every section.
@@ -25,6 +31,8 @@ requires is_options_of<AnyConfiguration, Configuration>
 void visit_sections(AnyConfiguration& configuration, Visit&& visit) {
   visit("vehicle", configuration.vehicle);
   visit("planner", configuration.planner);
+  for (auto& method : configuration.methods)
+    std::visit([&](auto& options) { visit(solver_name(method), options); }, method);
 }
 
 /// Reads a configuration file: YAML with a map of options for each section,
@@ -62,6 +70,10 @@ struct Section {
   std::vector<OptionEntry> options;
 };
 std::vector<Section> list_sections(const Configuration& configuration);
+
+/// The solver of a method, for the vehicle problem, with `threads` threads whatever the configuration says.
+/// Throws std::invalid_argument on an unknown method and on options out of range.
+std::unique_ptr<Solver> make_solver(const Configuration& configuration, std::string_view method, int threads);
 
 /// The whole configuration as a file that load_configuration reads back to the same.
 std::string to_yaml(const Configuration& configuration);

@@ -139,6 +139,7 @@ struct PlannerInput {
 struct PlannerOutput {
   PlannerStatus status = PlannerStatus::ok;
   Command command;
+  std::span<const float> inputs;  ///< the sequence that is sent, steering in rad; empty where none is
   std::span<const PredictedState> predicted;  ///< horizon + 1 states of the sequence that is sent
   double state_cost = 0;      ///< of the predicted states by the planner's own cost, without collisions
   double collision_cost = 0;  ///< of the predicted states by the planner's own cost

@@ -1,0 +1,62 @@
+#include "slalom/evaluation/arena.hpp"
+
+#include <stdexcept>
+#include <string>
+
+namespace slalom::evaluation {
+
+const char* name(Evaluation evaluation) {
+  return evaluation == Evaluation::published ? "published" : "true";
+}
+
+Evaluation evaluation_named(std::string_view text) {
+  if (text == "true") return Evaluation::true_physics;
+  if (text == "published") return Evaluation::published;
+  throw std::invalid_argument("evaluation: '" + std::string(text) + "' must be true or published");
+}
+
+sim::WorldOptions Arena::world_options() const {
+  if (evaluation == Evaluation::published) return sim::WorldOptions::gym_compatible();
+  sim::WorldOptions options;
+  options.time_step = 0.005;
+  options.lidar.rate = 40;  // Hz, a scan for every command
+  // A car that touches something goes on if it can, so that one contact does not hide the next.
+  options.wall_response = options.body_response = sim::ContactResponse::slide;
+  return options;
+}
+
+std::shared_ptr<const Arena> load_arena(const std::filesystem::path& folder, Evaluation evaluation,
+                                        const std::vector<std::filesystem::path>& course_roots) {
+  const bool published = evaluation == Evaluation::published;
+  auto arena = std::make_shared<Arena>();
+  arena->evaluation = evaluation;
+  maps::MapReading reading;
+  if (published) reading.rule = maps::MapRule::grey_threshold;
+  arena->course = vehicle::load_course(folder, reading);
+  const vehicle::Course& course = arena->course;
+
+  std::vector<maps::Point> points;
+  for (const vehicle::Waypoint& point : course.waypoints) {
+    points.push_back({point.x, point.y});
+    arena->path.push_back({point.x, point.y, point.yaw, point.speed});
+  }
+  maps::check_reference_path(arena->path);
+  arena->track = std::make_shared<const sim::Track>(
+      course.map, sim::LapPath(points),
+      sim::TrackOptions{.unknown_is_wall = false, .outside_is_wall = !published});
+  for (const maps::Point& point : course.obstacle_path)
+    arena->obstacle_room.push_back(arena->track->distance_to_wall(point));
+
+  arena->start = course.start;
+  arena->timeout = course.timeout.value_or(0);
+  if (published) {
+    const std::string folder_name = std::filesystem::weakly_canonical(folder).filename().string();
+    if (const auto known = vehicle::known_course(folder_name, course_roots)) {
+      arena->start = known->start;
+      arena->timeout = known->timeout;
+    }
+  }
+  return arena;
+}
+
+}  // namespace slalom::evaluation

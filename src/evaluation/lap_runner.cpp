@@ -1,0 +1,253 @@
+#include "slalom/evaluation/lap_runner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+
+#include "slalom/sim/placement.hpp"
+#include "slalom/sim/shapes.hpp"
+
+namespace slalom::evaluation {
+namespace {
+
+constexpr double timeout_laps = 3;          // laps of the profile
+constexpr double published_control = 0.01;  // s of simulated time per command
+constexpr double finish_tolerance = 0.5;    // m before the end of an open course
+
+void require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument(what);
+}
+
+/// Where the rear axle of the simulated car is.
+vehicle::Odometry odometry_of(const sim::Observation& seen, double rear_length) {
+  const double c = std::cos(seen.pose.yaw), s = std::sin(seen.pose.yaw);
+  return {{seen.pose.x - rear_length * c, seen.pose.y - rear_length * s, seen.pose.yaw}, seen.speed};
+}
+
+}  // namespace
+
+std::uint64_t solver_seed(std::uint64_t lap_seed, std::string_view method) {
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a of the method's name
+  for (const char c : method) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  std::uint64_t z = hash + lap_seed * 0x9e3779b97f4a7c15u;  // splitmix64
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+/// A lap under way.
+struct LapRunner::Drive {
+  Drive(const sim::WorldOptions& options, const Arena& arena, const vehicle::Configuration& configuration,
+        std::unique_ptr<vehicle::Planner> driver)
+      : world(options, arena.track), planner(std::move(driver)), meter(arena.path, configuration.vehicle) {}
+
+  sim::World world;
+  std::unique_ptr<vehicle::Planner> planner;
+  SequenceCostMeter meter;
+  sim::ContactLog log;
+  LapResult result;
+  sim::Command acting;                                           ///< what the car does now
+  std::vector<std::pair<std::int64_t, sim::Command>> under_way;  ///< by the step in which they arrive
+  double cost_state = 0, cost_collision = 0, cost_published = 0, cost_driven = 0;
+  double input_error = 0, speed = 0, distance = 0, variance = 0, effective = 0;
+  int solves = 0;
+};
+
+LapRunner::LapRunner(std::shared_ptr<const Arena> arena, const vehicle::Configuration& configuration,
+                     std::string method, const LapSettings& settings)
+    : arena_(std::move(arena)),
+      configuration_(configuration),
+      method_(std::move(method)),
+      settings_(settings) {
+  require(arena_ != nullptr, "arena: a lap needs one");
+  require(settings.obstacles >= 0 && settings.obstacles <= 1000,
+          "obstacles: " + std::to_string(settings.obstacles) + " must be in [0, 1000]");
+  require(settings.latency >= 0 && settings.latency <= 1,
+          "latency: " + std::to_string(settings.latency) + " must be in [0, 1] s");
+  require(settings.threads >= 1 && settings.threads <= 1024,
+          "threads: " + std::to_string(settings.threads) + " must be in [1, 1024]");
+  const bool published = arena_->evaluation == Evaluation::published;
+  require(!published || settings.latency == 0, "latency: must be 0 in the published evaluation");
+  start_ = settings.start.value_or(arena_->start);
+  vehicle::check_start(arena_->course, start_);
+  make_planner();  // refuses what it does not like here and not in the first lap
+
+  vehicle::Course capped;
+  capped.waypoints = arena_->course.waypoints;
+  capped.closed = arena_->course.closed;
+  vehicle::cap_speed(capped, configuration_.planner.max_speed);
+  timeout_ = arena_->timeout > 0 ? arena_->timeout : timeout_laps * vehicle::profile_time(capped);
+  if (!arena_->course.closed && !published)
+    open_length_ = arena_->course.length - arena_->track->lap_path()->project({start_.x, start_.y}).arc -
+                   finish_tolerance;
+}
+
+double LapRunner::control_period() const noexcept {
+  return arena_->evaluation == Evaluation::published ? published_control
+                                                     : configuration_.planner.control_period;
+}
+
+std::unique_ptr<vehicle::Planner> LapRunner::make_planner() const {
+  return std::make_unique<vehicle::Planner>(configuration_.planner, configuration_.vehicle, arena_->path,
+                                            arena_->course.closed,
+                                            vehicle::make_solver(configuration_, method_, settings_.threads));
+}
+
+std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t seed) const {
+  const auto& path = arena_->course.obstacle_path;
+  const auto placed =
+      arena_->evaluation == Evaluation::published
+          ? sim::place_as_published(path, settings_.obstacles, seed)
+          : sim::place_apart(path, arena_->obstacle_room, settings_.obstacles, seed, {start_.x, start_.y});
+  std::vector<maps::Pose> poses;
+  for (const sim::Placement& each : placed) poses.push_back(each.pose);
+  return poses;
+}
+
+bool LapRunner::at_finish(const sim::World& world) const noexcept {
+  if (arena_->evaluation == Evaluation::published) return world.start_zone_laps(0).laps() > 0;
+  if (open_length_ > 0) return world.laps(0)->progress() >= open_length_;
+  return world.laps(0)->laps() > 0;
+}
+
+double LapRunner::progress(const sim::World& world) const noexcept {
+  const double length = open_length_ > 0 ? open_length_ : arena_->track->lap_path()->length();
+  return std::clamp(world.laps(0)->progress() / length, 0.0, 1.0);
+}
+
+/// One planner update: what is seen goes in, the command is sent on its way.
+void LapRunner::control(Drive& drive, const TickCallback& on_tick) const {
+  const sim::Observation seen = drive.world.observe(0);
+  const bool published = arena_->evaluation == Evaluation::published;
+  maps::LaserScanView scan = seen.scan;
+  if (published) {
+    // The published simulator says that as many intervals as beams make up the field of view, in float32.
+    const sim::LidarOptions& lidar = drive.world.lidar().options();
+    scan.angle_min = static_cast<float>(lidar.angle_min());
+    scan.angle_increment = static_cast<float>(lidar.field_of_view / lidar.beams);
+  }
+  const vehicle::Odometry odometry = odometry_of(seen, drive.world.options().car.rear_length);
+  const vehicle::PlannerOutput& output = drive.planner->update({scan, odometry});
+
+  drive.meter.observe(scan, odometry.pose);
+  const SequenceCostMeter::Cost cost = drive.meter.planned(output);
+  drive.cost_state += cost.state;
+  drive.cost_collision += cost.collision;
+  if (settings_.further_costs) {
+    drive.cost_published += drive.meter.published_model(output).total();
+    drive.cost_driven += drive.meter.present().total();
+  }
+  for (const float input : output.inputs) drive.input_error += std::abs(static_cast<double>(input));
+  drive.speed += seen.speed;
+  const double off_path = drive.meter.path_distance();
+  drive.distance += off_path;
+  LapResult& result = drive.result;
+  result.max_path_distance = std::max(result.max_path_distance, off_path);
+  ++result.planner_status[static_cast<std::size_t>(output.status)];
+  result.tick_ms.push_back(static_cast<float>(1e3 * output.tick_time));
+  if (output.solve) {
+    const SolveResult& solve = *output.solve;
+    ++drive.solves;
+    drive.effective += solve.effective_sample_size;
+    double variance = 0;
+    for (const float v : solve.covariance) variance += static_cast<double>(v);
+    if (!solve.covariance.empty()) drive.variance += variance / static_cast<double>(solve.covariance.size());
+    result.solve_ms.push_back(static_cast<float>(1e3 * solve.times.total));
+  }
+  if (on_tick)
+    on_tick({result.steps, seen.time, progress(drive.world),
+             published ? drive.log.published() : drive.log.bodies_touched(), seen, scan, odometry, output,
+             *drive.planner, cost});
+  ++result.steps;
+
+  sim::Command command{output.command.steer, output.command.speed};
+  // The published program's messages carry float32.
+  if (published) command = {static_cast<float>(command.steering), static_cast<float>(command.drive)};
+  const auto delay = std::llround(settings_.latency / drive.world.options().time_step);
+  drive.under_way.emplace_back(drive.world.steps() + delay, command);
+}
+
+/// The world goes on until the next command is due.
+void LapRunner::advance(Drive& drive) const {
+  const double time_step = drive.world.options().time_step;
+  const auto steps = std::max<long long>(1, std::llround(control_period() / time_step));
+  LapResult& result = drive.result;
+  for (long long k = 0; k < steps && !at_finish(drive.world); ++k) {
+    while (!drive.under_way.empty() && drive.under_way.front().first <= drive.world.steps()) {
+      drive.acting = drive.under_way.front().second;
+      drive.under_way.erase(drive.under_way.begin());
+    }
+    drive.world.step({&drive.acting, 1});
+    const sim::Observation seen = drive.world.observe(0);
+    if (!seen.contact()) continue;
+    const auto touch = [&](int body) {
+      const auto same = [&](const Contact& c) { return c.body == body; };
+      if (std::none_of(result.touches.begin(), result.touches.end(), same))
+        result.touches.push_back({seen.time, seen.pose, body});
+    };
+    if (seen.wall) touch(-1);
+    for (const int body : seen.touching) touch(body);
+    drive.log.update(drive.world, 0);
+  }
+  const sim::Box body = drive.world.outline(0);
+  for (const maps::Point& corner : sim::corners(body))
+    result.least_clearance = std::min(result.least_clearance, arena_->track->distance_to_wall(corner));
+  for (std::size_t i = 1; i < drive.world.bodies(); ++i)
+    result.least_clearance = std::min(result.least_clearance, sim::signed_gap(body, drive.world.outline(i)));
+}
+
+void LapRunner::finish(Drive& drive) const {
+  LapResult& result = drive.result;
+  const bool published = arena_->evaluation == Evaluation::published;
+  result.finished = at_finish(drive.world);
+  result.timeout = !result.finished && !result.cancelled;
+  result.contacts = published ? drive.log.published() : drive.log.bodies_touched();
+  result.bodies_touched = drive.log.bodies_touched();
+  result.wall = drive.log.touched_wall();
+  result.time = drive.world.time();
+  if (result.finished && !published && open_length_ <= 0) result.time = drive.world.laps(0)->last_lap_time();
+  if (result.steps == 0) return;
+  const double n = result.steps;
+  result.state_cost = drive.cost_state / n;
+  result.collision_cost = drive.cost_collision / n;
+  result.mean_sequence_cost = result.state_cost + result.collision_cost;
+  result.published_model_cost = drive.cost_published / n;
+  result.driven_cost = drive.cost_driven / n;
+  result.input_error = drive.input_error / n;
+  result.mean_speed = drive.speed / n;
+  result.mean_path_distance = drive.distance / n;
+  if (drive.solves > 0) {
+    result.mean_variance = drive.variance / drive.solves;
+    result.mean_effective_samples = drive.effective / drive.solves;
+  }
+}
+
+LapResult LapRunner::run(std::uint64_t seed, const TickCallback& on_tick, const std::atomic<bool>* cancel) {
+  sim::WorldOptions options = arena_->world_options();
+  if (arena_->evaluation == Evaluation::true_physics) {
+    // A whole number of physics steps and one scan per command, whatever the control period is.
+    const double period = configuration_.planner.control_period;
+    options.time_step = period / std::max(1.0, std::ceil(period / options.time_step - 1e-9));
+    options.lidar.rate = 1 / period;
+  }
+  Drive drive(options, *arena_, configuration_, make_planner());
+  drive.planner->reset(solver_seed(seed, method_));
+  drive.result.seed = seed;
+  drive.result.obstacles = place_obstacles(seed);
+  drive.result.least_clearance = std::numeric_limits<double>::infinity();
+  drive.world.reset(seed, {&start_, 1}, drive.result.obstacles);
+  while (!at_finish(drive.world) && drive.world.time() <= timeout_) {
+    if (cancel && cancel->load(std::memory_order_relaxed)) {
+      drive.result.cancelled = true;
+      break;
+    }
+    control(drive, on_tick);
+    advance(drive);
+  }
+  finish(drive);
+  return std::move(drive.result);
+}
+
+}  // namespace slalom::evaluation

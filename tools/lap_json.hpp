@@ -1,0 +1,22 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "slalom/evaluation/lap_runner.hpp"
+
+namespace slalom::tools {
+
+/// A lap as results have it. Nothing in it depends on the clock of the wall.
+nlohmann::ordered_json lap_json(const evaluation::LapResult& lap, int number);
+
+/// Percentiles by nearest rank of wall-clock times, ms; null without any.
+nlohmann::ordered_json times_json(std::vector<float> milliseconds);
+
+/// All solve times of laps, ms.
+std::vector<float> solve_times(const std::vector<evaluation::LapResult>& laps);
+
+/// The smallest of the values that at least `share` of them do not exceed; `sorted` is not empty.
+double percentile(const std::vector<float>& sorted, double share);
+
+}  // namespace slalom::tools

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+#include "slalom/evaluation/lap_runner.hpp"
+
+namespace slalom::tools {
+
+/// A line in a terminal that shows how a lap goes, about twenty times a second. Silent where the stream is
+/// none.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::FILE* stream);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(int lap, int laps, const evaluation::LapTick& tick);
+  /// Removes the line, so that something else can be said.
+  void clear();
+
+ private:
+  std::FILE* stream_;
+  bool active_;
+  bool shown_ = false;
+  std::chrono::steady_clock::time_point next_{};
+};
+
+}  // namespace slalom::tools

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slalom/evaluation/arena.hpp"
+#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/vehicle/configuration.hpp"
+
+namespace CLI {
+class App;
+}
+
+/// What every command that drives is told in the same words: course, configuration, evaluation, method.
+namespace slalom::tools {
+
+/// The folder of the running program.
+std::filesystem::path program_folder();
+
+struct ScenarioArguments {
+  std::string course = "stag";
+  std::string config = "default";
+  std::string evaluation = "true";
+  std::vector<std::string> set;  ///< key=value, in order
+  std::string start;             ///< x,y,yaw or empty
+  int obstacles = 0;
+  double latency_ms = 0;
+  int threads = 1;
+};
+
+/// Adds --course, --config, --evaluation, --set, --start, --obstacles, --latency-ms and --threads.
+void add_scenario_options(CLI::App& command, ScenarioArguments& arguments);
+/// Adds --method to `method`, with the names known.
+void add_method_option(CLI::App& command, std::string& method);
+
+struct Scenario {
+  std::filesystem::path folder;  ///< of the course
+  std::shared_ptr<const evaluation::Arena> arena;
+  vehicle::Configuration configuration;
+  evaluation::LapSettings lap;
+};
+
+/// The configuration alone: the file, then every --set; a key without a section is one of `method`. Throws
+/// IoError, which for --set names it as the file.
+vehicle::Configuration load_configuration(const ScenarioArguments& arguments, const std::string& method);
+
+/// Everything loaded and checked. Throws IoError, std::invalid_argument.
+Scenario load_scenario(const ScenarioArguments& arguments, const std::string& method);
+
+/// Every option as it is set: {section: {option: value}}; infinite values as text.
+nlohmann::ordered_json options_json(const vehicle::Configuration& configuration, const std::string& method);
+
+/// The settings that go with a result: course, evaluation, method, obstacles, start, options ...
+nlohmann::ordered_json settings_json(const ScenarioArguments& arguments, const Scenario& scenario,
+                                     const std::string& method);
+
+}  // namespace slalom::tools
