@@ -2,51 +2,80 @@
 
 #include "slalom/core/dispatch.hpp"
 #include "solvers/kernels_body.hpp"
+#include "solvers/kernels_particles.hpp"
 
 namespace slalom::detail {
 
 namespace {
 
 /// Compiles every kernel for one instruction set.
-#define SLALOM_DEFINE_KERNELS(name, ATTRIBUTES, Target)                                                    \
-  using Pack_##name = Pack<simd::Target>;                                                                  \
-  ATTRIBUTES void place_##name(const Rows<float>& noise, const Rows<float>& samples,                       \
-                               const Placement<float>& to, Range range) {                                  \
-    body::place<Pack_##name>(noise, samples, to, range);                                                   \
-  }                                                                                                        \
-  ATTRIBUTES void add_linear_##name(const Rows<float>& v, const float* coefficient, Range range,           \
-                                    float* totals) {                                                       \
-    body::add_linear<Pack_##name>(v, coefficient, range, totals);                                          \
-  }                                                                                                        \
-  ATTRIBUTES void add_squared_distance_##name(const Rows<float>& v, const float* centre,                   \
-                                              const float* weight, Range range, float* totals) {           \
-    body::add_squared_distance<Pack_##name>(v, centre, weight, range, totals);                             \
-  }                                                                                                        \
-  ATTRIBUTES void make_finite_##name(Range range, float* costs) {                                          \
-    body::make_finite<Pack_##name>(range, costs);                                                          \
-  }                                                                                                        \
-  ATTRIBUTES float minimum_##name(const float* costs, Range range) {                                       \
-    return body::minimum<Pack_##name>(costs, range);                                                       \
-  }                                                                                                        \
-  ATTRIBUTES WeightSums<float> exponential_weights_##name(const float* totals, const float* costs,         \
-                                                          float least, float temperature, Range range,     \
-                                                          float* weights) {                                \
-    return body::exponential_weights<Pack_##name>(totals, costs, least, temperature, range, weights);      \
-  }                                                                                                        \
-  ATTRIBUTES void scale_##name(float factor, Range range, float* values) {                                 \
-    body::scale<Pack_##name>(factor, range, values);                                                       \
-  }                                                                                                        \
-  ATTRIBUTES void weighted_sums_##name(const Rows<float>& v, const float* weights, const float* centre,    \
-                                       Range range, float* sums) {                                         \
-    body::weighted_powers<false, Pack_##name>(v, weights, centre, range, sums);                            \
-  }                                                                                                        \
-  ATTRIBUTES void weighted_squares_##name(const Rows<float>& v, const float* weights, const float* centre, \
-                                          Range range, float* sums) {                                      \
-    body::weighted_powers<true, Pack_##name>(v, weights, centre, range, sums);                             \
-  }                                                                                                        \
-  constexpr Kernels kernels_##name{place_##name,       add_linear_##name,    add_squared_distance_##name,  \
-                                   make_finite_##name, minimum_##name,       exponential_weights_##name,   \
-                                   scale_##name,       weighted_sums_##name, weighted_squares_##name};
+#define SLALOM_DEFINE_KERNELS(name, ATTRIBUTES, Target)                                                      \
+  using Pack_##name = Pack<simd::Target>;                                                                    \
+  ATTRIBUTES void place_##name(const Rows<float>& noise, const Rows<float>& samples,                         \
+                               const Placement<float>& to, Range range) {                                    \
+    body::place<Pack_##name>(noise, samples, to, range);                                                     \
+  }                                                                                                          \
+  ATTRIBUTES void add_linear_##name(const Rows<float>& v, const float* coefficient, Range range,             \
+                                    float* totals) {                                                         \
+    body::add_linear<Pack_##name>(v, coefficient, range, totals);                                            \
+  }                                                                                                          \
+  ATTRIBUTES void add_squared_distance_##name(const Rows<float>& v, const float* centre,                     \
+                                              const float* weight, Range range, float* totals) {             \
+    body::add_squared_distance<Pack_##name>(v, centre, weight, range, totals);                               \
+  }                                                                                                          \
+  ATTRIBUTES void make_finite_##name(Range range, float* costs) {                                            \
+    body::make_finite<Pack_##name>(range, costs);                                                            \
+  }                                                                                                          \
+  ATTRIBUTES float minimum_##name(const float* costs, Range range) {                                         \
+    return body::minimum<Pack_##name>(costs, range);                                                         \
+  }                                                                                                          \
+  ATTRIBUTES WeightSums<float> exponential_weights_##name(const float* totals, const float* costs,           \
+                                                          float least, float temperature, Range range,       \
+                                                          float* weights) {                                  \
+    return body::exponential_weights<Pack_##name>(totals, costs, least, temperature, range, weights);        \
+  }                                                                                                          \
+  ATTRIBUTES void scale_##name(float factor, Range range, float* values) {                                   \
+    body::scale<Pack_##name>(factor, range, values);                                                         \
+  }                                                                                                          \
+  ATTRIBUTES void weighted_sums_##name(const Rows<float>& v, const float* weights, const float* centre,      \
+                                       Range range, float* sums) {                                           \
+    body::weighted_powers<false, Pack_##name>(v, weights, centre, range, sums);                              \
+  }                                                                                                          \
+  ATTRIBUTES void weighted_squares_##name(const Rows<float>& v, const float* weights, const float* centre,   \
+                                          Range range, float* sums) {                                        \
+    body::weighted_powers<true, Pack_##name>(v, weights, centre, range, sums);                               \
+  }                                                                                                          \
+  ATTRIBUTES void particle_gradients_##name(const ParticleGradients<float>& how, const Rows<float>& samples, \
+                                            const Rows<float>& theta, Range particles, float* exponents,     \
+                                            const Rows<float>& gradient) {                                   \
+    body::particle_gradients<Pack_##name>(how, samples, theta, particles, exponents, gradient);              \
+  }                                                                                                          \
+  ATTRIBUTES void place_round_##name(const Rows<float>& samples, const Rows<float>& theta,                   \
+                                     const Placement<float>& to, int particle_stride, int count,             \
+                                     Range particles) {                                                      \
+    body::place_round<Pack_##name>(samples, theta, to, particle_stride, count, particles);                   \
+  }                                                                                                          \
+  ATTRIBUTES void stein_directions_##name(const Rows<float>& x, const Rows<float>& gradient, int count,      \
+                                          float bandwidth, Range particles, const Rows<float>& phi) {        \
+    body::stein_directions<Pack_##name>(x, gradient, count, bandwidth, particles, phi);                      \
+  }                                                                                                          \
+  ATTRIBUTES void published_keep_##name(const Rows<float>& v, const RejectionRows<float>& densities,         \
+                                        Range range, float* logarithms) {                                    \
+    body::published_keep<Pack_##name>(v, densities, range, logarithms);                                      \
+  }                                                                                                          \
+  constexpr Kernels kernels_##name{place_##name,                                                             \
+                                   add_linear_##name,                                                        \
+                                   add_squared_distance_##name,                                              \
+                                   make_finite_##name,                                                       \
+                                   minimum_##name,                                                           \
+                                   exponential_weights_##name,                                               \
+                                   scale_##name,                                                             \
+                                   weighted_sums_##name,                                                     \
+                                   weighted_squares_##name,                                                  \
+                                   particle_gradients_##name,                                                \
+                                   place_round_##name,                                                       \
+                                   stein_directions_##name,                                                  \
+                                   published_keep_##name};
 
 SLALOM_DEFINE_KERNELS(generic, SLALOM_TARGET_GENERIC, Generic)
 #if SLALOM_X86

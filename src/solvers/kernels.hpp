@@ -43,6 +43,28 @@ struct WeightSums {
   Real cost = 0;     ///< sum of w times the cost given
 };
 
+/// How gradients of particles are estimated: see surrogate_gradient.hpp. Exponents are
+/// S / temperature + sum linear[row] v[row].
+template <class Real>
+struct ParticleGradients {
+  int samples = 0;          ///< a particle
+  int particle_stride = 0;  ///< from one sample of a particle to the next
+  Real temperature = 1;
+  bool subtract_minimum = true;
+  Real floor = 0;
+  const Real* linear = nullptr;            ///< [row]
+  const Real* inverse_variance = nullptr;  ///< [row]
+};
+
+/// The densities in the published program's rejection, [row].
+template <class Real>
+struct RejectionRows {
+  const Real* base = nullptr;  ///< density at the rejected mean
+  const Real* rejected_mean = nullptr;
+  const Real* rejected_inverse = nullptr;  ///< 1 / standard deviation
+  const Real* rejected_scale = nullptr;    ///< 1 / sqrt(2 pi variance)
+};
+
 /// The float32 kernels of one instruction set.
 struct Kernels {
   /// Moves normal values to samples; `noise` and `samples` may be the same.
@@ -68,6 +90,19 @@ struct Kernels {
   /// sums[row] = sum over samples of w[k] (v[row][k] - centre[row])^2.
   void (*weighted_squares)(const Rows<float>& v, const float* weights, const float* centre, Range range,
                            float* sums);
+  /// Gradients [row][particle]; `exponents` holds the samples' costs and becomes their weights.
+  void (*particle_gradients)(const ParticleGradients<float>& how, const Rows<float>& samples,
+                             const Rows<float>& theta, Range particles, float* exponents,
+                             const Rows<float>& gradient);
+  /// Normal values to `count` samples round each particle, in place.
+  void (*place_round)(const Rows<float>& samples, const Rows<float>& theta, const Placement<float>& to,
+                      int particle_stride, int count, Range particles);
+  /// SVGD's directions [row][particle] for the particles of a range.
+  void (*stein_directions)(const Rows<float>& x, const Rows<float>& gradient, int count, float bandwidth,
+                           Range particles, const Rows<float>& phi);
+  /// Logarithms of the published program's probabilities of keeping samples.
+  void (*published_keep)(const Rows<float>& v, const RejectionRows<float>& densities, Range range,
+                         float* logarithms);
 };
 
 /// Those of the instruction set in use.

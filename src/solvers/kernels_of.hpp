@@ -2,6 +2,7 @@
 
 #include "solvers/kernels.hpp"
 #include "solvers/kernels_body.hpp"
+#include "solvers/kernels_particles.hpp"
 
 namespace slalom::detail {
 
@@ -34,6 +35,19 @@ struct KernelsOf<float> {
                                float* sums) {
     kernels().weighted_squares(v, weights, centre, range, sums);
   }
+  static void particle_gradients(const ParticleGradients<float>& how, const Rows<float>& samples,
+                                 const Rows<float>& theta, Range particles, float* exponents,
+                                 const Rows<float>& gradient) {
+    kernels().particle_gradients(how, samples, theta, particles, exponents, gradient);
+  }
+  static void stein_directions(const Rows<float>& x, const Rows<float>& gradient, int count, float bandwidth,
+                               Range particles, const Rows<float>& phi) {
+    kernels().stein_directions(x, gradient, count, bandwidth, particles, phi);
+  }
+  static void published_keep(const Rows<float>& v, const RejectionRows<float>& densities, Range range,
+                             float* logarithms) {
+    kernels().published_keep(v, densities, range, logarithms);
+  }
 };
 
 template <>
@@ -61,6 +75,19 @@ struct KernelsOf<double> {
   static void weighted_squares(const Rows<double>& v, const double* weights, const double* centre,
                                Range range, double* sums) {
     body::weighted_powers<true, double>(v, weights, centre, range, sums);
+  }
+  static void particle_gradients(const ParticleGradients<double>& how, const Rows<double>& samples,
+                                 const Rows<double>& theta, Range particles, double* exponents,
+                                 const Rows<double>& gradient) {
+    body::particle_gradients<double>(how, samples, theta, particles, exponents, gradient);
+  }
+  static void stein_directions(const Rows<double>& x, const Rows<double>& gradient, int count,
+                               double bandwidth, Range particles, const Rows<double>& phi) {
+    body::stein_directions<double>(x, gradient, count, bandwidth, particles, phi);
+  }
+  static void published_keep(const Rows<double>& v, const RejectionRows<double>& densities, Range range,
+                             double* logarithms) {
+    body::published_keep<double>(v, densities, range, logarithms);
   }
 };
 

@@ -17,14 +17,9 @@ Status PathIntegral::update(const BatchEvaluator& evaluator, RandomKey key, cons
                             const float* variance, const float* low, const float* high, ThreadPool& pool,
                             const Deadline& deadline, float* mean, SolveResult& result) noexcept {
   const std::size_t rows = deviation_.size();
-  const double factor = settings_.temperature * (1.0 - settings_.discount);
-  for (std::size_t r = 0; r < rows; ++r) {
-    const double sigma2 = static_cast<double>(variance[r]);
-    deviation_[r] = static_cast<float>(std::sqrt(sigma2));
-    linear_[r] =
-        static_cast<float>(factor * (static_cast<double>(mean[r]) - static_cast<double>(nominal[r])) *
-                           inverse_variance(sigma2, settings_.inverse_variance_offset));
-  }
+  for (std::size_t r = 0; r < rows; ++r) deviation_[r] = std::sqrt(variance[r]);
+  control_coefficients(settings_.temperature, settings_.discount, settings_.inverse_variance_offset, mean,
+                       nominal, variance, samples_.rows(), linear_.data());
   const int zero_mean_from = static_cast<int>((1.0 - settings_.zero_mean_share) * samples_.samples());
   const Census census = samples_.draw_and_evaluate(
       evaluator, key, {mean, deviation_.data(), low, high, zero_mean_from}, linear_.data(), pool, deadline);

@@ -7,6 +7,7 @@
 #include "slalom/core/options.hpp"
 #include "slalom/core/thread_pool.hpp"
 #include "slalom/solvers/solver.hpp"
+#include "solvers/control_term.hpp"
 #include "solvers/sample_set.hpp"
 
 namespace slalom::detail {
@@ -70,11 +71,6 @@ void shift_sequence(const double* sequence, int steps, int inputs, double shift,
 
 /// The shift, in steps, that the time between two solves asks for; 0 where it is not known.
 double warm_start_shift(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept;
-
-/// 1 / variance + offset; without a variance there is nothing to weigh and it is 0.
-inline double inverse_variance(double variance, double offset) noexcept {
-  return variance > 0 ? 1.0 / variance + offset : 0.0;
-}
 
 /// Puts what the samples of `set` tell into a result.
 void report_samples(const SampleSet& set, const Census& census, const WeightSums<double>& sums,

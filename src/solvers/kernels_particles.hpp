@@ -1,0 +1,121 @@
+#pragma once
+
+#include "solvers/kernels_body.hpp"
+
+/// Bodies of the kernels that work on sets of particles, one particle a lane.
+namespace slalom::detail::body {
+
+/// Gradients of particles. Sample s of particle p stands at s * particle_stride + p.
+template <class F>
+SLALOM_INLINE void particle_gradients(const ParticleGradients<RealOf<F>>& g, const Rows<RealOf<F>>& v,
+                                      const Rows<RealOf<F>>& theta, Range range, RealOf<F>* exponents,
+                                      const Rows<RealOf<F>>& gradient) {
+  using L = Lanes<F>;
+  using Real = RealOf<F>;
+  const F infinite(std::numeric_limits<Real>::infinity()), zero(0.0f);
+  for (int p = range.first; p < range.first + range.count; p += L::count) {
+    F least = infinite;
+    for (int s = 0; s < g.samples; ++s) {
+      const std::ptrdiff_t at = s * g.particle_stride + p;
+      F exponent = L::load(exponents + at) * F(Real(1) / g.temperature);
+      for (int r = 0; r < v.rows; ++r) exponent = exponent + F(g.linear[r]) * L::load(v.row(r) + at);
+      exponent = select(abs(exponent) < infinite, exponent, infinite);
+      L::store(exponent, exponents + at);
+      least = min(least, exponent);
+    }
+    const auto usable = least < infinite;
+    const F base = select(usable, least, zero);
+    F sum = zero;
+    for (int s = 0; s < g.samples; ++s) {
+      const std::ptrdiff_t at = s * g.particle_stride + p;
+      const F w = exp(base - L::load(exponents + at));
+      L::store(w, exponents + at);
+      sum = sum + w;
+    }
+    const F floor = g.subtract_minimum ? F(g.floor) : F(g.floor) * exp(base);
+    const F normaliser = F(Real(1)) / (sum + floor);
+    for (int r = 0; r < v.rows; ++r) {
+      const F centre = L::load(theta.row(r) + p);
+      F moved = zero;
+      for (int s = 0; s < g.samples; ++s) {
+        const std::ptrdiff_t at = s * g.particle_stride + p;
+        moved = moved + L::load(exponents + at) * (L::load(v.row(r) + at) - centre);
+      }
+      L::store(select(usable, F(g.inverse_variance[r]) * moved * normaliser, zero), gradient.row(r) + p);
+    }
+  }
+}
+
+/// Normal values to samples round particles: clamp(theta_p + deviation z, low, high), or round zero for the
+/// samples from `zero_mean_from` on.
+template <class F>
+SLALOM_INLINE void place_round(const Rows<RealOf<F>>& samples, const Rows<RealOf<F>>& theta,
+                               const Placement<RealOf<F>>& to, int particle_stride, int count, Range range) {
+  using L = Lanes<F>;
+  for (int r = 0; r < samples.rows; ++r) {
+    const F deviation(to.deviation[r]), low(to.low[r]), high(to.high[r]);
+    for (int s = 0; s < count; ++s) {
+      RealOf<F>* v = samples.row(r) + static_cast<std::ptrdiff_t>(s) * particle_stride;
+      for (int p = range.first; p < range.first + range.count; p += L::count) {
+        const F centre = s < to.zero_mean_from ? L::load(theta.row(r) + p) : F(0.0f);
+        L::store(clamp(centre + deviation * L::load(v + p), low, high), v + p);
+      }
+    }
+  }
+}
+
+/// phi of the particles `range`, from all `count` particles: see stein.hpp. Four particles j are taken at a
+/// time, so that the sums of a row are loaded and stored once for them.
+template <class F>
+SLALOM_INLINE void stein_directions(const Rows<RealOf<F>>& x, const Rows<RealOf<F>>& gradient, int count,
+                                    RealOf<F> bandwidth, Range range, const Rows<RealOf<F>>& phi) {
+  using L = Lanes<F>;
+  using Real = RealOf<F>;
+  const F negative_inverse(Real(-1) / bandwidth), repulsion(Real(-2) / bandwidth),
+      share(Real(1) / Real(count));
+  constexpr int together = 4;
+  for (int i = range.first; i < range.first + range.count; i += L::count) {
+    for (int r = 0; r < x.rows; ++r) L::store(F(0.0f), phi.row(r) + i);
+    for (int j = 0; j < count; j += together) {
+      const int others = count - j < together ? count - j : together;
+      F distance[together] = {F(0.0f), F(0.0f), F(0.0f), F(0.0f)};
+      for (int r = 0; r < x.rows; ++r) {
+        const F own = L::load(x.row(r) + i);
+        for (int q = 0; q < others; ++q) {
+          const F difference = F(x.row(r)[j + q]) - own;
+          distance[q] = distance[q] + difference * difference;
+        }
+      }
+      F kernel[together];
+      for (int q = 0; q < others; ++q) kernel[q] = exp(distance[q] * negative_inverse) * share;
+      for (int r = 0; r < x.rows; ++r) {
+        const F own = L::load(x.row(r) + i);
+        F sum = L::load(phi.row(r) + i);
+        for (int q = 0; q < others; ++q) {
+          const F towards = F(gradient.row(r)[j + q]) + repulsion * (F(x.row(r)[j + q]) - own);
+          sum = sum + kernel[q] * towards;
+        }
+        L::store(sum, phi.row(r) + i);
+      }
+    }
+  }
+}
+
+/// log of prod over rows of 1 / (base + density), the published program's probability of keeping a sample:
+/// density = exp((v - mean)^2 / deviation) / sqrt(2 pi variance), base the like at another place.
+template <class F>
+SLALOM_INLINE void published_keep(const Rows<RealOf<F>>& v, const RejectionRows<RealOf<F>>& d, Range range,
+                                  RealOf<F>* logarithms) {
+  using L = Lanes<F>;
+  for (int k = range.first; k < range.first + range.count; k += L::count) {
+    F sum(0.0f);
+    for (int r = 0; r < v.rows; ++r) {
+      const F difference = L::load(v.row(r) + k) - F(d.rejected_mean[r]);
+      const F density = exp(difference * difference * F(d.rejected_inverse[r])) * F(d.rejected_scale[r]);
+      sum = sum - log(F(d.base[r]) + density);
+    }
+    L::store(sum, logarithms + k);
+  }
+}
+
+}  // namespace slalom::detail::body

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solvers/kernels_of.hpp"
+
+namespace slalom::detail {
+
+/// What the reverse weights of a set of samples came to.
+struct ReverseSums {
+  double evaluated = 0;   ///< sum of the positive parts before they are normalised
+  double rejected = 0;    ///< sum of the negative parts
+  double log_growth = 0;  ///< log of sum exp((J - min J) / lambda): above 709 it overflows double
+  bool usable = false;    ///< some J is finite
+};
+
+/// Weights that seek one mode (Kobayashi and Fukumoto 2022): good samples attract, bad ones repel,
+///
+///     p_k = exp(-(J_k - min J) / lambda) / (sum + offset),   n_k = ratio exp((J_k - min J) / lambda) / (sum
+///     + offset) w_k = max(p_k - n_k, 0) / sum  (evaluated),            r_k = max(n_k - p_k, 0) / sum
+///     (rejected)
+///
+/// The growing exponentials are taken relative to the largest J, so that they cannot overflow. Samples whose
+/// J is not finite have weight 0 in both. Sums that are 0 leave their weights 0. `range` starts at 0 and is a
+/// multiple of the lanes; J is infinite in the padding. Arrays [sample].
+template <class Real>
+ReverseSums reverse_weights(const Real* totals, Real temperature, Real ratio, Real offset, Range range,
+                            Real* evaluated, Real* rejected) noexcept {
+  using K = KernelsOf<Real>;
+  constexpr Real infinite = std::numeric_limits<Real>::infinity();
+  const int end = range.first + range.count;
+  ReverseSums sums;
+  const Real least = K::minimum(totals, range);
+  std::fill(evaluated + range.first, evaluated + end, Real(0));
+  std::fill(rejected + range.first, rejected + end, Real(0));
+  if (!(least < infinite)) return sums;
+  sums.usable = true;
+  const Real falling =
+      K::exponential_weights(totals, totals, least, temperature, range, evaluated).weight + offset;
+  // exp((J - max) / lambda) = exp((min' - J') / lambda) with J' = -J.
+  for (int k = range.first; k < end; ++k) rejected[k] = totals[k] < infinite ? -totals[k] : infinite;
+  const Real most = K::minimum(rejected, range);
+  Real growing = K::exponential_weights(rejected, rejected, most, temperature, range, rejected).weight;
+  const Real spread = (-most - least) / temperature;
+  sums.log_growth = static_cast<double>(spread + std::log(growing));
+  growing += offset * std::exp(-spread);
+  for (int k = range.first; k < end; ++k) {
+    const Real difference = evaluated[k] / falling - ratio * rejected[k] / growing;
+    evaluated[k] = std::max(difference, Real(0));
+    rejected[k] = std::max(-difference, Real(0));
+    sums.evaluated += static_cast<double>(evaluated[k]);
+    sums.rejected += static_cast<double>(rejected[k]);
+  }
+  if (sums.evaluated > 0) K::scale(static_cast<Real>(1 / sums.evaluated), range, evaluated);
+  if (sums.rejected > 0) K::scale(static_cast<Real>(1 / sums.rejected), range, rejected);
+  return sums;
+}
+
+}  // namespace slalom::detail

@@ -1,0 +1,159 @@
+#include "solvers/control_term.hpp"
+#include "solvers/gaussian_fit.hpp"
+#include "solvers/golden_json.hpp"
+#include "solvers/kernels_of.hpp"
+#include "solvers/surrogate_gradient.hpp"
+
+/// Whole solves of the published SVG-MPPI, stage by stage, each stage from what the trace says went into it.
+namespace slalom::testing {
+namespace {
+
+using detail::KernelsOf;
+
+// The parameters of the traces.
+constexpr double temperature = 3, discount = 0.1, gradient_temperature = 3, guide_step = 0.005,
+                 fit_temperature = 0.1, variance_min = 0.001, variance_max = 0.1, offset = 1e-10;
+
+/// A column of a CSV file with a header, by name.
+std::vector<double> column(const std::filesystem::path& path, const std::string& name) {
+  std::ifstream file(path);
+  std::string line, field;
+  std::getline(file, line);
+  std::vector<std::string> names;
+  for (std::istringstream header(line); std::getline(header, field, ',');) names.push_back(field);
+  const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+  std::vector<double> values;
+  while (std::getline(file, line)) {
+    std::istringstream row(line);
+    for (std::ptrdiff_t i = 0; i <= at; ++i) std::getline(row, field, ',');
+    values.push_back(std::stod(field));
+  }
+  return values;
+}
+
+/// The guides' gradients and steps of every iteration.
+template <class Real>
+void compare_transport(const Json& solve, const std::string& where, Comparison& comparison) {
+  const auto previous = numbers<Real>(solve["prev_control_seq"]);
+  auto weight = numbers<Real>(solve["guide_inv_cov"]);
+  const std::vector<Real> inverse(weight.size(), detail::inverse_variance(Real(0.01), Real(1e-4)));
+  for (Real& w : weight) w *= static_cast<Real>(gradient_temperature);
+  for (std::size_t l = 0; l < solve["svgd_iterations"].size(); ++l) {
+    const Json& iteration = solve["svgd_iterations"][l];
+    for (std::size_t g = 0; g < iteration["grad"].size(); ++g) {
+      Batch<Real> samples(iteration["grad_samples"][g]);
+      auto totals = padded_numbers<Real>(iteration["grad_sample_costs"][g], 0);
+      auto particle = numbers<Real>(iteration["particles_before"][g]);
+      std::vector<Real> weights(totals.size()), gradient(particle.size());
+      const detail::SurrogateGradient<Real> how{.temperature = static_cast<Real>(gradient_temperature),
+                                                .subtract_minimum = false,
+                                                .floor = offset,
+                                                .centre = particle.data(),
+                                                .inverse_variance = inverse.data(),
+                                                .distance_centre = previous.data(),
+                                                .distance_weight = weight.data()};
+      detail::surrogate_gradient(how, samples.view(), samples.range(), samples.samples, totals.data(),
+                                 weights.data(), gradient.data());
+      const std::string at = where + " iteration " + std::to_string(l) + " guide " + std::to_string(g);
+      comparison.compare(gradient, numbers<double>(iteration["grad"][g]), at + " gradient", 1e-12);
+      for (std::size_t r = 0; r < particle.size(); ++r)
+        particle[r] += static_cast<Real>(guide_step) * gradient[r];
+      comparison.compare(particle, numbers<double>(iteration["particles_after"][g]), at + " guide");
+    }
+  }
+}
+
+/// The Gaussians fitted to the guides' paths; returns how many fits, and counts the undetermined ones.
+int compare_fits(const Json& solve, const std::string& where, Comparison& comparison, int& undetermined) {
+  auto density = numbers<double>(solve["costs_history"]);
+  const detail::Range range{0, static_cast<int>(density.size())};
+  std::vector<double> weights(density.size());
+  const double least = KernelsOf<double>::minimum(density.data(), range);
+  const auto sums = KernelsOf<double>::exponential_weights(density.data(), density.data(), least,
+                                                           fit_temperature, range, weights.data());
+  KernelsOf<double>::scale(1 / (sums.weight + offset), range, weights.data());
+  const auto expected_weights = numbers<double>(solve["softmax_costs"]);
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    EXPECT_NEAR(weights[i], expected_weights[i], 1e-9) << where;
+
+  const auto expected = numbers<double>(solve["fit_sigma"]), clamped = numbers<double>(solve["covs_clamped"]);
+  for (std::size_t r = 0; r < expected.size(); ++r) {
+    std::vector<double> x;
+    for (const Json& iteration : solve["svgd_iterations"])
+      for (const Json& particle : iteration["particles_after"]) x.push_back(number(particle[r]));
+    const auto fit = detail::fit_gaussian(x.data(), weights.data(), static_cast<int>(x.size()));
+    const double fitted = std::sqrt(detail::fitted_variance(fit, true));
+    EXPECT_EQ(std::isinf(fitted), std::isinf(expected[r])) << where << " step " << r << ": rank decision";
+    undetermined += std::isinf(expected[r]);
+    comparison.compare<double>({std::clamp(fitted, variance_min, variance_max)}, {clamped[r]},
+                               where + " step " + std::to_string(r), 1);
+  }
+  return static_cast<int>(expected.size());
+}
+
+/// Control term and weights of all samples, and the new solution where all samples are in the trace.
+template <class Real>
+void compare_update(const Json& solve, const std::filesystem::path& csv, const std::string& where,
+                    Comparison& comparison) {
+  const auto costs = column(csv, "cost"), totals = column(csv, "cost_with_control_term"),
+             weights = column(csv, "weight");
+  ASSERT_EQ(costs.size(), solve["num_samples"].get<std::size_t>());
+
+  Batch<Real> samples(solve["samples_first"]);
+  const auto known = static_cast<std::size_t>(samples.samples);
+  const auto mean = numbers<Real>(solve["prev_control_seq"]),
+             nominal = numbers<Real>(solve["nominal_control_seq"]),
+             variance = numbers<Real>(solve["covs_clamped"]);
+  std::vector<Real> coefficients(mean.size()), with_term(costs.begin(), costs.begin() + samples.samples);
+  with_term.resize(static_cast<std::size_t>(samples.stride));
+  detail::control_coefficients(temperature, discount, 1e-4, mean.data(), nominal.data(), variance.data(),
+                               samples.rows, coefficients.data());
+  KernelsOf<Real>::add_linear(samples.view(), coefficients.data(), samples.range(), with_term.data());
+  comparison.compare(with_term, {totals.begin(), totals.begin() + samples.samples}, where + " control term");
+
+  std::vector<Real> all(totals.begin(), totals.end());
+  all.resize((all.size() + simd::padding - 1) / simd::padding * simd::padding,
+             std::numeric_limits<Real>::infinity());
+  std::vector<Real> w(all.size());
+  const detail::Range range{0, static_cast<int>(all.size())};
+  const Real least = KernelsOf<Real>::minimum(all.data(), range);
+  comparison.compare<Real>({least}, {number(solve["min_cost_with_control_term"])}, where + " least cost");
+  const auto sums = KernelsOf<Real>::exponential_weights(all.data(), all.data(), least,
+                                                         static_cast<Real>(temperature), range, w.data());
+  KernelsOf<Real>::scale(Real(1) / (sums.weight + Real(offset)), range, w.data());
+  comparison.compare(w, weights, where + " weights");
+
+  if (known == costs.size()) {
+    const std::vector<Real> zero(mean.size());
+    std::vector<Real> solution(mean.size());
+    KernelsOf<Real>::weighted_sums(samples.view(), w.data(), zero.data(), samples.range(), solution.data());
+    comparison.compare(solution, numbers<double>(solve["result_control_seq"]), where + " solution");
+  }
+}
+
+TEST(Golden, SvgTrace) {
+  SLALOM_GOLDEN_FOLDER(folder, "controller/svg_trace");
+  Comparison exact("svg_trace (double)", 1e-9), shipped("svg_trace (float32)", 1e-4),
+      fits("svg_trace fits, clamped (double)", 1e-4);
+  int undetermined = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (!std::filesystem::exists(entry.path() / "trace.jsonl")) continue;
+    for_each_line(entry.path() / "trace.jsonl", [&](const Json& solve) {
+      const std::string index = std::to_string(solve["solve"].get<int>());
+      const std::string where = entry.path().filename().string() + " solve " + index;
+      exact.next_case();
+      shipped.next_case();
+      compare_transport<double>(solve, where, exact);
+      compare_transport<float>(solve, where, shipped);
+      for (int i = compare_fits(solve, where, fits, undetermined); i > 0; --i) fits.next_case();
+      const auto csv = entry.path() / ("solve" + index + "_costs.csv");
+      compare_update<double>(solve, csv, where, exact);
+      compare_update<float>(solve, csv, where, shipped);
+    });
+  }
+  fits.note(std::to_string(undetermined) + " of them undetermined, every decision equal");
+  EXPECT_GT(exact.cases(), 0);
+}
+
+}  // namespace
+}  // namespace slalom::testing

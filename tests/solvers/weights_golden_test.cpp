@@ -1,0 +1,123 @@
+#include "solvers/control_term.hpp"
+#include "solvers/gaussian_fit.hpp"
+#include "solvers/golden_json.hpp"
+#include "solvers/kernels_of.hpp"
+#include "solvers/mirror_descent.hpp"
+
+namespace slalom::testing {
+namespace {
+
+using detail::KernelsOf;
+
+template <class Real>
+void compare_softmax(const std::filesystem::path& folder) {
+  Comparison comparison("softmax" + precision<Real>(), tolerance<Real>);
+  int shifted = 0;
+  for_each_line(folder / "cases.jsonl", [&](const Json& json) {
+    comparison.next_case();
+    auto exact = padded_numbers<double>(json["costs"], std::numeric_limits<double>::infinity());
+    // Costs whose differences float32 cannot tell, for their size, are given relative to the least: the
+    // weights do not depend on a common offset.
+    const double least_cost = *std::min_element(exact.begin(), exact.end());
+    const double resolution =
+        std::numeric_limits<Real>::epsilon() * std::abs(least_cost) / number(json["lambda"]);
+    if (sizeof(Real) == 4 && resolution > 0.1 * tolerance<Real>) {
+      for (double& cost : exact) cost -= least_cost;
+      ++shifted;
+    }
+    const std::vector<Real> costs(exact.begin(), exact.end());
+    std::vector<Real> weights(costs.size());
+    const detail::Range range{0, static_cast<int>(costs.size())};
+    const Real least = KernelsOf<Real>::minimum(costs.data(), range);
+    const auto sums = KernelsOf<Real>::exponential_weights(
+        costs.data(), costs.data(), least, static_cast<Real>(number(json["lambda"])), range, weights.data());
+    KernelsOf<Real>::scale(Real(1) / (sums.weight + Real(1e-10)), range, weights.data());
+    comparison.compare(weights, numbers<double>(json["weights"]), case_name(json));
+  });
+  comparison.note(std::to_string(shifted) +
+                  " of them beyond the precision, taken relative to the least cost");
+  EXPECT_GT(comparison.cases(), 0);
+}
+
+TEST(Golden, Softmax) {
+  SLALOM_GOLDEN_FOLDER(folder, "controller/softmax");
+  compare_softmax<double>(folder);
+  compare_softmax<float>(folder);
+}
+
+template <class Real>
+void compare_control_term(const std::filesystem::path& folder) {
+  Comparison comparison("control_term" + precision<Real>(), tolerance<Real>);
+  for_each_line(folder / "cases.jsonl", [&](const Json& json) {
+    comparison.next_case();
+    Batch<Real> samples(json["samples"]);
+    const auto mean = numbers<Real>(json["mean"]), nominal = numbers<Real>(json["nominal"]);
+    const auto variance = numbers<Real>(json["cov"]);
+    std::vector<Real> coefficients(mean.size());
+    detail::control_coefficients(number(json["lambda"]), number(json["alpha"]), 1e-4, mean.data(),
+                                 nominal.data(), variance.data(), samples.rows, coefficients.data());
+    auto costs = padded_numbers<Real>(json["costs"], 0);
+    KernelsOf<Real>::add_linear(samples.view(), coefficients.data(), samples.range(), costs.data());
+    comparison.compare(costs, numbers<double>(json["costs_with_control_term"]), case_name(json));
+  });
+  EXPECT_GT(comparison.cases(), 0);
+}
+
+TEST(Golden, ControlTerm) {
+  SLALOM_GOLDEN_FOLDER(folder, "controller/control_term");
+  compare_control_term<double>(folder);
+  compare_control_term<float>(folder);
+}
+
+TEST(Golden, GaussianFitting) {
+  SLALOM_GOLDEN_FOLDER(folder, "controller/gaussian_fitting");
+  Comparison comparison("gaussian_fitting, clamped (double)", 1e-4);
+  int undetermined = 0;
+  for_each_line(folder / "cases.jsonl", [&](const Json& json) {
+    comparison.next_case();
+    const auto x = numbers<double>(json["x"]), y = numbers<double>(json["y"]);
+    const auto fit = detail::fit_gaussian(x.data(), y.data(), static_cast<int>(x.size()));
+    const double fitted = std::sqrt(detail::fitted_variance(fit, true)), expected = number(json["variance"]);
+    EXPECT_EQ(std::isinf(fitted), std::isinf(expected)) << case_name(json) << ": the rank decision differs";
+    undetermined += std::isinf(expected);
+    comparison.compare<double>({std::clamp(fitted, 0.001, 0.1)}, {std::clamp(expected, 0.001, 0.1)},
+                               case_name(json), 1);
+    if (number(json["cond_A"]) < 1e8) {
+      EXPECT_NEAR(std::clamp(fitted, 0.001, 0.1), std::clamp(expected, 0.001, 0.1), 1e-11) << case_name(json);
+    }
+  });
+  comparison.note(std::to_string(undetermined) + " of them undetermined, every decision equal");
+  EXPECT_GT(comparison.cases(), 0);
+}
+
+template <class Real>
+void compare_mirror_descent(const std::filesystem::path& folder) {
+  Comparison comparison("md_update" + precision<Real>(), tolerance<Real>);
+  for_each_line(folder / "cases.jsonl", [&](const Json& json) {
+    comparison.next_case();
+    auto mean = numbers<Real>(json["prior_mean"]), variance = numbers<Real>(json["prior_cov"]);
+    const auto prior_mean = mean, prior_variance = variance;
+    const auto weighted_mean = numbers<Real>(json["weighted_mean"]),
+               weighted_variance = numbers<Real>(json["weighted_cov"]);
+    const int rows = static_cast<int>(mean.size());
+    detail::mirror_descent(static_cast<Real>(number(json["step_size"])), weighted_mean.data(),
+                           weighted_variance.data(), rows, mean.data(), variance.data());
+    comparison.compare(mean, numbers<double>(json["new_mean"]), case_name(json) + " mean");
+    comparison.compare(variance, numbers<double>(json["new_cov"]), case_name(json) + " variance");
+    const Real ratio = static_cast<Real>(number(json["interp_ratio"]));
+    detail::interpolate(prior_mean.data(), mean.data(), ratio, rows, mean.data());
+    detail::interpolate(prior_variance.data(), variance.data(), ratio, rows, variance.data());
+    comparison.compare(mean, numbers<double>(json["interp_mean"]), case_name(json) + " warm mean");
+    comparison.compare(variance, numbers<double>(json["interp_cov"]), case_name(json) + " warm variance");
+  });
+  EXPECT_GT(comparison.cases(), 0);
+}
+
+TEST(Golden, MirrorDescent) {
+  SLALOM_GOLDEN_FOLDER(folder, "controller/md_update");
+  compare_mirror_descent<double>(folder);
+  compare_mirror_descent<float>(folder);
+}
+
+}  // namespace
+}  // namespace slalom::testing
