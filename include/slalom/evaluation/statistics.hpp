@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+/// Statistics of laps: intervals and paired tests. All are deterministic.
+namespace slalom::evaluation {
+
+/// A two-sided interval, 95 % unless said otherwise.
+struct Interval {
+  double low = 0;
+  double high = 0;
+};
+
+/// Wilson's score interval for a rate of `successes` out of `trials` (E. B. Wilson, JASA 22, 1927). [0, 1]
+/// without trials; successes beyond the trials count as all of them.
+Interval wilson_interval(std::int64_t successes, std::int64_t trials, double z = 1.959963984540054);
+
+double mean(std::span<const double> values);  ///< NaN without values
+
+/// Percentile bootstrap of the mean (Efron & Tibshirani 1993, chapter 13). NaN without values.
+Interval bootstrap_mean(std::span<const double> values, std::uint64_t seed = 1, int resamples = 10000);
+
+/// Percentile bootstrap of sum(numerator) / sum(denominator) over paired entries, for instance contacts over
+/// obstacles by laps: lap is resampled as a whole. NaN where the denominators sum to 0.
+Interval bootstrap_ratio(std::span<const double> numerator, std::span<const double> denominator,
+                         std::uint64_t seed = 1, int resamples = 10000);
+
+/// Two-sided p value of equal means of two independent samples: bootstrap under the null hypothesis, both
+/// samples shifted to the common mean, with Welch's t as statistic (Efron & Tibshirani 1993, algorithm 16.2).
+/// 1 where both are constant and equal; NaN with fewer than 2 values in either.
+double bootstrap_difference_p(std::span<const double> a, std::span<const double> b, std::uint64_t seed = 1,
+                              int resamples = 10000);
+
+/// Exact two-sided McNemar test of paired yes/no outcomes: `only_a`, `only_b` count the pairs in which only
+/// the one says yes (McNemar 1947; binomial, so right for small counts too).
+double mcnemar_p(std::int64_t only_a, std::int64_t only_b);
+
+/// Two-sided Wilcoxon signed-rank test of paired differences (Wilcoxon 1945): zeros are dropped, ties share
+/// their mean rank; exact without ties up to 50 pairs, else the normal approximation with tie and continuity
+/// correction. 1 without non-zero differences.
+double wilcoxon_p(std::span<const double> differences);
+
+}  // namespace slalom::evaluation

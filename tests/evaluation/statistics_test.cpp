@@ -1,0 +1,80 @@
+#include "slalom/evaluation/statistics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "slalom/core/random.hpp"
+
+namespace slalom::evaluation {
+namespace {
+
+TEST(Wilson, KnownValues) {
+  const Interval none = wilson_interval(0, 10), some = wilson_interval(16, 210),
+                 all = wilson_interval(10, 10);
+  EXPECT_DOUBLE_EQ(none.low, 0);
+  EXPECT_NEAR(none.high, 0.27753, 1e-5);  // z^2 / (n + z^2)
+  EXPECT_NEAR(some.low, 0.0475, 5e-4);
+  EXPECT_NEAR(some.high, 0.1203, 5e-4);
+  EXPECT_NEAR(all.low, 1 - 0.27753, 1e-5);
+  EXPECT_DOUBLE_EQ(all.high, 1);
+  EXPECT_DOUBLE_EQ(wilson_interval(12, 10).high, 1);
+  EXPECT_DOUBLE_EQ(wilson_interval(0, 0).high, 1);
+}
+
+TEST(Bootstrap, IntervalOfAMeanCoversItAsOftenAsItSays) {
+  RandomStream random({5, 0});
+  int covered = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    std::vector<double> values(60);
+    for (double& v : values) v = 2 + random.normal();
+    const Interval i = bootstrap_mean(values, static_cast<std::uint64_t>(trial), 500);
+    covered += i.low <= 2 && 2 <= i.high;
+  }
+  EXPECT_GT(covered, 300 * 0.89);
+  EXPECT_LT(covered, 300 * 0.99);
+}
+
+TEST(Bootstrap, RepeatsExactlyAndHandlesNothing) {
+  const std::vector<double> values{1, 2, 5, 9};
+  EXPECT_EQ(bootstrap_mean(values).low, bootstrap_mean(values).low);
+  EXPECT_TRUE(std::isnan(bootstrap_mean({}).low));
+  EXPECT_TRUE(std::isnan(bootstrap_ratio(values, std::vector<double>{0, 0, 0, 0}).low));
+}
+
+TEST(Bootstrap, DifferenceIsFoundWhereItIs) {
+  RandomStream random({6, 0});
+  std::vector<double> a(40), b(40), c(40);
+  for (std::size_t i = 0; i < 40; ++i) {
+    a[i] = random.normal();
+    b[i] = random.normal();
+    c[i] = 1.5 + random.normal();
+  }
+  EXPECT_GT(bootstrap_difference_p(a, b), 0.05);
+  EXPECT_LT(bootstrap_difference_p(a, c), 0.001);
+}
+
+TEST(McNemar, ExactBinomial) {
+  EXPECT_DOUBLE_EQ(mcnemar_p(0, 0), 1);
+  EXPECT_NEAR(mcnemar_p(0, 5), 2 * std::pow(0.5, 5), 1e-12);
+  EXPECT_NEAR(mcnemar_p(1, 5), 2 * 7 * std::pow(0.5, 6), 1e-12);
+  EXPECT_DOUBLE_EQ(mcnemar_p(4, 4), 1);
+}
+
+TEST(Wilcoxon, ExactAndApproximate) {
+  const std::vector<double> all_up{0.1, 0.2, 0.3, 0.4, 0.5};
+  EXPECT_NEAR(wilcoxon_p(all_up), 2.0 / 32, 1e-12);
+  const std::vector<double> even{1, -1.5, 2, -2.5};
+  EXPECT_GT(wilcoxon_p(even), 0.5);
+  EXPECT_DOUBLE_EQ(wilcoxon_p(std::vector<double>{0, 0, 0}), 1);
+  std::vector<double> many;
+  for (int i = 1; i <= 80; ++i) many.push_back(i % 4 ? i : -i);
+  EXPECT_NEAR(wilcoxon_p(many), 1.85e-4, 1e-6);  // z = (780 - 0.5) / 208.5
+  std::vector<double> tied(20, 1.0);
+  tied.resize(30, -1.0);
+  EXPECT_NEAR(wilcoxon_p(tied), 0.069, 0.01);
+}
+
+}  // namespace
+}  // namespace slalom::evaluation
