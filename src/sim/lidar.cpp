@@ -21,6 +21,16 @@ std::size_t padded(int count) {
 
 }  // namespace
 
+LidarOptions LidarOptions::hokuyo_utm_30lx() {
+  LidarOptions options;
+  options.beams = 1081;
+  options.field_of_view = 1.5 * pi;
+  options.range_max = 30;
+  options.noise = 0.01;
+  options.rate = 40;
+  return options;
+}
+
 void LidarOptions::validate() const {
   detail::require_range("beams", beams, 1, 100000);
   detail::require_range("field_of_view", field_of_view, 0, 2 * pi);

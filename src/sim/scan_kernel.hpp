@@ -77,8 +77,8 @@ inline void start_beams(const ScanTask& task, int first, float reach, Rays<L>& r
   constexpr float tiny = 1e-9f;
   const F zero = F{};
   aim(task, task.cosines + first, task.sines + first, rays);
-  rays.inverse_c = 1.0f / ((rays.c > -tiny) & (rays.c < tiny) ? zero + tiny : rays.c);
-  rays.inverse_s = 1.0f / ((rays.s > -tiny) & (rays.s < tiny) ? zero + tiny : rays.s);
+  rays.inverse_c = 1.0f / (((rays.c > -tiny) & (rays.c < tiny)) ? zero + tiny : rays.c);
+  rays.inverse_s = 1.0f / (((rays.s > -tiny) & (rays.s < tiny)) ? zero + tiny : rays.s);
   rays.ahead_x = rays.inverse_c > zero ? zero + 1.0f : zero;
   rays.ahead_y = rays.inverse_s > zero ? zero + 1.0f : zero;
   rays.t = zero + reach;
@@ -183,10 +183,10 @@ inline void cast_with(const CastTask& task) {
       L::sqrt(half, half);
       const F near = along - half, far = along + half;
       distance = near >= zero ? near : far;
-      distance = (under < zero) | (far < zero) ? zero + none : distance;
+      distance = ((under < zero) | (far < zero)) ? zero + none : distance;
     } else {
-      const F ix = 1.0f / ((dx > -tiny) & (dx < tiny) ? zero + tiny : dx);
-      const F iy = 1.0f / ((dy > -tiny) & (dy < tiny) ? zero + tiny : dy);
+      const F ix = 1.0f / (((dx > -tiny) & (dx < tiny)) ? zero + tiny : dx);
+      const F iy = 1.0f / (((dy > -tiny) & (dy < tiny)) ? zero + tiny : dy);
       const F x0 = (-task.half_length - task.x) * ix, x1 = (task.half_length - task.x) * ix;
       const F y0 = (-task.half_width - task.y) * iy, y1 = (task.half_width - task.y) * iy;
       F enter_x, enter_y, leave_x, leave_y, enter, leave;
@@ -197,7 +197,7 @@ inline void cast_with(const CastTask& task) {
       L::max(enter_x, enter_y, enter);
       L::min(leave_x, leave_y, leave);
       distance = enter >= zero ? enter : leave;
-      distance = (enter > leave) | (leave < zero) ? zero + none : distance;
+      distance = ((enter > leave) | (leave < zero)) ? zero + none : distance;
     }
     L::min(distance, range, range);
     L::store(range, task.ranges + at);

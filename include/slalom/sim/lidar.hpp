@@ -35,6 +35,10 @@ struct LidarOptions {
   /// f1tenth_gym: a car is looked for only in the beams between those nearest to its corners.
   bool gym_window = false;
 
+  /// The Hokuyo UTM-30LX by its data sheet: 1081 beams over 270 degrees at 40 Hz, 30 m, 10 mm of noise (to 10
+  /// m).
+  static LidarOptions hokuyo_utm_30lx();
+
   double angle_increment() const { return beams > 1 ? field_of_view / (beams - 1) : 0; }  ///< rad
   double angle_min() const { return beams > 1 ? -field_of_view / 2 : 0; }                 ///< rad
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "slalom/sim/plant.hpp"
+
+namespace slalom::sim {
+
+/// A driver that does what it was told beforehand, whatever happens: commands by time.
+class Script {
+ public:
+  struct Line {
+    double from = 0;  ///< s, this command holds from here to the next line
+    Command command;
+  };
+
+  /// Throws std::invalid_argument on times or commands that are not finite, or times that do not rise.
+  explicit Script(std::vector<Line> lines);
+
+  /// The command at a time (s); zero before the first line.
+  Command command(double time) const noexcept;
+
+ private:
+  std::vector<Line> lines_;
+};
+
+}  // namespace slalom::sim
