@@ -1,0 +1,19 @@
+#pragma once
+
+/// Everything to solve a problem of one's own: problems, methods, controllers. The layers above (maps,
+/// vehicle, sim) are included by their own headers.
+
+#include "slalom/core/batch_evaluator.hpp"
+#include "slalom/core/error.hpp"
+#include "slalom/core/grid_view.hpp"
+#include "slalom/core/math.hpp"
+#include "slalom/core/option_access.hpp"
+#include "slalom/core/problem.hpp"
+#include "slalom/core/problem_evaluator.hpp"
+#include "slalom/core/status.hpp"
+#include "slalom/core/version.hpp"
+#include "slalom/solvers/controller.hpp"
+#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/mppi.hpp"
+#include "slalom/solvers/solver.hpp"
+#include "slalom/solvers/svg_mppi.hpp"

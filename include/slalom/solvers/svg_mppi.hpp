@@ -1,0 +1,23 @@
+#pragma once
+
+#include "slalom/solvers/controller.hpp"
+
+namespace slalom {
+
+/// A controller that solves its problem with `svg_mppi`: Stein variational guided MPPI (Honda et al., ICRA
+/// 2024).
+template <Problem P>
+class SvgMppi : public Controller<P> {
+ public:
+  explicit SvgMppi(P problem, const SvgMppiOptions& options = {}, std::shared_ptr<ThreadPool> pool = nullptr)
+      : Controller<P>(std::move(problem), options, std::move(pool)) {}
+};
+
+template <class P>
+SvgMppi(P) -> SvgMppi<P>;
+template <class P>
+SvgMppi(P, SvgMppiOptions) -> SvgMppi<P>;
+template <class P>
+SvgMppi(P, SvgMppiOptions, std::shared_ptr<ThreadPool>) -> SvgMppi<P>;
+
+}  // namespace slalom
