@@ -164,6 +164,7 @@ void World::set_state(std::size_t car, const CarState& state) {
   cars_.at(car).plant.set_state(state);
   cars_[car].before = state;
   boxes_[car].pose = pose_of(state);
+  if (cars_[car].timer) cars_[car].timer->relocate(*track_->lap_path(), {state.x, state.y});
 }
 
 void World::set_scanning(std::size_t car, bool scans) {

@@ -52,6 +52,16 @@ TEST(World, DrivingBackwardsIsNoLap) {
   EXPECT_LT(world.laps(0)->progress(), -40);
 }
 
+TEST(World, PuttingACarElsewhereIsNoProgress) {
+  World world({}, testing::ring_track());
+  world.reset(1, start);
+  world.set_state(0, {.x = 4.5, .y = 10, .yaw = -1.5707963});
+  world.step(std::array{Command{0, 1}});
+  EXPECT_NEAR(world.laps(0)->progress(), 0, 0.05);
+  EXPECT_NEAR(world.laps(0)->arc(), 5.5 * 3.14159, 0.1);
+  EXPECT_THROW(world.set_state(1, {}), std::out_of_range);
+}
+
 TEST(World, StopsAtWallsAndReversesAway) {
   World world({}, testing::ring_track());
   world.reset(1, std::array{maps::Pose{15.5, 10, 0}});

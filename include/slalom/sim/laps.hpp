@@ -54,6 +54,11 @@ class LapTimer {
   /// To be called after each step, with the position and the time (s) reached.
   void update(const LapPath& path, const maps::Point& position, double time) noexcept;
 
+  /// The car was put elsewhere: progress goes on from there, and what lies between does not count.
+  void relocate(const LapPath& path, const maps::Point& position) noexcept {
+    place_ = path.project(position);
+  }
+
   int laps() const noexcept { return laps_; }             ///< whole laps driven
   double progress() const noexcept { return progress_; }  ///< m since the start, backwards counts down
   double last_lap_time() const noexcept { return last_lap_time_; }  ///< s; 0 before the first is complete
