@@ -7,8 +7,8 @@
 
 namespace slalom::testing {
 
-/// The folder of golden data `set` ("controller/softmax", ...) below SLALOM_GOLDEN_DIR, read when the test runs; empty
-/// if the variable is unset or the folder does not exist.
+/// The folder of golden data `set` ("controller/softmax", ...) below SLALOM_GOLDEN_DIR, read when the test
+/// runs; empty if the variable is unset or the folder does not exist.
 inline std::filesystem::path golden_folder(const char* set) {
   const char* root = std::getenv("SLALOM_GOLDEN_DIR");
   if (!root || !*root) return {};
@@ -19,6 +19,6 @@ inline std::filesystem::path golden_folder(const char* set) {
 }  // namespace slalom::testing
 
 /// Declares `folder`; skips the test with a message where the golden data are absent.
-#define SLALOM_GOLDEN_FOLDER(folder, set)                                                     \
-  const auto folder = slalom::testing::golden_folder(set);                                    \
+#define SLALOM_GOLDEN_FOLDER(folder, set)                  \
+  const auto folder = slalom::testing::golden_folder(set); \
   if (folder.empty()) GTEST_SKIP() << "no golden data: set SLALOM_GOLDEN_DIR to a folder that has " set

@@ -2,6 +2,8 @@
 
 namespace slalom {
 
-const char* version() noexcept { return SLALOM_VERSION; }
+const char* version() noexcept {
+  return SLALOM_VERSION;
+}
 
 }  // namespace slalom

@@ -104,7 +104,9 @@ TEST(GymRules, NumpyDraws) {
       EXPECT_EQ(std::to_string(raw.bits()), bits.get<std::string>());
     NumpyRandom draws(seed);
     EXPECT_EQ(static_cast<int>(draws.below(1362)), entry["choice_of_1362"].get<int>());
-    const auto real = [&values = entry](const char* key) { return std::stod(values[key].get<std::string>()); };
+    const auto real = [&values = entry](const char* key) {
+      return std::stod(values[key].get<std::string>());
+    };
     constexpr double pi = 3.141592653589793;
     compared.absolute(draws.uniform(0, 0.1), real("uniform_r"));
     compared.absolute(draws.uniform(-pi, pi), real("uniform_theta"));

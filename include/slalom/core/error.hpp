@@ -5,8 +5,8 @@
 
 namespace slalom {
 
-/// A file could not be read or written, or what it holds breaks a rule. The message reads `file:line: what`, naming
-/// the key, the value and the rule; the line is left out (0) where a file as a whole is meant.
+/// A file could not be read or written, or what it holds breaks a rule. The message reads `file:line: what`,
+/// naming the key, the value and the rule; the line is left out (0) where a file as a whole is meant.
 class IoError : public std::runtime_error {
  public:
   IoError(std::string file, int line, const std::string& what)

@@ -63,8 +63,8 @@ namespace slalom::simd {
 /// The instruction sets a batch loop is compiled for.
 enum class Target : std::uint8_t { generic, sse4, avx2, avx512 };
 
-/// Tags of the instruction sets: `lanes` float32 values a pack, and whether it multiplies and adds with one rounding.
-/// `Generic` uses what the build's baseline has (SSE2 on x86-64, NEON on AArch64).
+/// Tags of the instruction sets: `lanes` float32 values a pack, and whether it multiplies and adds with one
+/// rounding. `Generic` uses what the build's baseline has (SSE2 on x86-64, NEON on AArch64).
 struct Generic {
   static constexpr int lanes = 4;
   static constexpr bool fused = SLALOM_X86 == 0;

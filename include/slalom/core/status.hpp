@@ -14,11 +14,16 @@ enum class Status {
 /// The name of a status, as it is written in results.
 constexpr const char* name(Status status) noexcept {
   switch (status) {
-    case Status::ok: return "ok";
-    case Status::deadline: return "deadline";
-    case Status::all_collided: return "all_collided";
-    case Status::degenerate: return "degenerate";
-    case Status::non_finite_state: return "non_finite_state";
+    case Status::ok:
+      return "ok";
+    case Status::deadline:
+      return "deadline";
+    case Status::all_collided:
+      return "all_collided";
+    case Status::degenerate:
+      return "degenerate";
+    case Status::non_finite_state:
+      return "non_finite_state";
   }
   return "unknown";
 }

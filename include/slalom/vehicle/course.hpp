@@ -47,7 +47,8 @@ struct Course {
   std::vector<std::string> notes;  ///< what was left aside and why, one sentence each
 };
 
-/// Loads and checks the course in `folder`; `reading` says how its map is read. Throws IoError naming file, line, column or key, value and rule.
+/// Loads and checks the course in `folder`; `reading` says how its map is read. Throws IoError naming file,
+/// line, column or key, value and rule.
 Course load_course(const std::filesystem::path& folder, const maps::MapReading& reading = {});
 
 /// Lowers every waypoint's speed to at most `max_speed` (m/s, > 0, else std::invalid_argument).
