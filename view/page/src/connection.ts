@@ -1,0 +1,50 @@
+import { decode, type Frame, type Scene, type Text } from "./protocol";
+
+export interface Handlers {
+  frame(frame: Frame): void;
+  scene(scene: Scene): void;
+  text(message: Text): void;
+  status(connected: boolean, attempts: number): void;
+}
+
+/** Keeps a WebSocket open: reconnects by itself, with a wait that grows to three seconds. */
+export class Connection {
+  private socket?: WebSocket;
+  private attempts = 0;
+  private timer = 0;
+  received = 0;
+
+  constructor(private readonly handlers: Handlers) { this.open(); }
+
+  get connected() { return this.socket?.readyState === WebSocket.OPEN; }
+
+  send(command: Record<string, unknown>) {
+    if (this.connected) this.socket!.send(JSON.stringify(command));
+  }
+
+  private open() {
+    const address = new URL("ws", location.href);
+    address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
+    address.hash = "";
+    const token = new URLSearchParams(location.search).get("token");
+    address.search = token ? "?token=" + encodeURIComponent(token) : "";
+    const socket = new WebSocket(address);
+    socket.binaryType = "arraybuffer";
+    this.socket = socket;
+    socket.onopen = () => { this.attempts = 0; this.handlers.status(true, 0); };
+    socket.onmessage = (event) => this.got(event.data);
+    socket.onclose = () => {
+      this.attempts += 1;
+      this.handlers.status(false, this.attempts);
+      clearTimeout(this.timer);
+      this.timer = window.setTimeout(() => this.open(), Math.min(3000, 250 * this.attempts));
+    };
+  }
+
+  private got(data: string | ArrayBuffer) {
+    if (typeof data === "string") return this.handlers.text(JSON.parse(data) as Text);
+    const message = decode(data);
+    if (message.scene) this.handlers.scene(message.scene);
+    else if (message.frame) { this.received += 1; this.handlers.frame(message.frame); }
+  }
+}
