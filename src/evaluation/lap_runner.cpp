@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "evaluation/lap_drive.hpp"
 #include "slalom/sim/placement.hpp"
 #include "slalom/sim/shapes.hpp"
 
@@ -36,24 +37,6 @@ std::uint64_t solver_seed(std::uint64_t lap_seed, std::string_view method) {
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return z ^ (z >> 31);
 }
-
-/// A lap under way.
-struct LapRunner::Drive {
-  Drive(const sim::WorldOptions& options, const Arena& arena, const vehicle::Configuration& configuration,
-        std::unique_ptr<vehicle::Planner> driver)
-      : world(options, arena.track), planner(std::move(driver)), meter(arena.path, configuration.vehicle) {}
-
-  sim::World world;
-  std::unique_ptr<vehicle::Planner> planner;
-  SequenceCostMeter meter;
-  sim::ContactLog log;
-  LapResult result;
-  sim::Command acting;                                           ///< what the car does now
-  std::vector<std::pair<std::int64_t, sim::Command>> under_way;  ///< by the step in which they arrive
-  double cost_state = 0, cost_collision = 0, cost_published = 0, cost_driven = 0;
-  double input_error = 0, speed = 0, distance = 0, variance = 0, effective = 0;
-  int solves = 0;
-};
 
 LapRunner::LapRunner(std::shared_ptr<const Arena> arena, const vehicle::Configuration& configuration,
                      std::string method, const LapSettings& settings)
@@ -118,7 +101,7 @@ double LapRunner::progress(const sim::World& world) const noexcept {
 }
 
 /// One planner update: what is seen goes in, the command is sent on its way.
-void LapRunner::control(Drive& drive, const TickCallback& on_tick) const {
+void LapRunner::control(Drive& drive, const TickCallback& on_tick, double further_latency) const {
   const sim::Observation seen = drive.world.observe(0);
   const bool published = arena_->evaluation == Evaluation::published;
   maps::LaserScanView scan = seen.scan;
@@ -165,16 +148,18 @@ void LapRunner::control(Drive& drive, const TickCallback& on_tick) const {
   sim::Command command{output.command.steer, output.command.speed};
   // The published program's messages carry float32.
   if (published) command = {static_cast<float>(command.steering), static_cast<float>(command.drive)};
-  const auto delay = std::llround(settings_.latency / drive.world.options().time_step);
+  const double time_step = drive.world.options().time_step;
+  const auto delay = std::llround(settings_.latency / time_step) +
+                     static_cast<long long>(std::ceil(further_latency / time_step - 1e-9));
   drive.under_way.emplace_back(drive.world.steps() + delay, command);
 }
 
 /// The world goes on until the next command is due.
-void LapRunner::advance(Drive& drive) const {
+void LapRunner::advance(Drive& drive, bool past_finish) const {
   const double time_step = drive.world.options().time_step;
   const auto steps = std::max<long long>(1, std::llround(control_period() / time_step));
   LapResult& result = drive.result;
-  for (long long k = 0; k < steps && !at_finish(drive.world); ++k) {
+  for (long long k = 0; k < steps && (past_finish || !at_finish(drive.world)); ++k) {
     while (!drive.under_way.empty() && drive.under_way.front().first <= drive.world.steps()) {
       drive.acting = drive.under_way.front().second;
       drive.under_way.erase(drive.under_way.begin());
@@ -224,7 +209,7 @@ void LapRunner::finish(Drive& drive) const {
   }
 }
 
-LapResult LapRunner::run(std::uint64_t seed, const TickCallback& on_tick, const std::atomic<bool>* cancel) {
+std::unique_ptr<LapRunner::Drive> LapRunner::begin(std::uint64_t seed) const {
   sim::WorldOptions options = arena_->world_options();
   if (arena_->evaluation == Evaluation::true_physics) {
     // A whole number of physics steps and one scan per command, whatever the control period is.
@@ -232,22 +217,27 @@ LapResult LapRunner::run(std::uint64_t seed, const TickCallback& on_tick, const 
     options.time_step = period / std::max(1.0, std::ceil(period / options.time_step - 1e-9));
     options.lidar.rate = 1 / period;
   }
-  Drive drive(options, *arena_, configuration_, make_planner());
-  drive.planner->reset(solver_seed(seed, method_));
-  drive.result.seed = seed;
-  drive.result.obstacles = place_obstacles(seed);
-  drive.result.least_clearance = std::numeric_limits<double>::infinity();
-  drive.world.reset(seed, {&start_, 1}, drive.result.obstacles);
-  while (!at_finish(drive.world) && drive.world.time() <= timeout_) {
+  auto drive = std::make_unique<Drive>(options, *arena_, configuration_, make_planner());
+  drive->planner->reset(solver_seed(seed, method_));
+  drive->result.seed = seed;
+  drive->result.obstacles = place_obstacles(seed);
+  drive->result.least_clearance = std::numeric_limits<double>::infinity();
+  drive->world.reset(seed, {&start_, 1}, drive->result.obstacles);
+  return drive;
+}
+
+LapResult LapRunner::run(std::uint64_t seed, const TickCallback& on_tick, const std::atomic<bool>* cancel) {
+  const std::unique_ptr<Drive> drive = begin(seed);
+  while (!at_finish(drive->world) && drive->world.time() <= timeout_) {
     if (cancel && cancel->load(std::memory_order_relaxed)) {
-      drive.result.cancelled = true;
+      drive->result.cancelled = true;
       break;
     }
-    control(drive, on_tick);
-    advance(drive);
+    control(*drive, on_tick);
+    advance(*drive);
   }
-  finish(drive);
-  return std::move(drive.result);
+  finish(*drive);
+  return std::move(drive->result);
 }
 
 }  // namespace slalom::evaluation

@@ -136,6 +136,8 @@ SequenceCostMeter::SequenceCostMeter(std::span<const maps::ReferencePoint> path,
   implementation_->inputs.resize(std::max<std::size_t>(implementation_->inputs.size(), steps));
 }
 SequenceCostMeter::~SequenceCostMeter() = default;
+SequenceCostMeter::SequenceCostMeter(SequenceCostMeter&&) noexcept = default;
+SequenceCostMeter& SequenceCostMeter::operator=(SequenceCostMeter&&) noexcept = default;
 
 void SequenceCostMeter::observe(const maps::LaserScanView& scan, const maps::Pose& robot) noexcept {
   Implementation& m = *implementation_;

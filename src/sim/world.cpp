@@ -159,6 +159,21 @@ void World::move_body(int body, const maps::Pose& pose) {
   find_fixed_partners();
 }
 
+void World::remove_body(int body) {
+  const auto driven = static_cast<int>(cars_.size());
+  if (body < driven || body >= static_cast<int>(bodies()))
+    throw std::invalid_argument("body = " + std::to_string(body) + ": must be one that does not drive");
+  fixed_.erase(fixed_.begin() + (body - driven));
+  flags_.erase(flags_.begin() + body);
+  partners_.erase(partners_.begin() + body);
+  for (int& partner : partners_) partner = partner == body ? -1 : partner > body ? partner - 1 : partner;
+  for (Car& car : cars_) {
+    std::erase(car.touching, body);
+    for (int& touched : car.touching) touched -= touched > body;
+  }
+  find_fixed_partners();
+}
+
 void World::set_state(std::size_t car, const CarState& state) {
   require_finite("state", pose_of(state));
   cars_.at(car).plant.set_state(state);

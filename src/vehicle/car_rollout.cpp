@@ -54,6 +54,8 @@ class Rollout final : public CarRollout {
       const double collision =
           problem.collision_cost(seen, last ? options.outside_terminal_cost : options.outside_cost);
       total.state += cost.value - collision;
+      total.distance +=
+          (last ? options.terminal_distance_weight : options.distance_weight) * square(seen.distance);
       total.collision += collision;
       total.collided |= cost.collided;
       if (!last) s = problem.step(s, seen, u, static_cast<int>(k));

@@ -9,13 +9,6 @@
 
 namespace slalom::vehicle::detail {
 
-/// The costs of a predicted sequence, apart.
-struct PredictedCost {
-  double state = 0;
-  double collision = 0;
-  bool collided = false;
-};
-
 /// The car at the start of a rollout, map frame.
 struct CarStart {
   maps::Pose pose;

@@ -16,7 +16,6 @@ namespace {
 using detail::CarRollout;
 using detail::CarStart;
 using detail::CommandHistory;
-using detail::PredictedCost;
 
 maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options) {
   auto made = options.published_maps ? maps::LocalCostMapOptions::published() : maps::LocalCostMapOptions{};
@@ -210,6 +209,11 @@ void Planner::reset(std::uint64_t seed) noexcept {
   implementation_->solver->reset(seed);
   implementation_->cost_map.clear();
   implementation_->output = {};
+}
+
+PredictedCost Planner::predict(std::span<const float> inputs,
+                               std::span<PredictedState> states) const noexcept {
+  return implementation_->rollout->predict(inputs, states);
 }
 
 const Solver& Planner::solver() const noexcept {

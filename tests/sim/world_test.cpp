@@ -136,6 +136,23 @@ TEST(World, SeesBodiesWhereTheyAre) {
   EXPECT_NEAR(world.observe(1).scan.ranges[ahead], 19.95 - 12 - options.lidar.mount.x, 1e-3);
 }
 
+TEST(World, BodiesCanBeTakenAway) {
+  WorldOptions options;
+  options.lidar.noise = 0;
+  World world(options, std::make_shared<const Track>(testing::room(400, 100)));
+  world.reset(1, std::array{maps::Pose{2, 2.5, 0}}, std::array{maps::Pose{5, 2.5, 0}, maps::Pose{8, 2.5, 0}});
+  const int disc = world.add_disc({{3, 2.5}, 0.1});
+  EXPECT_THROW(world.remove_body(0), std::invalid_argument);
+  EXPECT_THROW(world.remove_body(disc + 1), std::invalid_argument);
+  world.remove_body(1);
+  ASSERT_EQ(world.bodies(), 3u);
+  EXPECT_EQ(world.outline(1).pose.x, 8);
+  EXPECT_TRUE(world.disc(2));
+  world.remove_body(2);
+  world.step(std::array{Command{}});
+  EXPECT_NEAR(world.observe(0).scan.ranges[540], 8 - 0.29 - 2 - options.lidar.mount.x, 1e-4);
+}
+
 TEST(World, LidarRateHoldsScans) {
   WorldOptions options;
   options.lidar.rate = 40;

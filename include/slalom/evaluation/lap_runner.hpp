@@ -104,15 +104,20 @@ class LapRunner {
   double timeout() const noexcept { return timeout_; }         ///< s
   double control_period() const noexcept;                      ///< s of simulated time per command
   const maps::Pose& start() const noexcept { return start_; }  ///< of the centre of gravity
+  const Arena& arena() const noexcept { return *arena_; }
+  const std::string& method() const noexcept { return method_; }
+  const vehicle::Configuration& configuration() const noexcept { return configuration_; }
 
  private:
+  friend class Ride;
   struct Drive;
+  std::unique_ptr<Drive> begin(std::uint64_t seed) const;
   std::vector<maps::Pose> place_obstacles(std::uint64_t seed) const;
   std::unique_ptr<vehicle::Planner> make_planner() const;
   bool at_finish(const sim::World& world) const noexcept;
   double progress(const sim::World& world) const noexcept;
-  void control(Drive& drive, const TickCallback& on_tick) const;
-  void advance(Drive& drive) const;
+  void control(Drive& drive, const TickCallback& on_tick, double further_latency = 0) const;
+  void advance(Drive& drive, bool past_finish = false) const;
   void finish(Drive& drive) const;
 
   std::shared_ptr<const Arena> arena_;

@@ -29,6 +29,8 @@ class SequenceCostMeter {
   /// `model` is that of the planner. Throws std::invalid_argument on a bad path.
   SequenceCostMeter(std::span<const maps::ReferencePoint> path, const vehicle::PathTrackingOptions& model);
   ~SequenceCostMeter();
+  SequenceCostMeter(SequenceCostMeter&&) noexcept;
+  SequenceCostMeter& operator=(SequenceCostMeter&&) noexcept;
 
   /// Makes the published maps from a scan taken with the rear axle at `robot` (map frame).
   void observe(const maps::LaserScanView& scan, const maps::Pose& robot) noexcept;

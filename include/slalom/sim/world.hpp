@@ -107,6 +107,8 @@ class World {
   /// Moves a parked car, box or disc. Throws std::invalid_argument on a body that does not exist or that
   /// drives.
   void move_body(int body, const maps::Pose& pose);
+  /// Takes a parked car, box or disc away; the numbers of later bodies fall by one. Throws as move_body does.
+  void remove_body(int body);
 
   /// Puts a driven car into a state, as it is; commands under way stay under way.
   void set_state(std::size_t car, const CarState& state);

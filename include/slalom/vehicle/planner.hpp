@@ -129,6 +129,14 @@ struct PredictedState {
   maps::Pose local;  ///< in the frame of the robot at the time of the scan
 };
 
+/// The cost of a predicted sequence, by term.
+struct PredictedCost {
+  double state = 0;     ///< of distance and yaw, without collisions
+  double distance = 0;  ///< the part of `state` that the distance to the path makes
+  double collision = 0;
+  bool collided = false;
+};
+
 struct PlannerInput {
   maps::LaserScanView scan;
   Odometry odometry;
@@ -164,6 +172,10 @@ class Planner {
 
   /// Forgets everything: solver, observer, commands under way.
   void reset(std::uint64_t seed) noexcept;
+
+  /// The states (inputs.size() + 1 of them) and costs of any control sequence, from where the last update
+  /// that made a plan began, over its maps. For viewers; it may be called between updates.
+  PredictedCost predict(std::span<const float> inputs, std::span<PredictedState> states) const noexcept;
 
   const Solver& solver() const noexcept;
   const maps::LocalCostMap& cost_map() const noexcept;

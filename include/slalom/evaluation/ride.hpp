@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "slalom/evaluation/lap_runner.hpp"
+
+namespace slalom::evaluation {
+
+/// A drive that somebody else steps, looks into and meddles with. As long as nobody meddles, its first lap is
+/// that of LapRunner::run with the same seed, bit for bit; after the finish the car drives on. The same
+/// meddling at the same ticks gives the same drive.
+class Ride {
+ public:
+  /// Throws as LapRunner::run does.
+  Ride(std::shared_ptr<const LapRunner> runner, std::uint64_t seed);
+  ~Ride();
+  Ride(Ride&&) noexcept;
+  Ride& operator=(Ride&&) noexcept;
+
+  /// One control period: a planner update, then the world until the next one. `further_latency` (s) is added
+  /// to the settings' for this command alone.
+  void tick(const TickCallback& on_tick = {}, double further_latency = 0);
+
+  /// From the next tick on another configuration or method drives, with a planner that begins anew. The arena
+  /// must be the same and the control period too; throws std::invalid_argument otherwise.
+  void change_driver(std::shared_ptr<const LapRunner> runner);
+
+  int ticks() const noexcept;
+  sim::World& world() noexcept;
+  const sim::World& world() const noexcept;
+  const LapRunner& runner() const noexcept { return *runner_; }
+  /// Contacts so far, by the evaluation's way of counting.
+  int contacts() const noexcept;
+
+ private:
+  std::shared_ptr<const LapRunner> runner_;
+  std::uint64_t seed_;
+  std::unique_ptr<LapRunner::Drive> drive_;
+};
+
+}  // namespace slalom::evaluation

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "slalom/evaluation/lap_runner.hpp"
+
+namespace slalom::evaluation {
+
+/// A lap under way.
+struct LapRunner::Drive {
+  Drive(const sim::WorldOptions& options, const Arena& arena, const vehicle::Configuration& configuration,
+        std::unique_ptr<vehicle::Planner> driver)
+      : world(options, arena.track), planner(std::move(driver)), meter(arena.path, configuration.vehicle) {}
+
+  sim::World world;
+  std::unique_ptr<vehicle::Planner> planner;
+  SequenceCostMeter meter;
+  sim::ContactLog log;
+  LapResult result;
+  sim::Command acting;                                           ///< what the car does now
+  std::vector<std::pair<std::int64_t, sim::Command>> under_way;  ///< by the step in which they arrive
+  double cost_state = 0, cost_collision = 0, cost_published = 0, cost_driven = 0;
+  double input_error = 0, speed = 0, distance = 0, variance = 0, effective = 0;
+  int solves = 0;
+};
+
+}  // namespace slalom::evaluation

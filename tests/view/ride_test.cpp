@@ -1,0 +1,95 @@
+// A ride is the lap of the command line until somebody meddles, and the same meddling gives the same ride.
+#include "slalom/evaluation/ride.hpp"
+
+#include <gtest/gtest.h>
+
+#include "slalom/vehicle/configuration.hpp"
+
+namespace slalom::evaluation {
+namespace {
+
+std::shared_ptr<const LapRunner> runner(const std::string& method, int obstacles = 2) {
+  static const auto arena = load_arena(SLALOM_COURSES "/wren", Evaluation::true_physics, {});
+  vehicle::Configuration configuration;
+  for (const char* each : {"svg_mppi", "mppi"}) {
+    vehicle::set_option(configuration, "samples", "256", each);
+    vehicle::set_option(configuration, "horizon", "14", each);
+    vehicle::set_option(configuration, "variance", "0.05", each);
+    vehicle::set_option(configuration, "input_min", "-0.4", each);
+    vehicle::set_option(configuration, "input_max", "0.4", each);
+  }
+  LapSettings settings;
+  settings.obstacles = obstacles;
+  return std::make_shared<const LapRunner>(arena, configuration, method, settings);
+}
+
+TEST(Ride, FirstLapIsTheLapOfTheRunner) {
+  auto alone = *runner("mppi");
+  std::vector<double> steering, times;
+  alone.run(3, [&](const LapTick& tick) {
+    steering.push_back(tick.output.command.steer);
+    times.push_back(tick.time);
+  });
+  Ride ride(runner("mppi"), 3);
+  ASSERT_GT(steering.size(), 100u);
+  for (std::size_t i = 0; i < steering.size(); ++i) {
+    ride.tick([&](const LapTick& tick) {
+      ASSERT_EQ(tick.output.command.steer, steering[i]) << i;
+      ASSERT_EQ(tick.time, times[i]) << i;
+    });
+  }
+  EXPECT_GE(ride.world().laps(0)->laps(), 1);
+  const double there = ride.world().state(0).x;
+  for (int i = 0; i < 20; ++i) ride.tick();
+  EXPECT_NE(ride.world().state(0).x, there) << "the car drives on";
+}
+
+/// A ride with an obstacle, another method and a late command on the way.
+sim::CarState meddled() {
+  Ride ride(runner("mppi"), 5);
+  for (int i = 0; i < 60; ++i) {
+    if (i == 20) ride.world().add_disc({{ride.world().state(0).x + 1, ride.world().state(0).y}, 0.1});
+    if (i == 40) ride.change_driver(runner("svg_mppi"));
+    ride.tick({}, i == 30 ? 0.02 : 0);
+  }
+  EXPECT_EQ(ride.ticks(), 60);
+  return ride.world().state(0);
+}
+
+TEST(Ride, SameMeddlingSameRide) {
+  const sim::CarState once = meddled();
+  EXPECT_TRUE(once == meddled());
+  Ride untouched(runner("mppi"), 5);
+  for (int i = 0; i < 60; ++i) untouched.tick();
+  EXPECT_FALSE(once == untouched.world().state(0));
+}
+
+TEST(Ride, ArenaAndPeriodStay) {
+  Ride ride(runner("mppi"), 1);
+  vehicle::Configuration slower = runner("mppi")->configuration();
+  slower.planner.control_period = 0.05;
+  const auto arena = load_arena(SLALOM_COURSES "/wren", Evaluation::true_physics, {});
+  EXPECT_THROW(ride.change_driver(std::make_shared<const LapRunner>(arena, slower, "mppi", LapSettings{})),
+               std::invalid_argument);
+}
+
+TEST(Ride, PredictsWhatThePlanSays) {
+  Ride ride(runner("svg_mppi"), 2);
+  int compared = 0;
+  for (int i = 0; i < 30; ++i) {
+    ride.tick([&](const LapTick& tick) {
+      if (!tick.output.solve) return;
+      std::vector<vehicle::PredictedState> states(tick.output.inputs.size() + 1);
+      const auto cost = tick.planner.predict(tick.output.inputs, states);
+      EXPECT_EQ(cost.state, tick.output.state_cost);
+      EXPECT_EQ(cost.collision, tick.output.collision_cost);
+      EXPECT_LE(cost.distance, cost.state);
+      EXPECT_EQ(states.back().pose.x, tick.output.predicted.back().pose.x);
+      ++compared;
+    });
+  }
+  EXPECT_GT(compared, 20);
+}
+
+}  // namespace
+}  // namespace slalom::evaluation
