@@ -9,7 +9,7 @@ namespace slalom::evaluation {
 namespace {
 
 std::shared_ptr<const LapRunner> runner(const std::string& method, int obstacles = 2) {
-  static const auto arena = load_arena(SLALOM_COURSES "/wren", Evaluation::true_physics, {});
+  static const auto arena = load_arena(SLALOM_COURSES "/stag", Evaluation::true_physics, {});
   vehicle::Configuration configuration;
   for (const char* each : {"svg_mppi", "mppi"}) {
     vehicle::set_option(configuration, "samples", "256", each);
@@ -68,7 +68,7 @@ TEST(Ride, ArenaAndPeriodStay) {
   Ride ride(runner("mppi"), 1);
   vehicle::Configuration slower = runner("mppi")->configuration();
   slower.planner.control_period = 0.05;
-  const auto arena = load_arena(SLALOM_COURSES "/wren", Evaluation::true_physics, {});
+  const auto arena = load_arena(SLALOM_COURSES "/stag", Evaluation::true_physics, {});
   EXPECT_THROW(ride.change_driver(std::make_shared<const LapRunner>(arena, slower, "mppi", LapSettings{})),
                std::invalid_argument);
 }
