@@ -7,7 +7,7 @@ namespace slalom {
 
 namespace {
 /// In the order of the alternatives of `SolverOptions`.
-constexpr const char* names[] = {"mppi", "svg_mppi"};
+constexpr const char* names[] = {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"};
 static_assert(std::size(names) == std::variant_size_v<SolverOptions>);
 
 template <std::size_t I = 0>

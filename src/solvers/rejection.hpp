@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -30,8 +31,13 @@ class PublishedRejection {
   void set(const Real* mean, const Real* variance, const Real* rejected_mean,
            const Real* rejected_variance) noexcept {
     for (int r = 0; r < rows_; ++r) {
-      entry(0, r) = published_density(rejected_mean[r], mean[r], variance[r]);
       entry(1, r) = rejected_mean[r];
+      if (!(variance[r] > 0) || !(rejected_variance[r] > 0)) {  // an input that is not sampled has no say
+        entry(0, r) = 1;
+        entry(2, r) = entry(3, r) = 0;
+        continue;
+      }
+      entry(0, r) = published_density(rejected_mean[r], mean[r], variance[r]);
       entry(2, r) = Real(1) / std::sqrt(rejected_variance[r]);
       entry(3, r) = Real(1) / std::sqrt(Real(2) * std::numbers::pi_v<Real> * rejected_variance[r]);
     }
@@ -49,22 +55,23 @@ class PublishedRejection {
   int rows_;
 };
 
-/// log of a product of normal densities up to the factor (2 pi)^(-rows/2), of sample k.
-template <class Real>
-double log_density(const Rows<Real>& v, int k, const Real* mean, const Real* variance) noexcept {
-  double sum = 0;
-  for (int r = 0; r < v.rows; ++r) {
-    const double difference = static_cast<double>(v.row(r)[k]) - static_cast<double>(mean[r]);
-    const double s2 = static_cast<double>(variance[r]);
-    sum -= 0.5 * (difference * difference / s2 + std::log(s2));
-  }
-  return sum;
+/// log of the probability that a sample is kept, p / (p + p_rejected), from log (p_rejected / p).
+inline double log_keep(double log_ratio) noexcept {
+  return log_ratio > 700 ? -log_ratio : -std::log1p(std::exp(log_ratio));
 }
 
-/// log of the probability that a sample of the first distribution is kept: p / (p + p_rejected).
-inline double log_keep(double log_density_own, double log_density_rejected) noexcept {
-  const double ratio = log_density_rejected - log_density_own;
-  return ratio > 700 ? -ratio : -std::log1p(std::exp(ratio));
+/// Picks `wanted` of the samples in proportion to their probabilities, whose running sums (not decreasing,
+/// the last is > 0) are given. Systematic: at even distances from one random start; multinomial:
+/// independently. Indices come in rising order if systematic.
+inline void pick(const double* running, int count, int wanted, bool systematic, RandomStream& random,
+                 int* indices) noexcept {
+  const double total = running[count - 1];
+  const double start = random.uniform();
+  for (int k = 0; k < wanted; ++k) {
+    const double at = (systematic ? (k + start) / wanted : k == 0 ? start : random.uniform()) * total;
+    const double* found = std::upper_bound(running, running + count, at);
+    indices[k] = static_cast<int>(std::min<std::ptrdiff_t>(found - running, count - 1));
+  }
 }
 
 }  // namespace slalom::detail

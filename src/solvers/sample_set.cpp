@@ -134,6 +134,14 @@ Census SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey k
   return combine();
 }
 
+void SampleSet::draw(RandomKey key, const Placement<float>& to, ThreadPool& pool) noexcept {
+  pool.run(tiles(), [&](int tile) {
+    const Range r = range(tile);
+    fill_normal(values_, r.first, r.count, key);
+    kernels().place(row_view(), row_view(), to, r);
+  });
+}
+
 Census SampleSet::evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
                            const Deadline& deadline) noexcept {
   pool.run(tiles(), [&](int tile) {

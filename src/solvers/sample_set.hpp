@@ -57,6 +57,7 @@ class SampleSet {
   int rows() const noexcept { return values_.steps() * values_.inputs(); }
   const SequenceBatch& values() const noexcept { return values_; }
   SequenceBatch& values() noexcept { return values_; }
+  int stride() const noexcept { return values_.stride(); }
   Rows<float> row_view() noexcept { return {values_.row(0, 0), values_.stride(), rows()}; }
 
   /// Costs [sample]; infinite where the evaluator's was not finite or the sample was not reached in time.
@@ -75,6 +76,9 @@ class SampleSet {
   /// the deadline are left out.
   Census draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key, const Placement<float>& to,
                            const float* linear, ThreadPool& pool, const Deadline& deadline) noexcept;
+
+  /// Draws samples alone.
+  void draw(RandomKey key, const Placement<float>& to, ThreadPool& pool) noexcept;
 
   /// Evaluates the values as they are.
   Census evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,

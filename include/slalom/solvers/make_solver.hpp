@@ -6,15 +6,18 @@
 #include <variant>
 
 #include "slalom/core/thread_pool.hpp"
+#include "slalom/solvers/cem_options.hpp"
 #include "slalom/solvers/mppi_options.hpp"
+#include "slalom/solvers/reverse_mppi_options.hpp"
 #include "slalom/solvers/solver.hpp"
+#include "slalom/solvers/sv_mpc_options.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
 
 /// Solvers by their options or by their names, for any problem behind the seam of `BatchEvaluator`.
 namespace slalom {
 
 /// The options of any one method.
-using SolverOptions = std::variant<MppiOptions, SvgMppiOptions>;
+using SolverOptions = std::variant<MppiOptions, SvgMppiOptions, ReverseMppiOptions, SvMpcOptions, CemOptions>;
 
 /// The names of all methods, as configurations write them.
 std::span<const char* const> solver_names() noexcept;
@@ -32,6 +35,12 @@ const char* solver_name(const SolverOptions& options) noexcept;
 std::unique_ptr<Solver> make_solver(const MppiOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool = nullptr);
 std::unique_ptr<Solver> make_solver(const SvgMppiOptions& options, int inputs,
+                                    std::shared_ptr<ThreadPool> pool = nullptr);
+std::unique_ptr<Solver> make_solver(const ReverseMppiOptions& options, int inputs,
+                                    std::shared_ptr<ThreadPool> pool = nullptr);
+std::unique_ptr<Solver> make_solver(const SvMpcOptions& options, int inputs,
+                                    std::shared_ptr<ThreadPool> pool = nullptr);
+std::unique_ptr<Solver> make_solver(const CemOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool = nullptr);
 std::unique_ptr<Solver> make_solver(const SolverOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool = nullptr);

@@ -22,13 +22,15 @@ void visit_sampling_options(Options& o, Visit&& visit) {
                                .help = "control sequences drawn in a solve",
                                .min = 1,
                                .max = 4194304});
-  visit(o.temperature,
-        Declaration{
-            .name = "temperature",
-            .symbol = "lambda",
-            .help = "cost difference at which a weight falls by e: small picks the best, large averages",
-            .min = 1e-6,
-            .max = finite});
+  if constexpr (requires { o.temperature; }) {
+    visit(o.temperature,
+          Declaration{
+              .name = "temperature",
+              .symbol = "lambda",
+              .help = "cost difference at which a weight falls by e: small picks the best, large averages",
+              .min = 1e-6,
+              .max = finite});
+  }
   visit(o.variance, Declaration{.name = "variance",
                                 .symbol = "Sigma",
                                 .unit = "input^2",

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "slalom/solvers/option_declarations.hpp"
+
+namespace slalom {
+
+/// Options of `cem`, the cross-entropy method (Rubinstein 1999; for control: Kobilarov 2012): the
+/// distribution is refitted to its best samples, several times a solve. It is no method of the paper.
+struct CemOptions {
+  int horizon = 30;       ///< T, steps
+  int samples = 512;      ///< K, drawn in each iteration
+  PerInput variance = 1;  ///< Sigma at the start of every solve, input^2
+  PerInput input_min = -std::numeric_limits<double>::infinity();
+  PerInput input_max = std::numeric_limits<double>::infinity();
+
+  int iterations = 5;
+  double elite_share = 0.1;      ///< of the samples, at least one
+  double smoothing = 0.1;        ///< share of the old distribution that is kept in an update
+  PerInput variance_min = 1e-4;  ///< input^2
+  bool send_best = false;        ///< the solution is the best sample seen instead of the mean
+
+  double zero_mean_share = 0;
+  bool shift_warm_start = true;
+  std::uint64_t seed = 0;
+  int threads = 1;
+};
+
+template <class Options, class Visit>
+requires is_options_of<Options, CemOptions>
+void visit_options(Options& o, Visit&& visit) {
+  detail::visit_sampling_options(o, visit);
+  visit(o.iterations,
+        Declaration{
+            .name = "iterations", .help = "refits of the distribution in a solve", .min = 1, .max = 10000});
+  visit(o.elite_share, Declaration{.name = "elite_share",
+                                   .symbol = "rho",
+                                   .help = "share of the samples that the distribution is refitted to",
+                                   .min = 0,
+                                   .max = 1});
+  visit(o.smoothing, Declaration{.name = "smoothing",
+                                 .help = "share of the old distribution kept in an update",
+                                 .min = 0,
+                                 .max = 1});
+  visit(o.variance_min, Declaration{.name = "variance_min",
+                                    .unit = "input^2",
+                                    .help = "least variance",
+                                    .min = 0,
+                                    .max = detail::finite});
+  visit(o.send_best,
+        Declaration{.name = "send_best", .help = "send the best sample seen instead of the mean"});
+  detail::visit_run_options(o, visit);
+}
+
+}  // namespace slalom

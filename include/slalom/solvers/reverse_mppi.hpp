@@ -1,0 +1,24 @@
+#pragma once
+
+#include "slalom/solvers/controller.hpp"
+
+namespace slalom {
+
+/// A controller that solves its problem with `reverse_mppi`: mirror descent on the reverse KL divergence with
+/// sample rejection (Kobayashi and Fukumoto 2022).
+template <Problem P>
+class ReverseMppi : public Controller<P> {
+ public:
+  explicit ReverseMppi(P problem, const ReverseMppiOptions& options = {},
+                       std::shared_ptr<ThreadPool> pool = nullptr)
+      : Controller<P>(std::move(problem), options, std::move(pool)) {}
+};
+
+template <class P>
+ReverseMppi(P) -> ReverseMppi<P>;
+template <class P>
+ReverseMppi(P, ReverseMppiOptions) -> ReverseMppi<P>;
+template <class P>
+ReverseMppi(P, ReverseMppiOptions, std::shared_ptr<ThreadPool>) -> ReverseMppi<P>;
+
+}  // namespace slalom

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "slalom/solvers/controller.hpp"
+
+namespace slalom {
+
+/// A controller that solves its problem with `sv_mpc`: Stein variational MPC (Lambert et al., CoRL 2020).
+template <Problem P>
+class SvMpc : public Controller<P> {
+ public:
+  explicit SvMpc(P problem, const SvMpcOptions& options = {}, std::shared_ptr<ThreadPool> pool = nullptr)
+      : Controller<P>(std::move(problem), options, std::move(pool)) {}
+};
+
+template <class P>
+SvMpc(P) -> SvMpc<P>;
+template <class P>
+SvMpc(P, SvMpcOptions) -> SvMpc<P>;
+template <class P>
+SvMpc(P, SvMpcOptions, std::shared_ptr<ThreadPool>) -> SvMpc<P>;
+
+}  // namespace slalom

@@ -1,0 +1,273 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "slalom/solvers/make_solver.hpp"
+#include "solvers/mirror_descent.hpp"
+#include "solvers/rejection.hpp"
+#include "solvers/reverse_weights.hpp"
+#include "solvers/solver_base.hpp"
+
+namespace slalom {
+
+namespace {
+
+/// A Gaussian over control sequences with independent entries [row].
+struct Gaussian {
+  std::vector<float> mean, variance;
+};
+
+/// `reverse_mppi` (Kobayashi and Fukumoto 2022): mirror descent on the reverse KL divergence, with a second
+/// distribution that learns where bad samples lie and thins out the draws there.
+class ReverseMppiSolver final : public detail::SolverBase {
+ public:
+  ReverseMppiSolver(const ReverseMppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
+      : SolverBase(options, inputs, std::move(pool)),
+        options_(options),
+        samples_(options.horizon, inputs, options.samples),
+        inflated_(
+            options.horizon, inputs,
+            std::max(options.samples, static_cast<int>(std::lround(options.samples * options.inflation)))),
+        first_variance_(spread(options.variance)),
+        least_variance_(spread(options.variance_min)),
+        deviation_(size()),
+        linear_(size()),
+        inverse_(size()),
+        zero_(size()),
+        shifted_(size()),
+        sums_(size()),
+        moment_mean_(size()),
+        moment_variance_(size()),
+        published_(rows()),
+        own_distance_(static_cast<std::size_t>(inflated_.stride())),
+        rejected_distance_(own_distance_.size()),
+        running_(own_distance_.size()),
+        picked_(static_cast<std::size_t>(options.samples)),
+        evaluated_(static_cast<std::size_t>(samples_.stride())),
+        rejected_(evaluated_.size()) {
+    for (Gaussian* g : {&now_, &now_rejected_, &start_, &start_rejected_}) {
+      g->mean.resize(size());
+      g->variance.resize(size());
+    }
+    reset(options.seed);
+  }
+
+  const char* name() const noexcept override { return "reverse_mppi"; }
+
+  void reset(std::uint64_t seed) noexcept override {
+    restart(seed);
+    for (Gaussian* g : {&now_, &now_rejected_, &start_, &start_rejected_}) {
+      std::fill(g->mean.begin(), g->mean.end(), 0.0f);
+      clamp(g->mean.data());
+      std::copy(first_variance_.begin(), first_variance_.end(), g->variance.begin());
+    }
+    result_ = {};
+    result_.inputs = result_.mean = now_.mean;
+    result_.nominal = zero_;
+    result_.covariance = now_.variance;
+  }
+
+  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
+    const auto begin = detail::Clock::now();
+    const detail::Deadline deadline(begin, request.deadline);
+    result_.times = {};
+    if (options_.shift_warm_start) shift(detail::warm_start_shift(evaluator, request));
+    copy(start_, now_);
+    copy(start_rejected_, now_rejected_);
+
+    detail::Census census;
+    Status status = Status::deadline;
+    int iteration = 0;
+    for (; iteration < options_.iterations && !deadline.passed(); ++iteration) {
+      draw(iteration);
+      census = evaluate(evaluator, deadline);
+      if (census.evaluated < samples_.samples()) break;
+      status = update(census) ? Status::ok : Status::degenerate;
+      if (status != Status::ok) break;
+    }
+    if (status == Status::ok && iteration < options_.iterations) status = Status::deadline;
+    if (status == Status::ok && census.collided == samples_.samples()) status = Status::all_collided;
+    result_.status = status;
+    result_.iterations = iteration;
+    report(census);
+    store();
+    next_solve();
+    result_.times.total = detail::seconds(begin, detail::Clock::now());
+    return result_;
+  }
+
+ private:
+  static void copy(const Gaussian& from, Gaussian& to) noexcept {
+    std::copy(from.mean.begin(), from.mean.end(), to.mean.begin());
+    std::copy(from.variance.begin(), from.variance.end(), to.variance.begin());
+  }
+
+  void shift(double steps) noexcept {
+    if (!(steps > 0)) return;
+    for (Gaussian* g : {&start_, &start_rejected_}) {
+      for (std::vector<float>* values : {&g->mean, &g->variance}) {
+        detail::shift_sequence(values->data(), horizon(), inputs(), steps, shifted_.data());
+        std::copy(shifted_.begin(), shifted_.end(), values->begin());
+      }
+    }
+  }
+
+  /// Draws the samples of an iteration, thinned out where bad ones were found.
+  void draw(int iteration) noexcept {
+    const auto begin = detail::Clock::now();
+    for (std::size_t r = 0; r < size(); ++r) deviation_[r] = std::sqrt(now_.variance[r]);
+    detail::SampleSet& set = options_.reject_samples ? inflated_ : samples_;
+    set.draw(key(2 * iteration),
+             {now_.mean.data(), deviation_.data(), low().data(), high().data(),
+              zero_mean_from(set.samples(), options_.zero_mean_share)},
+             pool());
+    if (options_.reject_samples) {
+      keep_probabilities();
+      RandomStream random(key(2 * iteration + 1));
+      detail::pick(running_.data(), inflated_.samples(), samples_.samples(),
+                   options_.resampling == Resampling::systematic, random, picked_.data());
+      for (int r = 0; r < rows(); ++r) {
+        const float* from = inflated_.row_view().row(r);
+        float* to = samples_.row_view().row(r);
+        for (std::size_t k = 0; k < picked_.size(); ++k) to[k] = from[picked_[k]];
+      }
+    }
+    result_.times.draw += detail::seconds(begin, detail::Clock::now());
+  }
+
+  /// Running sums of the probabilities with which the inflated samples are kept.
+  void keep_probabilities() noexcept {
+    const detail::Range range{0, inflated_.stride()};
+    const auto count = static_cast<std::size_t>(inflated_.samples());
+    if (options_.rejection == RejectionForm::published) {
+      published_.set(now_.mean.data(), now_.variance.data(), now_rejected_.mean.data(),
+                     now_rejected_.variance.data());
+      detail::kernels().published_keep(inflated_.row_view(), published_.rows(), range, own_distance_.data());
+      for (std::size_t k = 0; k < count; ++k) running_[k] = static_cast<double>(own_distance_[k]);
+    } else {
+      const double own = distances(now_, own_distance_), other = distances(now_rejected_, rejected_distance_);
+      for (std::size_t k = 0; k < count; ++k) {
+        const double quadratic =
+            static_cast<double>(own_distance_[k]) - static_cast<double>(rejected_distance_[k]);
+        running_[k] = detail::log_keep(0.5 * (quadratic + own - other));
+      }
+    }
+    const double largest =
+        *std::max_element(running_.begin(), running_.begin() + static_cast<std::ptrdiff_t>(count));
+    double sum = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const double probability = std::isfinite(largest) ? std::exp(running_[k] - largest) : 1.0;
+      running_[k] = sum += std::isfinite(probability) ? probability : 0.0;
+    }
+  }
+
+  /// sum of (v - mean)^2 / variance of every inflated sample; returns sum of log variance.
+  double distances(const Gaussian& g, std::vector<float>& squared) noexcept {
+    double logarithm = 0;
+    for (std::size_t r = 0; r < size(); ++r) {
+      const bool sampled = now_.variance[r] > 0 && now_rejected_.variance[r] > 0;
+      inverse_[r] = sampled ? 1.0f / g.variance[r] : 0.0f;
+      if (sampled) logarithm += std::log(static_cast<double>(g.variance[r]));
+    }
+    std::fill(squared.begin(), squared.end(), 0.0f);
+    detail::kernels().add_squared_distance(inflated_.row_view(), g.mean.data(), inverse_.data(),
+                                           {0, inflated_.stride()}, squared.data());
+    return logarithm;
+  }
+
+  detail::Census evaluate(const BatchEvaluator& evaluator, const detail::Deadline& deadline) noexcept {
+    detail::control_coefficients(options_.temperature, options_.control_cost_discount,
+                                 options_.inverse_variance_offset, now_.mean.data(), zero_.data(),
+                                 now_.variance.data(), rows(), linear_.data());
+    const detail::Census census = samples_.evaluate(evaluator, linear_.data(), pool(), deadline);
+    result_.times.evaluate += census.evaluate_time;
+    return census;
+  }
+
+  /// Moves both distributions; false if no sample has a finite cost.
+  bool update(const detail::Census& census) noexcept {
+    const auto begin = detail::Clock::now();
+    if (census.finite == 0) return false;
+    const detail::Range range{0, samples_.stride()};
+    const detail::ReverseSums sums = detail::reverse_weights(
+        samples_.totals().data(), static_cast<float>(options_.temperature),
+        static_cast<float>(options_.negative_ratio), static_cast<float>(options_.normaliser_offset), range,
+        evaluated_.data(), rejected_.data());
+    if (!(sums.evaluated > 0)) {  // all costs are equal: no sample is better than another
+      const float equal = 1.0f / static_cast<float>(census.finite);
+      for (std::size_t k = 0; k < evaluated_.size(); ++k)
+        evaluated_[k] = k < samples_.costs().size() && std::isfinite(samples_.totals()[k]) ? equal : 0.0f;
+    }
+    const Gaussian& before = now_;
+    for (std::size_t r = 0; r < size(); ++r)
+      inverse_[r] =
+          detail::inverse_variance(before.variance[r], static_cast<float>(options_.inverse_variance_offset));
+    std::copy(before.mean.begin(), before.mean.end(), shifted_.begin());
+    // The rejected distribution first: both moments are taken about the samples' mean.
+    if (sums.rejected > 0) descend(rejected_, now_rejected_);
+    descend(evaluated_, now_);
+    result_.times.update += detail::seconds(begin, detail::Clock::now());
+    return true;
+  }
+
+  /// Mirror descent of a distribution towards the moments of weighted samples.
+  void descend(const std::vector<float>& weights, Gaussian& g) noexcept {
+    std::copy_n(weights.begin(), samples_.weights().size(), samples_.weights().begin());
+    samples_.weighted_sums(zero_.data(), sums_.data(), pool());
+    for (std::size_t r = 0; r < size(); ++r) moment_mean_[r] = static_cast<float>(sums_[r]);
+    samples_.weighted_squares(shifted_.data(), sums_.data(), pool());
+    for (std::size_t r = 0; r < size(); ++r) {
+      const double scale = options_.dimensionless_variance ? static_cast<double>(inverse_[r]) : 1.0;
+      moment_variance_[r] = static_cast<float>(sums_[r] * scale);
+    }
+    detail::mirror_descent(static_cast<float>(options_.step), moment_mean_.data(), moment_variance_.data(),
+                           rows(), g.mean.data(), g.variance.data());
+    for (std::size_t r = 0; r < size(); ++r) {
+      const float least = std::min(least_variance_[r], first_variance_[r]);
+      g.variance[r] = std::clamp(g.variance[r], least, 1e12f);
+      g.mean[r] = std::clamp(g.mean[r], -1e30f, 1e30f);
+    }
+  }
+
+  void report(const detail::Census& census) noexcept {
+    std::copy_n(evaluated_.begin(), samples_.weights().size(), samples_.weights().begin());
+    const StageTimes times = result_.times;
+    detail::report_samples(samples_, census, samples_.sum_weights(), result_);
+    result_.times = times;
+    result_.temperature = options_.temperature;
+  }
+
+  /// Keeps part of the new distributions for the next solve, and the solution within bounds.
+  void store() noexcept {
+    const float ratio = static_cast<float>(options_.warm_start);
+    for (const auto& [from, to] : {std::pair{&now_, &start_}, std::pair{&now_rejected_, &start_rejected_}}) {
+      detail::interpolate(to->mean.data(), from->mean.data(), ratio, rows(), to->mean.data());
+      detail::interpolate(to->variance.data(), from->variance.data(), ratio, rows(), to->variance.data());
+    }
+    clamp(now_.mean.data());
+  }
+
+  ReverseMppiOptions options_;
+  detail::SampleSet samples_, inflated_;
+  Gaussian now_, now_rejected_, start_, start_rejected_;
+  std::vector<float> first_variance_, least_variance_, deviation_, linear_, inverse_, zero_,
+      shifted_;                                       ///< [row]
+  std::vector<double> sums_;                          ///< [row]
+  std::vector<float> moment_mean_, moment_variance_;  ///< [row]
+  detail::PublishedRejection<float> published_;
+  std::vector<float> own_distance_, rejected_distance_;  ///< [inflated sample]
+  std::vector<double> running_;                          ///< [inflated sample]
+  std::vector<int> picked_;                              ///< [sample]
+  std::vector<float> evaluated_, rejected_;              ///< weights [sample]
+  SolveResult result_;
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> make_solver(const ReverseMppiOptions& options, int inputs,
+                                    std::shared_ptr<ThreadPool> pool) {
+  validate_options(options, "reverse_mppi", inputs);
+  return std::make_unique<ReverseMppiSolver>(options, inputs, std::move(pool));
+}
+
+}  // namespace slalom

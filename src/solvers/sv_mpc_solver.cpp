@@ -1,0 +1,256 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "slalom/solvers/make_solver.hpp"
+#include "solvers/solver_base.hpp"
+#include "solvers/stein.hpp"
+
+namespace slalom {
+
+namespace {
+
+/// `sv_mpc` (Lambert et al., "Stein Variational Model Predictive Control", CoRL 2020): all samples are
+/// particles that SVGD moves towards the posterior of good control sequences, given a Gaussian prior.
+class SvMpcSolver final : public detail::SolverBase {
+ public:
+  SvMpcSolver(const SvMpcOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
+      : SolverBase(options, inputs, std::move(pool)),
+        options_(options),
+        particles_(options.horizon, inputs, options.samples),
+        gradient_batch_(options.horizon, inputs, particles_.stride() * options.gradient_samples),
+        exponents_(static_cast<std::size_t>(gradient_batch_.stride())),
+        collided_(exponents_.size()),
+        gradient_(options.horizon, inputs, options.samples),
+        phi_(options.horizon, inputs, options.samples),
+        distances_(static_cast<std::size_t>(std::max(options.samples, 2016))),
+        solution_(size()),
+        mean_(size()),
+        variance_(size()),
+        first_variance_(spread(options.variance)),
+        least_variance_(spread(options.variance_min)),
+        deviation_(spread(options.gradient_variance)),
+        inverse_(deviation_),
+        prior_inverse_(size()),
+        linear_(size()),
+        control_(size()),
+        step_(spread(options.step)),
+        zero_(size()),
+        column_(size()),
+        shifted_(size()),
+        sums_(size()) {
+    for (std::size_t r = 0; r < size(); ++r) {
+      inverse_[r] =
+          detail::inverse_variance(deviation_[r], static_cast<float>(options.inverse_variance_offset));
+      deviation_[r] = std::sqrt(deviation_[r]);
+    }
+    reset(options.seed);
+  }
+
+  const char* name() const noexcept override { return "sv_mpc"; }
+
+  void reset(std::uint64_t seed) noexcept override {
+    restart(seed);
+    draw_particles();
+    std::fill(solution_.begin(), solution_.end(), 0.0f);
+    clamp(solution_.data());
+    result_ = {};
+    result_.inputs = solution_;
+    result_.mean = mean_;
+    result_.nominal = zero_;
+    result_.covariance = variance_;
+  }
+
+  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
+    const auto begin = detail::Clock::now();
+    const detail::Deadline deadline(begin, request.deadline);
+    result_.times = {};
+    next_solve();
+    if (options_.shift_warm_start) shift(detail::warm_start_shift(evaluator, request));
+    set_prior();
+    int iteration = 0;
+    const detail::Deadline moving = deadline.part(0.8);  // weights and solution need a last evaluation
+    for (; iteration < options_.iterations && !moving.passed(); ++iteration) move(evaluator, iteration);
+    result_.times.guide = detail::seconds(begin, detail::Clock::now());
+
+    const detail::Census census = particles_.evaluate(evaluator, control_.data(), pool(), deadline);
+    const auto evaluated = detail::Clock::now();
+    const bool usable = census.finite > 0 && finite_particles();
+    detail::WeightSums<double> sums;
+    result_.guides = {};
+    if (usable) {
+      sums = particles_.weigh(census.minimum_total, static_cast<float>(options_.temperature), pool());
+      particles_.scale_weights(1.0 / (sums.weight + options_.normaliser_offset));
+      take_solution();
+    } else {
+      std::fill(particles_.weights().begin(), particles_.weights().end(), 0.0f);
+    }
+    detail::report_samples(particles_, census, sums, result_);
+    if (!usable && census.evaluated > 0) draw_particles();  // the old solution is repeated meanwhile
+    result_.temperature = options_.temperature;
+    result_.iterations = iteration;
+    const bool late = iteration < options_.iterations || census.evaluated < particles_.samples();
+    const bool all_collided = census.collided == particles_.samples();
+    result_.status = !usable && census.evaluated > 0 ? Status::degenerate
+                     : late                          ? Status::deadline
+                     : all_collided                  ? Status::all_collided
+                                                     : Status::ok;
+    result_.times.update = detail::seconds(evaluated, detail::Clock::now());
+    result_.times.total = detail::seconds(begin, detail::Clock::now());
+    return result_;
+  }
+
+ private:
+  static constexpr int tile = 128;  ///< particles a task
+  int tiles() const noexcept { return (particles_.stride() + tile - 1) / tile; }
+  detail::Range range(int t) const noexcept {
+    return {t * tile, std::min(tile, particles_.stride() - t * tile)};
+  }
+  static detail::Rows<float> view(SequenceBatch& batch) noexcept {
+    return {batch.row(0, 0), batch.stride(), batch.steps() * batch.inputs()};
+  }
+
+  /// Particles, and the prior with them, anew around zero.
+  void draw_particles() noexcept {
+    std::fill(mean_.begin(), mean_.end(), 0.0f);
+    std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
+    for (std::size_t r = 0; r < size(); ++r) shifted_[r] = std::sqrt(variance_[r]);
+    particles_.draw(key(65535),
+                    {mean_.data(), shifted_.data(), low().data(), high().data(), particles_.samples()},
+                    pool());
+  }
+
+  void shift(double steps) noexcept {
+    if (!(steps > 0)) return;
+    for (std::vector<float>* sequence : {&mean_, &variance_, &solution_}) {
+      detail::shift_sequence(sequence->data(), horizon(), inputs(), steps, shifted_.data());
+      std::copy(shifted_.begin(), shifted_.end(), sequence->begin());
+    }
+    for (int k = 0; k < particles_.samples(); ++k) {
+      for (int r = 0; r < rows(); ++r) column_[static_cast<std::size_t>(r)] = particles_.row_view().row(r)[k];
+      detail::shift_sequence(column_.data(), horizon(), inputs(), steps, shifted_.data());
+      for (int r = 0; r < rows(); ++r)
+        particles_.row_view().row(r)[k] = shifted_[static_cast<std::size_t>(r)];
+    }
+  }
+
+  /// What depends on the prior: its inverse, and the control terms of gradients and weights.
+  void set_prior() noexcept {
+    for (std::size_t r = 0; r < size(); ++r) {
+      prior_inverse_[r] =
+          detail::inverse_variance(variance_[r], static_cast<float>(options_.inverse_variance_offset));
+      linear_[r] = options_.gradient_control_term ? mean_[r] * prior_inverse_[r] : 0.0f;
+    }
+    detail::control_coefficients(options_.temperature, options_.control_cost_discount,
+                                 options_.inverse_variance_offset, mean_.data(), zero_.data(),
+                                 variance_.data(), rows(), control_.data());
+  }
+
+  /// One SVGD step of all particles.
+  void move(const BatchEvaluator& evaluator, int iteration) noexcept {
+    pool().run(tiles(), [&](int t) { estimate_gradients(evaluator, iteration, range(t)); });
+    const detail::Rows<float> x = particles_.row_view();
+    const int count = particles_.samples();
+    const int values = options_.bandwidth == BandwidthForm::squared_norms
+                           ? detail::squared_norms(x, count, distances_.data())
+                           : detail::pair_distances(x, count, distances_.data());
+    const float h = count > 1 ? detail::bandwidth(distances_.data(), values, count) : 1.0f;
+    pool().run(tiles(), [&](int t) {
+      detail::kernels().stein_directions(x, view(gradient_), count, h, range(t), view(phi_));
+    });
+    pool().run(tiles(), [&](int t) { step(range(t)); });
+  }
+
+  void estimate_gradients(const BatchEvaluator& evaluator, int iteration, detail::Range r) noexcept {
+    const int stride = particles_.stride();
+    const detail::Rows<float> x = particles_.row_view(), v = view(gradient_batch_);
+    for (int s = 0; s < options_.gradient_samples; ++s)
+      fill_normal(gradient_batch_, s * stride + r.first, r.count, key(iteration));
+    const int biased = zero_mean_from(options_.gradient_samples, options_.zero_mean_share);
+    detail::kernels().place_round(v, x, {nullptr, deviation_.data(), low().data(), high().data(), biased},
+                                  stride, options_.gradient_samples, r);
+    for (int s = 0; s < options_.gradient_samples; ++s)
+      evaluator.evaluate(gradient_batch_, s * stride + r.first, r.count, exponents_.data(), collided_.data());
+    const detail::ParticleGradients<float> how{options_.gradient_samples,
+                                               stride,
+                                               static_cast<float>(options_.temperature),
+                                               options_.subtract_minimum,
+                                               static_cast<float>(options_.gradient_floor),
+                                               linear_.data(),
+                                               inverse_.data()};
+    detail::kernels().particle_gradients(how, v, x, r, exponents_.data(), view(gradient_));
+    for (int row = 0; row < rows(); ++row) {
+      const auto i = static_cast<std::size_t>(row);
+      if (!(prior_inverse_[i] > 0)) continue;
+      float* g = view(gradient_).row(row);
+      for (int k = r.first; k < r.first + r.count; ++k)
+        g[k] += detail::prior_gradient(x.row(row)[k], mean_[i], prior_inverse_[i], options_.inverted_prior);
+    }
+  }
+
+  void step(detail::Range r) noexcept {
+    for (int row = 0; row < rows(); ++row) {
+      const auto i = static_cast<std::size_t>(row);
+      float* x = particles_.row_view().row(row);
+      const float* direction = view(phi_).row(row);
+      const float low_bound = options_.clamp_particles ? low()[i] : -std::numeric_limits<float>::infinity();
+      const float high_bound = options_.clamp_particles ? high()[i] : std::numeric_limits<float>::infinity();
+      for (int k = r.first; k < r.first + r.count; ++k)
+        x[k] = std::min(std::max(x[k] + step_[i] * direction[k], low_bound), high_bound);
+    }
+  }
+
+  bool finite_particles() noexcept {
+    bool finite = true;
+    for (int row = 0; row < rows(); ++row) {
+      const float* x = particles_.row_view().row(row);
+      for (int k = 0; k < particles_.samples(); ++k) {
+        finite &= std::abs(x[k]) < 1e18f;  // squares stay finite too
+      }
+    }
+    return finite;
+  }
+
+  /// The solution, and the prior of the next solve.
+  void take_solution() noexcept {
+    particles_.weighted_squares(mean_.data(), sums_.data(), pool());
+    for (std::size_t r = 0; r < size(); ++r) {
+      const double scale = options_.dimensionless_variance ? static_cast<double>(prior_inverse_[r]) : 1.0;
+      const float least = std::min(least_variance_[r], first_variance_[r]);
+      variance_[r] = std::clamp(static_cast<float>(sums_[r] * scale), least, 1e12f);
+    }
+    particles_.weighted_sums(zero_.data(), sums_.data(), pool());
+    for (std::size_t r = 0; r < size(); ++r) mean_[r] = static_cast<float>(sums_[r]);
+    if (options_.best_particle) {
+      const auto weights = particles_.weights();
+      const auto best = static_cast<int>(std::max_element(weights.begin(), weights.end()) - weights.begin());
+      for (int r = 0; r < rows(); ++r)
+        solution_[static_cast<std::size_t>(r)] = particles_.row_view().row(r)[best];
+    } else {
+      std::copy(mean_.begin(), mean_.end(), solution_.begin());
+    }
+    clamp(solution_.data());
+  }
+
+  SvMpcOptions options_;
+  detail::SampleSet particles_;
+  SequenceBatch gradient_batch_;  ///< sample s of particle p at s * stride + p
+  AlignedBuffer exponents_;
+  std::vector<std::uint8_t> collided_;
+  SequenceBatch gradient_, phi_;
+  std::vector<float> distances_;
+  std::vector<float> solution_, mean_, variance_, first_variance_, least_variance_, deviation_, inverse_,
+      prior_inverse_, linear_, control_, step_, zero_, column_, shifted_;  ///< [row]
+  std::vector<double> sums_;                                               ///< [row]
+  SolveResult result_;
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> make_solver(const SvMpcOptions& options, int inputs,
+                                    std::shared_ptr<ThreadPool> pool) {
+  validate_options(options, "sv_mpc", inputs);
+  return std::make_unique<SvMpcSolver>(options, inputs, std::move(pool));
+}
+
+}  // namespace slalom
