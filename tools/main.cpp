@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "drive_command.hpp"
+#include "eval_command.hpp"
 #include "options_command.hpp"
 #include "slalom/core/version.hpp"
 #include "track_command.hpp"
@@ -16,6 +17,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("slalom ") + slalom::version());
   app.require_subcommand(1);
   slalom::tools::add_drive_command(app, exit_status);
+  slalom::tools::add_eval_command(app, exit_status);
   slalom::tools::add_options_command(app, exit_status);
   slalom::tools::add_track_command(app, exit_status);
   try {

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "slalom/evaluation/lap_table.hpp"
+
+namespace slalom::evaluation {
+
+/// An evaluation: experiments over the same course, configuration and seeds, so that lap k of one experiment
+/// is driven among the same obstacles as lap k of another with as many.
+struct Campaign {
+  std::shared_ptr<const Arena> arena;
+  vehicle::Configuration configuration;
+  std::vector<Experiment> experiments;
+  std::uint64_t seed0 = 0;
+  double latency = 0;         ///< s
+  bool further_costs = true;  ///< also the published model's and the driven cost
+  std::string settings;       ///< all that determines the results, as JSON text; two evaluations with other
+                              ///< settings do not mix
+};
+
+/// How far an evaluation is.
+struct CampaignProgress {
+  int laps_done = 0;
+  int laps_total = 0;
+  int laps_resumed = 0;     ///< of those done, found from an earlier run
+  double seconds_left = 0;  ///< estimated
+  const LapRow* last = nullptr;
+};
+
+/// Where the laps of an evaluation are kept: `settings.json`, `laps.csv` when complete, and until then a
+/// journal to which each lap is appended when it ends. A run may be killed at any moment; with `resume` it
+/// goes on, and no finished lap is driven twice.
+class LapStore {
+ public:
+  /// Opens `folder` for the campaign. Throws IoError if it cannot be written, if it holds results and
+  /// `resume` is not said, if it holds an evaluation with other settings (naming what differs) and if its
+  /// laps are corrupt.
+  LapStore(const std::filesystem::path& folder, const Campaign& campaign, bool resume);
+  ~LapStore();
+  LapStore(const LapStore&) = delete;
+  LapStore& operator=(const LapStore&) = delete;
+
+  const std::vector<LapRow>& rows() const noexcept { return rows_; }
+  /// Keeps a lap: when this returns it survives the process. Throws IoError if it cannot be written.
+  void add(const LapRow& row);
+  /// All laps are there: writes laps.csv in the order of experiments and laps, and removes the journal.
+  void complete();
+
+ private:
+  std::filesystem::path folder_;
+  const std::vector<Experiment>& experiments_;
+  std::vector<LapRow> rows_;
+  int journal_ = -1;
+};
+
+/// Drives every lap that the store does not have yet, on `jobs` threads, and completes the store. The laps do
+/// not depend on the number of jobs nor on interruptions. Returns false if `cancel` ended it early. Throws
+/// what a lap throws.
+bool run_campaign(const Campaign& campaign, LapStore& store, int jobs,
+                  const std::function<void(const CampaignProgress&)>& on_progress,
+                  const std::atomic<bool>& cancel);
+
+}  // namespace slalom::evaluation

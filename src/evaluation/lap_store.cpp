@@ -1,0 +1,148 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "slalom/core/error.hpp"
+#include "slalom/evaluation/campaign.hpp"
+
+namespace slalom::evaluation {
+
+namespace {
+
+namespace fs = std::filesystem;
+constexpr const char* journal_name = "laps.journal.csv";
+constexpr const char* table_name = "laps.csv";
+constexpr const char* settings_name = "settings.json";
+
+[[noreturn]] void throw_system(const fs::path& file, const char* what) {
+  throw IoError(file.string(), 0, std::string(what) + ": " + std::strerror(errno));
+}
+
+void write_all(int descriptor, const std::string& text, const fs::path& file) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t written = ::write(descriptor, text.data() + done, text.size() - done);
+    if (written < 0 && errno != EINTR) throw_system(file, "cannot be written");
+    if (written > 0) done += static_cast<std::size_t>(written);
+  }
+}
+
+/// Writes a file so that at any moment either the old or the new one is there.
+void replace_file(const fs::path& file, const std::string& text) {
+  const fs::path next = file.string() + ".new";
+  const int descriptor = ::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (descriptor < 0) throw_system(next, "cannot be written");
+  try {
+    write_all(descriptor, text, next);
+    if (::fsync(descriptor) != 0) throw_system(next, "cannot be written");
+  } catch (...) {
+    ::close(descriptor);
+    throw;
+  }
+  ::close(descriptor);
+  if (::rename(next.c_str(), file.c_str()) != 0) throw_system(file, "cannot be written");
+}
+
+std::string read_text(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw IoError(file.string(), 0, "cannot be read");
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// "key: 1 there, 2 here; ..." for every leaf that differs.
+std::string differences(const nlohmann::json& there, const nlohmann::json& here) {
+  std::string text;
+  const auto a = there.flatten(), b = here.flatten();
+  const auto note = [&](const std::string& key, const std::string& x, const std::string& y) {
+    text += (text.empty() ? "" : "; ") + key.substr(1) + ": " + x + " there, " + y + " here";
+  };
+  for (const auto& [key, value] : a.items()) {
+    if (!b.contains(key)) {
+      note(key, value.dump(), "nothing");
+    } else if (b[key] != value) {
+      note(key, value.dump(), b[key].dump());
+    }
+  }
+  for (const auto& [key, value] : b.items()) {
+    if (!a.contains(key)) note(key, "nothing", value.dump());
+  }
+  return text;
+}
+
+void check_settings(const fs::path& file, const std::string& ours) {
+  nlohmann::json there;
+  try {
+    there = nlohmann::json::parse(read_text(file));
+  } catch (const nlohmann::json::exception& error) {
+    throw IoError(file.string(), 0, std::string("is not JSON: ") + error.what());
+  }
+  const std::string differing = differences(there, nlohmann::json::parse(ours));
+  if (!differing.empty())
+    throw IoError(file.string(), 0, "the folder holds an evaluation with other settings: " + differing);
+}
+
+bool is_table_order(const LapRow& a, const LapRow& b) {
+  return std::pair(a.experiment, a.lap) < std::pair(b.experiment, b.lap);
+}
+
+}  // namespace
+
+LapStore::LapStore(const fs::path& folder, const Campaign& campaign, bool resume)
+    : folder_(folder), experiments_(campaign.experiments) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw IoError(folder.string(), 0, "cannot be made: " + error.message());
+  const fs::path settings = folder / settings_name, journal = folder / journal_name,
+                 table = folder / table_name;
+  const bool has_laps = fs::exists(journal) || fs::exists(table);
+  if (has_laps && !resume) {
+    throw IoError(folder.string(), 0,
+                  "holds the laps of an evaluation: say --resume to go on with it, or take another folder");
+  }
+  if (has_laps && !fs::exists(settings))
+    throw IoError(settings.string(), 0, "is missing, though there are laps");
+  if (has_laps) {
+    check_settings(settings, campaign.settings);
+  } else {
+    replace_file(settings, campaign.settings);
+  }
+  if (fs::exists(table)) {
+    rows_ = read_rows(table, experiments_, false);
+    std::sort(rows_.begin(), rows_.end(), is_table_order);
+    return;
+  }
+  if (fs::exists(journal)) rows_ = read_rows(journal, experiments_, true);
+  // Written anew, so that a line that was cut short is gone for good.
+  std::string text = csv_header() + "\n";
+  for (const LapRow& row : rows_) text += csv_line(row, experiments_) + "\n";
+  replace_file(journal, text);
+  journal_ = ::open(journal.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (journal_ < 0) throw_system(journal, "cannot be written");
+}
+
+LapStore::~LapStore() {
+  if (journal_ >= 0) ::close(journal_);
+}
+
+void LapStore::add(const LapRow& row) {
+  write_all(journal_, csv_line(row, experiments_) + "\n", folder_ / journal_name);
+  rows_.push_back(row);
+}
+
+void LapStore::complete() {
+  if (journal_ < 0) return;
+  std::sort(rows_.begin(), rows_.end(), is_table_order);
+  std::string text = csv_header() + "\n";
+  for (const LapRow& row : rows_) text += csv_line(row, experiments_) + "\n";
+  replace_file(folder_ / table_name, text);
+  ::close(journal_);
+  journal_ = -1;
+  fs::remove(folder_ / journal_name);
+}
+
+}  // namespace slalom::evaluation

@@ -1,0 +1,232 @@
+#include "slalom/evaluation/lap_table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <type_traits>
+
+#include "slalom/core/error.hpp"
+
+namespace slalom::evaluation {
+
+namespace {
+
+/// Names every column after `lap` once, for header, writing and reading.
+template <class Row, class Visit>
+void visit_columns(Row& r, Visit&& visit) {
+  visit("seed", r.seed);
+  visit("success", r.success);
+  visit("collision", r.collision);
+  visit("timeout", r.timeout);
+  visit("state_cost", r.state_cost);
+  visit("collision_cost", r.collision_cost);
+  visit("input_error", r.input_error);
+  visit("mean_calculation_time", r.mean_calculation_time);
+  visit("max_calculation_time", r.max_calculation_time);
+  visit("min_calculation_time", r.min_calculation_time);
+  visit("lap_time", r.lap_time);
+  visit("finished", r.finished);
+  visit("steps", r.steps);
+  visit("contacts", r.contacts);
+  visit("wall", r.wall);
+  visit("minimum_clearance", r.minimum_clearance);
+  visit("mean_speed", r.mean_speed);
+  visit("mean_path_distance", r.mean_path_distance);
+  visit("max_path_distance", r.max_path_distance);
+  visit("mean_variance", r.mean_variance);
+  visit("mean_effective_samples", r.mean_effective_samples);
+  visit("ms_published_model", r.ms_published_model);
+  visit("ms_driven", r.ms_driven);
+  visit("blocked_steps", r.blocked_steps);
+  visit("degenerate_steps", r.degenerate_steps);
+  visit("contact_points", r.contact_points);
+  visit("solve_p50", r.solve_p50);
+  visit("solve_p99", r.solve_p99);
+  visit("wall_time", r.wall_time);
+}
+
+template <class Number>
+std::string text_of(Number value) {
+  char buffer[40];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells(1);
+  for (const char c : line) {
+    if (c == ',') {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
+template <class Field>
+void parse_cell(const std::string& text, const char* column, Field& field) {
+  if constexpr (std::is_same_v<Field, std::string>) {
+    field = text;
+  } else if constexpr (std::is_same_v<Field, bool>) {
+    if (text != "0" && text != "1")
+      throw std::invalid_argument(std::string(column) + ": '" + text + "' must be 0 or 1");
+    field = text == "1";
+  } else {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), field);
+    if (error != std::errc{} || end != text.data() + text.size() || text.empty()) {
+      throw std::invalid_argument(std::string(column) + ": '" + text + "' must be a number");
+    }
+  }
+}
+
+constexpr std::size_t identity_columns = 4;
+
+LapRow parse_row(const std::string& line, const std::vector<Experiment>& experiments) {
+  const auto cells = split(line);
+  LapRow row;
+  std::size_t columns = identity_columns;
+  visit_columns(row, [&](const char*, auto&) { ++columns; });
+  if (cells.size() != columns) {
+    throw std::invalid_argument("has " + std::to_string(cells.size()) + " columns, not " +
+                                std::to_string(columns));
+  }
+  const auto found = std::find_if(experiments.begin(), experiments.end(), [&](const Experiment& e) {
+    return e.method == cells[0] && e.scenario == cells[1] && e.set_text() == cells[2];
+  });
+  if (found == experiments.end()) throw std::invalid_argument("is of no experiment of this evaluation");
+  row.experiment = static_cast<int>(found - experiments.begin());
+  parse_cell(cells[3], "lap", row.lap);
+  if (row.lap < 0 || row.lap >= found->laps)
+    throw std::invalid_argument("lap: " + cells[3] + " is not one of this evaluation");
+  std::size_t i = identity_columns;
+  visit_columns(row, [&](const char* name, auto& field) { parse_cell(cells[i++], name, field); });
+  return row;
+}
+
+}  // namespace
+
+std::string Experiment::set_text() const {
+  std::string text;
+  for (const auto& [key, value] : set) text += (text.empty() ? "" : " ") + key + "=" + value;
+  std::replace(text.begin(), text.end(), ',', ';');
+  return text;
+}
+
+std::string Experiment::label() const {
+  const std::string text = set_text();
+  return text.empty() ? method : method + " " + text;
+}
+
+LapRow make_row(int experiment, int lap, const LapResult& result, double wall_time) {
+  LapRow r;
+  r.experiment = experiment;
+  r.lap = lap;
+  r.seed = result.seed;
+  r.finished = result.finished;
+  r.success = result.finished && result.contacts == 0;
+  r.collision = result.contacts;
+  r.timeout = result.timeout;
+  r.state_cost = result.state_cost;
+  r.collision_cost = result.collision_cost;
+  r.input_error = result.input_error;
+  auto times = result.solve_ms;
+  std::sort(times.begin(), times.end());
+  if (!times.empty()) {
+    const auto at = [&](double share) {
+      return times[std::min(times.size() - 1,
+                            static_cast<std::size_t>(share * static_cast<double>(times.size())))];
+    };
+    r.mean_calculation_time =
+        std::accumulate(times.begin(), times.end(), 0.0) / static_cast<double>(times.size());
+    r.min_calculation_time = times.front();
+    r.max_calculation_time = times.back();
+    r.solve_p50 = at(0.5);
+    r.solve_p99 = at(0.99);
+  }
+  r.lap_time = result.time;
+  r.steps = result.steps;
+  r.contacts = result.bodies_touched;
+  r.wall = result.wall;
+  r.minimum_clearance = result.least_clearance;
+  r.mean_speed = result.mean_speed;
+  r.mean_path_distance = result.mean_path_distance;
+  r.max_path_distance = result.max_path_distance;
+  r.mean_variance = result.mean_variance;
+  r.mean_effective_samples = result.mean_effective_samples;
+  r.ms_published_model = result.published_model_cost;
+  r.ms_driven = result.driven_cost;
+  r.blocked_steps = result.planner_status[static_cast<std::size_t>(vehicle::PlannerStatus::blocked)];
+  r.degenerate_steps =
+      result.planner_status[static_cast<std::size_t>(vehicle::PlannerStatus::solver_degenerate)];
+  for (const Contact& touch : result.touches) {
+    char point[64];
+    std::snprintf(point, sizeof point, "%s%.3f:%.3f", r.contact_points.empty() ? "" : " ", touch.pose.x,
+                  touch.pose.y);
+    r.contact_points += point;
+  }
+  r.wall_time = wall_time;
+  return r;
+}
+
+std::string csv_header() {
+  std::string header = "method,scenario,set,lap";
+  const LapRow row;
+  visit_columns(row, [&](const char* name, const auto&) { header.append(",").append(name); });
+  return header;
+}
+
+std::string csv_line(const LapRow& row, const std::vector<Experiment>& experiments) {
+  const Experiment& e = experiments.at(static_cast<std::size_t>(row.experiment));
+  std::string line = e.method + "," + e.scenario + "," + e.set_text() + "," + std::to_string(row.lap);
+  visit_columns(row, [&](const char*, const auto& field) {
+    using Field = std::remove_cvref_t<decltype(field)>;
+    line += ',';
+    if constexpr (std::is_same_v<Field, std::string>) {
+      line += field;
+    } else if constexpr (std::is_same_v<Field, bool>) {
+      line += field ? '1' : '0';
+    } else {
+      line += text_of(field);
+    }
+  });
+  return line;
+}
+
+std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vector<Experiment>& experiments,
+                              bool forgive_last) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw IoError(file.string(), 0, "cannot be read");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::vector<LapRow> rows;
+  std::set<std::pair<int, int>> seen;
+  int number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find('\n', begin);
+    const bool complete = end != std::string::npos;
+    const std::string line = text.substr(begin, complete ? end - begin : std::string::npos);
+    begin = complete ? end + 1 : text.size();
+    ++number;
+    if (!complete && forgive_last) break;
+    if (!complete) throw IoError(file.string(), number, "is cut short");
+    if (number == 1) {
+      if (line != csv_header())
+        throw IoError(file.string(), 1, "header: must be that of this version's laps.csv");
+      continue;
+    }
+    try {
+      LapRow row = parse_row(line, experiments);
+      if (!seen.insert({row.experiment, row.lap}).second)
+        throw std::invalid_argument("lap: stands here twice");
+      rows.push_back(std::move(row));
+    } catch (const std::invalid_argument& error) {
+      throw IoError(file.string(), number, error.what());
+    }
+  }
+  return rows;
+}
+
+}  // namespace slalom::evaluation

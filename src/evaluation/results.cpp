@@ -1,0 +1,114 @@
+#include "slalom/evaluation/results.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+namespace slalom::evaluation {
+
+namespace {
+
+std::vector<const LapRow*> rows_of(const std::vector<LapRow>& rows, int experiment) {
+  std::vector<const LapRow*> found;
+  for (const LapRow& row : rows) {
+    if (row.experiment == experiment) found.push_back(&row);
+  }
+  std::sort(found.begin(), found.end(), [](const LapRow* a, const LapRow* b) { return a->lap < b->lap; });
+  return found;
+}
+
+template <class Value>
+std::vector<double> column(const std::vector<const LapRow*>& rows, Value&& value) {
+  std::vector<double> values;
+  values.reserve(rows.size());
+  for (const LapRow* row : rows) values.push_back(static_cast<double>(value(*row)));
+  return values;
+}
+
+ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index,
+                               const Experiment& experiment) {
+  ExperimentResult r;
+  r.experiment = index;
+  r.laps = static_cast<int>(rows.size());
+  if (rows.empty()) return r;
+  int successes = 0;
+  std::vector<double> lap_times;
+  for (const LapRow* row : rows) {
+    r.finished += row->finished;
+    r.timeouts += row->timeout;
+    r.collisions += row->collision;
+    successes += row->success;
+    if (row->finished) lap_times.push_back(row->lap_time);
+    r.solve_ms_max = std::max(r.solve_ms_max, row->max_calculation_time);
+  }
+  const auto ms = column(rows, [](const LapRow& row) { return row.mean_sequence_cost(); });
+  r.ms_mean = mean(ms);
+  r.ms_ci = bootstrap_mean(ms);
+  r.state_cost_mean = mean(column(rows, [](const LapRow& row) { return row.state_cost; }));
+  r.collision_cost_mean = mean(column(rows, [](const LapRow& row) { return row.collision_cost; }));
+  r.solve_ms_mean = mean(column(rows, [](const LapRow& row) { return row.mean_calculation_time; }));
+  r.solve_ms_p50 = mean(column(rows, [](const LapRow& row) { return row.solve_p50; }));
+  r.solve_ms_p99 = mean(column(rows, [](const LapRow& row) { return row.solve_p99; }));
+  r.lap_time_mean = mean(lap_times);
+  r.success_rate = static_cast<double>(successes) / r.laps;
+  r.success_rate_ci = wilson_interval(successes, r.laps);
+  if (experiment.obstacles > 0) {
+    const std::int64_t chances = static_cast<std::int64_t>(experiment.obstacles) * r.laps;
+    r.collision_rate = static_cast<double>(r.collisions) / static_cast<double>(chances);
+    r.collision_rate_ci = wilson_interval(r.collisions, chances);
+    const auto contacts = column(rows, [](const LapRow& row) { return row.collision; });
+    const std::vector<double> obstacles(rows.size(), experiment.obstacles);
+    r.collision_rate_bootstrap_ci = bootstrap_ratio(contacts, obstacles);
+  }
+  return r;
+}
+
+PairedComparison compare(const std::vector<const LapRow*>& a, const std::vector<const LapRow*>& b,
+                         int index_a, int index_b) {
+  PairedComparison c{.a = index_a, .b = index_b};
+  std::map<int, const LapRow*> by_lap;
+  for (const LapRow* row : b) by_lap[row->lap] = row;
+  std::vector<double> ms, collisions;
+  for (const LapRow* row : a) {
+    const auto other = by_lap.find(row->lap);
+    if (other == by_lap.end()) continue;
+    ms.push_back(row->mean_sequence_cost() - other->second->mean_sequence_cost());
+    collisions.push_back(row->collision - other->second->collision);
+    c.only_a_succeeds += row->success && !other->second->success;
+    c.only_b_succeeds += !row->success && other->second->success;
+  }
+  c.laps = static_cast<int>(ms.size());
+  c.ms_difference = mean(ms);
+  c.ms_p = wilcoxon_p(ms);
+  c.success_p = mcnemar_p(c.only_a_succeeds, c.only_b_succeeds);
+  c.collision_p = wilcoxon_p(collisions);
+  return c;
+}
+
+}  // namespace
+
+std::vector<ExperimentResult> summarise(const std::vector<LapRow>& rows,
+                                        const std::vector<Experiment>& experiments) {
+  std::vector<ExperimentResult> results;
+  for (int e = 0; e < static_cast<int>(experiments.size()); ++e) {
+    results.push_back(summarise_one(rows_of(rows, e), e, experiments[static_cast<std::size_t>(e)]));
+  }
+  return results;
+}
+
+std::vector<PairedComparison> compare_pairs(const std::vector<LapRow>& rows,
+                                            const std::vector<Experiment>& experiments) {
+  std::vector<PairedComparison> comparisons;
+  const int count = static_cast<int>(experiments.size());
+  for (int a = 0; a < count; ++a) {
+    for (int b = a + 1; b < count; ++b) {
+      const Experiment &ea = experiments[static_cast<std::size_t>(a)],
+                       &eb = experiments[static_cast<std::size_t>(b)];
+      if (ea.scenario != eb.scenario || ea.obstacles != eb.obstacles) continue;
+      comparisons.push_back(compare(rows_of(rows, a), rows_of(rows, b), a, b));
+    }
+  }
+  return comparisons;
+}
+
+}  // namespace slalom::evaluation

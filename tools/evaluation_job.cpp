@@ -1,0 +1,316 @@
+#include "evaluation_job.hpp"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "interrupt.hpp"
+#include "json_output.hpp"
+#include "slalom/core/dispatch.hpp"
+#include "slalom/core/error.hpp"
+#include "slalom/core/version.hpp"
+
+namespace slalom::tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using namespace evaluation;
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  for (const char c : text) {
+    depth += (c == '[') - (c == ']');
+    if (c == at && depth == 0) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+struct Sweep {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+Sweep parse_sweep(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw IoError("--set", 0, "'" + text + "' must be key=value or key=v1,v2,...");
+  Sweep sweep{text.substr(0, equals), split(text.substr(equals + 1), ',')};
+  for (const auto& value : sweep.values) {
+    if (value.empty()) throw IoError("--set", 0, "'" + text + "': a value is missing");
+  }
+  return sweep;
+}
+
+bool applies_to(const Sweep& sweep, const std::string& method) {
+  const auto dot = sweep.key.find('.');
+  if (dot == std::string::npos) return true;
+  const std::string section = sweep.key.substr(0, dot);
+  return section == method || section == "vehicle" || section == "planner";
+}
+
+/// FNV-1a over what of a course decides a lap.
+std::string course_hash(const Arena& arena) {
+  std::uint64_t hash = 14695981039346656037ull;
+  const auto mix = [&](const void* data, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i)
+      hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211ull;
+  };
+  mix(arena.course.map.cells.data(), arena.course.map.cells.size());
+  for (const auto& point : arena.path) {
+    const double values[] = {point.x, point.y, point.yaw, point.speed};
+    mix(values, sizeof values);
+  }
+  for (const auto& point : arena.course.obstacle_path) {
+    const double values[] = {point.x, point.y};
+    mix(values, sizeof values);
+  }
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
+                 const std::vector<Experiment>& experiments) {
+  Json options, list = Json::array();
+  for (const Experiment& e : experiments) {
+    options.update(options_json(scenario.configuration, e.method));
+    list.push_back({{"method", e.method},
+                    {"scenario", e.scenario},
+                    {"set", e.set_text()},
+                    {"obstacles", e.obstacles},
+                    {"laps", e.laps}});
+  }
+  return {{"version", version()},
+          {"instruction_set", simd::name(simd::active_target())},
+          {"course", scenario.arena->course.name},
+          {"course_hash", course_hash(*scenario.arena)},
+          {"config", arguments.scenario.config},
+          {"evaluation", arguments.scenario.evaluation},
+          {"latency_ms", arguments.scenario.latency_ms},
+          {"seed0", arguments.seed0},
+          {"experiments", list},
+          {"options", options}};
+}
+
+Json interval_json(const Interval& i) {
+  return {i.low, i.high};
+}
+template <class Value, class Make>
+Json optional_json(const std::optional<Value>& value, Make&& make) {
+  return value ? Json(make(*value)) : Json(nullptr);
+}
+
+Json machine_json() {
+  Json machine{{"cores", std::thread::hardware_concurrency()}, {"cpu", nullptr}};
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.rfind("model name", 0) == 0) {
+      machine["cpu"] = line.substr(line.find(':') + 2);
+      break;
+    }
+  }
+  return machine;
+}
+
+std::string time_text(double seconds) {
+  char text[32];
+  const long s = std::lround(seconds);
+  if (s >= 3600) {
+    std::snprintf(text, sizeof text, "%ld h %02ld min", s / 3600, s / 60 % 60);
+  } else if (s >= 60) {
+    std::snprintf(text, sizeof text, "%ld min %02ld s", s / 60, s % 60);
+  } else {
+    std::snprintf(text, sizeof text, "%ld s", s);
+  }
+  return text;
+}
+
+/// A bar in a terminal; elsewhere a line for every tenth.
+class CampaignProgressBar {
+ public:
+  void show(const CampaignProgress& p) {
+    const int tenth = p.laps_done * 10 / std::max(1, p.laps_total);
+    if (terminal_) {
+      std::string bar(30, '.');
+      std::fill_n(bar.begin(), p.laps_done * 30 / std::max(1, p.laps_total), '#');
+      std::fprintf(stderr, "\r[%s] %d of %d laps, %s left \033[K", bar.c_str(), p.laps_done, p.laps_total,
+                   time_text(p.seconds_left).c_str());
+    } else if (tenth != tenth_) {
+      std::fprintf(stderr, "%d of %d laps, %s left\n", p.laps_done, p.laps_total,
+                   time_text(p.seconds_left).c_str());
+    }
+    tenth_ = tenth;
+  }
+  ~CampaignProgressBar() {
+    if (terminal_ && tenth_ >= 0) std::fputs("\n", stderr);
+  }
+
+ private:
+  bool terminal_ = isatty(STDERR_FILENO) != 0;
+  int tenth_ = -1;
+};
+
+}  // namespace
+
+void add_evaluation_options(CLI::App& command, EvaluationArguments& a) {
+  command.add_option("--course", a.scenario.course, "A course by name, or its folder")->capture_default_str();
+  command.add_option("--config", a.scenario.config, "default, published, or a file")->capture_default_str();
+  command
+      .add_option("--evaluation", a.scenario.evaluation,
+                  "true: right physics; published: as the paper's program counted")
+      ->capture_default_str();
+  command
+      .add_option("--latency-ms", a.scenario.latency_ms,
+                  "From a scan to its command's effect, --evaluation true only")
+      ->capture_default_str();
+  command.add_option("--seed0", a.seed0, "Lap k has seed seed0 + k (obstacles + 5)")->capture_default_str();
+  command.add_option("--jobs", a.jobs, "Laps driven at a time; 0: one per processor core")
+      ->capture_default_str();
+  command.add_option("--out", a.out, "Folder for laps.csv and summary.json")->required();
+  command.add_flag("--resume", a.resume,
+                   "Go on with the evaluation in --out; no finished lap is driven again");
+  command.add_option("--json", a.json, "Write the summary also to this file, or to standard output: -");
+}
+
+std::vector<Experiment> make_experiments(const std::vector<std::string>& methods,
+                                         const std::vector<std::string>& scenarios, int laps, int obstacles,
+                                         const std::vector<std::string>& sweeps) {
+  std::vector<Experiment> experiments;
+  if (laps < 1 || laps > 1000000)
+    throw IoError("--laps", 0, std::to_string(laps) + " must be in [1, 1000000]");
+  for (const std::string& scenario : scenarios) {
+    if (scenario != "pt" && scenario != "oa")
+      throw IoError("--scenario", 0, "'" + scenario + "' must be pt or oa");
+    for (const std::string& method : methods) {
+      solver_options(method);  // refuses an unknown method
+      std::vector<Experiment> variants{{method, {}, scenario, scenario == "pt" ? 0 : obstacles, laps}};
+      for (const std::string& text : sweeps) {
+        const Sweep sweep = parse_sweep(text);
+        if (!applies_to(sweep, method)) continue;
+        std::vector<Experiment> next;
+        for (const Experiment& variant : variants) {
+          for (const std::string& value : sweep.values) {
+            next.push_back(variant);
+            next.back().set.emplace_back(sweep.key, value);
+          }
+        }
+        variants = std::move(next);
+      }
+      experiments.insert(experiments.end(), variants.begin(), variants.end());
+    }
+  }
+  return experiments;
+}
+
+Json Evaluated::summary() const {
+  Json list = Json::array();
+  for (const ExperimentResult& r : results) {
+    const Experiment& e = campaign.experiments[static_cast<std::size_t>(r.experiment)];
+    const auto rate = [](double v) { return v; };
+    list.push_back(
+        {{"method", e.method},
+         {"set", e.set_text()},
+         {"scenario", e.scenario},
+         {"obstacles", e.obstacles},
+         {"laps", r.laps},
+         {"finished", r.finished},
+         {"timeouts", r.timeouts},
+         {"contacts", r.collisions},
+         {"ms_mean", r.ms_mean},
+         {"ms_ci", interval_json(r.ms_ci)},
+         {"state_cost_mean", r.state_cost_mean},
+         {"collision_cost_mean", r.collision_cost_mean},
+         {"collision_rate", optional_json(r.collision_rate, rate)},
+         {"collision_rate_ci", optional_json(r.collision_rate_ci, interval_json)},
+         {"collision_rate_bootstrap_ci", optional_json(r.collision_rate_bootstrap_ci, interval_json)},
+         {"success_rate", r.success_rate},
+         {"success_rate_ci", interval_json(r.success_rate_ci)},
+         {"lap_time_mean", std::isnan(r.lap_time_mean) ? Json(nullptr) : Json(r.lap_time_mean)},
+         {"solve_ms",
+          {{"mean", r.solve_ms_mean},
+           {"p50", r.solve_ms_p50},
+           {"p99", r.solve_ms_p99},
+           {"max", r.solve_ms_max}}}});
+  }
+  Json pairs = Json::array();
+  for (const PairedComparison& c : compare_pairs(rows, campaign.experiments)) {
+    const Experiment &a = campaign.experiments[static_cast<std::size_t>(c.a)],
+                     &b = campaign.experiments[static_cast<std::size_t>(c.b)];
+    pairs.push_back({{"scenario", a.scenario},
+                     {"a", a.label()},
+                     {"b", b.label()},
+                     {"laps", c.laps},
+                     {"ms_difference", c.ms_difference},
+                     {"ms_wilcoxon_p", c.ms_p},
+                     {"only_a_succeeds", c.only_a_succeeds},
+                     {"only_b_succeeds", c.only_b_succeeds},
+                     {"success_mcnemar_p", c.success_p},
+                     {"contacts_wilcoxon_p", c.collision_p}});
+  }
+  return {{"program", std::string("slalom ") + version()},
+          {"settings", Json::parse(campaign.settings)},
+          {"machine", machine_json()},
+          {"results", list},
+          {"comparisons", pairs}};
+}
+
+bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Experiment>& experiments,
+                    Evaluated& evaluated) {
+  if (arguments.jobs < 0 || arguments.jobs > 1024)
+    throw IoError("--jobs", 0, std::to_string(arguments.jobs) + " must be in [0, 1024]");
+  if (experiments.empty()) throw IoError("--methods", 0, "names no method");
+  const Scenario scenario = load_scenario(arguments.scenario, experiments.front().method);
+  const int jobs = arguments.jobs > 0 ? arguments.jobs
+                                      : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  evaluated.campaign = {.arena = scenario.arena,
+                        .configuration = scenario.configuration,
+                        .experiments = experiments,
+                        .seed0 = arguments.seed0,
+                        .latency = scenario.lap.latency,
+                        .settings = settings_of(arguments, scenario, experiments).dump(2)};
+  LapStore store(arguments.out, evaluated.campaign, arguments.resume);
+  const InterruptFlag interrupt;
+  {
+    CampaignProgressBar bar;
+    if (!run_campaign(
+            evaluated.campaign, store, jobs, [&](const CampaignProgress& p) { bar.show(p); },
+            interrupt.raised())) {
+      std::fprintf(stderr, "interrupted after %zu laps; --resume goes on\n", store.rows().size());
+      return false;
+    }
+  }
+  evaluated.rows = store.rows();
+  evaluated.results = summarise(evaluated.rows, evaluated.campaign.experiments);
+  return true;
+}
+
+void print_results(const Evaluated& evaluated, std::FILE* out) {
+  std::size_t width = 6;
+  for (const Experiment& e : evaluated.campaign.experiments) width = std::max(width, e.label().size());
+  std::fprintf(out, "%-*s  %-3s %5s %9s %19s %9s %17s %8s %9s\n", static_cast<int>(width), "method", "",
+               "laps", "MS", "95 %", "contacts", "collision rate", "success", "solve ms");
+  for (const ExperimentResult& r : evaluated.results) {
+    const Experiment& e = evaluated.campaign.experiments[static_cast<std::size_t>(r.experiment)];
+    char rate[40] = "-";
+    if (r.collision_rate) {
+      std::snprintf(rate, sizeof rate, "%.1f (%.1f-%.1f) %%", 100 * *r.collision_rate,
+                    100 * r.collision_rate_ci->low, 100 * r.collision_rate_ci->high);
+    }
+    std::fprintf(out, "%-*s  %-3s %5d %9.3f %8.3f - %8.3f %9d %17s %6.1f %% %9.3f\n", static_cast<int>(width),
+                 e.label().c_str(), e.scenario.c_str(), r.laps, r.ms_mean, r.ms_ci.low, r.ms_ci.high,
+                 r.collisions, rate, 100 * r.success_rate, r.solve_ms_p50);
+  }
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "scenario.hpp"
+#include "slalom/evaluation/campaign.hpp"
+#include "slalom/evaluation/results.hpp"
+
+/// What `eval` and `reproduce` share: an evaluation from its words to laps.csv and summary.json.
+namespace slalom::tools {
+
+struct EvaluationArguments {
+  ScenarioArguments scenario;  ///< `set` holds what applies to all experiments
+  std::uint64_t seed0 = 0;
+  int jobs = 0;  ///< 0: one per processor core
+  std::string out;
+  bool resume = false;
+  std::string json;  ///< a copy of the summary: a file, or - for standard output
+};
+
+/// Adds --course, --config, --evaluation, --latency-ms, --seed0, --jobs, --out, --resume and --json.
+void add_evaluation_options(CLI::App& command, EvaluationArguments& arguments);
+
+/// The experiments of a comparison: every method in every scenario ("pt", "oa") with every combination of the
+/// values of `sweeps` ("key=v1,v2,..."). A sweep over an option of a method's own applies to that method
+/// alone. Throws IoError.
+std::vector<evaluation::Experiment> make_experiments(const std::vector<std::string>& methods,
+                                                     const std::vector<std::string>& scenarios, int laps,
+                                                     int obstacles, const std::vector<std::string>& sweeps);
+
+/// An evaluation that has been driven.
+struct Evaluated {
+  evaluation::Campaign campaign;
+  std::vector<evaluation::LapRow> rows;
+  std::vector<evaluation::ExperimentResult> results;
+  nlohmann::ordered_json summary() const;
+};
+
+/// Drives it with a progress line; false (and no summary) if it was interrupted. Throws IoError and what a
+/// lap throws.
+bool run_evaluation(const EvaluationArguments& arguments,
+                    const std::vector<evaluation::Experiment>& experiments, Evaluated& evaluated);
+
+/// A table of the results for people.
+void print_results(const Evaluated& evaluated, std::FILE* out);
+
+}  // namespace slalom::tools
