@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/simd_operations.hpp"
+
 namespace slalom::simd {
 
 const char* name(Target target) noexcept {
@@ -42,6 +44,13 @@ bool supported(Target target) noexcept {
 #endif
   return target == Target::generic;
 }
+
+#if SLALOM_X86
+namespace detail {
+// Intel's since Ice Lake; AMD's (Zen 4 and 5) take a step a lane.
+const bool gathers_are_fast = __builtin_cpu_is("intel") != 0;
+}  // namespace detail
+#endif
 
 namespace {
 

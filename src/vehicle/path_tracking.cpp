@@ -9,6 +9,14 @@ PathTracking<separate_local>::PathTracking(const PathTrackingOptions& options)
     : options_(options),
       held_steps_(
           options.hold_first_input ? static_cast<int>(std::ceil(options.dead_time / options.time_step)) : 0),
+      time_step_(options.time_step),
+      distance_weight_(options.distance_weight),
+      yaw_weight_(options.yaw_weight),
+      outside_cost_(options.outside_cost),
+      terminal_distance_weight_(options.terminal_distance_weight),
+      terminal_yaw_weight_(options.terminal_yaw_weight),
+      outside_terminal_cost_(options.outside_terminal_cost),
+      collision_weight_(options.collision_weight),
       slip_ratio_(options.front_length / (options.front_length + options.rear_length)),
       inverse_length_(options.bicycle == BicycleForm::published
                           ? 1 / options.rear_length
@@ -17,6 +25,7 @@ PathTracking<separate_local>::PathTracking(const PathTrackingOptions& options)
                                     : options.time_step / options.steer_time_constant),
       speed_gain_(options.max_acceleration * options.time_step),
       speed_loss_(options.max_deceleration * options.time_step),
+      linear_loss_((options.linear_sign_error ? -1 : 1) * options.max_deceleration * options.time_step),
       target_speed_(options.reference_speed) {}
 
 template <bool separate_local>
@@ -31,6 +40,10 @@ void PathTracking<separate_local>::set_maps(const GridView<4>& reference, const 
   to_local_[3] = -s;
   to_local_[4] = c;
   to_local_[5] = s * robot_x - c * robot_y;
+  for (int i = 0; i < 6; ++i) {
+    const GridAxis& axis = i < 3 ? obstacles.rows_axis() : obstacles.columns_axis();
+    to_cells_[i] = to_local_[i] * axis.scale + (i % 3 == 2 ? axis.offset : 0);
+  }
 }
 
 template class PathTracking<false>;

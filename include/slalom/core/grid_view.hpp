@@ -6,6 +6,11 @@
 
 namespace slalom {
 
+/// Metres along one axis of a map to cells, the ring included: cell = position * scale + offset, truncated.
+struct GridAxis {
+  double scale = 0, offset = 0;
+};
+
 /// Nearest-cell look-ups in a map of `Layers` float32 values a cell (1, or 4: then one 128-bit load fetches a
 /// cell), from scalar code and from SIMD lanes alike.
 ///
@@ -30,9 +35,11 @@ class GridView {
         resolution_(resolution),
         center_x_(center_x),
         center_y_(center_y),
-        scale_(static_cast<float>(-1.0 / resolution)),
-        offset_x_(static_cast<float>((center_x + 0.5 * resolution * rows) / resolution + 1.0)),
-        offset_y_(static_cast<float>((center_y + 0.5 * resolution * columns) / resolution + 1.0)) {}
+        rows_axis_{-1.0 / resolution, (center_x + 0.5 * resolution * rows) / resolution + 1.0},
+        columns_axis_{-1.0 / resolution, (center_y + 0.5 * resolution * columns) / resolution + 1.0},
+        scale_(rows_axis_.scale),
+        offset_x_(rows_axis_.offset),
+        offset_y_(columns_axis_.offset) {}
 
   const float* cells() const noexcept { return cells_; }
   int rows() const noexcept { return rows_; }
@@ -40,6 +47,8 @@ class GridView {
   double resolution() const noexcept { return resolution_; }
   double center_x() const noexcept { return center_x_; }
   double center_y() const noexcept { return center_y_; }
+  const GridAxis& rows_axis() const noexcept { return rows_axis_; }        ///< x to rows
+  const GridAxis& columns_axis() const noexcept { return columns_axis_; }  ///< y to columns
 
   /// Whether a storage index lies in the ring.
   bool in_ring(std::ptrdiff_t index) const noexcept {
@@ -55,10 +64,17 @@ class GridView {
   }
   template <class Target>
   SLALOM_INLINE simd::IntPack<Target> index(const Pack<Target>& x, const Pack<Target>& y) const {
+    using F = Pack<Target>;
+    return index_of_cell(x * F(scale_) + F(offset_x_), y * F(scale_) + F(offset_y_));
+  }
+  /// The same for a position in cells, as `rows_axis` and `columns_axis` give it.
+  template <class Target>
+  SLALOM_INLINE_CALLS simd::IntPack<Target> index_of_cell(const Pack<Target>& row_position,
+                                                          const Pack<Target>& column_position) const {
     using I = typename simd::IntPack<Target>::Vector;
-    const I row = clamped_index<Target>(x * Pack<Target>(scale_) + Pack<Target>(offset_x_), rows_ + 1);
-    const I column = clamped_index<Target>(y * Pack<Target>(scale_) + Pack<Target>(offset_y_), columns_ + 1);
-    return simd::IntPack<Target>((row << stride_log2_) + column);
+    I row = clamped_index<Target>(row_position, rows_ + 1);
+    simd::Operations<Target>::shift_left(row, stride_log2_);
+    return simd::IntPack<Target>(row + clamped_index<Target>(column_position, columns_ + 1));
   }
 
  private:
@@ -92,9 +108,8 @@ class GridView {
   double resolution_ = 1;
   double center_x_ = 0;
   double center_y_ = 0;
-  float scale_ = 0;
-  float offset_x_ = 0;
-  float offset_y_ = 0;
+  GridAxis rows_axis_, columns_axis_;
+  Coefficient scale_, offset_x_, offset_y_;
 };
 
 /// What a look-up of a four-layer cell returns.
@@ -114,15 +129,25 @@ T look_up(const GridView<1>& grid, T x, T y) {
   return static_cast<T>(grid.cells()[grid.index(x, y)]);
 }
 template <class Target>
-SLALOM_INLINE CellValues<Pack<Target>> look_up(const GridView<4>& grid, const Pack<Target>& x,
-                                               const Pack<Target>& y) {
+SLALOM_INLINE_CALLS CellValues<Pack<Target>> look_up(const GridView<4>& grid, const Pack<Target>& x,
+                                                     const Pack<Target>& y) {
   const auto index = grid.index(x, y);
   CellValues<Pack<Target>> r;
   simd::Operations<Target>::gather_cells(grid.cells(), index.v, r.a.v, r.b.v, r.c.v, r.d.v);
   return r;
 }
+/// The cell at a position that is given in cells (`GridView::rows_axis`, `columns_axis`).
 template <class Target>
-SLALOM_INLINE Pack<Target> look_up(const GridView<1>& grid, const Pack<Target>& x, const Pack<Target>& y) {
+SLALOM_INLINE_CALLS Pack<Target> look_up_cell(const GridView<1>& grid, const Pack<Target>& row,
+                                              const Pack<Target>& column) {
+  const auto index = grid.index_of_cell(row, column);
+  Pack<Target> r;
+  simd::Operations<Target>::gather(grid.cells(), index.v, r.v);
+  return r;
+}
+template <class Target>
+SLALOM_INLINE_CALLS Pack<Target> look_up(const GridView<1>& grid, const Pack<Target>& x,
+                                         const Pack<Target>& y) {
   const auto index = grid.index(x, y);
   Pack<Target> r;
   simd::Operations<Target>::gather(grid.cells(), index.v, r.v);

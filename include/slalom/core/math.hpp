@@ -9,9 +9,9 @@
 /// Mathematics that a problem may use, written once for `float`, `double` and packs of SIMD lanes: call these
 /// by their unqualified or `slalom::` names instead of those in `std`.
 ///
-/// Accuracy on packs, against double: sin, cos, tan, exp, log, atan within 3 units in the last place or 1e-7,
-/// whichever is larger (angles up to 8000 rad). Polynomials: S. L. Moshier's Cephes library (sinf, cosf,
-/// expf, logf, atanf).
+/// Accuracy on packs, against double: sin, cos, exp, log, atan within 3 units in the last place or 2e-7,
+/// whichever is larger (angles up to 8000 rad); tan the quotient of sin and cos. Polynomials: S. L. Moshier's
+/// Cephes library (expf, logf, atanf); sin and cos our own.
 namespace slalom {
 
 using simd::Pack;
@@ -99,16 +99,21 @@ void sin_cos(T x, T& s, T& c) {
   c = std::cos(x);
 }
 
+template <Scalar T>
+void sin_cos_half_turn(T x, T& s, T& c) {
+  sin_cos(x, s, c);
+}
+
 // --- packs
 // ---------------------------------------------------------------------------------------------------------
 template <class Target>
-SLALOM_INLINE Pack<Target> min(const Pack<Target>& a, const std::type_identity_t<Pack<Target>>& b) {
+SLALOM_INLINE_CALLS Pack<Target> min(const Pack<Target>& a, const std::type_identity_t<Pack<Target>>& b) {
   Pack<Target> r;
   simd::Operations<Target>::min(a.v, b.v, r.v);
   return r;
 }
 template <class Target>
-SLALOM_INLINE Pack<Target> max(const Pack<Target>& a, const std::type_identity_t<Pack<Target>>& b) {
+SLALOM_INLINE_CALLS Pack<Target> max(const Pack<Target>& a, const std::type_identity_t<Pack<Target>>& b) {
   Pack<Target> r;
   simd::Operations<Target>::max(a.v, b.v, r.v);
   return r;
@@ -119,20 +124,20 @@ SLALOM_INLINE Pack<Target> select(const simd::Mask<Target>& condition, const Pac
   return Pack<Target>(condition.v ? a.v : b.v);
 }
 template <class Target>
-SLALOM_INLINE Pack<Target> sqrt(const Pack<Target>& x) {
+SLALOM_INLINE_CALLS Pack<Target> sqrt(const Pack<Target>& x) {
   Pack<Target> r;
   simd::Operations<Target>::sqrt(x.v, r.v);
   return r;
 }
 /// 1/sqrt(x), within 2 units in the last place; x > 0.
 template <class Target>
-SLALOM_INLINE Pack<Target> reciprocal_sqrt(const Pack<Target>& x) {
+SLALOM_INLINE_CALLS Pack<Target> reciprocal_sqrt(const Pack<Target>& x) {
   Pack<Target> r;
   simd::Operations<Target>::reciprocal_sqrt(x.v, r.v);
   return r;
 }
 template <class Target>
-SLALOM_INLINE Pack<Target> round(const Pack<Target>& x) {
+SLALOM_INLINE_CALLS Pack<Target> round(const Pack<Target>& x) {
   Pack<Target> r;
   simd::Operations<Target>::round(x.v, r.v);
   return r;
@@ -143,34 +148,54 @@ SLALOM_INLINE Pack<Target> abs(const Pack<Target>& x) {
   return Pack<Target>(reinterpret_cast<typename Pack<Target>::Vector>(reinterpret_cast<I>(x.v) & 0x7fffffff));
 }
 
-/// Sine and cosine together: reduced by multiples of pi/2 in two parts, then a polynomial of each on [-pi/4,
-/// pi/4].
+/// The product rounded to the nearest integer, for products below 2^22: adding 1.5 * 2^23 pushes the fraction
+/// out, and leaves the integer in the low bits of the sum (`bits`, to be used modulo a power of two up to
+/// 2^22). Cheaper than a rounding instruction and a conversion.
+template <class Target>
+SLALOM_INLINE Pack<Target> rounded_product(const Pack<Target>& x, float factor,
+                                           typename simd::IntPack<Target>::Vector& bits) {
+  using F = Pack<Target>;
+  const F magic(12582912.0f);
+  const F sum = x * F(factor) + magic;
+  bits = reinterpret_cast<typename simd::IntPack<Target>::Vector>(sum.v);
+  return sum - magic;
+}
+
+/// Sine and cosine of an angle in [-pi/2, pi/2], such as a steering angle: cheaper, for want of a reduction.
+/// Polynomials through the Chebyshev nodes of the squared angle, weighted towards its end.
+template <class Target>
+SLALOM_INLINE void sin_cos_half_turn(const Pack<Target>& x, Pack<Target>& s, Pack<Target>& c) {
+  using F = Pack<Target>;
+  const F x2 = x * x;
+  s = x +
+      x * x2 *
+          (F(-0.166666643f) + x2 * (F(8.33317683e-3f) + x2 * (F(-1.98170522e-4f) + x2 * F(2.62108806e-6f))));
+  c = (F(1.0f) - F(0.5f) * x2) +
+      x2 * x2 *
+          (F(4.16666647e-2f) + x2 * (F(-1.38887578e-3f) + x2 * (F(2.4781316e-5f) + x2 * F(-2.64315039e-7f))));
+}
+/// Sine and cosine together: reduced to half a turn, which costs a longer polynomial and saves the choice
+/// between the two that a quarter needs.
 template <class Target>
 SLALOM_INLINE void sin_cos(const Pack<Target>& x, Pack<Target>& s, Pack<Target>& c) {
   using F = Pack<Target>;
   using I = typename simd::IntPack<Target>::Vector;
   using V = typename F::Vector;
-  const F quarter_turns = round(x * F(0.636619772f));
+  I bits;
+  const F half_turns = rounded_product(x, 0.318309886f, bits);
   F r;
   if constexpr (Target::fused) {
-    r = x - quarter_turns * F(1.57079637f);
-    r = r + quarter_turns * F(4.37113883e-8f);
-  } else {  // pi/2 in three parts, the first two short enough for exact products
-    r = x - quarter_turns * F(1.5703125f);
-    r = r - quarter_turns * F(4.837512969970703125e-4f);
-    r = r - quarter_turns * F(7.54978995489188216e-8f);
+    r = x - half_turns * F(3.14159274f);
+    r = r + half_turns * F(8.74227766e-8f);
+  } else {  // pi in three parts, the first two short enough for exact products
+    r = x - half_turns * F(3.140625f);
+    r = r - half_turns * F(9.67502593994140625e-4f);
+    r = r - half_turns * F(1.509957990978376e-7f);
   }
-  const F r2 = r * r;
-  const F sine = r + r * r2 * (F(-1.6666654611e-1f) + r2 * (F(8.3321608736e-3f) + r2 * F(-1.9515295891e-4f)));
-  const F cosine = (F(1.0f) - F(0.5f) * r2) +
-                   r2 * r2 * (F(4.166664568e-2f) + r2 * (F(-1.388731625e-3f) + r2 * F(2.443315712e-5f)));
-  const I q = __builtin_convertvector(quarter_turns.v, I);
-  const I odd = -(q & 1);
-  const V a = odd ? cosine.v : sine.v;
-  const V b = odd ? sine.v : cosine.v;
-  constexpr int sign = static_cast<int>(0x80000000u);
-  s = F(reinterpret_cast<V>(reinterpret_cast<I>(a) ^ ((q << 30) & sign)));
-  c = F(reinterpret_cast<V>(reinterpret_cast<I>(b) ^ (((q + 1) << 30) & sign)));
+  sin_cos_half_turn(r, s, c);
+  const I sign = bits << 31;
+  s = F(reinterpret_cast<V>(reinterpret_cast<I>(s.v) ^ sign));
+  c = F(reinterpret_cast<V>(reinterpret_cast<I>(c.v) ^ sign));
 }
 template <class Target>
 SLALOM_INLINE Pack<Target> sin(const Pack<Target>& x) {
@@ -268,7 +293,12 @@ SLALOM_INLINE T clamp(const T& x, const std::type_identity_t<T>& low, const std:
 /// The angle shifted by whole turns into [-pi, pi].
 template <class T>
 SLALOM_INLINE T wrap_angle(const T& angle) {
-  return angle - round(angle * T(0.15915494309189535)) * T(6.283185307179586);
+  if constexpr (is_pack<T>) {
+    typename simd::IntPack<typename T::Target>::Vector turns;
+    return angle - rounded_product(angle, 0.159154943f, turns) * T(6.28318531f);
+  } else {
+    return angle - round(angle * T(0.15915494309189535)) * T(6.283185307179586);
+  }
 }
 
 template <class T>

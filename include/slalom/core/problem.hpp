@@ -60,7 +60,7 @@ inline constexpr bool looks_up = requires(const P& p, const StateOf<P, T>& x) {
 };
 
 template <class P, class T>
-SLALOM_INLINE auto look_up(const P& problem, const StateOf<P, T>& x) {
+SLALOM_INLINE_CALLS auto look_up(const P& problem, const StateOf<P, T>& x) {
   if constexpr (looks_up<P, T>) {
     return problem.look_up(x);
   } else {
@@ -69,8 +69,8 @@ SLALOM_INLINE auto look_up(const P& problem, const StateOf<P, T>& x) {
 }
 
 template <class P, class T, class L>
-SLALOM_INLINE StateOf<P, T> step(const P& p, const StateOf<P, T>& x, const L& seen, const InputOf<P, T>& u,
-                                 int k) {
+SLALOM_INLINE_CALLS StateOf<P, T> step(const P& p, const StateOf<P, T>& x, const L& seen,
+                                       const InputOf<P, T>& u, int k) {
   if constexpr (looks_up<P, T>) {
     if constexpr (requires { p.step(x, seen, u, k); }) {
       return p.step(x, seen, u, k);
@@ -85,8 +85,8 @@ SLALOM_INLINE StateOf<P, T> step(const P& p, const StateOf<P, T>& x, const L& se
 }
 
 template <class P, class T, class L>
-SLALOM_INLINE auto stage_cost(const P& p, const StateOf<P, T>& x, const L& seen, const InputOf<P, T>& u,
-                              int k) {
+SLALOM_INLINE_CALLS auto stage_cost(const P& p, const StateOf<P, T>& x, const L& seen, const InputOf<P, T>& u,
+                                    int k) {
   if constexpr (looks_up<P, T>) {
     if constexpr (requires { p.stage_cost(x, seen, u, k); }) {
       return p.stage_cost(x, seen, u, k);
@@ -101,7 +101,7 @@ SLALOM_INLINE auto stage_cost(const P& p, const StateOf<P, T>& x, const L& seen,
 }
 
 template <class P, class T, class L>
-SLALOM_INLINE auto terminal_cost(const P& p, const StateOf<P, T>& x, const L& seen) {
+SLALOM_INLINE_CALLS auto terminal_cost(const P& p, const StateOf<P, T>& x, const L& seen) {
   if constexpr (looks_up<P, T>) {
     return p.terminal_cost(x, seen);
   } else {

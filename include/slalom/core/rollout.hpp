@@ -16,6 +16,10 @@ SLALOM_INLINE StateOf<P, T> broadcast_state(const float* x, std::index_sequence<
   return StateOf<P, T>{T(x[I])...};
 }
 
+/// What a problem returns from a look-up.
+template <class P, class F>
+using SeenOf = decltype(look_up<P, F>(std::declval<const P&>(), std::declval<const StateOf<P, F>&>()));
+
 template <class P, class F>
 struct Rollout {
   StateOf<P, F> x;
@@ -44,10 +48,12 @@ using RolloutFunction = void (*)(const P&, const float*, const SequenceBatch&, i
     static_assert(simd::padding % (packs * F::lanes) == 0);                                                  \
     const int steps = batch.steps();                                                                         \
     const std::ptrdiff_t stride = batch.stride();                                                            \
+    const StateOf<P, F> start =                                                                              \
+        broadcast_state<P, F>(initial_state, std::make_index_sequence<state_size<P>>{});                     \
     for (int sample = first; sample < first + count; sample += packs * F::lanes) {                           \
       Rollout<P, F> r[packs];                                                                                \
       SLALOM_UNROLL for (int j = 0; j < packs; ++j) {                                                        \
-        r[j].x = broadcast_state<P, F>(initial_state, std::make_index_sequence<state_size<P>>{});            \
+        r[j].x = start;                                                                                      \
         r[j].total = F(0.0f);                                                                                \
         r[j].hit = mask_t<F>(false);                                                                         \
       }                                                                                                      \

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "slalom/core/coefficient.hpp"
+
 /// Packs of float32 lanes, so that one piece of template code runs a whole pack of samples at once.
 ///
 /// A pack is made of the compiler's own vector types: its operators are ordinary inline functions that carry
@@ -44,11 +46,14 @@
 
 /// On the small functions that make up a batch loop. g++ follows `flatten` all the way down, but only over
 /// functions that are not `always_inline` (for those it settles too early that they cannot take in code of a
-/// wider instruction set); clang inlines only one call deep and needs to be told.
+/// wider instruction set); clang inlines only one call deep and needs to be told, and told again
+/// (`SLALOM_INLINE_CALLS`) where a function of another's making, or one of an instruction set, is called.
 #if defined(__clang__)
 #define SLALOM_INLINE __attribute__((always_inline)) inline
+#define SLALOM_INLINE_CALLS __attribute__((always_inline, flatten)) inline
 #else
 #define SLALOM_INLINE inline
+#define SLALOM_INLINE_CALLS inline
 #endif
 
 #if defined(__clang__)
@@ -93,6 +98,29 @@ struct VectorTypes {
   typedef std::int32_t Int __attribute__((vector_size(4 * N)));
   typedef std::uint32_t Unsigned __attribute__((vector_size(4 * N)));
 };
+
+/// One value in all lanes. x - 0 is x for every x, and so folds to a broadcast. But g++ builds a vector wider
+/// than the baseline's lane by lane, unless it is told the instruction.
+template <class T>
+struct Broadcast {
+  static void of(float value, typename VectorTypes<T::lanes>::Float& r) {
+    r = value - typename VectorTypes<T::lanes>::Float{};
+  }
+};
+#if SLALOM_X86
+template <>
+struct Broadcast<Avx2> {
+  SLALOM_ISA_AVX2 static void of(float value, VectorTypes<8>::Float& r) {
+    r = reinterpret_cast<VectorTypes<8>::Float>(_mm256_set1_ps(value));
+  }
+};
+template <>
+struct Broadcast<Avx512> {
+  SLALOM_ISA_AVX512 static void of(float value, VectorTypes<16>::Float& r) {
+    r = reinterpret_cast<VectorTypes<16>::Float>(_mm512_set1_ps(value));
+  }
+};
+#endif
 
 }  // namespace detail
 
@@ -141,9 +169,10 @@ struct Pack {
   Vector v;
 
   Pack() = default;
-  SLALOM_INLINE Pack(float value) { v = Vector{} + value; }
+  SLALOM_INLINE_CALLS Pack(float value) { detail::Broadcast<T>::of(value, v); }
   SLALOM_INLINE Pack(double value) : Pack(static_cast<float>(value)) {}
   SLALOM_INLINE Pack(int value) : Pack(static_cast<float>(value)) {}
+  SLALOM_INLINE Pack(const Coefficient& value) : Pack(value.rounded()) {}
   SLALOM_INLINE Pack(const Vector& vector) : v(vector) {}
   SLALOM_INLINE Pack(const Pack& other) : v(other.v) {}
   SLALOM_INLINE Pack& operator=(const Pack& other) {

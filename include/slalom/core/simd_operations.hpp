@@ -34,6 +34,7 @@ struct PortableOperations {
     const F magic = F{} + 12582912.0f;
     r = (a + magic) - magic;
   }
+  static void shift_left(I& a, int count) { a = a << count; }
   static void gather(const float* from, const I& index, F& r) {
     for (int i = 0; i < lanes; ++i) r[i] = from[index[i]];
   }
@@ -78,6 +79,12 @@ struct Operations<Generic> : PortableOperations<Generic> {};
 #endif
 
 #if SLALOM_X86
+namespace detail {
+/// Whether this processor's AVX-512 gathers of 64 bits beat as many loads; set before main begins. Results do
+/// not depend on it.
+extern const bool gathers_are_fast;
+}  // namespace detail
+
 /// Joins two vectors, for instance of 4 lanes each into one of 8.
 #define SLALOM_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 
@@ -122,6 +129,10 @@ struct Operations<Avx2> : PortableOperations<Avx2> {
   SLALOM_ISA_AVX2 static void round(const F& a, F& r) {
     r = (F)_mm256_round_ps((__m256)a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
   }
+  /// By a count a lane, which takes one step of the processor where a common count takes two.
+  SLALOM_ISA_AVX2 static void shift_left(I& a, int count) {
+    a = (I)_mm256_sllv_epi32((__m256i)a, _mm256_set1_epi32(count));
+  }
   SLALOM_ISA_AVX2 static void gather(const float* from, const I& index, F& r) {
     r = (F)_mm256_i32gather_ps(from, (__m256i)index, 4);
   }
@@ -163,11 +174,43 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
   SLALOM_ISA_AVX512 static void round(const F& a, F& r) {
     r = (F)_mm512_maskz_roundscale_ps(all, (__m512)a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
   }
+  SLALOM_ISA_AVX512 static void shift_left(I& a, int count) {
+    a = (I)_mm512_maskz_sllv_epi32(all, (__m512i)a, _mm512_set1_epi32(count));
+  }
   SLALOM_ISA_AVX512 static void gather(const float* from, const I& index, F& r) {
     r = (F)_mm512_mask_i32gather_ps(_mm512_setzero_ps(), all, (__m512i)index, from, 4);
   }
-  /// Four 128-bit loads a register, then a 4 x 4 transpose in every 128-bit block.
   SLALOM_ISA_AVX512 static void gather_cells(const float* from, const I& index, F& r0, F& r1, F& r2, F& r3) {
+    if (detail::gathers_are_fast) {
+      gather_halves(from, index, r0, r1, r2, r3);
+    } else {
+      load_cells(from, index, r0, r1, r2, r3);
+    }
+  }
+
+ private:
+  /// Two values of a cell at a time by gathers of 64 bits. For 16 lanes of four values this took about 10 ns
+  /// on a Xeon of 2023, the loads below 15 ns.
+  SLALOM_ISA_AVX512 SLALOM_INLINE static void gather_halves(const float* from, const I& index, F& r0, F& r1,
+                                                            F& r2, F& r3) {
+    constexpr __mmask8 half = 0xff;
+    const __m512i at = (__m512i)(index << 1);
+    const __m256i low = _mm512_maskz_extracti64x4_epi64(half, at, 0);
+    const __m256i high = _mm512_maskz_extracti64x4_epi64(half, at, 1);
+    const __m512d zero = _mm512_setzero_pd();
+    const F a = (F)_mm512_mask_i32gather_pd(zero, half, low, from, 8);
+    const F b = (F)_mm512_mask_i32gather_pd(zero, half, high, from, 8);
+    const F c = (F)_mm512_mask_i32gather_pd(zero, half, low, from + 2, 8);
+    const F d = (F)_mm512_mask_i32gather_pd(zero, half, high, from + 2, 8);
+    r0 = SLALOM_SHUFFLE(a, b, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+    r1 = SLALOM_SHUFFLE(a, b, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+    r2 = SLALOM_SHUFFLE(c, d, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+    r3 = SLALOM_SHUFFLE(c, d, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
+  }
+
+  /// Four 128-bit loads a register, then a 4 x 4 transpose in every 128-bit block.
+  SLALOM_ISA_AVX512 SLALOM_INLINE static void load_cells(const float* from, const I& index, F& r0, F& r1,
+                                                         F& r2, F& r3) {
     alignas(64) std::int32_t at[16];
     *reinterpret_cast<I*>(at) = index << 2;
     __asm__("" : "+m"(at));

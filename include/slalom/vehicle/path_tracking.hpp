@@ -181,7 +181,7 @@ struct CarState<T, true> {
 };
 
 /// The problem for the solvers. `separate_local` is `straight_local_rollout` at compile time. Input:
-/// steering, rad.
+/// steering, rad, of a magnitude below pi/2, as that of the start's steering.
 template <bool separate_local>
 class PathTracking {
  public:
@@ -205,15 +205,7 @@ class PathTracking {
 
   template <class T>
   Surroundings<T> look_up(const State<T>& s) const {
-    T local_x, local_y;
-    if constexpr (separate_local) {
-      local_x = s.local_x;
-      local_y = s.local_y;
-    } else {
-      local_x = T(to_local_[0]) * s.x + (T(to_local_[1]) * s.y + T(to_local_[2]));
-      local_y = T(to_local_[3]) * s.x + (T(to_local_[4]) * s.y + T(to_local_[5]));
-    }
-    const T obstacle = slalom::look_up(obstacles_, local_x, local_y);
+    const T obstacle = look_up_obstacle(s);
     if (options_.localisation_less) return {T(0), T(0), s.speed, T(0), obstacle};
     const CellValues<T> reference = slalom::look_up(reference_, s.x, s.y);
     return {reference.a, reference.b, reference.c, reference.d, obstacle};
@@ -222,10 +214,11 @@ class PathTracking {
   template <class T>
   State<T> step(const State<T>& s, const Surroundings<T>& seen, const Input<T, 1>& u, int k) const {
     State<T> next;
-    const T command = k == 0 ? u[0] : k <= held_steps_ ? s.held : u[0];
-    next.held = k == 0 ? u[0] : s.held;
+    const bool first = options_.hold_first_input && k == 0;
+    const T command = options_.hold_first_input && !first && k <= held_steps_ ? s.held : u[0];
+    next.held = first ? u[0] : s.held;
     next.speed = next_speed(s.speed, seen.speed);
-    const T travelled = s.speed * T(options_.time_step);
+    const T travelled = s.speed * T(time_step_);
     move(s.x, s.y, s.yaw, s.steer, command, travelled, next.x, next.y, next.yaw, next.steer);
     if constexpr (separate_local) {
       move(s.local_x, s.local_y, s.local_yaw, s.local_steer, command, travelled, next.local_x, next.local_y,
@@ -236,20 +229,33 @@ class PathTracking {
 
   template <class T>
   Cost<T> stage_cost(const State<T>& s, const Surroundings<T>& seen, const Input<T, 1>&) const {
-    return cost(s, seen, options_.distance_weight, options_.yaw_weight, options_.outside_cost);
+    return cost(s, seen, distance_weight_, yaw_weight_, outside_cost_);
   }
   template <class T>
   Cost<T> terminal_cost(const State<T>& s, const Surroundings<T>& seen) const {
-    return cost(s, seen, options_.terminal_distance_weight, options_.terminal_yaw_weight,
-                options_.outside_terminal_cost);
+    return cost(s, seen, terminal_distance_weight_, terminal_yaw_weight_, outside_terminal_cost_);
   }
   /// The collision part of a cost alone.
   template <class T>
-  T collision_cost(const Surroundings<T>& seen, double outside) const {
-    return T(options_.collision_weight) * select(seen.obstacle < T(0), T(outside), seen.obstacle);
+  T collision_cost(const Surroundings<T>& seen, const Coefficient& outside) const {
+    return T(collision_weight_) * select(seen.obstacle < T(0), T(outside), seen.obstacle);
   }
 
  private:
+  template <class T>
+  SLALOM_INLINE T look_up_obstacle(const State<T>& s) const {
+    if constexpr (separate_local) {
+      return slalom::look_up(obstacles_, s.local_x, s.local_y);
+    } else if constexpr (is_pack<T>) {
+      // From the map frame to cells at once.
+      return look_up_cell(obstacles_, T(to_cells_[0]) * s.x + (T(to_cells_[1]) * s.y + T(to_cells_[2])),
+                          T(to_cells_[3]) * s.x + (T(to_cells_[4]) * s.y + T(to_cells_[5])));
+    } else {
+      return slalom::look_up(obstacles_, T(to_local_[0]) * s.x + (T(to_local_[1]) * s.y + T(to_local_[2])),
+                             T(to_local_[3]) * s.x + (T(to_local_[4]) * s.y + T(to_local_[5])));
+    }
+  }
+
   template <class T>
   SLALOM_INLINE void move(const T& x, const T& y, const T& yaw, const T& steer, const T& command,
                           const T& travelled, T& next_x, T& next_y, T& next_yaw, T& next_steer) const {
@@ -257,7 +263,7 @@ class PathTracking {
     // Without localisation the published program computes the slip angle from the command instead of the
     // wheels' angle.
     const bool use_command = options_.localisation_less && options_.bicycle == BicycleForm::published;
-    sin_cos(use_command ? command : steer, sin_steer, cos_steer);
+    sin_cos_half_turn(use_command ? command : steer, sin_steer, cos_steer);
     sin_cos(yaw, sin_yaw, cos_yaw);
     if (options_.bicycle == BicycleForm::published) {
       // sin and cos of b = atan(ratio tan(steer)), without the inverse function.
@@ -277,24 +283,20 @@ class PathTracking {
 
   template <class T>
   SLALOM_INLINE T next_speed(const T& speed, const T& reference) const {
-    switch (options_.speed) {
-      case SpeedForm::constant:
-        return speed;
-      case SpeedForm::linear: {
-        const T target = T(target_speed_), faster = min(speed + T(speed_gain_), target);
-        const T slower = max(speed - T(options_.linear_sign_error ? -speed_loss_ : speed_loss_), target);
-        return select(speed <= target, faster, slower);
-      }
-      case SpeedForm::reference:
-        break;
+    if (options_.speed == SpeedForm::constant) return speed;
+    if (options_.speed == SpeedForm::linear) {
+      const T target = T(target_speed_), faster = min(speed + T(speed_gain_), target);
+      const T slower = max(speed - T(linear_loss_), target);
+      return select(speed <= target, faster, slower);
     }
     if (!options_.limit_acceleration) return reference;
     return min(max(reference, speed - T(speed_loss_)), speed + T(speed_gain_));
   }
 
   template <class T>
-  SLALOM_INLINE Cost<T> cost(const State<T>& s, const Surroundings<T>& seen, double distance_weight,
-                             double yaw_weight, double outside) const {
+  SLALOM_INLINE Cost<T> cost(const State<T>& s, const Surroundings<T>& seen,
+                             const Coefficient& distance_weight, const Coefficient& yaw_weight,
+                             const Coefficient& outside) const {
     const T collision = collision_cost(seen, outside);
     T value = collision;
     if (!options_.localisation_less) {
@@ -307,14 +309,20 @@ class PathTracking {
   PathTrackingOptions options_;
   GridView<4> reference_;
   GridView<1> obstacles_;
-  double to_local_[6] = {1, 0, 0, 0, 1, 0};
+  double to_local_[6] = {1, 0, 0, 0, 1, 0};       ///< m in the map frame -> m in the robot's
+  Coefficient to_cells_[6] = {1, 0, 0, 0, 1, 0};  ///< m in the map frame -> cells of the cost map
   int held_steps_ = 0;
-  double slip_ratio_ = 0;
-  double inverse_length_ = 0;
-  double lag_factor_ = 0;
-  double speed_gain_ = 0;
-  double speed_loss_ = 0;
-  double target_speed_ = 0;
+  Coefficient time_step_;
+  Coefficient distance_weight_, yaw_weight_, outside_cost_;
+  Coefficient terminal_distance_weight_, terminal_yaw_weight_, outside_terminal_cost_;
+  Coefficient collision_weight_;
+  Coefficient slip_ratio_;
+  Coefficient inverse_length_;
+  Coefficient lag_factor_;
+  Coefficient speed_gain_;
+  Coefficient speed_loss_;
+  Coefficient linear_loss_;  ///< speed lost in a step of the linear form
+  Coefficient target_speed_;
 };
 
 extern template class PathTracking<false>;

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <vector>
+
+#include "slalom/core/problem_evaluator.hpp"
+#include "slalom/core/sequence_batch.hpp"
+#include "slalom/maps/local_cost_map.hpp"
+#include "slalom/maps/reference_field.hpp"
+#include "slalom/vehicle/path_tracking.hpp"
+#include "workload/yardstick.hpp"
+
+/// The workload `reference` that speed is measured on: the vehicle problem with the published parameters and
+/// 14 inputs (15 states), on a course with two parked cars, the same in every run.
+namespace slalom::tools {
+
+/// A closed course with straights and turns, points every 5 cm, speeds 3 to 5 m/s.
+std::vector<maps::ReferencePoint> reference_course();
+
+/// What a LiDAR of 1080 beams sees from a pose on that course: its walls, 1.1 m to either side of the middle,
+/// and two parked cars, 2.5 and 6 m ahead of the first point. m.
+struct ReferenceScan {
+  std::vector<float> ranges;
+  maps::LaserScanView view() const;
+};
+ReferenceScan reference_scan(const maps::Pose& robot);
+
+/// The published vehicle problem; `two_trajectories` as the published program has it.
+vehicle::PathTrackingOptions reference_problem(bool two_trajectories);
+
+/// Maps, start and control sequences in place.
+class ReferenceWorkload {
+ public:
+  static constexpr int steps = 14;
+
+  ReferenceWorkload();
+
+  const CarStart& start() const { return start_; }
+  const maps::Pose& robot() const { return robot_; }
+  const maps::ReferenceField& field() const { return field_; }
+  const maps::LocalCostMap& cost_map() const { return cost_map_; }
+
+  /// Normal samples, steering in [-0.45, 0.45] rad, round a sequence that goes straight on.
+  SequenceBatch sequences(int samples) const;
+
+  Yardstick yardstick() const { return {reference_problem(false), field_, cost_map_, robot_}; }
+
+  template <bool two_trajectories>
+  ProblemEvaluator<vehicle::PathTracking<two_trajectories>> evaluator(simd::Target target) const {
+    using Problem = vehicle::PathTracking<two_trajectories>;
+    Problem problem(reference_problem(two_trajectories));
+    problem.set_maps(field_.view(), cost_map_.view(), robot_.x, robot_.y, robot_.yaw);
+    ProblemEvaluator<Problem> made(problem, target);
+    typename ProblemEvaluator<Problem>::State s{};
+    s.x = start_.x;
+    s.y = start_.y;
+    s.yaw = start_.yaw;
+    s.speed = start_.speed;
+    s.steer = start_.steer;
+    made.set_state(s);
+    return made;
+  }
+
+ private:
+  maps::Pose robot_;
+  CarStart start_;
+  maps::ReferenceField field_;
+  maps::LocalCostMap cost_map_;
+};
+
+}  // namespace slalom::tools
