@@ -235,13 +235,37 @@ void Canvas::text(double x, double y, double size, const std::string& words, Col
   cairo_show_text(c, words.c_str());
 }
 
+std::vector<std::string> Canvas::wrapped(const std::string& words, double size, double width) {
+  static const std::string separator = " \xC2\xB7 ";
+  cairo_t* c = cairo_.get();
+  cairo_select_font_face(c, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(c, size);
+  std::vector<std::string> lines = {""};
+  for (std::size_t begin = 0; begin <= words.size();) {
+    const std::size_t end = std::min(words.find(separator, begin), words.size());
+    const std::string part = words.substr(begin, end - begin);
+    const std::string longer = lines.back().empty() ? part : lines.back() + separator + part;
+    cairo_text_extents_t extents;
+    cairo_text_extents(c, longer.c_str(), &extents);
+    if (lines.back().empty() || extents.x_advance <= width)
+      lines.back() = longer;
+    else
+      lines.push_back(part);
+    begin = end + separator.size();
+  }
+  return lines;
+}
+
 void Canvas::legend(const std::string& title, const std::string& facts, double slowest, double fastest) {
   cairo_t* c = cairo_.get();
   const double margin = 36, base = map_height_;
   text(margin, base + 64, 40, title, ink, true, 0);
-  text(margin, base + 108, 22, facts, faint_ink, false, 0);
 
   const double bar_width = 260, bar_left = width_ - margin - bar_width, bar_top = base + 84;
+  const auto lines = wrapped(facts, 22, bar_left - 2 * margin);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    text(margin, base + (lines.size() == 1 ? 108 : 100) + 30 * static_cast<double>(i), 22, lines[i],
+         faint_ink, false, 0);
   for (int k = 0; k < static_cast<int>(bar_width); ++k) {
     set(speed_colour(k / (bar_width - 1)));
     cairo_rectangle(c, bar_left + k, bar_top, 1.5, 14);

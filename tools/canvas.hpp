@@ -57,6 +57,8 @@ class Canvas {
   void draw_cells(const maps::OccupancyGrid& map);
   void text(double x, double y, double size, const std::string& words, Colour colour, bool bold,
             double align);
+  /// Breaks a line of facts at its middle dots, so that none is wider than `width` pixels.
+  std::vector<std::string> wrapped(const std::string& words, double size, double width);
 
   std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface_{nullptr, cairo_surface_destroy};
   std::unique_ptr<cairo_t, void (*)(cairo_t*)> cairo_{nullptr, cairo_destroy};

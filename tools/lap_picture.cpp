@@ -56,7 +56,7 @@ void draw_lap(const LapPicture& picture, const std::filesystem::path& file) {
   std::vector<maps::Point> path, shown = picture.driven.points;
   for (const auto& point : picture.path) path.push_back({point.x, point.y});
   shown.insert(shown.end(), path.begin(), path.end());
-  const maps::OccupancyGrid map = cropped(picture.map, shown, 2.0);
+  const maps::OccupancyGrid map = cropped(picture.map, shown, 3.0);
   Canvas canvas(map, 1400);
 
   canvas.line(path, path_colour, 2, picture.closed, true);

@@ -1,9 +1,41 @@
 #include "slalom/evaluation/arena.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
 namespace slalom::evaluation {
+namespace {
+
+/// How far a wall is from a point in a direction, m, up to `most`.
+double open_way(const sim::Track& track, const maps::Point& from, double cosine, double sine, double most) {
+  const double least_step = 0.5 * track.grid().resolution;
+  double way = 0;
+  while (way < most) {
+    const maps::Point at{from.x + way * cosine, from.y + way * sine};
+    if (track.in_wall(at)) return way;
+    way += std::max(track.distance_to_wall(at) - track.grid().resolution, least_step);
+  }
+  return most;
+}
+
+/// For each point of a path, the distance to the wall on its wider side: a car parked there can be passed
+/// there.
+std::vector<double> room_beside(const sim::Track& track, const std::vector<maps::Point>& path) {
+  constexpr double most = 10;  // m
+  std::vector<double> room;
+  const std::size_t count = path.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const maps::Point &before = path[(i + count - 1) % count], &after = path[(i + 1) % count];
+    const double yaw = std::atan2(after.y - before.y, after.x - before.x), c = std::cos(yaw),
+                 s = std::sin(yaw);
+    room.push_back(std::max(open_way(track, path[i], -s, c, most), open_way(track, path[i], s, -c, most)));
+  }
+  return room;
+}
+
+}  // namespace
 
 const char* name(Evaluation evaluation) {
   return evaluation == Evaluation::published ? "published" : "true";
@@ -44,8 +76,7 @@ std::shared_ptr<const Arena> load_arena(const std::filesystem::path& folder, Eva
   arena->track = std::make_shared<const sim::Track>(
       course.map, sim::LapPath(points),
       sim::TrackOptions{.unknown_is_wall = false, .outside_is_wall = !published});
-  for (const maps::Point& point : course.obstacle_path)
-    arena->obstacle_room.push_back(arena->track->distance_to_wall(point));
+  arena->obstacle_room = room_beside(*arena->track, course.obstacle_path);
 
   arena->start = course.start;
   arena->timeout = course.timeout.value_or(0);

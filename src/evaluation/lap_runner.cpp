@@ -78,7 +78,7 @@ std::unique_ptr<vehicle::Planner> LapRunner::make_planner() const {
                                             vehicle::make_solver(configuration_, method_, settings_.threads));
 }
 
-std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t seed) const {
+std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t seed) const try {
   const auto& path = arena_->course.obstacle_path;
   const auto placed =
       arena_->evaluation == Evaluation::published
@@ -87,6 +87,9 @@ std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t seed) const {
   std::vector<maps::Pose> poses;
   for (const sim::Placement& each : placed) poses.push_back(each.pose);
   return poses;
+} catch (const std::runtime_error& error) {
+  throw std::runtime_error("course " + arena_->course.name + ": " + error.what() +
+                           "; beside each of them a passage must stay open, so the course may be too narrow");
 }
 
 bool LapRunner::at_finish(const sim::World& world) const noexcept {

@@ -28,9 +28,10 @@ struct Arena {
   vehicle::Course course;
   std::shared_ptr<const sim::Track> track;
   std::vector<maps::ReferencePoint> path;  ///< the course's waypoints
-  std::vector<double> obstacle_room;       ///< m from each point of the obstacle path to the nearest wall
-  maps::Pose start;                        ///< of the car's centre of gravity, map frame
-  double timeout = 0;                      ///< s; 0: three times the profile's lap time
+  std::vector<double>
+      obstacle_room;   ///< m from each point of the obstacle path to the wall on its wider side
+  maps::Pose start;    ///< of the car's centre of gravity, map frame
+  double timeout = 0;  ///< s; 0: three times the profile's lap time
 
   /// The world of this evaluation.
   sim::WorldOptions world_options() const;
