@@ -22,7 +22,7 @@ namespace slalom::tools {
 std::filesystem::path program_folder();
 
 struct ScenarioArguments {
-  std::string course = "stag";
+  std::string course = "fox";
   std::string config = "default";
   std::string evaluation = "true";
   std::vector<std::string> set;  ///< key=value, in order

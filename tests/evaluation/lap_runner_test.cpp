@@ -1,0 +1,164 @@
+// Laps: finished on a course of ours, the same bits for the same seed, one ruler for the cost.
+#include "slalom/evaluation/lap_runner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <filesystem>
+#include <thread>
+
+namespace slalom::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::shared_ptr<const Arena> wren(Evaluation evaluation = Evaluation::true_physics) {
+  return load_arena(fs::path(SLALOM_COURSES) / "wren", evaluation, {SLALOM_COURSES});
+}
+
+vehicle::Configuration configuration(const std::string& name, int samples = 256) {
+  auto made = vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / (name + ".yaml"), {SLALOM_CONFIGS});
+  for (const char* method : {"mppi", "svg_mppi"})
+    vehicle::set_option(made, std::string(method) + ".samples", std::to_string(samples));
+  return made;
+}
+
+/// Everything of a lap that may not depend on the clock of the wall.
+std::vector<std::uint64_t> bits(const LapResult& lap) {
+  std::vector<std::uint64_t> all = {lap.seed, static_cast<std::uint64_t>(lap.steps),
+                                    static_cast<std::uint64_t>(lap.contacts), lap.finished};
+  for (const double value : {lap.time, lap.state_cost, lap.collision_cost, lap.input_error, lap.mean_speed,
+                             lap.mean_path_distance, lap.least_clearance, lap.mean_variance})
+    all.push_back(std::bit_cast<std::uint64_t>(value));
+  return all;
+}
+
+TEST(LapRunner, FinishesALap) {
+  LapRunner runner(wren(), configuration("default"), "svg_mppi", {});
+  const LapResult lap = runner.run(0);
+  EXPECT_TRUE(lap.finished);
+  EXPECT_FALSE(lap.timeout);
+  EXPECT_EQ(lap.contacts, 0);
+  EXPECT_GT(lap.least_clearance, 0.05);
+  EXPECT_LT(lap.time, 0.5 * runner.timeout());
+  EXPECT_NEAR(lap.time, lap.steps * 0.025, 0.05);
+  EXPECT_EQ(lap.mean_sequence_cost, lap.state_cost + lap.collision_cost);
+  EXPECT_GT(lap.state_cost, 0);
+  EXPECT_EQ(lap.solve_ms.size(), static_cast<std::size_t>(lap.steps));
+}
+
+TEST(LapRunner, RepeatsBitForBitInAnyOrderWithAnyThreads) {
+  const auto arena = wren();
+  LapSettings settings{.obstacles = 3};
+  LapRunner one(arena, configuration("default"), "svg_mppi", settings);
+  const auto first = bits(one.run(8)), second = bits(one.run(16)), again = bits(one.run(8));
+  EXPECT_EQ(first, again) << "a lap depends on the one before it";
+  EXPECT_NE(first, second) << "the seed does nothing";
+  settings.threads = 3;
+  LapRunner three(arena, configuration("default"), "svg_mppi", settings);
+  EXPECT_EQ(bits(three.run(8)), first);
+
+  settings.threads = 1;
+  std::vector<std::uint64_t> beside;
+  std::thread other([&] {
+    LapRunner two(arena, configuration("default"), "svg_mppi", settings);
+    beside = bits(two.run(16));
+  });
+  EXPECT_EQ(bits(one.run(8)), first);
+  other.join();
+  EXPECT_EQ(beside, second);
+}
+
+TEST(LapRunner, CostIsThePlannersOwnInThePublishedConfiguration) {
+  LapRunner runner(wren(Evaluation::published), configuration("published"), "svg_mppi", {.obstacles = 2});
+  int ticks = 0;
+  const LapResult lap = runner.run(0, [&](const LapTick& tick) {
+    ++ticks;
+    ASSERT_EQ(tick.cost.state, tick.output.state_cost) << tick.step;
+    ASSERT_EQ(tick.cost.collision, tick.output.collision_cost) << tick.step;
+  });
+  EXPECT_EQ(ticks, lap.steps);
+  EXPECT_GT(ticks, 100);
+}
+
+TEST(LapRunner, FurtherCostsAreOfTheSameKind) {
+  LapRunner runner(wren(), configuration("published"), "svg_mppi", {.further_costs = true});
+  const LapResult lap = runner.run(0);
+  EXPECT_NEAR(lap.published_model_cost, lap.mean_sequence_cost, 1e-9);
+  EXPECT_GT(lap.driven_cost, 0);
+}
+
+TEST(LapRunner, CanBeTimedOutAndCancelled) {
+  auto slow = configuration("default", 64);
+  vehicle::set_option(slow, "planner.max_speed", "0.02");
+  auto arena = std::make_shared<Arena>(*wren());
+  arena->timeout = 1;
+  const LapResult late = LapRunner(arena, slow, "mppi", {}).run(0);
+  EXPECT_FALSE(late.finished);
+  EXPECT_TRUE(late.timeout);
+  EXPECT_GE(late.time, 1);
+  EXPECT_LT(late.time, 1.1);
+
+  std::atomic<bool> cancel{false};
+  const LapResult cut = LapRunner(wren(), slow, "mppi", {})
+                            .run(
+                                0, [&](const LapTick& tick) { cancel = tick.step == 4; }, &cancel);
+  EXPECT_TRUE(cut.cancelled);
+  EXPECT_FALSE(cut.timeout);
+  EXPECT_EQ(cut.steps, 5);
+}
+
+TEST(LapRunner, LatencyDelaysCommands) {
+  const auto arena = wren();
+  const auto first_motion = [&](double latency) {
+    double start = -1;
+    LapRunner(arena, configuration("default", 64), "mppi", {.latency = latency})
+        .run(0, [&](const LapTick& tick) {
+          if (start < 0 && tick.seen.speed > 0) start = tick.time;
+        });
+    return start;
+  };
+  EXPECT_NEAR(first_motion(0.1) - first_motion(0), 0.1, 1e-6);
+}
+
+TEST(LapRunner, RefusesWhatCannotBeDriven) {
+  const auto arena = wren();
+  const auto refusal = [&](const std::string& method, const LapSettings& settings,
+                           vehicle::Configuration made) {
+    try {
+      LapRunner(arena, made, method, settings);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  const auto says = [&](const std::string& text, const std::string& word) {
+    EXPECT_NE(text.find(word), std::string::npos) << text;
+  };
+  const auto usual = configuration("default");
+  says(refusal("guess", {}, usual), "guess");
+  says(refusal("mppi", {.obstacles = -1}, usual), "obstacles");
+  says(refusal("mppi", {.start = maps::Pose{1e6, 0, 0}}, usual), "start");
+  says(refusal("mppi", {.latency = std::numeric_limits<double>::quiet_NaN()}, usual), "latency");
+  says(refusal("mppi", {.threads = 0}, usual), "threads");
+  auto two = usual;
+  vehicle::set_option(two, "mppi.variance", "[0.1, 0.2]");
+  says(refusal("mppi", {}, two), "variance");
+}
+
+TEST(LapSeeds, AreThoseOfTheProtocol) {
+  EXPECT_EQ(lap_seed(0, 0, 5), 0u);
+  EXPECT_EQ(lap_seed(0, 3, 5), 30u);
+  EXPECT_EQ(lap_seed(7, 2, 0), 17u);
+  EXPECT_NE(solver_seed(0, "mppi"), solver_seed(0, "svg_mppi"));
+  EXPECT_NE(solver_seed(0, "mppi"), solver_seed(1, "mppi"));
+}
+
+TEST(PublishedProblem, IsThatOfTheConfiguration) {
+  const auto file = configuration("published").vehicle;
+  const auto a = list_options(file), b = list_options(published_problem());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].value, b[i].value) << a[i].declaration.name;
+}
+
+}  // namespace
+}  // namespace slalom::evaluation

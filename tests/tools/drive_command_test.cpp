@@ -1,0 +1,257 @@
+// `slalom drive`: results in JSON, exit status, repeatability, interruption, and every bad input named in
+// words.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "slalom/maps/ros_map.hpp"
+#include "tools/program.hpp"
+
+namespace slalom::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::run_program;
+
+std::string content(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+class DriveCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("slalom_drive_command.") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// Drives on the smallest course with few samples, unless the arguments say otherwise.
+  testing::Run drive(const std::string& arguments) const {
+    return run_program("drive --course wren --set samples=256 " + arguments, folder_.string());
+  }
+  json result(const std::string& file) const { return json::parse(content(folder_ / file)); }
+  /// A copy of the course wren to be spoiled.
+  fs::path spoiled() const {
+    const fs::path copy = folder_ / "spoiled";
+    fs::remove_all(copy);
+    fs::copy(fs::path(SLALOM_COURSES) / "wren", copy);
+    return copy;
+  }
+  void expect_refused(const std::string& arguments, const std::vector<std::string>& says) const {
+    const auto run = run_program("drive " + arguments, folder_.string());
+    EXPECT_NE(run.status, 0) << arguments;
+    for (const auto& word : says)
+      EXPECT_NE(run.output.find(word), std::string::npos) << arguments << ": " << run.output;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(DriveCommand, FinishesLapsAndTellsInJson) {
+  const auto run = drive("--obstacles 2 --laps 2 --seed 3 --json out.json");
+  EXPECT_EQ(run.status, 0) << run.output;
+  const json d = result("out.json");
+  ASSERT_EQ(d["laps"].size(), 2u);
+  for (const auto& lap : d["laps"]) {
+    EXPECT_EQ(lap["finished"], true);
+    EXPECT_EQ(lap["timeout"], false);
+    EXPECT_GT(lap["time_s"].get<double>(), 5);
+    EXPECT_GT(lap["steps"].get<int>(), 100);
+    EXPECT_NEAR(lap["mean_sequence_cost"].get<double>(),
+                lap["state_cost"].get<double>() + lap["collision_cost"].get<double>(), 1e-9);
+    EXPECT_TRUE(lap["contacts"].is_number_integer());
+    EXPECT_EQ(lap["obstacles"].size(), 2u);
+  }
+  EXPECT_EQ(d["laps"][0]["seed"], 3);
+  EXPECT_EQ(d["laps"][1]["seed"], 10);
+  EXPECT_LE(d["solve_ms"]["p50"], d["solve_ms"]["p99"]);
+  EXPECT_LE(d["solve_ms"]["p99"], d["solve_ms"]["max"]);
+  EXPECT_EQ(d["settings"]["course"], "wren");
+  EXPECT_EQ(d["settings"]["options"]["svg_mppi"]["samples"], 256);
+  EXPECT_TRUE(d["settings"]["options"].contains("vehicle"));
+  EXPECT_EQ(d["settings"]["threads"], 1);
+  EXPECT_NE(run.output.find("2 of 2 laps finished"), std::string::npos) << run.output;
+}
+
+TEST_F(DriveCommand, GivesTheSameBytesForTheSameSeedAndAnyThreads) {
+  const auto cleaned = [&](const std::string& arguments) {
+    EXPECT_EQ(drive(arguments + " --obstacles 2 --laps 2 --json out.json --record out.jsonl").status, 0);
+    json d = result("out.json");
+    d.erase("solve_ms");
+    d["settings"].erase("threads");
+    return std::pair(d.dump(), content(folder_ / "out.jsonl"));
+  };
+  const auto first = cleaned("--threads 1");
+  EXPECT_EQ(cleaned("--threads 1"), first);
+  EXPECT_EQ(cleaned("--threads 2"), first);
+  EXPECT_NE(cleaned("--seed 1").first, first.first);
+}
+
+TEST_F(DriveCommand, JsonOnStandardOutputStandsAlone) {
+  const auto run = drive("--json - 2>/dev/null");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(json::parse(run.output)["laps"].size(), 1u);
+  EXPECT_TRUE(json::parse(run.output)["summary"]["collision_rate"].is_null());
+}
+
+TEST_F(DriveCommand, RecordsEveryStepAndDraws) {
+  ASSERT_EQ(drive("--json out.json --record out.jsonl --plot out.png").status, 0);
+  std::ifstream stream(folder_ / "out.jsonl");
+  std::vector<json> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(json::parse(line));
+  const int steps = result("out.json")["laps"][0]["steps"];
+  ASSERT_EQ(lines.size(), static_cast<std::size_t>(steps) + 3);
+  EXPECT_EQ(lines[0]["type"], "recording");
+  EXPECT_EQ(lines[1]["type"], "lap");
+  EXPECT_EQ(lines[2]["type"], "tick");
+  EXPECT_EQ(lines[2]["ranges"].size(), 1080u);
+  EXPECT_EQ(lines[2]["inputs"].size(), 14u);
+  EXPECT_EQ(lines[2]["predicted"].size(), 15u);
+  EXPECT_EQ(lines.back()["type"], "lap_end");
+  EXPECT_EQ(lines.back()["result"], result("out.json")["laps"][0]);
+  EXPECT_EQ(content(folder_ / "out.png").substr(1, 3), "PNG");
+}
+
+TEST_F(DriveCommand, FailsWhereALapIsNotFinishedAndTellsAllTheSame) {
+  std::ofstream(folder_ / "slow.yaml") << "base: default\nvehicle:\n  max_speed: 0.02\n";
+  const fs::path course = spoiled();
+  std::ofstream(course / "course.yaml") << "timeout: 0.5\n";
+  const auto run = run_program("drive --course spoiled --config slow.yaml --json out.json", folder_.string());
+  EXPECT_EQ(run.status, 1) << run.output;
+  EXPECT_EQ(result("out.json")["laps"][0]["finished"], false);
+  EXPECT_EQ(result("out.json")["laps"][0]["timeout"], true);
+}
+
+TEST_F(DriveCommand, CtrlCEndsTheLapAndWritesResults) {
+  const auto run = run_program(
+      "drive --course swift --laps 1000 --json out.json > words.txt & pid=$!; sleep 1.5; kill -INT $pid; "
+      "wait $pid",
+      folder_.string());
+  EXPECT_NE(run.status, 0);
+  const json d = result("out.json");
+  ASSERT_FALSE(d["laps"].empty());
+  EXPECT_EQ(d["laps"].back()["interrupted"], true);
+  EXPECT_EQ(d["laps"].back()["finished"], false);
+  EXPECT_GT(d["laps"].back()["steps"].get<int>(), 0);
+}
+
+TEST_F(DriveCommand, DrivesThePublishedEvaluation) {
+  const auto run =
+      drive("--config published --evaluation published --method mppi --obstacles 1 --json out.json");
+  EXPECT_EQ(run.status, 0) << run.output;
+  const json d = result("out.json");
+  EXPECT_EQ(d["settings"]["control_period_s"], 0.01);
+  const double steps = d["laps"][0]["steps"], time = d["laps"][0]["time_s"];
+  EXPECT_NEAR(time, 0.01 * (steps + 1), 1e-9);
+}
+
+TEST_F(DriveCommand, RefusesBadArguments) {
+  expect_refused("--course nowhere", {"nowhere", "known: "});
+  expect_refused("--config nothing", {"nothing", "known: ", "published"});
+  expect_refused("--method magic", {"magic", "svg_mppi"});
+  expect_refused("--evaluation maybe", {"maybe", "true or published"});
+  expect_refused("--set samples", {"--set", "key=value"});
+  expect_refused("--set sampels=3", {"--set", "sampels", "did you mean svg_mppi.samples?"});
+  expect_refused("--set samples=0", {"--set", "samples", "'0'", "must be in [1,"});
+  expect_refused("--set vehicle.time_step=soon", {"vehicle.time_step", "'soon'", "must be a number"});
+  expect_refused("--set planner.verify_plan=maybe", {"'maybe'", "true or false"});
+  expect_refused("--set guide_weight=heavy", {"'heavy'", "must be one of"});
+  expect_refused("--set variance=[0.1,0.2]", {"variance", "2 values"});
+  expect_refused("--start 0,0", {"--start", "x,y,yaw"});
+  expect_refused("--start 0,0,nan", {"--start", "finite"});
+  expect_refused("--course wren --start 1e6,0,0", {"start", "on the map"});
+  expect_refused("--obstacles -1", {"obstacles", "[0, 1000]"});
+  expect_refused("--obstacles 900", {"parked cars found a place"});
+  expect_refused("--laps 0", {"--laps", "[1, 100000]"});
+  expect_refused("--threads 0", {"threads", "[1, 1024]"});
+  expect_refused("--latency-ms -5", {"latency"});
+  expect_refused("--evaluation published --latency-ms 5", {"latency", "published"});
+  expect_refused("--seed many", {"--seed"});
+  expect_refused("--record /proc/none/x", {"/proc/none/x", "cannot be written"});
+}
+
+TEST_F(DriveCommand, RefusesAStartInAWall) {
+  const auto map = maps::load_ros_map(fs::path(SLALOM_COURSES) / "wren" / "map.yaml");
+  for (int row = 0; row < map.height; ++row)
+    for (int column = 0; column < map.width; ++column) {
+      if (map.at(column, row) != maps::Occupancy::occupied) continue;
+      const auto at =
+          maps::transform(map.origin, {(column + 0.5) * map.resolution, (row + 0.5) * map.resolution});
+      return expect_refused(
+          "--course wren --start " + std::to_string(at.x) + "," + std::to_string(at.y) + ",0",
+          {"start", "in a wall"});
+    }
+  FAIL() << "the map has no wall";
+}
+
+TEST_F(DriveCommand, RefusesSpoiledCourses) {
+  fs::path course = spoiled();
+  fs::remove(course / "map.yaml");
+  expect_refused("--course spoiled", {"holds no map"});
+
+  course = spoiled();
+  fs::remove(course / "map.png");
+  expect_refused("--course spoiled", {"map.png"});
+
+  course = spoiled();
+  std::ofstream(course / "map.png") << "no image";
+  expect_refused("--course spoiled", {"map.png"});
+
+  course = spoiled();
+  std::ofstream(course / "raceline.csv")
+      << "# s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2\n"
+         "0; 0; 0; 0; 0; 1; 0\n1; nan; 0; 0; 0; 1; 0\n2; 2; 0; 0; 0; 1; 0\n";
+  expect_refused("--course spoiled", {"raceline.csv:3", "finite"});
+
+  course = spoiled();
+  std::ofstream(course / "raceline.csv") << "# s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2\n"
+                                            "0; 0; 0; 0; 0; 1; 0\n1; 1; 0; 0; 0; 1; 0\n";
+  expect_refused("--course spoiled", {"raceline.csv", "at least 3"});
+
+  course = spoiled();
+  fs::remove(course / "raceline.csv");
+  expect_refused("--course spoiled", {"waypoint file"});
+
+  std::ofstream(folder_ / "broken.yaml") << "svg_mppi:\n  samples: [\n";
+  expect_refused("--config broken.yaml", {"broken.yaml", "is not YAML"});
+  std::ofstream(folder_ / "wrong.yaml") << "svg_mppi:\n  samples: many\n";
+  expect_refused("--config wrong.yaml", {"wrong.yaml:2", "svg_mppi.samples", "'many'", "must be an integer"});
+}
+
+TEST(OptionsCommand, ListsDeclarations) {
+  const auto run = run_program("options --method svg_mppi --json - --config published --set samples=77");
+  ASSERT_EQ(run.status, 0) << run.output;
+  const json d = json::parse(run.output);
+  EXPECT_TRUE(d.contains("vehicle"));
+  EXPECT_TRUE(d.contains("planner"));
+  EXPECT_FALSE(d.contains("mppi"));
+  for (const auto& option : d["svg_mppi"]) {
+    if (option["name"] != "samples") continue;
+    EXPECT_EQ(option["value"], "77");
+    EXPECT_EQ(option["symbol"], "K");
+    EXPECT_EQ(option["type"], "integer");
+    EXPECT_EQ(option["min"], 1);
+  }
+  EXPECT_NE(run_program("options --method svg_mppi").output.find("temperature"), std::string::npos);
+  EXPECT_EQ(run_program("options --config nothing").status, 1);
+}
+
+TEST(OptionsCommand, WritesAFileThatIsReadBack) {
+  const fs::path file = fs::temp_directory_path() / "slalom_options_command.yaml";
+  ASSERT_EQ(run_program("options --config published --yaml > " + file.string()).status, 0);
+  EXPECT_EQ(run_program("options --config published --yaml").output,
+            run_program("options --config " + file.string() + " --yaml").output);
+  fs::remove(file);
+}
+
+}  // namespace
+}  // namespace slalom::tools
