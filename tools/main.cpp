@@ -8,6 +8,7 @@
 #include "options_command.hpp"
 #include "slalom/core/version.hpp"
 #include "track_command.hpp"
+#include "view_command.hpp"
 
 int main(int argc, char** argv) {
   int exit_status = 0;
@@ -20,6 +21,7 @@ int main(int argc, char** argv) {
   slalom::tools::add_eval_command(app, exit_status);
   slalom::tools::add_options_command(app, exit_status);
   slalom::tools::add_track_command(app, exit_status);
+  slalom::tools::add_view_command(app, exit_status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

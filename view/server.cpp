@@ -169,7 +169,8 @@ class Server::Implementation::Client : public std::enable_shared_from_this<Clien
 
   void open(http::request<http::empty_body> request) {
     request_ = std::move(request);
-    socket_.set_option(websocket::stream_base::timeout{std::chrono::seconds(10), std::chrono::seconds(30), true});
+    socket_.set_option(
+        websocket::stream_base::timeout{std::chrono::seconds(10), std::chrono::seconds(30), true});
     socket_.read_message_max(server_.options.max_message);
     socket_.async_accept(request_, [self = shared_from_this()](error_code error) {
       if (error) return;
@@ -354,8 +355,8 @@ class Server::Implementation::Visit : public std::enable_shared_from_this<Visit>
   void become_client(std::string_view host) {
     const std::string_view origin = field(http::field::origin);
     // A browser always sends an Origin; what sends none is no page of another site.
-    const bool ours = origin.empty() || origin == "http://" + std::string(host) ||
-                      origin == "https://" + std::string(host);
+    const bool ours =
+        origin.empty() || origin == "http://" + std::string(host) || origin == "https://" + std::string(host);
     if (!ours) {
       ++server_.counters.refused_origin;
       return refuse(http::status::forbidden, "pages of another origin are not served\n");
@@ -492,8 +493,8 @@ int Server::clients() const noexcept {
 
 ServerCounters Server::counters() const {
   const Counters& c = implementation_->counters;
-  return {c.connections,    c.messages,      c.frames_sent,  c.frames_dropped, c.refused_origin,
-          c.refused_token,  c.refused_size,  c.refused_rate, c.refused_other};
+  return {c.connections,   c.messages,     c.frames_sent,  c.frames_dropped, c.refused_origin,
+          c.refused_token, c.refused_size, c.refused_rate, c.refused_other};
 }
 
 }  // namespace slalom::view

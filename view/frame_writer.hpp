@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+
+#include "slalom/maps/pose.hpp"
+
+namespace slalom::view {
+
+/// The blocks of a binary message; docs/live-view.md says what each holds.
+enum class Block : std::uint16_t {
+  scalars = 1,
+  scan = 2,
+  cost_map = 3,
+  candidates = 4,
+  guides = 5,
+  nominal = 6,
+  plan = 7,
+  bodies = 8,
+  covariance = 9,
+  ghost = 10,
+  grid = 20,
+  path = 21,
+};
+
+/// Writes a binary message: "SLV1", then blocks of kind (u16), 0 (u16), length (u32) and payload, padded with
+/// zeros to four bytes. Little-endian, as every machine is that this runs on.
+class FrameWriter {
+ public:
+  FrameWriter() { bytes_ = "SLV1"; }
+
+  void begin(Block block) {
+    put(static_cast<std::uint16_t>(block));
+    put(std::uint16_t{0});
+    length_at_ = bytes_.size();
+    put(std::uint32_t{0});
+  }
+  void end() {
+    const auto length = static_cast<std::uint32_t>(bytes_.size() - length_at_ - 4);
+    std::memcpy(bytes_.data() + length_at_, &length, sizeof length);
+    pad();
+  }
+  void pad() { bytes_.resize((bytes_.size() + 3) & ~std::size_t{3}, '\0'); }
+
+  template <class T>
+  void put(T value) {
+    static_assert(std::is_arithmetic_v<T>);
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  void put_f32(double value) { put(static_cast<float>(value)); }
+  void put_pose(const maps::Pose& pose) {
+    put(pose.x);
+    put(pose.y);
+    put(pose.yaw);
+  }
+
+  /// The head of a list of points: their origin and what one count is worth, m.
+  void begin_points(const maps::Point& origin) {
+    origin_ = origin;
+    put(origin.x);
+    put(origin.y);
+    put_f32(unit);
+  }
+  void put_point(const maps::Point& point) {
+    put(counts(point.x - origin_.x));
+    put(counts(point.y - origin_.y));
+  }
+
+  void append(const std::string& bytes) { bytes_ += bytes; }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  static constexpr double unit = 0.001;  ///< m; 16 bits reach 32 m either way
+  static std::int16_t counts(double metres) {
+    const double value = std::round(metres / unit);
+    return static_cast<std::int16_t>(value > 32767 ? 32767 : value > -32767 ? value : -32767);
+  }
+
+  std::string bytes_;
+  std::size_t length_at_ = 0;
+  maps::Point origin_;
+};
+
+}  // namespace slalom::view

@@ -1,0 +1,100 @@
+import type { Body } from "./protocol";
+import type { SceneView } from "./scene";
+
+export type Tool = "disc" | "box" | "car" | "pan";
+
+interface Setting { canvas: HTMLCanvasElement; scene: SceneView; send(command: Record<string, unknown>): void; tool(): Tool; redraw(): void }
+
+const slack = 5; // pixels that a click may move
+const gap = 40; // ms between two messages of a drag
+
+/** Mouse, pen and fingers on the scene: pan, zoom, pinch, drop, drag, take away. */
+export function attachPointer({ canvas, scene, send, tool, redraw }: Setting) {
+  const pointers = new Map<number, { x: number; y: number }>();
+  let start: { x: number; y: number } | undefined;
+  let moved = false;
+  let dragged: Body | undefined;
+  let grip = { x: 0, y: 0 };
+  let sent = 0;
+
+  const place = (e: PointerEvent | MouseEvent) => { const box = canvas.getBoundingClientRect(); return { x: e.clientX - box.left, y: e.clientY - box.top }; };
+  const move = (body: Body, x: number, y: number) => {
+    if (body.kind === 0) send({ do: "place_car", x, y, yaw: body.yaw });
+    else send({ do: "move", body: body.id, x, y, yaw: body.yaw });
+  };
+
+  canvas.addEventListener("pointerdown", (e) => {
+    canvas.focus({ preventScroll: true });
+    canvas.setPointerCapture(e.pointerId);
+    const p = place(e);
+    pointers.set(e.pointerId, p);
+    if (pointers.size > 1) { dragged = undefined; moved = true; return; }
+    if (e.button !== 0) return;
+    start = p;
+    moved = false;
+    const [x, y] = scene.camera.toMap(p.x, p.y);
+    dragged = scene.bodyAt(x, y);
+    scene.selected = dragged && dragged.kind !== 0 ? dragged.id : -1;
+    if (dragged) grip = { x: dragged.x - x, y: dragged.y - y };
+    redraw();
+  });
+
+  canvas.addEventListener("pointermove", (e) => {
+    const p = place(e), before = pointers.get(e.pointerId);
+    if (!before) {
+      const [x, y] = scene.camera.toMap(p.x, p.y), over = scene.bodyAt(x, y), kind = { disc: 3, box: 2, car: 1, pan: 0 }[tool()];
+      canvas.style.cursor = over ? "grab" : tool() === "pan" ? "default" : "crosshair";
+      scene.preview = over || !kind || e.pointerType === "touch" ? undefined : { x, y, kind };
+      redraw();
+      return;
+    }
+    if (pointers.size === 2) {
+      const other = [...pointers].find(([id]) => id !== e.pointerId)![1];
+      const was = Math.hypot(before.x - other.x, before.y - other.y), is = Math.hypot(p.x - other.x, p.y - other.y);
+      if (was > 1) scene.camera.zoomAt((p.x + other.x) / 2, (p.y + other.y) / 2, is / was);
+      scene.camera.pan((p.x - before.x) / 2, (p.y - before.y) / 2);
+    } else if (start) {
+      if (Math.hypot(p.x - start.x, p.y - start.y) > slack) moved = true;
+      if (moved && dragged) {
+        const [x, y] = scene.camera.toMap(p.x, p.y);
+        if (performance.now() - sent > gap) { sent = performance.now(); move(dragged, x + grip.x, y + grip.y); }
+      } else if (moved) {
+        canvas.classList.add("panning");
+        scene.camera.pan(p.x - before.x, p.y - before.y);
+      }
+    }
+    scene.preview = undefined;
+    pointers.set(e.pointerId, p);
+    redraw();
+  });
+
+  const up = (e: PointerEvent) => {
+    const p = place(e);
+    pointers.delete(e.pointerId);
+    canvas.classList.remove("panning");
+    if (!start || pointers.size) return;
+    const [x, y] = scene.camera.toMap(p.x, p.y);
+    if (dragged && moved) move(dragged, x + grip.x, y + grip.y);
+    else if (!dragged && !moved && e.type === "pointerup" && tool() !== "pan") drop(x, y);
+    start = dragged = undefined;
+    redraw();
+  };
+  const drop = (x: number, y: number) => {
+    const kind = tool(), car = scene.frame?.bodies[0];
+    send({ do: "add", kind, x, y, yaw: kind === "car" && car ? car.yaw : 0, length: kind === "disc" ? 0.3 : 0.4, width: 0.4 });
+  };
+  canvas.addEventListener("pointerup", up);
+  canvas.addEventListener("pointercancel", up);
+  canvas.addEventListener("pointerleave", () => { scene.preview = undefined; redraw(); });
+  canvas.addEventListener("contextmenu", (e) => {
+    e.preventDefault();
+    const p = place(e), [x, y] = scene.camera.toMap(p.x, p.y), body = scene.bodyAt(x, y);
+    if (body && body.kind !== 0) send({ do: "remove", body: body.id });
+  });
+  canvas.addEventListener("wheel", (e) => {
+    e.preventDefault();
+    const p = place(e);
+    scene.camera.zoomAt(p.x, p.y, Math.exp(-e.deltaY * (e.deltaMode === 1 ? 0.05 : 0.0015)));
+    redraw();
+  }, { passive: false });
+}
