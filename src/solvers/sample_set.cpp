@@ -60,13 +60,14 @@ void SampleSet::prepare(RandomKey key, ThreadPool& pool) noexcept {
   prepared_key_ = key;
 }
 
-/// Evaluates a tile and brings its costs in order: infinite where not finite and in the padding.
-void SampleSet::finish_tile(int tile, const BatchEvaluator& evaluator, const float* linear,
+/// Brings the costs of a tile, evaluated here or before, in order: infinite where not finite and in the
+/// padding.
+void SampleSet::finish_tile(int tile, const BatchEvaluator* evaluator, const float* linear,
                             Census& census) noexcept {
   const Range r = range(tile);
   const Kernels& k = kernels();
   const int count = std::min(r.count, samples() - r.first);
-  evaluator.evaluate(values_, r.first, count, costs_.data(), collided_.data());
+  if (evaluator) evaluator->evaluate(values_, r.first, count, costs_.data(), collided_.data());
   k.make_finite(r, costs_.data());
   for (int i = r.first + count; i < r.first + r.count; ++i) {
     costs_[static_cast<std::size_t>(i)] = infinite;
@@ -114,6 +115,10 @@ Census SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey k
                                     const Deadline& deadline) noexcept {
   const bool ready = prepared_ && prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
   prepared_ = false;
+  if (evaluator.whole_batches()) {
+    place(key, to, ready, pool);
+    return evaluate_whole(evaluator, linear, pool, deadline);
+  }
   pool.run(tiles(), [&](int tile) {
     Census census;
     if (deadline.passed()) {
@@ -125,7 +130,7 @@ Census SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey k
       SequenceBatch& from = ready ? noise_ : values_;
       kernels().place({from.row(0, 0), from.stride(), rows()}, row_view(), to, r);
       const auto drawn = Clock::now();
-      finish_tile(tile, evaluator, linear, census);
+      finish_tile(tile, &evaluator, linear, census);
       census.draw_time = seconds(start, drawn);
       census.evaluate_time = seconds(drawn, Clock::now());
     }
@@ -134,23 +139,49 @@ Census SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey k
   return combine();
 }
 
-void SampleSet::draw(RandomKey key, const Placement<float>& to, ThreadPool& pool) noexcept {
+/// Draws, or takes the noise that is ready, and puts it in its place.
+void SampleSet::place(RandomKey key, const Placement<float>& to, bool ready, ThreadPool& pool) noexcept {
   pool.run(tiles(), [&](int tile) {
     const Range r = range(tile);
-    fill_normal(values_, r.first, r.count, key);
-    kernels().place(row_view(), row_view(), to, r);
+    if (!ready) fill_normal(values_, r.first, r.count, key);
+    SequenceBatch& from = ready ? noise_ : values_;
+    kernels().place({from.row(0, 0), from.stride(), rows()}, row_view(), to, r);
   });
+}
+
+void SampleSet::draw(RandomKey key, const Placement<float>& to, ThreadPool& pool) noexcept {
+  place(key, to, false, pool);
+}
+
+Census SampleSet::evaluate_whole(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
+                                 const Deadline& deadline) noexcept {
+  const auto start = Clock::now();
+  const bool late = deadline.passed();
+  if (!late) evaluator.evaluate(values_, 0, samples(), costs_.data(), collided_.data());
+  const double taken = seconds(start, Clock::now());
+  pool.run(tiles(), [&](int tile) {
+    Census census;
+    if (late) {
+      skip_tile(tile, census);
+    } else {
+      finish_tile(tile, nullptr, linear, census);
+    }
+    if (tile == 0) census.evaluate_time = taken;
+    census_[static_cast<std::size_t>(tile)] = census;
+  });
+  return combine();
 }
 
 Census SampleSet::evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
                            const Deadline& deadline) noexcept {
+  if (evaluator.whole_batches()) return evaluate_whole(evaluator, linear, pool, deadline);
   pool.run(tiles(), [&](int tile) {
     Census census;
     if (deadline.passed()) {
       skip_tile(tile, census);
     } else {
       const auto start = Clock::now();
-      finish_tile(tile, evaluator, linear, census);
+      finish_tile(tile, &evaluator, linear, census);
       census.evaluate_time = seconds(start, Clock::now());
     }
     census_[static_cast<std::size_t>(tile)] = census;

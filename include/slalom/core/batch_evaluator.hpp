@@ -19,6 +19,10 @@ class BatchEvaluator {
   /// Duration of a step, s; 0 where it is not known (then solvers do not shift their last solution in time).
   virtual double time_step() const noexcept { return 0; }
 
+  /// Whether a call costs so much beside its samples that all samples should come in one. Otherwise solvers
+  /// hand over what fits into a cache, from several threads.
+  virtual bool whole_batches() const noexcept { return false; }
+
   /// The cost of each control sequence `first` ... `first + count - 1` of `batch`, started from the current
   /// state, and whether it collides (1 or 0). `first` is a multiple of `simd::padding`; `costs` and
   /// `collided` are indexed like the batch and hold its padded length; entries up to the next multiple of

@@ -1,0 +1,61 @@
+// A racing car on a course: LiDAR scan and odometry in, steering and speed out.
+// The argument is the folder of the course.
+
+#include <memory>
+
+#include <slalom/evaluation/arena.hpp>
+#include <slalom/solvers/make_solver.hpp>
+#include <slalom/vehicle/planner.hpp>
+
+#include "seeds.hpp"
+
+using namespace slalom;
+
+/// Whether the car drives a lap within 20 s and touches nothing.
+bool drives_a_lap(const evaluation::Arena& arena, const SolverOptions& options) {
+  const auto seed = std::visit([](const auto& o) { return o.seed; }, options);
+  vehicle::Planner planner({}, {}, arena.path, arena.course.closed, make_solver(options, 1));
+  sim::WorldOptions world_options = arena.world_options();
+  sim::World world(world_options, arena.track);
+  world.reset(seed, {&arena.start, 1});
+
+  while (world.laps(0)->laps() < 1 && world.time() < 20) {
+    const sim::Observation seen = world.observe(0);
+    const maps::Point axle = maps::transform(seen.pose, {-world_options.car.rear_length, 0});
+    const auto& output = planner.update({seen.scan, {{axle.x, axle.y, seen.pose.yaw}, seen.speed}});
+    const sim::Command command{output.command.steer, output.command.speed};
+    for (int k = 0; k < 5; ++k) {  // 25 ms
+      world.step({&command, 1});
+      if (world.observe(0).contact()) return false;
+    }
+  }
+  return world.laps(0)->laps() == 1;
+}
+
+int main(int, char** argv) {
+  const auto arena = evaluation::load_arena(argv[1], evaluation::Evaluation::true_physics, {});
+  const int mppi = succeeded([&](auto seed) {
+    return drives_a_lap(*arena, MppiOptions{.horizon = 14,
+                                            .samples = 2000,
+                                            .temperature = 3,
+                                            .variance = 0.05,
+                                            .input_min = -0.4189,
+                                            .input_max = 0.4189,
+                                            .seed = seed});
+  });
+  const int svg_mppi = succeeded([&](auto seed) {
+    return drives_a_lap(*arena, SvgMppiOptions{.horizon = 14,
+                                               .samples = 2000,
+                                               .temperature = 3,
+                                               .input_min = -0.4189,
+                                               .input_max = 0.4189,
+                                               .guide_step = 0.005,
+                                               .guide_variance = 0.01,
+                                               .gradient_variance = 0.01,
+                                               .gradient_temperature = 3,
+                                               .variance_min = 0.001,
+                                               .variance_max = 0.1,
+                                               .seed = seed});
+  });
+  return report("a lap without contact", mppi, svg_mppi, 20);
+}

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+
+#include "slalom/core/options.hpp"
+#include "slalom/core/problem.hpp"
+
+namespace slalom::problems {
+
+struct Disc {
+  double x, y, radius;  // m
+};
+
+/// A robot with two driven wheels on its way to a goal among discs that it must not touch.
+struct DifferentialDrive {
+  template <class T>
+  struct State {
+    T x, y, yaw;  // m, m, rad
+  };
+  static constexpr int inputs = 2;  // speed, m/s; yaw rate, rad/s
+  double dt = 0.1;                  // s
+  double goal_x = 8, goal_y = 0;    // m
+  std::array<Disc, 3> discs{
+      {{2.5, 0.0, 0.9}, {5.2, 1.0, 0.7}, {5.2, -1.0, 0.7}}};  // with the robot's radius added
+
+  template <class T>
+  State<T> step(const State<T>& x, const Input<T, 2>& u) const {
+    T s, c;
+    sin_cos(x.yaw, s, c);
+    return {x.x + T(dt) * u[0] * c, x.y + T(dt) * u[0] * s, x.yaw + T(dt) * u[1]};
+  }
+  template <class T>
+  Cost<T> stage_cost(const State<T>& x, const Input<T, 2>& u) const {
+    Cost<T> cost = place_cost(x);
+    cost.value += T(0.1) * u[1] * u[1];
+    return cost;
+  }
+  template <class T>
+  Cost<T> terminal_cost(const State<T>& x) const {
+    Cost<T> cost = place_cost(x);
+    cost.value += T(5) * distance(x);
+    return cost;
+  }
+
+  template <class T>
+  T distance(const State<T>& x) const {
+    return sqrt(square(x.x - T(goal_x)) + square(x.y - T(goal_y)));
+  }
+  template <class T>
+  Cost<T> place_cost(const State<T>& x) const {
+    mask_t<T> inside(false);
+    for (const Disc& disc : discs) {
+      const T squared = square(x.x - T(disc.x)) + square(x.y - T(disc.y));
+      inside = inside | (squared < T(disc.radius * disc.radius));
+    }
+    return {distance(x) + select(inside, T(100), T(0)), inside};
+  }
+};
+
+template <class Parameters, class Visit>
+requires is_options_of<Parameters, DifferentialDrive>
+void visit_options(Parameters& p, Visit&& visit) {
+  visit(p.dt, Declaration{.name = "dt", .unit = "s", .help = "duration of a step", .min = 0.001, .max = 1});
+  visit(p.goal_x,
+        Declaration{.name = "goal_x", .unit = "m", .help = "where to go", .min = -1e+06, .max = 1e+06});
+  visit(p.goal_y,
+        Declaration{.name = "goal_y", .unit = "m", .help = "where to go", .min = -1e+06, .max = 1e+06});
+}
+
+}  // namespace slalom::problems

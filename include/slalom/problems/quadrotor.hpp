@@ -1,0 +1,83 @@
+#pragma once
+
+#include "slalom/core/options.hpp"
+#include "slalom/core/problem.hpp"
+
+namespace slalom::problems {
+
+/// A quadrotor in the vertical plane, and a wall across its way with two gaps.
+struct Quadrotor {
+  template <class T>
+  struct State {
+    T x, z, tilt, speed_x, speed_z, rate;  // m, m, rad, m/s, m/s, rad/s
+  };
+  static constexpr int inputs = 2;           // thrust beyond the weight, m/s^2; turning acceleration, rad/s^2
+  double dt = 0.05;                          // s
+  double goal_x = 6, goal_z = 0;             // m
+  double wall_from = 2.8, wall_to = 3.2;     // m, along x
+  double gap_centre = 1.0, gap_width = 1.0;  // m: gaps at z = +gap_centre and z = -gap_centre
+
+  template <class T>
+  State<T> step(const State<T>& x, const Input<T, 2>& u) const {
+    T s, c;
+    sin_cos(x.tilt, s, c);
+    const T thrust = T(9.81) + u[0];
+    const T speed_x = x.speed_x + T(dt) * thrust * s;
+    const T speed_z = x.speed_z + T(dt) * (thrust * c - T(9.81));
+    const T rate = x.rate + T(dt) * u[1];
+    return {x.x + T(dt) * speed_x, x.z + T(dt) * speed_z, x.tilt + T(dt) * rate, speed_x, speed_z, rate};
+  }
+  template <class T>
+  Cost<T> stage_cost(const State<T>& x, const Input<T, 2>& u) const {
+    const mask_t<T> hit = hits_wall(x);
+    const T effort = T(0.01) * (u[0] * u[0] + u[1] * u[1]);
+    return {T(dt) * (distance(x) + T(0.2) * square_speed(x) + effort) + select(hit, T(100), T(0)), hit};
+  }
+  template <class T>
+  T terminal_cost(const State<T>& x) const {
+    return T(3) * distance(x) + T(0.3) * square_speed(x);
+  }
+
+  template <class T>
+  T distance(const State<T>& x) const {
+    return sqrt(square(x.x - T(goal_x)) + square(x.z - T(goal_z)));
+  }
+  template <class T>
+  T square_speed(const State<T>& x) const {
+    return x.speed_x * x.speed_x + x.speed_z * x.speed_z + x.tilt * x.tilt + T(0.2) * x.rate * x.rate;
+  }
+  template <class T>
+  mask_t<T> hits_wall(const State<T>& x) const {
+    const mask_t<T> in_wall = (x.x > T(wall_from)) & (x.x < T(wall_to));
+    return in_wall & (abs(abs(x.z) - T(gap_centre)) > T(gap_width / 2));
+  }
+};
+
+template <class Parameters, class Visit>
+requires is_options_of<Parameters, Quadrotor>
+void visit_options(Parameters& p, Visit&& visit) {
+  visit(p.dt, Declaration{.name = "dt", .unit = "s", .help = "duration of a step", .min = 0.001, .max = 1});
+  visit(p.goal_x,
+        Declaration{.name = "goal_x", .unit = "m", .help = "where to hover", .min = -1e+06, .max = 1e+06});
+  visit(p.goal_z,
+        Declaration{.name = "goal_z", .unit = "m", .help = "where to hover", .min = -1e+06, .max = 1e+06});
+  visit(p.wall_from, Declaration{.name = "wall_from",
+                                 .unit = "m",
+                                 .help = "where the wall begins, along x",
+                                 .min = -1e+06,
+                                 .max = 1e+06});
+  visit(p.wall_to, Declaration{.name = "wall_to",
+                               .unit = "m",
+                               .help = "where the wall ends, along x",
+                               .min = -1e+06,
+                               .max = 1e+06});
+  visit(p.gap_centre, Declaration{.name = "gap_centre",
+                                  .unit = "m",
+                                  .help = "the gaps are at this height above and below 0",
+                                  .min = 0,
+                                  .max = 1e+06});
+  visit(p.gap_width,
+        Declaration{.name = "gap_width", .unit = "m", .help = "height of a gap", .min = 0, .max = 1e+06});
+}
+
+}  // namespace slalom::problems
