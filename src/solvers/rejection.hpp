@@ -69,8 +69,15 @@ inline void pick(const double* running, int count, int wanted, bool systematic, 
   const double start = random.uniform();
   for (int k = 0; k < wanted; ++k) {
     const double at = (systematic ? (k + start) / wanted : k == 0 ? start : random.uniform()) * total;
-    const double* found = std::upper_bound(running, running + count, at);
-    indices[k] = static_cast<int>(std::min<std::ptrdiff_t>(found - running, count - 1));
+    // The first running sum above `at`, halving without branches: which way to go is a coin's toss.
+    const double* found = running;
+    int length = count;
+    while (length > 1) {
+      const int half = length / 2;
+      found += -static_cast<std::ptrdiff_t>(found[half - 1] <= at) & half;
+      length -= half;
+    }
+    indices[k] = static_cast<int>(found - running);
   }
 }
 

@@ -17,13 +17,13 @@ struct RandomKey {
 
 namespace detail {
 
-/// Threefry-4x32 with 16 rounds (Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011, which
-/// finds 12 rounds to pass all tests of BigCrush): four words from a counter of four words and a key. `Word`
+/// Threefry-4x32 with 12 rounds (Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011, which
+/// finds that they pass all tests of BigCrush): four words from a counter of four words and a key. `Word`
 /// is a 32-bit unsigned integer or a vector of them.
 template <class Word>
 inline std::array<Word, 4> threefry(Word x0, Word x1, Word x2, Word x3,
                                     const std::array<std::uint32_t, 4>& key) {
-  constexpr int rounds = 16;
+  constexpr int rounds = 12;
   constexpr int rotation[8][2] = {{10, 26}, {11, 21}, {13, 27}, {23, 5},
                                   {6, 20},  {17, 11}, {25, 10}, {18, 20}};
   const std::uint32_t schedule[5] = {key[0], key[1], key[2], key[3],
