@@ -59,9 +59,12 @@ namespace {
                                           float bandwidth, Range particles, const Rows<float>& phi) {        \
     body::stein_directions<Pack_##name>(x, gradient, count, bandwidth, particles, phi);                      \
   }                                                                                                          \
-  ATTRIBUTES void published_keep_##name(const Rows<float>& v, const RejectionRows<float>& densities,         \
-                                        Range range, float* logarithms) {                                    \
-    body::published_keep<Pack_##name>(v, densities, range, logarithms);                                      \
+  ATTRIBUTES void published_rejection_##name(const Rows<float>& v, const RejectionRows<float>& densities,    \
+                                             Range range, float* logarithms) {                               \
+    body::published_rejection<Pack_##name>(v, densities, range, logarithms);                                 \
+  }                                                                                                          \
+  ATTRIBUTES void rejection_logarithm_##name(const float* rejected, float offset, Range range, float* own) { \
+    body::rejection_logarithm<Pack_##name>(rejected, offset, range, own);                                    \
   }                                                                                                          \
   constexpr Kernels kernels_##name{place_##name,                                                             \
                                    add_linear_##name,                                                        \
@@ -75,7 +78,8 @@ namespace {
                                    particle_gradients_##name,                                                \
                                    place_round_##name,                                                       \
                                    stein_directions_##name,                                                  \
-                                   published_keep_##name};
+                                   published_rejection_##name,                                               \
+                                   rejection_logarithm_##name};
 
 SLALOM_DEFINE_KERNELS(generic, SLALOM_TARGET_GENERIC, Generic)
 #if SLALOM_X86

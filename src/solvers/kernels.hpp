@@ -100,9 +100,11 @@ struct Kernels {
   /// SVGD's directions [row][particle] for the particles of a range.
   void (*stein_directions)(const Rows<float>& x, const Rows<float>& gradient, int count, float bandwidth,
                            Range particles, const Rows<float>& phi);
-  /// Logarithms of the published program's probabilities of keeping samples.
-  void (*published_keep)(const Rows<float>& v, const RejectionRows<float>& densities, Range range,
-                         float* logarithms);
+  /// Logarithms of the inverse of the published program's probabilities of keeping samples.
+  void (*published_rejection)(const Rows<float>& v, const RejectionRows<float>& densities, Range range,
+                              float* logarithms);
+  /// The same for normal densities, from squared distances in units of the variances; replaces `own`.
+  void (*rejection_logarithm)(const float* rejected, float offset, Range range, float* own);
 };
 
 /// Those of the instruction set in use.

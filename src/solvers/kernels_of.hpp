@@ -44,9 +44,9 @@ struct KernelsOf<float> {
                                Range particles, const Rows<float>& phi) {
     kernels().stein_directions(x, gradient, count, bandwidth, particles, phi);
   }
-  static void published_keep(const Rows<float>& v, const RejectionRows<float>& densities, Range range,
-                             float* logarithms) {
-    kernels().published_keep(v, densities, range, logarithms);
+  static void published_rejection(const Rows<float>& v, const RejectionRows<float>& densities, Range range,
+                                  float* logarithms) {
+    kernels().published_rejection(v, densities, range, logarithms);
   }
 };
 
@@ -85,9 +85,9 @@ struct KernelsOf<double> {
                                double bandwidth, Range particles, const Rows<double>& phi) {
     body::stein_directions<double>(x, gradient, count, bandwidth, particles, phi);
   }
-  static void published_keep(const Rows<double>& v, const RejectionRows<double>& densities, Range range,
-                             double* logarithms) {
-    body::published_keep<double>(v, densities, range, logarithms);
+  static void published_rejection(const Rows<double>& v, const RejectionRows<double>& densities, Range range,
+                                  double* logarithms) {
+    body::published_rejection<double>(v, densities, range, logarithms);
   }
 };
 

@@ -132,20 +132,38 @@ SLALOM_INLINE void stein_directions(const Rows<RealOf<F>>& x, const Rows<RealOf<
   for (; i < end; i += lanes) stein_block<1, F>(x, gradient, count, bandwidth, i, phi);
 }
 
-/// log of prod over rows of 1 / (base + density), the published program's probability of keeping a sample:
-/// density = exp((v - mean)^2 / deviation) / sqrt(2 pi variance), base the like at another place.
+/// log of prod over rows of (base + density), the inverse of the published program's probability of keeping a
+/// sample: density = exp((v - mean)^2 / deviation) / sqrt(2 pi variance), base the like at another place.
+/// Rows are taken in pairs to save logarithms; more of them could overflow.
 template <class F>
-SLALOM_INLINE void published_keep(const Rows<RealOf<F>>& v, const RejectionRows<RealOf<F>>& d, Range range,
-                                  RealOf<F>* logarithms) {
+SLALOM_INLINE void published_rejection(const Rows<RealOf<F>>& v, const RejectionRows<RealOf<F>>& d,
+                                       Range range, RealOf<F>* logarithms) {
   using L = Lanes<F>;
   for (int k = range.first; k < range.first + range.count; k += L::count) {
-    F sum(0.0f);
+    F sum(0.0f), product(1.0f);
     for (int r = 0; r < v.rows; ++r) {
       const F difference = L::load(v.row(r) + k) - F(d.rejected_mean[r]);
       const F density = exp(difference * difference * F(d.rejected_inverse[r])) * F(d.rejected_scale[r]);
-      sum = sum - log(F(d.base[r]) + density);
+      product = product * (F(d.base[r]) + density);
+      if (r % 2 == 1 || r + 1 == v.rows) {
+        sum = sum + log(product);
+        product = F(1.0f);
+      }
     }
     L::store(sum, logarithms + k);
+  }
+}
+
+/// -log of the probability p / (p + p_rejected) of keeping a sample, from squared distances to the means in
+/// units of the variances: log(1 + e^x) with x = (own - rejected + offset) / 2. Replaces `own`.
+template <class F>
+SLALOM_INLINE void rejection_logarithm(const RealOf<F>* rejected, RealOf<F> offset, Range range,
+                                       RealOf<F>* own) {
+  using L = Lanes<F>;
+  const F shift(offset), half(0.5f), one(1.0f), zero(0.0f);
+  for (int k = range.first; k < range.first + range.count; k += L::count) {
+    const F x = half * (L::load(own + k) - L::load(rejected + k) + shift);
+    L::store(max(x, zero) + log(one + exp(-abs(x))), own + k);
   }
 }
 

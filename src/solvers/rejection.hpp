@@ -55,30 +55,38 @@ class PublishedRejection {
   int rows_;
 };
 
-/// log of the probability that a sample is kept, p / (p + p_rejected), from log (p_rejected / p).
-inline double log_keep(double log_ratio) noexcept {
-  return log_ratio > 700 ? -log_ratio : -std::log1p(std::exp(log_ratio));
-}
+/// Picks samples in proportion to their weights: systematically, at even distances from one random start, or
+/// independently. A table of cut points leads to the sample of a number without a search.
+class Picker {
+ public:
+  explicit Picker(int samples)
+      : running_(static_cast<std::size_t>(samples)), cut_(static_cast<std::size_t>(samples) + 1) {}
 
-/// Picks `wanted` of the samples in proportion to their probabilities, whose running sums (not decreasing,
-/// the last is > 0) are given. Systematic: at even distances from one random start; multinomial:
-/// independently. Indices come in rising order if systematic.
-inline void pick(const double* running, int count, int wanted, bool systematic, RandomStream& random,
-                 int* indices) noexcept {
-  const double total = running[count - 1];
-  const double start = random.uniform();
-  for (int k = 0; k < wanted; ++k) {
-    const double at = (systematic ? (k + start) / wanted : k == 0 ? start : random.uniform()) * total;
-    // The first running sum above `at`, halving without branches: which way to go is a coin's toss.
-    const double* found = running;
-    int length = count;
-    while (length > 1) {
-      const int half = length / 2;
-      found += -static_cast<std::ptrdiff_t>(found[half - 1] <= at) & half;
-      length -= half;
+  /// Picks `wanted` of the samples; weights >= 0, not all 0.
+  void pick(const float* weights, int wanted, bool systematic, RandomStream& random, int* indices) noexcept {
+    const auto count = running_.size();
+    double sum = 0;
+    for (std::size_t k = 0; k < count; ++k) running_[k] = sum += static_cast<double>(weights[k]);
+    const double per_cut = sum / static_cast<double>(count);
+    std::size_t next = 0;
+    for (std::size_t c = 0; c < count; ++c) {  // the first sample whose running sum passes the cut
+      while (next + 1 < count && running_[next] <= static_cast<double>(c) * per_cut) ++next;
+      cut_[c] = static_cast<int>(next);
     }
-    indices[k] = static_cast<int>(found - running);
+    const double start = random.uniform();
+    for (int k = 0; k < wanted; ++k) {
+      const double uniform = systematic ? (k + start) / wanted : static_cast<double>(random()) * 0x1p-32;
+      const double at = uniform * sum;
+      auto found = static_cast<std::size_t>(
+          cut_[std::min(static_cast<std::size_t>(uniform * static_cast<double>(count)), count - 1)]);
+      while (found + 1 < count && running_[found] <= at) ++found;
+      indices[k] = static_cast<int>(found);
+    }
   }
-}
+
+ private:
+  std::vector<double> running_;
+  std::vector<int> cut_;
+};
 
 }  // namespace slalom::detail

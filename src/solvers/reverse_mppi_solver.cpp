@@ -41,7 +41,8 @@ class ReverseMppiSolver final : public detail::SolverBase {
         published_(rows()),
         own_distance_(static_cast<std::size_t>(inflated_.stride())),
         rejected_distance_(own_distance_.size()),
-        running_(own_distance_.size()),
+        keep_(own_distance_.size()),
+        picker_(inflated_.samples()),
         picked_(static_cast<std::size_t>(options.samples)),
         evaluated_(static_cast<std::size_t>(samples_.stride())),
         rejected_(evaluated_.size()) {
@@ -124,8 +125,8 @@ class ReverseMppiSolver final : public detail::SolverBase {
     if (options_.reject_samples) {
       keep_probabilities();
       RandomStream random(key(2 * iteration + 1));
-      detail::pick(running_.data(), inflated_.samples(), samples_.samples(),
-                   options_.resampling == Resampling::systematic, random, picked_.data());
+      picker_.pick(keep_.data(), samples_.samples(), options_.resampling == Resampling::systematic, random,
+                   picked_.data());
       for (int r = 0; r < rows(); ++r) {
         const float* from = inflated_.row_view().row(r);
         float* to = samples_.row_view().row(r);
@@ -135,29 +136,27 @@ class ReverseMppiSolver final : public detail::SolverBase {
     result_.times.draw += detail::seconds(begin, detail::Clock::now());
   }
 
-  /// Running sums of the probabilities with which the inflated samples are kept.
+  /// Weights of the inflated samples, in proportion to the probabilities with which they are kept.
   void keep_probabilities() noexcept {
     const detail::Range range{0, inflated_.stride()};
-    const auto count = static_cast<std::size_t>(inflated_.samples());
+    float* logarithms = own_distance_.data();
     if (options_.rejection == RejectionForm::published) {
       published_.set(now_.mean.data(), now_.variance.data(), now_rejected_.mean.data(),
                      now_rejected_.variance.data());
-      detail::kernels().published_keep(inflated_.row_view(), published_.rows(), range, own_distance_.data());
-      for (std::size_t k = 0; k < count; ++k) running_[k] = static_cast<double>(own_distance_[k]);
+      detail::kernels().published_rejection(inflated_.row_view(), published_.rows(), range, logarithms);
     } else {
       const double own = distances(now_, own_distance_), other = distances(now_rejected_, rejected_distance_);
-      for (std::size_t k = 0; k < count; ++k) {
-        const double quadratic =
-            static_cast<double>(own_distance_[k]) - static_cast<double>(rejected_distance_[k]);
-        running_[k] = detail::log_keep(0.5 * (quadratic + own - other));
-      }
+      detail::kernels().rejection_logarithm(rejected_distance_.data(), static_cast<float>(own - other), range,
+                                            logarithms);
     }
-    const double largest =
-        *std::max_element(running_.begin(), running_.begin() + static_cast<std::ptrdiff_t>(count));
-    double sum = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      const double probability = std::isfinite(largest) ? std::exp(running_[k] - largest) : 1.0;
-      running_[k] = sum += std::isfinite(probability) ? probability : 0.0;
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    std::fill(logarithms + inflated_.samples(), logarithms + range.count, infinite);
+    detail::kernels().make_finite(range, logarithms);
+    const float least = detail::kernels().minimum(logarithms, range);
+    if (least < infinite) {
+      detail::kernels().exponential_weights(logarithms, logarithms, least, 1.0f, range, keep_.data());
+    } else {
+      std::fill(keep_.begin(), keep_.end(), 1.0f);
     }
   }
 
@@ -256,9 +255,10 @@ class ReverseMppiSolver final : public detail::SolverBase {
   std::vector<float> moment_mean_, moment_variance_;  ///< [row]
   detail::PublishedRejection<float> published_;
   std::vector<float> own_distance_, rejected_distance_;  ///< [inflated sample]
-  std::vector<double> running_;                          ///< [inflated sample]
-  std::vector<int> picked_;                              ///< [sample]
-  std::vector<float> evaluated_, rejected_;              ///< weights [sample]
+  std::vector<float> keep_;                              ///< [inflated sample]
+  detail::Picker picker_;
+  std::vector<int> picked_;                  ///< [sample]
+  std::vector<float> evaluated_, rejected_;  ///< weights [sample]
   SolveResult result_;
 };
 

@@ -111,12 +111,13 @@ void compare_rejection(const std::filesystem::path& folder) {
     comparison.compare(first, numbers<double>(json["normal_pdf_sample0"]), case_name(json) + " sample 0");
 
     std::vector<Real> logarithms(static_cast<std::size_t>(samples.stride));
-    KernelsOf<Real>::published_keep(samples.view(), densities.rows(), samples.range(), logarithms.data());
+    KernelsOf<Real>::published_rejection(samples.view(), densities.rows(), samples.range(),
+                                         logarithms.data());
     // The program divides by min(sum, 1e-10); only ratios matter, so both are compared as ratios to the
     // whole.
     std::vector<double> raw, expected = numbers<double>(json["prob_raw"]);
     for (std::size_t k = 0; k < expected.size(); ++k)
-      raw.push_back(std::exp(static_cast<double>(logarithms[k])));
+      raw.push_back(std::exp(-static_cast<double>(logarithms[k])));
     comparison.compare(raw, expected, case_name(json) + " probabilities");
     double sum = 0;
     for (const double p : raw) sum += p;
