@@ -115,7 +115,7 @@ SLALOM_INLINE WeightSums<RealOf<F>> exponential_weights(const RealOf<F>* totals,
                                                         RealOf<F> least, RealOf<F> temperature, Range range,
                                                         RealOf<F>* weights) {
   using L = Lanes<F>;
-  const F minimum_cost(least), inverse(RealOf<F>(1) / (temperature * temperature)), zero(0.0f);
+  const F minimum_cost(least), inverse(RealOf<F>(1) / temperature), zero(0.0f);
   F weight(0.0f), squared(0.0f), cost(0.0f);
   for (int k = range.first; k < range.first + range.count; k += L::count) {
     const F w = exp((minimum_cost - L::load(totals + k)) * inverse);
