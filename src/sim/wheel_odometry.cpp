@@ -1,0 +1,52 @@
+#include "slalom/sim/wheel_odometry.hpp"
+
+#include <cmath>
+
+namespace slalom::sim {
+
+void WheelOdometryOptions::validate() const {
+  validate_options(*this, "wheel_odometry");
+}
+
+WheelOdometry::WheelOdometry(const CarParameters& car, const WheelOdometryOptions& options)
+    : car_(car), options_(options), random_({options.seed, 0}) {
+  car_.validate();
+  options_.validate();
+}
+
+void WheelOdometry::reset(const CarState& state, const maps::Pose& start) noexcept {
+  random_ = RandomStream({options_.seed, 0});
+  pose_ = start;
+  speed_ = true_speed_ = state.speed;
+  yaw_rate_ = 0;
+}
+
+void WheelOdometry::update(const CarState& state, double time_step) noexcept {
+  const bool usable = time_step > 0 && std::isfinite(time_step) && std::isfinite(state.speed) &&
+                      std::isfinite(state.steer) && std::isfinite(state.yaw_rate) &&
+                      std::isfinite(state.slip);
+  if (!usable) return;
+  const double acceleration = (state.speed - true_speed_) / time_step;
+  true_speed_ = state.speed;
+  // Along the body: the rear wheels' own speed; what slips sideways turns no wheel.
+  const double along = state.speed * std::cos(state.slip);
+  speed_ = along * (1 + options_.speed_gain_error) * (1 + options_.slip_per_acceleration * acceleration) +
+           options_.speed_noise * random_.normal();
+  if (options_.yaw_from_gyro) {
+    yaw_rate_ = state.yaw_rate + options_.gyro_bias + options_.gyro_noise * random_.normal();
+  } else {
+    const double steer = state.steer * (1 + options_.steer_gain_error) + options_.steer_offset;
+    yaw_rate_ = speed_ * std::tan(steer) / car_.wheelbase();
+  }
+  const double middle = pose_.yaw + 0.5 * yaw_rate_ * time_step;
+  pose_.x += speed_ * std::cos(middle) * time_step;
+  pose_.y += speed_ * std::sin(middle) * time_step;
+  pose_.yaw = maps::wrap_angle(pose_.yaw + yaw_rate_ * time_step);
+}
+
+maps::Pose rear_axle(const CarParameters& car, const CarState& state) noexcept {
+  return {state.x - car.rear_length * std::cos(state.yaw), state.y - car.rear_length * std::sin(state.yaw),
+          state.yaw};
+}
+
+}  // namespace slalom::sim

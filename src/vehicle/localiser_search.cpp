@@ -1,0 +1,155 @@
+#include "localiser_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slalom::vehicle::detail {
+namespace {
+
+constexpr int copies = 12;                                      // of a hypothesis, itself included
+constexpr int young = 6;                                        // updates: not yet to be compared with others
+constexpr int newcomers = 8;                                    // an update
+constexpr double same_place = 0.35, same_yaw = 0.3;             // m, rad
+constexpr double young_jitter = 0.2, young_yaw_jitter = 0.1;    // m, rad
+constexpr double grown_jitter = 0.08, grown_yaw_jitter = 0.04;  // m, rad
+
+bool same(const maps::Pose& a, const maps::Pose& b) {
+  const double dx = a.x - b.x, dy = a.y - b.y;
+  return dx * dx + dy * dy < same_place * same_place && std::abs(maps::wrap_angle(a.yaw - b.yaw)) < same_yaw;
+}
+
+}  // namespace
+
+Search::Search(const maps::OccupancyGrid& map, const LocaliserOptions& options)
+    : options_(options),
+      free_space_(map),
+      poses_(1, 3, options.most_hypotheses * (copies + options.search_factor)),
+      noise_(1, 3, options.most_hypotheses * copies),
+      log_fit_(static_cast<std::size_t>(poses_.stride())),
+      hypotheses_(static_cast<std::size_t>(options.most_hypotheses)),
+      newcomers_(static_cast<std::size_t>(newcomers)) {}
+
+maps::Pose Search::batch_pose(int i) const noexcept {
+  return {poses_.at(0, 0, i), poses_.at(0, 1, i), poses_.at(0, 2, i)};
+}
+
+void Search::put(int i, const maps::Pose& pose) noexcept {
+  poses_.at(0, 0, i) = static_cast<float>(pose.x);
+  poses_.at(0, 1, i) = static_cast<float>(pose.y);
+  poses_.at(0, 2, i) = static_cast<float>(pose.yaw);
+}
+
+/// The hypotheses and disturbed copies of them at the front of the batch.
+void Search::place_copies(RandomKey key) noexcept {
+  fill_normal(noise_, 0, padded(count_ * copies), key);
+  for (int h = 0, i = 0; h < count_; ++h) {
+    const Hypothesis& from = hypotheses_[static_cast<std::size_t>(h)];
+    const double jitter = from.age < young ? young_jitter : grown_jitter;
+    const double yaw_jitter = from.age < young ? young_yaw_jitter : grown_yaw_jitter;
+    put(i++, from.pose);
+    for (int k = 1; k < copies; ++k, ++i) {
+      put(i, {from.pose.x + jitter * noise_.at(0, 0, i), from.pose.y + jitter * noise_.at(0, 1, i),
+              maps::wrap_angle(from.pose.yaw + yaw_jitter * noise_.at(0, 2, i))});
+    }
+  }
+}
+
+void Search::place_random(RandomKey key) noexcept {
+  RandomStream random(key);
+  for (int i = count_ * copies; i < poses_.samples(); ++i) put(i, free_space_.random_pose(random));
+}
+
+void Search::take_best_copies(double memory) noexcept {
+  for (int h = 0; h < count_; ++h) {
+    const float* fits = log_fit_.data() + h * copies;
+    const int best = static_cast<int>(std::max_element(fits, fits + copies) - fits);
+    Hypothesis& to = hypotheses_[static_cast<std::size_t>(h)];
+    to.pose = batch_pose(h * copies + best);
+    const double fit = static_cast<double>(fits[best]);
+    to.log_fit = to.age <= young ? fit : memory * to.log_fit + (1 - memory) * fit;
+    ++to.age;
+  }
+}
+
+/// Of hypotheses about the same place only the better one stays.
+void Search::drop_twins() noexcept {
+  for (int a = 0; a < count_; ++a) {
+    Hypothesis& first = hypotheses_[static_cast<std::size_t>(a)];
+    for (int b = count_ - 1; b > a; --b) {
+      Hypothesis& second = hypotheses_[static_cast<std::size_t>(b)];
+      if (!same(first.pose, second.pose)) continue;
+      const int age = std::max(first.age, second.age);
+      if (second.log_fit > first.log_fit) first = second;
+      first.age = age;
+      second = hypotheses_[static_cast<std::size_t>(--count_)];
+    }
+  }
+}
+
+/// Makes the best poses from `first` on hypotheses, in the place of the worst grown-up ones.
+void Search::admit(int first) noexcept {
+  int chosen = 0;
+  for (int i = first; i < poses_.samples(); ++i) {
+    const float fit = log_fit_[static_cast<std::size_t>(i)];
+    const auto worse = [&](int other) { return log_fit_[static_cast<std::size_t>(other)] < fit; };
+    if (chosen == newcomers && !worse(newcomers_[newcomers - 1])) continue;
+    if (chosen < newcomers) ++chosen;
+    int at = chosen - 1;
+    for (; at > 0 && worse(newcomers_[static_cast<std::size_t>(at - 1)]); --at)
+      newcomers_[static_cast<std::size_t>(at)] = newcomers_[static_cast<std::size_t>(at - 1)];
+    newcomers_[static_cast<std::size_t>(at)] = i;
+  }
+  for (int n = 0; n < chosen; ++n) {
+    const int from = newcomers_[static_cast<std::size_t>(n)];
+    int to = count_;
+    if (count_ < options_.most_hypotheses) {
+      ++count_;
+    } else {
+      to = -1;
+      for (int h = 0; h < count_; ++h) {
+        const Hypothesis& old = hypotheses_[static_cast<std::size_t>(h)];
+        if (old.age > young && (to < 0 || old.log_fit < hypotheses_[static_cast<std::size_t>(to)].log_fit))
+          to = h;
+      }
+      if (to < 0) return;
+    }
+    hypotheses_[static_cast<std::size_t>(to)] = {
+        batch_pose(from), static_cast<double>(log_fit_[static_cast<std::size_t>(from)]), 1};
+  }
+}
+
+void Search::update(const maps::Pose& step, const SensorTables& sensor, const ScanBeams& beams, double memory,
+                    RandomKey key) noexcept {
+  for (int h = 0; h < count_; ++h) {
+    maps::Pose& pose = hypotheses_[static_cast<std::size_t>(h)].pose;
+    const maps::Point moved = maps::transform(pose, {step.x, step.y});
+    pose = {moved.x, moved.y, maps::wrap_angle(pose.yaw + step.yaw)};
+  }
+  place_copies(key);
+  place_random(key);
+  sensor.weigh_by_field({poses_.row(0, 0), poses_.row(0, 1), poses_.row(0, 2), poses_.stride()}, beams,
+                        log_fit_.data());
+  const int first_random = count_ * copies;
+  take_best_copies(memory);
+  drop_twins();
+  admit(first_random);
+}
+
+const Search::Hypothesis* Search::best() const noexcept {
+  const Hypothesis* found = nullptr;
+  for (int h = 0; h < count_; ++h) {
+    const Hypothesis& other = hypotheses_[static_cast<std::size_t>(h)];
+    if (other.age > young && (!found || other.log_fit > found->log_fit)) found = &other;
+  }
+  return found;
+}
+
+double Search::log_fit_at(const maps::Pose& pose, const SensorTables& sensor,
+                          const ScanBeams& beams) noexcept {
+  for (int i = 0; i < simd::padding; ++i) put(i, pose);
+  sensor.weigh_by_field({poses_.row(0, 0), poses_.row(0, 1), poses_.row(0, 2), simd::padding}, beams,
+                        log_fit_.data());
+  return static_cast<double>(log_fit_[0]);
+}
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,180 @@
+#include "localiser_sensor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "slalom/maps/distance_field.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+/// Log of the probability of a rear axle in a wall or beyond it, per beam: not 0, since maps are not exact.
+constexpr float log_in_wall = -1.0F;
+/// Standard deviations from a wall within which a beam counts as explained by it.
+constexpr double explained_within = 2.5;
+constexpr std::size_t most_entries = std::size_t{1} << 27;
+
+maps::GridGeometry geometry_of(const maps::OccupancyGrid& map, double resolution) {
+  const double length = map.width * map.resolution, width = map.height * map.resolution;
+  const int rows = std::max(1, static_cast<int>(std::ceil(length / resolution - 1e-9)));
+  const int columns = std::max(1, static_cast<int>(std::ceil(width / resolution - 1e-9)));
+  return {rows, columns, resolution, 0.5 * rows * resolution, 0.5 * columns * resolution};
+}
+
+/// Probability densities of a reading (1/m), as Tables 6.1 and 6.3 mix them.
+double hit_density(const LocaliserOptions& o) {
+  return o.hit_weight / (o.hit_deviation * std::sqrt(2 * std::numbers::pi));
+}
+double random_density(const LocaliserOptions& o) {
+  return o.random_weight / o.range_cap;
+}
+double highest_density(const LocaliserOptions& o) {
+  return hit_density(o) + random_density(o);
+}
+
+/// Distance (m, at most `most`) along a direction to the first occupied cell, from a point in cells: steps as
+/// long as the distances of the cells allow (sphere tracing, J. C. Hart, The Visual Computer 12, 1996).
+double cast(const maps::DistanceField& walls, double x, double y, double dx, double dy, double most) {
+  double travelled = 0;  // cells
+  const double end = most / walls.resolution;
+  while (travelled < end) {
+    const int column = static_cast<int>(std::floor(x + travelled * dx));
+    const int row = static_cast<int>(std::floor(y + travelled * dy));
+    if (column < 0 || row < 0 || column >= walls.width || row >= walls.height) return most;
+    const double clear = walls.at(column, row) / walls.resolution;
+    if (clear <= 0) return travelled * walls.resolution;
+    travelled += std::max(clear - std::numbers::sqrt2, 0.2);
+  }
+  return most;
+}
+
+}  // namespace
+
+SensorTables::SensorTables(const maps::OccupancyGrid& map, const LocaliserOptions& options)
+    : options_(options),
+      geometry_(geometry_of(map, map.resolution)),
+      field_(geometry_.rows, geometry_.columns),
+      place_(geometry_.rows, geometry_.columns) {
+  make_field(map, options);
+  if (options.sensor_model == SensorModel::beam) make_ranges(map, options);
+}
+
+void SensorTables::make_field(const maps::OccupancyGrid& map, const LocaliserOptions& options) {
+  const maps::DistanceField walls = maps::distance_transform(map, false);
+  const double hit = hit_density(options), random = random_density(options), most = hit + random;
+  const auto log_probability = [&](double distance) {
+    const double off = distance / options.hit_deviation;
+    return static_cast<float>(std::log((hit * std::exp(-0.5 * off * off) + random) / most));
+  };
+  explained_from_ = log_probability(explained_within * options.hit_deviation);
+  field_.fill({log_probability(1e9)});
+  place_.fill({log_in_wall});
+  for (int row = 0; row < geometry_.rows; ++row) {
+    for (int column = 0; column < geometry_.columns; ++column) {
+      const int map_column = geometry_.rows - 1 - row, map_row = geometry_.columns - 1 - column;
+      // A wall begins half a cell before the centre of its cells.
+      const double distance = std::max(0.0, walls.at(map_column, map_row) - 0.5 * map.resolution);
+      *field_.at(row, column) = log_probability(distance);
+      if (map.at(map_column, map_row) == maps::Occupancy::free) *place_.at(row, column) = 0;
+    }
+  }
+}
+
+void SensorTables::make_ranges(const maps::OccupancyGrid& map, const LocaliserOptions& options) {
+  const maps::DistanceField walls = maps::distance_transform(map, false);
+  table_.angles = options.table_angles;
+  table_.geometry = geometry_of(map, std::max(options.table_cell, map.resolution));
+  table_.rows = maps::CellGrid<1>(table_.geometry.rows, table_.geometry.columns);
+  table_.range_unit = static_cast<float>(options.range_cap / 65535);
+
+  const double scale = 1 / map.resolution;
+  const auto is_free = [&](double x, double y) {
+    const int column = static_cast<int>(x * scale), row = static_cast<int>(y * scale);
+    return map.contains(column, row) && map.at(column, row) == maps::Occupancy::free;
+  };
+  std::vector<maps::Point> origins{{}};
+  for (int row = 0; row < table_.geometry.rows; ++row) {
+    for (int column = 0; column < table_.geometry.columns; ++column) {
+      const double x = table_.geometry.cell_x(row), y = table_.geometry.cell_y(column);
+      if (!is_free(x, y)) continue;
+      *table_.rows.at(row, column) = static_cast<float>(origins.size());
+      origins.push_back({x, y});
+    }
+  }
+  const std::size_t angles = static_cast<std::size_t>(table_.angles);
+  if (origins.size() * angles > most_entries) {
+    throw std::invalid_argument(
+        "localiser.table_cell: " + std::to_string(options.table_cell) +
+        ": the table of ranges would have more than 2^27 entries; take a larger cell, "
+        "fewer table_angles or the likelihood field");
+  }
+  table_.pairs.assign(origins.size() * angles, 0);
+  std::vector<std::uint32_t> ranges(angles);
+  for (std::size_t i = 1; i < origins.size(); ++i) {
+    for (std::size_t a = 0; a < angles; ++a) {
+      const double angle = 2 * std::numbers::pi * static_cast<double>(a) / static_cast<double>(angles);
+      const double range = cast(walls, origins[i].x * scale, origins[i].y * scale, std::cos(angle),
+                                std::sin(angle), options.range_cap);
+      ranges[a] = static_cast<std::uint32_t>(std::min(65535.0, range / options.range_cap * 65535));
+    }
+    for (std::size_t a = 0; a < angles; ++a)
+      table_.pairs[i * angles + a] = ranges[a] | (ranges[(a + 1) % angles] << 16);
+  }
+}
+
+SensorTables::Explained SensorTables::explain(const maps::Pose& pose, const ScanBeams& beams) const noexcept {
+  const GridView<1> field = field_.view(geometry_);
+  const float x = static_cast<float>(pose.x), y = static_cast<float>(pose.y);
+  const float c = std::cos(static_cast<float>(pose.yaw)), s = std::sin(static_cast<float>(pose.yaw));
+  int near = 0;
+  double sum = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(beams.hits); ++k) {
+    const float end_x = beams.end_x[k], end_y = beams.end_y[k];
+    const float value = look_up(field, x + c * end_x - s * end_y, y + s * end_x + c * end_y);
+    near += value >= explained_from_;
+    sum += static_cast<double>(std::exp(value));
+  }
+  return {static_cast<double>(near) / beams.hits, sum / beams.hits};
+}
+
+void SensorTables::weigh_by_field(const ParticlePoses& particles, const ScanBeams& beams,
+                                  float* log_fit) const noexcept {
+  WeighInput in;
+  in.particles = particles;
+  in.beams = &beams;
+  in.field = field_.view(geometry_);
+  in.place = place_.view(geometry_);
+  in.log_fit = log_fit;
+  detail::weigh_by_field(in);
+}
+
+void SensorTables::weigh(const ParticlePoses& particles, const ScanBeams& beams,
+                         float* log_fit) const noexcept {
+  if (options_.sensor_model == SensorModel::likelihood_field)
+    return weigh_by_field(particles, beams, log_fit);
+  WeighInput in;
+  in.particles = particles;
+  in.beams = &beams;
+  in.place = place_.view(geometry_);
+  in.log_fit = log_fit;
+  const double highest = highest_density(options_);
+  in.rows = table_.rows.view(table_.geometry);
+  in.pairs = table_.pairs.data();
+  in.angles = table_.angles;
+  in.range_unit = table_.range_unit;
+  in.laser_x = static_cast<float>(options_.laser_x);
+  in.laser_y = static_cast<float>(options_.laser_y);
+  in.hit_scale = static_cast<float>(-0.5 / (options_.hit_deviation * options_.hit_deviation));
+  in.hit = static_cast<float>(hit_density(options_) / highest);
+  in.random = static_cast<float>(random_density(options_) / highest);
+  in.short_scale = static_cast<float>(options_.short_weight * options_.short_rate / highest);
+  in.short_rate = static_cast<float>(options_.short_rate);
+  in.lost = static_cast<float>(std::log(std::max(1e-3, options_.lost_weight)));
+  in.nothing_from = static_cast<float>(options_.range_cap - options_.hit_deviation);
+  weigh_by_ranges(in);
+}
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,146 @@
+// The two loops over particles and beams, once per instruction set: the lanes are particles, the beams run
+// inside, so that everything of a particle stays in registers.
+#include "localiser_sensor.hpp"
+#include "slalom/core/dispatch.hpp"
+#include "slalom/core/math.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+template <class Target>
+SLALOM_INLINE void by_field(const WeighInput& in) {
+  using F = Pack<Target>;
+  const ScanBeams& beams = *in.beams;
+  const F mean(1.0f / static_cast<float>(beams.hits));
+  for (int i = 0; i < in.particles.count; i += F::lanes) {
+    const F x = F::load(in.particles.x + i), y = F::load(in.particles.y + i);
+    F s, c;
+    sin_cos(F::load(in.particles.yaw + i), s, c);
+    F sum(0.0f);
+    for (int k = 0; k < beams.hits; ++k) {
+      const F end_x(beams.end_x[static_cast<std::size_t>(k)]),
+          end_y(beams.end_y[static_cast<std::size_t>(k)]);
+      sum = sum + look_up(in.field, x + end_x * c - end_y * s, y + end_x * s + end_y * c);
+    }
+    (sum * mean + look_up(in.place, x, y)).store(in.log_fit + i);
+  }
+}
+
+/// The two 16-bit ranges of the entries `index`, interpolated.
+template <class Target>
+SLALOM_INLINE Pack<Target> expected_range(const WeighInput& in,
+                                          const typename simd::IntPack<Target>::Vector& index,
+                                          const Pack<Target>& fraction) {
+  using F = Pack<Target>;
+  using I = typename simd::IntPack<Target>::Vector;
+  F entry;
+  simd::Operations<Target>::gather(reinterpret_cast<const float*>(in.pairs), index, entry.v);
+  const I bits = reinterpret_cast<I>(entry.v);
+  const F here(__builtin_convertvector(bits & 0xffff, typename F::Vector));
+  const F next(__builtin_convertvector((bits >> 16) & 0xffff, typename F::Vector));
+  return (here + fraction * (next - here)) * F(in.range_unit);
+}
+
+template <class Target>
+SLALOM_INLINE void by_ranges(const WeighInput& in) {
+  using F = Pack<Target>;
+  using I = typename simd::IntPack<Target>::Vector;
+  const ScanBeams& beams = *in.beams;
+  const F mean(1.0f / static_cast<float>(beams.count)), angles(static_cast<float>(in.angles));
+  const F laser_x(in.laser_x), laser_y(in.laser_y);
+  for (int i = 0; i < in.particles.count; i += F::lanes) {
+    const F x = F::load(in.particles.x + i), y = F::load(in.particles.y + i);
+    const F yaw = F::load(in.particles.yaw + i);
+    F s, c;
+    sin_cos(yaw, s, c);
+    const F cell = look_up(in.rows, x + laser_x * c - laser_y * s, y + laser_x * s + laser_y * c);
+    const I row = __builtin_convertvector(cell.v, I) * in.angles;
+    const F turns = wrap_angle(yaw) * F(0.15915494309f);  // -1/2 .. 1/2
+    const F start = select(turns < F(0.0f), turns + F(1.0f), turns) * angles;
+    const auto expected_at = [&](int k) {
+      const F sum = start + F(beams.bin[static_cast<std::size_t>(k)]);
+      const F bin = select(sum >= angles, sum - angles, sum);
+      const I whole = __builtin_convertvector(min(bin, angles - F(1.0f)).v, I);
+      return expected_range<Target>(in, row + whole,
+                                    bin - F(__builtin_convertvector(whole, typename F::Vector)));
+    };
+    F total(0.0f);
+    for (int k = 0; k < beams.hits; ++k) {
+      const F range(beams.range[static_cast<std::size_t>(k)]), expected = expected_at(k);
+      const F before(in.short_scale *
+                     __builtin_expf(-in.short_rate * beams.range[static_cast<std::size_t>(k)]));
+      const F off = range - expected;
+      const F p = F(in.hit) * exp(off * off * F(in.hit_scale)) + F(in.random) +
+                  select(range < expected, before, F(0.0f));
+      total = total + log(p);
+    }
+    for (int k = beams.hits; k < beams.count; ++k)
+      total = total + select(expected_at(k) >= F(in.nothing_from), F(0.0f), F(in.lost));
+    (total * mean + look_up(in.place, x, y)).store(in.log_fit + i);
+  }
+}
+
+using Weigh = void (*)(const WeighInput&);
+
+SLALOM_TARGET_GENERIC void by_field_generic(const WeighInput& in) {
+  by_field<simd::Generic>(in);
+}
+SLALOM_TARGET_GENERIC void by_ranges_generic(const WeighInput& in) {
+  by_ranges<simd::Generic>(in);
+}
+#if SLALOM_X86
+SLALOM_TARGET_SSE4 void by_field_sse4(const WeighInput& in) {
+  by_field<simd::Sse4>(in);
+}
+SLALOM_TARGET_SSE4 void by_ranges_sse4(const WeighInput& in) {
+  by_ranges<simd::Sse4>(in);
+}
+SLALOM_TARGET_AVX2 void by_field_avx2(const WeighInput& in) {
+  by_field<simd::Avx2>(in);
+}
+SLALOM_TARGET_AVX2 void by_ranges_avx2(const WeighInput& in) {
+  by_ranges<simd::Avx2>(in);
+}
+SLALOM_TARGET_AVX512 void by_field_avx512(const WeighInput& in) {
+  by_field<simd::Avx512>(in);
+}
+SLALOM_TARGET_AVX512 void by_ranges_avx512(const WeighInput& in) {
+  by_ranges<simd::Avx512>(in);
+}
+#endif
+
+struct Kernels {
+  Weigh by_field, by_ranges;
+};
+
+Kernels choose() {
+#if SLALOM_X86
+  switch (simd::active_target()) {
+    case simd::Target::avx512:
+      return {by_field_avx512, by_ranges_avx512};
+    case simd::Target::avx2:
+      return {by_field_avx2, by_ranges_avx2};
+    case simd::Target::sse4:
+      return {by_field_sse4, by_ranges_sse4};
+    case simd::Target::generic:
+      break;
+  }
+#endif
+  return {by_field_generic, by_ranges_generic};
+}
+
+const Kernels& kernels() {
+  static const Kernels chosen = choose();
+  return chosen;
+}
+
+}  // namespace
+
+void weigh_by_field(const WeighInput& input) noexcept {
+  kernels().by_field(input);
+}
+void weigh_by_ranges(const WeighInput& input) noexcept {
+  kernels().by_ranges(input);
+}
+
+}  // namespace slalom::vehicle::detail

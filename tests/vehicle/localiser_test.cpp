@@ -1,0 +1,279 @@
+#include "slalom/vehicle/localiser.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <stdexcept>
+
+#include "vehicle/localiser_drive.hpp"
+
+namespace {
+std::atomic<int> allocations{0};
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+
+namespace slalom::vehicle {
+namespace {
+
+using test::Drive;
+using test::error_of;
+using test::Place;
+
+const Place& wren() {
+  static const Place place("wren");
+  return place;
+}
+
+/// A room with a notch, so that no two poses look alike.
+maps::OccupancyGrid room() {
+  maps::OccupancyGrid map{120, 80, 0.05, {-1, -2, 0.3}, {}};
+  map.cells.assign(120 * 80, maps::Occupancy::free);
+  for (int x = 0; x < 120; ++x)
+    for (int y = 0; y < 80; ++y)
+      if (x < 2 || y < 2 || x >= 118 || y >= 78 || (x > 80 && y > 50))
+        map.at(x, y) = maps::Occupancy::occupied;
+  return map;
+}
+
+template <class Call>
+std::string refusal(Call call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(LocaliserConstruction, RefusesBadOptionsByName) {
+  const auto with = [](LocaliserOptions o) { return refusal([&] { Localiser(room(), o); }); };
+  EXPECT_EQ(with({}), "");
+  EXPECT_NE(with({.beams = 4}).find("localiser.beams"), std::string::npos);
+  EXPECT_NE(with({.hit_deviation = NAN}).find("localiser.hit_deviation"), std::string::npos);
+  EXPECT_NE(with({.least_particles = 900, .most_particles = 800}).find("least_particles"), std::string::npos);
+  EXPECT_NE(with({.slow_rate = 0.5}).find("slow_rate"), std::string::npos);
+}
+
+TEST(LocaliserConstruction, RefusesBadMaps) {
+  const auto with = [](const maps::OccupancyGrid& map) { return refusal([&] { Localiser{map}; }); };
+  maps::OccupancyGrid map = room();
+  std::fill(map.cells.begin(), map.cells.end(), maps::Occupancy::occupied);
+  EXPECT_NE(with(map).find("free cell"), std::string::npos);
+  std::fill(map.cells.begin(), map.cells.end(), maps::Occupancy::free);
+  EXPECT_NE(with(map).find("occupied cell"), std::string::npos);
+  map = room();
+  map.cells.pop_back();
+  EXPECT_NE(with(map).find("width x height"), std::string::npos);
+  map = room();
+  map.resolution = 0;
+  EXPECT_NE(with(map).find("resolution"), std::string::npos);
+  map = room();
+  map.origin.x = NAN;
+  EXPECT_NE(with(map).find("origin"), std::string::npos);
+}
+
+TEST(Localiser, FindsACarThatStandsInATurnedMap) {
+  const maps::OccupancyGrid map = room();
+  const sim::Track track(map);
+  const sim::Lidar lidar({.beams = 361, .field_of_view = 4.7, .range_max = 20, .mount = {0.275, 0, 0}});
+  const maps::Point where = maps::transform(map.origin, {2.1, 1.2});
+  const maps::Pose pose{where.x, where.y, 1.1};
+  std::vector<float> ranges(lidar.padded_beams());
+  lidar.scan(track, lidar.sensor_pose(pose), ranges);
+  const maps::LaserScanView scan{{ranges.data(), 361}, -2.35, 4.7 / 360, 0, 20};
+  for (const SensorModel model : {SensorModel::beam, SensorModel::likelihood_field}) {
+    Localiser localiser(map, {.sensor_model = model});
+    localiser.start_at({pose.x + 0.3, pose.y - 0.2, pose.yaw + 0.1});
+    for (int i = 0; i < 20; ++i) localiser.update({scan, {5, 6, 7}, 0.1 * i});
+    const LocaliserOutput& out = localiser.output();
+    EXPECT_EQ(out.status, LocaliserStatus::ok);
+    EXPECT_LT(error_of(out.pose, pose).distance, 0.05);
+    EXPECT_LT(error_of(out.pose, pose).yaw, 0.02);
+    EXPECT_GT(out.health, 0.9);
+    // The truth lies within what the covariance allows: 4 standard deviations, and 3 cm of the map's cells.
+    EXPECT_LT(std::abs(out.pose.x - pose.x), 4 * std::sqrt(out.covariance[0][0]) + 0.03);
+    EXPECT_LT(std::abs(out.pose.y - pose.y), 4 * std::sqrt(out.covariance[1][1]) + 0.03);
+    EXPECT_EQ(out.covariance[0][1], out.covariance[1][0]);
+    // The odometry's frame is where the odometry says what the estimate is.
+    const maps::Pose frame = localiser.odometry_frame();
+    const maps::Point back = maps::transform(frame, {5, 6});
+    EXPECT_NEAR(back.x, out.pose.x, 1e-9);
+    EXPECT_NEAR(back.y, out.pose.y, 1e-9);
+    const maps::Pose carried = localiser.carried_to({5 + std::cos(7.0), 6 + std::sin(7.0), 7});
+    EXPECT_NEAR(carried.x, out.pose.x + std::cos(out.pose.yaw), 1e-9);
+    EXPECT_NEAR(carried.y, out.pose.y + std::sin(out.pose.yaw), 1e-9);
+  }
+}
+
+TEST(Localiser, GivesTheSameBitsForTheSameSeed) {
+  const auto run = [](std::uint64_t seed) {
+    Localiser localiser(wren().course.map, {.seed = seed});
+    Drive drive(wren(), wren().at(0.2), 3);
+    double sum = 0;
+    for (int i = 0; i < 60; ++i) {
+      if (i == 30) drive.kidnap(wren().at(0.6));
+      const auto& out = localiser.update(drive.input());
+      sum += out.pose.x + 3 * out.pose.y + 7 * out.pose.yaw + 11 * out.covariance[0][1] + out.particles;
+      drive.step();
+    }
+    return sum;
+  };
+  const double once = run(5);
+  EXPECT_EQ(once, run(5));
+  EXPECT_NE(once, run(6));
+}
+
+TEST(Localiser, ResetBeginsLikeANewOne) {
+  Localiser used(room(), {.seed = 1}), fresh(room(), {.seed = 9});
+  Drive drive(wren(), wren().at(0.2), 3);
+  for (int i = 0; i < 5; ++i, drive.step()) used.update(drive.input());
+  used.reset(9);
+  Drive other(wren(), wren().at(0.5), 4);
+  for (int i = 0; i < 5; ++i, other.step()) {
+    used.update(other.input());
+    fresh.update(other.input());
+    EXPECT_EQ(used.output().pose.x, fresh.output().pose.x);
+    EXPECT_EQ(used.output().particles, fresh.output().particles);
+  }
+}
+
+TEST(Localiser, TakesFewerParticlesOnceItIsSure) {
+  Localiser localiser(wren().course.map, {.least_particles = 300, .most_particles = 4000});
+  Drive drive(wren(), wren().at(0.2), 3);
+  EXPECT_EQ(localiser.particle_count(), 4000);
+  localiser.start_at(drive.truth());
+  for (int i = 0; i < 40; ++i, drive.step()) localiser.update(drive.input());
+  EXPECT_LT(localiser.particle_count(), 1000);
+  double sum = 0;
+  for (int i = 0; i < localiser.particle_count(); ++i) sum += localiser.particle(i).weight;
+  EXPECT_NEAR(sum, 1, 1e-6);
+}
+
+TEST(Localiser, AllocatesNothingAfterConstruction) {
+  Localiser localiser(wren().course.map);
+  Drive drive(wren(), wren().at(0.2), 3);
+  std::vector<float> ranges;
+  for (int i = 0; i < 30; ++i, drive.step()) {
+    if (i == 10) localiser.start_at(drive.truth());
+    if (i == 20) drive.kidnap(wren().at(0.7));
+    const LocaliserInput input = drive.input();
+    const int before = allocations;
+    ASSERT_GT(before, 0) << "nothing is counted";
+    localiser.update(input);
+    EXPECT_EQ(allocations, before);
+  }
+}
+
+class BadInput : public testing::Test {
+ protected:
+  BadInput() {
+    localiser.start_at(drive.truth());
+    for (int i = 0; i < 20; ++i) next();
+    EXPECT_EQ(localiser.output().status, LocaliserStatus::ok);
+  }
+  const LocaliserOutput& next() {
+    drive.step();
+    return localiser.update(drive.input());
+  }
+  /// The car's true error stays small through the fault and the localiser is well afterwards.
+  void expect_recovery() {
+    for (int i = 0; i < 40; ++i) next();
+    EXPECT_EQ(localiser.output().status, LocaliserStatus::ok);
+    EXPECT_LT(error_of(localiser.output().pose, drive.truth()).distance, 0.25);
+  }
+  Localiser localiser{wren().course.map};
+  Drive drive{wren(), wren().at(0.2), 3};
+};
+
+TEST_F(BadInput, ScansWithoutReadingsMoveByOdometry) {
+  const std::vector<float> nan(1081, std::numeric_limits<float>::quiet_NaN());
+  const std::vector<float> far(1081, 30.0F);
+  for (int i = 0; i < 10; ++i) {
+    drive.step();
+    LocaliserInput input = drive.input();
+    input.scan.ranges = i % 3 == 0 ? std::span<const float>(nan) : std::span<const float>(far);
+    if (i % 3 == 2) input.scan.ranges = {};
+    EXPECT_EQ(localiser.update(input).status, LocaliserStatus::bad_scan);
+    EXPECT_LT(error_of(localiser.output().pose, drive.truth()).distance, 0.25);
+  }
+  expect_recovery();
+}
+
+TEST_F(BadInput, MalformedScansAreRefused) {
+  drive.step();
+  LocaliserInput input = drive.input();
+  input.scan.angle_increment = NAN;
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::bad_scan);
+  expect_recovery();
+
+  Localiser strict(wren().course.map, {.scan_readings = 1080});
+  EXPECT_EQ(strict.update(drive.input()).status, LocaliserStatus::bad_scan);
+}
+
+TEST_F(BadInput, SomeNanReadingsDoNoHarm) {
+  for (int i = 0; i < 40; ++i) {
+    drive.step();
+    for (std::size_t k = 0; k < drive.ranges().size(); k += 2) drive.ranges()[k] = NAN;
+    const auto& out = localiser.update(drive.input());
+    EXPECT_EQ(out.status, LocaliserStatus::ok);
+    EXPECT_GT(out.beams, 40);
+  }
+  expect_recovery();
+}
+
+TEST_F(BadInput, OdometryThatIsNotFiniteChangesNothing) {
+  const maps::Pose before = localiser.output().pose;
+  LocaliserInput input = drive.input();
+  input.odometry.x = NAN;
+  input.stamp += 0.025;
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::bad_odometry);
+  input = drive.input();
+  input.stamp = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::bad_odometry);
+  EXPECT_EQ(localiser.output().pose.x, before.x);
+  expect_recovery();
+}
+
+TEST_F(BadInput, OdometryJumpsAreBridged) {
+  drive.step();
+  LocaliserInput input = drive.input();
+  input.odometry.x += 5;
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::odometry_jump);
+  EXPECT_LT(error_of(localiser.output().pose, drive.truth()).distance, 0.3);
+  drive.step();
+  EXPECT_EQ(localiser.update(drive.input()).status, LocaliserStatus::odometry_jump);  // and back
+  expect_recovery();
+}
+
+TEST_F(BadInput, OldScansAreIgnoredUntilTheClockIsSetBack) {
+  LocaliserInput input = drive.input();
+  input.stamp -= 0.1;
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::stale);
+  input.stamp -= 100;
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::odometry_jump);
+  input.stamp += 0.025;
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::ok);
+}
+
+TEST_F(BadInput, StartsAtFinitePosesOnly) {
+  EXPECT_FALSE(localiser.start_at({NAN, 0, 0}));
+  expect_recovery();
+}
+
+}  // namespace
+}  // namespace slalom::vehicle
