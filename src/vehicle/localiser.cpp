@@ -31,7 +31,7 @@ constexpr double near_place = 0.5, near_yaw = 0.3;
 /// A place that has long fitted well is given up for a clearly better one only, since opposite directions of
 /// a corridor look alike: the margin grows by itself for every `trust_unit` (s) and doubt wears it off by
 /// updates.
-constexpr double trust_unit = 0.3, most_trust = 3, doubt_keeps = 0.7, least_trust = 0.3;
+constexpr double trust_unit = 0.3, most_trust = 5, doubt_keeps = 0.93, least_trust = 0.3;
 constexpr double relocated_deviation = 0.15, relocated_yaw_deviation = 0.08;
 
 bool is_finite(const maps::Pose& pose) {

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "vehicle/localiser_drive.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+using test::Drive;
+using test::error_of;
+using test::Place;
+
+const Place& wren() {
+  static const Place place("wren");
+  return place;
+}
+
+class BadInput : public testing::Test {
+ protected:
+  BadInput() {
+    localiser.start_at(drive.truth());
+    for (int i = 0; i < 20; ++i) next();
+    EXPECT_EQ(localiser.output().status, LocaliserStatus::ok);
+  }
+  const LocaliserOutput& next() {
+    drive.step();
+    return localiser.update(drive.input());
+  }
+  /// The car's true error stays small through the fault and the localiser is well afterwards.
+  void expect_recovery() {
+    for (int i = 0; i < 40; ++i) next();
+    EXPECT_EQ(localiser.output().status, LocaliserStatus::ok);
+    EXPECT_LT(error_of(localiser.output().pose, drive.truth()).distance, 0.25);
+  }
+  Localiser localiser{wren().course.map};
+  Drive drive{wren(), wren().at(0.2), 3};
+};
+
+TEST_F(BadInput, ScansWithoutReadingsMoveByOdometry) {
+  const std::vector<float> nan(1081, std::numeric_limits<float>::quiet_NaN());
+  const std::vector<float> far(1081, 30.0F);
+  for (int i = 0; i < 10; ++i) {
+    drive.step();
+    LocaliserInput input = drive.input();
+    input.scan.ranges = i % 3 == 0 ? std::span<const float>(nan) : std::span<const float>(far);
+    if (i % 3 == 2) input.scan.ranges = {};
+    EXPECT_EQ(localiser.update(input).status, LocaliserStatus::bad_scan);
+    EXPECT_LT(error_of(localiser.output().pose, drive.truth()).distance, 0.25);
+  }
+  expect_recovery();
+}
+
+TEST_F(BadInput, MalformedScansAreRefused) {
+  drive.step();
+  LocaliserInput input = drive.input();
+  input.scan.angle_increment = NAN;
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::bad_scan);
+  expect_recovery();
+
+  Localiser strict(wren().course.map, {.scan_readings = 1080});
+  EXPECT_EQ(strict.update(drive.input()).status, LocaliserStatus::bad_scan);
+}
+
+TEST_F(BadInput, SomeNanReadingsDoNoHarm) {
+  for (int i = 0; i < 40; ++i) {
+    drive.step();
+    for (std::size_t k = 0; k < drive.ranges().size(); k += 2) drive.ranges()[k] = NAN;
+    const auto& out = localiser.update(drive.input());
+    EXPECT_EQ(out.status, LocaliserStatus::ok);
+    EXPECT_GT(out.beams, 40);
+  }
+  expect_recovery();
+}
+
+TEST_F(BadInput, OdometryThatIsNotFiniteChangesNothing) {
+  const maps::Pose before = localiser.output().pose;
+  LocaliserInput input = drive.input();
+  input.odometry.x = NAN;
+  input.stamp += 0.025;
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::bad_odometry);
+  input = drive.input();
+  input.stamp = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::bad_odometry);
+  EXPECT_EQ(localiser.output().pose.x, before.x);
+  expect_recovery();
+}
+
+TEST_F(BadInput, OdometryJumpsAreBridged) {
+  drive.step();
+  LocaliserInput input = drive.input();
+  input.odometry.x += 5;
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::odometry_jump);
+  EXPECT_LT(error_of(localiser.output().pose, drive.truth()).distance, 0.3);
+  drive.step();
+  EXPECT_EQ(localiser.update(drive.input()).status, LocaliserStatus::odometry_jump);  // and back
+  expect_recovery();
+}
+
+TEST_F(BadInput, OldScansAreIgnoredUntilTheClockIsSetBack) {
+  LocaliserInput input = drive.input();
+  input.stamp -= 0.1;
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::stale);
+  input.stamp -= 100;
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::odometry_jump);
+  input.stamp += 0.025;
+  EXPECT_EQ(localiser.update(input).status, LocaliserStatus::ok);
+}
+
+TEST_F(BadInput, StartsAtFinitePosesOnly) {
+  EXPECT_FALSE(localiser.start_at({NAN, 0, 0}));
+  expect_recovery();
+}
+
+}  // namespace
+}  // namespace slalom::vehicle
