@@ -52,10 +52,10 @@ BENCHMARK(yardstick);
 template <bool two_trajectories>
 void rollouts(benchmark::State& state, simd::Target target) {
   if (!simd::supported(target)) return state.SkipWithError("this processor lacks the instruction set");
-  const auto evaluator = workload().evaluator<two_trajectories>(target);
+  const auto evaluator = workload().evaluator(reference_problem(two_trajectories), target);
   AlignedBuffer costs(static_cast<std::size_t>(sequences().stride()));
   std::vector<std::uint8_t> collided(costs.size());
-  for (auto _ : state) evaluator.evaluate(sequences(), 0, samples, costs.data(), collided.data());
+  for (auto _ : state) evaluator->evaluate(sequences(), 0, samples, costs.data(), collided.data());
   int other = 0;
   for (std::size_t k = 0; k < samples; ++k)
     other += std::abs(static_cast<double>(costs[k]) - expected()[k]) > 1e-3 * std::max(1.0, expected()[k]);

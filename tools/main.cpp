@@ -3,6 +3,7 @@
 #include <exception>
 #include <iostream>
 
+#include "bench_command.hpp"
 #include "drive_command.hpp"
 #include "eval_command.hpp"
 #include "options_command.hpp"
@@ -17,6 +18,7 @@ int main(int argc, char** argv) {
       "slalom"};
   app.set_version_flag("--version", std::string("slalom ") + slalom::version());
   app.require_subcommand(1);
+  slalom::tools::add_bench_command(app, exit_status);
   slalom::tools::add_drive_command(app, exit_status);
   slalom::tools::add_eval_command(app, exit_status);
   slalom::tools::add_options_command(app, exit_status);

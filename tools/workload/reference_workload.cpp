@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "slalom/core/problem_evaluator.hpp"
 #include "slalom/core/random.hpp"
 
 namespace slalom::tools {
@@ -95,10 +96,38 @@ ReferenceWorkload::ReferenceWorkload()
   cost_map_.update(reference_scan(robot_).view());
 }
 
-SequenceBatch ReferenceWorkload::sequences(int samples) const {
-  SequenceBatch batch(steps, 1, samples);
+namespace {
+
+template <bool two_trajectories>
+std::unique_ptr<BatchEvaluator> make_evaluator(const ReferenceWorkload& w,
+                                               const vehicle::PathTrackingOptions& options,
+                                               simd::Target target) {
+  using Problem = vehicle::PathTracking<two_trajectories>;
+  Problem problem(options);
+  problem.set_maps(w.field().view(), w.cost_map().view(), w.robot().x, w.robot().y, w.robot().yaw);
+  auto made = std::make_unique<ProblemEvaluator<Problem>>(problem, target);
+  typename ProblemEvaluator<Problem>::State s{};  // in the robot's frame the car stands at the origin
+  s.x = w.start().x;
+  s.y = w.start().y;
+  s.yaw = w.start().yaw;
+  s.speed = w.start().speed;
+  s.steer = w.start().steer;
+  made->set_state(s);
+  return made;
+}
+
+}  // namespace
+
+std::unique_ptr<BatchEvaluator> ReferenceWorkload::evaluator(const vehicle::PathTrackingOptions& problem,
+                                                             simd::Target target) const {
+  return problem.straight_local_rollout ? make_evaluator<true>(*this, problem, target)
+                                        : make_evaluator<false>(*this, problem, target);
+}
+
+SequenceBatch ReferenceWorkload::sequences(int samples, int steps_wanted) const {
+  SequenceBatch batch(steps_wanted, 1, samples);
   RandomStream random({1, 2});
-  for (int t = 0; t < steps; ++t) {
+  for (int t = 0; t < steps_wanted; ++t) {
     for (int k = 0; k < batch.stride(); ++k) {
       batch.at(t, 0, k) = static_cast<float>(std::clamp(0.05 + 0.2 * random.normal(), -0.45, 0.45));
     }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "slalom/core/problem_evaluator.hpp"
+#include "slalom/core/batch_evaluator.hpp"
 #include "slalom/core/sequence_batch.hpp"
+#include "slalom/core/simd.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"
 #include "slalom/vehicle/path_tracking.hpp"
@@ -39,26 +41,14 @@ class ReferenceWorkload {
   const maps::ReferenceField& field() const { return field_; }
   const maps::LocalCostMap& cost_map() const { return cost_map_; }
 
-  /// Normal samples, steering in [-0.45, 0.45] rad, round a sequence that goes straight on.
-  SequenceBatch sequences(int samples) const;
+  /// Normal samples of `steps` inputs, steering in [-0.45, 0.45] rad, round a sequence that goes straight on.
+  SequenceBatch sequences(int samples, int steps_wanted = steps) const;
 
   Yardstick yardstick() const { return {reference_problem(false), field_, cost_map_, robot_}; }
 
-  template <bool two_trajectories>
-  ProblemEvaluator<vehicle::PathTracking<two_trajectories>> evaluator(simd::Target target) const {
-    using Problem = vehicle::PathTracking<two_trajectories>;
-    Problem problem(reference_problem(two_trajectories));
-    problem.set_maps(field_.view(), cost_map_.view(), robot_.x, robot_.y, robot_.yaw);
-    ProblemEvaluator<Problem> made(problem, target);
-    typename ProblemEvaluator<Problem>::State s{};
-    s.x = start_.x;
-    s.y = start_.y;
-    s.yaw = start_.yaw;
-    s.speed = start_.speed;
-    s.steer = start_.steer;
-    made.set_state(s);
-    return made;
-  }
+  /// The vehicle problem with the maps and the start in place, for one instruction set.
+  std::unique_ptr<BatchEvaluator> evaluator(const vehicle::PathTrackingOptions& problem,
+                                            simd::Target target) const;
 
  private:
   maps::Pose robot_;

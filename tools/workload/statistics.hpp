@@ -1,0 +1,23 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace slalom::tools {
+
+/// Order statistics of measured times.
+struct TimeStatistics {
+  double min = 0, p50 = 0, p99 = 0, p999 = 0, max = 0;
+};
+
+inline TimeStatistics time_statistics(std::vector<double> times) {
+  if (times.empty()) return {};
+  std::sort(times.begin(), times.end());
+  const auto at = [&](double share) {
+    return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1) + 0.5)];
+  };
+  return {times.front(), at(0.5), at(0.99), at(0.999), times.back()};
+}
+
+}  // namespace slalom::tools
