@@ -194,6 +194,69 @@ TEST_P(Contract, ZeroNoiseKeepsTheSolution) {
   }
 }
 
+TEST_P(Contract, WeightsFallWithCostByTheTemperature) {
+  const std::string method = solver_name(GetParam().options);
+  if (method == "cem" || method == "reverse_mppi") GTEST_SKIP() << "has weights of another form";
+  const double temperature = 0.7;
+  const auto solver = make(1, [&](auto& o) {
+    small(o);
+    if constexpr (requires { o.temperature; }) {
+      o.temperature = temperature;
+      o.control_cost_discount = 1;
+    }
+  });
+  const auto evaluator = simple(1, [](float a, float b, int) { return 3.0 * a * a + b; });
+  const auto& result = solver->solve(evaluator, {});
+  double sum = 0;
+  std::size_t best = 0;
+  for (std::size_t k = 0; k < result.costs.size(); ++k) {
+    sum += static_cast<double>(result.weights[k]);
+    if (result.costs[k] < result.costs[best]) best = k;
+  }
+  EXPECT_NEAR(sum, 1, 1e-5);
+  for (std::size_t k = 0; k < result.costs.size(); ++k) {
+    const double expected = static_cast<double>(result.weights[best]) *
+                            std::exp(static_cast<double>(result.costs[best] - result.costs[k]) / temperature);
+    EXPECT_NEAR(result.weights[k], expected, 1e-4 * static_cast<double>(result.weights[best])) << k;
+  }
+}
+
+TEST_P(Contract, ControlTermDrawsTowardsTheNominal) {
+  const std::string method = solver_name(GetParam().options);
+  if (method != "mppi" && method != "svg_mppi") GTEST_SKIP() << "has other terms that move the mean";
+  // All costs are equal, so the control term alone decides: the mean moves from where it is towards the
+  // nominal.
+  const auto solver = make(1, [](auto& o) {
+    small(o);
+    o.samples = 3000;
+    o.zero_mean_share = 0;
+    o.variance = 0.05;
+    o.input_min = -5;
+    o.input_max = 5;
+    if constexpr (requires { o.temperature; }) o.temperature = 1;
+    if constexpr (requires { o.control_cost_discount; }) o.control_cost_discount = 0.5;
+    if constexpr (requires { o.use_nominal; }) o.use_nominal = o.adapt_covariance = false;
+    if constexpr (requires { o.reject_samples; }) o.reject_samples = false;
+  });
+  const auto push = FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
+    double cost = 0;
+    for (int t = 0; t < batch.steps(); ++t)
+      cost += 100 * std::pow(static_cast<double>(batch.at(t, 0, k)) - 1.0, 2);
+    return std::pair(cost, false);
+  });
+  for (int i = 0; i < 40; ++i) solver->solve(push, {});
+  const auto norm = [](std::span<const float> u) {
+    double sum = 0;
+    for (const float v : u) sum += static_cast<double>(v);
+    return sum / static_cast<double>(u.size());
+  };
+  const double before = norm(solver->solve(push, {}).inputs);
+  ASSERT_GT(before, 0.5);
+  const auto indifferent = simple(1, [](float, float, int) { return 0.0; });
+  for (int i = 0; i < 3; ++i) solver->solve(indifferent, {});
+  EXPECT_LT(norm(solver->solve(indifferent, {}).inputs), 0.8 * before);
+}
+
 TEST_P(Contract, AllCollidingIsSaidAndStillAnswered) {
   const auto solver = make(1, small);
   const auto evaluator = FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
