@@ -1,10 +1,9 @@
-#include <yaml-cpp/yaml.h>
-
 #include <cstdlib>
 #include <set>
 
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/configuration.hpp"
+#include "vehicle/yaml_file.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -15,33 +14,17 @@ constexpr const char* folder_name = "configs";
 constexpr const char* marker = "published.yaml";  // tells a folder of ours from another of that name
 constexpr int deepest_base = 8;
 
-YAML::Node load(const fs::path& file) {
-  try {
-    return YAML::LoadFile(file.string());
-  } catch (const YAML::BadFile&) {
-    throw IoError(file.string(), 0, "cannot be opened");
-  } catch (const YAML::Exception& error) {
-    throw IoError(file.string(), error.mark.line + 1, "is not YAML: " + error.msg);
-  }
-}
-
 int line_of(const YAML::Node& node) {
   return node.Mark().line + 1;
-}
-
-[[noreturn]] void refuse(const fs::path& file, const YAML::Node& at, const std::string& key,
-                         const std::string& rule) {
-  const std::string value = at.IsScalar() && !at.Scalar().empty() ? "'" + at.Scalar() + "' " : "";
-  throw IoError(file.string(), line_of(at), "key " + key + ": " + value + rule);
 }
 
 /// An option's value as text: a scalar, or a list of scalars as "[a, b]".
 std::string text_of(const fs::path& file, const std::string& key, const YAML::Node& value) {
   if (value.IsScalar()) return value.Scalar();
-  if (!value.IsSequence()) refuse(file, value, key, "must have a value, or a list of values");
+  if (!value.IsSequence()) detail::refuse(file, value, key, "must have a value, or a list of values");
   std::string text;
   for (const YAML::Node& each : value) {
-    if (!each.IsScalar()) refuse(file, each, key, "must be a list of plain values");
+    if (!each.IsScalar()) detail::refuse(file, each, key, "must be a list of plain values");
     text += (text.empty() ? "[" : ", ") + each.Scalar();
   }
   return text.empty() ? "[]" : text + "]";
@@ -58,7 +41,7 @@ void read_option(Configuration& configuration, const fs::path& file, const std::
                  const YAML::Node& at, const YAML::Node& value) {
   const std::string text = text_of(file, key, value);
   if (value.IsScalar() && value.Tag() == "!" && !is_choice(configuration, key))
-    refuse(file, value, key, "must stand without quotes");
+    detail::refuse(file, value, key, "must stand without quotes");
   try {
     set_option(configuration, key, text);
   } catch (const std::invalid_argument& error) {
@@ -69,10 +52,11 @@ void read_option(Configuration& configuration, const fs::path& file, const std::
 void read_section(Configuration& configuration, const fs::path& file, const std::string& section,
                   const YAML::Node& options) {
   if (options.IsNull()) return;
-  if (!options.IsMap()) refuse(file, options, section, "must be a map of options to values");
+  if (!options.IsMap()) detail::refuse(file, options, section, "must be a map of options to values");
   std::set<std::string> seen;
   for (const auto& entry : options) {
-    if (!entry.first.IsScalar()) refuse(file, entry.first, section, "has a key that is no plain word");
+    if (!entry.first.IsScalar())
+      detail::refuse(file, entry.first, section, "has a key that is no plain word");
     const std::string key = section + "." + entry.first.Scalar();
     if (!seen.insert(key).second)
       throw IoError(file.string(), line_of(entry.first), "key " + key + ": is said twice");
@@ -81,13 +65,14 @@ void read_section(Configuration& configuration, const fs::path& file, const std:
 }
 
 Configuration load_deep(const fs::path& file, const std::vector<fs::path>& roots, int depth) {
-  const YAML::Node root = load(file);
+  const YAML::Node root = detail::load_yaml(file);
   Configuration configuration;
   if (root.IsNull()) return configuration;
   if (!root.IsMap()) throw IoError(file.string(), line_of(root), "must be a map of sections");
   if (const YAML::Node base = root["base"]) {
-    if (!base.IsScalar()) refuse(file, base, "base", "must be the name or file of a configuration");
-    if (depth == deepest_base) refuse(file, base, "base", "leads round in circles, or deeper than 8 files");
+    if (!base.IsScalar()) detail::refuse(file, base, "base", "must be the name or file of a configuration");
+    if (depth == deepest_base)
+      detail::refuse(file, base, "base", "leads round in circles, or deeper than 8 files");
     auto places = roots;
     places.insert(places.begin(), file.parent_path());
     const fs::path beside = file.parent_path() / base.Scalar();

@@ -1,23 +1,12 @@
 #include "vehicle/course_yaml.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <cmath>
 
 #include "slalom/core/error.hpp"
+#include "vehicle/yaml_file.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
-
-YAML::Node load(const std::filesystem::path& file) {
-  try {
-    return YAML::LoadFile(file.string());
-  } catch (const YAML::BadFile&) {
-    throw IoError(file.string(), 0, "cannot be opened");
-  } catch (const YAML::Exception& error) {
-    throw IoError(file.string(), error.mark.line + 1, "is not YAML: " + error.msg);
-  }
-}
 
 /// One value of a file: knows how to complain about itself.
 class Value {
@@ -25,10 +14,7 @@ class Value {
   Value(const std::filesystem::path& file, std::string key, YAML::Node node)
       : file_(file), key_(std::move(key)), node_(std::move(node)) {}
 
-  [[noreturn]] void refuse(const std::string& rule) const {
-    const std::string value = node_.IsScalar() ? "'" + node_.Scalar() + "' " : "";
-    throw IoError(file_.string(), line(), "key " + key_ + ": " + value + rule);
-  }
+  [[noreturn]] void refuse(const std::string& rule) const { detail::refuse(file_, node_, key_, rule); }
 
   double number() const {
     double value = 0;
@@ -81,7 +67,7 @@ class Value {
 }  // namespace
 
 CourseFile read_course_file(const std::filesystem::path& file) {
-  const YAML::Node root = load(file);
+  const YAML::Node root = load_yaml(file);
   CourseFile result;
   if (root.IsNull()) return result;
   if (!root.IsMap()) throw IoError(file.string(), root.Mark().line + 1, "must be a map of keys to values");
@@ -110,7 +96,7 @@ CourseFile read_course_file(const std::filesystem::path& file) {
 }
 
 std::optional<KnownCourse> read_known_course(const std::filesystem::path& file, const std::string& name) {
-  const YAML::Node root = load(file);
+  const YAML::Node root = load_yaml(file);
   if (!root.IsMap()) throw IoError(file.string(), 0, "must be a map of course names to {start, timeout}");
   const YAML::Node node = root[name];
   if (!node) return std::nullopt;

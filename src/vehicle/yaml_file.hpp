@@ -1,0 +1,17 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <filesystem>
+#include <string>
+
+namespace slalom::vehicle::detail {
+
+/// Throws IoError if the file cannot be read or is not YAML.
+YAML::Node load_yaml(const std::filesystem::path& file);
+
+/// Throws the IoError that the value `at` of `key` breaks `rule`.
+[[noreturn]] void refuse(const std::filesystem::path& file, const YAML::Node& at, const std::string& key,
+                         const std::string& rule);
+
+}  // namespace slalom::vehicle::detail
