@@ -6,7 +6,7 @@ namespace slalom {
 enum class Status {
   ok,                ///< solved as asked
   deadline,          ///< stopped at the deadline; the result is the best found until then
-  all_collided,      ///< every sample collided; the result is the best of them
+  all_collided,      ///< every sample collided; the result is the method's answer all the same
   degenerate,        ///< no usable weights (infinite or NaN costs); the result is the fallback of the method
   non_finite_state,  ///< the state given is not finite; nothing was solved, the result repeats the last plan
 };
