@@ -115,6 +115,7 @@ class Bench {
     json["solve_yardstick_steps"] = s.solve.p50 * 1e6 / s.yardstick.p50;
     json["prepared_ms"] = json_of(s.prepared);
     json["yardstick_ns_per_step"] = s.yardstick.p50;
+    json["degenerate_share"] = s.degenerate_share;
     json["stage_ms"] = {{"draw", 1e3 * s.stages.draw},
                         {"evaluate", 1e3 * s.stages.evaluate},
                         {"guide", 1e3 * s.stages.guide},

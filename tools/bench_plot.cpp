@@ -13,7 +13,7 @@ namespace slalom::tools {
 
 namespace {
 
-constexpr double width = 900, height = 560, left = 80, right = 150, top = 50, bottom = 60;
+constexpr double width = 900, height = 560, left = 80, right = 40, top = 50, bottom = 60;
 constexpr double colours[][3] = {{0.12, 0.38, 0.70}, {0.85, 0.33, 0.10}, {0.20, 0.55, 0.25},
                                  {0.50, 0.25, 0.60}, {0.35, 0.35, 0.35}, {0.75, 0.55, 0.10}};
 
@@ -92,10 +92,11 @@ void plot_bench(const std::vector<BenchCurve>& curves, const std::string& title,
     const double* colour = colours[n % std::size(colours)];
     cairo_set_source_rgb(c, colour[0], colour[1], colour[2]);
     const BenchCurve& curve = curves[n];
+    cairo_new_path(c);  // the words before have left a point
     for (std::size_t i = 0; i < curve.samples.size(); ++i)
       cairo_line_to(c, x(curve.samples[i]), y(curve.milliseconds[i]));
     cairo_stroke(c);
-    if (!curve.samples.empty()) text(c, width - right + 8, y(curve.milliseconds.back()) + 5, curve.name, 0);
+    text(c, left + 16, top + 24 + 18 * static_cast<double>(n), curve.name, 0);
   }
   if (cairo_surface_write_to_png(surface.get(), file.c_str()) != CAIRO_STATUS_SUCCESS)
     throw IoError(file, 0, "cannot be written");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -53,6 +54,59 @@ TEST(FillNormal, HasTheMomentsAndTailsOfANormal) {
   EXPECT_NEAR(beyond4 / n, p4, 5 * std::sqrt(p4 / n));
   EXPECT_GT(largest, 4.7);
   EXPECT_LT(largest, 6.7);
+}
+
+/// Anderson and Darling's statistic of sorted values against the standard normal distribution.
+double anderson_darling(const std::vector<double>& sorted) {
+  const double n = static_cast<double>(sorted.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const double low = 0.5 * std::erfc(-sorted[i] / std::sqrt(2.0));
+    const double high = 0.5 * std::erfc(sorted[sorted.size() - 1 - i] / std::sqrt(2.0));
+    sum += (2.0 * static_cast<double>(i) + 1) * (std::log(low) + std::log(high));
+  }
+  return -n - sum / n;
+}
+
+TEST(FillNormal, PassesAndersonDarlingOnMillionsOfDraws) {
+  for (std::uint64_t stream = 0; stream < 4; ++stream) {
+    const int rows = 8, samples = 1 << 17;
+    SequenceBatch batch(rows, 1, samples);
+    fill_normal(batch, 0, samples, {11, stream});
+    std::vector<double> values;
+    for (int t = 0; t < rows; ++t)
+      for (int k = 0; k < samples; ++k) values.push_back(static_cast<double>(batch.at(t, 0, k)));
+    std::sort(values.begin(), values.end());
+    EXPECT_LT(anderson_darling(values), 7.0) << "stream " << stream;  // beyond it lie fewer than 1 in 2000
+  }
+}
+
+TEST(FillNormal, RowsSamplesAndStreamsAreNotCorrelated) {
+  const int rows = 8, samples = 1 << 16;
+  SequenceBatch a(rows, 1, samples), b(rows, 1, samples);
+  fill_normal(a, 0, samples, {5, 1});
+  fill_normal(b, 0, samples, {5, 2});
+  const double bound = 5.5 / std::sqrt(static_cast<double>(samples));
+  const auto correlation = [&](const float* x, const float* y, int count, bool squares) {
+    double sum = 0;
+    for (int k = 0; k < count; ++k) {
+      const double u = static_cast<double>(x[k]), v = static_cast<double>(y[k]);
+      sum += squares ? 0.5 * (u * u - 1) * (v * v - 1) : u * v;
+    }
+    return sum / count;
+  };
+  for (const bool squares : {false, true}) {
+    for (int r = 0; r < rows; ++r) {
+      for (int q = 0; q < r; ++q) {
+        EXPECT_NEAR(correlation(a.row(r, 0), a.row(q, 0), samples, squares), 0, bound) << r << " " << q;
+      }
+      for (const int lag : {1, 2, 4, 8, 16, 64}) {
+        EXPECT_NEAR(correlation(a.row(r, 0), a.row(r, 0) + lag, samples - lag, squares), 0, bound)
+            << r << " " << lag;
+      }
+      EXPECT_NEAR(correlation(a.row(r, 0), b.row(r, 0), samples, squares), 0, bound) << r;
+    }
+  }
 }
 
 TEST(RandomStream, UniformFillsItsRangeEvenly) {

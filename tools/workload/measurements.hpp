@@ -25,6 +25,7 @@ struct SolveSpeed {
   TimeStatistics prepared;   ///< ms, with the noise drawn before the solve
   TimeStatistics yardstick;  ///< ns a step, in between
   StageTimes stages;         ///< s, medians
+  double degenerate_share;   ///< of the solves: the published sv_mpc drives its particles apart
 };
 SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::PathTrackingOptions& problem,
                          const SolverOptions& options, double seconds);
