@@ -1,0 +1,75 @@
+"""Writes type stubs of the compiled module: python3 make_stubs.py OUT.pyi"""
+
+import inspect
+import re
+import sys
+
+import slalom
+from slalom import _slalom
+
+TYPES = {"flag": "bool", "integer": "int", "number": "float", "numbers": "float | Sequence[float]", "choice": "str"}
+METHOD_OF = {"Mppi": "mppi", "SvgMppi": "svg_mppi", "ReverseMppi": "reverse_mppi", "SvMpc": "sv_mpc", "Cem": "cem"}
+
+
+def keyword(option):
+    return f"{option['name']}: {TYPES[option['type']]} = ..."
+
+
+def signature(function):
+    """The signature that stands in front of a bound function's docstring."""
+    first = (function.__doc__ or "").split("\n")[0]
+    match = re.match(r"\w+\((.*)\) -> (.*)$", first)
+    if not match:
+        return "*args: Any, **kwargs: Any", "Any"
+    arguments = re.sub(r"_slalom\.", "", match[1])
+    arguments = re.sub(r"self: [\w.]+", "self", arguments)
+    arguments = re.sub(r"(List|Dict|Tuple)\[", lambda m: m[1].lower() + "[", arguments)
+    arguments = re.sub(r"numpy\.ndarray(\[[^\]]*\])?", "Any", arguments)
+    arguments = re.sub(r": [^,=]*\[[^=]*?\]\]?( = |,|$)", r": Any\1", arguments)
+    arguments = re.sub(r" = [^,)]+(\[[^\]]*\])?", " = ...", arguments)
+    result = re.sub(r"_slalom\.|numpy\.", "", match[2])
+    result = re.sub(r"List\[", "list[", result)
+    return arguments, "NDArray[Any]" if result.startswith("ndarray") or result == "array" else result
+
+
+def class_lines(name, cls):
+    base = cls.__mro__[1].__name__
+    yield f"class {name}({base}):" if not base.startswith("pybind11") else f"class {name}:"
+    yield f'    """{(cls.__doc__ or "").strip()}"""'
+    if name in METHOD_OF:
+        options = ", ".join(keyword(option) for option in slalom.options(METHOD_OF[name]))
+        yield f"    def __init__(self, problem: AnyProblem, *, {options}) -> None: ..."
+    for member, value in vars(cls).items():
+        if isinstance(value, property):
+            yield f"    @property\n    def {member}(self) -> Any: ..."
+            if value.fset:
+                yield f"    @{member}.setter\n    def {member}(self, value: Any) -> None: ..."
+        elif member == "__init__" and name not in METHOD_OF:
+            arguments, _ = signature(value)
+            yield f"    def __init__({arguments or 'self'}) -> None: ..."
+        elif not member.startswith("_") and callable(value):
+            arguments, result = signature(value)
+            yield f"    def {member}({arguments}) -> {result}: ..."
+
+
+def main(out):
+    lines = ["from typing import Any, Sequence", "", "from numpy.typing import NDArray", "", "__version__: str", ""]
+    for name in dir(_slalom):
+        value = getattr(_slalom, name)
+        if name.startswith("_"):
+            continue
+        if inspect.isclass(value) and issubclass(value, Exception):
+            lines += [f"class {name}(OSError): ...", ""]
+        elif inspect.isclass(value):
+            lines += [*class_lines(name, value), ""]
+        else:
+            arguments, result = signature(value)
+            lines += [f"def {name}({arguments}) -> {result}: ...", ""]
+    text = "\n".join(lines)
+    compile(text, out, "exec")
+    with open(out, "w") as file:
+        file.write(text)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,99 @@
+"""An environment round the simulator with the interface of Gymnasium; works without gymnasium too."""
+
+import math
+
+import numpy as np
+
+from ._slalom import Course, World
+
+try:
+    import gymnasium
+
+    Base = gymnasium.Env
+    Box = gymnasium.spaces.Box
+except ImportError:
+    Base = object
+
+    class Box:
+        """An interval for each entry of an array: what is used here of gymnasium.spaces.Box."""
+
+        def __init__(self, low, high, shape=None, dtype=np.float32):
+            self.shape = tuple(shape) if shape is not None else np.shape(low)
+            self.dtype = np.dtype(dtype)
+            self.low = np.broadcast_to(np.asarray(low, dtype), self.shape)
+            self.high = np.broadcast_to(np.asarray(high, dtype), self.shape)
+            self._random = np.random.default_rng(0)
+
+        def sample(self):
+            return self._random.uniform(self.low, self.high).astype(self.dtype)
+
+        def contains(self, x):
+            return np.shape(x) == self.shape and bool(np.all(x >= self.low) and np.all(x <= self.high))
+
+        def seed(self, seed=None):
+            self._random = np.random.default_rng(seed)
+
+
+class RacingEnv(Base):
+    """One car on a course.
+
+    Action: (steering angle rad, speed m/s). Observation: the LiDAR ranges (m), then speed (m/s), yaw rate
+    (rad/s) and steering angle (rad). The reward is the progress along the course (m); a contact ends the
+    episode and costs `contact_penalty`, a lap ends it too.
+    """
+
+    metadata = {"render_modes": []}
+
+    def __init__(self, course="wren", *, control_period=0.025, beams=108, max_speed=8.0, max_steer=0.4189,
+                 contact_penalty=10.0, timeout=60.0):
+        self.course = Course(course) if isinstance(course, str) else course
+        steps = max(1, math.ceil(control_period / 0.005 - 1e-9))
+        self.world = World(self.course, time_step=control_period / steps, beams=beams)
+        self.contact_penalty = contact_penalty
+        self.timeout = timeout
+        self._steps = steps
+        self._seed = 0
+        limit = np.array([max_steer, max_speed], np.float32)
+        self.action_space = Box(np.array([-max_steer, 0], np.float32), limit)
+        low = np.concatenate([np.zeros(beams), [-50, -50, -1.6]]).astype(np.float32)
+        high = np.concatenate([np.full(beams, 100), [50, 50, 1.6]]).astype(np.float32)
+        self.observation_space = Box(low, high)
+
+    def _observe(self):
+        seen = self.world.observe()
+        rest = [seen["speed"], seen["yaw_rate"], seen["steer"]]
+        keep = ("pose", "time", "contact", "laps", "progress", "lateral")
+        info = {key: seen[key] for key in keep if key in seen}
+        return np.concatenate([seen["ranges"], rest]).astype(np.float32), info
+
+    def reset(self, *, seed=None, options=None):
+        """The first observation and its info. `options` may have "start" and "parked" (poses x, y, yaw)."""
+        if Base is not object:
+            super().reset(seed=seed)
+        options = options or {}
+        self._seed = self._seed + 1 if seed is None else seed
+        self.world.reset(self._seed, [options.get("start", self.course.start)], options.get("parked", []))
+        observation, info = self._observe()
+        self._progress = info["progress"]
+        return observation, info
+
+    def step(self, action):
+        """observation, reward, terminated, truncated, info"""
+        action = np.asarray(action, float)
+        if action.shape != (2,):
+            raise ValueError(f"action: has shape {action.shape}, must be (2,)")
+        command = np.clip(action, self.action_space.low, self.action_space.high)
+        for _ in range(self._steps):
+            self.world.step([tuple(command)])
+            contact = self.world.observe()["contact"]
+            if contact:
+                break
+        observation, info = self._observe()
+        info["contact"] = contact
+        reward = info["progress"] - self._progress - self.contact_penalty * contact
+        self._progress = info["progress"]
+        done = bool(contact or info["laps"] > 0)
+        return observation, float(reward), done, info["time"] >= self.timeout, info
+
+    def close(self):
+        pass

@@ -1,0 +1,239 @@
+#include <array>
+
+#include "controller.hpp"
+#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/vehicle/course.hpp"
+
+namespace slalom::python {
+
+namespace {
+
+using evaluation::Arena;
+
+std::vector<std::filesystem::path> course_roots() {
+  const auto module = py::module_::import("slalom");
+  const auto file = module.attr("__file__").cast<std::string>();
+  auto roots = vehicle::course_roots(std::filesystem::path(file).parent_path());
+  return roots;
+}
+
+py::tuple to_tuple(const maps::Pose& pose) {
+  return py::make_tuple(pose.x, pose.y, pose.yaw);
+}
+
+maps::Pose to_pose(const std::array<double, 3>& pose) {
+  return {pose[0], pose[1], pose[2]};
+}
+
+std::shared_ptr<const Arena> load(const std::string& course, const std::string& evaluation) {
+  const auto roots = course_roots();
+  return evaluation::load_arena(vehicle::find_course(course, roots), evaluation::evaluation_named(evaluation),
+                                roots);
+}
+
+/// `{"section.option": value}` or the options of the method itself.
+vehicle::Configuration configure(const std::string& method, const py::dict& options) {
+  vehicle::Configuration configuration;
+  solver_options(method);
+  for (const auto& [key, value] : options) {
+    std::string text = py::isinstance<py::bool_>(value) ? (value.cast<bool>() ? "true" : "false")
+                                                        : py::str(value).cast<std::string>();
+    vehicle::set_option(configuration, key.cast<std::string>(), text, method);
+  }
+  return configuration;
+}
+
+template <class T>
+py::array view(const T* data, std::vector<py::ssize_t> shape, const py::object& owner) {
+  py::array array(py::dtype::of<T>(), shape, data, owner);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+py::dict observe(const py::object& self, std::size_t car) {
+  const auto& world = self.cast<const sim::World&>();
+  if (car >= world.cars()) throw py::index_error("car: there is none of this number");
+  const sim::Observation seen = world.observe(car);
+  py::dict all;
+  all["pose"] = to_tuple(seen.pose);
+  all["speed"] = seen.speed;
+  all["steer"] = seen.steer;
+  all["yaw_rate"] = seen.yaw_rate;
+  all["time"] = seen.time;
+  all["ranges"] = view(seen.scan.ranges.data(), {static_cast<py::ssize_t>(seen.scan.ranges.size())}, self);
+  all["angle_min"] = seen.scan.angle_min;
+  all["angle_increment"] = seen.scan.angle_increment;
+  all["range_min"] = seen.scan.range_min;
+  all["range_max"] = seen.scan.range_max;
+  all["contact"] = seen.contact();
+  all["wall"] = seen.wall;
+  if (const auto* laps = world.laps(car)) {
+    all["laps"] = laps->laps();
+    all["progress"] = laps->progress();
+    all["lateral"] = laps->lateral();
+  }
+  return all;
+}
+
+void bind_world(py::module_& module) {
+  py::class_<Arena, std::shared_ptr<Arena>>(module, "Course", "A course made ready to drive on.")
+      .def(py::init([](const std::string& course, const std::string& evaluation) {
+             return std::const_pointer_cast<Arena>(load(course, evaluation));
+           }),
+           py::arg("course"), py::arg("evaluation") = "true",
+           "`course`: a name or a folder. `evaluation`: 'true' or 'published'.")
+      .def_property_readonly("name", [](const Arena& a) { return a.course.name; })
+      .def_property_readonly(
+          "length", [](const Arena& a) { return a.course.length; }, "m")
+      .def_property_readonly(
+          "start", [](const Arena& a) { return to_tuple(a.start); }, "x, y (m), yaw (rad)")
+      .def_property_readonly(
+          "waypoints",
+          [](const Arena& a) {
+            py::array_t<double> all({static_cast<py::ssize_t>(a.path.size()), py::ssize_t{4}});
+            auto rows = all.mutable_unchecked<2>();
+            for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
+              const auto& p = a.course.waypoints[static_cast<std::size_t>(i)];
+              rows(i, 0) = p.x, rows(i, 1) = p.y, rows(i, 2) = p.yaw, rows(i, 3) = p.speed;
+            }
+            return all;
+          },
+          "float64 [n, 4]: x, y (m), yaw (rad), speed (m/s)");
+  py::class_<sim::World>(module, "World", "Cars with LiDAR on a course, simulated.")
+      .def(py::init([](const Arena& arena, double time_step, int beams, double noise) {
+             sim::WorldOptions options = arena.world_options();
+             options.time_step = time_step;
+             options.lidar.beams = beams;
+             options.lidar.noise = noise;
+             options.lidar.rate = 0;
+             return sim::World(options, arena.track);
+           }),
+           py::arg("course"), py::kw_only(), py::arg("time_step") = 0.005, py::arg("beams") = 1080,
+           py::arg("noise") = 0.01)
+      .def(
+          "reset",
+          [](sim::World& self, std::uint64_t seed, const std::vector<std::array<double, 3>>& cars,
+             const std::vector<std::array<double, 3>>& parked) {
+            std::vector<maps::Pose> starts, others;
+            for (const auto& pose : cars) starts.push_back(to_pose(pose));
+            for (const auto& pose : parked) others.push_back(to_pose(pose));
+            self.reset(seed, starts, others);
+          },
+          py::arg("seed"), py::arg("cars"), py::arg("parked") = std::vector<std::array<double, 3>>{},
+          "Begins anew: driven cars at rest at `cars`, parked ones at `parked`, each (x, y, yaw).")
+      .def(
+          "step",
+          [](sim::World& self, const std::vector<std::array<double, 2>>& commands, int steps) {
+            std::vector<sim::Command> all;
+            for (const auto& c : commands) all.push_back({c[0], c[1]});
+            sim::StepStatus status = sim::StepStatus::ok;
+            {
+              const py::gil_scoped_release unlock;
+              for (int k = 0; k < steps; ++k) status = self.step(all);
+            }
+            if (status == sim::StepStatus::missing_command)
+              throw py::value_error("commands: one for each car");
+            if (status == sim::StepStatus::non_finite_command)
+              throw py::value_error("commands: must be finite");
+          },
+          py::arg("commands"), py::arg("steps") = 1,
+          "Moves by `steps` time steps; a command is (steering angle rad, speed m/s).")
+      .def("observe", observe, py::arg("car") = 0,
+           "What a car knows, by name; `ranges` is a view that the next step overwrites.")
+      .def_property_readonly("time", &sim::World::time, "s since the reset")
+      .def_property_readonly(
+          "time_step", [](const sim::World& w) { return w.options().time_step; }, "s");
+}
+
+py::dict lap_dict(const evaluation::LapResult& lap) {
+  py::dict all;
+  all["seed"] = lap.seed;
+  all["finished"] = lap.finished;
+  all["timeout"] = lap.timeout;
+  all["contacts"] = lap.contacts;
+  all["time"] = lap.time;
+  all["steps"] = lap.steps;
+  all["state_cost"] = lap.state_cost;
+  all["collision_cost"] = lap.collision_cost;
+  all["mean_sequence_cost"] = lap.mean_sequence_cost;
+  all["mean_speed"] = lap.mean_speed;
+  all["least_clearance"] = lap.least_clearance;
+  all["solve_ms"] = py::array_t<float>(static_cast<py::ssize_t>(lap.solve_ms.size()), lap.solve_ms.data());
+  return all;
+}
+
+void bind_planner(py::module_& module) {
+  py::class_<vehicle::Planner>(module, "Planner", "From LiDAR scan and odometry to steering and speed.")
+      .def(py::init([](const Arena& arena, const std::string& method, const py::dict& options) {
+             const auto configuration = configure(method, options);
+             return vehicle::Planner(configuration.planner, configuration.vehicle, arena.path,
+                                     arena.course.closed, vehicle::make_solver(configuration, method, 1));
+           }),
+           py::arg("course"), py::arg("method") = "svg_mppi", py::arg("options") = py::dict(),
+           "`options`: {'samples': 2000, 'planner.max_speed': 4, 'vehicle....': ...}")
+      .def(
+          "update",
+          [](vehicle::Planner& self,
+             const py::array_t<float, py::array::c_style | py::array::forcecast>& ranges, double angle_min,
+             double angle_increment, double range_min, double range_max, const std::array<double, 3>& pose,
+             double speed) {
+            const maps::LaserScanView scan{{ranges.data(), static_cast<std::size_t>(ranges.size())},
+                                           angle_min,
+                                           angle_increment,
+                                           range_min,
+                                           range_max};
+            const vehicle::PlannerOutput* output = nullptr;
+            {
+              const py::gil_scoped_release unlock;
+              output = &self.update({scan, {to_pose(pose), speed}});
+            }
+            py::array_t<double> predicted(
+                {static_cast<py::ssize_t>(output->predicted.size()), py::ssize_t{4}});
+            auto rows = predicted.mutable_unchecked<2>();
+            for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
+              const auto& state = output->predicted[static_cast<std::size_t>(i)];
+              rows(i, 0) = state.pose.x, rows(i, 1) = state.pose.y;
+              rows(i, 2) = state.pose.yaw, rows(i, 3) = state.speed;
+            }
+            py::dict all;
+            all["status"] = vehicle::name(output->status);
+            all["steer"] = output->command.steer;
+            all["speed"] = output->command.speed;
+            all["predicted"] = predicted;
+            all["tick_time"] = output->tick_time;
+            return all;
+          },
+          py::arg("ranges"), py::kw_only(), py::arg("angle_min"), py::arg("angle_increment"),
+          py::arg("range_min") = 0.0, py::arg("range_max"), py::arg("pose"), py::arg("speed"),
+          "`pose`: (x, y, yaw) of the rear axle. Returns status, steer (rad), speed (m/s), predicted [n, 4].")
+      .def("reset", &vehicle::Planner::reset, py::arg("seed") = 0);
+  module.def(
+      "drive_lap",
+      [](const std::shared_ptr<Arena>& arena, const std::string& method, std::uint64_t seed, int obstacles,
+         const py::dict& options) {
+        evaluation::LapSettings settings;
+        settings.obstacles = obstacles;
+        evaluation::LapRunner runner(arena, configure(method, options), method, settings);
+        evaluation::LapResult lap;
+        {
+          const py::gil_scoped_release unlock;
+          lap = runner.run(seed);
+        }
+        return lap_dict(lap);
+      },
+      py::arg("course"), py::arg("method") = "svg_mppi", py::kw_only(), py::arg("seed") = 0,
+      py::arg("obstacles") = 0, py::arg("options") = py::dict(),
+      "Drives one lap in lockstep and returns its figures, as `slalom eval` counts them.");
+}
+
+}  // namespace
+
+void bind_driving(py::module_& module) {
+  bind_world(module);
+  bind_planner(module);
+  module.def(
+      "courses", [] { return vehicle::course_names(course_roots()); },
+      "The names of the courses that are found.");
+}
+
+}  // namespace slalom::python

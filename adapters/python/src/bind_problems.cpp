@@ -1,0 +1,127 @@
+#include "callable_problem.hpp"
+#include "controller.hpp"
+#include "slalom/problems/car.hpp"
+#include "slalom/problems/cart_pole.hpp"
+#include "slalom/problems/differential_drive.hpp"
+#include "slalom/problems/pendulum.hpp"
+#include "slalom/problems/quadrotor.hpp"
+
+namespace slalom::python {
+
+namespace {
+
+template <class P>
+void bind_problem(py::module_& module, const char* name, const std::string& words) {
+  using Bound = BuiltIn<P>;
+  const std::string text =
+      words + "\n\nKeyword arguments, also attributes, with their defaults:\n\n" + options_text(P{});
+  py::class_<Bound, AnyProblem> bound(module, name, text.c_str());
+  bound.def(py::init([name](const py::kwargs& keywords) {
+    P problem;
+    set_from_keywords(problem, keywords, name);
+    validate_options(problem, name);
+    return std::make_unique<Bound>(problem, name);
+  }));
+  for (const OptionEntry& entry : list_options(P{})) {
+    const std::string key = entry.declaration.name;
+    bound.def_property(
+        key.c_str(),
+        [key](const Bound& self) {
+          py::object value;
+          visit_options(self.problem(), [&](const auto& field, const Declaration& d) {
+            if (key == d.name) value = py::cast(field);
+          });
+          return value;
+        },
+        [key, name](Bound& self, const py::object& value) {
+          P changed = self.problem();
+          set_from_keywords(changed, py::kwargs(py::dict(py::arg(key.c_str()) = value)), name);
+          validate_options(changed, name);
+          self.problem() = changed;
+        },
+        entry.declaration.help);
+  }
+  if constexpr (requires(P & p) { p.discs[0].radius; }) {
+    bound.def_property(
+        "discs",
+        [](const Bound& self) {
+          py::list all;
+          for (const auto& disc : self.problem().discs)
+            all.append(py::make_tuple(disc.x, disc.y, disc.radius));
+          return all;
+        },
+        [](Bound& self, const std::vector<std::array<double, 3>>& values) {
+          auto& discs = self.problem().discs;
+          if (values.size() != discs.size())
+            throw std::invalid_argument("discs: must be " + std::to_string(discs.size()) +
+                                        " of (x, y, radius)");
+          for (std::size_t i = 0; i < discs.size(); ++i)
+            discs[i] = {values[i][0], values[i][1], values[i][2]};
+        },
+        "(x, y, radius) of each disc, m");
+  }
+}
+
+std::span<const double> checked(const std::vector<double>& values, int count, const char* what) {
+  if (static_cast<int>(values.size()) != count)
+    throw std::invalid_argument(std::string(what) + ": has " + std::to_string(values.size()) +
+                                " values, must have " + std::to_string(count));
+  return values;
+}
+
+}  // namespace
+
+void bind_problems(py::module_& module) {
+  py::class_<AnyProblem>(module, "AnyProblem", "What all problems have in common.")
+      .def_property_readonly("states", &AnyProblem::states, "scalars of a state")
+      .def_property_readonly("inputs", &AnyProblem::inputs, "inputs a step")
+      .def(
+          "step",
+          [](AnyProblem& self, const std::vector<double>& state, const std::vector<double>& input) {
+            const auto next =
+                self.step(checked(state, self.states(), "state"), checked(input, self.inputs(), "input"));
+            return py::array_t<double>(static_cast<py::ssize_t>(next.size()), next.data());
+          },
+          py::arg("state"), py::arg("input"), "The state after one step, in double.")
+      .def(
+          "collides",
+          [](AnyProblem& self, const std::vector<double>& state) {
+            return self.predict(checked(state, self.states(), "state"), {}).collided;
+          },
+          py::arg("state"), "Whether the problem's terminal cost says that a state collides.");
+  py::class_<CallableProblem, AnyProblem>(
+      module, "Problem",
+      "A problem of one's own: callables on batches of K samples.\n\n"
+      "dynamics(x[K, states], u[K, inputs]) -> x[K, states]\n"
+      "cost(x, u) -> [K], or a pair ([K], collided[K])\n"
+      "terminal_cost(x) -> the same, or None\n\n"
+      "x and u are float32, with the samples of a column side by side in memory; u is a view of the solver's "
+      "memory, valid during the call. What dynamics returns is handed on as it is.")
+      .def(py::init<py::object, py::object, py::object, int, int, double>(), py::arg("dynamics"),
+           py::arg("cost"), py::arg("terminal_cost") = py::none(), py::kw_only(), py::arg("states"),
+           py::arg("inputs"), py::arg("dt") = 0.0)
+      .def_property("dt", &CallableProblem::dt, &CallableProblem::set_dt,
+                    "s, duration of a step; 0: not known");
+  bind_problem<problems::Pendulum>(module, "Pendulum",
+                                   "A pendulum whose motor is too weak to lift it. State: angle from upright "
+                                   "(rad), rate (rad/s); input: torque (N m).");
+  bind_problem<problems::CartPole>(
+      module, "CartPole",
+      "A pole on a cart. State: position (m), speed (m/s), angle from upright (rad), "
+      "rate (rad/s); input: force (N).");
+  bind_problem<problems::DifferentialDrive>(
+      module, "DifferentialDrive",
+      "A robot with two driven wheels among discs. State: x, y (m), yaw "
+      "(rad); inputs: speed (m/s), yaw rate (rad/s).");
+  bind_problem<problems::Quadrotor>(
+      module, "Quadrotor",
+      "A quadrotor in the vertical plane and a wall with two gaps. State: x, z (m), "
+      "tilt (rad) and their rates; inputs: thrust beyond the weight (m/s^2), "
+      "turning acceleration (rad/s^2).");
+  bind_problem<problems::Car>(
+      module, "Car",
+      "A car that steers and accelerates among parked cars. State: x, y (m), yaw (rad), "
+      "speed (m/s); inputs: steering angle (rad), acceleration (m/s^2).");
+}
+
+}  // namespace slalom::python

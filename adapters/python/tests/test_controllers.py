@@ -1,0 +1,179 @@
+import threading
+
+import numpy as np
+import pytest
+import slalom
+
+CLASSES = [slalom.Mppi, slalom.SvgMppi, slalom.ReverseMppi, slalom.SvMpc, slalom.Cem]
+
+
+def linear(**changes):
+    def dynamics(x, u):
+        return np.stack([x[:, 0] + np.float32(0.1) * x[:, 1], x[:, 1] + np.float32(0.1) * u[:, 0]]).T
+
+    def cost(x, u):
+        return x[:, 0] ** 2 + np.float32(0.1) * x[:, 1] ** 2 + np.float32(0.1) * u[:, 0] ** 2
+
+    return slalom.Problem(**{"dynamics": dynamics, "cost": cost, "states": 2, "inputs": 1, "dt": 0.1, **changes})
+
+
+@pytest.mark.parametrize("method", CLASSES)
+def test_every_method_solves_both_kinds_of_problem(method):
+    for problem, state in (slalom.Pendulum(), [0.2, 0.0]), (linear(), [0.5, 0.0]):
+        controller = method(problem, horizon=10, input_min=-5, input_max=5, samples=64)
+        plan = controller.solve(state)
+        assert plan.status in ("ok", "degenerate") and plan.inputs.shape == (10, 1)
+        assert np.all(np.abs(plan.inputs) <= 5) and plan.states.shape == (11, 2)
+        assert plan.states[0] == pytest.approx(state)
+
+
+def test_every_option_is_a_keyword_with_its_default():
+    for method, cls in zip(slalom.methods(), CLASSES):
+        controller = cls(slalom.Pendulum())
+        assert controller.method == method
+        for option in slalom.options(method):
+            assert controller.options[option["name"]] == option["default"]
+            again = cls(slalom.Pendulum(), **{option["name"]: option["default"]})
+            assert again.options == controller.options
+            assert option["name"] in cls.__doc__
+
+
+def test_mistakes_name_the_option_the_value_and_the_rule():
+    with pytest.raises(ValueError, match=r"mppi.samples: 0 is not in \[1, "):
+        slalom.Mppi(slalom.Pendulum(), samples=0)
+    with pytest.raises(TypeError, match="no option 'sample'; is 'samples' meant"):
+        slalom.Mppi(slalom.Pendulum(), sample=10)
+    with pytest.raises(TypeError, match="mppi.samples: 'many' must be a whole number"):
+        slalom.Mppi(slalom.Pendulum(), samples="many")
+    with pytest.raises(TypeError, match="mppi.samples: 1.5 must be a whole number"):
+        slalom.Mppi(slalom.Pendulum(), samples=1.5)
+    with pytest.raises(ValueError, match="svg_mppi.guide_weight"):
+        slalom.SvgMppi(slalom.Pendulum(), guide_weight="nothing")
+    with pytest.raises(ValueError, match="input_min"):
+        slalom.Mppi(slalom.Pendulum(), input_min=[1, 2])
+    with pytest.raises(ValueError, match="Pendulum.dt"):
+        slalom.Pendulum(dt=-1)
+    with pytest.raises(ValueError, match="state: has 3 values, must have 2"):
+        slalom.Mppi(slalom.Pendulum()).solve([0, 0, 0])
+
+
+def test_results_are_views_of_the_controller():
+    controller = slalom.SvgMppi(slalom.Pendulum(), horizon=8, samples=100, input_min=-5, input_max=5)
+    plan = controller.solve([1.0, 0.0])
+    shapes = {"inputs": (8, 1), "nominal": (8, 1), "covariance": (8, 1), "samples": (100, 8, 1), "costs": (100,),
+              "weights": (100,), "samples_collided": (100,), "guides": (1, 8, 1), "guide_path": (10, 8, 1)}
+    for name, shape in shapes.items():
+        array = getattr(plan, name)
+        assert array.shape == shape and array.base is not None and not array.flags.writeable, name
+    assert plan.weights.sum() == pytest.approx(1, abs=1e-4)
+    assert plan.samples[:, 0, 0].std() > 0
+    kept = plan.inputs
+    controller.solve([1.0, 0.0])
+    with pytest.raises(RuntimeError, match="solved again"):
+        plan.inputs
+    del controller, plan
+    assert np.all(np.isfinite(kept))  # the view keeps the memory
+
+
+def test_the_callable_problem_agrees_with_the_one_of_ours():
+    def dynamics(x, u):
+        rate = x[:, 1] + np.float32(0.02) * (np.float32(9.81) * np.sin(x[:, 0]) + u[:, 0])
+        return np.stack([x[:, 0] + np.float32(0.02) * rate, rate]).T
+
+    def cost(x, u):
+        return np.float32(0.02) * (
+            10 * (1 - np.cos(x[:, 0])) + np.float32(0.1) * x[:, 1] ** 2 + np.float32(0.01) * u[:, 0] ** 2)
+
+    def terminal_cost(x):
+        return (x[:, 1] ** 2 / 2 + np.float32(9.81) * (np.cos(x[:, 0]) - 1)) ** 2
+
+    mine = slalom.Problem(dynamics, cost, terminal_cost, states=2, inputs=1, dt=0.02)
+    plans = [slalom.Mppi(p, horizon=20, samples=300, seed=5).solve([2.0, 0.5]) for p in (mine, slalom.Pendulum())]
+    np.testing.assert_allclose(plans[0].costs, plans[1].costs, rtol=1e-4)
+    np.testing.assert_allclose(plans[0].inputs, plans[1].inputs, atol=1e-3)
+    assert plans[0].cost == pytest.approx(plans[1].cost, rel=1e-3)
+
+
+def test_callables_get_whole_batches_without_copies():
+    seen = []
+
+    def cost(x, u):
+        seen.append((x.shape, u.shape, u.flags.owndata, u.flags.writeable, u.dtype, u.strides[0]))
+        return np.zeros(len(x), np.float32)
+
+    slalom.Mppi(linear(cost=cost), horizon=4, samples=1000).solve([0, 0])
+    assert seen == [((1000, 2), (1000, 1), False, False, np.float32, 4)] * 4
+
+
+def test_collisions_of_callables_are_told():
+    def cost(x, u):
+        return x[:, 0] ** 2, u[:, 0] > 0
+
+    plan = slalom.Mppi(linear(cost=cost), horizon=3, samples=200).solve([0, 0])
+    assert 0.7 < plan.collided_share < 0.95
+    plan = slalom.Mppi(linear(cost=lambda x, u: (x[:, 0], x[:, 0] < 1)), horizon=3).solve([0, 0])
+    assert plan.status == "all_collided" and plan.collided
+
+
+@pytest.mark.parametrize("changes, error, text", [
+    ({"cost": lambda x, u: 1 / 0}, ZeroDivisionError, "division"),
+    ({"cost": lambda x, u: np.zeros(3)}, ValueError, r"cost: returned shape \(3\), must be \(64,\)"),
+    ({"cost": lambda x, u: 0.0}, TypeError, "cost: returned <class 'float'>, must be an array"),
+    ({"dynamics": lambda x, u: x[:, :1]}, ValueError, r"dynamics: returned shape \(64, 1\), must be \(64, 2\)"),
+])
+@pytest.mark.parametrize("threads", [1, 3])
+def test_what_a_callable_throws_is_thrown_by_solve(changes, error, text, threads):
+    controller = slalom.Mppi(linear(**changes), samples=64, threads=threads)
+    for _ in range(2):
+        with pytest.raises(error, match=text):
+            controller.solve([0, 0])
+
+
+def test_a_bad_problem_is_refused():
+    with pytest.raises(ValueError, match="dynamics: must be callable"):
+        linear(dynamics=3)
+    with pytest.raises(ValueError, match="states: 0 must be in"):
+        linear(states=0)
+
+
+def test_solving_lets_other_threads_run():
+    controller = slalom.Mppi(slalom.Pendulum(), horizon=200, samples=200000)
+    ticks, done = [], threading.Event()
+
+    def count():
+        while not done.is_set():
+            ticks.append(1)
+            done.wait(0.0002)
+
+    other = threading.Thread(target=count)
+    other.start()
+    before = len(ticks)
+    controller.solve([1.0, 0.0])
+    during = len(ticks) - before
+    done.set()
+    other.join()
+    assert during >= 2
+
+
+def test_threads_do_not_change_the_plan():
+    plans = [slalom.SvgMppi(slalom.CartPole(), threads=n, seed=3, guides=4).solve([0, 0, 3, 0]) for n in (1, 2, 7)]
+    assert np.array_equal(plans[0].inputs, plans[1].inputs) and np.array_equal(plans[0].inputs, plans[2].inputs)
+
+
+def test_parameters_change_between_solves():
+    controller = slalom.Mppi(slalom.DifferentialDrive(), input_min=[0, -2], input_max=[1.5, 2])
+    controller.problem.goal_x = -3
+    assert controller.problem.goal_x == -3 and slalom.DifferentialDrive().goal_x == 8
+    controller.problem.discs = [(0, 0, 0.1)] * 3
+    assert controller.problem.discs[2] == (0, 0, 0.1)
+    with pytest.raises(ValueError):
+        controller.problem.dt = 0
+
+
+def test_reset_repeats_and_a_bad_state_is_told():
+    controller = slalom.SvgMppi(slalom.Pendulum(), input_min=-5, input_max=5)
+    first = controller.solve([1.0, 0.0]).inputs.copy()
+    controller.reset(0)
+    assert np.array_equal(controller.solve([1.0, 0.0]).inputs, first)
+    plan = controller.solve([np.nan, 0.0])
+    assert plan.status == "non_finite_state" and np.array_equal(plan.inputs, first)

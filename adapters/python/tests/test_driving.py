@@ -1,0 +1,70 @@
+import ast
+import pathlib
+
+import numpy as np
+import pytest
+import slalom
+from slalom.env import RacingEnv
+
+
+def test_the_environment_drives_and_repeats():
+    runs = []
+    for _ in range(2):
+        env = RacingEnv("wren", beams=54)
+        observation, info = env.reset(seed=3)
+        assert env.observation_space.contains(observation) and observation.dtype == np.float32
+        total = 0.0
+        for _ in range(40):
+            observation, reward, terminated, truncated, info = env.step([0.0, 1.0])
+            total += reward
+            assert not truncated
+            if terminated:
+                break
+        runs.append((observation, total, info["pose"]))
+    assert total > 0.3
+    assert np.array_equal(runs[0][0], runs[1][0]) and runs[0][1:] == runs[1][1:]
+
+
+def test_a_contact_ends_the_episode():
+    env = RacingEnv("wren", beams=54)
+    env.reset(seed=0)
+    for _ in range(400):
+        _, reward, terminated, _, info = env.step([0.4, 3.0])
+        if terminated:
+            break
+    assert terminated and info["contact"] and reward < -5
+    with pytest.raises(ValueError, match="action"):
+        env.step([0.0])
+
+
+def test_a_lap_is_driven_and_counted():
+    course = slalom.Course("wren")
+    assert course.waypoints.shape[1] == 4 and course.length > 10
+    options = {"horizon": 14, "samples": 1000, "temperature": 3, "input_min": -0.4189, "input_max": 0.4189,
+               "guide_step": 0.005, "guide_variance": 0.01, "gradient_variance": 0.01, "gradient_temperature": 3,
+               "variance_min": 0.001, "variance_max": 0.1}
+    lap = slalom.drive_lap(course, "svg_mppi", seed=1, options=options)
+    assert lap["finished"] and lap["contacts"] == 0 and len(lap["solve_ms"]) == lap["steps"]
+    same = slalom.drive_lap(course, "svg_mppi", seed=1, options=options)
+    assert same["time"] == lap["time"] and same["mean_sequence_cost"] == lap["mean_sequence_cost"]
+
+
+def test_mistakes_are_told():
+    with pytest.raises(slalom.IoError, match="nowhere_to_be_found"):
+        slalom.Course("nowhere_to_be_found")
+    course = slalom.Course("wren")
+    with pytest.raises(ValueError, match="method"):
+        slalom.Planner(course, "no_method")
+    with pytest.raises(ValueError, match="samples"):
+        slalom.Planner(course, options={"samples": 0})
+    world = slalom.World(course)
+    world.reset(0, [course.start])
+    with pytest.raises(ValueError, match="commands"):
+        world.step([])
+
+
+def test_the_stubs_name_everything():
+    text = (pathlib.Path(slalom.__file__).parent / "_slalom.pyi").read_text()
+    names = {node.name for node in ast.parse(text).body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+    assert set(slalom.__all__) - {"__version__"} <= names
+    assert "gradient_samples: int = ..." in text
