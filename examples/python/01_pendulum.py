@@ -35,7 +35,7 @@ def stands(controller):
 
 
 common = dict(horizon=60, samples=512, temperature=0.2, input_min=-5, input_max=5)
-mppi = succeeded(lambda seed: stands(slalom.Mppi(pendulum, **common, variance=4, seed=seed)), 5)
+mppi = succeeded(lambda seed: stands(slalom.Mppi(pendulum, **common, variance=4, seed=seed)), 3)
 svg_mppi = succeeded(lambda seed: stands(slalom.SvgMppi(
-    pendulum, **common, gradient_variance=1, variance_min=1, variance_max=4, guide_iterations=3, seed=seed)), 5)
-report("the pendulum stands", mppi, svg_mppi, 5, seeds=5)
+    pendulum, **common, gradient_variance=1, variance_min=1, variance_max=4, seed=seed)), 3)
+report("the pendulum stands", mppi, svg_mppi, 3, seeds=3)

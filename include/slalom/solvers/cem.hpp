@@ -5,7 +5,7 @@
 namespace slalom {
 
 /// A controller that solves its problem with `cem`: the cross-entropy method.
-template <Problem P>
+template <class P>
 class Cem : public Controller<P> {
  public:
   explicit Cem(P problem, const CemOptions& options = {}, std::shared_ptr<ThreadPool> pool = nullptr)

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "slalom/core/problem_check.hpp"
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/solvers/make_solver.hpp"
 
@@ -33,8 +34,10 @@ struct Plan {
 ///     if (plan.status == slalom::Status::ok) apply(plan.inputs[0]);
 ///
 /// Construction allocates and may throw std::invalid_argument; `solve` does neither.
-template <Problem P>
+template <class P>
 class Controller {
+  static_assert(detail::check_problem<P>());
+
  public:
   using State = detail::StateOf<P, double>;
 

@@ -6,7 +6,7 @@ namespace slalom {
 
 /// A controller that solves its problem with `mppi`: model predictive path integral control (Williams et al.,
 /// "Information-Theoretic Model Predictive Control", IEEE T-RO 2018).
-template <Problem P>
+template <class P>
 class Mppi : public Controller<P> {
  public:
   explicit Mppi(P problem, const MppiOptions& options = {}, std::shared_ptr<ThreadPool> pool = nullptr)

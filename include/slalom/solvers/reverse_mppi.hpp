@@ -6,7 +6,7 @@ namespace slalom {
 
 /// A controller that solves its problem with `reverse_mppi`: mirror descent on the reverse KL divergence with
 /// sample rejection (Kobayashi and Fukumoto 2022).
-template <Problem P>
+template <class P>
 class ReverseMppi : public Controller<P> {
  public:
   explicit ReverseMppi(P problem, const ReverseMppiOptions& options = {},

@@ -5,7 +5,7 @@
 namespace slalom {
 
 /// A controller that solves its problem with `sv_mpc`: Stein variational MPC (Lambert et al., CoRL 2020).
-template <Problem P>
+template <class P>
 class SvMpc : public Controller<P> {
  public:
   explicit SvMpc(P problem, const SvMpcOptions& options = {}, std::shared_ptr<ThreadPool> pool = nullptr)

@@ -6,7 +6,7 @@ namespace slalom {
 
 /// A controller that solves its problem with `svg_mppi`: Stein variational guided MPPI (Honda et al., ICRA
 /// 2024).
-template <Problem P>
+template <class P>
 class SvgMppi : public Controller<P> {
  public:
   explicit SvgMppi(P problem, const SvgMppiOptions& options = {}, std::shared_ptr<ThreadPool> pool = nullptr)

@@ -1,0 +1,55 @@
+// A problem with at most one mistake: compiled with MISTAKE=0 it is right, otherwise the compiler must say
+// what is wrong.
+#include "slalom/slalom.hpp"
+
+struct Point {
+#if MISTAKE != 1
+  template <class T>
+  struct State {
+    T position;
+#if MISTAKE == 3
+    int count;
+#endif
+  };
+#endif
+#if MISTAKE != 2
+  static constexpr int inputs = 1;
+#endif
+#if MISTAKE == 4
+  State<double> step(const State<double>& x, const slalom::Input<double, 1>& u) const {
+    return {x.position + u[0]};
+  }
+#elif MISTAKE == 5
+  template <class T>
+  T step(const State<T>& x, const slalom::Input<T, 1>& u) const {
+    return x.position + u[0];
+  }
+#elif MISTAKE == 6
+  template <class T>
+  State<T> step(const State<T>& x, const slalom::Input<T, 1>& u) {
+    return {x.position + u[0]};
+  }
+#elif MISTAKE != 1
+  template <class T>
+  State<T> step(const State<T>& x, const slalom::Input<T, 1>& u) const {
+    return {x.position + u[0]};
+  }
+#endif
+#if MISTAKE != 7 && MISTAKE != 1
+  template <class T>
+  T stage_cost(const State<T>& x, const slalom::Input<T, 1>&) const {
+    return x.position * x.position;
+  }
+#endif
+#if MISTAKE != 8 && MISTAKE != 1
+  template <class T>
+  T terminal_cost(const State<T>& x) const {
+    return x.position * x.position;
+  }
+#endif
+};
+
+int main() {
+  slalom::Mppi controller{Point{}, {.horizon = 5}};
+  return controller.solver().horizon() == 5 ? 0 : 1;
+}
