@@ -24,8 +24,8 @@ def arrives(controller):
 
 for temperature in 0.3, 1.0:
     common = dict(horizon=40, temperature=temperature, input_min=[-6, -20], input_max=[6, 20])
-    mppi = succeeded(lambda seed: arrives(slalom.Mppi(quadrotor, **common, variance=[2, 8], seed=seed)), 5)
+    mppi = succeeded(lambda seed: arrives(slalom.Mppi(quadrotor, **common, variance=[2, 8], seed=seed)))
     svg_mppi = succeeded(lambda seed: arrives(slalom.SvgMppi(
         quadrotor, **common, guide_step=[0.5, 2], guide_variance=[1, 4], gradient_variance=[1, 4],
-        gradient_temperature=temperature, variance_min=[0.5, 2], variance_max=[2, 8], seed=seed)), 5)
-    report(f"temperature {temperature:g}, the quadrotor hovers behind the wall", mppi, svg_mppi, 5, seeds=5, compare=True)
+        gradient_temperature=temperature, variance_min=[0.5, 2], variance_max=[2, 8], seed=seed)))
+    report(f"temperature {temperature:g}, the quadrotor hovers behind the wall", mppi, svg_mppi, 19, compare=True)
