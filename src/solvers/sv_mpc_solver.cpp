@@ -35,6 +35,7 @@ class SvMpcSolver final : public detail::SolverBase {
         linear_(size()),
         control_(size()),
         step_(spread(options.step)),
+        limited_step_(step_),
         zero_(size()),
         column_(size()),
         shifted_(size()),
@@ -139,6 +140,9 @@ class SvMpcSolver final : public detail::SolverBase {
     for (std::size_t r = 0; r < size(); ++r) {
       prior_inverse_[r] =
           detail::inverse_variance(variance_[r], static_cast<float>(options_.inverse_variance_offset));
+      const float curvature = prior_inverse_[r] + inverse_[r];
+      limited_step_[r] =
+          options_.limit_step && curvature > 0 ? std::min(step_[r], 1.0f / curvature) : step_[r];
       linear_[r] = options_.gradient_control_term ? mean_[r] * prior_inverse_[r] : 0.0f;
     }
     detail::control_coefficients(options_.temperature, options_.control_cost_discount,
@@ -196,7 +200,7 @@ class SvMpcSolver final : public detail::SolverBase {
       const float low_bound = options_.clamp_particles ? low()[i] : -std::numeric_limits<float>::infinity();
       const float high_bound = options_.clamp_particles ? high()[i] : std::numeric_limits<float>::infinity();
       for (int k = r.first; k < r.first + r.count; ++k)
-        x[k] = std::min(std::max(x[k] + step_[i] * direction[k], low_bound), high_bound);
+        x[k] = std::min(std::max(x[k] + limited_step_[i] * direction[k], low_bound), high_bound);
     }
   }
 
@@ -240,8 +244,8 @@ class SvMpcSolver final : public detail::SolverBase {
   SequenceBatch gradient_, phi_;
   std::vector<float> distances_;
   std::vector<float> solution_, mean_, variance_, first_variance_, least_variance_, deviation_, inverse_,
-      prior_inverse_, linear_, control_, step_, zero_, column_, shifted_;  ///< [row]
-  std::vector<double> sums_;                                               ///< [row]
+      prior_inverse_, linear_, control_, step_, limited_step_, zero_, column_, shifted_;  ///< [row]
+  std::vector<double> sums_;                                                              ///< [row]
   SolveResult result_;
 };
 

@@ -73,6 +73,7 @@ inline SolverOptions published_options(std::string_view name) {
                         .input_max = 0.45,
                         .iterations = 3,
                         .step = 0.5,
+                        .limit_step = false,
                         .gradient_samples = 10,
                         .gradient_variance = 0.01,
                         .gradient_control_term = true,

@@ -96,7 +96,7 @@ TEST_P(Contract, FindsTheOptimumOfALinearQuadraticProblem) {
   evaluator.set_state(start);
   for (int i = 0; i < 60; ++i) solver->solve(evaluator, {});
   const bool departs = testing::published_departs(GetParam().name);
-  const double tolerance = departs ? 1 : std::string_view(solver->name()) == "sv_mpc" ? 0.05 : 0.02;
+  const double tolerance = departs ? 1 : 0.02;
   std::vector<double> mean(15);
   for (int i = 0; i < 200; ++i) {
     const auto& result = solver->solve(evaluator, {});

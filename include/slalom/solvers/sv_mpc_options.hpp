@@ -27,8 +27,11 @@ struct SvMpcOptions {
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
 
-  int iterations = 5;                 ///< of SVGD; published: 3
-  PerInput step = 1;                  ///< epsilon, input^2; published: 0.5
+  int iterations = 5;  ///< of SVGD; published: 3
+  PerInput step = 1;   ///< epsilon, input^2; published: 0.5
+  /// Keep the step below 1 / (Sigma^-1 + Sigma_g^-1), the inverse curvature of the log posterior as it is
+  /// known, so that particles cannot overshoot further and further. Published: false.
+  bool limit_step = true;
   int gradient_samples = 16;          ///< a particle; published: 10
   PerInput gradient_variance = 0.25;  ///< Sigma_g, input^2; published: 0.01
   /// Add the control term of the weights to the costs in a gradient. Published: true, though the prior has
@@ -45,7 +48,7 @@ struct SvMpcOptions {
   /// Measure the prior's new variances in units of the old, but use them as variances all the same.
   /// Published: true.
   bool dimensionless_variance = false;
-  PerInput variance_min = 1e-2;  ///< input^2, of the prior; published: 0
+  PerInput variance_min = 0.1;  ///< input^2, of the prior; published: 0
 
   double control_cost_discount = 0;    ///< alpha; published: 0.1
   double zero_mean_share = 0;          ///< published: 0.1
@@ -68,6 +71,8 @@ void visit_options(Options& o, Visit&& visit) {
                             .help = "step size of SVGD",
                             .min = 0,
                             .max = detail::finite});
+  visit(o.limit_step, Declaration{.name = "limit_step",
+                                  .help = "keep the step below the inverse curvature; published: false"});
   visit(o.gradient_samples, Declaration{.name = "gradient_samples",
                                         .symbol = "N",
                                         .help = "samples for the gradient of a particle",
