@@ -171,6 +171,7 @@ class Server::Implementation::Client : public std::enable_shared_from_this<Clien
     request_ = std::move(request);
     socket_.set_option(
         websocket::stream_base::timeout{std::chrono::seconds(10), std::chrono::seconds(30), true});
+    socket_.auto_fragment(false);  // a frame of the page is one frame of the protocol
     socket_.read_message_max(server_.options.max_message);
     socket_.async_accept(request_, [self = shared_from_this()](error_code error) {
       if (error) return;

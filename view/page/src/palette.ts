@@ -49,7 +49,7 @@ const hex = (text: string, alpha = 1): Rgba => [
 export const themes: Record<"dark" | "light", Theme> = {
   dark: {
     dark: true, ramp: ramp(true),
-    ground: hex("#0b0e13"), free: hex("#161b23"), wall: hex("#080a0e"), wallEdge: hex("#5b6b80"), unknown: hex("#0b0e13"), cost: hex("#e2663a", 0.2),
+    ground: hex("#0b0e13"), free: hex("#1b222c"), wall: hex("#0a0d12"), wallEdge: hex("#6b7d95"), unknown: hex("#0b0e13"), cost: hex("#e2663a", 0.2),
     path: hex("#7f8ea3", 0.6), scan: hex("#8fd3ff", 0.85), collided: hex("#ff5a36", 0.42), guide: hex("#f4a8ff", 0.95),
     nominal: hex("#ffffff", 0.75), plan: hex("#3ff2c8"), spread: hex("#3ff2c8", 0.16), driven: hex("#7b8cff", 0.9),
     car: hex("#f3f6fa"), carEdge: hex("#0b0e13"), wheel: hex("#2b3340"), obstacle: hex("#e8a13a"), obstacleEdge: hex("#fff1d6"),

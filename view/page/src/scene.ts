@@ -27,6 +27,13 @@ export function corners(b: { x: number; y: number; yaw: number; length: number; 
 function circle(x: number, y: number, radius: number, n = 28): Point[] {
   return Array.from({ length: n }, (_, i) => [x + radius * Math.cos((2 * Math.PI * i) / n), y + radius * Math.sin((2 * Math.PI * i) / n)]);
 }
+/** The mean over 3 x 3 cells, so that the border between free and occupied is drawn as a line and not as stairs. */
+function smoothed(cells: Uint8Array, width: number, height: number): Uint8Array {
+  const rows = new Uint16Array(cells.length), out = new Uint8Array(cells.length);
+  for (let i = 1; i + 1 < cells.length; ++i) rows[i] = cells[i - 1] + cells[i] + cells[i + 1];
+  for (let i = width; i < width * (height - 1); ++i) out[i] = Math.round((rows[i - width] + rows[i] + rows[i + width]) / 9);
+  return out;
+}
 const faded = (c: Rgba, by: number): Rgba => [c[0], c[1], c[2], c[3] * by];
 
 /** Draws what the controller considers. */
@@ -61,7 +68,7 @@ export class SceneView {
     this.driven = [];
     this.drivenTicks = [];
     const grid = scene.grid;
-    if (grid) this.painter.upload(this.map, grid.width, grid.height, grid.cells.map((v) => (v === 0 ? 255 : 0)));
+    if (grid) this.painter.upload(this.map, grid.width, grid.height, smoothed(grid.cells.map((v) => (v === 0 ? 255 : 0)), grid.width, grid.height));
     const p = scene.path?.xyv;
     if (p) {
       let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];

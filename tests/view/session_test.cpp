@@ -1,0 +1,214 @@
+// What a session does with commands: the drive of the command line, time travel that is exact, edits,
+// options.
+#include "session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "view/web_client.hpp"
+
+namespace slalom::view {
+namespace {
+
+using nlohmann::json;
+
+vehicle::Configuration small() {
+  vehicle::Configuration configuration;
+  for (const char* method : {"svg_mppi", "mppi"})
+    for (const auto& [key, value] : {std::pair{"samples", "128"},
+                                     {"horizon", "14"},
+                                     {"variance", "0.05"},
+                                     {"input_min", "-0.4"},
+                                     {"input_max", "0.4"},
+                                     {"temperature", "3"}})
+      vehicle::set_option(configuration, key, value, method);
+  return configuration;
+}
+
+SessionOptions session_options() {
+  SessionOptions options;
+  options.scenario = {.course = "stag", .method = "svg_mppi", .config = "default", .seed = 4, .obstacles = 2};
+  options.load = [](const ScenarioNames& names) {
+    LoadedScenario loaded;
+    loaded.arena =
+        evaluation::load_arena(SLALOM_COURSES "/" + names.course, evaluation::Evaluation::true_physics, {});
+    loaded.configuration = small();
+    loaded.lap.obstacles = names.obstacles;
+    return loaded;
+  };
+  options.courses = {"stag", "eel"};
+  options.methods = {"svg_mppi", "mppi"};
+  options.configurations = {"default"};
+  return options;
+}
+
+/// The figures of a frame by name.
+double scalar(const std::string& frame, const std::string& name) {
+  const auto names = scalar_names();
+  const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  double value = 0;
+  std::memcpy(&value, frame.data() + 12 + 8 * at, sizeof value);
+  return value;
+}
+
+/// A session with one client, driven by hand.
+class ViewSession : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    client_.get("/ws", true);
+    for (int i = 0; i < 1000 && server_.clients() == 0; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    session_.turn();
+    tell({{"do", "pause"}});
+  }
+
+  /// Sends a command and lets the session obey it.
+  void tell(const json& command) { say(command.dump()); }
+  void say(const std::string& text) {
+    client_.send_message(text);
+    server_.wait(std::chrono::seconds(5));
+    session_.turn();
+  }
+  /// Reads until a message of JSON of this type comes.
+  json next(const std::string& type) {
+    for (;;) {
+      const std::string message = client_.next_message();
+      if (message.empty()) return nullptr;
+      if (message.rfind("SLV1", 0) == 0) continue;
+      json parsed = json::parse(message);
+      if (parsed["type"] == type) return parsed;
+    }
+  }
+  /// Reads until the frame of a tick comes.
+  std::string frame(int tick) {
+    for (;;) {
+      const std::string message = client_.next_message();
+      if (message.empty()) return message;
+      if (message.rfind("SLV1", 0) == 0 && message[4] == 1 && scalar(message, "tick") == tick) return message;
+    }
+  }
+  std::string step_to(int tick) {
+    const json state = last_state_ticks();
+    const int newest = state["newest"];
+    tell({{"do", "step"}, {"ticks", tick - newest}});
+    return frame(tick);
+  }
+  json last_state_ticks() {
+    tell({{"do", "pause"}});
+    json last;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    tell({{"do", "no such command"}});
+    for (;;) {
+      const std::string message = client_.next_message();
+      if (message.rfind("SLV1", 0) == 0) continue;
+      const json parsed = json::parse(message);
+      if (parsed["type"] == "state") last = parsed;
+      if (parsed["type"] == "error") return last;
+    }
+  }
+
+  Server server_{{.messages_per_second = 1e6, .burst = 1e6}, {}};
+  testing::WebClient client_{server_.port()};
+  Session session_{session_options(), server_};
+};
+
+TEST_F(ViewSession, GreetsWithEverythingAPageNeeds) {
+  const json hello = next("hello");
+  EXPECT_EQ(hello["protocol"], 1);
+  EXPECT_EQ(hello["scalars"].size(), scalar_names().size());
+  EXPECT_EQ(hello["courses"], (json{"stag", "eel"}));
+  const json options = next("options");
+  ASSERT_EQ(options["sections"][0]["name"], "svg_mppi");
+  bool samples = false;
+  for (const json& each : options["sections"][0]["options"])
+    if (each["name"] == "samples") {
+      samples = true;
+      EXPECT_EQ(each["value"], "128");
+      EXPECT_EQ(each["type"], "integer");
+      EXPECT_EQ(each["min"], 1);
+      EXPECT_EQ(each["symbol"], "K");
+    }
+  EXPECT_TRUE(samples);
+}
+
+TEST_F(ViewSession, DrivesTheLapOfTheCommandLine) {
+  evaluation::LapRunner runner(session_options().load(session_options().scenario).arena, small(), "svg_mppi",
+                               {.obstacles = 2});
+  std::vector<double> x;
+  runner.run(4, [&](const evaluation::LapTick& tick) { x.push_back(tick.seen.pose.x); });
+  EXPECT_EQ(scalar(step_to(5), "x"), x[5]);
+  EXPECT_EQ(scalar(step_to(60), "x"), x[60]);
+}
+
+TEST_F(ViewSession, GoesBackExactly) {
+  step_to(20);
+  tell({{"do", "add"}, {"kind", "disc"}, {"x", 0}, {"y", 0}, {"length", 0.2}});
+  const std::string before = step_to(60);
+  tell({{"do", "seek"}, {"tick", 30}});
+  EXPECT_EQ(scalar(frame(30), "tick"), 30);
+  tell({{"do", "step"}, {"ticks", 30}});
+  const std::string again = frame(60);
+  // Wall-clock figures differ; what happened does not.
+  for (const char* name : {"x", "y", "yaw", "speed", "command_steer", "minimum_cost", "effective_samples"})
+    EXPECT_EQ(scalar(before, name), scalar(again, name)) << name;
+}
+
+TEST_F(ViewSession, AnObstacleInTheWayChangesThePlan) {
+  const std::string before = step_to(40);
+  const double x = scalar(before, "x"), y = scalar(before, "y"), yaw = scalar(before, "yaw");
+  const std::string untouched = step_to(41);
+  tell({{"do", "seek"}, {"tick", 40}});
+  tell({{"do", "add"},
+        {"kind", "disc"},
+        {"x", x + 2 * std::cos(yaw)},
+        {"y", y + 2 * std::sin(yaw)},
+        {"length", 0.4}});
+  tell({{"do", "step"}, {"ticks", 2}});
+  const std::string touched = frame(42);
+  EXPECT_GT(scalar(touched, "collided_share"), scalar(untouched, "collided_share"));
+}
+
+TEST_F(ViewSession, SetsUndoesAndForks) {
+  step_to(10);
+  tell({{"do", "set"}, {"key", "svg_mppi.samples"}, {"value", "64"}});
+  EXPECT_EQ(scalar(step_to(11), "samples"), 64);
+  tell({{"do", "undo"}});
+  EXPECT_EQ(scalar(step_to(12), "samples"), 128);
+  tell({{"do", "fork"}, {"method", "mppi"}});
+  const std::string forked = step_to(20);
+  EXPECT_EQ(scalar(forked, "method"), 1);
+  tell({{"do", "set"}, {"key", "mppi.samples"}, {"value", "0"}});
+  EXPECT_NE(next("error")["message"].get<std::string>().find("must be in"), std::string::npos);
+}
+
+TEST_F(ViewSession, RefusesWhatIsNoCommandAndGoesOn) {
+  const char* const bad[] = {"",
+                             "{",
+                             "[1,2]",
+                             "null",
+                             "{\"do\":5}",
+                             "{\"do\":\"fly\"}",
+                             "{\"do\":\"seek\",\"tick\":\"x\"}",
+                             "{\"do\":\"add\",\"kind\":\"disc\",\"x\":1e999,\"y\":0}",
+                             "{\"do\":\"add\",\"kind\":\"moon\",\"x\":1,\"y\":0}",
+                             "{\"do\":\"rate\",\"rate\":-1}",
+                             "\xff\xfe"};
+  const auto before = session_.refused();
+  for (const char* text : bad) say(text);
+  EXPECT_GE(session_.refused() - before, std::size(bad) - 2)
+      << "text that is not UTF-8 ends the connection instead";
+}
+
+TEST_F(ViewSession, ReadsNoCourseThatIsNotOnItsList) {
+  tell({{"do", "scenario"}, {"course", "/etc"}});
+  EXPECT_NE(next("error")["message"].get<std::string>().find("not known"), std::string::npos);
+  tell({{"do", "scenario"}, {"course", "eel"}, {"obstacles", 0}, {"seed", "9"}});
+  const json state = last_state_ticks();
+  EXPECT_EQ(state["course"], "eel");
+  EXPECT_EQ(state["seed"], "9");
+}
+
+}  // namespace
+}  // namespace slalom::view

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace slalom::testing {
+
+/// A web client of the plainest kind: it says what it is told to say, well-formed or not.
+class WebClient {
+ public:
+  explicit WebClient(std::uint16_t port, int receive_buffer = 0) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    const timeval patience{5, 0};
+    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+    if (receive_buffer > 0)
+      setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
+    if (connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+      throw std::runtime_error("no connection");
+  }
+  ~WebClient() { close(socket_); }
+  WebClient(const WebClient&) = delete;
+  WebClient& operator=(const WebClient&) = delete;
+
+  /// False once the other side has closed.
+  bool say(std::string_view bytes) {
+    while (!bytes.empty()) {
+      const ssize_t sent = send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (sent <= 0) return false;
+      bytes.remove_prefix(static_cast<std::size_t>(sent));
+    }
+    return true;
+  }
+
+  /// A GET, or with `upgrade` the opening of a WebSocket; the answer's head.
+  std::string get(const std::string& target, bool upgrade = false, const std::string& host = "127.0.0.1",
+                  const std::string& origin = "") {
+    std::string request = "GET " + target + " HTTP/1.1\r\nHost: " + host + "\r\n";
+    if (!origin.empty()) request += "Origin: " + origin + "\r\n";
+    if (upgrade)
+      request +=
+          "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+          "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
+    say(request + "\r\n");
+    while (received_.find("\r\n\r\n") == std::string::npos && more()) {
+    }
+    const std::size_t end = received_.find("\r\n\r\n");
+    if (end == std::string::npos) return received_;
+    const std::string head = received_.substr(0, end);
+    received_.erase(0, end + 4);
+    return head;
+  }
+
+  /// A message in one masked frame; `opcode` 1 is text, 2 binary.
+  bool send_message(std::string_view text, unsigned opcode = 1) {
+    std::string frame(1, static_cast<char>(0x80u | opcode));
+    if (text.size() < 126) {
+      frame += static_cast<char>(0x80u | text.size());
+    } else if (text.size() < 65536) {
+      frame += static_cast<char>(0x80u | 126u);
+      frame += static_cast<char>(text.size() >> 8);
+      frame += static_cast<char>(text.size() & 255);
+    } else {
+      frame += static_cast<char>(0x80u | 127u);
+      for (int shift = 56; shift >= 0; shift -= 8) frame += static_cast<char>(text.size() >> shift & 255);
+    }
+    const char mask[4] = {1, 2, 3, 4};
+    frame.append(mask, 4);
+    for (std::size_t i = 0; i < text.size(); ++i) frame += static_cast<char>(text[i] ^ mask[i % 4]);
+    return say(frame);
+  }
+
+  /// The next message's payload; pings are passed over. Empty if nothing comes or the connection ends.
+  std::string next_message() {
+    for (;;) {
+      if (!need(2)) return {};
+      const unsigned opcode = byte(0) & 15u;
+      std::size_t length = byte(1) & 127u, head = 2;
+      if (length >= 126) {
+        const std::size_t digits = length == 126 ? 2 : 8;
+        if (!need(2 + digits)) return {};
+        length = 0;
+        for (std::size_t i = 0; i < digits; ++i) length = length << 8 | byte(2 + i);
+        head += digits;
+      }
+      if (!need(head + length)) return {};
+      const std::string payload = received_.substr(head, length);
+      received_.erase(0, head + length);
+      if (opcode == 8) return {};
+      if (opcode <= 2) return payload;
+    }
+  }
+
+ private:
+  unsigned byte(std::size_t i) const { return static_cast<unsigned char>(received_[i]); }
+  bool more() {
+    char buffer[65536];
+    const ssize_t got = recv(socket_, buffer, sizeof buffer, 0);
+    if (got <= 0) return false;
+    received_.append(buffer, static_cast<std::size_t>(got));
+    return true;
+  }
+  bool need(std::size_t bytes) {
+    while (received_.size() < bytes)
+      if (!more()) return false;
+    return true;
+  }
+
+  int socket_;
+  std::string received_;
+};
+
+}  // namespace slalom::testing
