@@ -49,17 +49,17 @@ const hex = (text: string, alpha = 1): Rgba => [
 export const themes: Record<"dark" | "light", Theme> = {
   dark: {
     dark: true, ramp: ramp(true),
-    ground: hex("#0b0e13"), free: hex("#1b222c"), wall: hex("#0a0d12"), wallEdge: hex("#6b7d95"), unknown: hex("#0b0e13"), cost: hex("#e2663a", 0.2),
+    ground: hex("#0a0d12"), free: hex("#1b222c"), wall: hex("#0a0d12"), wallEdge: hex("#6b7d95"), unknown: hex("#0b0e13"), cost: hex("#e2663a", 0.2),
     path: hex("#7f8ea3", 0.6), scan: hex("#8fd3ff", 0.85), collided: hex("#ff5a36", 0.42), guide: hex("#f4a8ff", 0.95),
-    nominal: hex("#ffffff", 0.75), plan: hex("#3ff2c8"), spread: hex("#3ff2c8", 0.16), driven: hex("#7b8cff", 0.9),
+    nominal: hex("#ffffff", 0.75), plan: hex("#3ff2c8"), spread: hex("#3ff2c8", 0.11), driven: hex("#7b8cff", 0.9),
     car: hex("#f3f6fa"), carEdge: hex("#0b0e13"), wheel: hex("#2b3340"), obstacle: hex("#e8a13a"), obstacleEdge: hex("#fff1d6"),
     ghost: hex("#c79bff", 0.85), selected: hex("#ffffff"), grid: hex("#ffffff", 0.045),
   },
   light: {
     dark: false, ramp: ramp(false),
-    ground: hex("#dfe4ea"), free: hex("#fbfcfd"), wall: hex("#c3ccd6"), wallEdge: hex("#3b4858"), unknown: hex("#dfe4ea"), cost: hex("#d1491b", 0.15),
+    ground: hex("#cfd7e0"), free: hex("#fbfcfd"), wall: hex("#cfd7e0"), wallEdge: hex("#3b4858"), unknown: hex("#dfe4ea"), cost: hex("#d1491b", 0.15),
     path: hex("#6b7a8d", 0.6), scan: hex("#0069b4", 0.8), collided: hex("#c93410", 0.4), guide: hex("#a01bb0", 0.95),
-    nominal: hex("#20262e", 0.7), plan: hex("#00876c"), spread: hex("#00876c", 0.16), driven: hex("#4353d8", 0.85),
+    nominal: hex("#20262e", 0.7), plan: hex("#00876c"), spread: hex("#00876c", 0.11), driven: hex("#4353d8", 0.85),
     car: hex("#1d2530"), carEdge: hex("#ffffff"), wheel: hex("#66738a"), obstacle: hex("#d98518"), obstacleEdge: hex("#5c3500"),
     ghost: hex("#7c3fc4", 0.85), selected: hex("#000000"), grid: hex("#000000", 0.05),
   },
