@@ -16,6 +16,7 @@ foreach(layer IN LISTS layers)
   install(DIRECTORY include/slalom/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slalom FILES_MATCHING PATTERN "*.hpp")
 endforeach()
 if(SLALOM_BUILD_SOLVERS)
+  install(DIRECTORY include/slalom/problems DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slalom FILES_MATCHING PATTERN "*.hpp")
   install(FILES include/slalom/slalom.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slalom)
 endif()
 
