@@ -44,4 +44,4 @@ string(REGEX REPLACE "/$" "" SLALOM_PC_PREFIX "${SLALOM_PC_PREFIX}")
 configure_file(cmake/slalom.pc.in slalom.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/slalom.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
-install(DIRECTORY configs courses DESTINATION ${CMAKE_INSTALL_DATADIR}/slalom OPTIONAL)
+install(DIRECTORY configs courses DESTINATION ${CMAKE_INSTALL_DATADIR}/slalom COMPONENT tools OPTIONAL)
