@@ -119,9 +119,11 @@ SLALOM_INLINE_CALLS Pack<Target> max(const Pack<Target>& a, const std::type_iden
   return r;
 }
 template <class Target>
-SLALOM_INLINE Pack<Target> select(const simd::Mask<Target>& condition, const Pack<Target>& a,
-                                  const std::type_identity_t<Pack<Target>>& b) {
-  return Pack<Target>(condition.v ? a.v : b.v);
+SLALOM_INLINE_CALLS Pack<Target> select(const simd::Mask<Target>& condition, const Pack<Target>& a,
+                                        const std::type_identity_t<Pack<Target>>& b) {
+  Pack<Target> r;
+  simd::Operations<Target>::select(condition.v, a.v, b.v, r.v);
+  return r;
 }
 template <class Target>
 SLALOM_INLINE_CALLS Pack<Target> sqrt(const Pack<Target>& x) {

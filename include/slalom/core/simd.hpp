@@ -160,6 +160,10 @@ struct IntPack {
   }
 };
 
+/// Operations for which compilers need to be told the instruction: simd_operations.hpp.
+template <class T>
+struct Operations;
+
 /// A pack of float32 values: arithmetic like a float's, lane by lane.
 template <class T>
 struct Pack {
@@ -198,10 +202,18 @@ struct Pack {
   SLALOM_INLINE Pack& operator*=(const Pack& b) { return *this = *this * b; }
   SLALOM_INLINE Pack& operator/=(const Pack& b) { return *this = *this / b; }
 
-  SLALOM_INLINE friend Mask<T> operator<(const Pack& a, const Pack& b) { return Mask<T>(a.v < b.v); }
-  SLALOM_INLINE friend Mask<T> operator<=(const Pack& a, const Pack& b) { return Mask<T>(a.v <= b.v); }
-  SLALOM_INLINE friend Mask<T> operator>(const Pack& a, const Pack& b) { return Mask<T>(a.v > b.v); }
-  SLALOM_INLINE friend Mask<T> operator>=(const Pack& a, const Pack& b) { return Mask<T>(a.v >= b.v); }
+  SLALOM_INLINE_CALLS friend Mask<T> operator<(const Pack& a, const Pack& b) {
+    Mask<T> r;
+    Operations<T>::less(a.v, b.v, r.v);
+    return r;
+  }
+  SLALOM_INLINE_CALLS friend Mask<T> operator<=(const Pack& a, const Pack& b) {
+    Mask<T> r;
+    Operations<T>::less_or_equal(a.v, b.v, r.v);
+    return r;
+  }
+  SLALOM_INLINE_CALLS friend Mask<T> operator>(const Pack& a, const Pack& b) { return b < a; }
+  SLALOM_INLINE_CALLS friend Mask<T> operator>=(const Pack& a, const Pack& b) { return b <= a; }
 };
 
 }  // namespace slalom::simd

@@ -11,9 +11,6 @@
 /// everywhere.
 namespace slalom::simd {
 
-template <class T>
-struct Operations;
-
 /// Portable forms; what each instruction set does not override.
 template <class T>
 struct PortableOperations {
@@ -23,6 +20,10 @@ struct PortableOperations {
 
   static void min(const F& a, const F& b, F& r) { r = a < b ? a : b; }
   static void max(const F& a, const F& b, F& r) { r = a > b ? a : b; }
+  static void less(const F& a, const F& b, I& r) { r = a < b; }
+  static void less_or_equal(const F& a, const F& b, I& r) { r = a <= b; }
+  /// `a` where all bits of the condition are set, `b` where none is.
+  static void select(const I& condition, const F& a, const F& b, F& r) { r = condition ? a : b; }
   static void sqrt(const F& a, F& r) {
     for (int i = 0; i < lanes; ++i) r[i] = __builtin_sqrtf(a[i]);
   }
@@ -165,6 +166,16 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
   }
   SLALOM_ISA_AVX512 static void max(const F& a, const F& b, F& r) {
     r = (F)_mm512_maskz_max_ps(all, (__m512)a, (__m512)b);
+  }
+  /// g++ 12 compares vectors of 512 bits, and selects by them, one lane after the other.
+  SLALOM_ISA_AVX512 static void less(const F& a, const F& b, I& r) {
+    r = (I)_mm512_movm_epi32(_mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ));
+  }
+  SLALOM_ISA_AVX512 static void less_or_equal(const F& a, const F& b, I& r) {
+    r = (I)_mm512_movm_epi32(_mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LE_OQ));
+  }
+  SLALOM_ISA_AVX512 static void select(const I& condition, const F& a, const F& b, F& r) {
+    r = (F)_mm512_mask_blend_ps(_mm512_movepi32_mask((__m512i)condition), (__m512)b, (__m512)a);
   }
   SLALOM_ISA_AVX512 static void sqrt(const F& a, F& r) { r = (F)_mm512_maskz_sqrt_ps(all, (__m512)a); }
   SLALOM_ISA_AVX512 static void reciprocal_sqrt(const F& a, F& r) {
