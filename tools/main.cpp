@@ -7,6 +7,7 @@
 #include "drive_command.hpp"
 #include "eval_command.hpp"
 #include "options_command.hpp"
+#include "reproduce_command.hpp"
 #include "slalom/core/version.hpp"
 #include "track_command.hpp"
 #include "view_command.hpp"
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
   slalom::tools::add_drive_command(app, exit_status);
   slalom::tools::add_eval_command(app, exit_status);
   slalom::tools::add_options_command(app, exit_status);
+  slalom::tools::add_reproduce_command(app, exit_status);
   slalom::tools::add_track_command(app, exit_status);
   slalom::tools::add_view_command(app, exit_status);
   try {

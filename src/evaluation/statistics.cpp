@@ -125,6 +125,28 @@ double mcnemar_p(std::int64_t only_a, std::int64_t only_b) {
   return std::min(1.0, 2 * tail);
 }
 
+double fisher_p(std::int64_t successes_a, std::int64_t trials_a, std::int64_t successes_b,
+                std::int64_t trials_b) {
+  if (trials_a <= 0 || trials_b <= 0) return 1;
+  const std::int64_t a = std::clamp<std::int64_t>(successes_a, 0, trials_a),
+                     b = std::clamp<std::int64_t>(successes_b, 0, trials_b), successes = a + b;
+  const auto log_choose = [](std::int64_t n, std::int64_t k) {
+    const auto factorial = [](std::int64_t m) { return std::lgamma(static_cast<double>(m) + 1); };
+    return factorial(n) - factorial(k) - factorial(n - k);
+  };
+  const double all = log_choose(trials_a + trials_b, successes);
+  const auto probability = [&](std::int64_t k) {
+    return std::exp(log_choose(trials_a, k) + log_choose(trials_b, successes - k) - all);
+  };
+  // Tables as likely as the one seen must count whatever the rounding.
+  const double seen = probability(a) * (1 + 1e-7);
+  double p = 0;
+  for (std::int64_t k = std::max<std::int64_t>(0, successes - trials_b); k <= std::min(successes, trials_a);
+       ++k)
+    p += probability(k) <= seen ? probability(k) : 0;
+  return std::min(1.0, p);
+}
+
 double wilcoxon_p(std::span<const double> differences) {
   std::vector<double> d;
   for (const double v : differences) {

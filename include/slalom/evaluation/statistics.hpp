@@ -36,6 +36,12 @@ double bootstrap_difference_p(std::span<const double> a, std::span<const double>
 /// the one says yes (McNemar 1947; binomial, so right for small counts too).
 double mcnemar_p(std::int64_t only_a, std::int64_t only_b);
 
+/// Fisher's exact two-sided test of equal rates in two independent samples (Fisher 1935): the probability of
+/// all tables with these margins that are no likelier than the one seen. Successes beyond the trials count as
+/// all of them; 1 where either has no trials.
+double fisher_p(std::int64_t successes_a, std::int64_t trials_a, std::int64_t successes_b,
+                std::int64_t trials_b);
+
 /// Two-sided Wilcoxon signed-rank test of paired differences (Wilcoxon 1945): zeros are dropped, ties share
 /// their mean rank; exact without ties up to 50 pairs, else the normal approximation with tie and continuity
 /// correction. 1 without non-zero differences.

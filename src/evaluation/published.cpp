@@ -1,0 +1,133 @@
+#include "slalom/evaluation/published.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include "slalom/core/error.hpp"
+
+namespace slalom::evaluation {
+
+namespace {
+
+std::vector<std::string> split_line(std::string line) {
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  std::vector<std::string> cells(1);
+  for (const char c : line) {
+    if (c == ',') {
+      cells.emplace_back();
+    } else if (c != ' ') {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
+/// A table of numbers, read line by line, by the names of its columns.
+class NumberTable {
+ public:
+  explicit NumberTable(const std::filesystem::path& file) : file_(file.string()), stream_(file) {
+    std::string line;
+    if (!stream_ || !std::getline(stream_, line)) throw IoError(file_, 0, "cannot be read");
+    const auto names = split_line(line);
+    for (std::size_t i = 0; i < names.size(); ++i) columns_[names[i]] = i;
+    for (const char* needed : {"success", "collision", "state_cost", "collision_cost"}) {
+      if (!columns_.contains(needed))
+        throw IoError(file_, 1, std::string(needed) + ": this column is missing");
+    }
+  }
+
+  bool next() {
+    std::string line;
+    while (std::getline(stream_, line)) {
+      ++number_;
+      cells_ = split_line(line);
+      if (cells_.size() == 1 && cells_[0].empty()) continue;
+      if (cells_.size() == columns_.size()) return true;
+      throw IoError(
+          file_, number_,
+          "has " + std::to_string(cells_.size()) + " columns, its header " + std::to_string(columns_.size()));
+    }
+    return false;
+  }
+
+  bool has(const std::string& column) const { return columns_.contains(column); }
+
+  double number(const std::string& column) const {
+    const std::string& text = cells_[columns_.at(column)];
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+      throw IoError(file_, number_, column + ": '" + text + "' must be a finite number");
+    return value;
+  }
+
+  int count(const std::string& column, int most) const {
+    const double value = number(column);
+    if (value < 0 || value > most || value != std::floor(value))
+      throw IoError(file_, number_,
+                    column + ": " + cells_[columns_.at(column)] + " must be a whole number in [0, " +
+                        std::to_string(most) + "]");
+    return static_cast<int>(value);
+  }
+
+ private:
+  std::string file_;
+  std::ifstream stream_;
+  std::map<std::string, std::size_t> columns_;
+  std::vector<std::string> cells_;
+  int number_ = 1;
+};
+
+}  // namespace
+
+LapLog read_lap_log(const std::filesystem::path& file) {
+  NumberTable table(file);
+  LapLog log;
+  log.file = file.string();
+  double solve_sum = 0, solve_max = 0;
+  const bool timed = table.has("mean_calculation_time") && table.has("max_calculation_time");
+  while (table.next()) {
+    ++log.laps;
+    log.successes += table.count("success", 1);
+    log.contacts += table.count("collision", 100000);
+    if (table.has("timeout")) log.timeouts += table.count("timeout", 1);
+    log.ms.push_back(table.number("state_cost") + table.number("collision_cost"));
+    if (!timed) continue;
+    solve_sum += table.number("mean_calculation_time");
+    solve_max = std::max(solve_max, table.number("max_calculation_time"));
+  }
+  if (log.laps == 0) throw IoError(log.file, 0, "holds no lap");
+  if (timed) {
+    log.solve_ms_mean = solve_sum / log.laps;
+    log.solve_ms_max = solve_max;
+  }
+  return log;
+}
+
+LogComparison compare_with_log(const std::vector<LapRow>& rows, int obstacles, const LapLog& log) {
+  std::vector<double> ours;
+  std::int64_t contacts = 0;
+  for (const LapRow& row : rows) {
+    ours.push_back(row.mean_sequence_cost());
+    contacts += row.collision;
+  }
+  LogComparison c;
+  c.ms_mean = mean(log.ms);
+  c.ms_ci = bootstrap_mean(log.ms);
+  c.ms_ratio = mean(ours) / c.ms_mean;
+  c.ms_p = bootstrap_difference_p(ours, log.ms);
+  if (obstacles > 0) {
+    const std::int64_t our_chances =
+                           static_cast<std::int64_t>(obstacles) * static_cast<std::int64_t>(rows.size()),
+                       chances = static_cast<std::int64_t>(obstacles) * log.laps;
+    c.collision_rate = static_cast<double>(log.contacts) / static_cast<double>(chances);
+    c.collision_rate_ci = wilson_interval(log.contacts, chances);
+    c.contacts_p = fisher_p(contacts, our_chances, log.contacts, chances);
+  }
+  return c;
+}
+
+}  // namespace slalom::evaluation

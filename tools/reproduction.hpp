@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slalom/evaluation/published.hpp"
+
+/// The simulation section of Honda et al. (ICRA 2024, section VI) as experiments, and what the authors
+/// logged.
+namespace slalom::tools {
+
+/// A row of the section's tables: a method with its options, in both scenarios.
+struct PaperRow {
+  std::string section;  ///< "baseline", "ablation" or "sweep"
+  std::string name;     ///< as the paper has it
+  std::string method;
+  std::vector<std::pair<std::string, std::string>> set;
+  std::string log_pt, log_oa;  ///< below the folder of published logs
+  std::string lockstep;        ///< "svg_mppi": svg_mppi_pt.csv, svg_mppi_oa.csv of the lockstep logs
+  std::string note;            ///< what one has to know about the published figure
+
+  const std::string& log(const std::string& scenario) const { return scenario == "pt" ? log_pt : log_oa; }
+};
+
+/// All rows. The ablations' two files without a nominal sequence are taken for what they hold: in the
+/// authors' repository, and in table II of the paper, the two scenarios stand in each other's place.
+std::vector<PaperRow> paper_rows();
+
+/// The different experiments of the rows of these sections, section by section.
+std::vector<evaluation::Experiment> paper_experiments(const std::vector<std::string>& sections, int laps_pt,
+                                                      int laps_oa, int obstacles);
+
+/// Whether an experiment is that of a row.
+bool drives(const evaluation::Experiment& experiment, const PaperRow& row);
+
+/// What is known of an experiment from elsewhere.
+struct Reference {
+  std::optional<evaluation::LapLog> log, lockstep_log;
+  std::optional<evaluation::LogComparison> published, lockstep;
+  std::string verdict;  ///< "inside", "outside: ..." or "not compared: ..."
+};
+
+/// Where logs are, and what of them is missing.
+struct LogFolders {
+  std::filesystem::path published, lockstep;  ///< empty: none
+  std::vector<std::string> notes;             ///< for people: what is missing and where to get it
+};
+
+/// Looks for the published logs in `published` and for a folder `lockstep` beside it. Only laps of the
+/// course they were driven on can be compared with them.
+LogFolders find_logs(const std::string& published, const std::string& course);
+
+/// One per experiment. Throws IoError on a log that is there but cannot be read.
+std::vector<Reference> find_references(const LogFolders& folders,
+                                       const std::vector<evaluation::Experiment>& experiments,
+                                       const std::vector<evaluation::LapRow>& rows);
+
+/// `published`, `lockstep` and `verdict` of an entry of a summary's results.
+void add_reference(nlohmann::ordered_json& result, const Reference& reference);
+
+}  // namespace slalom::tools
