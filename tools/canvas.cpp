@@ -274,8 +274,12 @@ void Canvas::legend(const std::string& title, const std::string& facts, double s
   text(bar_left, bar_top + 38, 20, number(slowest, 1), faint_ink, false, 0);
   text(bar_left + bar_width, bar_top + 38, 20, number(fastest, 1) + " m/s", faint_ink, false, 1);
 
-  const double metres = round_length(bar_width / scale_), pixels = metres * scale_;
-  const double right = width_ - margin, at = base + 46;
+  scale_bar(bar_width, width_ - margin, base + 46);
+}
+
+void Canvas::scale_bar(double longest, double right, double at) {
+  cairo_t* c = cairo_.get();
+  const double metres = round_length(longest / scale_), pixels = metres * scale_;
   set(ink);
   cairo_set_line_width(c, 3);
   cairo_set_line_cap(c, CAIRO_LINE_CAP_BUTT);
@@ -287,10 +291,56 @@ void Canvas::legend(const std::string& title, const std::string& facts, double s
   text(right - pixels - 12, at + 2, 20, number(metres, metres < 1 ? 1 : 0) + " m", faint_ink, false, 1);
 }
 
+void Canvas::key(const std::string& title, const std::string& facts,
+                 const std::vector<std::pair<std::string, Colour>>& entries) {
+  cairo_t* c = cairo_.get();
+  const double margin = 36, base = map_height_;
+  text(margin, base + 56, 36, title, ink, true, 0);
+  text(margin, base + 92, 21, facts, faint_ink, false, 0);
+  double left = margin;
+  for (const auto& [words, colour] : entries) {
+    set(colour);
+    cairo_rectangle(c, left, base + 116, 26, 12);
+    cairo_fill(c);
+    text(left + 36, base + 129, 20, words, ink, false, 0);
+    cairo_text_extents_t extents;
+    cairo_text_extents(c, words.c_str(), &extents);
+    left += 36 + extents.x_advance + 34;
+  }
+  scale_bar(260, width_ - margin, base + 46);
+}
+
 void Canvas::save(const std::filesystem::path& file) const {
   const auto status = cairo_surface_write_to_png(surface_.get(), file.c_str());
   if (status != CAIRO_STATUS_SUCCESS)
     throw IoError(file.string(), 0, std::string("cannot be written: ") + cairo_status_to_string(status));
+}
+
+maps::OccupancyGrid cropped(const maps::OccupancyGrid& map, const std::vector<maps::Point>& points,
+                            double margin) {
+  double low_x = 1e300, low_y = 1e300, high_x = -1e300, high_y = -1e300;
+  for (const maps::Point& point : points) {
+    const maps::Point at = maps::inverse_transform(map.origin, point);
+    low_x = std::min(low_x, at.x);
+    low_y = std::min(low_y, at.y);
+    high_x = std::max(high_x, at.x);
+    high_y = std::max(high_y, at.y);
+  }
+  const auto cell = [&](double metres, int count) {
+    return std::clamp(static_cast<int>(std::floor(metres / map.resolution)), 0, count);
+  };
+  const int left = cell(low_x - margin, map.width), right = cell(high_x + margin, map.width);
+  const int low = cell(low_y - margin, map.height), high = cell(high_y + margin, map.height);
+  if (right <= left || high <= low) return map;
+  maps::OccupancyGrid part;
+  part.width = right - left;
+  part.height = high - low;
+  part.resolution = map.resolution;
+  const maps::Point corner = maps::transform(map.origin, {left * map.resolution, low * map.resolution});
+  part.origin = {corner.x, corner.y, map.origin.yaw};
+  for (int row = low; row < high; ++row)
+    for (int column = left; column < right; ++column) part.cells.push_back(map.at(column, row));
+  return part;
 }
 
 }  // namespace slalom::tools

@@ -48,12 +48,17 @@ class Canvas {
   /// The band below the picture: a title, a line of facts, a scale bar, and the scale of speeds.
   void legend(const std::string& title, const std::string& facts, double slowest, double fastest);
 
+  /// The band below the picture: a title, a line of facts, a scale bar, and what colours mean.
+  void key(const std::string& title, const std::string& facts,
+           const std::vector<std::pair<std::string, Colour>>& entries);
+
   /// Writes a PNG. Throws IoError.
   void save(const std::filesystem::path& file) const;
 
  private:
   maps::Point pixel(const maps::Point& point) const;
   void set(Colour colour);
+  void scale_bar(double longest, double right, double at);
   void draw_cells(const maps::OccupancyGrid& map);
   void text(double x, double y, double size, const std::string& words, Colour colour, bool bold,
             double align);
@@ -66,5 +71,9 @@ class Canvas {
   double left_ = 0, top_ = 0;                  ///< m, the map's upper left corner
   int width_ = 0, map_height_ = 0, band_ = 0;  ///< pixels
 };
+
+/// The part of a map round the points, so that wide empty margins (m) do not make the course small.
+maps::OccupancyGrid cropped(const maps::OccupancyGrid& map, const std::vector<maps::Point>& points,
+                            double margin);
 
 }  // namespace slalom::tools

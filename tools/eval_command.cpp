@@ -6,6 +6,7 @@
 
 #include "evaluation_job.hpp"
 #include "json_output.hpp"
+#include "report.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -15,6 +16,7 @@ struct Arguments {
   std::vector<std::string> methods{"svg_mppi"}, scenarios{"oa"}, sweeps;
   int laps = 20;
   int obstacles = 5;
+  bool report = false;
 };
 
 int run(const Arguments& arguments) {
@@ -26,6 +28,14 @@ int run(const Arguments& arguments) {
   const std::string file = arguments.evaluation.out + "/summary.json";
   write_json(summary, file);
   std::FILE* words = arguments.evaluation.json == "-" ? stderr : stdout;
+  if (arguments.report) {
+    Report report{"Methods compared", evaluated, {}, {}, {}};
+    for (const auto& r : evaluated.results) {
+      const auto& e = evaluated.campaign.experiments[static_cast<std::size_t>(r.experiment)];
+      report.rows.push_back({"methods", e.label(), "", r.experiment});
+    }
+    write_report(report, arguments.evaluation.out);
+  }
   print_results(evaluated, words);
   std::fprintf(words, "%s\n", file.c_str());
   if (!arguments.evaluation.json.empty()) write_json(summary, arguments.evaluation.json);
@@ -55,6 +65,7 @@ CLI::App* add_eval_command(CLI::App& app, int& exit_status) {
                    "key=v1,v2,...: one experiment for each value (and each combination where it is said more "
                    "than once)")
       ->allow_extra_args(false);
+  command->add_flag("--report", arguments->report, "Also write report.html and its figures");
   add_evaluation_options(*command, arguments->evaluation);
   command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
   return command;

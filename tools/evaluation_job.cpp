@@ -59,27 +59,6 @@ bool applies_to(const Sweep& sweep, const std::string& method) {
   return section == method || section == "vehicle" || section == "planner";
 }
 
-/// FNV-1a over what of a course decides a lap.
-std::string course_hash(const Arena& arena) {
-  std::uint64_t hash = 14695981039346656037ull;
-  const auto mix = [&](const void* data, std::size_t size) {
-    for (std::size_t i = 0; i < size; ++i)
-      hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211ull;
-  };
-  mix(arena.course.map.cells.data(), arena.course.map.cells.size());
-  for (const auto& point : arena.path) {
-    const double values[] = {point.x, point.y, point.yaw, point.speed};
-    mix(values, sizeof values);
-  }
-  for (const auto& point : arena.course.obstacle_path) {
-    const double values[] = {point.x, point.y};
-    mix(values, sizeof values);
-  }
-  char text[20];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
-}
-
 Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
                  const std::vector<Experiment>& experiments) {
   Json options, list = Json::array();
@@ -162,6 +141,26 @@ class CampaignProgressBar {
 };
 
 }  // namespace
+
+std::string course_hash(const Arena& arena) {
+  std::uint64_t hash = 14695981039346656037ull;
+  const auto mix = [&](const void* data, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i)
+      hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211ull;
+  };
+  mix(arena.course.map.cells.data(), arena.course.map.cells.size());
+  for (const auto& point : arena.path) {
+    const double values[] = {point.x, point.y, point.yaw, point.speed};
+    mix(values, sizeof values);
+  }
+  for (const auto& point : arena.course.obstacle_path) {
+    const double values[] = {point.x, point.y};
+    mix(values, sizeof values);
+  }
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
 
 void add_evaluation_options(CLI::App& command, EvaluationArguments& a) {
   command.add_option("--course", a.scenario.course, "A course by name, or its folder")->capture_default_str();
@@ -273,6 +272,7 @@ bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Expe
   const Scenario scenario = load_scenario(arguments.scenario, experiments.front().method);
   const int jobs = arguments.jobs > 0 ? arguments.jobs
                                       : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  evaluated.course_folder = scenario.folder;
   evaluated.campaign = {.arena = scenario.arena,
                         .configuration = scenario.configuration,
                         .experiments = experiments,

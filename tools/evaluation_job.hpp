@@ -23,6 +23,9 @@ struct EvaluationArguments {
 /// Adds --course, --config, --evaluation, --latency-ms, --seed0, --jobs, --out, --resume and --json.
 void add_evaluation_options(CLI::App& command, EvaluationArguments& arguments);
 
+/// Of what of a course decides a lap (FNV-1a).
+std::string course_hash(const evaluation::Arena& arena);
+
 /// The experiments of a comparison: every method in every scenario ("pt", "oa") with every combination of the
 /// values of `sweeps` ("key=v1,v2,..."). A sweep over an option of a method's own applies to that method
 /// alone. Throws IoError.
@@ -35,6 +38,7 @@ struct Evaluated {
   evaluation::Campaign campaign;
   std::vector<evaluation::LapRow> rows;
   std::vector<evaluation::ExperimentResult> results;
+  std::filesystem::path course_folder;
   nlohmann::ordered_json summary() const;
 };
 

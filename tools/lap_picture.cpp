@@ -15,34 +15,6 @@ constexpr Colour obstacle_fill{0.32, 0.36, 0.44, 1};
 constexpr Colour touched_fill{0.80, 0.13, 0.23, 1};
 constexpr Colour white{1, 1, 1, 1};
 
-/// The part of a map round the points, so that wide empty margins do not make the course small.
-maps::OccupancyGrid cropped(const maps::OccupancyGrid& map, const std::vector<maps::Point>& points,
-                            double margin) {
-  double low_x = 1e300, low_y = 1e300, high_x = -1e300, high_y = -1e300;
-  for (const maps::Point& point : points) {
-    const maps::Point at = maps::inverse_transform(map.origin, point);
-    low_x = std::min(low_x, at.x);
-    low_y = std::min(low_y, at.y);
-    high_x = std::max(high_x, at.x);
-    high_y = std::max(high_y, at.y);
-  }
-  const auto cell = [&](double metres, int count) {
-    return std::clamp(static_cast<int>(std::floor(metres / map.resolution)), 0, count);
-  };
-  const int left = cell(low_x - margin, map.width), right = cell(high_x + margin, map.width);
-  const int low = cell(low_y - margin, map.height), high = cell(high_y + margin, map.height);
-  if (right <= left || high <= low) return map;
-  maps::OccupancyGrid part;
-  part.width = right - left;
-  part.height = high - low;
-  part.resolution = map.resolution;
-  const maps::Point corner = maps::transform(map.origin, {left * map.resolution, low * map.resolution});
-  part.origin = {corner.x, corner.y, map.origin.yaw};
-  for (int row = low; row < high; ++row)
-    for (int column = left; column < right; ++column) part.cells.push_back(map.at(column, row));
-  return part;
-}
-
 void draw_cross(Canvas& canvas, const maps::Point& at, double size) {
   for (const auto& [colour, width] : {std::pair(white, 9.0), std::pair(touched_fill, 4.5)})
     for (const double side : {1.0, -1.0})

@@ -4,9 +4,11 @@
 #include <iostream>
 
 #include "bench_command.hpp"
+#include "compare_command.hpp"
 #include "drive_command.hpp"
 #include "eval_command.hpp"
 #include "options_command.hpp"
+#include "replay_command.hpp"
 #include "reproduce_command.hpp"
 #include "slalom/core/version.hpp"
 #include "track_command.hpp"
@@ -20,9 +22,11 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("slalom ") + slalom::version());
   app.require_subcommand(1);
   slalom::tools::add_bench_command(app, exit_status);
+  slalom::tools::add_compare_command(app, exit_status);
   slalom::tools::add_drive_command(app, exit_status);
   slalom::tools::add_eval_command(app, exit_status);
   slalom::tools::add_options_command(app, exit_status);
+  slalom::tools::add_replay_command(app, exit_status);
   slalom::tools::add_reproduce_command(app, exit_status);
   slalom::tools::add_track_command(app, exit_status);
   slalom::tools::add_view_command(app, exit_status);

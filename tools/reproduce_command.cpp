@@ -7,7 +7,7 @@
 
 #include "evaluation_job.hpp"
 #include "json_output.hpp"
-#include "reproduction.hpp"
+#include "report.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/course.hpp"
 
@@ -71,6 +71,16 @@ void print_section(const std::string& section, const Evaluated& evaluated,
   }
 }
 
+void add_report_rows(const std::string& section, Report& report) {
+  for (const PaperRow& row : paper_rows()) {
+    if (row.section != section) continue;
+    for (const auto& r : report.evaluated.results) {
+      const auto& e = report.evaluated.campaign.experiments[static_cast<std::size_t>(r.experiment)];
+      if (drives(e, row)) report.rows.push_back({section, row.name, row.note, r.experiment});
+    }
+  }
+}
+
 void check(const Arguments& arguments) {
   for (const std::string& section : arguments.sections) {
     if (section != "baseline" && section != "ablation" && section != "sweep")
@@ -105,8 +115,11 @@ int run(Arguments arguments) {
   summary["notes"] = folders.notes;
   const std::string file = arguments.evaluation.out + "/summary.json";
   write_json(summary, file);
+  Report report{"The paper's simulation section, driven again", evaluated, {}, references, folders.notes};
+  for (const std::string& section : arguments.sections) add_report_rows(section, report);
+  write_report(report, arguments.evaluation.out);
   for (const std::string& section : arguments.sections) print_section(section, evaluated, references, words);
-  std::fprintf(words, "\n%s\n", file.c_str());
+  std::fprintf(words, "\n%s\n%s/report.html\n", file.c_str(), arguments.evaluation.out.c_str());
   if (!arguments.evaluation.json.empty()) write_json(summary, arguments.evaluation.json);
   return 0;
 }

@@ -212,6 +212,10 @@ std::vector<Reference> find_references(const LogFolders& folders, const std::vec
     const double rate = e.obstacles > 0
                             ? static_cast<double>(contacts) / (e.obstacles * static_cast<double>(ours.size()))
                             : 0;
+    if (ours.size() < 2) {
+      r.verdict = "undecided: one lap says too little";
+      continue;
+    }
     r.verdict = judge(*r.published, rate);
     if (!r.lockstep) continue;
     const std::string lockstep = judge(*r.lockstep, rate);

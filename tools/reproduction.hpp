@@ -15,13 +15,13 @@ namespace slalom::tools {
 
 /// A row of the section's tables: a method with its options, in both scenarios.
 struct PaperRow {
-  std::string section;  ///< "baseline", "ablation" or "sweep"
-  std::string name;     ///< as the paper has it
-  std::string method;
-  std::vector<std::pair<std::string, std::string>> set;
-  std::string log_pt, log_oa;  ///< below the folder of published logs
-  std::string lockstep;        ///< "svg_mppi": svg_mppi_pt.csv, svg_mppi_oa.csv of the lockstep logs
-  std::string note;            ///< what one has to know about the published figure
+  std::string section = {};  ///< "baseline", "ablation" or "sweep"
+  std::string name = {};     ///< as the paper has it
+  std::string method = {};
+  std::vector<std::pair<std::string, std::string>> set = {};
+  std::string log_pt = {}, log_oa = {};  ///< below the folder of published logs
+  std::string lockstep = {};  ///< "svg_mppi": svg_mppi_pt.csv, svg_mppi_oa.csv of the lockstep logs
+  std::string note = {};      ///< what one has to know about the published figure
 
   const std::string& log(const std::string& scenario) const { return scenario == "pt" ? log_pt : log_oa; }
 };

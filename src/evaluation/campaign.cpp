@@ -34,17 +34,6 @@ std::vector<Task> open_tasks(const Campaign& campaign, const LapStore& store) {
   return tasks;
 }
 
-LapRunner make_runner(const Campaign& campaign, const Experiment& experiment) {
-  vehicle::Configuration configuration = campaign.configuration;
-  for (const auto& [key, value] : experiment.set)
-    vehicle::set_option(configuration, key, value, experiment.method);
-  LapSettings settings;
-  settings.obstacles = experiment.obstacles;
-  settings.latency = campaign.latency;
-  settings.further_costs = campaign.further_costs;
-  return LapRunner(campaign.arena, configuration, experiment.method, settings);
-}
-
 /// Takes tasks in order and keeps their rows; one for all workers.
 class Work {
  public:
@@ -70,7 +59,7 @@ class Work {
       int runs = -1;
       while (const auto task = next()) {
         const Experiment& experiment = campaign_.experiments[static_cast<std::size_t>(task->experiment)];
-        if (task->experiment != runs) runner.emplace(make_runner(campaign_, experiment));
+        if (task->experiment != runs) runner.emplace(make_runner(campaign_, task->experiment));
         runs = task->experiment;
         const auto begin = Clock::now();
         const LapResult result =
@@ -115,11 +104,23 @@ class Work {
 
 }  // namespace
 
+LapRunner make_runner(const Campaign& campaign, int index) {
+  const Experiment& experiment = campaign.experiments.at(static_cast<std::size_t>(index));
+  vehicle::Configuration configuration = campaign.configuration;
+  for (const auto& [key, value] : experiment.set)
+    vehicle::set_option(configuration, key, value, experiment.method);
+  LapSettings settings;
+  settings.obstacles = experiment.obstacles;
+  settings.latency = campaign.latency;
+  settings.further_costs = campaign.further_costs;
+  return LapRunner(campaign.arena, configuration, experiment.method, settings);
+}
+
 bool run_campaign(const Campaign& campaign, LapStore& store, int jobs,
                   const std::function<void(const CampaignProgress&)>& on_progress,
                   const std::atomic<bool>& cancel) {
   // Unknown methods and options are found before the first lap.
-  for (const Experiment& experiment : campaign.experiments) make_runner(campaign, experiment);
+  for (int i = 0; i < static_cast<int>(campaign.experiments.size()); ++i) make_runner(campaign, i);
   Work work(campaign, store, on_progress, cancel);
   std::vector<std::thread> workers;
   for (int i = 1; i < jobs; ++i) workers.emplace_back([&work] { work.run_tasks(); });

@@ -24,6 +24,10 @@ struct Campaign {
                               ///< settings do not mix
 };
 
+/// Drives the laps of one of the campaign's experiments: run(lap_seed(campaign.seed0, lap, obstacles)) is its
+/// lap `lap`, bit for bit. Throws std::invalid_argument.
+LapRunner make_runner(const Campaign& campaign, int experiment);
+
 /// How far an evaluation is.
 struct CampaignProgress {
   int laps_done = 0;

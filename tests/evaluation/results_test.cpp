@@ -1,0 +1,157 @@
+// Results of few laps against values computed by hand.
+#include "slalom/evaluation/results.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "slalom/core/error.hpp"
+#include "slalom/evaluation/published.hpp"
+
+namespace slalom::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+LapRow row(int experiment, int lap, double state, double collision_cost, int contacts, bool finished) {
+  LapRow r;
+  r.experiment = experiment;
+  r.lap = lap;
+  r.state_cost = state;
+  r.collision_cost = collision_cost;
+  r.collision = contacts;
+  r.finished = finished;
+  r.timeout = !finished;
+  r.success = finished && contacts == 0;
+  r.lap_time = finished ? 10 + lap : 50;
+  r.mean_calculation_time = 1 + lap;
+  r.max_calculation_time = 5 + lap;
+  return r;
+}
+
+const std::vector<Experiment> experiments{
+    {"mppi", {}, "oa", 5, 4}, {"svg_mppi", {}, "oa", 5, 4}, {"mppi", {}, "pt", 0, 1}};
+
+std::vector<LapRow> laps() {
+  return {row(0, 0, 1, 2, 0, true),   row(0, 1, 1, 4, 2, true),   row(0, 2, 2, 20, 6, false),
+          row(0, 3, 0.5, 0, 0, true), row(1, 3, 0.5, 0, 0, true), row(1, 2, 1, 0, 1, true),
+          row(1, 1, 1, 0, 0, true),   row(1, 0, 1, 1, 0, true),   row(2, 0, 0.25, 0, 0, true)};
+}
+
+TEST(Results, EveryLapCountsWhetherItFinishedOrNot) {
+  const auto results = summarise(laps(), experiments);
+  ASSERT_EQ(results.size(), 3u);
+  const ExperimentResult& r = results[0];
+  EXPECT_EQ(r.laps, 4);
+  EXPECT_EQ(r.finished, 3);
+  EXPECT_EQ(r.timeouts, 1);
+  EXPECT_EQ(r.collisions, 8);
+  EXPECT_DOUBLE_EQ(r.ms_mean, (3 + 5 + 22 + 0.5) / 4);
+  EXPECT_DOUBLE_EQ(r.state_cost_mean, 4.5 / 4);
+  EXPECT_DOUBLE_EQ(r.collision_cost_mean, 26.0 / 4);
+  EXPECT_LT(r.ms_ci.low, r.ms_mean);
+  EXPECT_GT(r.ms_ci.high, r.ms_mean);
+  EXPECT_DOUBLE_EQ(*r.collision_rate, 8.0 / 20);
+  EXPECT_DOUBLE_EQ(r.collision_rate_ci->low, wilson_interval(8, 20).low);
+  EXPECT_DOUBLE_EQ(r.success_rate, 0.5);
+  EXPECT_DOUBLE_EQ(r.lap_time_mean, (10 + 11 + 13) / 3.0) << "of finished laps";
+  EXPECT_DOUBLE_EQ(r.solve_ms_mean, 2.5);
+  EXPECT_DOUBLE_EQ(r.solve_ms_max, 8);
+}
+
+TEST(Results, WithoutObstaclesThereIsNoCollisionRate) {
+  const auto results = summarise(laps(), experiments);
+  EXPECT_FALSE(results[2].collision_rate);
+  EXPECT_FALSE(results[2].collision_rate_ci);
+  EXPECT_EQ(results[2].collisions, 0);
+}
+
+TEST(Results, PairsAreLapsOfTheSameScenario) {
+  const auto pairs = compare_pairs(laps(), experiments);
+  ASSERT_EQ(pairs.size(), 1u);
+  const PairedComparison& c = pairs[0];
+  EXPECT_EQ(c.laps, 4);
+  EXPECT_DOUBLE_EQ(c.ms_difference, ((3 - 2) + (5 - 1) + (22 - 1) + 0) / 4.0);
+  EXPECT_EQ(c.only_a_succeeds, 0);
+  EXPECT_EQ(c.only_b_succeeds, 1);
+  EXPECT_DOUBLE_EQ(c.success_p, 1);
+  EXPECT_DOUBLE_EQ(c.ms_p, 0.25) << "three differences of one sign: 2 / 2^3";
+}
+
+TEST(Fisher, KnownValues) {
+  EXPECT_NEAR(fisher_p(16, 210, 5, 100), 0.47481298187393234, 1e-9);
+  EXPECT_NEAR(fisher_p(3, 10, 8, 10), 0.06977851869492735, 1e-9);
+  EXPECT_NEAR(fisher_p(20, 500, 16, 210), 0.05939479840417984, 1e-9);
+  EXPECT_DOUBLE_EQ(fisher_p(0, 10, 0, 20), 1);
+  EXPECT_DOUBLE_EQ(fisher_p(3, 0, 1, 5), 1);
+  EXPECT_DOUBLE_EQ(fisher_p(12, 10, 10, 10), 1) << "more than all count as all";
+}
+
+/// A log of laps in a file that goes with the test.
+class Log : public ::testing::Test {
+ protected:
+  Log() : file_(fs::temp_directory_path() / "slalom_results_test.log.csv") {}
+  void TearDown() override { fs::remove(file_); }
+  LapLog read(const std::string& text) const {
+    std::ofstream(file_) << text;
+    return read_lap_log(file_);
+  }
+  std::string complaint(const std::string& text) const {
+    try {
+      read(text);
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return {};
+  }
+  fs::path file_;
+};
+
+TEST_F(Log, IsReadByItsColumnsNames) {
+  const LapLog log = read(
+      "seed,success,collision,timeout,state_cost,collision_cost,mean_calculation_time,max_calculation_time\n"
+      "0,1,0,0,0.5,1.5,10,20\r\n10,0,2,1,1,4,12,18\n");
+  EXPECT_EQ(log.laps, 2);
+  EXPECT_EQ(log.successes, 1);
+  EXPECT_EQ(log.timeouts, 1);
+  EXPECT_EQ(log.contacts, 2);
+  EXPECT_EQ(log.ms, (std::vector<double>{2, 5}));
+  EXPECT_DOUBLE_EQ(*log.solve_ms_mean, 11);
+  EXPECT_DOUBLE_EQ(*log.solve_ms_max, 20);
+  EXPECT_FALSE(read("collision_cost,state_cost,success,collision\n0,1,1,0\n").solve_ms_mean);
+}
+
+TEST_F(Log, NamesWhatIsWrong) {
+  EXPECT_NE(complaint("success,collision,state_cost\n").find("collision_cost: this column is missing"),
+            std::string::npos);
+  const std::string head = "success,collision,state_cost,collision_cost\n";
+  EXPECT_NE(complaint(head).find("holds no lap"), std::string::npos);
+  EXPECT_NE(complaint(head + "1,0,1\n").find(":2: has 3 columns"), std::string::npos);
+  EXPECT_NE(complaint(head + "1,0,nan,0\n").find(":2: state_cost"), std::string::npos);
+  EXPECT_NE(complaint(head + "1,0.5,1,0\n").find(":2: collision"), std::string::npos);
+  EXPECT_NE(complaint(head + "2,0,1,0\n").find(":2: success"), std::string::npos);
+}
+
+TEST_F(Log, ComparesItselfWithOurs) {
+  const LapLog log =
+      read("success,collision,state_cost,collision_cost\n1,0,1,2\n1,0,1,4\n0,6,2,20\n1,2,0.5,0\n");
+  std::vector<LapRow> ours = laps();
+  ours.resize(4);
+  const LogComparison same = compare_with_log(ours, 5, log);
+  EXPECT_DOUBLE_EQ(same.ms_ratio, 1);
+  EXPECT_DOUBLE_EQ(same.ms_p, 1);
+  EXPECT_DOUBLE_EQ(*same.contacts_p, 1);
+  EXPECT_TRUE(same.inside());
+  for (LapRow& lap : ours) {
+    lap.state_cost = 100 + lap.lap;
+    lap.collision = 5;
+  }
+  const LogComparison other = compare_with_log(ours, 5, log);
+  EXPECT_FALSE(other.ms_inside());
+  EXPECT_FALSE(other.contacts_inside());
+  EXPECT_DOUBLE_EQ(*other.collision_rate, 8.0 / 20);
+}
+
+}  // namespace
+}  // namespace slalom::evaluation

@@ -1,0 +1,214 @@
+// `slalom eval` and `slalom reproduce`: killed at any moment nothing is lost; settings do not mix; what is
+// wrong is named.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tools/program.hpp"
+
+namespace slalom::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Run;
+using testing::run_program;
+
+std::string content(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+bool contains(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> parts;
+  std::istringstream stream(line);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+/// laps.csv without the columns that hold wall-clock times.
+std::string repeatable(const fs::path& file) {
+  std::istringstream lines(content(file));
+  std::string line, text;
+  std::vector<bool> kept;
+  while (std::getline(lines, line)) {
+    const auto parts = cells(line);
+    if (kept.empty()) {
+      for (const auto& name : parts)
+        kept.push_back(!contains(name, "calculation_time") && name.rfind("solve_", 0) != 0 &&
+                       name.rfind("deadline_", 0) != 0 && name.rfind("wall_", 0) != 0);
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (kept.at(i)) text += parts[i] + ",";
+    text += "\n";
+  }
+  return text;
+}
+
+std::size_t count_lines(const fs::path& file) {
+  const std::string text = content(file);
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+class EvalCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("slalom_eval_command.") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Run run(const std::string& arguments) const { return run_program(arguments, folder_.string()); }
+  static std::string small(int laps = 3) {
+    return "eval --course " SLALOM_COURSES
+           "/wren --methods mppi,svg_mppi --scenario oa --obstacles 2 --laps " +
+           std::to_string(laps) +
+           " --set mppi.samples=48 --set svg_mppi.samples=32 --set svg_mppi.gradient_samples=8 ";
+  }
+
+  /// Starts the program, kills it after so many milliseconds; true if that is what ended it.
+  bool kill_after(const std::string& arguments, int milliseconds) const {
+    const std::string command = "cd '" + folder_.string() + "' && exec '" SLALOM_PROGRAM "' " + arguments;
+    const pid_t child = fork();
+    if (child == 0) {
+      const int nothing = open("/dev/null", O_WRONLY);
+      dup2(nothing, 1);
+      dup2(nothing, 2);
+      execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    usleep(static_cast<useconds_t>(milliseconds) * 1000);
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFSIGNALED(status);
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(EvalCommand, KilledTenTimesAndResumedItIsAnUndisturbedRun) {
+  ASSERT_EQ(run(small() + "--jobs 1 --out whole").status, 0);
+  const std::string whole = repeatable(folder_ / "whole/laps.csv");
+  EXPECT_EQ(std::count(whole.begin(), whole.end(), '\n'), 1 + 2 * 3);
+
+  std::size_t laps = 0;
+  int killed = 0;
+  for (int i = 0; i < 10; ++i) {
+    killed += kill_after(small() + "--jobs 2 --resume --out torn", 40 + 97 * i % 411);
+    const fs::path journal = folder_ / "torn/laps.journal.csv";
+    if (!fs::exists(journal)) continue;
+    EXPECT_GE(count_lines(journal), laps) << "no lap that was kept may be lost";
+    laps = count_lines(journal);
+  }
+  EXPECT_GT(killed, 0);
+  const Run end = run(small() + "--jobs 2 --resume --out torn");
+  ASSERT_EQ(end.status, 0) << end.output;
+  EXPECT_EQ(repeatable(folder_ / "torn/laps.csv"), whole);
+  EXPECT_FALSE(fs::exists(folder_ / "torn/laps.journal.csv"));
+  const Run again = run(small() + "--resume --out torn");
+  EXPECT_EQ(again.status, 0) << "a whole one can be resumed too: " << again.output;
+  EXPECT_EQ(repeatable(folder_ / "torn/laps.csv"), whole);
+}
+
+TEST_F(EvalCommand, AHalfWrittenJournalIsMendedACorruptOneRefused) {
+  ASSERT_EQ(run(small(1) + "--out whole").status, 0);
+  const std::string table = content(folder_ / "whole/laps.csv");
+  fs::create_directories(folder_ / "half");
+  fs::copy_file(folder_ / "whole/settings.json", folder_ / "half/settings.json");
+  const auto write = [&](const std::string& text) {
+    std::ofstream(folder_ / "half/laps.journal.csv") << text;
+  };
+
+  const std::size_t second = table.find('\n', table.find('\n') + 1) + 1;
+  write(table.substr(0, second + 25));
+  ASSERT_EQ(run(small(1) + "--resume --out half").status, 0);
+  EXPECT_EQ(repeatable(folder_ / "half/laps.csv"), repeatable(folder_ / "whole/laps.csv"));
+
+  fs::remove(folder_ / "half/laps.csv");
+  write(table.substr(0, second) + "mppi,oa,what,is,this\n");
+  const Run corrupt = run(small(1) + "--resume --out half");
+  EXPECT_EQ(corrupt.status, 1);
+  EXPECT_TRUE(contains(corrupt.output, "laps.journal.csv:3: has 5 columns")) << corrupt.output;
+}
+
+TEST_F(EvalCommand, OtherSettingsAreNotMixedIn) {
+  ASSERT_EQ(run(small(1) + "--out one").status, 0);
+  const Run again = run(small(1) + "--out one");
+  EXPECT_EQ(again.status, 1);
+  EXPECT_TRUE(contains(again.output, "--resume")) << again.output;
+  const Run other = run(small(1) + "--out one --resume --seed0 7 --evaluation published");
+  EXPECT_EQ(other.status, 1);
+  EXPECT_TRUE(contains(other.output, "seed0: 0 there, 7 here")) << other.output;
+  EXPECT_TRUE(contains(other.output, "evaluation: \"true\" there, \"published\" here")) << other.output;
+}
+
+TEST_F(EvalCommand, WhatIsWrongIsNamedBeforeTheFirstLap) {
+  const auto complaint = [&](const std::string& arguments) {
+    const Run r = run(arguments);
+    EXPECT_NE(r.status, 0) << arguments;
+    return r.output;
+  };
+  const std::string course = "eval --course " SLALOM_COURSES "/wren --laps 1 ";
+  EXPECT_TRUE(contains(complaint(course + "--methods mmpi --out x"), "mmpi"));
+  EXPECT_TRUE(contains(complaint(course + "--methods mppi --set mppi.sample=3 --out x"), "sample"));
+  EXPECT_TRUE(contains(complaint(course + "--methods mppi --set mppi.samples=-3 --out x"), "samples"));
+  EXPECT_TRUE(contains(complaint(course + "--scenario ot --out x"), "'ot' must be pt or oa"));
+  EXPECT_TRUE(contains(complaint("eval --course nowhere --laps 1 --out x"), "nowhere"));
+  EXPECT_TRUE(contains(complaint(course + "--laps 0 --out x"), "--laps"));
+  EXPECT_TRUE(contains(complaint(course + "--out /proc/nothing/here"), "/proc/nothing/here"));
+  std::ofstream(folder_ / "file") << "not a folder";
+  EXPECT_TRUE(contains(complaint(course + "--out file"), "file"));
+  EXPECT_FALSE(fs::exists(folder_ / "x/laps.csv"));
+}
+
+TEST_F(EvalCommand, TheSummaryHoldsWhatItShould) {
+  const Run r = run(small(1) + "--out one --report --json -");
+  ASSERT_EQ(r.status, 0) << r.output;
+  const auto summary = nlohmann::json::parse(content(folder_ / "one/summary.json"));
+  ASSERT_EQ(summary.at("results").size(), 2u);
+  for (const auto& result : summary.at("results")) {
+    for (const char* key : {"method", "scenario", "laps", "ms_mean", "ms_ci", "collision_rate",
+                            "collision_rate_ci", "success_rate", "solve_ms"})
+      EXPECT_TRUE(result.contains(key)) << key;
+    EXPECT_LE(result.at("ms_ci").at(0), result.at("ms_mean"));
+    EXPECT_LE(result.at("success_rate"), 1.0);
+  }
+  const std::string html = content(folder_ / "one/report.html");
+  EXPECT_TRUE(contains(html, "</html>"));
+  EXPECT_FALSE(contains(html, "src=\"http")) << "needs nothing but itself";
+  EXPECT_TRUE(fs::exists(folder_ / "one/figures/methods.svg"));
+  EXPECT_TRUE(fs::exists(folder_ / "one/figures/driven_oa.png"));
+}
+
+TEST_F(EvalCommand, ReproduceWithoutBerlinSaysWhatIsMissing) {
+  const Run r =
+      run("reproduce --course berlin --out r --sections baseline --laps-pt 1 --laps-oa 1 --set "
+          "mppi.samples=16 --set svg_mppi.samples=16 --set svg_mppi.gradient_samples=4 --set "
+          "reverse_mppi.samples=4 --set reverse_mppi.iterations=2 --set sv_mpc.samples=4 --evaluation true");
+  ASSERT_EQ(r.status, 0) << r.output;
+  EXPECT_TRUE(contains(r.output, "https://github.com/kohonda/proj-svg_mppi")) << r.output;
+  const auto summary = nlohmann::json::parse(content(folder_ / "r/summary.json"));
+  EXPECT_EQ(summary.at("results").size(), 14u);
+  for (const auto& result : summary.at("results")) {
+    EXPECT_TRUE(result.at("published").is_null());
+    EXPECT_EQ(result.at("verdict").get<std::string>().rfind("not compared", 0), 0u);
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "r/report.html"));
+}
+
+}  // namespace
+}  // namespace slalom::tools

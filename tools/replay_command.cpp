@@ -1,0 +1,123 @@
+#include "replay_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "lap_json.hpp"
+#include "lap_picture.hpp"
+#include "recording.hpp"
+#include "slalom/core/error.hpp"
+#include "slalom/vehicle/course.hpp"
+#include "stored_evaluation.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using namespace evaluation;
+
+struct Arguments {
+  std::string folder, method, scenario, course, plot, record;
+  int lap = 0;
+};
+
+/// Whether two rows of the same lap agree in all that repeats.
+bool same_lap(LapRow a, const LapRow& b, const std::vector<Experiment>& experiments) {
+  a.mean_calculation_time = b.mean_calculation_time;
+  a.max_calculation_time = b.max_calculation_time;
+  a.min_calculation_time = b.min_calculation_time;
+  a.solve_p50 = b.solve_p50;
+  a.solve_p99 = b.solve_p99;
+  a.wall_time = b.wall_time;
+  return csv_line(a, experiments) == csv_line(b, experiments);
+}
+
+void plot(const Arguments& arguments, const Scenario& scenario, const LapRunner& runner,
+          const DrivenLine& driven, const LapResult& lap, const std::string& label) {
+  char facts[200];
+  std::snprintf(
+      facts, sizeof facts,
+      "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d contacts \xC2\xB7 cost %.2f \xC2\xB7 seed %llu",
+      lap.finished ? "finished" : "timeout", lap.time, lap.mean_speed, lap.contacts, lap.mean_sequence_cost,
+      static_cast<unsigned long long>(lap.seed));
+  const auto map = vehicle::load_course(scenario.folder).map;
+  draw_lap({.map = map,
+            .path = scenario.arena->path,
+            .closed = scenario.arena->course.closed,
+            .driven = driven,
+            .lap = lap,
+            .start = runner.start(),
+            .title = label,
+            .facts = facts},
+           arguments.plot);
+}
+
+/// The exit status: 0 only if the lap is the one that was kept.
+int run(const Arguments& arguments) {
+  const StoredEvaluation stored = load_evaluation(arguments.folder);
+  const int index = stored.find(arguments.method, arguments.scenario);
+  const Experiment& experiment = stored.experiments[static_cast<std::size_t>(index)];
+  if (arguments.lap < 0 || arguments.lap >= experiment.laps)
+    throw IoError(
+        "--lap", 0,
+        std::to_string(arguments.lap) + " must be in [0, " + std::to_string(experiment.laps - 1) + "]");
+  Scenario scenario;
+  const Campaign campaign = rebuild_campaign(stored, arguments.course, scenario);
+  LapRunner runner = make_runner(campaign, index);
+  const std::uint64_t seed = lap_seed(campaign.seed0, arguments.lap, experiment.obstacles);
+  std::unique_ptr<Recording> recording;
+  if (!arguments.record.empty()) {
+    recording = std::make_unique<Recording>(arguments.record, nlohmann::ordered_json::parse(stored.settings));
+    recording->begin_lap(arguments.lap, seed);
+  }
+  DrivenLine driven;
+  const LapResult lap = runner.run(seed, [&](const LapTick& tick) {
+    if (recording) recording->add(tick);
+    driven.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
+    driven.speeds.push_back(tick.seen.speed);
+  });
+  std::printf("%s, %s, lap %d, seed %llu: %s, %.2f s, %d contacts, cost %.3f\n", experiment.label().c_str(),
+              experiment.scenario.c_str(), arguments.lap, static_cast<unsigned long long>(seed),
+              lap.finished ? "finished" : "timeout", lap.time, lap.contacts, lap.mean_sequence_cost);
+  if (recording) {
+    recording->end_lap(lap_json(lap, arguments.lap));
+    recording->close();
+    std::printf("recording: %s\n", arguments.record.c_str());
+  }
+  if (!arguments.plot.empty()) {
+    plot(arguments, scenario, runner, driven, lap, experiment.label() + " on " + campaign.arena->course.name);
+    std::printf("picture: %s\n", arguments.plot.c_str());
+  }
+  const LapRow now = make_row(index, arguments.lap, lap, 0);
+  const auto kept = std::find_if(stored.rows.begin(), stored.rows.end(), [&](const LapRow& row) {
+    return row.experiment == index && row.lap == arguments.lap;
+  });
+  if (kept == stored.rows.end()) {
+    std::printf("the evaluation has not driven this lap yet\n");
+    return 0;
+  }
+  const bool same = same_lap(now, *kept, stored.experiments);
+  std::printf(same ? "it is the lap of the evaluation, to the last bit\n"
+                   : "it is NOT the lap of the evaluation: another version or instruction set drove that\n");
+  return same ? 0 : 1;
+}
+
+}  // namespace
+
+CLI::App* add_replay_command(CLI::App& app, int& exit_status) {
+  CLI::App* command = app.add_subcommand("replay", "Drive a lap of an evaluation again: picture, recording");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("folder", arguments->folder, "The --out of an evaluation")->required();
+  command->add_option("--lap", arguments->lap, "Which, from 0")->required();
+  command->add_option("--method", arguments->method, "Method, or method and options as results name them");
+  command->add_option("--scenario", arguments->scenario, "pt or oa");
+  command->add_option("--course", arguments->course, "Where the course is, if not found by its name");
+  command->add_option("--plot", arguments->plot, "Draw it to this PNG");
+  command->add_option("--record", arguments->record, "Record every control step to this file (JSON lines)");
+  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
+  return command;
+}
+
+}  // namespace slalom::tools
