@@ -42,7 +42,7 @@ td.words,th.words{text-align:left;white-space:normal;min-width:230px;color:var(-
 td small{color:var(--faint);font-size:12.5px}
 .pill{display:inline-block;border-radius:99px;padding:0 9px;font-size:12.5px;font-weight:600;color:#fff;background:var(--faint)}
 .inside{background:var(--good)}.outside{background:var(--bad)}
-img{max-width:100%;height:auto;display:block;margin:14px auto 6px}
+img{max-width:100%;max-height:1000px;display:block;margin:14px auto 6px}
 details{margin-top:10px}summary{cursor:pointer;color:var(--blue)}
 pre{overflow-x:auto;background:#f6f8fb;padding:12px;border-radius:8px;font-size:12.5px}
 @media print{body{background:#fff}section{break-inside:avoid;border:0;padding:8px 0}}
@@ -169,7 +169,7 @@ std::string tiles(const Report& report) {
   std::string out = "<div class=\"tiles\">\n";
   int inside = 0, compared = 0;
   for (const Reference& r : report.references) {
-    compared += r.published.has_value();
+    compared += r.published.has_value() && r.verdict.rfind("undecided", 0) != 0;
     inside += r.verdict.rfind("inside", 0) == 0;
   }
   if (compared > 0)

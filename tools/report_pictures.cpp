@@ -119,8 +119,9 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
     for (const Contact& touch : lines[i].lap.touches) canvas.disc({touch.pose.x, touch.pose.y}, 11, colour);
   }
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string label = campaign.experiments[static_cast<std::size_t>(pair[i])].label();
-    key.emplace_back(label, i == 0 ? blue : orange);
+    const auto row = std::find_if(report.rows.begin(), report.rows.end(),
+                                  [&](const ReportRow& r) { return r.experiment == pair[i]; });
+    key.emplace_back(row->name, i == 0 ? blue : orange);
     char words[80];
     std::snprintf(words, sizeof words, " \xC2\xB7 MS %.2f, %d contact%s", lines[i].lap.mean_sequence_cost,
                   lines[i].lap.contacts, lines[i].lap.contacts == 1 ? "" : "s");

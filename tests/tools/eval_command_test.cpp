@@ -18,7 +18,7 @@ namespace slalom::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Run;
+using ProgramRun = testing::Run;
 using testing::run_program;
 
 std::string content(const fs::path& file) {
@@ -71,7 +71,7 @@ class EvalCommand : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  Run run(const std::string& arguments) const { return run_program(arguments, folder_.string()); }
+  ProgramRun run(const std::string& arguments) const { return run_program(arguments, folder_.string()); }
   static std::string small(int laps = 3) {
     return "eval --course " SLALOM_COURSES
            "/wren --methods mppi,svg_mppi --scenario oa --obstacles 2 --laps " +
@@ -115,11 +115,11 @@ TEST_F(EvalCommand, KilledTenTimesAndResumedItIsAnUndisturbedRun) {
     laps = count_lines(journal);
   }
   EXPECT_GT(killed, 0);
-  const Run end = run(small() + "--jobs 2 --resume --out torn");
+  const ProgramRun end = run(small() + "--jobs 2 --resume --out torn");
   ASSERT_EQ(end.status, 0) << end.output;
   EXPECT_EQ(repeatable(folder_ / "torn/laps.csv"), whole);
   EXPECT_FALSE(fs::exists(folder_ / "torn/laps.journal.csv"));
-  const Run again = run(small() + "--resume --out torn");
+  const ProgramRun again = run(small() + "--resume --out torn");
   EXPECT_EQ(again.status, 0) << "a whole one can be resumed too: " << again.output;
   EXPECT_EQ(repeatable(folder_ / "torn/laps.csv"), whole);
 }
@@ -140,17 +140,17 @@ TEST_F(EvalCommand, AHalfWrittenJournalIsMendedACorruptOneRefused) {
 
   fs::remove(folder_ / "half/laps.csv");
   write(table.substr(0, second) + "mppi,oa,what,is,this\n");
-  const Run corrupt = run(small(1) + "--resume --out half");
+  const ProgramRun corrupt = run(small(1) + "--resume --out half");
   EXPECT_EQ(corrupt.status, 1);
   EXPECT_TRUE(contains(corrupt.output, "laps.journal.csv:3: has 5 columns")) << corrupt.output;
 }
 
 TEST_F(EvalCommand, OtherSettingsAreNotMixedIn) {
   ASSERT_EQ(run(small(1) + "--out one").status, 0);
-  const Run again = run(small(1) + "--out one");
+  const ProgramRun again = run(small(1) + "--out one");
   EXPECT_EQ(again.status, 1);
   EXPECT_TRUE(contains(again.output, "--resume")) << again.output;
-  const Run other = run(small(1) + "--out one --resume --seed0 7 --evaluation published");
+  const ProgramRun other = run(small(1) + "--out one --resume --seed0 7 --evaluation published");
   EXPECT_EQ(other.status, 1);
   EXPECT_TRUE(contains(other.output, "seed0: 0 there, 7 here")) << other.output;
   EXPECT_TRUE(contains(other.output, "evaluation: \"true\" there, \"published\" here")) << other.output;
@@ -158,7 +158,7 @@ TEST_F(EvalCommand, OtherSettingsAreNotMixedIn) {
 
 TEST_F(EvalCommand, WhatIsWrongIsNamedBeforeTheFirstLap) {
   const auto complaint = [&](const std::string& arguments) {
-    const Run r = run(arguments);
+    const ProgramRun r = run(arguments);
     EXPECT_NE(r.status, 0) << arguments;
     return r.output;
   };
@@ -176,7 +176,7 @@ TEST_F(EvalCommand, WhatIsWrongIsNamedBeforeTheFirstLap) {
 }
 
 TEST_F(EvalCommand, TheSummaryHoldsWhatItShould) {
-  const Run r = run(small(1) + "--out one --report --json -");
+  const ProgramRun r = run(small(1) + "--out one --report --json -");
   ASSERT_EQ(r.status, 0) << r.output;
   const auto summary = nlohmann::json::parse(content(folder_ / "one/summary.json"));
   ASSERT_EQ(summary.at("results").size(), 2u);
@@ -195,7 +195,7 @@ TEST_F(EvalCommand, TheSummaryHoldsWhatItShould) {
 }
 
 TEST_F(EvalCommand, ReproduceWithoutBerlinSaysWhatIsMissing) {
-  const Run r =
+  const ProgramRun r =
       run("reproduce --course berlin --out r --sections baseline --laps-pt 1 --laps-oa 1 --set "
           "mppi.samples=16 --set svg_mppi.samples=16 --set svg_mppi.gradient_samples=4 --set "
           "reverse_mppi.samples=4 --set reverse_mppi.iterations=2 --set sv_mpc.samples=4 --evaluation true");
