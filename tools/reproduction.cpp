@@ -85,7 +85,9 @@ std::vector<PaperRow> paper_rows() {
     baseline(("MPPI, covariance " + text).c_str(), "mppi", ("forward_mppi_cov_" + text).c_str());
     rows.back().set = {{"mppi.variance", text}};
   }
-  rows[1].note = "In the authors' logs, not in the paper's tables.";
+  rows[1].note =
+      "In the authors' logs, not in the paper's tables. Its figures there are those of covariance 0.1, which "
+      "is most likely what was driven.";
   rows[3].lockstep = "mppi_cov0.1";
   baseline("Reverse MPPI", "reverse_mppi", "reverse_mppi");
   baseline("SV-MPC", "sv_mpc", "sv_mpc");

@@ -194,6 +194,30 @@ TEST_F(EvalCommand, TheSummaryHoldsWhatItShould) {
   EXPECT_TRUE(fs::exists(folder_ / "one/figures/driven_oa.png"));
 }
 
+TEST_F(EvalCommand, ALapIsReplayedToTheLastBitAndTwoRunsAreCompared) {
+  ASSERT_EQ(run(small(2) + "--out one").status, 0);
+  const ProgramRun lap = run("replay one --method svg_mppi --lap 1 --course " SLALOM_COURSES
+                             "/wren --plot lap.png --record lap.jsonl");
+  EXPECT_EQ(lap.status, 0) << lap.output;
+  EXPECT_TRUE(contains(lap.output, "to the last bit")) << lap.output;
+  EXPECT_TRUE(fs::exists(folder_ / "lap.png"));
+  EXPECT_GT(count_lines(folder_ / "lap.jsonl"), 50u);
+  EXPECT_TRUE(contains(run("replay one --lap 0").output, "must name one of these"));
+  EXPECT_TRUE(contains(run("replay one --method mppi --lap 2").output, "--lap"));
+  EXPECT_NE(run("replay one --method mppi --lap 0 --course " SLALOM_COURSES "/stag").status, 0);
+
+  const ProgramRun same = run("compare one one --json same.json");
+  ASSERT_EQ(same.status, 0) << same.output;
+  const auto compared = nlohmann::json::parse(content(folder_ / "same.json"));
+  ASSERT_EQ(compared.at("results").size(), 2u);
+  EXPECT_EQ(compared.at("settings").size(), 0u);
+  for (const auto& result : compared.at("results")) {
+    EXPECT_TRUE(result.at("paired").get<bool>());
+    EXPECT_EQ(result.at("ms_p"), 1);
+  }
+  EXPECT_NE(run("compare one nowhere").status, 0);
+}
+
 TEST_F(EvalCommand, ReproduceWithoutBerlinSaysWhatIsMissing) {
   const ProgramRun r =
       run("reproduce --course berlin --out r --sections baseline --laps-pt 1 --laps-oa 1 --set "
