@@ -173,6 +173,10 @@ ReportFigure contact_map(const Report& report, const maps::OccupancyGrid& map,
     if (found == key.end()) found = key.insert(key.end(), {method, palette[key.size() % palette.size()]});
     return found->second;
   };
+  // As in the driven lines.
+  const bool with_ours = std::any_of(campaign.experiments.begin(), campaign.experiments.end(),
+                                     [](const Experiment& e) { return e.method == "svg_mppi"; });
+  if (with_ours) colour_of("svg_mppi");
   for (const Experiment& e : campaign.experiments) colour_of(e.method);
   int count = 0;
   for (const LapRow& row : report.evaluated.rows) {
