@@ -279,6 +279,8 @@ bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Expe
                         .seed0 = arguments.seed0,
                         .latency = scenario.lap.latency,
                         .settings = settings_of(arguments, scenario, experiments).dump(2)};
+  // What cannot be driven must not leave a folder behind.
+  for (int i = 0; i < static_cast<int>(experiments.size()); ++i) make_runner(evaluated.campaign, i);
   LapStore store(arguments.out, evaluated.campaign, arguments.resume);
   const InterruptFlag interrupt;
   {

@@ -55,7 +55,8 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
   if (!stream) throw IoError(file.string(), 0, "cannot be read: is this the --out of slalom eval?");
   stored.settings.assign(std::istreambuf_iterator<char>(stream), {});
   try {
-    for (const auto& e : Json::parse(stored.settings).at("experiments")) {
+    const auto settings = Json::parse(stored.settings);
+    for (const auto& e : settings.at("experiments")) {
       stored.experiments.push_back(
           {e.at("method"), parse_set(e.at("set")), e.at("scenario"), e.at("obstacles"), e.at("laps")});
     }

@@ -220,7 +220,8 @@ TEST_F(EvalCommand, ALapIsReplayedToTheLastBitAndTwoRunsAreCompared) {
 
 TEST_F(EvalCommand, ReproduceWithoutBerlinSaysWhatIsMissing) {
   const ProgramRun r =
-      run("reproduce --course berlin --out r --sections baseline --laps-pt 1 --laps-oa 1 --set "
+      run("reproduce --course " SLALOM_COURSES
+          "/wren --out r --sections baseline --laps-pt 1 --laps-oa 1 --set "
           "mppi.samples=16 --set svg_mppi.samples=16 --set svg_mppi.gradient_samples=4 --set "
           "reverse_mppi.samples=4 --set reverse_mppi.iterations=2 --set sv_mpc.samples=4 --evaluation true");
   ASSERT_EQ(r.status, 0) << r.output;
