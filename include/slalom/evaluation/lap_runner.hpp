@@ -20,11 +20,11 @@ namespace slalom::evaluation {
 
 /// What a lap is besides course, configuration and method.
 struct LapSettings {
-  int obstacles = 0;                ///< parked cars, 0 ... 1000
+  int obstacles = 0;                  ///< parked cars, 0 ... 1000
   std::optional<maps::Pose> start{};  ///< of the centre of gravity; else the arena's
-  double latency = 0;               ///< s from a scan to its command's effect, "true" evaluation only
-  int threads = 1;                  ///< of the solver; the result does not depend on it
-  bool further_costs = false;       ///< also `published_model_cost` and `driven_cost`, which take time
+  double latency = 0;                 ///< s from a scan to its command's effect, "true" evaluation only
+  int threads = 1;                    ///< of the solver; the result does not depend on it
+  bool further_costs = false;         ///< also `published_model_cost` and `driven_cost`, which take time
 };
 
 /// The seed of lap `lap`: seed0 + lap (obstacles + 5), as the published evaluation has it.
