@@ -54,6 +54,7 @@ PathTrackingOptions published_problem() {
   options.rear_length = 0.135;
   options.bicycle = vehicle::BicycleForm::published;
   options.outside_terminal_cost = 10;
+  options.body = vehicle::BodyForm::box;
   options.limit_acceleration = false;
   options.exact_lag = false;
   options.hold_first_input = true;

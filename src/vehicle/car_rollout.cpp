@@ -39,12 +39,18 @@ class Rollout final : public CarRollout {
 
   const BatchEvaluator& evaluator() const noexcept override { return evaluator_; }
 
+  bool start_collides() const noexcept override {
+    const Problem& problem = evaluator_.problem();
+    return problem.stage_cost(start_, problem.look_up(start_), Input<double, 1>{{0}}).collided;
+  }
+
   PredictedCost predict(std::span<const float> inputs,
                         std::span<PredictedState> states) const noexcept override {
     const Problem& problem = evaluator_.problem();
     const PathTrackingOptions& options = problem.options();
     PredictedCost total;
     State s = start_;
+    bool was_free = false;
     for (std::size_t k = 0; k <= inputs.size(); ++k) {
       states[k] = predicted(s);
       const auto seen = problem.look_up(s);
@@ -57,9 +63,11 @@ class Rollout final : public CarRollout {
       total.distance +=
           (last ? options.terminal_distance_weight : options.distance_weight) * square(seen.distance);
       total.collision += collision;
-      total.collided |= cost.collided;
+      total.collided |= cost.collided && was_free;
+      was_free |= !cost.collided;
       if (!last) s = problem.step(s, seen, u, static_cast<int>(k));
     }
+    total.collided |= !was_free;
     return total;
   }
 

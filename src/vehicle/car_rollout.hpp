@@ -26,7 +26,10 @@ class CarRollout {
                         const maps::Pose& robot) noexcept = 0;
   virtual void set_start(const CarStart& start, double target_speed) noexcept = 0;
   virtual const BatchEvaluator& evaluator() const noexcept = 0;
-  /// The states (inputs.size() + 1 of them) of one control sequence.
+  /// Whether the start itself collides.
+  virtual bool start_collides() const noexcept = 0;
+  /// The states (inputs.size() + 1 of them) of one control sequence. It collides if a state after the first
+  /// free one does, or if none is free: a car that touches something already must be let go.
   virtual PredictedCost predict(std::span<const float> inputs,
                                 std::span<PredictedState> states) const noexcept = 0;
 };

@@ -4,6 +4,15 @@
 
 namespace slalom::vehicle {
 
+namespace {
+
+/// Of three equal discs that cover the body's rectangle, m.
+double disc_radius(const PathTrackingOptions& options) {
+  return std::hypot((options.body_front + options.body_rear) / 6, options.body_width / 2);
+}
+
+}  // namespace
+
 template <bool separate_local>
 PathTracking<separate_local>::PathTracking(const PathTrackingOptions& options)
     : options_(options),
@@ -26,7 +35,19 @@ PathTracking<separate_local>::PathTracking(const PathTrackingOptions& options)
       speed_gain_(options.max_acceleration * options.time_step),
       speed_loss_(options.max_deceleration * options.time_step),
       linear_loss_((options.linear_sign_error ? -1 : 1) * options.max_deceleration * options.time_step),
-      target_speed_(options.reference_speed) {}
+      target_speed_(options.reference_speed) {
+  const double length = options.body_front + options.body_rear;
+  for (int i = 0; i < 3; ++i) disc_[i] = -options.body_rear + length * (2 * i + 1) / 6;
+  contact_clearance_ = disc_radius(options) + options.body_margin;
+  soft_end_ = disc_radius(options) + options.body_margin + options.soft_margin;
+  inverse_soft_margin_ = options.soft_margin > 0 ? 1 / options.soft_margin : 0;
+  soft_cost_ = options.soft_margin > 0 ? options.soft_cost : 0;
+}
+
+template <bool separate_local>
+double PathTracking<separate_local>::clearance_reach(const PathTrackingOptions& options) {
+  return disc_radius(options) + options.body_margin + options.soft_margin + 0.01;
+}
 
 template <bool separate_local>
 void PathTracking<separate_local>::set_maps(const GridView<4>& reference, const GridView<1>& obstacles,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/reference_field.hpp"
 #include "vehicle/car_rollout.hpp"
 #include "vehicle/command_history.hpp"
@@ -20,6 +21,12 @@ using detail::CommandHistory;
 maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options) {
   auto made = options.published_maps ? maps::LocalCostMapOptions::published() : maps::LocalCostMapOptions{};
   made.outside = -1;  // so that the problem can tell "off the map" from "occupied"
+  return made;
+}
+
+maps::ClearanceMapOptions clearance_options(const PathTrackingOptions& problem) {
+  maps::ClearanceMapOptions made;
+  made.reach = PathTracking<false>::clearance_reach(problem);
   return made;
 }
 
@@ -50,6 +57,7 @@ struct Planner::Implementation {
   PathTrackingOptions problem;
   std::unique_ptr<Solver> solver;
   maps::LocalCostMap cost_map;
+  maps::ClearanceMap clearance_map;
   maps::ReferenceField field;
   std::unique_ptr<CarRollout> rollout;
   CommandHistory history;
@@ -63,6 +71,7 @@ struct Planner::Implementation {
         problem(p),
         solver(std::move(s)),
         cost_map(cost_map_options(o)),
+        clearance_map(clearance_options(p)),
         field(capped(path, o.max_speed), field_options(o)),
         rollout(CarRollout::make(p)),
         history(o.control_period, delay_of(o, p), o.observer_time_constant, p.front_length + p.rear_length),
@@ -93,8 +102,8 @@ struct Planner::Implementation {
         here.distance >= field.options().outside.distance) {
       return stop(PlannerStatus::off_course);
     }
-    rollout->set_maps(field.cells().view(field.geometry()), cost_map.cells().view(cost_map.geometry()),
-                      odometry.pose);
+    const bool discs = problem.body == BodyForm::discs;
+    rollout->set_maps(field.view(), discs ? clearance_map.view() : cost_map.view(), odometry.pose);
     rollout->set_start(start, problem.localisation_less ? problem.reference_speed : here.speed);
     SolveRequest request{.elapsed = options.control_period};
     if (options.deadline > 0) request.deadline = options.deadline;
@@ -112,11 +121,19 @@ struct Planner::Implementation {
     output.command.steer =
         std::clamp(static_cast<double>(sent[0]), -options.steer_limit, options.steer_limit);
     output.command.speed = command_speed(here.speed);
-    if (cost.collided && options.verify_plan && options.stop_when_blocked) {
-      output.status = PlannerStatus::blocked;
-      output.command.speed =
-          std::max(0.0, odometry.speed - problem.max_deceleration * 2 * options.control_period);
+    if (options.verify_plan && options.stop_when_blocked) slow_down(cost, odometry.speed);
+  }
+
+  /// Brakes where no plan is free; where the car touches something already, creeps along the best plan to
+  /// come free.
+  void slow_down(const PredictedCost& cost, double speed) noexcept {
+    constexpr double creep = 0.5;  // m/s
+    if (rollout->start_collides()) {
+      output.command.speed = std::min(output.command.speed, creep);
+    } else if (cost.collided) {
+      output.command.speed = std::max(0.0, speed - 2 * problem.max_deceleration * options.control_period);
     }
+    if (cost.collided) output.status = PlannerStatus::blocked;
   }
 
   double horizon_time() const noexcept { return problem.time_step * solver->horizon(); }
@@ -189,6 +206,11 @@ const PlannerOutput& Planner::update(const PlannerInput& input) noexcept {
   PlannerOutput& out = p.output;
   out.scan = p.cost_map.update(input.scan);
   p.cost_map.add_points(input.obstacles);
+  if (p.problem.body == BodyForm::discs) {
+    p.clearance_map.clear();
+    p.clearance_map.add(p.cost_map.points());
+    p.clearance_map.add(input.obstacles);
+  }
   out.steer_estimate = p.history.steer();
   const bool blind = !out.scan.accepted || out.scan.invalid == out.scan.beams;
   const bool seen_free = out.scan.accepted && input.scan.ranges.size() > 1 && !blind;

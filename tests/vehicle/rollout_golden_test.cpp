@@ -91,6 +91,7 @@ PathTrackingOptions options_of(const nlohmann::json& set) {
   o.localisation_less = set.at("localize_less");
   o.outside_cost = o.localisation_less ? 10 : 100;
   o.outside_terminal_cost = 10;
+  o.body = BodyForm::box;
   o.limit_acceleration = false;
   o.exact_lag = false;
   o.hold_first_input = true;

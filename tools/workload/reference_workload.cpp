@@ -75,6 +75,7 @@ vehicle::PathTrackingOptions reference_problem(bool two_trajectories) {
   o.rear_length = 0.135;
   o.bicycle = vehicle::BicycleForm::published;
   o.outside_terminal_cost = 10;
+  o.body = vehicle::BodyForm::box;
   o.limit_acceleration = false;
   o.exact_lag = false;
   o.hold_first_input = true;

@@ -37,6 +37,16 @@ inline const char* const* enum_names(SpeedForm) {
   return names;
 }
 
+/// How the car's body is held against the obstacles.
+enum class BodyForm {
+  discs,  ///< discs along the body, turned with it, on a map of distances; nearness costs before contact does
+  box,    ///< obstacles are inflated by the body as it stands now, whatever way it turns (published program)
+};
+inline const char* const* enum_names(BodyForm) {
+  static constexpr const char* const names[] = {"discs", "box", nullptr};
+  return names;
+}
+
 /// Options of the vehicle problem. The defaults are the correct forms; what `published` says of an option is
 /// the reason why it exists.
 struct PathTrackingOptions {
@@ -57,6 +67,14 @@ struct PathTrackingOptions {
   double reference_speed = 1.5;        ///< m/s, where no speed profile is used
   double outside_cost = 100;           ///< cost map value off the local map, stage states
   double outside_terminal_cost = 100;  ///< the same at the terminal state; published: 10
+
+  BodyForm body = BodyForm::discs;  ///< published: box
+  double body_front = 0.461;        ///< m, reach of the body ahead of the reference point
+  double body_rear = 0.119;         ///< m, behind it
+  double body_width = 0.31;         ///< m
+  double body_margin = 0.04;        ///< m of clearance below which a state collides
+  double soft_margin = 0.1;         ///< m of clearance beyond that in which nearness costs
+  double soft_cost = 10;            ///< cost map value where that begins to collide, falling off as a square
 
   bool limit_acceleration = true;  ///< published: false, the speed jumps to the reference field's
   bool exact_lag =
@@ -140,6 +158,31 @@ void visit_options(Options& o, Visit&& visit) {
         Declaration{.name = "outside_cost", .help = "cost map value off the local map", .min = 0});
   visit(o.outside_terminal_cost,
         Declaration{.name = "outside_terminal_cost", .help = "the same at the last state", .min = 0});
+  visit(o.body, Declaration{.name = "body", .help = "how the body is held against obstacles"});
+  visit(o.body_front, Declaration{.name = "body_front",
+                                  .unit = "m",
+                                  .help = "reach of the body ahead of the reference point",
+                                  .min = 0,
+                                  .max = 10});
+  visit(o.body_rear,
+        Declaration{
+            .name = "body_rear", .unit = "m", .help = "reach of the body behind it", .min = 0, .max = 10});
+  visit(o.body_width,
+        Declaration{.name = "body_width", .unit = "m", .help = "width of the body", .min = 0.01, .max = 10});
+  visit(o.body_margin, Declaration{.name = "body_margin",
+                                   .unit = "m",
+                                   .help = "clearance below which a state collides",
+                                   .min = 0,
+                                   .max = 1});
+  visit(o.soft_margin, Declaration{.name = "soft_margin",
+                                   .unit = "m",
+                                   .help = "clearance beyond that in which nearness costs",
+                                   .min = 0,
+                                   .max = 1});
+  visit(o.soft_cost, Declaration{.name = "soft_cost",
+                                 .help = "cost map value of nearness just short of collision",
+                                 .min = 0,
+                                 .max = 100});
   visit(o.limit_acceleration, Declaration{.name = "limit_acceleration",
                                           .help = "the predicted speed respects the acceleration limits"});
   visit(o.exact_lag,
@@ -163,7 +206,7 @@ struct Surroundings {
   T yaw;       ///< rad, of the path; off the reference map the yaw error to assume
   T speed;     ///< m/s, reference
   T outside;   ///< 1 off the reference map, else 0
-  T obstacle;  ///< cost map value; negative off the map
+  T obstacle;  ///< cost map value, 100 in collision; negative off the map
 };
 
 /// The state of the car; with `separate_local` also that of a second trajectory in the robot's frame.
@@ -195,11 +238,14 @@ class PathTracking {
   const PathTrackingOptions& options() const { return options_; }
   double time_step() const { return options_.time_step; }  ///< s
 
-  /// Sets the maps. The cost map's cells are 0 (free) or 100, its ring negative; `robot_x, robot_y,
-  /// robot_yaw` is the pose of its frame in the map frame. The reference field's cells are {distance, yaw,
-  /// speed, -}.
+  /// Sets the maps. With a box, `obstacles` is the cost map: 0 (free) or 100; with discs it is the map of
+  /// distances, m, up to `clearance_reach()`; its ring is negative. `robot_x, robot_y, robot_yaw` is the pose
+  /// of its frame in the map frame. The reference field's cells are {distance, yaw, speed, -}.
   void set_maps(const GridView<4>& reference, const GridView<1>& obstacles, double robot_x, double robot_y,
                 double robot_yaw);
+  /// The distance up to which the map of distances must be right, m.
+  static double clearance_reach(const PathTrackingOptions& options);
+
   /// The reference speed at the start, for the linear form; m/s.
   void set_target_speed(double speed) { target_speed_ = static_cast<float>(speed); }
 
@@ -244,6 +290,7 @@ class PathTracking {
  private:
   template <class T>
   SLALOM_INLINE T look_up_obstacle(const State<T>& s) const {
+    if (options_.body == BodyForm::discs) return disc_obstacle(s);
     if constexpr (separate_local) {
       return slalom::look_up(obstacles_, s.local_x, s.local_y);
     } else if constexpr (is_pack<T>) {
@@ -254,6 +301,31 @@ class PathTracking {
       return slalom::look_up(obstacles_, T(to_local_[0]) * s.x + (T(to_local_[1]) * s.y + T(to_local_[2])),
                              T(to_local_[3]) * s.x + (T(to_local_[4]) * s.y + T(to_local_[5])));
     }
+  }
+
+  /// The cost map value of a body of discs: by the least clearance of their middles.
+  template <class T>
+  SLALOM_INLINE T disc_obstacle(const State<T>& s) const {
+    T sine, cosine, clearance;
+    if constexpr (separate_local) {
+      sin_cos(s.local_yaw, sine, cosine);
+      clearance = least_clearance(s.local_x, s.local_y, cosine, sine);
+    } else {
+      sin_cos(s.yaw, sine, cosine);
+      clearance = least_clearance(T(to_local_[0]) * s.x + (T(to_local_[1]) * s.y + T(to_local_[2])),
+                                  T(to_local_[3]) * s.x + (T(to_local_[4]) * s.y + T(to_local_[5])),
+                                  T(to_local_[0]) * cosine + T(to_local_[1]) * sine,
+                                  T(to_local_[3]) * cosine + T(to_local_[4]) * sine);
+    }
+    const T nearness = max((T(soft_end_) - clearance) * T(inverse_soft_margin_), T(0));
+    const T value = select(clearance < T(contact_clearance_), T(100), T(soft_cost_) * nearness * nearness);
+    return select(clearance < T(0), T(-1), value);
+  }
+  template <class T>
+  SLALOM_INLINE T least_clearance(const T& x, const T& y, const T& heading_x, const T& heading_y) const {
+    T least = slalom::look_up(obstacles_, x + T(disc_[0]) * heading_x, y + T(disc_[0]) * heading_y);
+    least = min(least, slalom::look_up(obstacles_, x + T(disc_[1]) * heading_x, y + T(disc_[1]) * heading_y));
+    return min(least, slalom::look_up(obstacles_, x + T(disc_[2]) * heading_x, y + T(disc_[2]) * heading_y));
   }
 
   template <class T>
@@ -303,13 +375,18 @@ class PathTracking {
       const T yaw_error = select(seen.outside > T(0), seen.yaw, wrap_angle(s.yaw - seen.yaw));
       value = value + (T(distance_weight) * square(seen.distance) + T(yaw_weight) * square(yaw_error));
     }
-    return {value, collision > T(0)};
+    return {value, mask_t<T>((seen.obstacle < T(0)) | (seen.obstacle >= T(100)))};
   }
 
   PathTrackingOptions options_;
   GridView<4> reference_;
   GridView<1> obstacles_;
-  double to_local_[6] = {1, 0, 0, 0, 1, 0};       ///< m in the map frame -> m in the robot's
+  double to_local_[6] = {1, 0, 0, 0, 1, 0};  ///< m in the map frame -> m in the robot's
+  Coefficient disc_[3];                      ///< m, middles of the body's discs ahead of the reference point
+  Coefficient contact_clearance_;            ///< m from a disc's middle
+  Coefficient soft_end_;                     ///< m from a disc's middle
+  Coefficient inverse_soft_margin_;
+  Coefficient soft_cost_;
   Coefficient to_cells_[6] = {1, 0, 0, 0, 1, 0};  ///< m in the map frame -> cells of the cost map
   int held_steps_ = 0;
   Coefficient time_step_;

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "slalom/core/grid_view.hpp"
+#include "slalom/core/options.hpp"
+#include "slalom/maps/cell_grid.hpp"
+#include "slalom/maps/local_cost_map.hpp"
+
+namespace slalom::maps {
+
+/// Options of ClearanceMap.
+struct ClearanceMapOptions {
+  double length_x = 10;      ///< m
+  double length_y = 10;      ///< m
+  double resolution = 0.05;  ///< m per cell
+  double center_x = 3;       ///< m, the map's centre in the robot's frame
+  double center_y = 0;       ///< m
+  double reach = 0.5;        ///< m, distances are known up to here
+};
+
+template <class Options, class Visit>
+requires is_options_of<Options, ClearanceMapOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.length_x,
+        Declaration{.name = "length_x", .unit = "m", .help = "length of the map", .min = 1e-3, .max = 1e4});
+  visit(o.length_y,
+        Declaration{.name = "length_y", .unit = "m", .help = "width of the map", .min = 1e-3, .max = 1e4});
+  visit(o.resolution,
+        Declaration{.name = "resolution", .unit = "m", .help = "size of a cell", .min = 1e-4, .max = 100});
+  visit(o.center_x,
+        Declaration{
+            .name = "center_x", .unit = "m", .help = "centre of the map, ahead", .min = -1e4, .max = 1e4});
+  visit(o.center_y, Declaration{.name = "center_y",
+                                .unit = "m",
+                                .help = "centre of the map, to the left",
+                                .min = -1e4,
+                                .max = 1e4});
+  visit(o.reach,
+        Declaration{
+            .name = "reach", .unit = "m", .help = "distances are known up to here", .min = 1e-3, .max = 100});
+}
+
+/// A map in the robot's frame that holds for every cell the distance (m) to the nearest obstacle point, up to
+/// a reach: what a body made of discs needs, whichever way it is turned. Points count as the centres of their
+/// cells, so a distance is right to within a cell. The ring of cells round the map holds -1. After
+/// construction nothing allocates.
+class ClearanceMap {
+ public:
+  /// Throws std::invalid_argument where the options break a rule.
+  explicit ClearanceMap(const ClearanceMapOptions& options = {});
+
+  /// Forgets all obstacles.
+  void clear() noexcept;
+  /// Adds obstacle points in the robot's frame, m; those off the map by more than the reach do not matter.
+  void add(std::span<const ScanPoint> points) noexcept;
+  void add(std::span<const Point> points) noexcept;
+
+  /// The distance at a position in the robot's frame, m; -1 off the map.
+  float at(double x, double y) const noexcept;
+
+  const GridGeometry& geometry() const noexcept { return geometry_; }
+  GridView<1> view() const noexcept { return cells_.view(geometry_); }
+
+ private:
+  void stamp(double x, double y) noexcept;
+
+  ClearanceMapOptions options_;
+  GridGeometry geometry_;
+  CellGrid<1> cells_;
+  int kernel_reach_ = 0;       ///< cells
+  std::vector<float> kernel_;  ///< (2 reach + 1)^2 distances, m
+};
+
+}  // namespace slalom::maps
