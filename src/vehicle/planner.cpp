@@ -124,13 +124,14 @@ struct Planner::Implementation {
     if (options.verify_plan && options.stop_when_blocked) slow_down(cost, odometry.speed);
   }
 
-  /// Brakes where no plan is free; where the car touches something already, creeps along the best plan to
-  /// come free.
+  /// Brakes where no plan is free. A car that is too near to something already is past braking: while it
+  /// moves it follows the best plan, once it stands it creeps along it to come free.
   void slow_down(const PredictedCost& cost, double speed) noexcept {
     constexpr double creep = 0.5;  // m/s
-    if (rollout->start_collides()) {
+    const bool too_near = rollout->start_collides();
+    if (too_near && speed < 2 * creep) {
       output.command.speed = std::min(output.command.speed, creep);
-    } else if (cost.collided) {
+    } else if (cost.collided && !too_near) {
       output.command.speed = std::max(0.0, speed - 2 * problem.max_deceleration * options.control_period);
     }
     if (cost.collided) output.status = PlannerStatus::blocked;
