@@ -2,6 +2,7 @@
 #include "slalom/evaluation/results.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -91,7 +92,9 @@ TEST(Fisher, KnownValues) {
 /// A log of laps in a file that goes with the test.
 class Log : public ::testing::Test {
  protected:
-  Log() : file_(fs::temp_directory_path() / "slalom_results_test.log.csv") {}
+  Log()
+      : file_(fs::temp_directory_path() /
+              ("slalom_results_test." + std::to_string(::getpid()) + ".log.csv")) {}
   void TearDown() override { fs::remove(file_); }
   LapLog read(const std::string& text) const {
     std::ofstream(file_) << text;

@@ -70,6 +70,7 @@ TEST(PathTracking, CostIsThatOfDistanceYawAndCollision) {
   options.collision_weight = 2;
   options.outside_cost = 70;
   options.outside_terminal_cost = 11;
+  options.body = BodyForm::box;
   Car car(options);
   const Maps maps;
   maps.give_to(car);
@@ -102,11 +103,49 @@ TEST(PathTracking, SpeedFollowsTheReferenceWithinItsLimits) {
 TEST(PathTracking, LocalPositionIsThatInTheRobotsFrame) {
   Maps maps;
   maps.obstacles[static_cast<std::size_t>(3 * 16 + 4)] = 100;  // x in (1, 2], y in (0, 1], robot frame
-  Car car({});
+  PathTrackingOptions options;
+  options.body = BodyForm::box;
+  Car car(options);
   maps.give_to(car, 10, -5, std::acos(-1.0) / 2);  // the robot looks along +y of the map
   const Car::State<double> hit{10 - 0.5, -5 + 1.5, 0, 1, 0, 0}, free{10 + 0.5, -5 + 1.5, 0, 1, 0, 0};
   EXPECT_EQ(car.look_up(hit).obstacle, 100);
   EXPECT_EQ(car.look_up(free).obstacle, 0);
+}
+
+TEST(PathTracking, DiscsTurnWithTheCar) {
+  Maps maps;
+  // Distances instead of costs: 2 m everywhere, but none where x in (1, 2], y in (0, 1].
+  for (float& cell : maps.obstacles) cell = cell < 0 ? -1.0f : 2.0f;
+  maps.obstacles[static_cast<std::size_t>(3 * 16 + 4)] = 0;
+  PathTrackingOptions options;
+  options.body = BodyForm::discs;
+  options.body_front = 1.2;
+  options.body_rear = 0;
+  Car car(options);
+  maps.give_to(car);
+  const Car::State<double> towards{0.5, 0.5, 0, 1, 0, 0}, away{0.5, 0.5, std::acos(-1.0), 1, 0, 0};
+  EXPECT_EQ(car.look_up(towards).obstacle, 100);
+  EXPECT_EQ(car.look_up(away).obstacle, 0);
+  const Input<double, 1> u{{0}};
+  EXPECT_TRUE(car.stage_cost(towards, car.look_up(towards), u).collided);
+  EXPECT_FALSE(car.stage_cost(away, car.look_up(away), u).collided);
+}
+
+TEST(PathTracking, NearnessCostsBeforeContact) {
+  PathTrackingOptions options;
+  options.body = BodyForm::discs;
+  options.soft_cost = 8;
+  const double radius = std::hypot((options.body_front + options.body_rear) / 6, options.body_width / 2);
+  const auto value_at = [&](double clearance) {
+    Maps maps;
+    for (float& cell : maps.obstacles) cell = cell < 0 ? -1.0f : static_cast<float>(clearance);
+    Car car(options);
+    maps.give_to(car);
+    return car.look_up(Car::State<double>{0, 0, 0, 1, 0, 0}).obstacle;
+  };
+  EXPECT_EQ(value_at(radius + options.body_margin - 0.01), 100);
+  EXPECT_NEAR(value_at(radius + options.body_margin + 0.5 * options.soft_margin), 8 * 0.25, 1e-4);
+  EXPECT_EQ(value_at(radius + options.body_margin + options.soft_margin + 0.01), 0);
 }
 
 }  // namespace
