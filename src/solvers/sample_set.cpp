@@ -10,6 +10,15 @@ namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
+/// Noise from the problem's sampler, or normal values where it has none.
+void fill_noise(const Sampler* sampler, SequenceBatch& noise, Range r, RandomKey key) noexcept {
+  if (sampler) {
+    sampler->fill(noise, r.first, r.count, key);
+  } else {
+    fill_normal(noise, r.first, r.count, key);
+  }
+}
+
 /// Samples a tile: their values fill about 32 KiB.
 int tile_size(int rows) {
   const int fitting = 32768 / (4 * std::max(rows, 1)) / simd::padding * simd::padding;
@@ -113,10 +122,12 @@ Census SampleSet::combine() const noexcept {
 Census SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
                                     const Placement<float>& to, const float* linear, ThreadPool& pool,
                                     const Deadline& deadline) noexcept {
-  const bool ready = prepared_ && prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
+  const Sampler* const sampler = evaluator.sampler();
+  const bool ready =
+      !sampler && prepared_ && prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
   prepared_ = false;
   if (evaluator.whole_batches()) {
-    place(key, to, ready, pool);
+    place(sampler, key, to, ready, pool);
     return evaluate_whole(evaluator, linear, pool, deadline);
   }
   pool.run(tiles(), [&](int tile) {
@@ -126,7 +137,7 @@ Census SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey k
     } else {
       const auto start = Clock::now();
       const Range r = range(tile);
-      if (!ready) fill_normal(values_, r.first, r.count, key);
+      if (!ready) fill_noise(sampler, values_, r, key);
       SequenceBatch& from = ready ? noise_ : values_;
       kernels().place({from.row(0, 0), from.stride(), rows()}, row_view(), to, r);
       const auto drawn = Clock::now();
@@ -140,17 +151,18 @@ Census SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey k
 }
 
 /// Draws, or takes the noise that is ready, and puts it in its place.
-void SampleSet::place(RandomKey key, const Placement<float>& to, bool ready, ThreadPool& pool) noexcept {
+void SampleSet::place(const Sampler* sampler, RandomKey key, const Placement<float>& to, bool ready,
+                      ThreadPool& pool) noexcept {
   pool.run(tiles(), [&](int tile) {
     const Range r = range(tile);
-    if (!ready) fill_normal(values_, r.first, r.count, key);
+    if (!ready) fill_noise(sampler, values_, r, key);
     SequenceBatch& from = ready ? noise_ : values_;
     kernels().place({from.row(0, 0), from.stride(), rows()}, row_view(), to, r);
   });
 }
 
 void SampleSet::draw(RandomKey key, const Placement<float>& to, ThreadPool& pool) noexcept {
-  place(key, to, false, pool);
+  place(nullptr, key, to, false, pool);
 }
 
 Census SampleSet::evaluate_whole(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,

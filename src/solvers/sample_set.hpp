@@ -104,7 +104,8 @@ class SampleSet {
   std::size_t count() const noexcept { return static_cast<std::size_t>(values_.samples()); }
   int tiles() const noexcept { return (values_.stride() + tile_ - 1) / tile_; }
   Range range(int tile) const noexcept;
-  void place(RandomKey key, const Placement<float>& to, bool ready, ThreadPool& pool) noexcept;
+  void place(const Sampler* sampler, RandomKey key, const Placement<float>& to, bool ready,
+             ThreadPool& pool) noexcept;
   Census evaluate_whole(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
                         const Deadline& deadline) noexcept;
   void finish_tile(int tile, const BatchEvaluator* evaluator, const float* linear, Census& census) noexcept;

@@ -1,5 +1,7 @@
 // A problem with at most one mistake: compiled with MISTAKE=0 it is right, otherwise the compiler must say
 // what is wrong.
+#include <array>
+
 #include "slalom/slalom.hpp"
 
 struct Point {
@@ -14,6 +16,11 @@ struct Point {
 #endif
 #if MISTAKE != 2
   static constexpr int inputs = 1;
+#endif
+#if MISTAKE == 9
+  float input_min[1] = {-1};
+#elif MISTAKE == 10
+  double input_rate_max = 1;
 #endif
 #if MISTAKE == 4
   State<double> step(const State<double>& x, const slalom::Input<double, 1>& u) const {
@@ -35,7 +42,15 @@ struct Point {
     return {x.position + u[0]};
   }
 #endif
-#if MISTAKE != 7 && MISTAKE != 1
+#if MISTAKE == 11 || MISTAKE == 12
+#if MISTAKE == 12
+  static constexpr std::array cost_names{"position", "speed", "effort"};
+#endif
+  template <class T>
+  slalom::CostTerms<T, 2> stage_cost(const State<T>& x, const slalom::Input<T, 1>& u) const {
+    return {{x.position * x.position, u[0] * u[0]}};
+  }
+#elif MISTAKE != 7 && MISTAKE != 1
   template <class T>
   T stage_cost(const State<T>& x, const slalom::Input<T, 1>&) const {
     return x.position * x.position;

@@ -22,9 +22,16 @@
 ///  - `template <class T> auto look_up(const State<T>& x) const`: whatever is read from maps at a state. It
 ///  is evaluated
 ///    once a state and handed, after the state, to `step`, `stage_cost` and `terminal_cost`;
-///  - a cost may be returned as `Cost<T>`, which also says whether the state collides;
+///  - a cost may be returned as `Cost<T>`, which also says whether the state collides, or as `CostTerms<T,
+///  N>`
+///    whose terms `static constexpr std::array cost_names{"distance", "effort"}` names: plans tell each;
 ///  - a member `dt` or a function `time_step()`: the duration of a step, s. With it solvers shift their last
-///    solution by the time that has passed.
+///    solution by the time that has passed;
+///  - members `input_min` and `input_max`, a `double` or a `std::array<double, inputs>`: bounds that hold
+///    besides those of a method's options; read when a controller is made;
+///  - a member `input_rate_max`, of the same kind, in 1/s: inputs move no faster, in rollouts as in plans;
+///  - `void sample(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept`: noise of its
+///    own in place of independent standard normal values (see `Sampler`).
 namespace slalom {
 
 /// The `M` inputs of one step.
@@ -42,6 +49,13 @@ template <class T>
 struct Cost {
   T value;
   mask_t<T> collided;
+};
+
+/// A cost in terms, which the problem names in `cost_names`; their sum counts. `{{a, b}}` or `{{a, b}, hit}`.
+template <class T, int N>
+struct CostTerms {
+  T value[N];
+  mask_t<T> collided = mask_t<T>(false);
 };
 
 /// Stands in where a problem looks nothing up.
@@ -117,6 +131,19 @@ SLALOM_INLINE void accumulate(const T& cost, T& total, mask_t<T>&) {
 template <class T>
 SLALOM_INLINE void accumulate(const Cost<T>& cost, T& total, mask_t<T>& collided) {
   total = total + cost.value;
+  collided = collided | cost.collided;
+}
+template <class T, int N, int I = 0>
+SLALOM_INLINE T sum_of(const CostTerms<T, N>& cost) {
+  if constexpr (I + 1 < N) {
+    return cost.value[I] + sum_of<T, N, I + 1>(cost);
+  } else {
+    return cost.value[I];
+  }
+}
+template <class T, int N>
+SLALOM_INLINE void accumulate(const CostTerms<T, N>& cost, T& total, mask_t<T>& collided) {
+  total = total + sum_of(cost);
   collided = collided | cost.collided;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slalom/core/problem.hpp"
+#include "slalom/core/problem_parts.hpp"
 
 /// Says in words what a problem lacks, before the compiler says it in pages.
 namespace slalom::detail {
@@ -56,6 +56,35 @@ concept DeclaresTerminalCost = requires(const P& p, const StateOf<P, T>& x) {
 || looks_up<P, T>;
 
 template <class P>
+concept InputMinFits = !has_input_min<P> || is_bound<decltype(P::input_min), P::inputs>;
+template <class P>
+concept InputMaxFits = !has_input_max<P> || is_bound<decltype(P::input_max), P::inputs>;
+template <class P>
+concept InputRateFits = !limits_rates<P> || is_bound<decltype(P::input_rate_max), P::inputs>;
+template <class P>
+concept HasTimeStep = requires(const P& p) {
+  p.time_step();
+}
+|| requires(const P& p) {
+  static_cast<double>(p.dt);
+};
+
+/// What a problem says of itself besides dynamics and costs.
+template <class P>
+constexpr void check_parts() {
+  static_assert(InputMinFits<P>,
+                "slalom: the problem's input_min must be a double or a std::array<double, inputs>");
+  static_assert(InputMaxFits<P>,
+                "slalom: the problem's input_max must be a double or a std::array<double, inputs>");
+  static_assert(InputRateFits<P>,
+                "slalom: the problem's input_rate_max must be a double or a std::array<double, inputs>");
+  static_assert(
+      !limits_rates<P> || HasTimeStep<P>,
+      "slalom: a problem with input_rate_max needs the duration of its step, `dt` or `time_step()`");
+  static_cast<void>(cost_terms_of<P>());
+}
+
+template <class P>
 constexpr bool check_problem() {
   static_assert(HasState<P>, "slalom: the problem needs `template <class T> struct State { T ...; };`");
   static_assert(HasInputs<P>, "slalom: the problem needs `static constexpr int inputs = ...;`, at least 1");
@@ -76,6 +105,7 @@ constexpr bool check_problem() {
       static_assert(StepsToState<P, double>, "slalom: the problem's step must return the State<T> of its T");
     }
   }
+  if constexpr (Problem<P>) check_parts<P>();
   return true;
 }
 

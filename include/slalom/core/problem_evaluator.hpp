@@ -8,9 +8,18 @@
 
 namespace slalom {
 
+namespace detail {
+
+template <class P>
+inline constexpr bool samples_itself = requires(const P& p, SequenceBatch& noise) {
+  p.sample(noise, 0, 0, RandomKey{});
+};
+
+}  // namespace detail
+
 /// Evaluates batches of a problem struct, at the full width of the processor it runs on.
 template <Problem P>
-class ProblemEvaluator final : public BatchEvaluator {
+class ProblemEvaluator final : public BatchEvaluator, private Sampler {
  public:
   using State = detail::StateOf<P, double>;
 
@@ -28,16 +37,24 @@ class ProblemEvaluator final : public BatchEvaluator {
     for (int i = 0; i < detail::state_size<P>; ++i) state_[i] = static_cast<float>(values[i]);
   }
 
+  /// What was applied before the next rollouts; asked for by problems with `input_rate_max` alone.
+  void set_previous_input(const Input<double, P::inputs>& u) noexcept {
+    if constexpr (detail::limits_rates<P>) {
+      for (int i = 0; i < P::inputs; ++i) state_[detail::state_size<P> + i] = static_cast<float>(u[i]);
+    }
+  }
+
   int inputs() const noexcept override { return P::inputs; }
 
   /// The problem's `time_step()` or `dt`, if it has one.
-  double time_step() const noexcept override {
-    if constexpr (requires { problem_.time_step(); }) {
-      return static_cast<double>(problem_.time_step());
-    } else if constexpr (requires { static_cast<double>(problem_.dt); }) {
-      return static_cast<double>(problem_.dt);
+  double time_step() const noexcept override { return detail::time_step_of(problem_); }
+
+  /// The problem's `sample`, if it has one.
+  const Sampler* sampler() const noexcept override {
+    if constexpr (detail::samples_itself<P>) {
+      return this;
     } else {
-      return 0;
+      return nullptr;
     }
   }
 
@@ -47,29 +64,44 @@ class ProblemEvaluator final : public BatchEvaluator {
   }
 
  private:
+  void fill(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept override {
+    if constexpr (detail::samples_itself<P>) problem_.sample(noise, first, count, key);
+  }
+
   P problem_;
   detail::RolloutFunction<P> rollout_;
-  float state_[detail::state_size<P>] = {};
+  float state_[detail::start_size<P>] = {};
 };
 
+/// The terms of a problem's cost.
+template <Problem P>
+using CostTermsOf = detail::CostTermsOf<P>;
+
 /// The predicted states of one control sequence, `steps` inputs u[step][input]: x[0] = `state` and the
-/// `steps` that follow, in double. Returns the cost of the sequence in double, with its collision.
+/// `steps` that follow, in double; where `terms` is given, the parts of its cost. Returns the cost of the
+/// sequence in double, with its collision.
 template <Problem P>
 Cost<double> predict(const P& problem, const detail::StateOf<P, double>& state,
-                     const Input<double, P::inputs>* u, int steps, detail::StateOf<P, double>* x) {
+                     const Input<double, P::inputs>* u, int steps, detail::StateOf<P, double>* x,
+                     CostTermsOf<P>* terms = nullptr) {
   Cost<double> cost{0.0, false};
+  CostTermsOf<P> parts = detail::cost_terms_of<P>();
+  CostTerm* const named = parts.data() + (detail::terms_in<detail::StageCostOf<P>> == 0);
   detail::StateOf<P, double> now = state;
   for (int k = 0; k < steps; ++k) {
     if (x) x[k] = now;
     const auto seen = detail::look_up<P, double>(problem, now);
-    detail::accumulate<double>(detail::stage_cost<P, double>(problem, now, seen, u[k], k), cost.value,
-                               cost.collided);
+    const auto stage = detail::stage_cost<P, double>(problem, now, seen, u[k], k);
+    detail::accumulate<double>(stage, cost.value, cost.collided);
+    detail::add_terms(stage, named, parts.front());
     now = detail::step<P, double>(problem, now, seen, u[k], k);
   }
   if (x) x[steps] = now;
-  detail::accumulate<double>(
-      detail::terminal_cost<P, double>(problem, now, detail::look_up<P, double>(problem, now)), cost.value,
-      cost.collided);
+  const auto terminal =
+      detail::terminal_cost<P, double>(problem, now, detail::look_up<P, double>(problem, now));
+  detail::accumulate<double>(terminal, cost.value, cost.collided);
+  detail::add_terms(terminal, named, parts.back());
+  if (terms) *terms = parts;
   return cost;
 }
 

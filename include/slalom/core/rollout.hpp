@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "slalom/core/problem.hpp"
+#include "slalom/core/problem_parts.hpp"
 #include "slalom/core/sequence_batch.hpp"
 
 /// The rollout loop: one sample a lane, the state in registers, several packs interleaved so that their
@@ -20,12 +20,23 @@ SLALOM_INLINE StateOf<P, T> broadcast_state(const float* x, std::index_sequence<
 template <class P, class F>
 using SeenOf = decltype(look_up<P, F>(std::declval<const P&>(), std::declval<const StateOf<P, F>&>()));
 
+/// Where no input has to be remembered.
+struct NoInput {};
+/// The inputs of the step before, of a problem that limits their rates.
+template <class P, class F>
+using HeldInput = std::conditional_t<limits_rates<P>, InputOf<P, F>, NoInput>;
+
 template <class P, class F>
 struct Rollout {
   StateOf<P, F> x;
   F total;
   mask_t<F> hit;
+  [[no_unique_address]] HeldInput<P, F> previous;
 };
+
+/// How many values a rollout starts from: the state, then the inputs applied before where rates are limited.
+template <class P>
+inline constexpr int start_size = state_size<P> + (limits_rates<P> ? P::inputs : 0);
 
 template <class P>
 using RolloutFunction = void (*)(const P&, const float*, const SequenceBatch&, int, int, float*,
@@ -50,18 +61,27 @@ using RolloutFunction = void (*)(const P&, const float*, const SequenceBatch&, i
     const std::ptrdiff_t stride = batch.stride();                                                            \
     const StateOf<P, F> start =                                                                              \
         broadcast_state<P, F>(initial_state, std::make_index_sequence<state_size<P>>{});                     \
+    HeldInput<P, F> reach, before;                                                                           \
+    if constexpr (limits_rates<P>) {                                                                         \
+      for (int i = 0; i < P::inputs; ++i) {                                                                  \
+        reach[i] = F(static_cast<float>(input_step(problem, i)));                                            \
+        before[i] = F(initial_state[state_size<P> + i]);                                                     \
+      }                                                                                                      \
+    }                                                                                                        \
     for (int sample = first; sample < first + count; sample += packs * F::lanes) {                           \
       Rollout<P, F> r[packs];                                                                                \
       SLALOM_UNROLL for (int j = 0; j < packs; ++j) {                                                        \
         r[j].x = start;                                                                                      \
         r[j].total = F(0.0f);                                                                                \
         r[j].hit = mask_t<F>(false);                                                                         \
+        if constexpr (limits_rates<P>) r[j].previous = before;                                               \
       }                                                                                                      \
       const float* row = batch.row(0, 0) + sample;                                                           \
       for (int k = 0; k < steps; ++k, row += P::inputs * stride) {                                           \
         SLALOM_UNROLL for (int j = 0; j < packs; ++j) {                                                      \
           InputOf<P, F> u;                                                                                   \
           SLALOM_UNROLL for (int i = 0; i < P::inputs; ++i) u[i] = F::load(row + i * stride + j * F::lanes); \
+          if constexpr (limits_rates<P>) hold_rate(u, r[j].previous, reach);                                 \
           const auto seen = look_up<P, F>(problem, r[j].x);                                                  \
           accumulate<F>(stage_cost<P, F>(problem, r[j].x, seen, u, k), r[j].total, r[j].hit);                \
           r[j].x = step<P, F>(problem, r[j].x, seen, u, k);                                                  \

@@ -1,0 +1,167 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include "slalom/core/problem.hpp"
+
+/// What a problem may say of itself besides its dynamics and costs: names of its cost terms, bounds of its
+/// inputs and of their rates, noise of its own. What it does not say costs nothing.
+namespace slalom {
+
+/// A part of the cost of a control sequence, summed over its states.
+struct CostTerm {
+  const char* name = "";  ///< as the problem names it; "stage" and "terminal" where it names none
+  double value = 0;       ///< in the problem's unit of cost
+};
+
+namespace detail {
+
+// --- cost terms
+template <class P>
+using StageCostOf = decltype(stage_cost<P, double>(
+    std::declval<const P&>(), std::declval<const StateOf<P, double>&>(),
+    look_up<P, double>(std::declval<const P&>(), std::declval<const StateOf<P, double>&>()),
+    std::declval<const InputOf<P, double>&>(), 0));
+template <class P>
+using TerminalCostOf = decltype(terminal_cost<P, double>(
+    std::declval<const P&>(), std::declval<const StateOf<P, double>&>(),
+    look_up<P, double>(std::declval<const P&>(), std::declval<const StateOf<P, double>&>())));
+
+template <class C>
+inline constexpr int terms_in = 0;  ///< 0: a cost in one piece
+template <class T, int N>
+inline constexpr int terms_in<CostTerms<T, N>> = N;
+
+/// How many named terms a problem's costs have.
+template <class P>
+inline constexpr int named_terms =
+    terms_in<StageCostOf<P>> > terms_in<TerminalCostOf<P>> ? terms_in<StageCostOf<P>>
+                                                           : terms_in<TerminalCostOf<P>>;
+
+template <class P>
+inline constexpr bool names_costs = requires {
+  std::size(P::cost_names);
+};
+
+/// The terms of a problem's cost, all 0: the stage's in one piece, those it names, the terminal one in one
+/// piece.
+template <class P>
+constexpr auto cost_terms_of() {
+  constexpr int before = terms_in<StageCostOf<P>> == 0, after = terms_in<TerminalCostOf<P>> == 0;
+  std::array<CostTerm, before + named_terms<P> + after> terms{};
+  if constexpr (before) terms.front().name = "stage";
+  if constexpr (after) terms.back().name = "terminal";
+  if constexpr (named_terms < P >> 0) {
+    static_assert(names_costs<P>,
+                  "slalom: a problem whose costs are CostTerms needs "
+                  "`static constexpr std::array cost_names{...}`, a name for each term");
+    if constexpr (names_costs<P>) {
+      static_assert(std::size(P::cost_names) == named_terms<P>,
+                    "slalom: the problem's cost_names must name each term of its CostTerms");
+      for (int i = 0; i < named_terms<P>; ++i)
+        terms[static_cast<std::size_t>(before + i)].name = P::cost_names[static_cast<std::size_t>(i)];
+    }
+  }
+  return terms;
+}
+template <class P>
+using CostTermsOf = decltype(cost_terms_of<P>());
+
+/// Adds a cost to the terms it belongs to; `whole` is where a cost in one piece goes.
+inline void add_terms(double cost, CostTerm* /*named*/, CostTerm& whole) noexcept {
+  whole.value += cost;
+}
+inline void add_terms(const Cost<double>& cost, CostTerm* /*named*/, CostTerm& whole) noexcept {
+  whole.value += cost.value;
+}
+template <int N>
+void add_terms(const CostTerms<double, N>& cost, CostTerm* named, CostTerm& /*whole*/) noexcept {
+  for (int i = 0; i < N; ++i) named[i].value += cost.value[i];
+}
+
+// --- bounds
+/// One value for all inputs, or one for each.
+inline double entry(double value, int /*input*/) noexcept {
+  return value;
+}
+template <std::size_t N>
+double entry(const std::array<double, N>& values, int input) noexcept {
+  return values[static_cast<std::size_t>(input)];
+}
+
+template <class B, int N>
+inline constexpr bool is_bound =
+    std::is_convertible_v<B, double> || std::is_same_v<std::remove_cvref_t<B>, std::array<double, N>>;
+
+template <class P>
+inline constexpr bool has_input_min = requires(const P& p) {
+  p.input_min;
+};
+template <class P>
+inline constexpr bool has_input_max = requires(const P& p) {
+  p.input_max;
+};
+template <class P>
+inline constexpr bool limits_rates = requires(const P& p) {
+  p.input_rate_max;
+};
+
+/// Duration of a problem's step, s; 0 where it has none.
+template <class P>
+double time_step_of(const P& problem) noexcept {
+  if constexpr (requires { problem.time_step(); }) {
+    return static_cast<double>(problem.time_step());
+  } else if constexpr (requires { static_cast<double>(problem.dt); }) {
+    return static_cast<double>(problem.dt);
+  } else {
+    return 0;
+  }
+}
+
+/// The bounds that a problem states for an input; infinite where it states none.
+template <class P>
+double least_input(const P& problem, int input) noexcept {
+  if constexpr (has_input_min<P>) return entry(problem.input_min, input);
+  return -std::numeric_limits<double>::infinity();
+}
+template <class P>
+double largest_input(const P& problem, int input) noexcept {
+  if constexpr (has_input_max<P>) return entry(problem.input_max, input);
+  return std::numeric_limits<double>::infinity();
+}
+
+/// How far an input may move in a step.
+template <class P>
+double input_step(const P& problem, int input) noexcept {
+  if constexpr (limits_rates<P>) return entry(problem.input_rate_max, input) * time_step_of(problem);
+  return std::numeric_limits<double>::infinity();
+}
+
+/// Holds an input within reach of the one before, and keeps it as the next one's predecessor.
+template <class T, int M>
+SLALOM_INLINE void hold_rate(Input<T, M>& u, Input<T, M>& previous, const Input<T, M>& reach) {
+  for (int i = 0; i < M; ++i) {
+    u[i] = clamp(u[i], previous[i] - reach[i], previous[i] + reach[i]);
+    previous[i] = u[i];
+  }
+}
+
+}  // namespace detail
+
+/// What a problem with `input_rate_max` makes of a control sequence u[step], in place, when `previous` was
+/// applied before it: no input moves faster. Of another problem nothing is changed.
+template <Problem P>
+void hold_input_rates(const P& problem, Input<double, P::inputs> previous, Input<double, P::inputs>* u,
+                      int steps) noexcept {
+  if constexpr (detail::limits_rates<P>) {
+    Input<double, P::inputs> reach;
+    for (int i = 0; i < P::inputs; ++i) reach[i] = detail::input_step(problem, i);
+    for (int k = 0; k < steps; ++k) detail::hold_rate(u[k], previous, reach);
+  }
+}
+
+}  // namespace slalom

@@ -1,0 +1,170 @@
+// What a problem may say of itself besides dynamics and costs, in the rollouts of every instruction set.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "slalom/core/problem_evaluator.hpp"
+
+namespace slalom {
+namespace {
+
+/// A point pushed along a line, its cost in one piece.
+struct Plain {
+  template <class T>
+  struct State {
+    T position, speed;
+  };
+  static constexpr int inputs = 2;  // two pushes
+  double dt = 0.1;
+
+  template <class T>
+  State<T> step(const State<T>& x, const Input<T, 2>& u) const {
+    return {x.position + T(dt) * x.speed, x.speed + T(dt) * (u[0] + u[1])};
+  }
+  template <class T>
+  Cost<T> stage_cost(const State<T>& x, const Input<T, 2>& u) const {
+    return {square(x.position) + T(0.1) * square(x.speed) + T(0.01) * (square(u[0]) + square(u[1])),
+            abs(x.position) > T(1)};
+  }
+  template <class T>
+  T terminal_cost(const State<T>& x) const {
+    return T(10) * square(x.position);
+  }
+};
+
+/// The same in terms.
+struct Named : Plain {
+  static constexpr std::array cost_names{"position", "speed", "effort"};
+
+  template <class T>
+  CostTerms<T, 3> stage_cost(const State<T>& x, const Input<T, 2>& u) const {
+    return {{square(x.position), T(0.1) * square(x.speed), T(0.01) * (square(u[0]) + square(u[1]))},
+            abs(x.position) > T(1)};
+  }
+};
+
+/// All of it in terms: the end of the way counts as position.
+struct AllNamed : Named {
+  template <class T>
+  CostTerms<T, 3> terminal_cost(const State<T>& x) const {
+    return {{T(10) * square(x.position), T(0), T(0)}};
+  }
+};
+
+/// Pushes that build up slowly: the first by 2 a second, the second by 0.5.
+struct Slow : Plain {
+  std::array<double, 2> input_rate_max{2, 0.5};
+};
+
+struct Rollouts {
+  SequenceBatch batch{9, 2, 128};
+  std::vector<float> costs = std::vector<float>(128);
+  std::vector<std::uint8_t> collided = std::vector<std::uint8_t>(128);
+
+  Rollouts() { fill_normal(batch, 0, 128, {3, 1}); }
+
+  template <class P>
+  void run(const ProblemEvaluator<P>& evaluator) {
+    evaluator.evaluate(batch, 0, 128, costs.data(), collided.data());
+  }
+  std::vector<Input<double, 2>> sequence(int sample) const {
+    std::vector<Input<double, 2>> u;
+    for (int k = 0; k < batch.steps(); ++k)
+      u.push_back(
+          {{static_cast<double>(batch.at(k, 0, sample)), static_cast<double>(batch.at(k, 1, sample))}});
+    return u;
+  }
+};
+
+class PartsOn : public ::testing::TestWithParam<simd::Target> {
+ protected:
+  void SetUp() override {
+    if (!simd::supported(GetParam())) GTEST_SKIP() << "this processor has no " << simd::name(GetParam());
+  }
+};
+
+TEST_P(PartsOn, TermsSumToTheSameCost) {
+  Rollouts plain, named;
+  ProblemEvaluator<Plain> one({}, GetParam());
+  ProblemEvaluator<Named> other({}, GetParam());
+  one.set_state({0.9, 0.3});
+  other.set_state({0.9, 0.3});
+  plain.run(one);
+  named.run(other);
+  int collisions = 0;
+  for (std::size_t k = 0; k < 128; ++k) {
+    EXPECT_NEAR(plain.costs[k], named.costs[k], 1e-5f * plain.costs[k]);
+    EXPECT_EQ(plain.collided[k], named.collided[k]);
+    collisions += named.collided[k];
+  }
+  EXPECT_GT(collisions, 10);
+  EXPECT_LT(collisions, 120);
+}
+
+TEST_P(PartsOn, RatesAreHeldInRolloutsAsInThePlan) {
+  Rollouts rollouts;
+  ProblemEvaluator<Slow> evaluator({}, GetParam());
+  const Input<double, 2> before{{0.5, -0.25}};
+  evaluator.set_state({0.4, 0.1});
+  evaluator.set_previous_input(before);
+  rollouts.run(evaluator);
+  for (int k = 0; k < 128; ++k) {
+    auto u = rollouts.sequence(k);
+    const double free = predict(Slow{}, {0.4, 0.1}, u.data(), 9, nullptr).value;
+    hold_input_rates(Slow{}, before, u.data(), 9);
+    const double held = predict(Slow{}, {0.4, 0.1}, u.data(), 9, nullptr).value;
+    EXPECT_NEAR(static_cast<double>(rollouts.costs[static_cast<std::size_t>(k)]), held, 1e-4 * held);
+    EXPECT_NE(free, held);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, PartsOn,
+                         ::testing::Values(simd::Target::generic, simd::Target::sse4, simd::Target::avx2,
+                                           simd::Target::avx512),
+                         [](const auto& target) { return simd::name(target.param); });
+
+TEST(ProblemParts, RatesAreHeldFromWhatWasAppliedBefore) {
+  Input<double, 2> u[3] = {{{5, -5}}, {{5, -5}}, {{0.3, 0}}};
+  hold_input_rates(Slow{}, {{1, 0}}, u, 3);
+  EXPECT_DOUBLE_EQ(u[0][0], 1.2);
+  EXPECT_DOUBLE_EQ(u[0][1], -0.05);
+  EXPECT_DOUBLE_EQ(u[1][0], 1.4);
+  EXPECT_DOUBLE_EQ(u[2][0], 1.2);
+  EXPECT_DOUBLE_EQ(u[2][1], -0.05);
+}
+
+TEST(ProblemParts, CostsAreToldByName) {
+  const Input<double, 2> u[2] = {{{1, 2}}, {{0, 0}}};
+  CostTermsOf<Plain> plain;
+  CostTermsOf<Named> named;
+  CostTermsOf<AllNamed> all;
+  const double cost = predict(Plain{}, {0.5, 1}, u, 2, nullptr, &plain).value;
+  EXPECT_DOUBLE_EQ(predict(Named{}, {0.5, 1}, u, 2, nullptr, &named).value, cost);
+  EXPECT_DOUBLE_EQ(predict(AllNamed{}, {0.5, 1}, u, 2, nullptr, &all).value, cost);
+  // Positions 0.5, 0.6, 0.73 and speeds 1, 1.3.
+  ASSERT_EQ(plain.size(), 2u);
+  EXPECT_STREQ(plain[0].name, "stage");
+  EXPECT_STREQ(plain[1].name, "terminal");
+  EXPECT_NEAR(plain[1].value, 10 * 0.73 * 0.73, 1e-12);
+  EXPECT_NEAR(plain[0].value + plain[1].value, cost, 1e-12);
+  ASSERT_EQ(named.size(), 4u);
+  EXPECT_STREQ(named[0].name, "position");
+  EXPECT_NEAR(named[0].value, 0.25 + 0.36, 1e-12);
+  EXPECT_NEAR(named[1].value, 0.1 * (1 + 1.69), 1e-12);
+  EXPECT_NEAR(named[2].value, 0.05, 1e-12);
+  EXPECT_STREQ(named[3].name, "terminal");
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_NEAR(all[0].value, 0.25 + 0.36 + 10 * 0.73 * 0.73, 1e-12);
+}
+
+TEST(ProblemParts, WhatIsNotSaidTakesNoRoom) {
+  EXPECT_EQ(sizeof(detail::Rollout<Plain, float>), 3 * sizeof(float) + sizeof(float));
+  EXPECT_EQ(detail::start_size<Plain>, 2);
+  EXPECT_EQ(detail::start_size<Slow>, 4);
+  EXPECT_EQ(ProblemEvaluator<Plain>(Plain{}).sampler(), nullptr);
+}
+
+}  // namespace
+}  // namespace slalom

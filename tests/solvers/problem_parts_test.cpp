@@ -1,0 +1,136 @@
+// Controllers of problems that state bounds, limits of rates, or noise of their own.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "slalom/slalom.hpp"
+#include "solvers/problems.hpp"
+
+namespace slalom {
+namespace {
+
+using testing::DoubleIntegrator;
+
+struct Bounded : DoubleIntegrator {
+  double input_min = -0.25;
+  std::array<double, 1> input_max{0.75};
+};
+
+/// Far away, so that every method wants to push as hard as it may.
+constexpr DoubleIntegrator::State<double> far_left{-50, 0}, far_right{50, 0};
+
+template <class P, class Options>
+void expect_within(P problem, Options options, double low, double high) {
+  options.variance = 4;
+  Controller<P> controller(problem, options);
+  double least = 1e9, largest = -1e9;
+  for (int k = 0; k < 3; ++k) {
+    for (const auto& start : {far_left, far_right}) {
+      for (const auto& u : controller.solve(start).inputs) {
+        least = std::min(least, u[0]);
+        largest = std::max(largest, u[0]);
+      }
+    }
+  }
+  EXPECT_GE(least, low);
+  EXPECT_LT(least, low + 0.2);
+  EXPECT_LE(largest, high);
+  EXPECT_GT(largest, high - 0.2);
+}
+
+TEST(Bounds, AProblemsHoldForEveryMethod) {
+  for (const char* name : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"})
+    std::visit([](auto options) { expect_within(Bounded{}, options, -0.25, 0.75); }, solver_options(name));
+}
+
+TEST(Bounds, TheNarrowerOfProblemAndOptionsCounts) {
+  expect_within(Bounded{}, MppiOptions{.input_min = -2, .input_max = 0.5}, -0.25, 0.5);
+  expect_within(Bounded{}, MppiOptions{.input_min = {-0.125}, .input_max = 3}, -0.125, 0.75);
+}
+
+TEST(Bounds, ThatExcludeEachOtherAreRefused) {
+  EXPECT_THROW(Mppi(Bounded{}, {.input_min = 1, .input_max = 2}), std::invalid_argument);
+  EXPECT_THROW(Mppi(Bounded{}, {.input_min = {-1, -1}}), std::invalid_argument);
+}
+
+struct Slow : DoubleIntegrator {
+  double input_rate_max = 2;  // a step of 0.1 s: 0.2
+};
+
+TEST(Rates, OfAPlanAreKeptFromSolveToSolve) {
+  SvgMppi controller{Slow{}, {.horizon = 12, .samples = 256, .input_min = -3, .input_max = 3}};
+  DoubleIntegrator::State<double> x = far_left;
+  double before = 0;
+  for (int tick = 0; tick < 30; ++tick) {
+    if (tick == 15) x = far_right;
+    const auto plan = controller.solve(x, {.elapsed = 0.1});
+    ASSERT_EQ(plan.status, Status::ok);
+    double last = before;
+    for (const auto& u : plan.inputs) {
+      EXPECT_LE(std::abs(u[0] - last), 0.2 + 1e-12);
+      last = u[0];
+    }
+    before = plan.inputs[0][0];
+    x = controller.problem().step(x, plan.inputs[0]);
+    if (tick == 14) {
+      EXPECT_GT(before, 1.5);
+    }
+  }
+  EXPECT_LT(before, 0);
+}
+
+TEST(Rates, CountFromTheInputThatIsBeingApplied) {
+  Mppi controller{Slow{}, {.horizon = 8, .variance = 4, .input_min = -3, .input_max = 3}};
+  const auto first = controller.solve(far_left);
+  const double third = first.inputs[2][0];
+  const auto second = controller.solve(far_left, {.elapsed = 0.3});  // three steps were driven
+  EXPECT_LE(std::abs(second.inputs[0][0] - third), 0.2 + 1e-12);
+  controller.set_previous_input({{-2}});
+  EXPECT_LE(controller.solve(far_left, {.elapsed = 0.1}).inputs[0][0], -1.8 + 1e-12);
+  controller.reset(0);
+  EXPECT_LE(std::abs(controller.solve(far_left).inputs[0][0]), 0.2 + 1e-12);
+}
+
+/// Pushes that hold for four steps at a time.
+struct Blocky : DoubleIntegrator {
+  void sample(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept {
+    fill_normal(noise, first, count, key);
+    for (int k = 0; k < noise.steps(); ++k)
+      for (int s = first; s < first + count; ++s) noise.at(k, 0, s) = noise.at(k - k % 4, 0, s);
+  }
+};
+
+template <class Options>
+void expect_blocks(Options options) {
+  options.horizon = 8;
+  options.samples = 200;
+  Controller<Blocky> controller(Blocky{}, options);
+  options.threads = 3;
+  Controller<Blocky> threaded(Blocky{}, options);
+  controller.prepare();
+  const auto plan = controller.solve({0.5, 0});
+  const SequenceBatch& samples = *plan.stats.samples;
+  for (int s = 0; s < samples.samples(); ++s)
+    for (int k = 0; k < 8; ++k) EXPECT_FLOAT_EQ(samples.at(k, 0, s), samples.at(k - k % 4, 0, s)) << s;
+  EXPECT_NE(samples.at(0, 0, 3), samples.at(4, 0, 3));
+  const auto again = threaded.solve({0.5, 0});
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(plan.inputs[k][0], again.inputs[k][0]);
+}
+
+TEST(Sampler, OfAProblemIsUsed) {
+  expect_blocks(MppiOptions{});
+  expect_blocks(CemOptions{.iterations = 1});
+}
+
+TEST(CostTerms, OfAPlanSumToItsCost) {
+  Mppi controller{DoubleIntegrator{}, {.horizon = 6}};
+  EXPECT_STREQ(controller.solve({0.5, std::nan("")}).cost_terms[0].name, "stage");
+  const auto plan = controller.solve({0.5, 0.1});
+  ASSERT_EQ(plan.cost_terms.size(), 2u);
+  EXPECT_STREQ(plan.cost_terms[1].name, "terminal");
+  EXPECT_NEAR(plan.cost_terms[0].value + plan.cost_terms[1].value, plan.cost, 1e-12);
+}
+
+}  // namespace
+}  // namespace slalom
