@@ -1,14 +1,14 @@
 #include "evaluation_job.hpp"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
+#include "campaign_progress.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
 #include "slalom/core/dispatch.hpp"
@@ -102,44 +102,6 @@ Json machine_json() {
   return machine;
 }
 
-std::string time_text(double seconds) {
-  char text[32];
-  const long s = std::lround(seconds);
-  if (s >= 3600) {
-    std::snprintf(text, sizeof text, "%ld h %02ld min", s / 3600, s / 60 % 60);
-  } else if (s >= 60) {
-    std::snprintf(text, sizeof text, "%ld min %02ld s", s / 60, s % 60);
-  } else {
-    std::snprintf(text, sizeof text, "%ld s", s);
-  }
-  return text;
-}
-
-/// A bar in a terminal; elsewhere a line for every tenth.
-class CampaignProgressBar {
- public:
-  void show(const CampaignProgress& p) {
-    const int tenth = p.laps_done * 10 / std::max(1, p.laps_total);
-    if (terminal_) {
-      std::string bar(30, '.');
-      std::fill_n(bar.begin(), p.laps_done * 30 / std::max(1, p.laps_total), '#');
-      std::fprintf(stderr, "\r[%s] %d of %d laps, %s left \033[K", bar.c_str(), p.laps_done, p.laps_total,
-                   time_text(p.seconds_left).c_str());
-    } else if (tenth != tenth_) {
-      std::fprintf(stderr, "%d of %d laps, %s left\n", p.laps_done, p.laps_total,
-                   time_text(p.seconds_left).c_str());
-    }
-    tenth_ = tenth;
-  }
-  ~CampaignProgressBar() {
-    if (terminal_ && tenth_ >= 0) std::fputs("\n", stderr);
-  }
-
- private:
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
-  int tenth_ = -1;
-};
-
 }  // namespace
 
 std::string course_hash(const Arena& arena) {
@@ -209,6 +171,11 @@ std::vector<Experiment> make_experiments(const std::vector<std::string>& methods
       experiments.insert(experiments.end(), variants.begin(), variants.end());
     }
   }
+  // In laps.csv nothing would tell two of the same apart.
+  std::set<std::string> seen;
+  for (const Experiment& e : experiments)
+    if (!seen.insert(e.label() + ", " + e.scenario).second)
+      throw IoError("--methods, --scenario, --set", 0, "say '" + e.label() + ", " + e.scenario + "' twice");
   return experiments;
 }
 
@@ -264,35 +231,43 @@ Json Evaluated::summary() const {
           {"comparisons", pairs}};
 }
 
-bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Experiment>& experiments,
-                    Evaluated& evaluated) {
+Campaign make_campaign(const EvaluationArguments& arguments, const Scenario& scenario,
+                       const std::vector<Experiment>& experiments) {
+  return {.arena = scenario.arena,
+          .configuration = scenario.configuration,
+          .experiments = experiments,
+          .seed0 = arguments.seed0,
+          .latency = scenario.lap.latency,
+          .settings = settings_of(arguments, scenario, experiments).dump(2)};
+}
+
+bool drive_campaign(const Campaign& campaign, const EvaluationArguments& arguments, const std::string& title,
+                    const std::atomic<bool>& cancel, std::vector<LapRow>& rows) {
   if (arguments.jobs < 0 || arguments.jobs > 1024)
     throw IoError("--jobs", 0, std::to_string(arguments.jobs) + " must be in [0, 1024]");
-  if (experiments.empty()) throw IoError("--methods", 0, "names no method");
-  const Scenario scenario = load_scenario(arguments.scenario, experiments.front().method);
   const int jobs = arguments.jobs > 0 ? arguments.jobs
                                       : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  evaluated.course_folder = scenario.folder;
-  evaluated.campaign = {.arena = scenario.arena,
-                        .configuration = scenario.configuration,
-                        .experiments = experiments,
-                        .seed0 = arguments.seed0,
-                        .latency = scenario.lap.latency,
-                        .settings = settings_of(arguments, scenario, experiments).dump(2)};
   // What cannot be driven must not leave a folder behind.
-  for (int i = 0; i < static_cast<int>(experiments.size()); ++i) make_runner(evaluated.campaign, i);
-  LapStore store(arguments.out, evaluated.campaign, arguments.resume);
-  const InterruptFlag interrupt;
-  {
-    CampaignProgressBar bar;
-    if (!run_campaign(
-            evaluated.campaign, store, jobs, [&](const CampaignProgress& p) { bar.show(p); },
-            interrupt.raised())) {
-      std::fprintf(stderr, "interrupted after %zu laps; --resume goes on\n", store.rows().size());
-      return false;
-    }
+  for (int i = 0; i < static_cast<int>(campaign.experiments.size()); ++i) make_runner(campaign, i);
+  LapStore store(arguments.out, campaign, arguments.resume);
+  CampaignProgressBar bar(title);
+  if (!run_campaign(
+          campaign, store, jobs, [&](const CampaignProgress& p) { bar.show(p); }, cancel)) {
+    std::fprintf(stderr, "interrupted after %zu laps; --resume goes on\n", store.rows().size());
+    return false;
   }
-  evaluated.rows = store.rows();
+  rows = store.rows();
+  return true;
+}
+
+bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Experiment>& experiments,
+                    Evaluated& evaluated) {
+  if (experiments.empty()) throw IoError("--methods", 0, "names no method");
+  const Scenario scenario = load_scenario(arguments.scenario, experiments.front().method);
+  evaluated.course_folder = scenario.folder;
+  evaluated.campaign = make_campaign(arguments, scenario, experiments);
+  const InterruptFlag interrupt;
+  if (!drive_campaign(evaluated.campaign, arguments, "", interrupt.raised(), evaluated.rows)) return false;
   evaluated.results = summarise(evaluated.rows, evaluated.campaign.experiments);
   return true;
 }

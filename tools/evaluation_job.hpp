@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -41,6 +42,16 @@ struct Evaluated {
   std::filesystem::path course_folder;
   nlohmann::ordered_json summary() const;
 };
+
+/// All that is driven, with the settings that are kept beside the laps.
+evaluation::Campaign make_campaign(const EvaluationArguments& arguments, const Scenario& scenario,
+                                   const std::vector<evaluation::Experiment>& experiments);
+
+/// Drives what is still missing in `arguments.out`, with a progress line that begins with `title`. False if
+/// it was interrupted, which it says. Throws IoError and what a lap throws.
+bool drive_campaign(const evaluation::Campaign& campaign, const EvaluationArguments& arguments,
+                    const std::string& title, const std::atomic<bool>& cancel,
+                    std::vector<evaluation::LapRow>& rows);
 
 /// Drives it with a progress line; false (and no summary) if it was interrupted. Throws IoError and what a
 /// lap throws.

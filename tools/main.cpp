@@ -12,6 +12,7 @@
 #include "reproduce_command.hpp"
 #include "slalom/core/version.hpp"
 #include "track_command.hpp"
+#include "tune_command.hpp"
 #include "view_command.hpp"
 
 int main(int argc, char** argv) {
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
   slalom::tools::add_replay_command(app, exit_status);
   slalom::tools::add_reproduce_command(app, exit_status);
   slalom::tools::add_track_command(app, exit_status);
+  slalom::tools::add_tune_command(app, exit_status);
   slalom::tools::add_view_command(app, exit_status);
   try {
     app.parse(argc, argv);

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tools/program.hpp"
+
+/// Tests that run evaluations in a folder of their own.
+namespace slalom::testing {
+
+namespace fs = std::filesystem;
+
+inline std::string content(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+inline bool contains(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+inline std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> parts;
+  std::istringstream stream(line);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+/// laps.csv without the columns that hold wall-clock times.
+inline std::string repeatable(const fs::path& file) {
+  std::istringstream lines(content(file));
+  std::string line, text;
+  std::vector<bool> kept;
+  while (std::getline(lines, line)) {
+    const auto parts = cells(line);
+    if (kept.empty()) {
+      for (const auto& name : parts)
+        kept.push_back(!contains(name, "calculation_time") && name.rfind("solve_", 0) != 0 &&
+                       name.rfind("deadline_", 0) != 0 && name.rfind("wall_", 0) != 0);
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (kept.at(i)) text += parts[i] + ",";
+    text += "\n";
+  }
+  return text;
+}
+
+inline std::size_t count_lines(const fs::path& file) {
+  const std::string text = content(file);
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+class EvaluationFolder : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() /
+              (std::string("slalom_evaluation.") + test->test_suite_name() + "." + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  slalom::testing::Run run(const std::string& arguments) const { return run_program(arguments, folder_.string()); }
+
+  /// Starts the program, kills it after so many milliseconds; true if that is what ended it.
+  bool kill_after(const std::string& arguments, int milliseconds) const {
+    const std::string command = "cd '" + folder_.string() + "' && exec '" SLALOM_PROGRAM "' " + arguments;
+    const pid_t child = fork();
+    if (child == 0) {
+      const int nothing = open("/dev/null", O_WRONLY);
+      dup2(nothing, 1);
+      dup2(nothing, 2);
+      execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    usleep(static_cast<useconds_t>(milliseconds) * 1000);
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFSIGNALED(status);
+  }
+
+  fs::path folder_;
+};
+
+}  // namespace slalom::testing
