@@ -15,7 +15,9 @@ class CemSolver final : public detail::SolverBase {
   CemSolver(const CemOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options, inputs, std::move(pool)),
         options_(options),
-        samples_(options.horizon, inputs, options.samples),
+        samples_(options.horizon, inputs, options.samples,
+                 detail::NoiseShape(options.noise_exponent, options.log_normal_spread, options.horizon,
+                                    inputs, options.samples)),
         elites_(std::clamp(static_cast<int>(std::lround(options.elite_share * options.samples)), 1,
                            options.samples)),
         order_(static_cast<std::size_t>(options.samples)),

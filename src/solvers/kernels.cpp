@@ -2,6 +2,7 @@
 
 #include "slalom/core/dispatch.hpp"
 #include "solvers/kernels_body.hpp"
+#include "solvers/kernels_noise.hpp"
 #include "solvers/kernels_particles.hpp"
 
 namespace slalom::detail {
@@ -33,6 +34,23 @@ namespace {
                                                           float least, float temperature, Range range,       \
                                                           float* weights) {                                  \
     return body::exponential_weights<Pack_##name>(totals, costs, least, temperature, range, weights);        \
+  }                                                                                                          \
+  ATTRIBUTES WeightSums<float> tsallis_weights_##name(const float* totals, const float* costs, float least,  \
+                                                      float temperature, float index, Range range,           \
+                                                      float* weights) {                                      \
+    return body::tsallis_weights<Pack_##name>(totals, costs, least, temperature, index, range, weights);     \
+  }                                                                                                          \
+  ATTRIBUTES void add_scaled_##name(const float* costs, float factor, const float* terms, Range range,       \
+                                    float* totals) {                                                         \
+    body::add_scaled<Pack_##name>(costs, factor, terms, range, totals);                                      \
+  }                                                                                                          \
+  ATTRIBUTES void colour_##name(const Rows<float>& z, const float* factor, int first, int step,              \
+                                Range range) {                                                               \
+    body::colour<Pack_##name>(z, factor, first, step, range);                                                \
+  }                                                                                                          \
+  ATTRIBUTES void spread_log_normal_##name(const Rows<float>& z, const float* y, const float* spread,        \
+                                           Range range) {                                                    \
+    body::spread_log_normal<Pack_##name>(z, y, spread, range);                                               \
   }                                                                                                          \
   ATTRIBUTES void scale_##name(float factor, Range range, float* values) {                                   \
     body::scale<Pack_##name>(factor, range, values);                                                         \
@@ -72,9 +90,13 @@ namespace {
                                    make_finite_##name,                                                       \
                                    minimum_##name,                                                           \
                                    exponential_weights_##name,                                               \
+                                   tsallis_weights_##name,                                                   \
                                    scale_##name,                                                             \
                                    weighted_sums_##name,                                                     \
                                    weighted_squares_##name,                                                  \
+                                   add_scaled_##name,                                                        \
+                                   colour_##name,                                                            \
+                                   spread_log_normal_##name,                                                 \
                                    particle_gradients_##name,                                                \
                                    place_round_##name,                                                       \
                                    stein_directions_##name,                                                  \

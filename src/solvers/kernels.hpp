@@ -82,6 +82,9 @@ struct Kernels {
   /// weight 0 count nothing).
   WeightSums<float> (*exponential_weights)(const float* totals, const float* costs, float least,
                                            float temperature, Range range, float* weights);
+  /// The same with the q-exponential of `index` q != 1: weights[k] = e_q((least - totals[k]) / temperature).
+  WeightSums<float> (*tsallis_weights)(const float* totals, const float* costs, float least,
+                                       float temperature, float index, Range range, float* weights);
   /// values[k] *= factor.
   void (*scale)(float factor, Range range, float* values);
   /// sums[row] = sum over samples of w[k] (v[row][k] - centre[row]).
@@ -90,6 +93,12 @@ struct Kernels {
   /// sums[row] = sum over samples of w[k] (v[row][k] - centre[row])^2.
   void (*weighted_squares)(const Rows<float>& v, const float* weights, const float* centre, Range range,
                            float* sums);
+  /// totals[k] = costs[k] + factor terms[k].
+  void (*add_scaled)(const float* costs, float factor, const float* terms, Range range, float* totals);
+  /// z <- L z over the rows first, first + step, ... with L lower triangular, row by row.
+  void (*colour)(const Rows<float>& z, const float* factor, int first, int step, Range range);
+  /// z <- z exp(s y - s^2), y laid out like z, s `spread` [row].
+  void (*spread_log_normal)(const Rows<float>& z, const float* y, const float* spread, Range range);
   /// Gradients [row][particle]; `exponents` holds the samples' costs and becomes their weights.
   void (*particle_gradients)(const ParticleGradients<float>& how, const Rows<float>& samples,
                              const Rows<float>& theta, Range particles, float* exponents,

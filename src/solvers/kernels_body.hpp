@@ -127,6 +127,44 @@ SLALOM_INLINE WeightSums<RealOf<F>> exponential_weights(const RealOf<F>* totals,
   return {L::sum(weight), L::sum(squared), L::sum(cost)};
 }
 
+/// e_q(-x) = [1 - (1 - q) x]_+^(1 / (1 - q)) with x = (total - least) / temperature. The power is taken as
+/// exp(log1p(-(1 - q) x) / (1 - q)); y log(1 + y) / ((1 + y) - 1) is log1p(y) without its loss at small y
+/// (Kahan), so that q near 1 is as good as any.
+template <class F>
+SLALOM_INLINE WeightSums<RealOf<F>> tsallis_weights(const RealOf<F>* totals, const RealOf<F>* costs,
+                                                    RealOf<F> least, RealOf<F> temperature, RealOf<F> index,
+                                                    Range range, RealOf<F>* weights) {
+  using L = Lanes<F>;
+  using Real = RealOf<F>;
+  const F minimum_cost(least), inverse(Real(1) / temperature), zero(0.0f), one(1.0f);
+  const F deformation(Real(1) - index), power(Real(1) / (Real(1) - index));
+  const F infinite(std::numeric_limits<Real>::infinity());
+  F weight(0.0f), squared(0.0f), cost(0.0f);
+  for (int k = range.first; k < range.first + range.count; k += L::count) {
+    const F total = L::load(totals + k);
+    const F y = deformation * ((minimum_cost - total) * inverse);
+    const F u = one + y;
+    const F gone = u - one;
+    const F logarithm = select(abs(gone) > zero, log(u) * (y / gone), y);
+    const F w = select((u > zero) & (total < infinite), exp(logarithm * power), zero);
+    L::store(w, weights + k);
+    weight = weight + w;
+    squared = squared + w * w;
+    cost = cost + select(w > zero, w * L::load(costs + k), zero);
+  }
+  return {L::sum(weight), L::sum(squared), L::sum(cost)};
+}
+
+template <class F>
+SLALOM_INLINE void add_scaled(const RealOf<F>* costs, RealOf<F> factor, const RealOf<F>* terms, Range range,
+                              RealOf<F>* totals) {
+  using L = Lanes<F>;
+  const F f(factor);
+  for (int k = range.first; k < range.first + range.count; k += L::count) {
+    L::store(L::load(costs + k) + f * L::load(terms + k), totals + k);
+  }
+}
+
 template <class F>
 SLALOM_INLINE void scale(RealOf<F> factor, Range range, RealOf<F>* values) {
   using L = Lanes<F>;

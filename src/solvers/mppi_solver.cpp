@@ -14,7 +14,7 @@ class MppiSolver final : public detail::SolverBase {
   MppiSolver(const MppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options, inputs, std::move(pool)),
         shift_(options.shift_warm_start),
-        update_(detail::PathIntegral::settings(options), options.horizon, inputs, options.samples),
+        update_(options, inputs),
         mean_(size()),
         shifted_(size()),
         nominal_(size()),
@@ -26,6 +26,7 @@ class MppiSolver final : public detail::SolverBase {
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
+    update_.reset();
     std::fill(mean_.begin(), mean_.end(), 0.0f);
     clamp(mean_.data());
     result_ = {};

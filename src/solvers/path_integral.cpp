@@ -2,42 +2,74 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace slalom::detail {
 
-PathIntegral::PathIntegral(const Settings& settings, int horizon, int inputs, int samples)
+PathIntegral::PathIntegral(const Settings& settings, SampleSet samples, const Weighting& weighting,
+                           Smoother smoother)
     : settings_(settings),
-      samples_(horizon, inputs, samples),
+      samples_(std::move(samples)),
+      weighting_(weighting),
+      smoother_(std::move(smoother)),
       deviation_(static_cast<std::size_t>(samples_.rows())),
       linear_(deviation_.size()),
       zero_(deviation_.size()),
       sums_(deviation_.size()) {}
+
+/// Coefficients of the control term. Coloured samples have the covariance D C D, D their deviations.
+void PathIntegral::set_control_term(double temperature, const float* mean, const float* nominal,
+                                    const float* variance) noexcept {
+  control_coefficients(temperature, settings_.discount, settings_.inverse_variance_offset, mean, nominal,
+                       variance, samples_.rows(), linear_.data());
+  if (!samples_.shape().coloured()) return;
+  const double factor = temperature * (1.0 - settings_.discount);
+  const auto scaled = [&](std::size_t r, double value) {
+    return deviation_[r] > 0 ? value / static_cast<double>(deviation_[r]) : 0.0;
+  };
+  for (std::size_t r = 0; r < sums_.size(); ++r) {
+    sums_[r] = scaled(r, static_cast<double>(mean[r]) - static_cast<double>(nominal[r]));
+  }
+  samples_.shape().whiten_twice(sums_.data());
+  for (std::size_t r = 0; r < sums_.size(); ++r) {
+    const double difference = static_cast<double>(mean[r]) - static_cast<double>(nominal[r]);
+    const double offset = deviation_[r] > 0 ? settings_.inverse_variance_offset * difference : 0.0;
+    linear_[r] = static_cast<float>(factor * (scaled(r, sums_[r]) + offset));
+  }
+}
 
 Status PathIntegral::update(const BatchEvaluator& evaluator, RandomKey key, const float* nominal,
                             const float* variance, const float* low, const float* high, ThreadPool& pool,
                             const Deadline& deadline, float* mean, SolveResult& result) noexcept {
   const std::size_t rows = deviation_.size();
   for (std::size_t r = 0; r < rows; ++r) deviation_[r] = std::sqrt(variance[r]);
-  control_coefficients(settings_.temperature, settings_.discount, settings_.inverse_variance_offset, mean,
-                       nominal, variance, samples_.rows(), linear_.data());
+  // Where the temperature is sought, the control term is kept apart, in units of it.
+  const bool seeks = weighting_.seeks();
+  set_control_term(seeks ? 1.0 : weighting_.temperature(), mean, nominal, variance);
   const int zero_mean_from = static_cast<int>((1.0 - settings_.zero_mean_share) * samples_.samples());
-  const Census census = samples_.draw_and_evaluate(
-      evaluator, key, {mean, deviation_.data(), low, high, zero_mean_from}, linear_.data(), pool, deadline);
+  const Census census =
+      samples_.draw_and_evaluate(evaluator, key, {mean, deviation_.data(), low, high, zero_mean_from},
+                                 seeks ? nullptr : linear_.data(), pool, deadline);
 
   const auto evaluated = Clock::now();
   WeightSums<double> sums;
   if (census.finite > 0) {
-    sums = samples_.weigh(census.minimum_total, static_cast<float>(settings_.temperature), pool);
+    if (seeks) {
+      samples_.keep_terms(linear_.data(), pool);
+      sums = weighting_.seek(samples_, pool);
+    } else {
+      sums = weighting_.weigh(samples_, census.minimum_total, pool);
+    }
     samples_.scale_weights(1.0 / (sums.weight + settings_.normaliser_offset));
     samples_.weighted_sums(zero_.data(), sums_.data(), pool);
-    for (std::size_t r = 0; r < rows; ++r) {
-      mean[r] = std::clamp(static_cast<float>(sums_[r]), low[r], high[r]);
-    }
+    for (std::size_t r = 0; r < rows; ++r) mean[r] = static_cast<float>(sums_[r]);
+    if (smoother_.active()) smoother_.apply(mean);
+    for (std::size_t r = 0; r < rows; ++r) mean[r] = std::clamp(mean[r], low[r], high[r]);
   } else {
     std::fill(samples_.weights().begin(), samples_.weights().end(), 0.0f);
   }
   report_samples(samples_, census, sums, result);
-  result.temperature = settings_.temperature;
+  result.temperature = weighting_.temperature();
   result.times.update += seconds(evaluated, Clock::now());
   if (census.evaluated < samples_.samples()) return Status::deadline;
   if (census.finite == 0) return Status::degenerate;

@@ -2,7 +2,9 @@
 
 #include <vector>
 
+#include "solvers/smoother.hpp"
 #include "solvers/solver_base.hpp"
+#include "solvers/weighting.hpp"
 
 namespace slalom::detail {
 
@@ -12,25 +14,32 @@ namespace slalom::detail {
 ///     v_k ~ N(u, Sigma),   J_k = S(v_k) + lambda (1 - alpha) sum_t (u - n)^T Sigma^-1 v_k
 ///     w_k = exp(-(J_k - min J) / lambda) / sum,   u <- sum_k w_k v_k
 ///
-/// u is the last solution, n the nominal sequence, S the cost of a rollout; alpha = 0 in the papers.
+/// u is the last solution, n the nominal sequence, S the cost of a rollout; alpha = 0 in the papers. The
+/// parts it is composed of can be others: the noise (NoiseShape), the weights and lambda (Weighting); u may
+/// be smoothed (Smoother).
 class PathIntegral {
  public:
   struct Settings {
-    double temperature = 1;              ///< lambda
     double discount = 0;                 ///< alpha
     double inverse_variance_offset = 0;  ///< 1/input^2
     double normaliser_offset = 0;
     double zero_mean_share = 0;
   };
-  template <class Options>
-  static Settings settings(const Options& o) {
-    return {o.temperature, o.control_cost_discount, o.inverse_variance_offset, o.normaliser_offset,
-            o.zero_mean_share};
-  }
 
-  PathIntegral(const Settings& settings, int horizon, int inputs, int samples);
+  /// From the options of `mppi` or `svg_mppi`.
+  template <class Options>
+  PathIntegral(const Options& o, int inputs)
+      : PathIntegral(
+            {o.control_cost_discount, o.inverse_variance_offset, o.normaliser_offset, o.zero_mean_share},
+            SampleSet(o.horizon, inputs, o.samples,
+                      NoiseShape(o.noise_exponent, o.log_normal_spread, o.horizon, inputs, o.samples)),
+            Weighting({o.temperature, o.tsallis_index, o.effective_share}),
+            o.smoothing_half_width > 0
+                ? Smoother(o.horizon, inputs, o.smoothing_half_width, o.smoothing_degree)
+                : Smoother()) {}
 
   SampleSet& samples() noexcept { return samples_; }
+  void reset() noexcept { weighting_.reset(); }
 
   /// Replaces `mean` [row] (u) by the new solution, which is within the bounds. `nominal` and `variance` are
   /// [row]. Without a single finite cost `mean` stays. Fills the result's statistics and returns its status.
@@ -39,8 +48,15 @@ class PathIntegral {
                 SolveResult& result) noexcept;
 
  private:
+  PathIntegral(const Settings& settings, SampleSet samples, const Weighting& weighting, Smoother smoother);
+
+  void set_control_term(double temperature, const float* mean, const float* nominal,
+                        const float* variance) noexcept;
+
   Settings settings_;
   SampleSet samples_;
+  Weighting weighting_;
+  Smoother smoother_;
   std::vector<float> deviation_, linear_, zero_;  ///< [row]
   std::vector<double> sums_;                      ///< [row]
 };

@@ -3,21 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace slalom::detail {
 
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
-
-/// Noise from the problem's sampler, or normal values where it has none.
-void fill_noise(const Sampler* sampler, SequenceBatch& noise, Range r, RandomKey key) noexcept {
-  if (sampler) {
-    sampler->fill(noise, r.first, r.count, key);
-  } else {
-    fill_normal(noise, r.first, r.count, key);
-  }
-}
 
 /// Samples a tile: their values fill about 32 KiB.
 int tile_size(int rows) {
@@ -43,16 +35,19 @@ Deadline Deadline::part(double share) const noexcept {
   return result;
 }
 
-SampleSet::SampleSet(int steps, int inputs, int samples)
+SampleSet::SampleSet(int steps, int inputs, int samples, NoiseShape shape)
     : values_(steps, inputs, samples),
       noise_(steps, inputs, samples),
+      shape_(std::move(shape)),
       costs_(static_cast<std::size_t>(padded(samples))),
       totals_(static_cast<std::size_t>(padded(samples))),
       weights_(static_cast<std::size_t>(padded(samples))),
+      terms_(static_cast<std::size_t>(padded(samples))),
       collided_(static_cast<std::size_t>(padded(samples))),
       tile_(tile_size(steps * inputs)),
       census_(static_cast<std::size_t>(tiles())),
       weight_sums_(static_cast<std::size_t>(tiles())),
+      least_(static_cast<std::size_t>(tiles())),
       row_sums_(static_cast<std::size_t>(tiles()) * static_cast<std::size_t>(steps * inputs)) {}
 
 Range SampleSet::range(int tile) const noexcept {
@@ -60,11 +55,18 @@ Range SampleSet::range(int tile) const noexcept {
   return {first, std::min(tile_, values_.stride() - first)};
 }
 
+/// Noise from the problem's sampler, or normal values where it has none, in its shape.
+void SampleSet::fill_noise(const Sampler* sampler, SequenceBatch& to, Range r, RandomKey key) noexcept {
+  if (sampler) {
+    sampler->fill(to, r.first, r.count, key);
+  } else {
+    fill_normal(to, r.first, r.count, key);
+  }
+  if (!shape_.plain()) shape_.apply(to, r, key);
+}
+
 void SampleSet::prepare(RandomKey key, ThreadPool& pool) noexcept {
-  pool.run(tiles(), [&](int tile) {
-    const Range r = range(tile);
-    fill_normal(noise_, r.first, r.count, key);
-  });
+  pool.run(tiles(), [&](int tile) { fill_noise(nullptr, noise_, range(tile), key); });
   prepared_ = true;
   prepared_key_ = key;
 }
@@ -201,10 +203,32 @@ Census SampleSet::evaluate(const BatchEvaluator& evaluator, const float* linear,
   return combine();
 }
 
-WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& pool) noexcept {
+void SampleSet::keep_terms(const float* linear, ThreadPool& pool) noexcept {
   pool.run(tiles(), [&](int tile) {
-    weight_sums_[static_cast<std::size_t>(tile)] = kernels().exponential_weights(
-        totals_.data(), costs_.data(), least, temperature, range(tile), weights_.data());
+    const Range r = range(tile);
+    std::fill_n(terms_.data() + r.first, r.count, 0.0f);
+    kernels().add_linear(row_view(), linear, r, terms_.data());
+  });
+}
+
+float SampleSet::mix_totals(float factor, ThreadPool& pool) noexcept {
+  pool.run(tiles(), [&](int tile) {
+    const Range r = range(tile);
+    kernels().add_scaled(costs_.data(), factor, terms_.data(), r, totals_.data());
+    kernels().make_finite(r, totals_.data());
+    least_[static_cast<std::size_t>(tile)] = kernels().minimum(totals_.data(), r);
+  });
+  return *std::min_element(least_.begin(), least_.end());
+}
+
+WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& pool, float index) noexcept {
+  const Kernels& k = kernels();
+  pool.run(tiles(), [&](int tile) {
+    WeightSums<float>& sums = weight_sums_[static_cast<std::size_t>(tile)];
+    const float *totals = totals_.data(), *costs = costs_.data();
+    sums = index == 1
+               ? k.exponential_weights(totals, costs, least, temperature, range(tile), weights_.data())
+               : k.tsallis_weights(totals, costs, least, temperature, index, range(tile), weights_.data());
   });
   WeightSums<double> all;
   for (const WeightSums<float>& sums : weight_sums_) {

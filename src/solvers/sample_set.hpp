@@ -10,6 +10,7 @@
 #include "slalom/core/sequence_batch.hpp"
 #include "slalom/core/thread_pool.hpp"
 #include "solvers/kernels.hpp"
+#include "solvers/noise_shape.hpp"
 
 namespace slalom::detail {
 
@@ -51,8 +52,9 @@ struct Census {
 /// their order.
 class SampleSet {
  public:
-  SampleSet(int steps, int inputs, int samples);
+  SampleSet(int steps, int inputs, int samples, NoiseShape shape = {});
 
+  const NoiseShape& shape() const noexcept { return shape_; }
   int samples() const noexcept { return values_.samples(); }
   int rows() const noexcept { return values_.steps() * values_.inputs(); }
   const SequenceBatch& values() const noexcept { return values_; }
@@ -84,8 +86,14 @@ class SampleSet {
   Census evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
                   const Deadline& deadline) noexcept;
 
-  /// Sets the weights to exp((least - total) / temperature), not normalised, and returns their sums.
-  WeightSums<double> weigh(float least, float temperature, ThreadPool& pool) noexcept;
+  /// Keeps sum of linear[row] v[row] of every sample for `mix_totals`.
+  void keep_terms(const float* linear, ThreadPool& pool) noexcept;
+  /// Sets the totals to cost + factor term; returns the least.
+  float mix_totals(float factor, ThreadPool& pool) noexcept;
+
+  /// Sets the weights to exp((least - total) / temperature), or to the q-exponential of an `index` q != 1,
+  /// not normalised, and returns their sums.
+  WeightSums<double> weigh(float least, float temperature, ThreadPool& pool, float index = 1) noexcept;
 
   /// The sums of the weights as they are.
   WeightSums<double> sum_weights() const noexcept;
@@ -104,6 +112,7 @@ class SampleSet {
   std::size_t count() const noexcept { return static_cast<std::size_t>(values_.samples()); }
   int tiles() const noexcept { return (values_.stride() + tile_ - 1) / tile_; }
   Range range(int tile) const noexcept;
+  void fill_noise(const Sampler* sampler, SequenceBatch& to, Range range, RandomKey key) noexcept;
   void place(const Sampler* sampler, RandomKey key, const Placement<float>& to, bool ready,
              ThreadPool& pool) noexcept;
   Census evaluate_whole(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
@@ -115,13 +124,15 @@ class SampleSet {
 
   SequenceBatch values_;
   SequenceBatch noise_;
+  NoiseShape shape_;
   bool prepared_ = false;
   RandomKey prepared_key_;
-  AlignedBuffer costs_, totals_, weights_;
+  AlignedBuffer costs_, totals_, weights_, terms_;
   std::vector<std::uint8_t> collided_;
   int tile_;
   std::vector<Census> census_;                  ///< [tile]
   std::vector<WeightSums<float>> weight_sums_;  ///< [tile]
+  std::vector<float> least_;                    ///< [tile]
   std::vector<float> row_sums_;                 ///< [tile][row]
 };
 

@@ -19,7 +19,7 @@ class SvgMppiSolver final : public detail::SolverBase {
         use_nominal_(options.use_nominal),
         adapt_covariance_(options.adapt_covariance),
         guides_(options, inputs, low(), high()),
-        update_(detail::PathIntegral::settings(options), options.horizon, inputs, options.samples),
+        update_(options, inputs),
         mean_(size()),
         shifted_(size()),
         nominal_(size()),
@@ -32,6 +32,7 @@ class SvgMppiSolver final : public detail::SolverBase {
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
+    update_.reset();
     guides_.restart(key(first_guides));
     std::fill(mean_.begin(), mean_.end(), 0.0f);
     std::fill(nominal_.begin(), nominal_.end(), 0.0f);

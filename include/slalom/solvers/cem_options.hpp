@@ -22,6 +22,8 @@ struct CemOptions {
   PerInput variance_min = 1e-4;  ///< input^2
   bool send_best = false;        ///< the solution is the best sample seen instead of the mean
 
+  PerInput noise_exponent = 0;     ///< beta of the noise's spectrum 1/f^beta; 0: white
+  PerInput log_normal_spread = 0;  ///< sigma_ln, log-normal factor of the noise; 0: none
   double zero_mean_share = 0;
   bool shift_warm_start = true;
   std::uint64_t seed = 0;
@@ -51,6 +53,7 @@ void visit_options(Options& o, Visit&& visit) {
                                     .max = detail::finite});
   visit(o.send_best,
         Declaration{.name = "send_best", .help = "send the best sample seen instead of the mean"});
+  detail::visit_noise_options(o, visit);
   detail::visit_run_options(o, visit);
 }
 

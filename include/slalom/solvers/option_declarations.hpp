@@ -51,6 +51,61 @@ void visit_sampling_options(Options& o, Visit&& visit) {
                     .help = "move the last solution forward by the elapsed time; published: false"});
 }
 
+/// The shape of the samples' noise.
+template <class Options, class Visit>
+void visit_noise_options(Options& o, Visit&& visit) {
+  visit(o.noise_exponent,
+        Declaration{.name = "noise_exponent",
+                    .symbol = "beta",
+                    .help =
+                        "colour of the noise along the steps, power 1/f^beta, per input: 0 is white, 1 pink, "
+                        "2 Brownian; the larger, the smoother",
+                    .min = 0,
+                    .max = 4});
+  visit(o.log_normal_spread,
+        Declaration{.name = "log_normal_spread",
+                    .symbol = "sigma_ln",
+                    .help = "log-normal factor of the noise at the same variance, per input: 0 is none; the "
+                            "larger, the more samples far away",
+                    .min = 0,
+                    .max = 2});
+}
+
+/// How costs become weights.
+template <class Options, class Visit>
+void visit_weight_options(Options& o, Visit&& visit) {
+  visit(o.tsallis_index,
+        Declaration{.name = "tsallis_index",
+                    .symbol = "q",
+                    .help =
+                        "weights are the q-exponential of -cost / temperature: 1 is exp; below 1 costs above "
+                        "temperature / (1 - q) count nothing, above 1 tails are heavy",
+                    .min = -20,
+                    .max = 3});
+  visit(o.effective_share,
+        Declaration{
+            .name = "effective_share",
+            .help = "effective sample size as a share of the samples, for which the temperature is sought "
+                    "in every solve; 0: the temperature is as set",
+            .min = 0,
+            .max = 1});
+}
+
+/// Smoothing of the solution along the steps.
+template <class Options, class Visit>
+void visit_smoothing_options(Options& o, Visit&& visit) {
+  visit(o.smoothing_half_width,
+        Declaration{
+            .name = "smoothing_half_width",
+            .unit = "steps",
+            .help = "Savitzky-Golay smoothing of the solution over this many steps to each side; 0: none",
+            .min = 0,
+            .max = 1000});
+  visit(o.smoothing_degree,
+        Declaration{
+            .name = "smoothing_degree", .help = "degree of the polynomials that smooth", .min = 0, .max = 9});
+}
+
 template <class Options, class Visit>
 void visit_control_cost_options(Options& o, Visit&& visit) {
   visit(o.control_cost_discount,

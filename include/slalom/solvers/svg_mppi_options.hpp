@@ -69,6 +69,13 @@ struct SvgMppiOptions {
   PerInput variance_min = 0.01;  ///< input^2; published: 0.001
   PerInput variance_max = 1;     ///< input^2; published: 0.1
 
+  PerInput noise_exponent = 0;     ///< beta of the noise's spectrum 1/f^beta; 0: white
+  PerInput log_normal_spread = 0;  ///< sigma_ln, log-normal factor of the noise; 0: none
+  double tsallis_index = 1;        ///< q of the weights' q-exponential; 1: exp
+  double effective_share = 0;      ///< effective sample size sought, a share of K; 0: `temperature` as set
+  int smoothing_half_width = 0;    ///< steps to each side, of Savitzky-Golay smoothing; 0: none
+  int smoothing_degree = 3;        ///< of its polynomials
+
   double control_cost_discount = 0;    ///< alpha; published: 0.1
   double zero_mean_share = 0;          ///< published: 0.1
   double inverse_variance_offset = 0;  ///< 1/input^2; published: 1e-4
@@ -172,6 +179,9 @@ void visit_options(Options& o, Visit&& visit) {
   detail::visit_sampling_options(o, visit);
   detail::visit_guide_options(o, visit);
   detail::visit_fit_options(o, visit);
+  detail::visit_noise_options(o, visit);
+  detail::visit_weight_options(o, visit);
+  detail::visit_smoothing_options(o, visit);
   detail::visit_control_cost_options(o, visit);
   detail::visit_run_options(o, visit);
 }

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "solvers/kernels_body.hpp"
+
+/// Bodies of the kernels that shape noise: see noise_shape.hpp.
+namespace slalom::detail::body {
+
+/// z <- L z over the rows first, first + step, ... of one input, from the last backwards, in place. Four
+/// packs share an entry of L.
+template <class F>
+SLALOM_INLINE void colour(const Rows<RealOf<F>>& z, const RealOf<F>* factor, int first, int step,
+                          Range range) {
+  using L = Lanes<F>;
+  constexpr int packs = 4;
+  const int steps = (z.rows - first + step - 1) / step;
+  for (int k = range.first; k < range.first + range.count; k += packs * L::count) {
+    for (int t = steps - 1; t >= 0; --t) {
+      const RealOf<F>* row = factor + static_cast<std::ptrdiff_t>(t) * (t + 1) / 2;
+      F sum[packs];
+      for (int b = 0; b < packs; ++b) sum[b] = F(0.0f);
+      for (int s = 0; s <= t; ++s) {
+        const F entry(row[s]);
+        const RealOf<F>* from = z.row(first + s * step) + k;
+        for (int b = 0; b < packs; ++b) sum[b] = sum[b] + entry * L::load(from + b * L::count);
+      }
+      for (int b = 0; b < packs; ++b) L::store(sum[b], z.row(first + t * step) + k + b * L::count);
+    }
+  }
+}
+
+/// z <- z exp(s y - s^2). `y` is laid out like z, `spread` [row] is s.
+template <class F>
+SLALOM_INLINE void spread_log_normal(const Rows<RealOf<F>>& z, const RealOf<F>* y, const RealOf<F>* spread,
+                                     Range range) {
+  using L = Lanes<F>;
+  for (int r = 0; r < z.rows; ++r) {
+    const F s(spread[r]), shift(-spread[r] * spread[r]);
+    RealOf<F>* to = z.row(r);
+    const RealOf<F>* from = y + r * z.stride;
+    for (int k = range.first; k < range.first + range.count; k += L::count) {
+      L::store(L::load(to + k) * exp(s * L::load(from + k) + shift), to + k);
+    }
+  }
+}
+
+}  // namespace slalom::detail::body

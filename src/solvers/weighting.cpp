@@ -1,0 +1,62 @@
+#include "solvers/weighting.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slalom::detail {
+
+namespace {
+
+/// The temperatures within which the search stays, as logarithms: 1e-9 ... 1e12.
+constexpr double lowest = -20.7, highest = 27.6;
+/// As near as the effective sample size needs to come, as a logarithm, and the most weighings that may cost.
+constexpr double near_enough = 0.01;
+constexpr int most_trials = 40;
+
+double effective(const WeightSums<double>& sums) {
+  return sums.squared > 0 ? sums.weight * sums.weight / sums.squared : 0;
+}
+
+}  // namespace
+
+WeightSums<double> Weighting::weigh(SampleSet& samples, float least, ThreadPool& pool) noexcept {
+  return samples.weigh(least, static_cast<float>(temperature_), pool, static_cast<float>(settings_.index));
+}
+
+WeightSums<double> Weighting::try_temperature(SampleSet& samples, double logarithm,
+                                              ThreadPool& pool) noexcept {
+  temperature_ = std::exp(logarithm);
+  return weigh(samples, samples.mix_totals(static_cast<float>(temperature_), pool), pool);
+}
+
+WeightSums<double> Weighting::seek(SampleSet& samples, ThreadPool& pool) noexcept {
+  const double wanted = std::max(settings_.share * samples.samples(), 1.0);
+  double at = std::clamp(std::log(temperature_), lowest, highest);
+  double low = at, high = at, low_error = 0, high_error = 0, stride = 1;
+  bool below = false, above = false;  // whether a temperature that is too low, too high is known
+  int side = 0;                       // on which the last trials were
+  for (int trial = 0; trial < most_trials; ++trial) {
+    const WeightSums<double> sums = try_temperature(samples, at, pool);
+    const double error = std::log(std::max(effective(sums), 1e-3) / wanted);
+    if (std::abs(error) < near_enough) return sums;
+    (error < 0 ? low : high) = at;
+    (error < 0 ? low_error : high_error) = error;
+    (error < 0 ? below : above) = true;
+    if (below && above) {
+      // The Illinois rule: an end that has stood twice counts half, or false position would creep.
+      const int now = error < 0 ? -1 : 1;
+      if (now == side) (error < 0 ? high_error : low_error) /= 2;
+      side = now;
+      at = low + (high - low) * low_error / (low_error - high_error);
+    } else if ((error < 0 && at >= highest) || (error > 0 && at <= lowest)) {
+      break;
+    } else {
+      at = std::clamp(at + (error < 0 ? stride : -stride), lowest, highest);
+      stride *= 2;
+    }
+  }
+  if (below && above) return try_temperature(samples, at, pool);
+  return try_temperature(samples, std::log(settings_.temperature), pool);
+}
+
+}  // namespace slalom::detail

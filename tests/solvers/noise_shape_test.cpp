@@ -1,0 +1,172 @@
+#include "solvers/noise_shape.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "slalom/core/dispatch.hpp"
+
+namespace slalom::detail {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Samples of shaped noise, all tiles at once.
+SequenceBatch shaped(NoiseShape& shape, int steps, int inputs, int samples, std::uint64_t seed = 3) {
+  SequenceBatch z(steps, inputs, samples);
+  fill_normal(z, 0, z.stride(), {seed, 5});
+  shape.apply(z, {0, z.stride()}, {seed, 5});
+  return z;
+}
+
+/// Mean of a[k] b[k] over the samples.
+double moment(const SequenceBatch& z, int s, int t, int input) {
+  double sum = 0;
+  for (int k = 0; k < z.samples(); ++k)
+    sum += static_cast<double>(z.at(s, input, k)) * static_cast<double>(z.at(t, input, k));
+  return sum / z.samples();
+}
+
+TEST(NoiseShape, WhiteCorrelationIsZeroBetweenSteps) {
+  const std::vector<double> c = coloured_correlation(0, 20);
+  EXPECT_DOUBLE_EQ(c[0], 1);
+  for (std::size_t d = 1; d < c.size(); ++d) EXPECT_NEAR(c[d], 0, 1e-14);
+}
+
+TEST(NoiseShape, CorrelationByHandForTwoSteps) {
+  // N = 4, powers 1, 1, 2^-beta, 1: c(1) ~ 1 + 0 - 2^-beta + 0, c(0) ~ 3 + 2^-beta.
+  for (const double beta : {0.5, 1.0, 2.0, 4.0}) {
+    const double p = std::pow(2, -beta);
+    EXPECT_NEAR(coloured_correlation(beta, 2)[1], (1 - p) / (3 + p), 1e-14) << beta;
+  }
+}
+
+TEST(NoiseShape, SpectrumOfThePeriodicSequenceIsThePowerLaw) {
+  // The correlation at all lags of the period, by symmetry, transforms back to the powers.
+  const int steps = 16, period = 32;
+  const double beta = 1.5;
+  std::vector<double> c = coloured_correlation(beta, steps);
+  // c(steps) is not among them; it follows from the sum over the odd and even powers.
+  double power_sum = 0, half = 0;
+  for (int k = 0; k < period; ++k) {
+    const double p = std::pow(std::max(std::min(k, period - k), 1), -beta);
+    power_sum += p;
+    half += k % 2 ? -p : p;
+  }
+  c.push_back(half / power_sum);
+  for (const int k : {1, 2, 5, 11, 16}) {
+    double spectrum = 0;
+    for (int d = 0; d < period; ++d) {
+      spectrum += c[static_cast<std::size_t>(std::min(d, period - d))] * std::cos(2 * pi * k * d / period);
+    }
+    EXPECT_NEAR(spectrum * power_sum / period, std::pow(k, -beta), 1e-12) << k;
+  }
+}
+
+TEST(NoiseShape, SamplesHaveTheCorrelationOfTheirInput) {
+  const int steps = 12, samples = 40000;
+  NoiseShape shape({0.0, 2.0}, 0, steps, 2, samples);
+  const SequenceBatch z = shaped(shape, steps, 2, samples);
+  const std::vector<double> brown = coloured_correlation(2, steps);
+  const double error = 4 / std::sqrt(samples);
+  for (int s = 0; s < steps; ++s) {
+    for (int t = 0; t <= s; ++t) {
+      EXPECT_NEAR(moment(z, s, t, 0), s == t ? 1 : 0, 1.5 * error) << s << " " << t;
+      EXPECT_NEAR(moment(z, s, t, 1), brown[static_cast<std::size_t>(s - t)], 1.5 * error) << s << " " << t;
+    }
+  }
+}
+
+TEST(NoiseShape, TheLargerTheExponentTheSmootherTheNoise) {
+  const int steps = 40, samples = 2000;
+  double before = 1e9;
+  for (const double beta : {0.0, 0.5, 1.0, 2.0, 3.0, 4.0}) {
+    NoiseShape shape(beta, 0, steps, 1, samples);
+    const SequenceBatch z = shaped(shape, steps, 1, samples);
+    double roughness = 0;
+    for (int t = 1; t < steps; ++t)
+      for (int k = 0; k < samples; ++k)
+        roughness += std::pow(static_cast<double>(z.at(t, 0, k) - z.at(t - 1, 0, k)), 2);
+    roughness /= (steps - 1) * samples;
+    const double expected = 2 * (1 - coloured_correlation(beta, steps)[1]);
+    EXPECT_NEAR(roughness, expected, 0.05 * expected + 1e-5) << beta;
+    EXPECT_LT(roughness, before);
+    before = roughness;
+  }
+}
+
+TEST(NoiseShape, LogNormalFactorKeepsTheVarianceAndRaisesTheFourthMoment) {
+  const int steps = 4, samples = 400000;
+  const double s = 0.4;
+  NoiseShape shape(0, {0.0, s}, steps, 2, samples);
+  const SequenceBatch z = shaped(shape, steps, 2, samples);
+  for (const int input : {0, 1}) {
+    double mean = 0, second = 0, fourth = 0;
+    for (int t = 0; t < steps; ++t) {
+      for (int k = 0; k < samples; ++k) {
+        const double v = static_cast<double>(z.at(t, input, k));
+        mean += v;
+        second += v * v;
+        fourth += v * v * v * v;
+      }
+    }
+    const double n = static_cast<double>(steps) * samples;
+    EXPECT_NEAR(mean / n, 0, 0.004);
+    EXPECT_NEAR(second / n, 1, 0.01);
+    EXPECT_NEAR(fourth / n, input == 0 ? 3 : 3 * std::exp(4 * s * s), input == 0 ? 0.05 : 0.25);
+  }
+}
+
+TEST(NoiseShape, WhiteningTwiceSolvesForTheCorrelation) {
+  const int steps = 9;
+  NoiseShape shape({1.7, 0.0}, 0, steps, 2, 1);
+  const std::vector<double> c = coloured_correlation(1.7, steps);
+  std::vector<double> x(18), y(18);
+  for (std::size_t r = 0; r < x.size(); ++r) x[r] = std::sin(1.3 * static_cast<double>(r));
+  for (std::size_t s = 0; s < 9; ++s) {
+    for (std::size_t t = 0; t < 9; ++t) y[2 * s] += c[s < t ? t - s : s - t] * x[2 * t];
+    y[2 * s + 1] = x[2 * s + 1];
+  }
+  shape.whiten_twice(y.data());
+  for (std::size_t r = 0; r < x.size(); ++r) EXPECT_NEAR(y[r], x[r], 1e-12) << r;
+}
+
+TEST(NoiseShape, EveryInstructionSetAgrees) {
+  const int steps = 7, samples = 64;
+  std::vector<float> factor;
+  for (int t = 0; t < steps; ++t)
+    for (int s = 0; s <= t; ++s) factor.push_back(0.1f * static_cast<float>(1 + s + t));
+  for (const simd::Target target :
+       {simd::Target::generic, simd::Target::sse4, simd::Target::avx2, simd::Target::avx512}) {
+    if (!simd::supported(target)) continue;
+    SequenceBatch z(steps, 2, samples), y(steps, 2, samples);
+    fill_normal(z, 0, 64, {1, 2});
+    fill_normal(y, 0, 64, {3, 4});
+    const SequenceBatch& noise = y;
+    std::vector<double> expected;
+    for (int t = 0; t < steps; ++t) {
+      double sum = 0;
+      for (int s = 0; s <= t; ++s)
+        sum += static_cast<double>(factor[static_cast<std::size_t>(t * (t + 1) / 2 + s)]) *
+               static_cast<double>(z.at(s, 1, 33));
+      expected.push_back(sum * std::exp(0.5 * static_cast<double>(noise.at(t, 1, 33)) - 0.25));
+    }
+    const Rows<float> rows{z.row(0, 0), z.stride(), 2 * steps};
+    const std::vector<float> spread(14, 0.5f);
+    kernels(target).colour(rows, factor.data(), 1, 2, {0, 64});
+    kernels(target).spread_log_normal(rows, y.row(0, 0), spread.data(), {0, 64});
+    for (int t = 0; t < steps; ++t)
+      EXPECT_NEAR(z.at(t, 1, 33), expected[static_cast<std::size_t>(t)],
+                  1e-5 * (1 + std::abs(expected[static_cast<std::size_t>(t)])))
+          << simd::name(target);
+  }
+}
+
+TEST(NoiseShape, RefusesToColourWhatIsTooLong) {
+  EXPECT_THROW(NoiseShape(1, 0, 3000, 1, 1), std::invalid_argument);
+  EXPECT_NO_THROW(NoiseShape(0, 0, 3000, 1, 1));
+}
+
+}  // namespace
+}  // namespace slalom::detail

@@ -1,0 +1,152 @@
+#include "solvers/weighting.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "slalom/core/dispatch.hpp"
+#include "solvers/problems.hpp"
+
+namespace slalom::detail {
+namespace {
+
+using slalom::testing::FunctionEvaluator;
+
+/// A thousand samples of one step whose cost is a function of their input.
+template <class Cost>
+struct Drawn {
+  explicit Drawn(Cost cost) : pool(1), samples(1, 1, 1000) {
+    const float mean = 0, deviation = 1, low = -100, high = 100;
+    const FunctionEvaluator evaluator(1, [cost](const SequenceBatch& batch, int k) {
+      return std::pair<double, bool>(cost(static_cast<double>(batch.at(0, 0, k))), false);
+    });
+    census = samples.draw_and_evaluate(evaluator, {7, 1}, {&mean, &deviation, &low, &high, 1000}, nullptr,
+                                       pool, Deadline());
+  }
+  double effective() const {
+    double sum = 0, squared = 0;
+    for (const float w : samples.weights()) {
+      sum += static_cast<double>(w);
+      squared += static_cast<double>(w) * static_cast<double>(w);
+    }
+    return sum * sum / squared;
+  }
+
+  ThreadPool pool;
+  SampleSet samples;
+  Census census;
+};
+
+/// The q-exponential as its definition has it.
+double q_exponential(double x, double q) {
+  if (q == 1) return std::exp(x);
+  const double base = 1 + (1 - q) * x;
+  return base > 0 ? std::pow(base, 1 / (1 - q)) : 0;
+}
+
+TEST(Weighting, TsallisWeightsAreQExponentials) {
+  Drawn drawn([](double v) { return 10 + 2 * v * v; });
+  for (const double q : {-20.0, -1.0, 0.0, 0.5, 0.99, 0.9999, 1.0, 1.0001, 1.5, 2.0, 3.0}) {
+    Weighting weighting({1.7, q, 0});
+    const WeightSums<double> sums = weighting.weigh(drawn.samples, drawn.census.minimum_total, drawn.pool);
+    double total = 0;
+    for (std::size_t k = 0; k < 1000; ++k) {
+      const double x =
+          (static_cast<double>(drawn.census.minimum_total) - static_cast<double>(drawn.samples.costs()[k])) /
+          1.7;
+      const double w = static_cast<double>(drawn.samples.weights()[k]);
+      EXPECT_NEAR(w, q_exponential(x, q), 1e-5) << "q " << q << " x " << x;
+      total += w;
+    }
+    EXPECT_NEAR(sums.weight, total, 1e-4 * total) << q;
+  }
+}
+
+TEST(Weighting, TsallisWeightsByHand) {
+  // x = 1/2: q = 0: 1 - x; q = 2: 1 / (1 + x); q = 1/2: (1 - x/2)^2; q = -1: sqrt(1 - 2 x) = 0.
+  const float totals[64] = {4, 5}, costs[64] = {4, 5};
+  for (const auto& [q, expected] : {std::pair{0.0f, 0.5}, {2.0f, 2.0 / 3}, {0.5f, 0.5625}, {-1.0f, 0.0}}) {
+    for (const simd::Target target :
+         {simd::Target::generic, simd::Target::sse4, simd::Target::avx2, simd::Target::avx512}) {
+      if (!simd::supported(target)) continue;
+      alignas(64) float weights[64];
+      kernels(target).tsallis_weights(totals, costs, 4, 2, q, {0, 64}, weights);
+      EXPECT_EQ(weights[0], 1) << simd::name(target);
+      EXPECT_NEAR(weights[1], expected, 1e-6) << q << " " << simd::name(target);
+    }
+  }
+}
+
+TEST(Weighting, InfiniteCostsWeighNothing) {
+  for (const double q : {0.0, 1.0, 2.0, 3.0}) {
+    Drawn drawn([](double v) { return v > 0 ? std::numeric_limits<double>::infinity() : v * v; });
+    Weighting weighting({1, q, 0});
+    const WeightSums<double> sums = weighting.weigh(drawn.samples, drawn.census.minimum_total, drawn.pool);
+    EXPECT_TRUE(std::isfinite(sums.weight) && std::isfinite(sums.cost)) << q;
+    for (std::size_t k = 0; k < 1000; ++k) {
+      if (!std::isfinite(drawn.samples.costs()[k])) {
+        EXPECT_EQ(drawn.samples.weights()[k], 0) << q;
+      }
+    }
+  }
+}
+
+TEST(Weighting, FindsTheTemperatureOfAnEffectiveSampleSize) {
+  for (const double scale : {1e-3, 1.0, 1e5}) {
+    for (const double q : {1.0, 0.5, 1.3}) {
+      for (const double share : {0.01, 0.1, 0.5}) {
+        Drawn drawn([scale](double v) { return scale * (v - 1) * (v - 1); });
+        const float none[1] = {0};
+        drawn.samples.keep_terms(none, drawn.pool);
+        Weighting weighting({1, q, share});
+        weighting.seek(drawn.samples, drawn.pool);
+        EXPECT_NEAR(drawn.effective(), share * 1000, 0.011 * share * 1000)
+            << "costs of " << scale << ", q " << q << ", lambda " << weighting.temperature();
+      }
+    }
+  }
+}
+
+TEST(Weighting, TemperatureScalesWithTheCosts) {
+  const auto found = [](double scale) {
+    Drawn drawn([scale](double v) { return scale * (v - 1) * (v - 1); });
+    const float none[1] = {0};
+    drawn.samples.keep_terms(none, drawn.pool);
+    Weighting weighting({1, 1, 0.2});
+    weighting.seek(drawn.samples, drawn.pool);
+    return weighting.temperature();
+  };
+  EXPECT_NEAR(found(1000) / found(1), 1000, 50);
+}
+
+TEST(Weighting, ControlTermIsInUnitsOfTheTemperature) {
+  // J = S + lambda g: weights exp(-S / lambda - g), whatever lambda was found.
+  Drawn drawn([](double v) { return 50 * v * v; });
+  const float linear[1] = {0.8f};
+  drawn.samples.keep_terms(linear, drawn.pool);
+  Weighting weighting({1, 1, 0.3});
+  weighting.seek(drawn.samples, drawn.pool);
+  const auto& w = drawn.samples.weights();
+  const auto exponent = [&](std::size_t k) {
+    return static_cast<double>(drawn.samples.costs()[k]) / weighting.temperature() +
+           0.8 * static_cast<double>(drawn.samples.values().at(0, 0, static_cast<int>(k)));
+  };
+  for (std::size_t k = 1; k < 1000; ++k) {
+    EXPECT_NEAR(static_cast<double>(w[k]), static_cast<double>(w[0]) * std::exp(exponent(0) - exponent(k)),
+                2e-5)
+        << k;
+  }
+}
+
+TEST(Weighting, KeepsTheTemperatureWhereNoneWouldDo) {
+  Drawn equal([](double) { return 5.0; });
+  const float none[1] = {0};
+  equal.samples.keep_terms(none, equal.pool);
+  Weighting weighting({2.5, 1, 0.1});
+  const WeightSums<double> sums = weighting.seek(equal.samples, equal.pool);
+  EXPECT_DOUBLE_EQ(weighting.temperature(), 2.5);
+  EXPECT_NEAR(sums.weight, 1000, 1e-3);
+}
+
+}  // namespace
+}  // namespace slalom::detail
