@@ -32,6 +32,20 @@ def signature(function):
     return arguments, "NDArray[Any]" if result.startswith("ndarray") or result == "array" else result
 
 
+def property_type(value):
+    """What a property returns, from its getter's signature; arrays by what the docstring says of them."""
+    first = (value.fget.__doc__ or "").split("\n")[0]
+    match = re.search(r"-> (.*)$", first)
+    if re.match(r"(float32|float64|uint8) \[", value.__doc__ or ""):
+        return "NDArray[Any]"
+    if not match or match[1] == "object":
+        return "Any"
+    result = re.sub(r"_slalom\.|slalom\.", "", match[1])
+    if result.startswith("numpy.ndarray"):
+        return "NDArray[Any]"
+    return re.sub(r"(List|Dict|Tuple)\b", lambda m: m[1].lower(), result)
+
+
 def class_lines(name, cls):
     base = cls.__mro__[1].__name__
     yield f"class {name}({base}):" if not base.startswith("pybind11") else f"class {name}:"
@@ -41,7 +55,9 @@ def class_lines(name, cls):
         yield f"    def __init__(self, problem: AnyProblem, *, {options}) -> None: ..."
     for member, value in vars(cls).items():
         if isinstance(value, property):
-            yield f"    @property\n    def {member}(self) -> Any: ..."
+            kind = property_type(value)
+            words = (value.__doc__ or "").strip().replace('"', "'")
+            yield f'    @property\n    def {member}(self) -> {kind}:\n        """{words}"""'
             if value.fset:
                 yield f"    @{member}.setter\n    def {member}(self, value: Any) -> None: ..."
         elif member == "__init__" and name not in METHOD_OF:

@@ -82,7 +82,8 @@ void bind_world(py::module_& module) {
            }),
            py::arg("course"), py::arg("evaluation") = "true",
            "`course`: a name or a folder. `evaluation`: 'true' or 'published'.")
-      .def_property_readonly("name", [](const Arena& a) { return a.course.name; })
+      .def_property_readonly(
+          "name", [](const Arena& a) { return a.course.name; }, "of the course")
       .def_property_readonly(
           "length", [](const Arena& a) { return a.course.length; }, "m")
       .def_property_readonly(
@@ -206,7 +207,8 @@ void bind_planner(py::module_& module) {
           py::arg("ranges"), py::kw_only(), py::arg("angle_min"), py::arg("angle_increment"),
           py::arg("range_min") = 0.0, py::arg("range_max"), py::arg("pose"), py::arg("speed"),
           "`pose`: (x, y, yaw) of the rear axle. Returns status, steer (rad), speed (m/s), predicted [n, 4].")
-      .def("reset", &vehicle::Planner::reset, py::arg("seed") = 0);
+      .def("reset", &vehicle::Planner::reset, py::arg("seed") = 0,
+           "Forgets everything and starts the random numbers anew.");
   module.def(
       "drive_lap",
       [](const std::shared_ptr<Arena>& arena, const std::string& method, std::uint64_t seed, int obstacles,

@@ -1,5 +1,8 @@
+#include <variant>
+
 #include "callable_problem.hpp"
 #include "controller.hpp"
+#include "slalom/problems/arm.hpp"
 #include "slalom/problems/car.hpp"
 #include "slalom/problems/cart_pole.hpp"
 #include "slalom/problems/differential_drive.hpp"
@@ -11,7 +14,8 @@ namespace slalom::python {
 namespace {
 
 template <class P>
-void bind_problem(py::module_& module, const char* name, const std::string& words) {
+py::class_<BuiltIn<P>, AnyProblem> bind_problem(py::module_& module, const char* name,
+                                                const std::string& words) {
   using Bound = BuiltIn<P>;
   const std::string text =
       words + "\n\nKeyword arguments, also attributes, with their defaults:\n\n" + options_text(P{});
@@ -60,6 +64,33 @@ void bind_problem(py::module_& module, const char* name, const std::string& word
         },
         "(x, y, radius) of each disc, m");
   }
+  return bound;
+}
+
+void bind_arm(py::module_& module) {
+  using problems::Arm;
+  const auto distance = [](const BuiltIn<Arm>& self, const std::array<double, Arm::joints>& angles) {
+    Arm::State<double> x;
+    std::copy(angles.begin(), angles.end(), x.angle);
+    return self.problem().distance(self.problem().posture(x));
+  };
+  bind_problem<Arm>(
+      module, "Arm",
+      "An arm of seven joints that reaches past a ball. State: the joints' angles (rad); inputs: "
+      "their rates (rad/s), which the problem bounds, as it does their accelerations.")
+      .def("distance", distance, py::arg("state"), "From the hand to the goal, m.")
+      .def_property_readonly(
+          "start", [](const BuiltIn<Arm>&) { return py::array_t<double>(Arm::joints, Arm::start.data()); },
+          "angles from which the ball is in the way, rad");
+}
+
+/// A number, one for each input, or none.
+using Limits = std::variant<std::monostate, double, std::vector<double>>;
+
+std::vector<double> to_values(const Limits& bound) {
+  if (const double* one = std::get_if<double>(&bound)) return {*one};
+  if (const auto* all = std::get_if<std::vector<double>>(&bound)) return *all;
+  return {};
 }
 
 std::span<const double> checked(const std::vector<double>& values, int count, const char* what) {
@@ -93,15 +124,29 @@ void bind_problems(py::module_& module) {
       module, "Problem",
       "A problem of one's own: callables on batches of K samples.\n\n"
       "dynamics(x[K, states], u[K, inputs]) -> x[K, states]\n"
-      "cost(x, u) -> [K], or a pair ([K], collided[K])\n"
-      "terminal_cost(x) -> the same, or None\n\n"
+      "cost(x, u) -> [K], or in terms {name: [K]}; or a pair (cost, collided[K])\n"
+      "terminal_cost(x) -> the same, or None\n"
+      "input_min, input_max: bounds that hold besides those of the options, one number or one per input\n"
+      "input_rate_max: inputs move no faster than this, in 1/s, in rollouts as in plans; needs dt\n"
+      "sampler(random, samples, horizon, inputs) -> [samples, horizon, inputs]: noise in place of standard "
+      "normal values, drawn from the numpy Generator `random` alone\n\n"
       "x and u are float32, with the samples of a column side by side in memory; u is a view of the solver's "
       "memory, valid during the call. What dynamics returns is handed on as it is.")
-      .def(py::init<py::object, py::object, py::object, int, int, double>(), py::arg("dynamics"),
-           py::arg("cost"), py::arg("terminal_cost") = py::none(), py::kw_only(), py::arg("states"),
-           py::arg("inputs"), py::arg("dt") = 0.0)
+      .def(py::init([](py::object dynamics, py::object cost, py::object terminal_cost, int states, int inputs,
+                       double dt, const Limits& input_min, const Limits& input_max,
+                       const Limits& input_rate_max, py::object sampler) {
+             return std::make_unique<CallableProblem>(
+                 std::move(dynamics), std::move(cost), std::move(terminal_cost), states, inputs,
+                 CallableParts{dt, to_values(input_min), to_values(input_max), to_values(input_rate_max),
+                               std::move(sampler)});
+           }),
+           py::arg("dynamics"), py::arg("cost"), py::arg("terminal_cost") = py::none(), py::kw_only(),
+           py::arg("states"), py::arg("inputs"), py::arg("dt") = 0.0, py::arg("input_min") = py::none(),
+           py::arg("input_max") = py::none(), py::arg("input_rate_max") = py::none(),
+           py::arg("sampler") = py::none())
       .def_property("dt", &CallableProblem::dt, &CallableProblem::set_dt,
                     "s, duration of a step; 0: not known");
+  bind_arm(module);
   bind_problem<problems::Pendulum>(module, "Pendulum",
                                    "A pendulum whose motor is too weak to lift it. State: angle from upright "
                                    "(rad), rate (rad/s); input: torque (N m).");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace slalom::python {
 
@@ -32,13 +33,15 @@ void add_values(const py::array& values, py::ssize_t count, Real* sums) {
 }  // namespace
 
 CallableProblem::CallableProblem(py::object dynamics, py::object cost, py::object terminal_cost, int states,
-                                 int inputs, double dt)
+                                 int inputs, CallableParts parts)
     : dynamics_(std::move(dynamics)),
       cost_(std::move(cost)),
       terminal_cost_(std::move(terminal_cost)),
       states_(states),
       inputs_(inputs),
-      state_(static_cast<std::size_t>(std::max(states, 0))) {
+      parts_(std::move(parts)),
+      state_(static_cast<std::size_t>(std::max(states, 0))),
+      previous_(static_cast<std::size_t>(std::max(inputs, 0))) {
   const auto require = [](bool holds, const std::string& what) {
     if (!holds) throw std::invalid_argument("Problem." + what);
   };
@@ -48,18 +51,60 @@ CallableProblem::CallableProblem(py::object dynamics, py::object cost, py::objec
           "terminal_cost: must be callable or None");
   require(states >= 1 && states <= 10000, "states: " + std::to_string(states) + " must be in [1, 10000]");
   require(inputs >= 1 && inputs <= 10000, "inputs: " + std::to_string(inputs) + " must be in [1, 10000]");
-  set_dt(dt);
+  require(parts_.sampler.is_none() || PyCallable_Check(parts_.sampler.ptr()),
+          "sampler: must be callable or None");
+  const auto require_count = [&](const std::vector<double>& values, const std::string& what) {
+    require(values.size() <= 1 || static_cast<int>(values.size()) == inputs,
+            what + ": has " + std::to_string(values.size()) + " values, must have 1 or " +
+                std::to_string(inputs));
+  };
+  require_count(parts_.input_min, "input_min");
+  require_count(parts_.input_max, "input_max");
+  require_count(parts_.input_rate_max, "input_rate_max");
+  for (const double rate : parts_.input_rate_max)
+    require(rate >= 0, "input_rate_max: " + std::to_string(rate) + " must be at least 0");
+  set_dt(parts_.dt);
+  require(parts_.input_rate_max.empty() || parts_.dt > 0, "input_rate_max: needs the duration of a step, dt");
+}
+
+namespace {
+double entry(const std::vector<double>& values, int input, double otherwise) {
+  if (values.empty()) return otherwise;
+  return values.size() == 1 ? values[0] : values[static_cast<std::size_t>(input)];
+}
+}  // namespace
+
+double CallableProblem::input_min(int input) const {
+  return entry(parts_.input_min, input, AnyProblem::input_min(input));
+}
+double CallableProblem::input_max(int input) const {
+  return entry(parts_.input_max, input, AnyProblem::input_max(input));
+}
+void CallableProblem::set_previous_input(std::span<const double> u) {
+  std::transform(u.begin(), u.end(), previous_.begin(), [](double v) { return static_cast<float>(v); });
+}
+bool CallableProblem::hold_rates(std::span<const double> previous, std::span<double> u) const {
+  if (parts_.input_rate_max.empty()) return false;
+  const auto nu = static_cast<std::size_t>(inputs_);
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const double before = i < nu ? previous[i] : u[i - nu];
+    const double reach = entry(parts_.input_rate_max, static_cast<int>(i % nu), 0) * parts_.dt;
+    u[i] = std::clamp(u[i], before - reach, before + reach);
+  }
+  return true;
 }
 
 void CallableProblem::set_dt(double dt) {
   if (!(dt >= 0 && std::isfinite(dt)))
     throw std::invalid_argument("Problem.dt: " + std::to_string(dt) +
                                 " must be finite and at least 0 (0: not known)");
-  dt_ = dt;
+  if (dt == 0 && !parts_.input_rate_max.empty())
+    throw std::invalid_argument("Problem.dt: input_rate_max needs the duration of a step");
+  parts_.dt = dt;
 }
 
 std::unique_ptr<AnyProblem> CallableProblem::clone() const {
-  return std::make_unique<CallableProblem>(dynamics_, cost_, terminal_cost_, states_, inputs_, dt_);
+  return std::make_unique<CallableProblem>(dynamics_, cost_, terminal_cost_, states_, inputs_, parts_);
 }
 
 void CallableProblem::set_state(std::span<const double> state) {
@@ -90,7 +135,7 @@ py::array CallableProblem::next(const py::array& x, const py::array& u) const {
 
 template <class Real>
 void CallableProblem::add_cost(const char* what, const py::object& result, py::ssize_t count, Real* costs,
-                               std::uint8_t* collided) const {
+                               std::uint8_t* collided, Prediction* prediction) const {
   py::object values = result;
   if (py::isinstance<py::tuple>(result) && py::len(result) == 2) {
     values = py::reinterpret_borrow<py::tuple>(result)[0];
@@ -101,6 +146,24 @@ void CallableProblem::add_cost(const char* what, const py::object& result, py::s
                             std::to_string(count) + ",)");
     for (py::ssize_t i = 0; i < count; ++i) collided[i] |= static_cast<std::uint8_t>(hits.at(i));
   }
+  if (py::isinstance<py::dict>(values)) {
+    for (const auto& [name, term] : py::reinterpret_borrow<py::dict>(values)) {
+      const Real before = costs[0];
+      add_values_of(what, py::reinterpret_borrow<py::object>(term), count, costs);
+      if (prediction) prediction->add(py::str(name), static_cast<double>(costs[0] - before));
+    }
+    return;
+  }
+  const Real before = costs[0];
+  add_values_of(what, values, count, costs);
+  if (prediction)
+    prediction->add(std::string_view(what) == "terminal_cost" ? "terminal" : "stage",
+                    static_cast<double>(costs[0] - before));
+}
+
+template <class Real>
+void CallableProblem::add_values_of(const char* what, const py::object& values, py::ssize_t count,
+                                    Real* costs) const {
   if (!py::isinstance<py::array>(values))
     throw py::type_error(std::string("Problem.") + what + ": returned " +
                          py::repr(py::type::of(values)).cast<std::string>() + ", must be an array");
@@ -119,6 +182,46 @@ void CallableProblem::add_cost(const char* what, const py::object& result, py::s
   }
 }
 
+/// Moves the inputs of all samples, `held` [input][sample], towards those of step `k`, no faster than
+/// allowed.
+void CallableProblem::hold_step(const SequenceBatch& batch, int k, int first, int count,
+                                std::vector<float>& held) const {
+  float* before = held.data();
+  for (int i = 0; i < inputs_; ++i) {
+    const float reach = static_cast<float>(entry(parts_.input_rate_max, i, 0) * parts_.dt);
+    const float* wanted = batch.row(k, i) + first;
+    for (int s = 0; s < count; ++s, ++before)
+      *before = std::min(std::max(wanted[s], *before - reach), *before + reach);
+  }
+}
+
+void CallableProblem::draw(SequenceBatch& noise, int first, int count, RandomKey key) const {
+  const auto random = py::module_::import("numpy").attr("random").attr("default_rng")(
+      py::make_tuple(key.seed, key.stream, first));
+  const auto array = py::array_t<float, py::array::forcecast>::ensure(
+      parts_.sampler(random, count, noise.steps(), noise.inputs()));
+  if (!array) throw py::error_already_set();
+  if (array.ndim() != 3 || array.shape(0) != count || array.shape(1) != noise.steps() ||
+      array.shape(2) != noise.inputs())
+    throw py::value_error("Problem.sampler: returned shape " + shape_text(array) + ", must be (" +
+                          std::to_string(count) + ", " + std::to_string(noise.steps()) + ", " +
+                          std::to_string(noise.inputs()) + ")");
+  const auto values = array.unchecked<3>();
+  for (int k = 0; k < noise.steps(); ++k)
+    for (int i = 0; i < noise.inputs(); ++i)
+      for (int s = 0; s < count; ++s) noise.row(k, i)[first + s] = values(s, k, i);
+}
+
+void CallableProblem::fill(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept {
+  const py::gil_scoped_acquire lock;
+  try {
+    if (!error_) return draw(noise, first, count, key);
+  } catch (...) {
+    error_ = std::current_exception();
+  }
+  fill_normal(noise, first, count, key);
+}
+
 void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count, float* costs,
                                std::uint8_t* collided) const {
   // Columns lie together in memory, as the inputs do, so that the callables work on contiguous columns.
@@ -128,9 +231,15 @@ void CallableProblem::roll_out(const SequenceBatch& batch, int first, int count,
   for (const float value : state_) values = std::fill_n(values, count, value);
   std::fill_n(costs, count, 0.0f);
   std::fill_n(collided, count, std::uint8_t{0});
+  const bool holds = !parts_.input_rate_max.empty();
+  std::vector<float> held;
+  for (const float value : previous_)
+    held.insert(held.end(), holds ? static_cast<std::size_t>(count) : 0, value);
   for (int k = 0; k < batch.steps(); ++k) {
+    if (holds) hold_step(batch, k, first, count, held);
+    const float* const from = holds ? held.data() : batch.row(k, 0) + first;
     py::array u(py::dtype::of<float>(), {py::ssize_t{count}, py::ssize_t{inputs_}},
-                {width, width * batch.stride()}, batch.row(k, 0) + first, owner_);
+                {width, width * (holds ? count : batch.stride())}, from, owner_);
     make_read_only(u);
     add_cost("cost", cost_(x, u), count, costs, collided);
     x = next(x, u);
@@ -170,13 +279,13 @@ Prediction CallableProblem::predict(std::span<const double> state, std::span<con
   for (std::size_t k = 0; k < steps; ++k) {
     const py::array_t<double> x({py::ssize_t{1}, py::ssize_t{states_}}, now.data());
     const py::array_t<double> u({py::ssize_t{1}, py::ssize_t{inputs_}}, &inputs[k * nu]);
-    add_cost("cost", cost_(x, u), 1, &result.cost, &collided);
+    add_cost("cost", cost_(x, u), 1, &result.cost, &collided, &result);
     now = step(now, inputs.subspan(k * nu, nu));
     result.states.insert(result.states.end(), now.begin(), now.begin() + static_cast<std::ptrdiff_t>(nx));
   }
   if (!terminal_cost_.is_none()) {
     const py::array_t<double> x({py::ssize_t{1}, py::ssize_t{states_}}, now.data());
-    add_cost("terminal_cost", terminal_cost_(x), 1, &result.cost, &collided);
+    add_cost("terminal_cost", terminal_cost_(x), 1, &result.cost, &collided, &result);
   }
   result.collided = collided != 0;
   return result;

@@ -7,20 +7,33 @@
 
 namespace slalom::python {
 
+/// What a problem of callables may state besides.
+struct CallableParts {
+  double dt = 0;                                             ///< s, duration of a step; 0: not known
+  std::vector<double> input_min, input_max, input_rate_max;  ///< one value, one per input, or none
+  py::object sampler;                                        ///< callable or None
+};
+
 /// A problem made of callables on batches of K samples: dynamics(x[K, nx], u[K, nu]) -> x[K, nx],
-/// cost(x, u) -> [K], terminal_cost(x) -> [K]. A cost may come as a pair (cost, collided). The inputs are
-/// views of the solver's memory and what dynamics returns is handed on as it is: nothing is copied.
-class CallableProblem final : public AnyProblem, public BatchEvaluator {
+/// cost(x, u) -> [K], terminal_cost(x) -> [K]. A cost may come in terms, {name: [K]}, and as a pair
+/// (cost, collided). The inputs are views of the solver's memory and what dynamics returns is handed on as it
+/// is: nothing is copied.
+class CallableProblem final : public AnyProblem, public BatchEvaluator, private Sampler {
  public:
   CallableProblem(py::object dynamics, py::object cost, py::object terminal_cost, int states, int inputs,
-                  double dt);
+                  CallableParts parts);
 
   std::unique_ptr<AnyProblem> clone() const override;
   std::string name() const override { return "Problem"; }
   int states() const noexcept override { return states_; }
   int inputs() const noexcept override { return inputs_; }
   const BatchEvaluator& evaluator() const noexcept override { return *this; }
-  double time_step() const noexcept override { return dt_; }
+  double time_step() const noexcept override { return parts_.dt; }
+  const Sampler* sampler() const noexcept override { return parts_.sampler.is_none() ? nullptr : this; }
+  double input_min(int input) const override;
+  double input_max(int input) const override;
+  bool hold_rates(std::span<const double> previous, std::span<double> u) const override;
+  void set_previous_input(std::span<const double> u) override;
   bool whole_batches() const noexcept override { return true; }
   void set_state(std::span<const double> state) override;
   std::vector<double> step(std::span<const double> state, std::span<const double> input) override;
@@ -32,20 +45,25 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator {
   void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
                 std::uint8_t* collided) const noexcept override;
 
-  double dt() const noexcept { return dt_; }
+  double dt() const noexcept { return parts_.dt; }
   void set_dt(double dt);
 
  private:
   void roll_out(const SequenceBatch& batch, int first, int count, float* costs, std::uint8_t* collided) const;
+  template <class Real>
+  void add_values_of(const char* what, const py::object& values, py::ssize_t count, Real* costs) const;
+  void hold_step(const SequenceBatch& batch, int k, int first, int count, std::vector<float>& held) const;
+  void fill(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept override;
+  void draw(SequenceBatch& noise, int first, int count, RandomKey key) const;
   py::array next(const py::array& x, const py::array& u) const;
   template <class Real>
   void add_cost(const char* what, const py::object& result, py::ssize_t count, Real* costs,
-                std::uint8_t* collided) const;
+                std::uint8_t* collided, Prediction* prediction = nullptr) const;
 
   py::object dynamics_, cost_, terminal_cost_;
   int states_, inputs_;
-  double dt_;
-  std::vector<float> state_;
+  CallableParts parts_;
+  std::vector<float> state_, previous_;
   py::handle owner_;                  ///< during a solve
   mutable std::exception_ptr error_;  ///< the first of a solve; guarded by the interpreter's lock
 };

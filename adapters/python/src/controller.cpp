@@ -19,12 +19,53 @@ class Controller::Busy {
   std::atomic<bool>& flag_;
 };
 
+namespace {
+
+/// The options with their bounds narrowed to those that the problem states.
+SolverOptions within_bounds(const AnyProblem& problem, SolverOptions options) {
+  const auto narrow = [&](PerInput& option, auto&& pick) {
+    if (!option.fits(problem.inputs())) return;  // the solver's own check will say so
+    std::vector<double> values;
+    for (int i = 0; i < problem.inputs(); ++i) values.push_back(pick(option[i], i));
+    const bool alike = std::all_of(values.begin(), values.end(), [&](double v) { return v == values[0]; });
+    option = alike ? PerInput(values[0]) : PerInput(values);
+  };
+  std::visit(
+      [&](auto& o) {
+        narrow(o.input_min, [&](double bound, int i) { return std::max(bound, problem.input_min(i)); });
+        narrow(o.input_max, [&](double bound, int i) { return std::min(bound, problem.input_max(i)); });
+      },
+      options);
+  return options;
+}
+
+}  // namespace
+
 Controller::Controller(const AnyProblem& problem, const SolverOptions& options)
     : problem_(problem.clone()),
-      options_(options),
-      solver_(make_solver(options, problem.inputs())),
+      options_(within_bounds(problem, options)),
+      solver_(make_solver(options_, problem.inputs())),
       state_(static_cast<std::size_t>(problem.states())),
-      inputs_(static_cast<std::size_t>(solver_->horizon() * solver_->inputs())) {}
+      inputs_(static_cast<std::size_t>(solver_->horizon() * solver_->inputs())),
+      previous_(static_cast<std::size_t>(problem.inputs())) {}
+
+/// The input that the last plan had for `elapsed` (s) after it was made: what is being applied.
+void Controller::recall_input(double elapsed) {
+  if (std::exchange(told_, false)) return;
+  const double step = problem_->evaluator().time_step(), last = solver_->horizon() - 1;
+  const double now = step > 0 && elapsed > step ? std::min(std::round(elapsed / step) - 1, last) : 0;
+  const auto at = inputs_.begin() + static_cast<std::ptrdiff_t>(now) * solver_->inputs();
+  std::copy_n(at, previous_.size(), previous_.begin());
+}
+
+void Controller::set_previous_input(std::vector<double> input) {
+  if (input.size() != previous_.size())
+    throw std::invalid_argument("input: has " + std::to_string(input.size()) + " values, must have " +
+                                std::to_string(previous_.size()));
+  const Busy busy(busy_);
+  previous_ = std::move(input);
+  told_ = true;
+}
 
 void Controller::solve(py::handle owner, std::vector<double> state, const SolveRequest& request) {
   if (static_cast<int>(state.size()) != problem_->states())
@@ -38,13 +79,16 @@ void Controller::solve(py::handle owner, std::vector<double> state, const SolveR
   }
   state_ = std::move(state);
   prediction_.reset();
+  recall_input(request.elapsed);
   problem_->set_state(state_);
+  problem_->set_previous_input(previous_);
   problem_->begin(owner);
   {
     const py::gil_scoped_release unlock;
     result_ = solver_->solve(problem_->evaluator(), request);
   }
   std::copy(result_.inputs.begin(), result_.inputs.end(), inputs_.begin());
+  problem_->hold_rates(previous_, inputs_);
   status_ = result_.status;
   problem_->finish();
 }
@@ -53,6 +97,8 @@ void Controller::reset(std::uint64_t seed) {
   const Busy busy(busy_);
   ++solves_;
   solver_->reset(seed);
+  std::fill(previous_.begin(), previous_.end(), 0.0);
+  told_ = true;
 }
 
 void Controller::prepare() {
@@ -147,7 +193,9 @@ void bind_plan(py::module_& module) {
       .def_property_readonly(
           "status", [](const Plan& p) { return std::string(name(p.controller().status())); },
           "'ok', 'deadline', 'all_collided', 'degenerate' or 'non_finite_state'")
-      .def_property_readonly("ok", [](const Plan& p) { return p.controller().status() == Status::ok; })
+      .def_property_readonly(
+          "ok", [](const Plan& p) { return p.controller().status() == Status::ok; },
+          "whether it was solved as asked")
       .def_property_readonly(
           "inputs",
           [](const Plan& p) {
@@ -167,6 +215,14 @@ void bind_plan(py::module_& module) {
       .def_property_readonly(
           "collided", [](const Plan& p) { return p.controller().prediction().collided; },
           "whether the plan collides")
+      .def_property_readonly(
+          "cost_terms",
+          [](const Plan& p) {
+            py::dict all;
+            for (const auto& [name, value] : p.controller().prediction().terms) all[py::str(name)] = value;
+            return all;
+          },
+          "what the cost of the plan is made of, by name; they sum to it")
       .def_property_readonly(
           "nominal", [](const Plan& p) { return sequence(p, p.result().nominal); },
           "float32 [horizon, inputs]; svg_mppi: the best guide")
@@ -188,12 +244,20 @@ void bind_plan(py::module_& module) {
       .def_property_readonly(
           "guide_path", [](const Plan& p) { return sequences(p, p.result().guide_path); },
           "float32 [iterations x guides, horizon, inputs]")
-      .def_property_readonly("minimum_cost", [](const Plan& p) { return p.result().minimum_cost; })
-      .def_property_readonly("expected_cost", [](const Plan& p) { return p.result().expected_cost; })
-      .def_property_readonly("effective_sample_size",
-                             [](const Plan& p) { return p.result().effective_sample_size; })
-      .def_property_readonly("collided_share", [](const Plan& p) { return p.result().collided_share; })
-      .def_property_readonly("iterations", [](const Plan& p) { return p.result().iterations; })
+      .def_property_readonly(
+          "minimum_cost", [](const Plan& p) { return p.result().minimum_cost; }, "the least cost of a sample")
+      .def_property_readonly(
+          "expected_cost", [](const Plan& p) { return p.result().expected_cost; },
+          "weighted mean of the samples' costs")
+      .def_property_readonly(
+          "effective_sample_size", [](const Plan& p) { return p.result().effective_sample_size; },
+          "1 / sum of squared weights")
+      .def_property_readonly(
+          "collided_share", [](const Plan& p) { return p.result().collided_share; },
+          "of the samples, 0 ... 1")
+      .def_property_readonly(
+          "iterations", [](const Plan& p) { return p.result().iterations; },
+          "guide or distribution updates made")
       .def_property_readonly("times", times, "s of wall clock by stage");
 }
 
@@ -246,9 +310,15 @@ void bind_controllers(py::module_& module) {
           "(s) what is best so far is returned.")
       .def("reset", &Controller::reset, py::arg("seed") = 0,
            "Forgets everything and starts the random numbers anew.")
+      .def("set_previous_input", &Controller::set_previous_input, py::arg("input"),
+           "Tells a problem with bounds on its input rates what was applied before the next solve; unless "
+           "told, it is what the last plan had for then.")
       .def("prepare", &Controller::prepare, "Draws the noise of the next solve ahead, outside its deadline.")
-      .def_property_readonly("problem", &Controller::problem, py::return_value_policy::reference_internal)
-      .def_property_readonly("method", [](const Controller& c) { return std::string(c.solver().name()); })
+      .def_property_readonly("problem", &Controller::problem, py::return_value_policy::reference_internal,
+                             "the controller's copy of its problem; its parameters may change between solves")
+      .def_property_readonly(
+          "method", [](const Controller& c) { return std::string(c.solver().name()); },
+          "the name of the method")
       .def_property_readonly(
           "horizon", [](const Controller& c) { return c.solver().horizon(); }, "steps")
       .def_property_readonly(

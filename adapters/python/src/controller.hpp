@@ -18,6 +18,8 @@ class Controller {
   void solve(py::handle owner, std::vector<double> state, const SolveRequest& request);
   void reset(std::uint64_t seed);
   void prepare();
+  /// What was applied before the next solve, where the problem limits rates.
+  void set_previous_input(std::vector<double> input);
 
   AnyProblem& problem() noexcept { return *problem_; }
   const Solver& solver() const noexcept { return *solver_; }
@@ -34,13 +36,16 @@ class Controller {
  private:
   class Busy;
 
+  void recall_input(double elapsed);
+
   std::unique_ptr<AnyProblem> problem_;
   SolverOptions options_;
   std::unique_ptr<Solver> solver_;
   SolveResult result_;
   Status status_ = Status::ok;
   std::uint64_t solves_ = 0;
-  std::vector<double> state_, inputs_;
+  std::vector<double> state_, inputs_, previous_;
+  bool told_ = true;  ///< what was applied before the next solve is in `previous_`
   std::optional<Prediction> prediction_;
   std::atomic<bool> busy_ = false;
 };

@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -20,6 +21,18 @@ struct Prediction {
   std::vector<double> states;  ///< [step][state], one step more than inputs
   double cost = 0;
   bool collided = false;
+  std::vector<std::pair<std::string, double>> terms;  ///< what the cost is made of
+
+  /// Adds to the term of a name.
+  void add(const std::string& name, double value) {
+    for (auto& [known, sum] : terms) {
+      if (known == name) {
+        sum += value;
+        return;
+      }
+    }
+    terms.emplace_back(name, value);
+  }
 };
 
 /// A problem as Python holds it: one of ours, or one made of callables.
@@ -37,6 +50,16 @@ class AnyProblem {
   virtual std::vector<double> step(std::span<const double> state, std::span<const double> input) = 0;
   /// `inputs` [step][input].
   virtual Prediction predict(std::span<const double> state, std::span<const double> inputs) = 0;
+  /// Bounds that the problem states for an input; infinite where it states none.
+  virtual double input_min(int /*input*/) const { return -std::numeric_limits<double>::infinity(); }
+  virtual double input_max(int /*input*/) const { return std::numeric_limits<double>::infinity(); }
+  /// Cuts what moves faster than the problem allows, u [step][input], when `previous` was applied before it;
+  /// returns whether it limits rates at all.
+  virtual bool hold_rates(std::span<const double> /*previous*/, std::span<double> /*u*/) const {
+    return false;
+  }
+  /// What was applied before the next rollouts, of a problem that limits rates.
+  virtual void set_previous_input(std::span<const double>) {}
   /// To be called before and after a solve, with the Python object that owns the solver's memory.
   virtual void begin(py::handle) {}
   virtual void finish() {}
@@ -71,14 +94,36 @@ class BuiltIn final : public AnyProblem {
     std::vector<Input<double, P::inputs>> sequence(steps);
     std::memcpy(sequence.data(), inputs.data(), inputs.size_bytes());
     std::vector<State> states(steps + 1);
-    const Cost<double> cost =
-        slalom::predict(problem(), to_state(state), sequence.data(), static_cast<int>(steps), states.data());
-    Prediction result{std::vector<double>(states.size() * state_count), cost.value, cost.collided};
+    CostTermsOf<P> terms;
+    const Cost<double> cost = slalom::predict(problem(), to_state(state), sequence.data(),
+                                              static_cast<int>(steps), states.data(), &terms);
+    Prediction result{std::vector<double>(states.size() * state_count), cost.value, cost.collided, {}};
+    for (const CostTerm& term : terms) result.terms.emplace_back(term.name, term.value);
     std::memcpy(result.states.data(), states.data(), result.states.size() * sizeof(double));
     return result;
   }
 
+  double input_min(int input) const override { return slalom::detail::least_input(problem(), input); }
+  double input_max(int input) const override { return slalom::detail::largest_input(problem(), input); }
+  bool hold_rates(std::span<const double> previous, std::span<double> u) const override {
+    if constexpr (slalom::detail::limits_rates<P>) {
+      std::vector<Input<double, P::inputs>> sequence(u.size() / P::inputs);
+      std::memcpy(sequence.data(), u.data(), u.size_bytes());
+      hold_input_rates(problem(), to_input(previous), sequence.data(), static_cast<int>(sequence.size()));
+      std::memcpy(u.data(), sequence.data(), u.size_bytes());
+      return true;
+    } else {
+      return AnyProblem::hold_rates(previous, u);
+    }
+  }
+  void set_previous_input(std::span<const double> u) override { evaluator_.set_previous_input(to_input(u)); }
+
  private:
+  static Input<double, P::inputs> to_input(std::span<const double> values) {
+    Input<double, P::inputs> u;
+    std::memcpy(&u, values.data(), sizeof u);
+    return u;
+  }
   static State to_state(std::span<const double> values) {
     State state;
     std::memcpy(&state, values.data(), sizeof state);

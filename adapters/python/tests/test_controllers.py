@@ -177,3 +177,77 @@ def test_reset_repeats_and_a_bad_state_is_told():
     assert np.array_equal(controller.solve([1.0, 0.0]).inputs, first)
     plan = controller.solve([np.nan, 0.0])
     assert plan.status == "non_finite_state" and np.array_equal(plan.inputs, first)
+
+
+def pushed(**changes):
+    """A point that is pushed along a line by two motors, its cost in terms."""
+    def dynamics(x, u):
+        return np.stack([x[:, 0] + np.float32(0.1) * x[:, 1], x[:, 1] + np.float32(0.1) * (u[:, 0] + u[:, 1])]).T
+
+    def cost(x, u):
+        return {"distance": x[:, 0] ** 2, "effort": np.float32(0.1) * np.sum(u**2, axis=1)}, np.abs(x[:, 0]) > 60
+
+    return slalom.Problem(dynamics, cost, lambda x: 10 * x[:, 0] ** 2, states=2, inputs=2, dt=0.1, **changes)
+
+
+def test_the_cost_of_a_plan_is_told_by_name():
+    plan = slalom.Mppi(pushed(), horizon=5, samples=64).solve([2, 0])
+    assert list(plan.cost_terms) == ["distance", "effort", "terminal"]
+    assert sum(plan.cost_terms.values()) == pytest.approx(plan.cost)
+    assert plan.cost_terms["distance"] == pytest.approx(np.sum(plan.states[:-1, 0] ** 2), rel=1e-5)
+    assert not plan.collided and plan.minimum_cost > 0
+    assert list(slalom.Mppi(slalom.Pendulum(), horizon=5).solve([1, 0]).cost_terms) == ["stage", "terminal"]
+
+
+@pytest.mark.parametrize("method", CLASSES)
+def test_bounds_of_a_problem_hold_besides_those_of_the_options(method):
+    controller = method(pushed(input_min=-0.5, input_max=[0.25, 2]), horizon=6, samples=128, variance=4,
+                        input_max=[3, 1])
+    assert controller.options["input_min"] == -0.5 and controller.options["input_max"] == [0.25, 1]
+    seen = np.concatenate([controller.solve([x, 0]).inputs.copy() for x in (-50, 50, -50, 50)])
+    assert seen.min() >= -0.5 and np.all(seen.max(axis=0) <= [0.25, 1])
+
+
+def test_rates_of_a_problem_hold_from_solve_to_solve():
+    controller = slalom.Mppi(pushed(input_rate_max=[2, 0.5]), horizon=6, samples=256, variance=4)
+    x, before, reach = np.array([-50.0, 0]), np.zeros(2), np.array([0.2, 0.05]) + 1e-9
+    for _ in range(10):
+        inputs = controller.solve(x, elapsed=0.1).inputs.copy()
+        assert np.all(np.abs(np.diff(np.vstack([before, inputs]), axis=0)) <= reach)
+        before, x = inputs[0], controller.problem.step(x, inputs[0])
+    assert before[0] > 0.5
+    controller.set_previous_input([-2, 0])
+    assert np.all(np.abs(controller.solve(x).inputs[0] - [-2, 0]) <= reach)
+    with pytest.raises(ValueError, match="Problem.dt: input_rate_max needs the duration of a step"):
+        slalom.Problem(lambda x, u: x, lambda x, u: x[:, 0], states=1, inputs=1, input_rate_max=1)
+    with pytest.raises(ValueError, match="input_min: has 3 values, must have 1 or 2"):
+        pushed(input_min=[1, 2, 3])
+
+
+def test_a_sampler_brings_its_own_noise():
+    def held(random, samples, horizon, inputs):
+        return np.repeat(random.standard_normal((samples, 1, inputs)), horizon, axis=1)
+
+    plans = []
+    for threads in 1, 3:
+        plan = slalom.Mppi(pushed(sampler=held), horizon=6, samples=1000, threads=threads).solve([2, 0])
+        assert np.allclose(plan.samples, plan.samples[:, :1]) and np.std(plan.samples[:, 0]) > 0.5
+        plans.append(plan.inputs.copy())
+    assert np.array_equal(*plans)
+    with pytest.raises(ValueError, match=r"sampler: returned shape \(2\), must be \("):
+        slalom.Mppi(pushed(sampler=lambda *_: np.zeros(2)), horizon=6).solve([2, 0])
+
+
+def test_everything_public_says_what_it_is():
+    silent = []
+    for name in slalom.__all__:
+        value = getattr(slalom, name)
+        if name.startswith("__") or isinstance(value, type) and issubclass(value, Exception):
+            continue
+        members = vars(value).items() if isinstance(value, type) else []
+        silent += [name] * (not value.__doc__)
+        for member, what in members:
+            own = (what.__doc__ or "").strip()
+            if not member.startswith("_") and (not own or own.endswith(("-> None", "-> object")) and "\n" not in own):
+                silent.append(f"{name}.{member}")
+    assert not silent

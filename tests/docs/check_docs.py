@@ -1,0 +1,181 @@
+"""Checks that the documentation is true: its links lead somewhere, its code compiles and runs, its commands exist.
+
+usage: check_docs.py links ROOT | cpp ROOT COMPILER... | python ROOT | shell ROOT PROGRAM | site FOLDER
+"""
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import urllib.parse
+from pathlib import Path
+
+LINK = re.compile(r"(?<!\\)\[[^\]]*\]\(([^)\s]+)[^)]*\)")
+
+
+def pages(root):
+    return [root / "README.md", root / "CONTRIBUTING.md", *sorted((root / "docs").glob("*.md"))]
+
+
+def blocks(path, language):
+    """[(line, text)] of the fenced code of a language."""
+    found, start, kind, body = [], 0, None, []
+    for number, line in enumerate(path.read_text().split("\n"), 1):
+        if line.startswith("```"):
+            if kind is None:
+                start, kind, body = number, line[3:].strip(), []
+            else:
+                if kind == language:
+                    found.append((start, "\n".join(body)))
+                kind = None
+        elif kind is not None:
+            body.append(line)
+    return found
+
+
+def anchors(path):
+    """The anchors of a page's headings, as code hosts make them."""
+    text = re.sub(r"^```.*?^```", "", path.read_text(), flags=re.S | re.M)
+    headings = re.findall(r"^#+ (.*)$", text, re.M)
+    return {re.sub(r"[^\w\- ]", "", h.lower()).strip().replace(" ", "-") for h in headings}
+
+
+def check_links(root):
+    errors = []
+    for page in pages(root):
+        text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.S | re.M)
+        for target in LINK.findall(text):
+            if re.match(r"\w+:", target):
+                continue
+            file, _, anchor = target.partition("#")
+            path = page.parent / file if file else page
+            if not path.exists():
+                errors.append(f"{page}: {target}: there is no such file")
+            elif anchor and path.suffix == ".md" and anchor not in anchors(path):
+                errors.append(f"{page}: {target}: there is no such heading")
+    return errors
+
+
+def translation_unit(text, name):
+    """Includes, what belongs to a namespace, and statements in a function, in their order."""
+    includes, outside, inside, end = [], [], [], None
+    for line in text.split("\n"):
+        if line.startswith("#"):
+            includes.append(line)
+        elif end is not None or re.match(r"(struct|class|template|using|inline|enum|constexpr) ?", line):
+            if end is None:
+                end = "};" if re.match(r"(struct|class|enum)", line) else "}"
+                end = None if re.search(r"[;}]$", line) and line.count("{") == line.count("}") else end
+            elif line == end:
+                end = None
+            outside.append(line)
+        else:
+            inside.append(line)
+    return "\n".join(includes), "\n".join(
+        [f"namespace {name} {{", *outside, "void statements() {", *inside, "}", "}"])
+
+
+def check_cpp(root, compiler):
+    errors = []
+    preamble = (Path(__file__).parent / "preamble.hpp").read_text()
+    for page in pages(root):
+        found = blocks(page, "cpp")
+        if not found:
+            continue
+        parts = [translation_unit(text, f"block_{line}") for line, text in found]
+        source = "\n".join([preamble, *(p[0] for p in parts), *(p[1] for p in parts)])
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / (page.stem + ".cpp")
+            file.write_text(source)
+            made = subprocess.run([*compiler, "-std=c++20", "-fsyntax-only", f"-I{root}/include", str(file)],
+                                  capture_output=True, text=True)
+        print(f"{page.relative_to(root)}: {len(found)} blocks of C++")
+        if made.returncode:
+            errors.append(f"{page}: does not compile\n{made.stderr[:3000]}")
+    return errors
+
+
+def check_python(root):
+    errors = []
+    for page in pages(root):
+        found = blocks(page, "python")
+        names = {}
+        for line, text in found:
+            try:
+                exec(compile(text, f"{page}:{line}", "exec"), names)
+            except Exception as error:
+                errors.append(f"{page}:{line}: {type(error).__name__}: {error}")
+        if found:
+            print(f"{page.relative_to(root)}: {len(found)} blocks of Python")
+    return errors
+
+
+def check_shell(root, program):
+    """Commands of the program have the options that are written, and what is called from the tree is there."""
+    errors, help_of = [], {}
+    for page in pages(root):
+        for line, text in blocks(page, "sh"):
+            if subprocess.run(["bash", "-n"], input=text, text=True, capture_output=True).returncode:
+                errors.append(f"{page}:{line}: bash cannot read it")
+            for command in text.replace("\\\n", " ").split("\n"):
+                command = command.split(" #")[0]
+                for path in re.findall(r"(?<![\w/.])((?:script|examples|adapters)/[\w./-]+)", command):
+                    if not (root / path).exists():
+                        errors.append(f"{page}:{line}: there is no {path}")
+                match = re.search(r"(?:^|[\s/])slalom (\w+)(.*)", command)
+                if not match or program is None:
+                    continue
+                word, rest = match.groups()
+                if word not in help_of:
+                    help_of[word] = subprocess.run([program, word, "--help"], capture_output=True, text=True)
+                if help_of[word].returncode:
+                    errors.append(f"{page}:{line}: there is no `slalom {word}`")
+                for option in re.findall(r"(?<!\w)(--[a-z][a-z-]*)", rest):
+                    if option not in help_of[word].stdout:
+                        errors.append(f"{page}:{line}: `slalom {word}` has no {option}")
+    return errors
+
+
+def check_site(folder):
+    """Local links of the generated pages."""
+    errors, seen = [], 0
+    files = {p.name for p in folder.iterdir()}
+    ids = {}
+    for page in sorted(folder.glob("*.html")):
+        text = page.read_text(errors="replace")
+        for target in re.findall(r'(?:href|src)="([^"]+)"', text):
+            if re.match(r"(\w+:|//|\$)", target):
+                continue
+            seen += 1
+            file, _, anchor = urllib.parse.unquote(target).partition("#")
+            file = file or page.name
+            if file not in files and not (folder / file).exists():
+                errors.append(f"{page.name}: {target}: there is no such file")
+            elif anchor and file.endswith(".html"):
+                if file not in ids:
+                    ids[file] = set(re.findall(r'(?:id|name)="([^"]+)"', (folder / file).read_text(errors="replace")))
+                if anchor not in ids[file]:
+                    errors.append(f"{page.name}: {target}: there is no such anchor")
+    print(f"{seen} links on {len(list(folder.glob('*.html')))} pages")
+    return sorted(set(errors))
+
+
+def main(what, root, *rest):
+    root = Path(root).resolve()
+    if what == "links":
+        errors = check_links(root)
+    elif what == "cpp":
+        errors = check_cpp(root, rest)
+    elif what == "python":
+        errors = check_python(root)
+    elif what == "shell":
+        errors = check_shell(root, rest[0] if rest and os.path.exists(rest[0]) else None)
+    else:
+        errors = check_site(root)
+    print("\n".join(errors) if errors else f"{what}: nothing to complain about")
+    return bool(errors)
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
