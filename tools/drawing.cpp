@@ -64,6 +64,35 @@ void Pen::box(double x, double y, double width, double height, Colour fill, Colo
   cairo_new_path(cairo_);
 }
 
+void Pen::path(const Points& points, Colour colour, double width) {
+  cairo_new_path(cairo_);
+  for (const auto& [x, y] : points) cairo_line_to(cairo_, x, y);
+  cairo_set_dash(cairo_, nullptr, 0, 0);
+  cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
+  cairo_set_line_width(cairo_, width);
+  set(colour);
+  cairo_stroke(cairo_);
+}
+
+void Pen::area(const Points& points, Colour fill) {
+  cairo_new_path(cairo_);
+  for (const auto& [x, y] : points) cairo_line_to(cairo_, x, y);
+  cairo_close_path(cairo_);
+  set(fill);
+  cairo_fill(cairo_);
+}
+
+void Pen::clip(double x, double y, double width, double height) {
+  cairo_save(cairo_);
+  cairo_new_path(cairo_);
+  cairo_rectangle(cairo_, x, y, width, height);
+  cairo_clip(cairo_);
+}
+
+void Pen::unclip() {
+  cairo_restore(cairo_);
+}
+
 void Pen::disc(double x, double y, double radius, Colour fill) {
   cairo_new_path(cairo_);
   cairo_arc(cairo_, x, y, radius, 0, 6.283185307179586);
@@ -111,8 +140,7 @@ std::string to_svg(const Drawing& drawing) {
   return text;
 }
 
-void save_png(const Drawing& drawing, const std::filesystem::path& file) {
-  constexpr double scale = 2;
+void save_png(const Drawing& drawing, const std::filesystem::path& file, double scale) {
   Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
                                              static_cast<int>(std::ceil(scale * drawing.width)),
                                              static_cast<int>(std::ceil(scale * drawing.height))));

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "canvas.hpp"
 
@@ -18,6 +20,14 @@ class Pen {
   /// A rectangle with rounded corners; a rim only where `rim_width` > 0.
   void box(double x, double y, double width, double height, Colour fill, Colour rim = {},
            double rim_width = 0, double radius = 2);
+  /// A line through points, with round corners.
+  using Points = std::vector<std::pair<double, double>>;
+  void path(const Points& points, Colour colour, double width);
+  /// What points enclose.
+  void area(const Points& points, Colour fill);
+  /// Draws within a rectangle alone, until `unclip`.
+  void clip(double x, double y, double width, double height);
+  void unclip();
   void disc(double x, double y, double radius, Colour fill);
   void diamond(double x, double y, double radius, Colour fill, Colour rim);
   /// `align`: 0 begins at x, 0.5 is centred, 1 ends there.
@@ -36,7 +46,7 @@ struct Drawing {
 
 /// The drawing as an SVG document. Throws IoError.
 std::string to_svg(const Drawing& drawing);
-/// Writes it with two pixels for one. Throws IoError.
-void save_png(const Drawing& drawing, const std::filesystem::path& file);
+/// Writes it with `scale` pixels for one. Throws IoError.
+void save_png(const Drawing& drawing, const std::filesystem::path& file, double scale = 2);
 
 }  // namespace slalom::tools

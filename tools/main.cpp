@@ -7,6 +7,7 @@
 #include "compare_command.hpp"
 #include "drive_command.hpp"
 #include "eval_command.hpp"
+#include "explain_command.hpp"
 #include "options_command.hpp"
 #include "replay_command.hpp"
 #include "reproduce_command.hpp"
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
   slalom::tools::add_compare_command(app, exit_status);
   slalom::tools::add_drive_command(app, exit_status);
   slalom::tools::add_eval_command(app, exit_status);
+  slalom::tools::add_explain_command(app, exit_status);
   slalom::tools::add_options_command(app, exit_status);
   slalom::tools::add_replay_command(app, exit_status);
   slalom::tools::add_reproduce_command(app, exit_status);

@@ -1,0 +1,31 @@
+// The options with which the golden data are compared are those of `--config published`.
+#include <gtest/gtest.h>
+
+#include "slalom/vehicle/configuration.hpp"
+#include "solvers/published_options.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+TEST(PublishedConfiguration, IsWhatTheGoldenTestsCompare) {
+  const Configuration file = load_configuration(SLALOM_CONFIGS "/published.yaml");
+  int compared = 0;
+  for (const SolverOptions& method : file.methods) {
+    const std::string name = solver_name(method);
+    const auto list = [](const SolverOptions& options) {
+      return std::visit([](const auto& o) { return list_options(o); }, options);
+    };
+    const auto ours = list(method), golden = list(slalom::testing::published_options(name));
+    ASSERT_EQ(ours.size(), golden.size()) << name;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      const std::string option = ours[i].declaration.name;
+      EXPECT_EQ(to_text(ours[i].value), to_text(golden[i].value)) << name << "." << option;
+      compared += option != "seed" && option != "threads";
+    }
+  }
+  std::printf("[ options  ] %d options of %zu methods compared\n", compared, file.methods.size());
+  EXPECT_EQ(file.methods.size(), solver_names().size());
+}
+
+}  // namespace
+}  // namespace slalom::vehicle

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "slalom/problems/passing_point.hpp"
+#include "slalom/solvers/make_solver.hpp"
+
+/// What a method makes of the smallest problem with two ways, `problems::PassingPoint`, told in places.
+namespace slalom::tools {
+
+/// The lateral position (m, left is positive) at every state of a rollout.
+using Way = std::vector<double>;
+
+struct ExplainedSample {
+  Way way;
+  double cost = 0, weight = 0;
+  bool collided = false;
+};
+
+struct Explanation {
+  std::string method, about;
+  std::string status;
+  problems::PassingPoint point;
+  int beside = 0;  ///< the state at which the point is beside the disc
+  int solves = 0;
+
+  std::vector<ExplainedSample> samples;  ///< of the last solve
+  std::vector<std::vector<Way>> guides;  ///< of each guide, its ways after every step in all solves
+  Way plan;                              ///< of the sequence that would be sent
+  std::vector<double> inputs;            ///< m/s, that sequence
+  double plan_cost = 0;
+  bool plan_collides = false;
+  Way mean;                       ///< of the resulting distribution
+  std::vector<double> deviation;  ///< of it, m, at every state
+  double temperature = 0;         ///< of the optimal distribution beside it
+  double effective_samples = 0;
+
+  /// The optimal distribution of the place beside the disc, q*(v) ~ exp(-S(v) / lambda) N(v | 0, Sigma).
+  std::vector<double> places, density;  ///< m, 1/m
+};
+
+/// Methods by the names that can be explained: every solver, and the ablations `svg_mppi_nominal`,
+/// `svg_mppi_covariance`.
+struct ExplainedMethod {
+  std::string name, about;
+  SolverOptions options;
+};
+std::vector<ExplainedMethod> explained_methods();
+
+/// Solves `solves` times from the same state, as a controller that stands still would, and tells of the last.
+/// Throws std::invalid_argument where an option is out of range.
+Explanation explain(const ExplainedMethod& method, const problems::PassingPoint& point, int solves,
+                    std::uint64_t seed);
+
+}  // namespace slalom::tools
