@@ -26,6 +26,7 @@ int clamped_floor(double cell, int low, int high) {
 
 LocalCostMapOptions LocalCostMapOptions::published() {
   LocalCostMapOptions options;
+  options.body_inset = 0;
   options.half_open_inflation = true;
   options.forget_points_outside = true;
   return options;
@@ -107,10 +108,10 @@ ScanReport LocalCostMap::mark_scan(const LaserScanView& scan) noexcept {
   // Points and the box of the body are float32, as the messages are that carry them: a point right on the
   // box's edge is then dropped or kept as the published program does.
   const auto laser_x = static_cast<float>(options_.laser.x), laser_y = static_cast<float>(options_.laser.y);
-  const auto front = static_cast<float>(options_.footprint.front),
-             rear = -static_cast<float>(options_.footprint.rear);
-  const auto left = static_cast<float>(options_.footprint.left),
-             right = -static_cast<float>(options_.footprint.right);
+  const auto front = static_cast<float>(options_.footprint.front - options_.body_inset),
+             rear = -static_cast<float>(options_.footprint.rear - options_.body_inset);
+  const auto left = static_cast<float>(options_.footprint.left - options_.body_inset),
+             right = -static_cast<float>(options_.footprint.right - options_.body_inset);
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double range = scan.ranges[i];
     if (!(range >= scan.range_min && range < scan.range_max)) {

@@ -88,6 +88,29 @@ void Guides::shift(double steps) noexcept {
   for (std::size_t i = 0; i < theta_.size(); ++i) guides_[i] = static_cast<float>(theta_[i]);
 }
 
+/// Smooth deviations: straight lines between normal values at knots a third of the horizon apart.
+void Guides::restart_others(RandomKey key) noexcept {
+  if (!options_.restart_guides || count_ == 1) return;
+  std::copy_n(&theta_[at(best_)], rows_, shifted_.begin());
+  std::copy_n(shifted_.begin(), rows_, &theta_[at(0)]);
+  best_ = 0;
+  fill_normal(ends_, 0, padded(count_), key);
+  const auto knot = [&](int k, int input, int g) { return static_cast<double>(ends_.row(k, input)[g]); };
+  for (int g = 1; g < count_; ++g) {
+    for (std::size_t r = 0; r < rows_; ++r) {
+      const int step = static_cast<int>(r) / inputs_, input = static_cast<int>(r) % inputs_;
+      const double place = restart_knots_ * static_cast<double>(step) / options_.horizon;
+      const int k = static_cast<int>(place);
+      const double part = place - k;
+      const double deviation = (1 - part) * knot(k, input, g) + part * knot(k + 1, input, g);
+      theta_[at(g) + r] =
+          std::clamp(theta_[at(0) + r] + std::sqrt(options_.restart_variance[input]) * deviation,
+                     static_cast<double>(low_[r]), static_cast<double>(high_[r]));
+    }
+  }
+  for (std::size_t i = 0; i < theta_.size(); ++i) guides_[i] = static_cast<float>(theta_[i]);
+}
+
 std::span<const float> Guides::best_sequence() const noexcept {
   return {&guides_[at(best_)], rows_};
 }
@@ -128,6 +151,7 @@ void Guides::step(int g, int iteration) noexcept {
   std::copy_n(costs_.data() + block.first, block_, totals_.data() + block.first);
   SurrogateGradient<float> gradient;
   gradient.temperature = static_cast<float>(options_.gradient_temperature);
+  gradient.sample_share = static_cast<float>(options_.gradient_sample_share);
   gradient.subtract_minimum = options_.subtract_minimum;
   gradient.floor = options_.gradient_floor;
   gradient.centre = &guides_[at(g)];

@@ -21,6 +21,9 @@ class Guides {
   /// Moves the guides forward in time.
   void shift(double steps) noexcept;
 
+  /// With `restart_guides`, puts the best guide first and lets all others begin anew round it.
+  void restart_others(RandomKey key) noexcept;
+
   /// Moves the guides `guide_iterations` times, each with fresh samples; at most until the deadline. `key`
   /// starts the streams of the iterations. `solution` (u) and `nominal` (n) are [row]. Returns the iterations
   /// made.
@@ -56,6 +59,8 @@ class Guides {
     return (static_cast<std::size_t>(iteration) * static_cast<std::size_t>(count_) +
             static_cast<std::size_t>(guide));
   }
+
+  static constexpr int restart_knots_ = 3;  ///< stretches between the knots of a deviation
 
   SvgMppiOptions options_;
   int inputs_;

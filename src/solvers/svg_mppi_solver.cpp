@@ -17,6 +17,7 @@ class SvgMppiSolver final : public detail::SolverBase {
       : SolverBase(options, inputs, std::move(pool)),
         shift_(options.shift_warm_start),
         use_nominal_(options.use_nominal),
+        sample_nominal_(options.sample_nominal),
         adapt_covariance_(options.adapt_covariance),
         guides_(options, inputs, low(), high()),
         update_(options, inputs),
@@ -52,12 +53,14 @@ class SvgMppiSolver final : public detail::SolverBase {
     result_.times = {};
     if (shift_) shift(detail::warm_start_shift(evaluator, request));
 
+    guides_.restart_others(key(restarts));
     // The guides may take half of the time allowed: without samples they are worth nothing.
     result_.iterations =
         guides_.move(evaluator, key(gradients), mean_.data(), nominal_.data(), pool(), deadline.part(0.5));
     if (use_nominal_ && guides_.best_cost() < std::numeric_limits<float>::infinity()) {
       std::copy_n(guides_.best_sequence().data(), size(), nominal_.data());
     }
+    if (sample_nominal_) mean_ = nominal_;
     if (adapt_covariance_) guides_.fit_variance(variance_.data());
     result_.times.guide = detail::seconds(start, detail::Clock::now());
 
@@ -72,7 +75,7 @@ class SvgMppiSolver final : public detail::SolverBase {
 
  private:
   /// The random streams of a solve.
-  enum Stage { first_guides, samples, gradients };
+  enum Stage { first_guides, samples, gradients, restarts = 65535 };
 
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
@@ -83,7 +86,7 @@ class SvgMppiSolver final : public detail::SolverBase {
     guides_.shift(steps);
   }
 
-  bool shift_, use_nominal_, adapt_covariance_;
+  bool shift_, use_nominal_, sample_nominal_, adapt_covariance_;
   detail::Guides guides_;
   detail::PathIntegral update_;
   std::vector<float> mean_, shifted_, nominal_, variance_, fixed_variance_;  ///< [row]

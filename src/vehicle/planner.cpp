@@ -7,6 +7,7 @@
 
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/reference_field.hpp"
+#include "vehicle/back_up.hpp"
 #include "vehicle/car_rollout.hpp"
 #include "vehicle/command_history.hpp"
 
@@ -14,12 +15,20 @@ namespace slalom::vehicle {
 
 namespace {
 
+using detail::BackUp;
 using detail::CarRollout;
 using detail::CarStart;
 using detail::CommandHistory;
 
-maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options) {
-  auto made = options.published_maps ? maps::LocalCostMapOptions::published() : maps::LocalCostMapOptions{};
+maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options,
+                                           const PathTrackingOptions& problem) {
+  maps::LocalCostMapOptions made;
+  if (options.published_maps) {
+    made = maps::LocalCostMapOptions::published();
+  } else {
+    made.footprint = {problem.body_front, problem.body_rear, problem.body_width / 2, problem.body_width / 2};
+    made.margin = problem.body_margin;
+  }
   made.outside = -1;  // so that the problem can tell "off the map" from "occupied"
   return made;
 }
@@ -61,6 +70,7 @@ struct Planner::Implementation {
   maps::ReferenceField field;
   std::unique_ptr<CarRollout> rollout;
   CommandHistory history;
+  BackUp back_up;
   std::vector<PredictedState> states, candidate_states;
   std::vector<float> candidate;
   PlannerOutput output;
@@ -70,7 +80,7 @@ struct Planner::Implementation {
       : options(o),
         problem(p),
         solver(std::move(s)),
-        cost_map(cost_map_options(o)),
+        cost_map(cost_map_options(o, p)),
         clearance_map(clearance_options(p)),
         field(capped(path, o.max_speed), field_options(o)),
         rollout(CarRollout::make(p)),
@@ -125,11 +135,14 @@ struct Planner::Implementation {
   }
 
   /// Brakes where no plan is free. A car that is too near to something already is past braking: while it
-  /// moves it follows the best plan, once it stands it creeps along it to come free.
+  /// moves it follows the best plan, once it stands it creeps along it to come free, and if that leads
+  /// nowhere it goes back.
   void slow_down(const PredictedCost& cost, double speed) noexcept {
     constexpr double creep = 0.5;  // m/s
     const bool too_near = rollout->start_collides();
-    if (too_near && speed < 2 * creep) {
+    if (options.back_up && back_up.update(!cost.collided && !too_near, speed, options.control_period)) {
+      output.command = {0, -BackUp::speed};
+    } else if (too_near && speed < 2 * creep) {
       output.command.speed = std::min(output.command.speed, creep);
     } else if (cost.collided && !too_near) {
       output.command.speed = std::max(0.0, speed - 2 * problem.max_deceleration * options.control_period);
@@ -229,6 +242,7 @@ const PlannerOutput& Planner::update(const PlannerInput& input) noexcept {
 
 void Planner::reset(std::uint64_t seed) noexcept {
   implementation_->history.reset();
+  implementation_->back_up.reset();
   implementation_->solver->reset(seed);
   implementation_->cost_map.clear();
   implementation_->output = {};

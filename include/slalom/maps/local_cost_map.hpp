@@ -35,6 +35,9 @@ struct LocalCostMapOptions {
 
   /// Drop the points of a scan that lie within the footprint (without margin): the car sees itself.
   bool drop_points_on_body = true;
+  /// m, >= 0: only points so deep within the footprint are dropped, so that what the car leans against stays
+  /// in sight. Published: 0.
+  double body_inset = 0.05;
 
   /// Published program: an obstacle's cell is inflated by whole cells, ceil(reach / resolution) to each side
   /// as a half-open range. That is one cell less towards smaller x and y than towards larger ones: 0.15 m to
@@ -111,6 +114,11 @@ void visit_options(Options& options, Visit&& visit) {
         Declaration{.name = "max_beams", .help = "most beams of a scan", .min = 1, .max = 1000000});
   visit(options.drop_points_on_body,
         Declaration{.name = "drop_points_on_body", .help = "ignore readings within the body"});
+  visit(options.body_inset, Declaration{.name = "body_inset",
+                                        .unit = "m",
+                                        .help = "how deep within the body a reading is ignored",
+                                        .min = 0,
+                                        .max = 10});
   visit(options.half_open_inflation,
         Declaration{.name = "half_open_inflation",
                     .help = "published: inflate by whole cells, one less to one side"});

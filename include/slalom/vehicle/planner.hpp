@@ -32,6 +32,8 @@ struct PlannerOptions {
   bool stop_when_blocked = true;  ///< brake when no plan is free of collisions; published: false
   bool verify_plan =
       true;  ///< if the mean collides, send the best guide or sample that does not; published: false
+  bool back_up = true;  ///< with `stop_when_blocked` and `verify_plan`: a car that stands with no way ahead
+                        ///< goes back a little and tries again; published: false
   bool published_maps = false;  ///< cost map and reference field as the published program makes them
 };
 
@@ -74,6 +76,8 @@ void visit_options(Options& o, Visit&& visit) {
         Declaration{.name = "stop_when_blocked", .help = "brake when no plan is free of collisions"});
   visit(o.verify_plan,
         Declaration{.name = "verify_plan", .help = "send another sequence if the mean collides"});
+  visit(o.back_up,
+        Declaration{.name = "back_up", .help = "go back where the car stands and no plan leads ahead"});
   visit(o.published_maps,
         Declaration{.name = "published_maps",
                     .help = "cost map and reference field as the published program makes them"});
