@@ -48,8 +48,12 @@ LocalCostMap::LocalCostMap(const LocalCostMapOptions& options)
   cells_behind_ = whole_cells(options.footprint.front);
   cells_left_ = whole_cells(options.footprint.right);
   cells_right_ = whole_cells(options.footprint.left);
-  counts_.resize(static_cast<std::size_t>(geometry_.columns));
-  differences_.resize(static_cast<std::size_t>(geometry_.rows + 1) * counts_.size());
+  const auto columns = static_cast<std::size_t>(geometry_.columns);
+  for (Layer* layer : {&hard_, &soft_}) {
+    if (layer == &soft_ && !(options.soft_margin > 0)) continue;
+    layer->counts.resize(columns);
+    layer->differences.resize(static_cast<std::size_t>(geometry_.rows + 1) * columns);
+  }
   const auto beams = static_cast<std::size_t>(options.max_beams);
   beam_cos_.resize(beams);
   beam_sin_.resize(beams);
@@ -59,8 +63,10 @@ LocalCostMap::LocalCostMap(const LocalCostMapOptions& options)
 }
 
 void LocalCostMap::forget() noexcept {
-  std::fill(differences_.begin(), differences_.end(), 0);
-  last_box_ = {};
+  for (Layer* layer : {&hard_, &soft_}) {
+    std::fill(layer->differences.begin(), layer->differences.end(), 0);
+    layer->last_box = {};
+  }
   point_count_ = 0;
 }
 
@@ -183,35 +189,41 @@ void LocalCostMap::mark(double x, double y, double reach) noexcept {
   const double scale = 1 / geometry_.resolution;
   const double u = (geometry_.center_x - x) * scale + 0.5 * geometry_.rows;
   const double v = (geometry_.center_y - y) * scale + 0.5 * geometry_.columns;
-  Box box;
   if (options_.half_open_inflation) {
     const int more = static_cast<int>(std::ceil(reach * scale));
     if (row < 0) row = clamped_floor(u, -100000, 100000);
     if (column < 0) column = clamped_floor(v, -100000, 100000);
-    box = {row - cells_ahead_ - more, row + cells_behind_ + more, column - cells_left_ - more,
-           column + cells_right_ + more};
-  } else {
-    // Touching by less than a millionth of a cell is rounding.
-    const double wider = (reach + options_.margin) * scale - 1e-6;
-    const Footprint& body = options_.footprint;
-    box = {clamped_floor(u - body.rear * scale - wider, 0, geometry_.rows),
-           clamped_floor(u + body.front * scale + wider, -1, geometry_.rows) + 1,
-           clamped_floor(v - body.right * scale - wider, 0, geometry_.columns),
-           clamped_floor(v + body.left * scale + wider, -1, geometry_.columns) + 1};
+    count(hard_, {row - cells_ahead_ - more, row + cells_behind_ + more, column - cells_left_ - more,
+                  column + cells_right_ + more});
+    return;
   }
-  count(box);
+  // Touching by less than a millionth of a cell is rounding.
+  const double wider = (reach + options_.margin) * scale - 1e-6;
+  count(hard_, box_round(u, v, wider));
+  if (options_.soft_margin > 0) count(soft_, box_round(u, v, wider + options_.soft_margin * scale));
+}
+
+/// The cells in which the reference point stands where the body, `wider` cells larger on every side, covers a
+/// point at (u, v) cells.
+LocalCostMap::Box LocalCostMap::box_round(double u, double v, double wider) const noexcept {
+  const double scale = 1 / geometry_.resolution;
+  const Footprint& body = options_.footprint;
+  return {clamped_floor(u - body.rear * scale - wider, 0, geometry_.rows),
+          clamped_floor(u + body.front * scale + wider, -1, geometry_.rows) + 1,
+          clamped_floor(v - body.right * scale - wider, 0, geometry_.columns),
+          clamped_floor(v + body.left * scale + wider, -1, geometry_.columns) + 1};
 }
 
 /// Adds 1 to the cells of a box, as differences from row to row: two rows to write instead of all.
-void LocalCostMap::count(const Box& box) noexcept {
+void LocalCostMap::count(Layer& layer, const Box& box) noexcept {
   // Neighbouring beams often hit the same cell.
-  if (box == last_box_) return;
-  last_box_ = box;
+  if (box == layer.last_box) return;
+  layer.last_box = box;
   const int row_begin = std::max(box.row_begin, 0), row_end = std::min(box.row_end, geometry_.rows);
   const int begin = std::max(box.column_begin, 0), end = std::min(box.column_end, geometry_.columns);
   if (row_begin >= row_end || begin >= end) return;
-  std::int32_t* first = differences_.data() + static_cast<std::ptrdiff_t>(row_begin) * geometry_.columns;
-  std::int32_t* behind = differences_.data() + static_cast<std::ptrdiff_t>(row_end) * geometry_.columns;
+  std::int32_t* first = layer.differences.data() + static_cast<std::ptrdiff_t>(row_begin) * geometry_.columns;
+  std::int32_t* behind = layer.differences.data() + static_cast<std::ptrdiff_t>(row_end) * geometry_.columns;
   for (int column = begin; column < end; ++column) {
     ++first[column];
     --behind[column];
@@ -220,16 +232,27 @@ void LocalCostMap::count(const Box& box) noexcept {
 
 /// Sums the differences up and writes the cells.
 void LocalCostMap::write_cells() noexcept {
-  std::fill(counts_.begin(), counts_.end(), 0);
   const auto columns = static_cast<std::size_t>(geometry_.columns);
-  const auto occupied = static_cast<float>(options_.occupied);
-  std::int32_t* counts = counts_.data();
+  const auto occupied = static_cast<float>(options_.occupied), soft = static_cast<float>(options_.soft);
+  const auto sum_row = [&](Layer& layer, int row) {
+    if (row == 0) std::fill(layer.counts.begin(), layer.counts.end(), 0);
+    const std::int32_t* differences = layer.differences.data() + static_cast<std::size_t>(row) * columns;
+    std::int32_t* counts = layer.counts.data();
+    for (std::size_t column = 0; column < columns; ++column) counts[column] += differences[column];
+    return counts;
+  };
   for (int row = 0; row < geometry_.rows; ++row) {
-    const std::int32_t* differences = differences_.data() + static_cast<std::size_t>(row) * columns;
     float* cells = cells_.at(row, 0);
-    for (std::size_t column = 0; column < columns; ++column) {
-      counts[column] += differences[column];
-      cells[column] = counts[column] > 0 ? occupied : 0.0F;
+    const std::int32_t* hard = sum_row(hard_, row);
+    if (options_.soft_margin > 0) {
+      const std::int32_t* near = sum_row(soft_, row);
+      for (std::size_t column = 0; column < columns; ++column) {
+        cells[column] = hard[column] > 0 ? occupied : near[column] > 0 ? soft : 0.0F;
+      }
+    } else {
+      for (std::size_t column = 0; column < columns; ++column) {
+        cells[column] = hard[column] > 0 ? occupied : 0.0F;
+      }
     }
   }
 }

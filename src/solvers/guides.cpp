@@ -151,7 +151,6 @@ void Guides::step(int g, int iteration) noexcept {
   std::copy_n(costs_.data() + block.first, block_, totals_.data() + block.first);
   SurrogateGradient<float> gradient;
   gradient.temperature = static_cast<float>(options_.gradient_temperature);
-  gradient.sample_share = static_cast<float>(options_.gradient_sample_share);
   gradient.subtract_minimum = options_.subtract_minimum;
   gradient.floor = options_.gradient_floor;
   gradient.centre = &guides_[at(g)];

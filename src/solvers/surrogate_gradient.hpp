@@ -19,8 +19,7 @@ namespace slalom::detail {
 /// all bad. It is applied to weights relative to the minimum in either case, so that nothing underflows.
 template <class Real>
 struct SurrogateGradient {
-  Real temperature = 1;   ///< lambda
-  Real sample_share = 0;  ///< above 0: lambda is that at which this share of the samples counts
+  Real temperature = 1;  ///< lambda
   bool subtract_minimum = true;
   double floor = 0;
   const Real* centre = nullptr;            ///< theta [row]
@@ -29,27 +28,6 @@ struct SurrogateGradient {
   const Real* distance_centre = nullptr;   ///< J += sum distance_weight (v - distance_centre)^2; may be null
   const Real* distance_weight = nullptr;
 };
-
-/// The temperature at which weights exp(-(J - least) / lambda) have the effective sample size
-/// (sum w)^2 / sum w^2 = `target`, which grows with it; by bisection of its logarithm, to 2 %. `weights` is
-/// scratch.
-template <class Real>
-Real temperature_for(double target, const Real* totals, Real least, Range block, Real* weights) noexcept {
-  Real most = least;
-  for (int k = block.first; k < block.first + block.count; ++k) {
-    if (std::isfinite(totals[k])) most = std::max(most, totals[k]);
-  }
-  const double spread = std::max(static_cast<double>(most - least), 1e-20);
-  double low = std::log2(spread) - 20, high = std::log2(spread) + 4;
-  for (int i = 0; i < 10; ++i) {
-    const double middle = 0.5 * (low + high);
-    const auto sums = KernelsOf<Real>::exponential_weights(
-        totals, totals, least, static_cast<Real>(std::exp2(middle)), block, weights);
-    const double sum = static_cast<double>(sums.weight);
-    (sum * sum < target * static_cast<double>(sums.squared) ? low : high) = middle;
-  }
-  return static_cast<Real>(std::exp2(high));
-}
 
 /// Computes g [row] from the samples `block` of `v`, of which the first `samples` count (block.count is a
 /// multiple of the lanes). `totals` holds their costs S and becomes J; `weights` is scratch of its length.
@@ -68,14 +46,12 @@ bool surrogate_gradient(const SurrogateGradient<Real>& s, const Rows<Real>& v, R
     std::fill_n(gradient, v.rows, Real(0));
     return false;
   }
-  const Real temperature = s.sample_share > 0 ? temperature_for(static_cast<double>(s.sample_share) * samples,
-                                                                totals, least, block, weights)
-                                              : s.temperature;
-  const double sum =
-      static_cast<double>(K::exponential_weights(totals, totals, least, temperature, block, weights).weight);
+  const double sum = static_cast<double>(
+      K::exponential_weights(totals, totals, least, s.temperature, block, weights).weight);
   const double floor =
-      s.subtract_minimum ? s.floor
-                         : s.floor * std::exp(static_cast<double>(least) / static_cast<double>(temperature));
+      s.subtract_minimum
+          ? s.floor
+          : s.floor * std::exp(static_cast<double>(least) / static_cast<double>(s.temperature));
   K::weighted_sums(v, weights, s.centre, block, gradient);
   for (int r = 0; r < v.rows; ++r) {
     gradient[r] = static_cast<Real>(static_cast<double>(s.inverse_variance[r]) *

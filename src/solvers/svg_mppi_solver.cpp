@@ -17,7 +17,6 @@ class SvgMppiSolver final : public detail::SolverBase {
       : SolverBase(options, inputs, std::move(pool)),
         shift_(options.shift_warm_start),
         use_nominal_(options.use_nominal),
-        sample_nominal_(options.sample_nominal),
         adapt_covariance_(options.adapt_covariance),
         guides_(options, inputs, low(), high()),
         update_(options, inputs),
@@ -60,7 +59,6 @@ class SvgMppiSolver final : public detail::SolverBase {
     if (use_nominal_ && guides_.best_cost() < std::numeric_limits<float>::infinity()) {
       std::copy_n(guides_.best_sequence().data(), size(), nominal_.data());
     }
-    if (sample_nominal_) mean_ = nominal_;
     if (adapt_covariance_) guides_.fit_variance(variance_.data());
     result_.times.guide = detail::seconds(start, detail::Clock::now());
 
@@ -86,7 +84,7 @@ class SvgMppiSolver final : public detail::SolverBase {
     guides_.shift(steps);
   }
 
-  bool shift_, use_nominal_, sample_nominal_, adapt_covariance_;
+  bool shift_, use_nominal_, adapt_covariance_;
   detail::Guides guides_;
   detail::PathIntegral update_;
   std::vector<float> mean_, shifted_, nominal_, variance_, fixed_variance_;  ///< [row]

@@ -28,6 +28,8 @@ maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options,
   } else {
     made.footprint = {problem.body_front, problem.body_rear, problem.body_width / 2, problem.body_width / 2};
     made.margin = problem.body_margin;
+    made.soft_margin = problem.soft_margin;
+    made.soft = problem.soft_cost;
   }
   made.outside = -1;  // so that the problem can tell "off the map" from "occupied"
   return made;

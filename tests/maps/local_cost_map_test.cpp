@@ -100,6 +100,14 @@ TEST(LocalCostMap, BadReadingsAreDroppedAndCounted) {
   EXPECT_EQ(map.at(2.2, 0), 100);
 }
 
+TEST(LocalCostMap, WhatTheBodyLeansAgainstStaysInSight) {
+  const std::vector<float> ranges{0.17F, 0.1F};  // 2.5 cm within the front of the body, and 9.5 cm
+  const LaserScanView scan{ranges, 0, 1e-3, 0.05, 30};
+  LocalCostMap map, published(LocalCostMapOptions::published());
+  EXPECT_EQ(map.update(scan).on_body, 1);
+  EXPECT_EQ(published.update(scan).on_body, 2);
+}
+
 TEST(LocalCostMap, UnusableScansAreRefused) {
   LocalCostMap map({.max_beams = 4});
   const std::vector<float> five(5, 2.0F), four(4, 2.0F);

@@ -30,6 +30,8 @@ struct LocalCostMapOptions {
   double outside = 100;      ///< value of the ring of cells round the map
   Footprint footprint{};     ///< the body by which obstacles are inflated
   double margin = 0;         ///< m, >= 0, added to every side of the footprint
+  double soft_margin = 0;    ///< m, >= 0, beyond the margin, in which cells have the value `soft`
+  double soft = 10;          ///< value of a cell where the body would come near an obstacle
   Pose laser{0.275, 0, 0};   ///< the laser's pose in the robot's frame
   int max_beams = 4096;      ///< a scan may have at most so many; 1 .. 1000000
 
@@ -112,6 +114,12 @@ void visit_options(Options& options, Visit&& visit) {
       Declaration{.name = "laser_yaw", .unit = "rad", .help = "where the laser looks", .min = -7, .max = 7});
   visit(options.max_beams,
         Declaration{.name = "max_beams", .help = "most beams of a scan", .min = 1, .max = 1000000});
+  visit(options.soft_margin, Declaration{.name = "soft_margin",
+                                         .unit = "m",
+                                         .help = "beyond the margin, in which nearness has a value",
+                                         .min = 0,
+                                         .max = 10});
+  visit(options.soft, Declaration{.name = "soft", .help = "value of that nearness", .min = 0});
   visit(options.drop_points_on_body,
         Declaration{.name = "drop_points_on_body", .help = "ignore readings within the body"});
   visit(options.body_inset, Declaration{.name = "body_inset",
@@ -190,7 +198,15 @@ class LocalCostMap {
   void set_beams(const LaserScanView& scan) noexcept;
   ScanReport mark_scan(const LaserScanView& scan) noexcept;
   void mark(double x, double y, double reach) noexcept;
-  void count(const Box& box) noexcept;
+  /// Sums over boxes: (rows + 1) x columns of the boxes over a cell less those over the cell ahead of it.
+  struct Layer {
+    std::vector<std::int32_t> differences;
+    std::vector<std::int32_t> counts;  ///< boxes over the cells of one row
+    Box last_box;
+  };
+
+  Box box_round(double u, double v, double wider) const noexcept;
+  void count(Layer& layer, const Box& box) noexcept;
   void write_cells() noexcept;
 
   LocalCostMapOptions options_;
@@ -198,10 +214,7 @@ class LocalCostMap {
   CellGrid<1> cells_;
   /// How far a half-open box reaches beyond the cell of the point.
   int cells_ahead_ = 0, cells_behind_ = 0, cells_left_ = 0, cells_right_ = 0;
-  Box last_box_;
-  /// (rows + 1) x columns: the boxes over a cell less those over the cell ahead of it.
-  std::vector<std::int32_t> differences_;
-  std::vector<std::int32_t> counts_;  ///< boxes over the cells of one row
+  Layer hard_, soft_;  ///< cells where the body touches; where it comes near (empty without a soft margin)
 
   std::vector<double> beam_cos_, beam_sin_;  ///< directions of the beams in the robot's frame
   int beam_count_ = 0;                       ///< how many of them are valid

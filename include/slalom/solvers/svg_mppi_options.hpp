@@ -44,12 +44,9 @@ struct SvgMppiOptions {
   PerInput guide_step = 0.125;  ///< epsilon, input^2; published: 0.005
   PerInput guide_variance =
       1;  ///< input^2, spread of the first guides, and Sigma of their weights; published: 0.01
-  int gradient_samples = 100;         ///< N
-  PerInput gradient_variance = 0.25;  ///< Sigma_g, input^2; published: 0.01
-  double gradient_temperature = 1;    ///< published: 3
-  /// Above 0, every gradient has a temperature of its own: that at which this share of its samples counts
-  /// (effective sample size over N), whatever the scale of the costs. Published: 0.
-  double gradient_sample_share = 0;
+  int gradient_samples = 100;                          ///< N
+  PerInput gradient_variance = 0.25;                   ///< Sigma_g, input^2; published: 0.01
+  double gradient_temperature = 1;                     ///< published: 3
   GuideWeight guide_weight = GuideWeight::state_cost;  ///< published: proximity
   /// Weights of a gradient are taken relative to the best sample, so that a guide whose samples are all bad
   /// moves too. Published: false, such a guide stands still.
@@ -61,9 +58,6 @@ struct SvgMppiOptions {
   bool restart_guides = false;
   PerInput restart_variance = 0.1;  ///< input^2, of those deviations
 
-  /// Final samples are drawn around the nominal sequence instead of the last solution, so that a change of
-  /// mode is followed at once. Published: false.
-  bool sample_nominal = false;
   bool use_nominal = true;       ///< the best guide is the nominal sequence (NS); otherwise zero is
   bool adapt_covariance = true;  ///< fit the variances to the best guide's path (AC); otherwise `variance`
   FitTarget fit_target = FitTarget::optimal_density;  ///< published: state_cost
@@ -136,12 +130,6 @@ void visit_guide_options(Options& o, Visit&& visit) {
                                             .help = "temperature of the weights of the gradient",
                                             .min = 1e-6,
                                             .max = finite});
-  visit(o.gradient_sample_share,
-        Declaration{.name = "gradient_sample_share",
-                    .help = "share of the gradient's samples that counts; sets its temperature; 0: "
-                            "gradient_temperature",
-                    .min = 0,
-                    .max = 0.9});
   visit(o.guide_weight,
         Declaration{.name = "guide_weight", .help = "what the gradient's weights are made of"});
   visit(o.subtract_minimum,
@@ -162,8 +150,6 @@ void visit_guide_options(Options& o, Visit&& visit) {
                                         .help = "of the deviations at which guides begin anew",
                                         .min = 0,
                                         .max = finite});
-  visit(o.sample_nominal, Declaration{.name = "sample_nominal",
-                                      .help = "draw the samples around the nominal, not the last solution"});
 }
 
 template <class Options, class Visit>

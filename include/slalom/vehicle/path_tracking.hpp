@@ -74,7 +74,8 @@ struct PathTrackingOptions {
   double body_width = 0.31;         ///< m
   double body_margin = 0.04;        ///< m of clearance below which a state collides
   double soft_margin = 0.1;         ///< m of clearance beyond that in which nearness costs
-  double soft_cost = 10;            ///< cost map value where that begins to collide, falling off as a square
+  double soft_cost = 10;  ///< cost map value of that nearness; with discs where it begins to collide,
+                          ///< falling off as a square
 
   bool limit_acceleration = true;  ///< published: false, the speed jumps to the reference field's
   bool exact_lag =

@@ -1,0 +1,250 @@
+#include "slalom/vehicle/planner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "slalom/solvers/make_solver.hpp"
+#include "solvers/count_allocations.hpp"
+#include "vehicle/back_up.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// A straight lane along x, 60 m long, driven at 3 m/s.
+std::vector<maps::ReferencePoint> lane() {
+  std::vector<maps::ReferencePoint> path;
+  for (int i = 0; i < 600; ++i) path.push_back({0.1 * i, 0, 0, 3});
+  return path;
+}
+
+PlannerOptions careful() {
+  PlannerOptions options;
+  options.stop_when_blocked = options.verify_plan = options.back_up = true;
+  return options;
+}
+
+PathTrackingOptions small_car() {
+  PathTrackingOptions options;
+  options.body = BodyForm::box;
+  options.outside_cost = options.outside_terminal_cost = 0;
+  return options;
+}
+
+Planner make_planner(const PlannerOptions& options = careful()) {
+  SvgMppiOptions method;
+  method.horizon = 20;
+  method.samples = 512;
+  method.variance = 0.03;
+  method.guide_variance = method.gradient_variance = 0.01;
+  method.guide_step = 0.005;
+  method.variance_min = 0.001;
+  method.variance_max = 0.1;
+  method.input_min = -0.4;
+  method.input_max = 0.4;
+  method.seed = 7;
+  return {options, small_car(), lane(), false, make_solver(method, 1)};
+}
+
+/// What a laser 0.275 m ahead of the rear axle sees of a corridor of half width 1.5 m round the lane and of a
+/// wall across it `wall` m ahead of the axle, from `gap` m on to the left of it.
+struct Corridor {
+  double wall = 1e9, gap = 1e9;  ///< m
+  std::vector<float> ranges = std::vector<float>(271);
+
+  maps::LaserScanView scan(double y = 0) {
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      const double angle = angle_min + static_cast<double>(i) * step;
+      const double c = std::cos(angle), s = std::sin(angle);
+      double range = 29;
+      if (s > 1e-6) range = std::min(range, (1.5 - y) / s);
+      if (s < -1e-6) range = std::min(range, (-1.5 - y) / s);
+      if (c > 1e-6) {
+        const double to_wall = (wall - 0.275) / c;
+        if (y + to_wall * s < gap) range = std::min(range, to_wall);
+      }
+      ranges[i] = static_cast<float>(range);
+    }
+    return {ranges, angle_min, step, 0.05, 30};
+  }
+  static constexpr double angle_min = -2.35, step = 4.7 / 270;
+};
+
+TEST(Planner, FollowsAFreeLaneAtItsSpeed) {
+  Planner planner = make_planner();
+  Corridor corridor;
+  for (int i = 0; i < 5; ++i) {
+    const PlannerOutput& out = planner.update({corridor.scan(), {{5, 0, 0}, 3}});
+    EXPECT_EQ(out.status, PlannerStatus::ok);
+    EXPECT_DOUBLE_EQ(out.command.speed, 3);
+    ASSERT_EQ(out.predicted.size(), 21u);
+    EXPECT_GT(out.predicted.back().pose.x, 7.5);
+    EXPECT_LT(std::abs(out.predicted.back().pose.y), 0.3);
+  }
+}
+
+TEST(Planner, SteersRoundAnObstacleOnTheSideThatIsFree) {
+  Planner planner = make_planner();
+  Corridor corridor{.wall = 3, .gap = 0.1};
+  for (int i = 0; i < 20; ++i) planner.update({corridor.scan(), {{5, 0, 0}, 3}});
+  const PlannerOutput& out = planner.update({corridor.scan(), {{5, 0, 0}, 3}});
+  double sideways = 0;
+  for (const PredictedState& s : out.predicted) sideways = std::max(sideways, s.pose.y);
+  EXPECT_GT(sideways, 0.2);
+}
+
+TEST(Planner, ObstaclesFromOutsideCountAsTheScansDo) {
+  Planner planner = make_planner();
+  Corridor corridor;
+  std::vector<maps::Point> wall;
+  for (double y = -1.5; y < 1.5; y += 0.04) wall.push_back({1.5, y});
+  const PlannerOutput* out = nullptr;
+  for (int i = 0; i < 5; ++i) out = &planner.update({corridor.scan(), {{5, 0, 0}, 3}, wall});
+  EXPECT_EQ(out->status, PlannerStatus::blocked);
+  EXPECT_LT(out->command.speed, 3);
+}
+
+TEST(Planner, BrakesWhereNoPlanIsFree) {
+  Planner planner = make_planner();
+  Corridor corridor{.wall = 1.5};
+  double speed = 3;
+  for (int i = 0; i < 60; ++i) {
+    const PlannerOutput& out = planner.update({corridor.scan(), {{5, 0, 0}, speed}});
+    EXPECT_EQ(out.status, PlannerStatus::blocked);
+    EXPECT_LE(out.command.speed, speed);
+    speed = std::max(out.command.speed, 0.2);
+  }
+  EXPECT_LT(speed, 0.21);
+}
+
+TEST(Planner, GoesBackFromWhatItStandsAgainst) {
+  for (const bool back_up : {true, false}) {
+    PlannerOptions options = careful();
+    options.back_up = back_up;
+    Planner planner = make_planner(options);
+    Corridor corridor{.wall = 0.48};
+    double slowest = 100;
+    for (int i = 0; i < 40; ++i) {
+      slowest = std::min(slowest, planner.update({corridor.scan(), {{5, 0, 0}, 0}}).command.speed);
+    }
+    EXPECT_EQ(slowest < 0, back_up);
+  }
+}
+
+TEST(BackUp, WaitsGoesBackAndStopsWhenTheWayIsFree) {
+  detail::BackUp back_up;
+  const double period = 0.025;
+  for (int i = 0; i < 40; ++i) EXPECT_FALSE(back_up.update(true, 0, period));
+  for (int i = 0; i < 40; ++i) EXPECT_FALSE(back_up.update(false, 2, period)) << "it moves";
+  int waited = 0, gone = 0;
+  while (!back_up.update(false, 0, period)) ++waited;
+  EXPECT_NEAR(waited * period, 0.3, 2 * period);
+  while (back_up.update(true, -0.5, period)) ++gone;
+  EXPECT_NEAR(gone * period, 0.6, 2 * period);
+  while (!back_up.update(false, 0, period)) {
+  }
+  gone = 0;
+  while (back_up.update(false, -0.5, period)) ++gone;
+  EXPECT_NEAR(gone * period, 2, 2 * period) << "not for ever";
+}
+
+/// What no plan can be made from: a status, and a car that stops with its wheels held.
+TEST(Planner, BadInputStopsTheCarAndGoodInputStartsItAgain) {
+  Corridor corridor;
+  const Odometry good{{5, 0, 0}, 3};
+  const std::vector<float> nothing(271, std::numeric_limits<float>::infinity()),
+      nonsense(271, std::numeric_limits<float>::quiet_NaN()), one(1, 2.0F), many(5000, 2.0F);
+  const auto scan_of = [](const std::vector<float>& ranges) {
+    return maps::LaserScanView{ranges, Corridor::angle_min, Corridor::step, 0.05, 30};
+  };
+  struct Case {
+    const char* what;
+    maps::LaserScanView scan;
+    Odometry odometry;
+    PlannerStatus status;
+  };
+  const std::vector<float> seen(corridor.scan().ranges.begin(), corridor.scan().ranges.end());
+  const maps::LaserScanView fine = scan_of(seen);
+  const Case cases[] = {
+      {"no ranges", {}, good, PlannerStatus::bad_scan},
+      {"one range", scan_of(one), good, PlannerStatus::bad_scan},
+      {"too many ranges", scan_of(many), good, PlannerStatus::bad_scan},
+      {"only infinite ranges", scan_of(nothing), good, PlannerStatus::bad_scan},
+      {"only NaN ranges", scan_of(nonsense), good, PlannerStatus::bad_scan},
+      {"NaN angle", {seen, nan, Corridor::step, 0.05, 30}, good, PlannerStatus::bad_scan},
+      {"NaN x", fine, {{nan, 0, 0}, 3}, PlannerStatus::bad_odometry},
+      {"infinite y", fine, {{5, INFINITY, 0}, 3}, PlannerStatus::bad_odometry},
+      {"NaN yaw", fine, {{5, 0, nan}, 3}, PlannerStatus::bad_odometry},
+      {"NaN speed", fine, {{5, 0, 0}, nan}, PlannerStatus::bad_odometry},
+      {"far off the path", fine, {{5, 400, 0}, 3}, PlannerStatus::off_course},
+  };
+  Planner planner = make_planner();
+  for (const Case& bad : cases) {
+    SCOPED_TRACE(bad.what);
+    ASSERT_EQ(planner.update({fine, good}).status, PlannerStatus::ok);
+    const double held = planner.update({fine, good}).command.steer;
+    const PlannerOutput& out = planner.update({bad.scan, bad.odometry});
+    EXPECT_EQ(out.status, bad.status);
+    EXPECT_EQ(out.command.speed, 0);
+    EXPECT_TRUE(std::isfinite(out.command.steer));
+    EXPECT_LE(std::abs(out.command.steer), std::abs(held) + 0.2);
+    EXPECT_TRUE(out.inputs.empty());
+  }
+}
+
+TEST(Planner, SomeBadRangesAreLeftOut) {
+  Corridor corridor;
+  corridor.scan();
+  for (std::size_t i = 0; i < corridor.ranges.size(); i += 3) {
+    corridor.ranges[i] = i % 2 ? std::numeric_limits<float>::quiet_NaN() : -1.0F;
+  }
+  Planner planner = make_planner();
+  const PlannerOutput& out =
+      planner.update({{corridor.ranges, Corridor::angle_min, Corridor::step, 0.05, 30}, {{5, 0, 0}, 3}});
+  EXPECT_EQ(out.status, PlannerStatus::ok);
+  EXPECT_EQ(out.scan.invalid, 91);
+}
+
+TEST(Planner, ResetMakesItNew) {
+  Corridor corridor{.wall = 3, .gap = 0.1};
+  Planner planner = make_planner();
+  const auto drive = [&] {
+    planner.reset(11);
+    std::vector<double> steers;
+    for (int i = 0; i < 10; ++i) {
+      steers.push_back(planner.update({corridor.scan(), {{5 + 0.05 * i, 0, 0}, 3}}).command.steer);
+    }
+    return steers;
+  };
+  EXPECT_EQ(drive(), drive());
+}
+
+TEST(Planner, AnUpdateAllocatesNothing) {
+  Corridor corridor{.wall = 3, .gap = 0.1};
+  Planner planner = make_planner();
+  const maps::LaserScanView scan = corridor.scan();
+  planner.update({scan, {{5, 0, 0}, 3}});
+  const auto before = testing::allocations();
+  for (int i = 0; i < 5; ++i) planner.update({scan, {{5, 0, 0}, 3}});
+  planner.update({{}, {{5, 0, 0}, 3}});
+  EXPECT_EQ(testing::allocations(), before);
+}
+
+TEST(Planner, RefusesWhatItCannotDriveWith) {
+  EXPECT_THROW(Planner(careful(), small_car(), lane(), false, nullptr), std::invalid_argument);
+  EXPECT_THROW(Planner(careful(), small_car(), lane(), false, make_solver(SvgMppiOptions{}, 2)),
+               std::invalid_argument);
+  PlannerOptions slow = careful();
+  slow.latency = 0.9;
+  EXPECT_THROW(Planner(slow, small_car(), lane(), false, make_solver(SvgMppiOptions{}, 1)),
+               std::invalid_argument);
+  EXPECT_THROW(Planner(careful(), small_car(), {}, false, make_solver(SvgMppiOptions{}, 1)),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle
