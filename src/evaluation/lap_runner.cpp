@@ -93,7 +93,11 @@ std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t seed) const try
 }
 
 bool LapRunner::at_finish(const sim::World& world) const noexcept {
-  if (arena_->evaluation == Evaluation::published) return world.start_zone_laps(0).laps() > 0;
+  if (arena_->evaluation == Evaluation::published) {
+    // The published count takes a car that leaves the zone and backs into it for one that has been round.
+    const sim::StartZoneLaps& zone = world.start_zone_laps(0);
+    return zone.laps() > 0 && zone.near_start() && progress(world) > 0.5;
+  }
   if (open_length_ > 0) return world.laps(0)->progress() >= open_length_;
   return world.laps(0)->laps() > 0;
 }

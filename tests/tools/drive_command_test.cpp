@@ -114,8 +114,8 @@ TEST_F(DriveCommand, RecordsEveryStepAndDraws) {
   EXPECT_EQ(lines[1]["type"], "lap");
   EXPECT_EQ(lines[2]["type"], "tick");
   EXPECT_EQ(lines[2]["ranges"].size(), 1080u);
-  EXPECT_EQ(lines[2]["inputs"].size(), 14u);
-  EXPECT_EQ(lines[2]["predicted"].size(), 15u);
+  EXPECT_EQ(lines[2]["inputs"].size(), 20u);
+  EXPECT_EQ(lines[2]["predicted"].size(), 21u);
   EXPECT_EQ(lines.back()["type"], "lap_end");
   EXPECT_EQ(lines.back()["result"], result("out.json")["laps"][0]);
   EXPECT_EQ(content(folder_ / "out.png").substr(1, 3), "PNG");

@@ -36,7 +36,7 @@ TEST_F(TuneCommand, FindsBetterOptionsAndShowsItOnOtherSeeds) {
   const auto r = run(small() + "--out t");
   ASSERT_EQ(r.status, 0) << r.output;
   const auto result = nlohmann::json::parse(content(folder_ / "t/tune.json"));
-  EXPECT_GT(std::stod(result.at("best").at("mppi.variance").get<std::string>()), 0.05);
+  EXPECT_GT(std::stod(result.at("best").at("mppi.variance").get<std::string>()), 0.02);
   EXPECT_LT(result.at("held_out").at("objective_best"), result.at("held_out").at("objective_start"));
   EXPECT_LT(result.at("held_out").at("difference_ci").at(1), 0);
   EXPECT_EQ(result.at("held_out").at("laps"), 4);
