@@ -46,7 +46,9 @@ class PurePursuit {
     double distance = 0;      ///< m
   };
   struct Target {
-    enum class Mode { lookahead, reacquire, lost } mode = Mode::lost;
+    /// How it was found.
+    enum class Mode { lookahead, reacquire, lost };
+    Mode mode = Mode::lost;  ///< how it was found
     int row = -2;       ///< start of the segment found (-1 the last row); -2 if lost
     double along = -1;  ///< in [0, 1] of that segment; -1 where it was not searched
     Nearest nearest;

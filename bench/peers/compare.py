@@ -1,0 +1,85 @@
+"""The same problems, samples, horizon, noise and temperature: solve times and closed-loop costs, on one core.
+
+Times are the processor's, so that neighbours count little.
+
+usage: PYTHONPATH=build/release/adapters/python taskset -c 1 python3 bench/peers/compare.py [seeds]
+
+Needs numpy; torch (Debian: python3-torch) where it is there.
+"""
+
+import os
+import sys
+import time
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+import slalom
+from batched_mppi import NumpyMppi, TorchMppi
+from problems import DoubleIntegrator, Obstacles, Pendulum
+
+try:
+    import torch
+
+    torch.set_num_threads(1)
+except ImportError:
+    torch = None
+
+K, T = 1000, 30
+SEEDS = int(sys.argv[1]) if len(sys.argv) > 1 else 10
+
+
+def of_slalom(method, problem, p, seed, **options):
+    controller = method(problem, horizon=T, samples=K, temperature=p.temperature, input_min=p.low, input_max=p.high,
+                        seed=seed, **options)
+    return lambda x: controller.solve(x, elapsed=p.dt).inputs
+
+
+def guided(p):
+    v = np.array(p.variance)
+    return dict(guide_step=list(v / 4), guide_variance=list(v / 2), gradient_variance=list(v / 2),
+                gradient_temperature=p.temperature, variance_min=list(v / 4), variance_max=list(v))
+
+
+def callables(p):
+    return slalom.Problem(p.dynamics, p.cost, p.terminal_cost, states=len(p.start), inputs=len(p.variance), dt=p.dt)
+
+
+def ways(Kind):
+    """{name: seed -> solve(x)} of everything that solves a problem."""
+    p = Kind(np)
+    common = (T, K, p.temperature, p.variance, p.low, p.high)
+    yield "batched numpy (ours)", lambda seed: NumpyMppi(p, *common, seed).solve
+    if torch:
+        yield "batched torch (ours)", lambda seed: TorchMppi(Kind(torch), *common, seed).solve
+    own = callables(p)
+    yield "slalom `mppi`, numpy callables", lambda seed: of_slalom(slalom.Mppi, own, p, seed, variance=p.variance)
+    built_in = {"pendulum": slalom.Pendulum(dt=0.04), "obstacles": slalom.DifferentialDrive()}.get(p.name)
+    if built_in:
+        yield "slalom `mppi`, compiled problem", lambda seed: of_slalom(
+            slalom.Mppi, built_in, p, seed, variance=p.variance)
+        yield "slalom `svg_mppi`, compiled problem", lambda seed: of_slalom(
+            slalom.SvgMppi, built_in, p, seed, **guided(p))
+
+
+def drive(p, solve):
+    """The cost of the way driven, and the solve times."""
+    x, cost, times = np.array(p.start), 0.0, []
+    for _ in range(p.steps):
+        before = time.thread_time()
+        inputs = solve(x)
+        times.append(time.thread_time() - before)
+        u = np.array(inputs[:1], float)
+        cost += float(p.cost(x[None], u)[0])
+        x = p.dynamics(x[None], u)[0]
+    return cost, times
+
+
+print(f"K = {K}, T = {T}, {SEEDS} seeds, one thread, numpy {np.__version__}, torch {torch and torch.__version__}\n")
+print("| problem | solver | CPU time of a solve, ms (p50) | p99 | closed-loop cost (mean, standard error) |\n|---|---|---|---|---|")
+for Kind in Pendulum, DoubleIntegrator, Obstacles:
+    for name, make in ways(Kind):
+        runs = [drive(Kind(np), make(seed)) for seed in range(SEEDS)]
+        costs, times = [cost for cost, _ in runs], 1e3 * np.concatenate([t[3:] for _, t in runs])
+        print(f"| {Kind.name} | {name} | {np.median(times):.3f} | {np.percentile(times, 99):.3f} "
+              f"| {np.mean(costs):.2f}, {np.std(costs) / np.sqrt(len(costs)):.2f} |", flush=True)
