@@ -37,8 +37,7 @@ std::vector<OptionSet> option_sets() {
   sets.push_back(
       {"svg_mppi_five_guides", SvgMppiOptions{.guides = 5, .guide_weight = GuideWeight::importance}});
   sets.push_back({"svg_mppi_pooled_paths", SvgMppiOptions{.guides = 3, .fit_all_guides = true}});
-  sets.push_back({"svg_mppi_restarting_guides",
-                  SvgMppiOptions{.guides = 4, .restart_guides = true}});
+  sets.push_back({"svg_mppi_restarting_guides", SvgMppiOptions{.guides = 4, .restart_guides = true}});
   sets.push_back({"reverse_mppi_without_rejection", ReverseMppiOptions{.reject_samples = false}});
   sets.push_back({"sv_mpc_best_particle", SvMpcOptions{.best_particle = true}});
   sets.push_back({"cem_send_best", CemOptions{.send_best = true}});
