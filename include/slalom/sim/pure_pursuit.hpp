@@ -49,8 +49,8 @@ class PurePursuit {
     /// How it was found.
     enum class Mode { lookahead, reacquire, lost };
     Mode mode = Mode::lost;  ///< how it was found
-    int row = -2;       ///< start of the segment found (-1 the last row); -2 if lost
-    double along = -1;  ///< in [0, 1] of that segment; -1 where it was not searched
+    int row = -2;            ///< start of the segment found (-1 the last row); -2 if lost
+    double along = -1;       ///< in [0, 1] of that segment; -1 where it was not searched
     Nearest nearest;
     PathPoint aim;  ///< where and how fast
   };
