@@ -121,7 +121,9 @@ void LapRunner::control(Drive& drive, const TickCallback& on_tick, double furthe
   const vehicle::Odometry odometry = odometry_of(seen, drive.world.options().car.rear_length);
   const vehicle::PlannerOutput& output = drive.planner->update({scan, odometry});
 
-  drive.meter.observe(scan, odometry.pose);
+  // With the published maps planner and meter make the same cost map.
+  drive.meter.observe(scan, odometry.pose,
+                      configuration_.planner.published_maps ? &drive.planner->cost_map() : nullptr);
   const SequenceCostMeter::Cost cost = drive.meter.planned(output);
   drive.cost_state += cost.state;
   drive.cost_collision += cost.collision;

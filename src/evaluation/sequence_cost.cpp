@@ -72,6 +72,9 @@ struct SequenceCostMeter::Implementation {
   std::vector<float> inputs;
   std::vector<PredictedState> states;
   maps::Pose robot;
+  GridView<1> obstacles;  ///< of this meter's own cost map or of one made elsewhere
+  maps::Point low, high;  ///< m, the part of the field that is made, map frame
+  bool everywhere = false;
 
   Implementation(std::span<const maps::ReferencePoint> path, const PathTrackingOptions& m)
       : model(m),
@@ -101,7 +104,32 @@ struct SequenceCostMeter::Implementation {
     return {both.value - collision, collision};
   }
 
-  Cost cost_of(const Ruler& sequence) const {
+  /// Makes the field where these states lie, or everywhere; what is made already stays.
+  void make_field(std::span<const PredictedState> sequence, double margin) noexcept {
+    if (everywhere) return;
+    maps::Point from{robot.x, robot.y}, to{robot.x, robot.y};
+    for (const PredictedState& state : sequence) {
+      from = {std::min(from.x, state.pose.x), std::min(from.y, state.pose.y)};
+      to = {std::max(to.x, state.pose.x), std::max(to.y, state.pose.y)};
+    }
+    if (from.x >= low.x && from.y >= low.y && to.x <= high.x && to.y <= high.y) return;
+    low = {std::min(low.x, from.x - margin), std::min(low.y, from.y - margin)};
+    high = {std::max(high.x, to.x + margin), std::max(high.y, to.y + margin)};
+    field.update({robot.x, robot.y}, low, high);
+  }
+  void make_field_everywhere() noexcept {
+    if (!everywhere) field.update({robot.x, robot.y});
+    everywhere = true;
+  }
+  bool covers(std::span<const PredictedState> sequence) const noexcept {
+    return everywhere || std::all_of(sequence.begin(), sequence.end(), [&](const PredictedState& state) {
+             return state.pose.x >= low.x && state.pose.x <= high.x && state.pose.y >= low.y &&
+                    state.pose.y <= high.y;
+           });
+  }
+
+  Cost cost_of(const Ruler& sequence) noexcept {
+    make_field(sequence, 0.2);
     Cost sum;
     for (int k = 0; k <= steps; ++k) {
       const Cost cost = cost_of(state_of(sequence[static_cast<std::size_t>(k)]), k == steps);
@@ -123,11 +151,17 @@ struct SequenceCostMeter::Implementation {
   Ruler predict(CarRollout& rollout, const vehicle::PlannerOutput& output, std::span<const float> sequence,
                 double spacing) {
     const PredictedState& first = output.predicted.front();
-    rollout.set_maps(field.view(), cost_map.view(), robot);
-    rollout.set_start({first.pose, first.speed, first.steer}, field.at(first.pose.x, first.pose.y).speed);
     const std::span<PredictedState> reached(states.data(), sequence.size() + 1);
-    rollout.predict(sequence, reached);
-    return resampled(reached, spacing);
+    // Where it leads is not known before. Most often it is about where the planner's own prediction leads; if
+    // not, once more with the whole field.
+    make_field(output.predicted, 0.5);
+    while (true) {
+      rollout.set_maps(field.view(), obstacles, robot);
+      rollout.set_start({first.pose, first.speed, first.steer}, field.at(first.pose.x, first.pose.y).speed);
+      rollout.predict(sequence, reached);
+      if (covers(reached)) return resampled(reached, spacing);
+      make_field_everywhere();
+    }
   }
 };
 
@@ -140,12 +174,18 @@ SequenceCostMeter::~SequenceCostMeter() = default;
 SequenceCostMeter::SequenceCostMeter(SequenceCostMeter&&) noexcept = default;
 SequenceCostMeter& SequenceCostMeter::operator=(SequenceCostMeter&&) noexcept = default;
 
-void SequenceCostMeter::observe(const maps::LaserScanView& scan, const maps::Pose& robot) noexcept {
+void SequenceCostMeter::observe(const maps::LaserScanView& scan, const maps::Pose& robot,
+                                const maps::LocalCostMap* made) noexcept {
+  constexpr double about_the_car = 0.5;  // m
   Implementation& m = *implementation_;
   m.robot = robot;
-  m.cost_map.update(scan);
-  m.field.update({robot.x, robot.y});
-  m.ruler.set_maps(m.field.view(), m.cost_map.view(), robot.x, robot.y, robot.yaw);
+  if (!made) m.cost_map.update(scan);
+  m.obstacles = made ? made->view() : m.cost_map.view();
+  m.low = {robot.x - about_the_car, robot.y - about_the_car};
+  m.high = {robot.x + about_the_car, robot.y + about_the_car};
+  m.everywhere = false;
+  m.field.update({robot.x, robot.y}, m.low, m.high);
+  m.ruler.set_maps(m.field.view(), m.obstacles, robot.x, robot.y, robot.yaw);
 }
 
 SequenceCostMeter::Cost SequenceCostMeter::planned(const vehicle::PlannerOutput& output) noexcept {

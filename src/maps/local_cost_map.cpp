@@ -139,6 +139,7 @@ ScanReport LocalCostMap::mark_scan(const LaserScanView& scan) noexcept {
 }
 
 void LocalCostMap::add_points(std::span<const Point> points) noexcept {
+  if (points.empty()) return;
   for (const Point& point : points) {
     if (std::isfinite(point.x) && std::isfinite(point.y)) mark(point.x, point.y, 0);
   }

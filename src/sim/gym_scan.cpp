@@ -9,7 +9,6 @@ namespace {
 
 constexpr double pi = 3.141592653589793;
 constexpr int table_size = 2000;
-constexpr double close_enough = 1e-4;  // m, to a wall
 
 /// Cosines and sines of 2000 angles from 0 to 2 pi, both ends included.
 struct Table {
@@ -56,17 +55,6 @@ struct Field {
   double cosine, sine;
 };
 
-double walk(const Field& field, double x, double y, double cosine, double sine, double most) {
-  double step = field.at(x, y), total = step;
-  while (step > close_enough && total <= most) {
-    x += step * cosine;
-    y += step * sine;
-    step = field.at(x, y);
-    total += step;
-  }
-  return total > most ? most : total;
-}
-
 }  // namespace
 
 GymDirections::GymDirections(double yaw, const LidarOptions& options)
@@ -88,14 +76,40 @@ double gym_distance(const Track& track, const maps::Point& point) {
 }
 
 void gym_scan(const Track& track, const maps::Pose& sensor, const LidarOptions& options,
-              std::span<const double> angles, std::span<double> ranges) {
+              std::span<const double> angles, const Kernels& kernels, std::span<double> ranges) {
+  constexpr std::size_t block = scan_padding;
+  std::array<double, block> cosines, sines, walked;
   const Field field(track);
+  const GymWalkTask task{.distance = field.distance,
+                         .width = field.width,
+                         .height = field.height,
+                         .resolution = field.resolution,
+                         .origin_x = field.origin.x,
+                         .origin_y = field.origin.y,
+                         .origin_cosine = field.cosine,
+                         .origin_sine = field.sine,
+                         .x = sensor.x,
+                         .y = sensor.y,
+                         .most = options.range_max,
+                         .cosines = cosines.data(),
+                         .sines = sines.data(),
+                         .ranges = walked.data()};
   GymDirections directions(sensor.yaw, options);
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    const double angle = sensor.yaw + angles[i];
-    const maps::Point to =
-        options.gym_directions ? directions.next() : maps::Point{std::cos(angle), std::sin(angle)};
-    ranges[i] = walk(field, sensor.x, sensor.y, to.x, to.y, options.range_max);
+  for (std::size_t first = 0; first < ranges.size(); first += block) {
+    const std::size_t here = std::min(block, ranges.size() - first);
+    for (std::size_t i = 0; i < here; ++i) {
+      const double angle = sensor.yaw + angles[first + i];
+      const maps::Point to =
+          options.gym_directions ? directions.next() : maps::Point{std::cos(angle), std::sin(angle)};
+      cosines[i] = to.x;
+      sines[i] = to.y;
+    }
+    for (std::size_t i = here; i < block; ++i) {
+      cosines[i] = cosines[here - 1];
+      sines[i] = sines[here - 1];
+    }
+    kernels.gym_walk(task);
+    std::copy_n(walked.begin(), here, ranges.begin() + static_cast<std::ptrdiff_t>(first));
   }
 }
 

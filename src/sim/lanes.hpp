@@ -19,6 +19,10 @@ struct Lanes {
   typedef float F __attribute__((vector_size(4 * N)));
   typedef std::int32_t I __attribute__((vector_size(4 * N)));
   typedef std::uint32_t U __attribute__((vector_size(4 * N)));
+  // Half as many in double precision, with the integers that go with them.
+  typedef double D __attribute__((vector_size(4 * N)));
+  typedef std::int64_t M __attribute__((vector_size(4 * N)));
+  typedef std::int32_t J __attribute__((vector_size(2 * N)));
 };
 
 /// The portable forms; `N` lanes.
@@ -28,6 +32,9 @@ struct Portable {
   using F = typename Lanes<N>::F;
   using I = typename Lanes<N>::I;
   using U = typename Lanes<N>::U;
+  using D = typename Lanes<N>::D;
+  using M = typename Lanes<N>::M;
+  using J = typename Lanes<N>::J;
 
   static void load(const float* from, F& r) { std::memcpy(&r, from, sizeof r); }
   static void store(const F& a, float* to) { std::memcpy(to, &a, sizeof a); }
@@ -48,6 +55,16 @@ struct Portable {
     for (int i = 0; i < N; ++i) all |= mask[i];
     return all != 0;
   }
+  static void gather(const double* from, const J& index, D& r) {
+    D found = D{};
+    for (int i = 0; i < N / 2; ++i) found[i] = from[index[i]];
+    r = found;
+  }
+  static bool any(const M& mask) {
+    std::int64_t all = 0;
+    for (int i = 0; i < N / 2; ++i) all |= mask[i];
+    return all != 0;
+  }
 };
 
 struct Baseline : Portable<4> {};
@@ -62,6 +79,11 @@ struct Avx2 : Portable<8> {
     r = (I)_mm256_srai_epi32(_mm256_slli_epi32(both, 16), 16);
   }
   static bool any(const I& mask) { return _mm256_movemask_ps((__m256)mask) != 0; }
+  static void gather(const double* from, const J& index, D& r) {
+    const __m256d all = (__m256d)_mm256_set1_epi64x(-1);  // as below: without a mask a false warning
+    r = (D)_mm256_mask_i32gather_pd(_mm256_setzero_pd(), from, (__m128i)index, all, 8);
+  }
+  static bool any(const M& mask) { return _mm256_movemask_pd((__m256d)mask) != 0; }
 };
 
 #endif
@@ -78,6 +100,10 @@ struct Avx512 : Portable<16> {
     r = (I)_mm512_maskz_srai_epi32(all, _mm512_maskz_slli_epi32(all, both, 16), 16);
   }
   static bool any(const I& mask) { return _mm512_test_epi32_mask((__m512i)mask, (__m512i)mask) != 0; }
+  static void gather(const double* from, const J& index, D& r) {
+    r = (D)_mm512_mask_i32gather_pd(_mm512_setzero_pd(), 0xff, (__m256i)index, from, 8);
+  }
+  static bool any(const M& mask) { return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask) != 0; }
 };
 #endif
 

@@ -44,7 +44,12 @@ Lidar::Window Lidar::gym_window(const maps::Pose& sensor, const Box& box) const 
     if (angle > pi) angle -= 2 * pi;
     if (angle < -pi) angle += 2 * pi;
     const auto nearer = [&](double a, double b) { return std::abs(a + angle) < std::abs(b + angle); };
-    const auto nearest = std::min_element(angles_.begin(), angles_.end(), nearer);
+    // The beams stand evenly, so the nearest is one of the few about where it should be.
+    const double increment = options_.angle_increment(), last = static_cast<double>(options_.beams - 1);
+    const double about = increment > 0 ? (-angle - angles_.front()) / increment : 0;
+    const auto begin = angles_.begin() + static_cast<std::ptrdiff_t>(std::clamp(about - 2, 0.0, last)),
+               end = angles_.begin() + static_cast<std::ptrdiff_t>(std::clamp(about + 3, 0.0, last)) + 1;
+    const auto nearest = std::min_element(begin, end, nearer);
     const int beam = static_cast<int>(nearest - angles_.begin());
     all.first = std::min(all.first, beam);
     all.last = std::max(all.last, beam);

@@ -292,10 +292,65 @@ inline void noise_with(const NoiseTask& task) {
     }
 }
 
+/// The distance that f1tenth_gym looks up at (x, y).
+template <class L>
+inline void gym_look_up(const GymWalkTask& task, const typename L::D& x, const typename L::D& y,
+                        typename L::D& distance) {
+  using D = typename L::D;
+  const D dx = x - task.origin_x, dy = y - task.origin_y, zero = D{};
+  const D gx = dx * task.origin_cosine + dy * task.origin_sine,
+          gy = -dx * task.origin_sine + dy * task.origin_cosine;
+  const typename L::M inside =
+      (gx >= 0) & (gy >= 0) & (gx < task.width * task.resolution) & (gy < task.height * task.resolution);
+  const auto column = __builtin_convertvector((inside ? gx : zero) / task.resolution, typename L::J),
+             row = __builtin_convertvector((inside ? gy : zero) / task.resolution, typename L::J);
+  const auto in = __builtin_convertvector(inside, typename L::J);
+  const typename L::J last = typename L::J{} + (task.width * task.height - 1);
+  L::gather(task.distance, (in & (row * task.width + column)) | (~in & last), distance);
+}
+
+/// Four packs at a time, so that the look-ups of one hide behind those of the others.
+template <class L>
+void gym_walk_with(const GymWalkTask& given) {
+  using D = typename L::D;
+  constexpr int lanes = L::lanes / 2, at_once = 4;
+  constexpr double close_enough = 1e-4;  // m, to a wall
+  const GymWalkTask task = given;
+  const D most = D{} + task.most;
+  for (int first = 0; first < scan_padding; first += at_once * lanes) {
+    D x[at_once], y[at_once], cosine[at_once], sine[at_once], step[at_once] = {}, total[at_once];
+    for (int k = 0; k < at_once; ++k) {
+      std::memcpy(&cosine[k], task.cosines + first + k * lanes, sizeof(D));
+      std::memcpy(&sine[k], task.sines + first + k * lanes, sizeof(D));
+      x[k] = D{} + task.x;
+      y[k] = D{} + task.y;
+      gym_look_up<L>(task, x[k], y[k], step[k]);
+      total[k] = step[k];
+    }
+    for (bool again = true; again;) {
+      again = false;
+      for (int k = 0; k < at_once; ++k) {
+        const typename L::M goes_on = (step[k] > close_enough) & (total[k] <= most);
+        x[k] = goes_on ? x[k] + step[k] * cosine[k] : x[k];
+        y[k] = goes_on ? y[k] + step[k] * sine[k] : y[k];
+        D next;
+        gym_look_up<L>(task, x[k], y[k], next);
+        step[k] = goes_on ? next : step[k];
+        total[k] = goes_on ? total[k] + next : total[k];
+        again |= L::any(goes_on);
+      }
+    }
+    for (int k = 0; k < at_once; ++k) {
+      const D range = total[k] > most ? most : total[k];
+      std::memcpy(task.ranges + first + k * lanes, &range, sizeof(D));
+    }
+  }
+}
+
 /// `K` packs at a time.
 template <class L, int K>
 constexpr Kernels kernels_of(const char* name) {
-  return {scan_with<L, K>, cast_with<L>, noise_with<L>, name};
+  return {scan_with<L, K>, cast_with<L>, noise_with<L>, gym_walk_with<L>, name};
 }
 
 }  // namespace

@@ -106,6 +106,35 @@ TEST(ReferenceField, AReachMakesTheCellsWithinIt) {
   expect_nearest(field, path, 30);
 }
 
+TEST(ReferenceField, ABoxOfCellsIsThatOfTheWholeMap) {
+  const auto path = circle(600, 5);
+  ReferenceField whole(path), part(path);
+  for (const auto& [low, high] : {std::pair(Point{-0.31, 4.2}, Point{1.7, 5.13}),
+                                  {Point{-40, -2}, Point{0.05, 40}},
+                                  {Point{0.4, 5.6}, Point{0.4, 5.6}}}) {
+    ASSERT_TRUE(whole.update({0.3, 4.9}));
+    ASSERT_TRUE(part.update({0.3, 4.9}, low, high));
+    for (double x = std::max(low.x, -9.0); x <= high.x; x += 0.033)
+      for (double y = low.y; y <= std::min(high.y, 14.0); y += 0.033) {
+        ASSERT_EQ(part.at(x, y).distance, whole.at(x, y).distance) << x << ' ' << y;
+        ASSERT_EQ(part.at(x, y).speed, whole.at(x, y).speed);
+      }
+    // Something else elsewhere, so that nothing is right by chance.
+    ASSERT_TRUE(part.update({-4, 0}));
+  }
+}
+
+TEST(ReferenceField, WithSecondsItReachesAsFarAsItsSpeedsLead) {
+  auto path = circle(600, 5);
+  for (auto& point : path) point.speed = 4;
+  ReferenceField field(path);
+  ASSERT_TRUE(field.update({0, 4.9}, 1.0, 0.5));
+  EXPECT_EQ(field.reach(), 3.0);
+  expect_nearest(field, path, 30);
+  ASSERT_TRUE(field.update({0, 4.9}, 5.0, 0.5));
+  EXPECT_EQ(field.reach(), 5.0);
+}
+
 TEST(ReferenceField, OutsideAndBadPositions) {
   const auto path = circle(600, 5);
   ReferenceField field(path, {.outside = {.distance = 20, .yaw = 2, .speed = 0}});

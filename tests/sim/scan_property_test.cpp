@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -9,6 +10,7 @@
 #include "sim/scan.hpp"
 #include "slalom/sim/lidar.hpp"
 #include "slalom/sim/noise.hpp"
+#include "slalom/sim/shapes.hpp"
 
 namespace slalom::sim {
 namespace {
@@ -124,6 +126,100 @@ TEST(ScanProperty, EveryInstructionSetGivesTheSameBits) {
       EXPECT_EQ(std::memcmp(first.data(), ranges.data(), ranges.size() * sizeof(float)), 0)
           << kernels.name << " with " << beams << " beams";
     }
+  }
+}
+
+/// One beam of f1tenth_gym's walk, written down beam by beam.
+double gym_walk(const Track& track, maps::Point at, double angle, double most) {
+  const maps::OccupancyGrid& grid = track.grid();
+  const double origin_cosine = std::cos(grid.origin.yaw), origin_sine = std::sin(grid.origin.yaw);
+  const auto distance = [&](const maps::Point& p) {
+    const double dx = p.x - grid.origin.x, dy = p.y - grid.origin.y;
+    const double gx = dx * origin_cosine + dy * origin_sine, gy = -dx * origin_sine + dy * origin_cosine;
+    const bool inside =
+        gx >= 0 && gy >= 0 && gx < grid.width * grid.resolution && gy < grid.height * grid.resolution;
+    if (!inside) return track.distance().distance.back();
+    return track.distance()
+        .distance[static_cast<std::size_t>(gy / grid.resolution) * static_cast<std::size_t>(grid.width) +
+                  static_cast<std::size_t>(gx / grid.resolution)];
+  };
+  double step = distance(at), total = step;
+  while (step > 1e-4 && total <= most) {
+    at = {at.x + step * std::cos(angle), at.y + step * std::sin(angle)};
+    step = distance(at);
+    total += step;
+  }
+  return std::min(total, most);
+}
+
+TEST(ScanProperty, TheGymWalkIsTheSameToTheBitOnEveryInstructionSet) {
+  const Track track(scattered(11));
+  const maps::OccupancyGrid& grid = track.grid();
+  constexpr std::size_t beams = detail::scan_padding;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> along(0, 1);
+  for (int n = 0; n < 20; ++n) {
+    const maps::Point at = maps::transform(grid.origin, {9 * along(random), 7 * along(random)});
+    std::array<double, beams> cosines, sines, ranges;
+    const double turn = 6 * along(random);
+    for (std::size_t i = 0; i < beams; ++i) {
+      cosines[i] = std::cos(turn + 0.1 * static_cast<double>(i));
+      sines[i] = std::sin(turn + 0.1 * static_cast<double>(i));
+    }
+    for (const detail::Kernels& kernels : detail::all_kernels()) {
+      kernels.gym_walk({.distance = track.distance().distance.data(),
+                        .width = grid.width,
+                        .height = grid.height,
+                        .resolution = grid.resolution,
+                        .origin_x = grid.origin.x,
+                        .origin_y = grid.origin.y,
+                        .origin_cosine = std::cos(grid.origin.yaw),
+                        .origin_sine = std::sin(grid.origin.yaw),
+                        .x = at.x,
+                        .y = at.y,
+                        .most = 6,
+                        .cosines = cosines.data(),
+                        .sines = sines.data(),
+                        .ranges = ranges.data()});
+      for (std::size_t i = 0; i < beams; ++i)
+        ASSERT_EQ(ranges[i], gym_walk(track, at, turn + 0.1 * static_cast<double>(i), 6))
+            << kernels.name << ", beam " << i;
+    }
+  }
+}
+
+TEST(ScanProperty, TheGymWindowReachesToTheNearestBeamOfEveryCorner) {
+  LidarOptions options;
+  options.gym_window = true;
+  const Lidar lidar(options);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-3, 3);
+  for (int n = 0; n < 500; ++n) {
+    const maps::Pose sensor{any(random), any(random), 3 * any(random)};
+    const Box box{{any(random), any(random), any(random)}, 0.58, 0.31};
+    int first = options.beams - 1, last = 0;
+    const double heading = std::atan2(std::sin(sensor.yaw), std::cos(sensor.yaw));
+    for (const maps::Point& corner : corners(box)) {
+      const double dx = corner.x - sensor.x, dy = corner.y - sensor.y, d = std::sqrt(dx * dx + dy * dy);
+      double angle = heading - std::atan2(dy / d, dx / d);
+      if (angle > M_PI) angle -= 2 * M_PI;
+      if (angle < -M_PI) angle += 2 * M_PI;
+      int nearest = 0;
+      for (int i = 1; i < options.beams; ++i)
+        if (std::abs(lidar.angles()[static_cast<std::size_t>(i)] + angle) <
+            std::abs(lidar.angles()[static_cast<std::size_t>(nearest)] + angle))
+          nearest = i;
+      first = std::min(first, nearest);
+      last = std::max(last, nearest);
+    }
+    std::vector<double> seen(lidar.angles().size(), 30.0), expected(seen);
+    lidar.gym_cast(sensor, box, seen);
+    for (int i = first; i <= last; ++i) {
+      const double angle = sensor.yaw + lidar.angles()[static_cast<std::size_t>(i)];
+      double& range = expected[static_cast<std::size_t>(i)];
+      range = std::min(range, ray_distance({sensor.x, sensor.y}, std::cos(angle), std::sin(angle), box));
+    }
+    ASSERT_EQ(seen, expected);
   }
 }
 

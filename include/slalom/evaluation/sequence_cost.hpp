@@ -4,6 +4,7 @@
 #include <span>
 
 #include "slalom/maps/laser_scan.hpp"
+#include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/vehicle/planner.hpp"
 
@@ -33,7 +34,10 @@ class SequenceCostMeter {
   SequenceCostMeter& operator=(SequenceCostMeter&&) noexcept;
 
   /// Makes the published maps from a scan taken with the rear axle at `robot` (map frame).
-  void observe(const maps::LaserScanView& scan, const maps::Pose& robot) noexcept;
+  /// `made` is the published cost map of this very scan where somebody has made it already; it must last
+  /// until the next call.
+  void observe(const maps::LaserScanView& scan, const maps::Pose& robot,
+               const maps::LocalCostMap* made = nullptr) noexcept;
 
   /// Of what the planner's model predicts for the sequence it sends: interpolated to 0.05 s and cut at 15
   /// states; where it is shorter, its last input is held. Without a sequence, the present state 15 times.

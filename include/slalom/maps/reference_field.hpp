@@ -73,8 +73,13 @@ class ReferenceField {
 
   /// Makes the map anew around a position (m). With a finite `reach` only cells within it (m, along each
   /// axis) are made; the others keep what they held and must not be looked up: a rollout gets no further than
-  /// its duration times its largest speed. False, with nothing changed, if the position is not finite.
-  bool update(const Point& robot, double reach = std::numeric_limits<double>::infinity()) noexcept;
+  /// its duration times its largest speed. With `seconds` the reach is at least 1 m more than a rollout gets
+  /// in that time at the largest speed that the map will hold. False, with nothing changed, if the position
+  /// is not finite.
+  bool update(const Point& robot, double reach = std::numeric_limits<double>::infinity(),
+              double seconds = 0) noexcept;
+  /// The same with the cells of a box, from `low` to `high` in the map frame (m), made and no others.
+  bool update(const Point& robot, const Point& low, const Point& high) noexcept;
 
   /// The cell at a position, m.
   ReferenceCell at(double x, double y) const noexcept;
@@ -89,6 +94,9 @@ class ReferenceField {
 
   /// Index of the path's point nearest to the robot at the last update.
   int nearest() const noexcept { return nearest_; }
+
+  /// How far the last update made the map, m along each axis.
+  double reach() const noexcept { return reach_; }
 
   /// The window's points of the last update as indices into the path, in the path's order.
   std::span<const int> window() const noexcept { return {window_.data(), window_size_}; }
@@ -107,6 +115,8 @@ class ReferenceField {
     const Site* site = nullptr;
   };
 
+  bool begin(const Point& robot) noexcept;
+  void make_cells(int row_begin, int row_end, int column_begin, int column_end) noexcept;
   int nearest_point(const Point& robot) const noexcept;
   void choose_window() noexcept;
   void make_sites() noexcept;
@@ -118,6 +128,8 @@ class ReferenceField {
   CellGrid<4> cells_;
   std::vector<ReferencePoint> path_;
   std::vector<double> path_x_, path_y_;
+  std::vector<double> column_y_;  ///< m, of the columns' cells
+  double reach_ = 0;
   int nearest_ = 0;
   std::vector<int> window_;
   std::size_t window_size_ = 0;
