@@ -6,6 +6,7 @@
 
 #include "evaluation_job.hpp"
 #include "json_output.hpp"
+#include "ranks.hpp"
 #include "report.hpp"
 
 namespace slalom::tools {
@@ -23,7 +24,7 @@ int run(const Arguments& arguments) {
   const auto experiments = make_experiments(arguments.methods, arguments.scenarios, arguments.laps,
                                             arguments.obstacles, arguments.sweeps);
   Evaluated evaluated;
-  if (!run_evaluation(arguments.evaluation, experiments, evaluated)) return 1;
+  if (!run_evaluation(arguments.evaluation, experiments, evaluated)) return rank() > 0 ? 0 : 1;
   const auto summary = evaluated.summary();
   const std::string file = arguments.evaluation.out + "/summary.json";
   write_json(summary, file);

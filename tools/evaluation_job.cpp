@@ -8,9 +8,11 @@
 #include <set>
 #include <thread>
 
+#include "build_identity.hpp"
 #include "campaign_progress.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
+#include "ranks.hpp"
 #include "slalom/core/dispatch.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
@@ -136,11 +138,15 @@ void add_evaluation_options(CLI::App& command, EvaluationArguments& a) {
                   "From a scan to its command's effect, --evaluation true only")
       ->capture_default_str();
   command.add_option("--seed0", a.seed0, "Lap k has seed seed0 + k (obstacles + 5)")->capture_default_str();
-  command.add_option("--jobs", a.jobs, "Laps driven at a time; 0: one per processor core")
+  command
+      .add_option("--jobs", a.jobs,
+                  "Laps driven at a time; 0: one per processor core, under mpirun one per process")
       ->capture_default_str();
   command.add_option("--out", a.out, "Folder for laps.csv and summary.json")->required();
   command.add_flag("--resume", a.resume,
                    "Go on with the evaluation in --out; no finished lap is driven again");
+  command.add_flag("--any-build", a.any_build,
+                   "With --resume: go on although another build of the program drove the laps so far");
   command.add_option("--json", a.json, "Write the summary also to this file, or to standard output: -");
 }
 
@@ -225,6 +231,7 @@ Json Evaluated::summary() const {
                      {"contacts_wilcoxon_p", c.collision_p}});
   }
   return {{"program", std::string("slalom ") + version()},
+          {"build", build_identity()},
           {"settings", Json::parse(campaign.settings)},
           {"machine", machine_json()},
           {"results", list},
@@ -238,21 +245,29 @@ Campaign make_campaign(const EvaluationArguments& arguments, const Scenario& sce
           .experiments = experiments,
           .seed0 = arguments.seed0,
           .latency = scenario.lap.latency,
-          .settings = settings_of(arguments, scenario, experiments).dump(2)};
+          .settings = settings_of(arguments, scenario, experiments).dump(2),
+          .build = build_identity(),
+          .any_build = arguments.any_build};
 }
 
 bool drive_campaign(const Campaign& campaign, const EvaluationArguments& arguments, const std::string& title,
                     const std::atomic<bool>& cancel, std::vector<LapRow>& rows) {
   if (arguments.jobs < 0 || arguments.jobs > 1024)
     throw IoError("--jobs", 0, std::to_string(arguments.jobs) + " must be in [0, 1024]");
-  const int jobs = arguments.jobs > 0 ? arguments.jobs
-                                      : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int jobs = arguments.jobs > 0 ? arguments.jobs : rank_count() > 1 ? 1 : cores;
   // What cannot be driven must not leave a folder behind.
   for (int i = 0; i < static_cast<int>(campaign.experiments.size()); ++i) make_runner(campaign, i);
+  if (rank() > 0) {
+    drive_for_first_rank(campaign, jobs, cancel);
+    return false;
+  }
   LapStore store(arguments.out, campaign, arguments.resume);
   CampaignProgressBar bar(title);
-  if (!run_campaign(
-          campaign, store, jobs, [&](const CampaignProgress& p) { bar.show(p); }, cancel)) {
+  CampaignWork work(
+      campaign, store, [&](const CampaignProgress& p) { bar.show(p); }, cancel);
+  drive_with_ranks(campaign, work, jobs, cancel);
+  if (!work.finish()) {
     std::fprintf(stderr, "interrupted after %zu laps; --resume goes on\n", store.rows().size());
     return false;
   }

@@ -18,10 +18,12 @@ struct EvaluationArguments {
   int jobs = 0;  ///< 0: one per processor core
   std::string out;
   bool resume = false;
+  bool any_build = false;
   std::string json;  ///< a copy of the summary: a file, or - for standard output
 };
 
-/// Adds --course, --config, --evaluation, --latency-ms, --seed0, --jobs, --out, --resume and --json.
+/// Adds --course, --config, --evaluation, --latency-ms, --seed0, --jobs, --out, --resume, --any-build and
+/// --json.
 void add_evaluation_options(CLI::App& command, EvaluationArguments& arguments);
 
 /// Of what of a course decides a lap (FNV-1a).
@@ -48,13 +50,13 @@ evaluation::Campaign make_campaign(const EvaluationArguments& arguments, const S
                                    const std::vector<evaluation::Experiment>& experiments);
 
 /// Drives what is still missing in `arguments.out`, with a progress line that begins with `title`. False if
-/// it was interrupted, which it says. Throws IoError and what a lap throws.
+/// it was interrupted, which it says, and in every process under mpirun but the first, which has the rows.
+/// Throws IoError and what a lap throws.
 bool drive_campaign(const evaluation::Campaign& campaign, const EvaluationArguments& arguments,
                     const std::string& title, const std::atomic<bool>& cancel,
                     std::vector<evaluation::LapRow>& rows);
 
-/// Drives it with a progress line; false (and no summary) if it was interrupted. Throws IoError and what a
-/// lap throws.
+/// Drives it with a progress line; false (and no summary) where drive_campaign is. Throws what that throws.
 bool run_evaluation(const EvaluationArguments& arguments,
                     const std::vector<evaluation::Experiment>& experiments, Evaluated& evaluated);
 

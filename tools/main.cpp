@@ -9,6 +9,7 @@
 #include "eval_command.hpp"
 #include "explain_command.hpp"
 #include "options_command.hpp"
+#include "ranks.hpp"
 #include "replay_command.hpp"
 #include "reproduce_command.hpp"
 #include "slalom/core/version.hpp"
@@ -40,7 +41,8 @@ int main(int argc, char** argv) {
     const int status = app.exit(error);
     return status == 0 ? 0 : 2;
   } catch (const std::exception& error) {
-    std::cerr << "slalom: " << error.what() << "\n";
+    // Under mpirun all processes stumble over the same thing.
+    if (slalom::tools::rank() == 0) std::cerr << "slalom: " << error.what() << "\n";
     return 1;
   }
   return exit_status;

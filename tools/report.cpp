@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
@@ -38,7 +39,9 @@ th{font-weight:600;color:var(--faint);text-align:right;padding:6px 10px;border-b
 white-space:nowrap}
 td{text-align:right;padding:7px 10px;border-bottom:1px solid var(--rule);vertical-align:top;white-space:nowrap}
 th:first-child,td:first-child{text-align:left;padding-left:0}
-td.words,th.words{text-align:left;white-space:normal;min-width:230px;color:var(--faint);font-size:13px}
+td.words,th.words{text-align:left}
+tr.explained td{border-bottom:0;padding-bottom:1px}
+tr.why td{text-align:left;white-space:normal;color:var(--faint);font-size:13px;padding:0 10px 8px 16px}
 td small{color:var(--faint);font-size:12.5px}
 .pill{display:inline-block;border-radius:99px;padding:0 9px;font-size:12.5px;font-weight:600;color:#fff;background:var(--faint)}
 .inside{background:var(--good)}.outside{background:var(--bad)}
@@ -100,12 +103,16 @@ std::string rate_cell(const std::optional<double>& rate, const std::optional<Int
   return rate ? with_interval(*rate, *interval, 100, 1) : "\xE2\x80\x93";
 }
 
-std::string verdict_cell(const Reference& reference) {
-  const auto& text = reference.verdict;
-  const std::string kind = text.substr(0, text.find_first_of(":;"));
-  std::string rest = kind.size() < text.size() ? text.substr(kind.size() + 2) : "";
-  return "<span class=\"pill " + (kind == "inside" || kind == "outside" ? kind : std::string()) + "\">" +
-         escaped(kind) + "</span> " + escaped(rest);
+/// The kind of a verdict, and what it says beyond that.
+std::pair<std::string, std::string> verdict_parts(const std::string& verdict) {
+  const auto end = verdict.find_first_of(":;");
+  if (end == std::string::npos) return {verdict, ""};
+  return {verdict.substr(0, end), verdict.substr(std::min(verdict.size(), end + 2))};
+}
+
+std::string pill(const std::string& kind) {
+  const bool coloured = kind == "inside" || kind == "outside";
+  return "<span class=\"pill " + (coloured ? kind : std::string()) + "\">" + escaped(kind) + "</span>";
 }
 
 const char* heading(const std::string& section) {
@@ -121,8 +128,12 @@ std::string table(const Report& report, const std::string& section, const std::s
   for (const ReportRow& row : report.rows) {
     if (row.section != section || report.experiment(row).scenario != scenario) continue;
     const auto& r = report.result(row);
-    rows += "<tr><td>" + escaped(row.name) + "</td><td>" + std::to_string(r.laps) + "</td><td>" +
-            with_interval(r.ms_mean, r.ms_ci) + "</td>";
+    const auto [kind, words] =
+        compared ? verdict_parts(report.references[static_cast<std::size_t>(row.experiment)].verdict)
+                 : std::pair<std::string, std::string>();
+    const std::string why = words + (words.empty() || row.note.empty() ? "" : ". ") + row.note;
+    rows += std::string(why.empty() ? "<tr>" : "<tr class=\"explained\">") + "<td>" + escaped(row.name) +
+            "</td><td>" + std::to_string(r.laps) + "</td><td>" + with_interval(r.ms_mean, r.ms_ci) + "</td>";
     const Reference* reference = report.reference(row);
     const std::string none = "<td>\xE2\x80\x93</td>";
     if (compared)
@@ -138,11 +149,9 @@ std::string table(const Report& report, const std::string& section, const std::s
                         : none;
     rows += "<td>" + number(100 * r.success_rate, 1) + "</td><td>" + number(r.lap_time_mean, 2) +
             "</td><td>" + std::to_string(r.timeouts) + "</td>";
-    if (compared)
-      rows += "<td class=\"words\">" +
-              verdict_cell(report.references[static_cast<std::size_t>(row.experiment)]) +
-              (row.note.empty() ? "" : "<br>" + escaped(row.note)) + "</td>";
+    if (compared) rows += "<td class=\"words\">" + pill(kind) + "</td>";
     rows += "</tr>\n";
+    if (!why.empty()) rows += "<tr class=\"why\"><td colspan=\"10\">" + escaped(why) + "</td></tr>\n";
   }
   if (rows.empty()) return {};
   std::string head = "<th></th><th>laps</th><th>MS (95 %)</th>";
@@ -167,14 +176,13 @@ std::string tile(const std::string& value, const std::string& words) {
 
 std::string tiles(const Report& report) {
   std::string out = "<div class=\"tiles\">\n";
-  int inside = 0, compared = 0;
-  for (const Reference& r : report.references) {
-    compared += r.published.has_value() && r.verdict.rfind("undecided", 0) != 0;
-    inside += r.verdict.rfind("inside", 0) == 0;
-  }
-  if (compared > 0)
-    out += tile(std::to_string(inside) + " of " + std::to_string(compared),
-                "experiments that no test at 5 % tells from the published laps");
+  std::map<std::string, int> kinds;
+  for (const Reference& r : report.references)
+    if (r.published) ++kinds[verdict_parts(r.verdict).first];
+  if (!kinds.empty())
+    out += tile(std::to_string(kinds["inside"]) + " \xC2\xB7 " + std::to_string(kinds["outside"]) +
+                    " \xC2\xB7 " + std::to_string(kinds["undecided"]),
+                "experiments inside, outside, undecided beside the published laps");
   for (const char* scenario : {"pt", "oa"}) {
     const auto row = std::find_if(report.rows.begin(), report.rows.end(), [&](const ReportRow& r) {
       return report.experiment(r).scenario == scenario && report.experiment(r).method == "svg_mppi" &&
@@ -204,12 +212,18 @@ std::string paired_table(const Report& report) {
     const auto& e = experiments[static_cast<std::size_t>(i)];
     return e.method == "svg_mppi" && e.set.empty();
   };
+  const auto name_of = [&](int i) {
+    const auto row = std::find_if(report.rows.begin(), report.rows.end(),
+                                  [&](const ReportRow& r) { return r.experiment == i; });
+    return row == report.rows.end() ? experiments[static_cast<std::size_t>(i)].label() : row->name;
+  };
   std::string rows;
   for (const PairedComparison& c : compare_pairs(report.evaluated.rows, experiments)) {
     if (is_ours(c.a) == is_ours(c.b)) continue;
     const bool turned = is_ours(c.b);
-    const auto& other = experiments[static_cast<std::size_t>(turned ? c.a : c.b)];
-    rows += "<tr><td>" + escaped(other.label()) + "</td><td>" + other.scenario + "</td><td>" +
+    const int index = turned ? c.a : c.b;
+    const auto& other = experiments[static_cast<std::size_t>(index)];
+    rows += "<tr><td>" + escaped(name_of(index)) + "</td><td>" + other.scenario + "</td><td>" +
             std::to_string(c.laps) + "</td><td>" + number(turned ? c.ms_difference : -c.ms_difference) +
             "</td><td>" + number(c.ms_p, 4) + "</td><td>" +
             std::to_string(turned ? c.only_b_succeeds : c.only_a_succeeds) + "</td><td>" +
@@ -258,10 +272,12 @@ std::string page(const Report& report, const std::vector<ReportFigure>& figures)
       "trajectory predicted for the control sequence sent, averaged over a lap's control steps; intervals "
       "are "
       "bootstraps over laps. The collision rate is contacts by obstacles and laps, with Wilson's interval. "
-      "\xE2\x80\x9CInside\xE2\x80\x9D: at 5 % neither a two-sample bootstrap of MS nor Fisher's exact test "
-      "of "
-      "contacts tells these laps from the published ones. It is no proof of equality: few laps leave much "
-      "inside. Laps that time out count like all others.</p><details><summary>All settings</summary><pre>" +
+      "\xE2\x80\x9COutside\xE2\x80\x9D: at 5 % a two-sample bootstrap of MS (with fewer than 10 laps a "
+      "permutation test) or Fisher's exact test of contacts tells these laps from the published ones. "
+      "\xE2\x80\x9CInside\xE2\x80\x9D: neither does, and the intervals of the differences are narrower "
+      "than half of the published MS and 10 points of the collision rate to either side. "
+      "\xE2\x80\x9CUndecided\xE2\x80\x9D: neither does, but the laps are too few or too scattered to say "
+      "more. Laps that time out count like all others.</p><details><summary>All settings</summary><pre>" +
       escaped(settings.dump(1)) + "</pre></details></section>\n</main></html>\n";
   return html;
 }

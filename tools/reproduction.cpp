@@ -32,19 +32,27 @@ std::string ratio_text(double ratio) {
   return format(ratio > 1 ? "MS %.1f %% higher" : "MS %.1f %% lower", 100 * std::abs(ratio - 1));
 }
 
-/// "inside", or "outside: by how much".
+/// "inside", "outside: by how much" or "undecided: why".
 std::string judge(const LogComparison& c, double our_rate) {
-  if (c.inside()) return "inside";
-  std::string text = "outside: ";
-  if (!c.ms_inside()) text += ratio_text(c.ms_ratio) + " (" + p_text(c.ms_p) + ")";
-  if (!c.contacts_inside()) {
+  if (c.agreement() == Agreement::inside) return "inside";
+  const bool outside = c.agreement() == Agreement::outside;
+  std::string text;
+  if (c.ms_agreement() == c.agreement())
+    text = ratio_text(c.ms_ratio) + (outside ? " (" + p_text(c.ms_p) + ")"
+                                             : format(" (95 %%: %.2f to ", c.ms_ratio_ci.low) +
+                                                   format("%.2f times)", c.ms_ratio_ci.high));
+  if (c.contacts_p && c.contacts_agreement() == c.agreement()) {
     const double points = 100 * (our_rate - *c.collision_rate);
-    text += std::string(c.ms_inside() ? "" : ", ") +
-            format(points > 0 ? "collision rate %.1f points higher" : "collision rate %.1f points lower",
-                   std::abs(points)) +
-            " (" + p_text(*c.contacts_p) + ")";
+    text += text.empty() ? "" : ", ";
+    text += format(points >= 0 ? "collision rate %.1f points higher" : "collision rate %.1f points lower",
+                   std::abs(points));
+    text += outside ? " (" + p_text(*c.contacts_p) + ")"
+                    : format(" (95 %%: %.1f to ", 100 * c.rate_difference_ci->low) +
+                          format("%.1f points)", 100 * c.rate_difference_ci->high);
   }
-  return text;
+  if (outside) return "outside: " + text;
+  return "undecided: " + std::to_string(c.our_laps) + " laps beside " + std::to_string(c.laps) +
+         " do not say; " + text;
 }
 
 Json comparison_json(const LogComparison& c, const LapLog& log) {
@@ -61,10 +69,12 @@ Json comparison_json(const LogComparison& c, const LapLog& log) {
           {"ms_mean", c.ms_mean},
           {"ms_ci", interval(c.ms_ci)},
           {"ms_ratio", c.ms_ratio},
+          {"ms_ratio_ci", interval(c.ms_ratio_ci)},
           {"ms_p", number(c.ms_p)},
           {"collision_rate", number(c.collision_rate)},
           {"collision_rate_ci", interval(c.collision_rate_ci)},
           {"contacts_p", number(c.contacts_p)},
+          {"collision_rate_difference_ci", interval(c.rate_difference_ci)},
           {"success_rate", static_cast<double>(log.successes) / log.laps},
           {"solve_ms", {{"mean", number(log.solve_ms_mean)}, {"max", number(log.solve_ms_max)}}}};
 }
@@ -193,6 +203,7 @@ std::vector<Reference> find_references(const LogFolders& folders, const std::vec
     Reference& r = references.emplace_back();
     const auto row =
         std::find_if(paper.begin(), paper.end(), [&](const PaperRow& p) { return drives(e, p); });
+    if (row != paper.end()) r.note = row->note;
     const auto look = [&](const fs::path& file, auto& log, auto& comparison) {
       if (!fs::exists(file)) return;
       log = read_lap_log(file);
@@ -214,14 +225,11 @@ std::vector<Reference> find_references(const LogFolders& folders, const std::vec
     const double rate = e.obstacles > 0
                             ? static_cast<double>(contacts) / (e.obstacles * static_cast<double>(ours.size()))
                             : 0;
-    if (ours.size() < 2) {
-      r.verdict = "undecided: one lap says too little";
-      continue;
-    }
+    if (ours.empty()) continue;
     r.verdict = judge(*r.published, rate);
     if (!r.lockstep) continue;
     const std::string lockstep = judge(*r.lockstep, rate);
-    r.verdict += lockstep == "inside" && !r.published->inside()
+    r.verdict += lockstep == "inside" && r.published->agreement() == Agreement::outside
                      ? "; inside the laps of the published program in lockstep, so it is the logs' "
                        "asynchronous run that differs"
                      : "; in lockstep " + lockstep;
@@ -235,6 +243,7 @@ void add_reference(Json& result, const Reference& reference) {
   result["lockstep"] =
       reference.lockstep ? comparison_json(*reference.lockstep, *reference.lockstep_log) : Json(nullptr);
   result["verdict"] = reference.verdict;
+  result["note"] = reference.note;
 }
 
 }  // namespace slalom::tools

@@ -41,7 +41,8 @@ bool drives(const evaluation::Experiment& experiment, const PaperRow& row);
 struct Reference {
   std::optional<evaluation::LapLog> log, lockstep_log;
   std::optional<evaluation::LogComparison> published, lockstep;
-  std::string verdict;  ///< "inside", "outside: ..." or "not compared: ..."
+  std::string verdict;  ///< "inside", "outside: ...", "undecided: ..." or "not compared: ..."
+  std::string note;     ///< why, where it is known
 };
 
 /// Where logs are, and what of them is missing.
@@ -59,7 +60,7 @@ std::vector<Reference> find_references(const LogFolders& folders,
                                        const std::vector<evaluation::Experiment>& experiments,
                                        const std::vector<evaluation::LapRow>& rows);
 
-/// `published`, `lockstep` and `verdict` of an entry of a summary's results.
+/// `published`, `lockstep`, `verdict` and `note` of an entry of a summary's results.
 void add_reference(nlohmann::ordered_json& result, const Reference& reference);
 
 }  // namespace slalom::tools

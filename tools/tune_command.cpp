@@ -5,12 +5,16 @@
 
 #include "interrupt.hpp"
 #include "json_output.hpp"
+#include "ranks.hpp"
+#include "slalom/core/error.hpp"
 #include "tuning_job.hpp"
 
 namespace slalom::tools {
 namespace {
 
 int run(const TuningArguments& arguments) {
+  if (rank_count() > 1)
+    throw IoError("mpirun", 0, "slalom tune drives its laps on the threads of one process: --jobs");
   make_experiments({arguments.method}, arguments.scenarios, 1, arguments.obstacles, {});  // refuses bad words
   std::FILE* words = arguments.evaluation.json == "-" ? stderr : stdout;
   TuningJob job(arguments);

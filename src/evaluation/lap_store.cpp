@@ -74,16 +74,28 @@ std::string differences(const nlohmann::json& there, const nlohmann::json& here)
   return text;
 }
 
-void check_settings(const fs::path& file, const std::string& ours) {
+/// The build that drove the laps so far; "" if that is not known.
+std::string check_settings(const fs::path& file, const std::string& ours) {
   nlohmann::json there;
   try {
     there = nlohmann::json::parse(read_text(file));
   } catch (const nlohmann::json::exception& error) {
     throw IoError(file.string(), 0, std::string("is not JSON: ") + error.what());
   }
+  std::string build;
+  if (there.contains("build") && there["build"].is_string()) build = there["build"];
+  there.erase("build");
   const std::string differing = differences(there, nlohmann::json::parse(ours));
   if (!differing.empty())
     throw IoError(file.string(), 0, "the folder holds an evaluation with other settings: " + differing);
+  return build;
+}
+
+std::string with_build(const std::string& settings, const std::string& build) {
+  if (build.empty()) return settings;
+  auto json = nlohmann::ordered_json::parse(settings);
+  json["build"] = build;
+  return json.dump(2);
 }
 
 bool is_table_order(const LapRow& a, const LapRow& b) {
@@ -107,9 +119,15 @@ LapStore::LapStore(const fs::path& folder, const Campaign& campaign, bool resume
   if (has_laps && !fs::exists(settings))
     throw IoError(settings.string(), 0, "is missing, though there are laps");
   if (has_laps) {
-    check_settings(settings, campaign.settings);
+    const std::string there = check_settings(settings, campaign.settings);
+    const bool same = there.ends_with(campaign.build);
+    if (!fs::exists(table) && !same) {
+      check_build(campaign, there);
+      replace_file(settings,
+                   with_build(campaign.settings, (there.empty() ? "unknown" : there) + " " + campaign.build));
+    }
   } else {
-    replace_file(settings, campaign.settings);
+    replace_file(settings, with_build(campaign.settings, campaign.build));
   }
   if (fs::exists(table)) {
     rows_ = read_rows(table, experiments_, false);
@@ -123,6 +141,15 @@ LapStore::LapStore(const fs::path& folder, const Campaign& campaign, bool resume
   replace_file(journal, text);
   journal_ = ::open(journal.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (journal_ < 0) throw_system(journal, "cannot be written");
+}
+
+void LapStore::check_build(const Campaign& campaign, const std::string& there) const {
+  if (campaign.any_build) return;
+  throw IoError((folder_ / settings_name).string(), 0,
+                "another build of the program drove the laps there (build " +
+                    (there.empty() ? "unknown" : there) + ", this is " + campaign.build +
+                    "), and its laps may differ. Finish them with that build, take another folder, or say "
+                    "--any-build to mix them");
 }
 
 LapStore::~LapStore() {

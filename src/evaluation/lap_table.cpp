@@ -85,26 +85,16 @@ void parse_cell(const std::string& text, const char* column, Field& field) {
 
 constexpr std::size_t identity_columns = 4;
 
-LapRow parse_row(const std::string& line, const std::vector<Experiment>& experiments) {
-  const auto cells = split(line);
-  LapRow row;
-  std::size_t columns = identity_columns;
-  visit_columns(row, [&](const char*, auto&) { ++columns; });
-  if (cells.size() != columns) {
-    throw std::invalid_argument("has " + std::to_string(cells.size()) + " columns, not " +
-                                std::to_string(columns));
-  }
-  const auto found = std::find_if(experiments.begin(), experiments.end(), [&](const Experiment& e) {
-    return e.method == cells[0] && e.scenario == cells[1] && e.set_text() == cells[2];
-  });
-  if (found == experiments.end()) throw std::invalid_argument("is of no experiment of this evaluation");
-  row.experiment = static_cast<int>(found - experiments.begin());
-  parse_cell(cells[3], "lap", row.lap);
-  if (row.lap < 0 || row.lap >= found->laps)
-    throw std::invalid_argument("lap: " + cells[3] + " is not one of this evaluation");
-  std::size_t i = identity_columns;
-  visit_columns(row, [&](const char* name, auto& field) { parse_cell(cells[i++], name, field); });
-  return row;
+/// What is wrong with a header.
+std::string header_complaint(const std::string& line) {
+  const auto there = split(line), ours = split(csv_header());
+  for (const std::string& column : there)
+    if (std::find(ours.begin(), ours.end(), column) == ours.end())
+      return "column '" + column + "' is none of this version's laps.csv";
+  for (const std::string& column : ours)
+    if (std::find(there.begin(), there.end(), column) == there.end())
+      return "column " + column + ": is missing";
+  return "the columns stand in another order than in this version's laps.csv";
 }
 
 }  // namespace
@@ -196,6 +186,28 @@ std::string csv_line(const LapRow& row, const std::vector<Experiment>& experimen
   return line;
 }
 
+LapRow parse_line(const std::string& line, const std::vector<Experiment>& experiments) {
+  const auto cells = split(line);
+  LapRow row;
+  std::size_t columns = identity_columns;
+  visit_columns(row, [&](const char*, auto&) { ++columns; });
+  if (cells.size() != columns) {
+    throw std::invalid_argument("has " + std::to_string(cells.size()) + " columns, not " +
+                                std::to_string(columns));
+  }
+  const auto found = std::find_if(experiments.begin(), experiments.end(), [&](const Experiment& e) {
+    return e.method == cells[0] && e.scenario == cells[1] && e.set_text() == cells[2];
+  });
+  if (found == experiments.end()) throw std::invalid_argument("is of no experiment of this evaluation");
+  row.experiment = static_cast<int>(found - experiments.begin());
+  parse_cell(cells[3], "lap", row.lap);
+  if (row.lap < 0 || row.lap >= found->laps)
+    throw std::invalid_argument("lap: " + cells[3] + " is not one of this evaluation");
+  std::size_t i = identity_columns;
+  visit_columns(row, [&](const char* name, auto& field) { parse_cell(cells[i++], name, field); });
+  return row;
+}
+
 std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vector<Experiment>& experiments,
                               bool forgive_last) {
   std::ifstream stream(file, std::ios::binary);
@@ -213,12 +225,11 @@ std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vect
     if (!complete && forgive_last) break;
     if (!complete) throw IoError(file.string(), number, "is cut short");
     if (number == 1) {
-      if (line != csv_header())
-        throw IoError(file.string(), 1, "header: must be that of this version's laps.csv");
+      if (line != csv_header()) throw IoError(file.string(), 1, header_complaint(line));
       continue;
     }
     try {
-      LapRow row = parse_row(line, experiments);
+      LapRow row = parse_line(line, experiments);
       if (!seen.insert({row.experiment, row.lap}).second)
         throw std::invalid_argument("lap: stands here twice");
       rows.push_back(std::move(row));

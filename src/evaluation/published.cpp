@@ -107,6 +107,27 @@ LapLog read_lap_log(const std::filesystem::path& file) {
   return log;
 }
 
+Agreement LogComparison::ms_agreement() const {
+  if (ms_p < 0.05) return Agreement::outside;
+  const bool telling =
+      std::min(our_laps, laps) >= enough_laps && ms_ratio_ci.high - ms_ratio_ci.low <= 2 * telling_ratio;
+  return telling ? Agreement::inside : Agreement::undecided;
+}
+
+Agreement LogComparison::contacts_agreement() const {
+  if (!contacts_p) return Agreement::inside;
+  if (*contacts_p < 0.05) return Agreement::outside;
+  const bool telling = rate_difference_ci->high - rate_difference_ci->low <= 2 * telling_rate;
+  return telling ? Agreement::inside : Agreement::undecided;
+}
+
+Agreement LogComparison::agreement() const {
+  const Agreement ms = ms_agreement(), contacts = contacts_agreement();
+  for (const Agreement worst : {Agreement::outside, Agreement::undecided})
+    if (ms == worst || contacts == worst) return worst;
+  return Agreement::inside;
+}
+
 LogComparison compare_with_log(const std::vector<LapRow>& rows, int obstacles, const LapLog& log) {
   std::vector<double> ours;
   std::int64_t contacts = 0;
@@ -118,13 +139,20 @@ LogComparison compare_with_log(const std::vector<LapRow>& rows, int obstacles, c
   c.ms_mean = mean(log.ms);
   c.ms_ci = bootstrap_mean(log.ms);
   c.ms_ratio = mean(ours) / c.ms_mean;
-  c.ms_p = bootstrap_difference_p(ours, log.ms);
+  c.our_laps = static_cast<int>(ours.size());
+  c.laps = log.laps;
+  const Interval difference = bootstrap_difference(ours, log.ms);
+  c.ms_ratio_ci = {1 + difference.low / c.ms_mean, 1 + difference.high / c.ms_mean};
+  // With a few laps a bootstrap takes their scatter for smaller or larger than it is.
+  const bool enough = std::min(c.our_laps, c.laps) >= LogComparison::enough_laps;
+  c.ms_p = enough ? bootstrap_difference_p(ours, log.ms) : permutation_difference_p(ours, log.ms);
   if (obstacles > 0) {
     const std::int64_t our_chances =
                            static_cast<std::int64_t>(obstacles) * static_cast<std::int64_t>(rows.size()),
                        chances = static_cast<std::int64_t>(obstacles) * log.laps;
     c.collision_rate = static_cast<double>(log.contacts) / static_cast<double>(chances);
     c.collision_rate_ci = wilson_interval(log.contacts, chances);
+    c.rate_difference_ci = rate_difference_interval(contacts, our_chances, log.contacts, chances);
     c.contacts_p = fisher_p(contacts, our_chances, log.contacts, chances);
   }
   return c;

@@ -113,6 +113,58 @@ double bootstrap_difference_p(std::span<const double> a, std::span<const double>
   return (as_extreme + 1.0) / (resamples + 1.0);
 }
 
+double permutation_difference_p(std::span<const double> a, std::span<const double> b, std::uint64_t seed,
+                                int resamples) {
+  if (a.empty() || b.empty()) return not_a_number;
+  std::vector<double> all(a.begin(), a.end());
+  all.insert(all.end(), b.begin(), b.end());
+  const double sum = std::accumulate(all.begin(), all.end(), 0.0);
+  const double na = static_cast<double>(a.size()), nb = static_cast<double>(b.size());
+  const auto difference = [&](double sum_a) { return std::abs(sum_a / na - (sum - sum_a) / nb); };
+  // What is as extreme must count whatever the rounding.
+  const double observed = difference(std::accumulate(a.begin(), a.end(), 0.0)) * (1 - 1e-9) - 1e-12;
+  RandomStream random({seed, 2});
+  int as_extreme = 0;
+  for (int r = 0; r < resamples; ++r) {
+    double sum_a = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      std::swap(all[i], all[i + draw_index(random, all.size() - i)]);
+      sum_a += all[i];
+    }
+    as_extreme += difference(sum_a) >= observed;
+  }
+  return (as_extreme + 1.0) / (resamples + 1.0);
+}
+
+Interval bootstrap_difference(std::span<const double> a, std::span<const double> b, std::uint64_t seed,
+                              int resamples) {
+  if (a.empty() || b.empty()) return {not_a_number, not_a_number};
+  RandomStream random({seed, 3});
+  const auto drawn_mean = [&](std::span<const double> from) {
+    double sum = 0;
+    for (std::size_t i = 0; i < from.size(); ++i) sum += from[draw_index(random, from.size())];
+    return sum / static_cast<double>(from.size());
+  };
+  std::vector<double> differences(static_cast<std::size_t>(resamples));
+  for (double& difference : differences) {
+    const double of_a = drawn_mean(a);
+    difference = of_a - drawn_mean(b);
+  }
+  return percentile_interval(differences);
+}
+
+Interval rate_difference_interval(std::int64_t successes_a, std::int64_t trials_a, std::int64_t successes_b,
+                                  std::int64_t trials_b) {
+  const auto rate = [](std::int64_t successes, std::int64_t trials) {
+    return trials > 0 ? static_cast<double>(std::clamp<std::int64_t>(successes, 0, trials)) /
+                            static_cast<double>(trials)
+                      : 0.5;
+  };
+  const double a = rate(successes_a, trials_a), b = rate(successes_b, trials_b);
+  const Interval of_a = wilson_interval(successes_a, trials_a), of_b = wilson_interval(successes_b, trials_b);
+  return {a - b - std::hypot(a - of_a.low, of_b.high - b), a - b + std::hypot(of_a.high - a, b - of_b.low)};
+}
+
 double mcnemar_p(std::int64_t only_a, std::int64_t only_b) {
   const std::int64_t n = only_a + only_b, few = std::min(only_a, only_b);
   if (n == 0) return 1;

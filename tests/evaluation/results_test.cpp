@@ -145,15 +145,37 @@ TEST_F(Log, ComparesItselfWithOurs) {
   EXPECT_DOUBLE_EQ(same.ms_ratio, 1);
   EXPECT_DOUBLE_EQ(same.ms_p, 1);
   EXPECT_NEAR(*same.contacts_p, 1, 1e-9);
-  EXPECT_TRUE(same.inside());
+  EXPECT_EQ(same.agreement(), Agreement::undecided) << "equal, but 4 laps say little";
   for (LapRow& lap : ours) {
     lap.state_cost = 100 + lap.lap;
     lap.collision = 5;
   }
   const LogComparison other = compare_with_log(ours, 5, log);
-  EXPECT_FALSE(other.ms_inside());
-  EXPECT_FALSE(other.contacts_inside());
+  EXPECT_EQ(other.ms_agreement(), Agreement::outside);
+  EXPECT_EQ(other.contacts_agreement(), Agreement::outside);
   EXPECT_DOUBLE_EQ(*other.collision_rate, 8.0 / 20);
+}
+
+TEST_F(Log, FarOffIsOutsideNearWithFewLapsUndecidedWithManyInside) {
+  std::string text = "success,collision,state_cost,collision_cost\n";
+  for (int lap = 0; lap < 30; ++lap) text += "1,0," + std::to_string(2.5 + 0.03 * lap) + ",0\n";
+  const LapLog log = read(text);
+  std::vector<LapRow> ours;
+  const auto drive = [&](int laps, double ms, double step) {
+    ours.assign(static_cast<std::size_t>(laps), {});
+    for (int lap = 0; lap < laps; ++lap) ours[static_cast<std::size_t>(lap)].state_cost = ms + step * lap;
+    return compare_with_log(ours, 0, log);
+  };
+  const LogComparison far = drive(3, 12, 2);
+  EXPECT_LT(far.ms_p, 0.01) << "14 beside 2.9 is no draw of the same, however few the laps";
+  EXPECT_EQ(far.agreement(), Agreement::outside);
+  EXPECT_EQ(drive(3, 2.8, 0.2).agreement(), Agreement::undecided);
+  const LogComparison many = drive(30, 2.53, 0.03);
+  EXPECT_EQ(many.agreement(), Agreement::inside);
+  EXPECT_LT(many.ms_ratio_ci.low, 1.01);
+  EXPECT_GT(many.ms_ratio_ci.high, 1.01);
+  EXPECT_EQ(drive(12, 0.2, 0.5).agreement(), Agreement::undecided)
+      << "nearly the same mean, far too scattered";
 }
 
 }  // namespace

@@ -76,5 +76,29 @@ TEST(Wilcoxon, ExactAndApproximate) {
   EXPECT_NEAR(wilcoxon_p(tied), 0.069, 0.01);
 }
 
+TEST(Permutation, CountsTheArrangementsAsExtreme) {
+  // Of the 20 ways to choose 3 of 6 two are as extreme as 1, 2, 3 beside 4, 5, 6.
+  const std::vector<double> low{1, 2, 3}, high{4, 5, 6};
+  EXPECT_NEAR(permutation_difference_p(low, high), 0.1, 0.01);
+  EXPECT_DOUBLE_EQ(permutation_difference_p(low, low), 1);
+  const std::vector<double> many(30, 3.0), far{13, 14, 15};
+  EXPECT_LT(permutation_difference_p(far, many), 0.002);
+  EXPECT_TRUE(std::isnan(permutation_difference_p({}, low)));
+}
+
+TEST(Bootstrap, OfADifference) {
+  const std::vector<double> a{3, 5}, b{1, 1};
+  const Interval interval = bootstrap_difference(a, b);
+  EXPECT_DOUBLE_EQ(interval.low, 2);
+  EXPECT_DOUBLE_EQ(interval.high, 4);
+}
+
+TEST(Newcombe, TheExampleOfHisPaper) {
+  // Table II, column (a): 56/70 - 48/80, method 10.
+  const Interval interval = rate_difference_interval(56, 70, 48, 80);
+  EXPECT_NEAR(interval.low, 0.0524, 5e-5);
+  EXPECT_NEAR(interval.high, 0.3339, 5e-5);
+}
+
 }  // namespace
 }  // namespace slalom::evaluation

@@ -69,6 +69,98 @@ TEST_F(EvalCommand, AHalfWrittenJournalIsMendedACorruptOneRefused) {
   EXPECT_TRUE(contains(corrupt.output, "laps.journal.csv:3: has 5 columns")) << corrupt.output;
 }
 
+TEST_F(EvalCommand, ThreeProcessesGiveTheTableOfOne) {
+  if (testing::run_shell("command -v mpirun").status != 0 || !SLALOM_TESTS_MPI)
+    GTEST_SKIP() << "no mpirun here, or built without MPI";
+  ASSERT_EQ(run(small() + "--jobs 1 --out one").status, 0);
+  const std::string mpirun =
+      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
+      "timeout 300 mpirun -n 3 '" SLALOM_PROGRAM "' ";
+  const ProgramRun three = testing::run_shell(mpirun + small() + "--out three", folder_.string());
+  ASSERT_EQ(three.status, 0) << three.output;
+  EXPECT_EQ(repeatable(folder_ / "three/laps.csv"), repeatable(folder_ / "one/laps.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "three/summary.json"));
+
+  const ProgramRun again = testing::run_shell(mpirun + small() + "--out three", folder_.string());
+  EXPECT_NE(again.status, 0);
+  const auto first = again.output.find("say --resume");
+  EXPECT_NE(first, std::string::npos) << again.output;
+  EXPECT_EQ(again.output.find("say --resume", first + 1), std::string::npos) << "said once, not three times";
+}
+
+TEST_F(EvalCommand, AFullDiskIsNamedAndNothingIsLost) {
+  fs::create_directories(folder_ / "full");
+  fs::create_symlink("/dev/full", folder_ / "full/settings.json.new");
+  const ProgramRun full = run(small(1) + "--out full");
+  EXPECT_EQ(full.status, 1);
+  EXPECT_TRUE(contains(full.output, "full/settings.json.new: cannot be written: No space left"))
+      << full.output;
+
+  // A disk that becomes full on the way: no file may grow beyond a few blocks.
+  ASSERT_EQ(run(small() + "--out whole").status, 0);
+  const auto settings = fs::file_size(folder_ / "whole/settings.json"),
+             table = fs::file_size(folder_ / "whole/laps.csv");
+  ASSERT_GT(table, 512u);
+  const std::string limit = "trap '' XFSZ; ulimit -f " + std::to_string(settings / 512 + 1) + "; ";
+  std::string arguments = small(60);
+  const ProgramRun torn =
+      testing::run_shell(limit + "'" SLALOM_PROGRAM "' " + arguments + "--out torn", folder_.string());
+  EXPECT_EQ(torn.status, 1);
+  EXPECT_TRUE(contains(torn.output, "laps.journal.csv: cannot be written")) << torn.output;
+  const std::size_t kept = count_lines(folder_ / "torn/laps.journal.csv");
+  EXPECT_GT(kept, 2u);
+  EXPECT_TRUE(kill_after(arguments + "--resume --out torn", 700));
+  EXPECT_GE(count_lines(folder_ / "torn/laps.journal.csv"), kept);
+}
+
+TEST_F(EvalCommand, ACorruptTableOrAnUnknownColumnIsNamed) {
+  ASSERT_EQ(run(small(1) + "--out one").status, 0);
+  const std::string table = content(folder_ / "one/laps.csv");
+  const auto complaint = [&](const std::string& text) {
+    std::ofstream(folder_ / "one/laps.csv") << text;
+    const ProgramRun r = run(small(1) + "--resume --out one");
+    EXPECT_EQ(r.status, 1) << text;
+    return r.output;
+  };
+  std::string other = table;
+  other.replace(other.find("state_cost"), 10, "state_cast");
+  EXPECT_TRUE(contains(complaint(other), "laps.csv:1: column 'state_cast'"));
+  EXPECT_TRUE(contains(complaint(table.substr(0, table.size() - 30)), "laps.csv:3: "));
+  std::string wrong = table;
+  wrong.replace(wrong.find(",oa,") + 1, 2, "ob");
+  EXPECT_TRUE(contains(complaint(wrong), "laps.csv:2: is of no experiment"));
+  const std::size_t second = table.find('\n', table.find('\n') + 1) + 1;
+  EXPECT_TRUE(contains(complaint(table + table.substr(second)), "laps.csv:4: lap: stands here twice"));
+  std::ofstream(folder_ / "one/settings.json") << "{";
+  EXPECT_TRUE(contains(complaint(table), "settings.json: is not JSON"));
+}
+
+TEST_F(EvalCommand, LapsOfAnotherBuildAreNotMixedInUnasked) {
+  ASSERT_EQ(run(small(1) + "--out one").status, 0);
+  auto settings = nlohmann::ordered_json::parse(content(folder_ / "one/settings.json"));
+  ASSERT_FALSE(settings.at("build").get<std::string>().empty());
+  settings["build"] = "0123456789ab";
+  const auto write = [&] { std::ofstream(folder_ / "one/settings.json") << settings.dump(2); };
+  write();
+  EXPECT_EQ(run(small(1) + "--resume --out one").status, 0)
+      << "nothing is left to drive, so nothing is mixed";
+
+  const std::string table = content(folder_ / "one/laps.csv");
+  fs::remove(folder_ / "one/laps.csv");
+  std::ofstream(folder_ / "one/laps.journal.csv")
+      << table.substr(0, table.find('\n', table.find('\n') + 1) + 1);
+  const ProgramRun refused = run(small(1) + "--resume --out one");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_TRUE(
+      contains(refused.output, "another build of the program drove the laps there (build 0123456789ab"))
+      << refused.output;
+  EXPECT_TRUE(contains(refused.output, "--any-build"));
+  ASSERT_EQ(run(small(1) + "--resume --any-build --out one").status, 0);
+  const std::string builds =
+      nlohmann::json::parse(content(folder_ / "one/settings.json")).at("build").get<std::string>();
+  EXPECT_EQ(builds.rfind("0123456789ab ", 0), 0u) << builds;
+}
+
 TEST_F(EvalCommand, OtherSettingsAreNotMixedIn) {
   ASSERT_EQ(run(small(1) + "--out one").status, 0);
   const ProgramRun again = run(small(1) + "--out one");
@@ -93,6 +185,8 @@ TEST_F(EvalCommand, WhatIsWrongIsNamedBeforeTheFirstLap) {
   EXPECT_TRUE(contains(complaint(course + "--scenario ot --out x"), "'ot' must be pt or oa"));
   EXPECT_TRUE(contains(complaint("eval --course nowhere --laps 1 --out x"), "nowhere"));
   EXPECT_TRUE(contains(complaint(course + "--laps 0 --out x"), "--laps"));
+  EXPECT_TRUE(contains(complaint(course + "--methods mppi,mppi --out x"), "twice"));
+  EXPECT_TRUE(contains(complaint(course + "--set svg_mppi.samples=32,32 --out x"), "twice"));
   EXPECT_TRUE(contains(complaint(course + "--out /proc/nothing/here"), "/proc/nothing/here"));
   std::ofstream(folder_ / "file") << "not a folder";
   EXPECT_TRUE(contains(complaint(course + "--out file"), "file"));

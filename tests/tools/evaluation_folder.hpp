@@ -71,7 +71,9 @@ class EvaluationFolder : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  slalom::testing::Run run(const std::string& arguments) const { return run_program(arguments, folder_.string()); }
+  slalom::testing::Run run(const std::string& arguments) const {
+    return run_program(arguments, folder_.string());
+  }
 
   /// Starts the program, kills it after so many milliseconds; true if that is what ended it.
   bool kill_after(const std::string& arguments, int milliseconds) const {

@@ -15,9 +15,9 @@ struct Run {
   std::string output;  ///< standard output and standard error
 };
 
-/// Runs `slalom` with arguments as a shell reads them, in `folder`.
-inline Run run_program(const std::string& arguments, const std::string& folder = ".") {
-  const std::string command = "cd '" + folder + "' && ( '" SLALOM_PROGRAM "' " + arguments + " ) 2>&1";
+/// Runs what a shell makes of `words`, in `folder`.
+inline Run run_shell(const std::string& words, const std::string& folder = ".") {
+  const std::string command = "cd '" + folder + "' && ( " + words + " ) 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) throw std::runtime_error("no shell");
   Run run;
@@ -27,6 +27,11 @@ inline Run run_program(const std::string& arguments, const std::string& folder =
   const int ended = pclose(pipe);
   run.status = WIFEXITED(ended) ? WEXITSTATUS(ended) : -1;
   return run;
+}
+
+/// Runs `slalom` with arguments as a shell reads them, in `folder`.
+inline Run run_program(const std::string& arguments, const std::string& folder = ".") {
+  return run_shell("'" SLALOM_PROGRAM "' " + arguments, folder);
 }
 
 }  // namespace slalom::testing

@@ -1,9 +1,13 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +26,8 @@ struct Campaign {
   bool further_costs = true;  ///< also the published model's and the driven cost
   std::string settings;       ///< all that determines the results, as JSON text; two evaluations with other
                               ///< settings do not mix
+  std::string build;          ///< names the program that drives: laps of other builds may differ
+  bool any_build = false;     ///< mix them all the same
 };
 
 /// Drives the laps of one of the campaign's experiments: run(lap_seed(campaign.seed0, lap, obstacles)) is its
@@ -37,30 +43,78 @@ struct CampaignProgress {
   const LapRow* last = nullptr;
 };
 
+/// A lap to be driven.
+struct LapTask {
+  int experiment = 0;
+  int lap = 0;
+};
+
+/// Where laps to be driven come from and where driven ones go. Called from several threads at a time.
+class LapExchange {
+ public:
+  virtual ~LapExchange() = default;
+  virtual std::optional<LapTask> next() = 0;  ///< none: there is nothing left to do
+  virtual void keep(const LapRow& row) = 0;
+  virtual void fail(std::exception_ptr error) = 0;  ///< a lap could not be driven
+};
+
+/// Drives laps on `jobs` threads until `exchange` has none left or `cancel` is set. The laps do not depend on
+/// who drives which.
+void drive_laps(const Campaign& campaign, LapExchange& exchange, int jobs, const std::atomic<bool>& cancel);
+
 /// Where the laps of an evaluation are kept: `settings.json`, `laps.csv` when complete, and until then a
 /// journal to which each lap is appended when it ends. A run may be killed at any moment; with `resume` it
 /// goes on, and no finished lap is driven twice.
 class LapStore {
  public:
   /// Opens `folder` for the campaign. Throws IoError if it cannot be written, if it holds results and
-  /// `resume` is not said, if it holds an evaluation with other settings (naming what differs) and if its
-  /// laps are corrupt.
+  /// `resume` is not said, if it holds an evaluation with other settings (naming what differs), if its laps
+  /// are corrupt, and if laps are missing and another build of the program drove those that are there.
   LapStore(const std::filesystem::path& folder, const Campaign& campaign, bool resume);
   ~LapStore();
   LapStore(const LapStore&) = delete;
   LapStore& operator=(const LapStore&) = delete;
 
   const std::vector<LapRow>& rows() const noexcept { return rows_; }
+  bool complete_already() const noexcept { return journal_ < 0; }
   /// Keeps a lap: when this returns it survives the process. Throws IoError if it cannot be written.
   void add(const LapRow& row);
   /// All laps are there: writes laps.csv in the order of experiments and laps, and removes the journal.
   void complete();
 
  private:
+  void check_build(const Campaign& campaign, const std::string& there) const;
+
   std::filesystem::path folder_;
   const std::vector<Experiment>& experiments_;
   std::vector<LapRow> rows_;
   int journal_ = -1;
+};
+
+/// The laps that a store does not have yet, handed out in order, and what became of them.
+class CampaignWork final : public LapExchange {
+ public:
+  CampaignWork(const Campaign& campaign, LapStore& store,
+               std::function<void(const CampaignProgress&)> on_progress, const std::atomic<bool>& cancel);
+
+  std::optional<LapTask> next() override;
+  void keep(const LapRow& row) override;
+  void fail(std::exception_ptr error) override;
+
+  /// When nobody drives any more: completes the store if every lap is there. False if it was cancelled.
+  /// Throws what failed.
+  bool finish();
+
+ private:
+  LapStore& store_;
+  std::function<void(const CampaignProgress&)> on_progress_;
+  const std::atomic<bool>& cancel_;
+  std::vector<LapTask> tasks_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::mutex mutex_;
+  std::size_t next_ = 0;
+  CampaignProgress progress_;
+  std::exception_ptr error_;
 };
 
 /// Drives every lap that the store does not have yet, on `jobs` threads, and completes the store. The laps do

@@ -65,6 +65,9 @@ std::string csv_header();
 /// A row as it stands in laps.csv, without line end; numbers so that they read back to the same bits.
 std::string csv_line(const LapRow& row, const std::vector<Experiment>& experiments);
 
+/// A row from such a line. Throws std::invalid_argument naming the column, its value and the rule.
+LapRow parse_line(const std::string& line, const std::vector<Experiment>& experiments);
+
 /// Reads rows. Throws IoError naming file and line where a line is not a row of one of the experiments, or a
 /// lap stands twice. With `forgive_last`, a last line that is not complete (a run was killed while it wrote)
 /// is passed over.

@@ -25,19 +25,34 @@ struct LapLog {
 /// Throws IoError naming file, line and column where the file cannot be read or a lap makes no sense.
 LapLog read_lap_log(const std::filesystem::path& file);
 
-/// Ours beside theirs. "Inside" says that at 5 % no test tells the two apart.
-struct LogComparison {
-  double ms_mean = 0;                    ///< theirs
-  Interval ms_ci;                        ///< theirs, bootstrap over laps
-  double ms_ratio = 0;                   ///< ours / theirs
-  double ms_p = 1;                       ///< two-sample bootstrap; NaN with fewer than two laps in either
-  std::optional<double> collision_rate;  ///< theirs; none without obstacles
-  std::optional<Interval> collision_rate_ci;  ///< theirs, Wilson
-  std::optional<double> contacts_p;           ///< Fisher's exact test
+/// What laps of ours say beside those of a log.
+enum class Agreement {
+  outside,    ///< at 5 % a test tells the two apart
+  inside,     ///< none does, and the laps would show a difference that matters
+  undecided,  ///< none does, but the laps are too few or too scattered to say
+};
 
-  bool ms_inside() const { return !(ms_p < 0.05); }
-  bool contacts_inside() const { return !contacts_p || !(*contacts_p < 0.05); }
-  bool inside() const { return ms_inside() && contacts_inside(); }
+/// Ours beside theirs.
+struct LogComparison {
+  int our_laps = 0, laps = 0;
+  double ms_mean = 0;                          ///< theirs
+  Interval ms_ci;                              ///< theirs, bootstrap over laps
+  double ms_ratio = 0;                         ///< ours / theirs
+  Interval ms_ratio_ci;                        ///< 1 + the bootstrapped difference of means / their mean
+  double ms_p = 1;                             ///< two-sample bootstrap; permutation test below `enough_laps`
+  std::optional<double> collision_rate;        ///< theirs; none without obstacles
+  std::optional<Interval> collision_rate_ci;   ///< theirs, Wilson
+  std::optional<Interval> rate_difference_ci;  ///< ours - theirs, Newcombe
+  std::optional<double> contacts_p;            ///< Fisher's exact test
+
+  static constexpr int enough_laps = 10;
+  /// "Inside" takes intervals that are no wider than this to each side: half of their MS, ten points of their
+  /// collision rate.
+  static constexpr double telling_ratio = 0.5, telling_rate = 0.1;
+
+  Agreement ms_agreement() const;
+  Agreement contacts_agreement() const;  ///< inside without obstacles
+  Agreement agreement() const;
 };
 
 /// `rows` are the laps of one experiment with `obstacles` a lap, which both drove.

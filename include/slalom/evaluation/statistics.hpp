@@ -32,6 +32,23 @@ Interval bootstrap_ratio(std::span<const double> numerator, std::span<const doub
 double bootstrap_difference_p(std::span<const double> a, std::span<const double> b, std::uint64_t seed = 1,
                               int resamples = 10000);
 
+/// Two-sided p value of two independent samples being draws of the same distribution: permutation test with
+/// the difference of means as statistic (Fisher 1935; `resamples` random permutations, so no p below 1 /
+/// (resamples + 1)). Right however few the values are, but blind where they are too few: with 2 and 2 no p is
+/// below 1/3. NaN without values in either.
+double permutation_difference_p(std::span<const double> a, std::span<const double> b, std::uint64_t seed = 1,
+                                int resamples = 10000);
+
+/// Percentile bootstrap of mean(a) - mean(b) of two independent samples. NaN without values in either.
+Interval bootstrap_difference(std::span<const double> a, std::span<const double> b, std::uint64_t seed = 1,
+                              int resamples = 10000);
+
+/// Interval of the difference of two independent rates, a - b, from their Wilson intervals (Newcombe,
+/// "Interval Estimation for the Difference between Independent Proportions", 1998, method 10). Successes
+/// beyond the trials count as all of them.
+Interval rate_difference_interval(std::int64_t successes_a, std::int64_t trials_a, std::int64_t successes_b,
+                                  std::int64_t trials_b);
+
 /// Exact two-sided McNemar test of paired yes/no outcomes: `only_a`, `only_b` count the pairs in which only
 /// the one says yes (McNemar 1947; binomial, so right for small counts too).
 double mcnemar_p(std::int64_t only_a, std::int64_t only_b);
