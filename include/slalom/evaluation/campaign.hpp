@@ -76,7 +76,6 @@ class LapStore {
   LapStore& operator=(const LapStore&) = delete;
 
   const std::vector<LapRow>& rows() const noexcept { return rows_; }
-  bool complete_already() const noexcept { return journal_ < 0; }
   /// Keeps a lap: when this returns it survives the process. Throws IoError if it cannot be written.
   void add(const LapRow& row);
   /// All laps are there: writes laps.csv in the order of experiments and laps, and removes the journal.
