@@ -100,7 +100,15 @@ std::vector<PaperRow> paper_rows() {
       "is most likely what was driven.";
   rows[3].lockstep = "mppi_cov0.1";
   baseline("Reverse MPPI", "reverse_mppi", "reverse_mppi");
+  rows.back().note =
+      "The published program's threads race in the sum of its moments and lose some of them; ours is what "
+      "one "
+      "thread computes (docs/algorithms.md).";
   baseline("SV-MPC", "sv_mpc", "sv_mpc");
+  rows.back().note =
+      "As published its particles run away until numbers overflow. Contributions that the published "
+      "program's "
+      "threads lose in a race damp this; ours is what one thread computes (docs/algorithms.md).";
   baseline("SVG-MPPI", "svg_mppi", "svg_mppi");
   rows.back().lockstep = "svg_mppi";
 
