@@ -31,6 +31,7 @@ maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options,
     made.soft_margin = problem.soft_margin;
     made.soft = problem.soft_cost;
   }
+  made.laser = {options.laser_x, options.laser_y, options.laser_yaw};
   made.outside = -1;  // so that the problem can tell "off the map" from "occupied"
   return made;
 }

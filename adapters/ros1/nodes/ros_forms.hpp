@@ -3,8 +3,9 @@
 #include <cmath>
 #include <string>
 
-#include <geometry_msgs/Quaternion.h>
-#include <nav_msgs/Odometry.h>
+#include <geometry_msgs/Pose.h>
+#include <geometry_msgs/TransformStamped.h>
+#include <nav_msgs/OccupancyGrid.h>
 #include <ros/ros.h>
 #include <sensor_msgs/LaserScan.h>
 
@@ -12,6 +13,8 @@
 
 /// What ROS messages and our plain structs say in each other's form.
 namespace slalom_ros {
+
+using slalom_bridge::Pose;
 
 inline geometry_msgs::Quaternion quaternion(double yaw) {
   geometry_msgs::Quaternion q;
@@ -22,11 +25,47 @@ inline geometry_msgs::Quaternion quaternion(double yaw) {
 inline double yaw_of(const geometry_msgs::Quaternion& q) {
   return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
 }
-inline slalom_bridge::Pose pose_of(const geometry_msgs::Pose& p) {
+inline Pose pose_of(const geometry_msgs::Pose& p) {
   return {p.position.x, p.position.y, yaw_of(p.orientation)};
+}
+inline Pose pose_of(const geometry_msgs::Transform& t) {
+  return {t.translation.x, t.translation.y, yaw_of(t.rotation)};
+}
+inline geometry_msgs::Pose message_of(const Pose& p) {
+  geometry_msgs::Pose m;
+  m.position.x = p.x;
+  m.position.y = p.y;
+  m.orientation = quaternion(p.yaw);
+  return m;
+}
+inline geometry_msgs::TransformStamped transform(const Pose& p, const std::string& parent,
+                                                 const std::string& child, ros::Time stamp) {
+  geometry_msgs::TransformStamped m;
+  m.header.stamp = stamp;
+  m.header.frame_id = parent;
+  m.child_frame_id = child;
+  m.transform.translation.x = p.x;
+  m.transform.translation.y = p.y;
+  m.transform.rotation = quaternion(p.yaw);
+  return m;
 }
 inline slalom_bridge::Scan scan_of(const sensor_msgs::LaserScan& s) {
   return {s.ranges.data(), s.ranges.size(), s.angle_min, s.angle_increment, s.range_min, s.range_max};
+}
+inline slalom_bridge::Grid grid_of(const nav_msgs::OccupancyGrid& m) {
+  return {static_cast<int>(m.info.width), static_cast<int>(m.info.height), m.info.resolution,
+          pose_of(m.info.origin), m.data};
+}
+inline nav_msgs::OccupancyGrid message_of(const slalom_bridge::Grid& g) {
+  nav_msgs::OccupancyGrid m;
+  m.header.stamp = ros::Time::now();
+  m.header.frame_id = "map";
+  m.info.width = static_cast<std::uint32_t>(g.width);
+  m.info.height = static_cast<std::uint32_t>(g.height);
+  m.info.resolution = static_cast<float>(g.resolution);
+  m.info.origin = message_of(g.origin);
+  m.data = g.cells;
+  return m;
 }
 
 /// Whether the scan's count is what its angles promise, to within a beam.
@@ -35,9 +74,29 @@ inline bool count_fits(const sensor_msgs::LaserScan& s) {
   return std::isfinite(promised) && std::abs(promised - static_cast<double>(s.ranges.size())) <= 1.5;
 }
 
-/// The reason for a stop, once a second at most.
-inline void say(const std::string& why) {
-  ROS_WARN_STREAM_THROTTLE(1.0, "stopping: " << why);
+inline double angle_between(double a, double b) {
+  return std::abs(std::remainder(a - b, 6.283185307179586));
 }
+
+/// A rough length of time in seconds, for messages.
+inline std::string seconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f s", value);
+  return text;
+}
+
+/// Says something at most once a second, by a clock that does not jump.
+class Sayer {
+ public:
+  void operator()(const std::string& what) {
+    const ros::WallTime now = ros::WallTime::now();
+    if (said_ > 0 && std::abs(now.toSec() - said_) < 1) return;
+    said_ = now.toSec();
+    ROS_WARN_STREAM(what);
+  }
+
+ private:
+  double said_ = 0;
+};
 
 }  // namespace slalom_ros

@@ -1,69 +1,166 @@
-// The simulator as a car: listens to `drive`, sends `scan`, `odom` (wheel odometry) and `ground_truth`,
-// `laps` and `contacts` (bodies touched). A car that has heard no finite command for 0.2 s brakes, as the
-// vehicle side of a real one must.
+// The simulator as a car: hears `drive`; sends `scan`, `odom` (wheel odometry) and its transforms, `map`,
+// `reference_waypoint` and the parked cars of its course, and the truth as `ground_truth`, `laps` and
+// `contacts` (bodies touched). A car that has heard no finite command for 0.2 s, or two nodes commanding it,
+// brakes, as the vehicle side of a real one must.
 #include <ackermann_msgs/AckermannDriveStamped.h>
 #include <nav_msgs/Odometry.h>
-#include <ros/ros.h>
-#include <sensor_msgs/LaserScan.h>
 #include <std_msgs/Int32.h>
 #include <std_srvs/Empty.h>
+#include <tf2_msgs/TFMessage.h>
+#include <visualization_msgs/MarkerArray.h>
+#include <waypoint_msg/Waypoint.h>
+
+#include <ros/callback_queue.h>
+
+#include <map>
 
 #include "ros_forms.hpp"
 
-using namespace slalom_ros;
+namespace slalom_ros {
+namespace {
 
-int main(int argc, char** argv) try {
-  ros::init(argc, argv, "world");
-  ros::NodeHandle node, own("~");
-  slalom_bridge::World world(own.param<std::string>("course", "wren"),
-                             static_cast<std::uint64_t>(own.param("seed", 1)), own.param("obstacles", 5));
-  const double timeout = own.param("command_timeout", 0.2);  // s
-  double steer = 0, speed = 0;
-  ros::Time heard(0);
+using Drive = ackermann_msgs::AckermannDriveStamped;
 
-  const auto scan_out = node.advertise<sensor_msgs::LaserScan>("scan", 1);
-  const auto odometry_out = node.advertise<nav_msgs::Odometry>("odom", 1);
-  const auto truth_out = node.advertise<nav_msgs::Odometry>("ground_truth", 1);
-  const auto laps_out = node.advertise<std_msgs::Int32>("laps", 1);
-  const auto contacts_out = node.advertise<std_msgs::Int32>("contacts", 1);
-  const auto drive_in = node.subscribe<ackermann_msgs::AckermannDriveStamped>(
-      "drive", 1, [&](const ackermann_msgs::AckermannDriveStamped::ConstPtr& m) {
-        if (!std::isfinite(m->drive.steering_angle) || !std::isfinite(m->drive.speed)) return;
-        steer = m->drive.steering_angle;
-        speed = m->drive.speed;
-        heard = ros::Time::now();
-      });
-  const auto reset = node.advertiseService<std_srvs::Empty::Request, std_srvs::Empty::Response>(
-      "reset", [&](std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
-        world.reset();
-        return true;
-      });
+const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
+constexpr double period = 0.025;  // s
 
-  const auto odometry = [](const slalom_bridge::Pose& p, double v, double turn, const char* frame) {
-    nav_msgs::Odometry m;
-    m.header.stamp = ros::Time::now();
-    m.header.frame_id = frame;
-    m.child_frame_id = "base_link";
-    m.pose.pose.position.x = p.x;
-    m.pose.pose.position.y = p.y;
-    m.pose.pose.orientation = quaternion(p.yaw);
-    m.twist.twist.linear.x = v;
-    m.twist.twist.angular.z = turn;
-    return m;
-  };
-  ros::Rate rate(40);
-  for (; ros::ok(); rate.sleep()) {
-    ros::spinOnce();
-    const bool late = (ros::Time::now() - heard).toSec() > timeout;
-    world.step(steer, late ? 0 : speed);
-    const auto& seen = world.reading();
-    const auto odom = odometry(seen.odometry, seen.speed, seen.yaw_rate, "odom");
-    const auto truth = odometry(seen.truth, seen.speed, seen.yaw_rate, "map");
+nav_msgs::Odometry odometry(const Pose& p, const slalom_bridge::World::Reading& seen, const char* frame,
+                            ros::Time stamp) {
+  nav_msgs::Odometry m;
+  m.header.stamp = stamp;
+  m.header.frame_id = frame;
+  m.child_frame_id = "base_link";
+  m.pose.pose = message_of(p);
+  m.twist.twist.linear.x = seen.speed;
+  m.twist.twist.angular.z = seen.yaw_rate;
+  return m;
+}
+
+visualization_msgs::Marker box(int id, const char* frame, const Pose& pose, double length, double width) {
+  visualization_msgs::Marker m;
+  m.header.frame_id = frame;
+  m.ns = frame;
+  m.id = id;
+  m.type = visualization_msgs::Marker::CUBE;
+  m.pose = message_of(pose);
+  m.pose.position.z = 0.1;
+  m.scale.x = length;
+  m.scale.y = width;
+  m.scale.z = 0.2;
+  m.color.a = 0.8F;
+  return m;
+}
+
+class WorldNode {
+ public:
+  WorldNode()
+      : own_("~"),
+        course_(own_.param<std::string>("course", "wren")),
+        world_(course_, static_cast<std::uint64_t>(own_.param("seed", 1)), own_.param("obstacles", 5)),
+        timeout_(own_.param("command_timeout", 0.2)) {
+    scan_out_ = node_.advertise<sensor_msgs::LaserScan>("scan", 1);
+    odometry_out_ = node_.advertise<nav_msgs::Odometry>("odom", 1);
+    truth_out_ = node_.advertise<nav_msgs::Odometry>("ground_truth", 1);
+    laps_out_ = node_.advertise<std_msgs::Int32>("laps", 1);
+    contacts_out_ = node_.advertise<std_msgs::Int32>("contacts", 1);
+    tf_out_ = node_.advertise<tf2_msgs::TFMessage>("/tf", 10);
+    tf_static_out_ = node_.advertise<tf2_msgs::TFMessage>("/tf_static", 1, true);
+    map_out_ = node_.advertise<nav_msgs::OccupancyGrid>("map", 1, true);
+    waypoints_out_ = node_.advertise<waypoint_msg::Waypoint>("reference_waypoint", 1, true);
+    markers_out_ = node_.advertise<visualization_msgs::MarkerArray>("obstacles", 1, true);
+    drive_in_ = node_.subscribe("drive", 10, &WorldNode::hear_drive, this, at_once);
+    reset_in_ = node_.advertiseService("reset", &WorldNode::reset, this);
+    describe();
+  }
+
+  void spin() {
+    ros::Time due = ros::Time::now();
+    while (ros::ok()) {
+      ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.001));
+      const double behind = (ros::Time::now() - due).toSec();
+      if (behind < -1 || behind > 0.5) due = ros::Time::now();  // the clock jumped, or this process stood
+      if (ros::Time::now() < due) continue;
+      step(due);
+      due += ros::Duration(period);
+    }
+  }
+
+ private:
+  void hear_drive(const ros::MessageEvent<Drive const>& event) {
+    const auto& drive = event.getMessage()->drive;
+    if (!std::isfinite(drive.steering_angle) || !std::isfinite(drive.speed))
+      return say_("a command is not finite");
+    steer_ = drive.steering_angle;
+    speed_ = drive.speed;
+    heard_[event.getPublisherName()] = ros::SteadyTime::now().toSec();
+  }
+  bool reset(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
+    world_.reset();
+    return true;
+  }
+
+  /// What does not change: map, path, where the laser is, obstacles.
+  void describe() {
+    const auto course = slalom_bridge::load_course(course_);
+    map_out_.publish(message_of(course.map));
+    waypoint_msg::Waypoint path;
+    path.header.frame_id = "map";
+    path.header.stamp = ros::Time::now();
+    for (const auto& w : course.waypoints) {
+      geometry_msgs::PoseStamped p;
+      geometry_msgs::TwistStamped t;
+      p.header = t.header = path.header;
+      p.pose = message_of(Pose{w.x, w.y, w.yaw});
+      t.twist.linear.x = w.speed;
+      path.poses.push_back(p);
+      path.twists.push_back(t);
+    }
+    waypoints_out_.publish(path);
+    tf2_msgs::TFMessage tf;
+    tf.transforms.push_back(transform(world_.laser(), "base_link", "laser", ros::Time::now()));
+    tf_static_out_.publish(tf);
+    visualization_msgs::MarkerArray array;
+    for (const Pose& p : world_.obstacles()) {
+      array.markers.push_back(
+          box(static_cast<int>(array.markers.size()), "map", p, world_.car_length(), world_.car_width()));
+      array.markers.back().color.r = 0.9F;
+    }
+    array.markers.push_back(box(0, "base_link", {0.17145, 0, 0}, world_.car_length(), world_.car_width()));
+    array.markers.back().color.g = 0.6F;
+    array.markers.back().frame_locked = true;
+    markers_out_.publish(array);
+  }
+
+  /// The command that the car follows: none if nobody commands, or more than one does.
+  bool commanded() {
+    const double now = ros::SteadyTime::now().toSec();
+    int voices = 0;
+    std::string names;
+    for (const auto& [name, at] : heard_) {
+      if (now - at > timeout_) continue;
+      ++voices;
+      names += " " + name;
+    }
+    if (voices > 1) say_("braking: commanded by more than one:" + names);
+    return voices == 1;
+  }
+
+  void step(ros::Time due) {
+    world_.step(steer_, commanded() ? speed_ : 0);
+    const ros::Time stamp = due;
+    const auto& seen = world_.reading();
+    odometry_out_.publish(odometry(seen.odometry, seen, "odom", stamp));
+    truth_out_.publish(odometry(seen.truth, seen, "map", stamp));
+    tf2_msgs::TFMessage tf;
+    tf.transforms.push_back(transform(seen.odometry, "odom", "base_link", stamp));
+    tf_out_.publish(tf);
     std_msgs::Int32 laps, contacts;
     laps.data = seen.laps;
     contacts.data = seen.contacts;
+    laps_out_.publish(laps);
+    contacts_out_.publish(contacts);
     sensor_msgs::LaserScan scan;
-    scan.header.stamp = odom.header.stamp;
+    scan.header.stamp = stamp;
     scan.header.frame_id = "laser";
     scan.angle_min = static_cast<float>(seen.angle_min);
     scan.angle_increment = static_cast<float>(seen.angle_increment);
@@ -71,12 +168,28 @@ int main(int argc, char** argv) try {
     scan.range_min = 0.02F;
     scan.range_max = static_cast<float>(seen.range_max);
     scan.ranges = seen.ranges;
-    odometry_out.publish(odom);
-    truth_out.publish(truth);
-    laps_out.publish(laps);
-    contacts_out.publish(contacts);
-    scan_out.publish(scan);
+    scan_out_.publish(scan);
   }
+
+  ros::NodeHandle node_, own_;
+  std::string course_;
+  slalom_bridge::World world_;
+  double timeout_;  // s
+  double steer_ = 0, speed_ = 0;
+  std::map<std::string, double> heard_;  // s, by the name of who commands
+  ros::Publisher scan_out_, odometry_out_, truth_out_, laps_out_, contacts_out_, tf_out_, tf_static_out_,
+      map_out_, waypoints_out_, markers_out_;
+  ros::Subscriber drive_in_;
+  ros::ServiceServer reset_in_;
+  Sayer say_;
+};
+
+}  // namespace
+}  // namespace slalom_ros
+
+int main(int argc, char** argv) try {
+  ros::init(argc, argv, "world");
+  slalom_ros::WorldNode().spin();
 } catch (const std::exception& error) {
   ROS_FATAL_STREAM(error.what());
   return 1;

@@ -27,6 +27,9 @@ struct PlannerOptions {
   double observer_time_constant = 0.1;  ///< s, of the steering observer
   double max_speed = 100;               ///< m/s, caps the path's speeds
   double steer_limit = 0.4189;          ///< rad, commands are clamped to it
+  double laser_x = 0.275;               ///< m, of the laser from the rear axle
+  double laser_y = 0;                   ///< m, to the left
+  double laser_yaw = 0;                 ///< rad
   double speed_lookahead = 0;     ///< s, the commanded speed is that of the path so far ahead; published: 0
   double deadline = 0;            ///< s a solve may take; 0: no limit
   bool stop_when_blocked = true;  ///< brake when no plan is free of collisions; published: false
@@ -63,6 +66,19 @@ void visit_options(Options& o, Visit&& visit) {
                                    .help = "commands are clamped to it",
                                    .min = 0.01,
                                    .max = 1.5});
+  visit(o.laser_x, Declaration{.name = "laser_x",
+                               .unit = "m",
+                               .help = "where the laser is, ahead of the rear axle",
+                               .min = -10,
+                               .max = 10});
+  visit(o.laser_y, Declaration{.name = "laser_y",
+                               .unit = "m",
+                               .help = "where the laser is, to the left of it",
+                               .min = -10,
+                               .max = 10});
+  visit(
+      o.laser_yaw,
+      Declaration{.name = "laser_yaw", .unit = "rad", .help = "where the laser looks", .min = -7, .max = 7});
   visit(o.speed_lookahead, Declaration{.name = "speed_lookahead",
                                        .unit = "s",
                                        .help = "the commanded speed is that of the path so far ahead",

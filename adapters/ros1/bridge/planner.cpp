@@ -1,0 +1,105 @@
+#include <cmath>
+#include <stdexcept>
+
+#include "convert.hpp"
+#include "slalom/vehicle/configuration.hpp"
+#include "slalom/vehicle/planner.hpp"
+
+namespace slalom_bridge {
+
+using slalom::vehicle::PlannerStatus;
+
+struct Planner::Hidden {
+  std::string method;
+  slalom::vehicle::Configuration settings;
+  std::vector<slalom::maps::ReferencePoint> path;
+  bool closed = true;
+  std::unique_ptr<slalom::vehicle::Planner> planner;
+  std::vector<Pose> predicted;
+
+  std::unique_ptr<slalom::vehicle::Planner> make(
+      const slalom::vehicle::Configuration& with,
+      const std::vector<slalom::maps::ReferencePoint>& along) const {
+    return std::make_unique<slalom::vehicle::Planner>(with.planner, with.vehicle, along, closed,
+                                                      slalom::vehicle::make_solver(with, method, 1));
+  }
+};
+
+Planner::Planner(const std::string& configuration, const std::string& method)
+    : hidden_(std::make_unique<Hidden>()) {
+  hidden_->method = method;
+  slalom::solver_options(method);  // refuses an unknown method
+  if (configuration.empty()) return;
+  const auto roots = slalom::vehicle::configuration_roots(program_folder());
+  hidden_->settings =
+      slalom::vehicle::load_configuration(slalom::vehicle::find_configuration(configuration, roots), roots);
+}
+Planner::~Planner() = default;
+
+std::vector<Option> Planner::options() const {
+  std::vector<Option> all;
+  for (const auto& section : slalom::vehicle::list_sections(hidden_->settings)) {
+    if (section.name != "vehicle" && section.name != "planner" && section.name != hidden_->method) continue;
+    for (const auto& entry : section.options) all.push_back(plain(section.name + "/", entry));
+  }
+  return all;
+}
+
+void Planner::change(const Changes& changes) {
+  slalom::vehicle::Configuration changed = hidden_->settings;
+  for (const auto& [name, text] : changes) {
+    std::string key = name;
+    if (const auto slash = key.find('/'); slash != std::string::npos) key[slash] = '.';
+    slalom::vehicle::set_option(changed, key, text, hidden_->method);
+  }
+  if (!hidden_->path.empty()) hidden_->planner = hidden_->make(changed, hidden_->path);
+  hidden_->settings = changed;
+}
+
+void Planner::use_path(const std::vector<Waypoint>& path, bool closed) {
+  std::vector<slalom::maps::ReferencePoint> points;
+  for (const Waypoint& w : path) points.push_back({w.x, w.y, w.yaw, w.speed});
+  hidden_->closed = closed;
+  hidden_->planner = hidden_->make(hidden_->settings, points);
+  hidden_->path = points;
+}
+
+bool Planner::has_path() const {
+  return hidden_->planner != nullptr;
+}
+double Planner::control_period() const {
+  return hidden_->settings.planner.control_period;
+}
+Pose Planner::laser() const {
+  const auto& o = hidden_->settings.planner;
+  return {o.laser_x, o.laser_y, o.laser_yaw};
+}
+
+Command Planner::update(const Scan& scan, const Pose& at, double speed) {
+  hidden_->predicted.clear();
+  if (!hidden_->planner) return {0, 0, false, "no path", 0, 0, 0, 0, 0};
+  const auto& out = hidden_->planner->update({view(scan), {pose(at), speed}});
+  for (const auto& state : out.predicted) hidden_->predicted.push_back(plain(state.pose));
+  Command command;
+  command.status = slalom::vehicle::name(out.status);
+  command.update_time = out.tick_time;
+  command.state_cost = out.state_cost;
+  command.collision_cost = out.collision_cost;
+  for (const float input : out.inputs) command.input_error += std::abs(static_cast<double>(input));
+  if (out.solve) command.effective_samples = out.solve->effective_sample_size;
+  if (!std::isfinite(out.command.steer) || !std::isfinite(out.command.speed)) {
+    command.status = "the command is not finite";
+    return command;
+  }
+  command.steer = out.command.steer;
+  command.speed = out.command.speed;
+  command.ok = out.status == PlannerStatus::ok || out.status == PlannerStatus::unverified ||
+               out.status == PlannerStatus::solver_degenerate;
+  return command;
+}
+
+const std::vector<Pose>& Planner::predicted() const {
+  return hidden_->predicted;
+}
+
+}  // namespace slalom_bridge
