@@ -8,6 +8,8 @@
 #include "drive_command.hpp"
 #include "eval_command.hpp"
 #include "explain_command.hpp"
+#include "hardware_command.hpp"
+#include "identify_command.hpp"
 #include "options_command.hpp"
 #include "ranks.hpp"
 #include "replay_command.hpp"
@@ -29,6 +31,8 @@ int main(int argc, char** argv) {
   slalom::tools::add_drive_command(app, exit_status);
   slalom::tools::add_eval_command(app, exit_status);
   slalom::tools::add_explain_command(app, exit_status);
+  slalom::tools::add_hardware_command(app, exit_status);
+  slalom::tools::add_identify_command(app, exit_status);
   slalom::tools::add_options_command(app, exit_status);
   slalom::tools::add_replay_command(app, exit_status);
   slalom::tools::add_reproduce_command(app, exit_status);

@@ -78,6 +78,8 @@ void add_scenario_options(CLI::App& command, ScenarioArguments& a) {
   command
       .add_option("--latency-ms", a.latency_ms, "From a scan to its command's effect, --evaluation true only")
       ->capture_default_str();
+  command.add_flag("--hardware", a.hardware,
+                   "As on a real car: noise, slip, a guessed pose, a servo unlike the model");
   command.add_option("--threads", a.threads, "Threads of the solver; results do not depend on it")
       ->capture_default_str();
 }
@@ -115,6 +117,7 @@ Scenario load_scenario(const ScenarioArguments& arguments, const std::string& me
   scenario.arena = evaluation::load_arena(scenario.folder, evaluation, roots);
   scenario.lap.obstacles = arguments.obstacles;
   scenario.lap.latency = 1e-3 * arguments.latency_ms;
+  if (arguments.hardware) scenario.lap.hardware.emplace();
   scenario.lap.threads = arguments.threads;
   if (!arguments.start.empty()) scenario.lap.start = parse_pose(arguments.start);
   return scenario;
@@ -136,14 +139,16 @@ Json options_json(const vehicle::Configuration& configuration, const std::string
 
 Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario, const std::string& method) {
   const maps::Pose start = scenario.lap.start.value_or(scenario.arena->start);
-  return {{"course", scenario.arena->course.name},
-          {"method", method},
-          {"config", arguments.config},
-          {"evaluation", arguments.evaluation},
-          {"obstacles", arguments.obstacles},
-          {"start", {start.x, start.y, start.yaw}},
-          {"latency_ms", arguments.latency_ms},
-          {"options", options_json(scenario.configuration, method)}};
+  Json settings{{"course", scenario.arena->course.name},
+                {"method", method},
+                {"config", arguments.config},
+                {"evaluation", arguments.evaluation},
+                {"obstacles", arguments.obstacles},
+                {"start", {start.x, start.y, start.yaw}},
+                {"latency_ms", arguments.latency_ms},
+                {"options", options_json(scenario.configuration, method)}};
+  if (arguments.hardware) settings["hardware"] = true;
+  return settings;
 }
 
 }  // namespace slalom::tools

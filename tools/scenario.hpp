@@ -29,10 +29,12 @@ struct ScenarioArguments {
   std::string start;             ///< x,y,yaw or empty
   int obstacles = 0;
   double latency_ms = 0;
+  bool hardware = false;  ///< the conditions of a real car
   int threads = 1;
 };
 
-/// Adds --course, --config, --evaluation, --set, --start, --obstacles, --latency-ms and --threads.
+/// Adds --course, --config, --evaluation, --set, --start, --obstacles, --latency-ms,
+/// --hardware and --threads.
 void add_scenario_options(CLI::App& command, ScenarioArguments& arguments);
 /// Adds --method to `method`, with the names known.
 void add_method_option(CLI::App& command, std::string& method);

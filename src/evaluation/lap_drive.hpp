@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/hardware_drive.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
 
 namespace slalom::evaluation {
@@ -17,6 +18,7 @@ struct LapRunner::Drive {
   sim::World world;
   std::unique_ptr<vehicle::Planner> planner;
   SequenceCostMeter meter;
+  std::unique_ptr<HardwareDrive> hardware;  ///< none where everything is measured as it is
   sim::ContactLog log;
   LapResult result;
   sim::Command acting;                                           ///< what the car does now

@@ -53,6 +53,12 @@ LapRunner::LapRunner(std::shared_ptr<const Arena> arena, const vehicle::Configur
           "threads: " + std::to_string(settings.threads) + " must be in [1, 1024]");
   const bool published = arena_->evaluation == Evaluation::published;
   require(!published || settings.latency == 0, "latency: must be 0 in the published evaluation");
+  require(!published || !settings.hardware, "hardware: not in the published evaluation");
+  if (settings.hardware) {
+    validate_options(*settings.hardware, "hardware");
+    settings.hardware->wheels.validate();
+    settings.hardware->localiser.validate();
+  }
   start_ = settings.start.value_or(arena_->start);
   vehicle::check_start(arena_->course, start_);
   make_planner();  // refuses what it does not like here and not in the first lap
@@ -78,7 +84,8 @@ std::unique_ptr<vehicle::Planner> LapRunner::make_planner() const {
                                             vehicle::make_solver(configuration_, method_, settings_.threads));
 }
 
-std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t seed) const try {
+std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t lap_seed) const try {
+  const std::uint64_t seed = settings_.layout.value_or(lap_seed);
   const auto& path = arena_->course.obstacle_path;
   const auto placed =
       arena_->evaluation == Evaluation::published
@@ -118,8 +125,17 @@ void LapRunner::control(Drive& drive, const TickCallback& on_tick, double furthe
     scan.angle_min = static_cast<float>(lidar.angle_min());
     scan.angle_increment = static_cast<float>(lidar.field_of_view / lidar.beams);
   }
-  const vehicle::Odometry odometry = odometry_of(seen, drive.world.options().car.rear_length);
-  const vehicle::PlannerOutput& output = drive.planner->update({scan, odometry});
+  vehicle::Odometry odometry = odometry_of(seen, drive.world.options().car.rear_length);
+  bool placed = true;
+  if (drive.hardware) {
+    const auto sensed = drive.hardware->sense(seen, drive.world.state(0));
+    placed = sensed.has_value();
+    if (placed) odometry = *sensed;
+  }
+  // Without a pose the planner must be told so, and stops; what that costs is reckoned by the true one.
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const vehicle::PlannerOutput& output = drive.planner->update(
+      {scan, placed ? odometry : vehicle::Odometry{{unknown, unknown, unknown}, odometry.speed}});
 
   // With the published maps planner and meter make the same cost map.
   drive.meter.observe(scan, odometry.pose,
@@ -173,7 +189,10 @@ void LapRunner::advance(Drive& drive, bool past_finish) const {
       drive.acting = drive.under_way.front().second;
       drive.under_way.erase(drive.under_way.begin());
     }
-    drive.world.step({&drive.acting, 1});
+    const sim::Command acting =
+        drive.hardware ? drive.hardware->servo(drive.acting, time_step) : drive.acting;
+    drive.world.step({&acting, 1});
+    if (drive.hardware) drive.hardware->moved(drive.world.state(0), time_step);
     const sim::Observation seen = drive.world.observe(0);
     if (!seen.contact()) continue;
     const auto touch = [&](int body) {
@@ -200,6 +219,7 @@ void LapRunner::finish(Drive& drive) const {
   result.contacts = published ? drive.log.published() : drive.log.bodies_touched();
   result.bodies_touched = drive.log.bodies_touched();
   result.wall = drive.log.touched_wall();
+  if (drive.hardware) result.localisation = drive.hardware->record();
   result.time = drive.world.time();
   if (result.finished && !published && open_length_ <= 0) result.time = drive.world.laps(0)->last_lap_time();
   if (result.steps == 0) return;
@@ -226,12 +246,16 @@ std::unique_ptr<LapRunner::Drive> LapRunner::begin(std::uint64_t seed) const {
     options.time_step = period / std::max(1.0, std::ceil(period / options.time_step - 1e-9));
     options.lidar.rate = 1 / period;
   }
+  if (settings_.hardware) HardwareDrive::apply(*settings_.hardware, options);
   auto drive = std::make_unique<Drive>(options, *arena_, configuration_, make_planner());
   drive->planner->reset(solver_seed(seed, method_));
   drive->result.seed = seed;
   drive->result.obstacles = place_obstacles(seed);
   drive->result.least_clearance = std::numeric_limits<double>::infinity();
   drive->world.reset(seed, {&start_, 1}, drive->result.obstacles);
+  if (settings_.hardware)
+    drive->hardware = std::make_unique<HardwareDrive>(*settings_.hardware, arena_->course.map, options.car,
+                                                      drive->world.state(0), solver_seed(seed, "hardware"));
   return drive;
 }
 

@@ -64,6 +64,7 @@ class LocaliserNode {
         if (known_) localiser_.start_at(*known_);
         say_(watch_.fault());
       }
+      say_.flush();
       if (diagnostics_.due()) report();
     }
   }

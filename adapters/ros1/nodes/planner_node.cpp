@@ -85,6 +85,7 @@ class PlannerNode {
       if (!watch_.clock_runs()) start_anew();
       const double idle = ros::SteadyTime::now().toSec() - sent_;
       if (scan_is_due() || idle > 1.6 * planner_.control_period()) tick();
+      say_.flush();
       if (diagnostics_.due()) report();
     }
   }

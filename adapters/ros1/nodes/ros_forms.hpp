@@ -85,18 +85,25 @@ inline std::string seconds(double value) {
   return text;
 }
 
-/// Says something at most once a second, by a clock that does not jump.
+/// Says something at most once a second, by a clock that does not jump. What comes sooner is said when the
+/// second is over, the latest of it.
 class Sayer {
  public:
   void operator()(const std::string& what) {
-    const ros::WallTime now = ros::WallTime::now();
-    if (said_ > 0 && std::abs(now.toSec() - said_) < 1) return;
-    said_ = now.toSec();
-    ROS_WARN_STREAM(what);
+    waiting_ = what;
+    flush();
+  }
+  void flush() {
+    const double now = ros::SteadyTime::now().toSec();
+    if (waiting_.empty() || now - said_ < 1) return;
+    said_ = now;
+    ROS_WARN_STREAM(waiting_);
+    waiting_.clear();
   }
 
  private:
-  double said_ = 0;
+  double said_ = -1e9;
+  std::string waiting_;
 };
 
 }  // namespace slalom_ros

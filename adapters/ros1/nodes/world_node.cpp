@@ -77,6 +77,7 @@ class WorldNode {
     ros::Time due = ros::Time::now();
     while (ros::ok()) {
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.001));
+      say_.flush();
       const double behind = (ros::Time::now() - due).toSec();
       if (behind < -1 || behind > 0.5) due = ros::Time::now();  // the clock jumped, or this process stood
       if (ros::Time::now() < due) continue;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "slalom/evaluation/arena.hpp"
+#include "slalom/evaluation/hardware.hpp"
 #include "slalom/evaluation/sequence_cost.hpp"
 #include "slalom/sim/world.hpp"
 #include "slalom/vehicle/configuration.hpp"
@@ -24,7 +25,9 @@ struct LapSettings {
   std::optional<maps::Pose> start{};  ///< of the centre of gravity; else the arena's
   double latency = 0;                 ///< s from a scan to its command's effect, "true" evaluation only
   int threads = 1;                    ///< of the solver; the result does not depend on it
-  bool further_costs = false;         ///< also `published_model_cost` and `driven_cost`, which take time
+  std::optional<HardwareConditions> hardware{};  ///< as on a real car, "true" evaluation only
+  std::optional<std::uint64_t> layout{};         ///< the seed of the obstacles' places; else the lap's
+  bool further_costs = false;  ///< also `published_model_cost` and `driven_cost`, which take time
 };
 
 /// The seed of lap `lap`: seed0 + lap (obstacles + 5), as the published evaluation has it.
@@ -82,8 +85,9 @@ struct LapResult {
   std::array<int, 7> planner_status{};  ///< control steps by vehicle::PlannerStatus
   std::vector<Contact> touches;
   std::vector<maps::Pose> obstacles;
-  std::vector<float> solve_ms;  ///< wall clock of each solve
-  std::vector<float> tick_ms;   ///< wall clock of each planner update
+  std::vector<float> solve_ms;      ///< wall clock of each solve
+  std::vector<float> tick_ms;       ///< wall clock of each planner update
+  LocalisationRecord localisation;  ///< with `hardware`
 };
 
 /// Drives laps of one configuration and method, each on its own: world, planner and solver begin anew, all

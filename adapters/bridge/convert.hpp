@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bridge.hpp"
+#include "bridge/bridge.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/pose.hpp"

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "convert.hpp"
+#include "bridge/convert.hpp"
 #include "slalom/vehicle/configuration.hpp"
 #include "slalom/vehicle/planner.hpp"
 

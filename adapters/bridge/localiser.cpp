@@ -3,7 +3,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "convert.hpp"
+#include "bridge/convert.hpp"
 
 namespace slalom_bridge {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "convert.hpp"
+#include "bridge/convert.hpp"
 #include "slalom/evaluation/arena.hpp"
 #include "slalom/sim/placement.hpp"
 #include "slalom/sim/wheel_odometry.hpp"

@@ -1,0 +1,62 @@
+#include "evaluation/hardware_drive.hpp"
+
+#include <cmath>
+
+namespace slalom::evaluation {
+namespace {
+
+sim::WheelOdometryOptions seeded(sim::WheelOdometryOptions options, std::uint64_t seed) {
+  options.seed = seed;
+  return options;
+}
+vehicle::LocaliserOptions seeded(vehicle::LocaliserOptions options, std::uint64_t seed) {
+  options.seed = seed;
+  return options;
+}
+
+}  // namespace
+
+HardwareDrive::HardwareDrive(const HardwareConditions& conditions, const maps::OccupancyGrid& map,
+                             const sim::CarParameters& car, const sim::CarState& state, std::uint64_t seed)
+    : conditions_(conditions),
+      car_(car),
+      wheels_(car, seeded(conditions.wheels, seed)),
+      localiser_(map, seeded(conditions.localiser, seed)) {
+  wheels_.reset(state);
+  localiser_.start_at(sim::rear_axle(car, state));
+}
+
+void HardwareDrive::apply(const HardwareConditions& conditions, sim::WorldOptions& options) {
+  const double rate = options.lidar.rate;
+  options.lidar = sim::LidarOptions::hokuyo_utm_30lx();
+  options.lidar.rate = rate;
+  options.lidar.noise = conditions.range_noise;
+  options.lidar.dropout = conditions.dropout;
+  options.plant.steering_dead_time = conditions.steering_dead_time;
+  options.plant.actuation.speed_gain = conditions.speed_gain;
+  options.car.acceleration_max = conditions.acceleration_max;
+}
+
+std::optional<vehicle::Odometry> HardwareDrive::sense(const sim::Observation& seen,
+                                                      const sim::CarState& state) {
+  const vehicle::LocaliserOutput& out = localiser_.update({seen.scan, wheels_.pose(), seen.time});
+  record_.update_ms.push_back(static_cast<float>(1e3 * out.update_time));
+  if (out.status == vehicle::LocaliserStatus::ok) known_at_ = seen.time;
+  if (seen.time - known_at_ > conditions_.longest_blind) {
+    ++record_.blind;
+    return std::nullopt;
+  }
+  const maps::Pose truth = sim::rear_axle(car_, state);
+  record_.error.push_back(static_cast<float>(std::hypot(out.pose.x - truth.x, out.pose.y - truth.y)));
+  record_.yaw_error.push_back(static_cast<float>(std::abs(maps::wrap_angle(out.pose.yaw - truth.yaw))));
+  return vehicle::Odometry{out.pose, wheels_.speed()};
+}
+
+sim::Command HardwareDrive::servo(const sim::Command& command, double time_step) noexcept {
+  const double target = conditions_.steering_gain * command.steering + conditions_.steering_offset;
+  const double lag = conditions_.steering_time_constant;
+  steer_ += (target - steer_) * (lag > 0 ? 1 - std::exp(-time_step / lag) : 1);
+  return {steer_, command.drive};
+}
+
+}  // namespace slalom::evaluation
