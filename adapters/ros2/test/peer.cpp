@@ -75,6 +75,7 @@ class Peer {
  private:
   template <class Type>
   Topic* make_topic(const std::string& name) {
+    if (auto* made = dynamic_cast<Topic*>(participant_->lookup_topicdescription(name))) return made;
     TypeSupport type(new Type);
     type.register_type(participant_);
     std::printf("%s: %s\n", name.c_str(), type.get_type_name().c_str());
@@ -226,7 +227,10 @@ bool run_until(Car& car, double& due, const char* what, Holds&& holds, double la
     std::this_thread::sleep_for(std::chrono::duration<double>(std::max(0.0, due - now())));
     car.step(due);
     due += 0.025;
-    if (!holds()) since = now();
+    if (!holds()) {
+      since = now();
+      continue;
+    }
     if (now() - since < lasting) continue;
     std::printf("ok: %s (%.1f s)\n", what, now() - begin);
     std::fflush(stdout);
