@@ -28,6 +28,7 @@ struct Arguments {
   std::uint64_t seed = 0;
   int laps = 1;
   std::string json, record, plot;
+  bool record_times = false;
 };
 
 /// A drive of several laps and where it tells about itself.
@@ -43,7 +44,14 @@ class DriveJob {
     settings_["laps"] = arguments.laps;
     settings_["timeout_s"] = runner_.timeout();
     settings_["control_period_s"] = runner_.control_period();
-    if (!arguments.record.empty()) recording_ = std::make_unique<Recording>(arguments.record, settings_);
+    if (!arguments.record.empty())
+      recording_ = make_recording(arguments.record, {.arguments = arguments.scenario,
+                                                     .scenario = scenario_,
+                                                     .method = arguments.method,
+                                                     .seed = arguments.seed,
+                                                     .control_period = runner_.control_period(),
+                                                     .settings = settings_,
+                                                     .times = arguments.record_times});
   }
 
   /// The exit status.
@@ -85,7 +93,7 @@ class DriveJob {
     if (result.steps == 0) return;
     laps_.push_back(std::move(result));
     say(laps_.back());
-    if (recording_) recording_->end_lap(lap_json(laps_.back(), lap + 1));
+    if (recording_) recording_->end_lap(laps_.back(), lap + 1);
   }
 
   int finished() const {
@@ -202,7 +210,10 @@ CLI::App* add_drive_command(CLI::App& app, int& exit_status) {
   command->add_option("--laps", arguments->laps, "How many, each from a fresh start")->capture_default_str();
   command->add_option("--json", arguments->json,
                       "Write the results as JSON to this file, or to standard output: -");
-  command->add_option("--record", arguments->record, "Record every control step to this file (JSON lines)");
+  command->add_option("--record", arguments->record,
+                      "Record every control step to this file: MCAP if it ends in .mcap, else JSON lines");
+  command->add_flag("--record-times", arguments->record_times,
+                    "With the wall clock's figures, which differ from run to run (MCAP)");
   command->add_option("--plot", arguments->plot, "Draw the last lap to this PNG");
   command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
   return command;

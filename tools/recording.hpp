@@ -1,37 +1,37 @@
 #pragma once
 
-#include <fstream>
+#include <cstdint>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "scenario.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
 
 namespace slalom::tools {
 
-/// Writes laps as JSON lines (docs/recording.md): settings, then for each lap its beginning, every control
-/// step with what went in and what came out, and its end. The same settings and seed give the same bytes.
+/// Where laps are recorded. The same settings and seed give the same bytes.
 class Recording {
  public:
-  /// Throws IoError.
-  Recording(const std::string& file, const nlohmann::ordered_json& settings);
-
-  void begin_lap(int number, std::uint64_t seed);
-  void add(const evaluation::LapTick& tick);
-  void end_lap(const nlohmann::ordered_json& result);
-
+  virtual ~Recording() = default;
+  virtual void begin_lap(int number, std::uint64_t seed) = 0;
+  virtual void add(const evaluation::LapTick& tick) = 0;
+  virtual void end_lap(const evaluation::LapResult& lap, int number) = 0;
   /// Throws IoError if anything could not be written.
-  void close();
-
- private:
-  template <class Number>
-  void number(Number value);
-  template <class Values>
-  void list(const char* key, const Values& values);
-  void write();
-
-  std::string file_;
-  std::ofstream stream_;
-  std::string line_;
+  virtual void close() = 0;
 };
+
+struct RecordingFacts {
+  const ScenarioArguments& arguments;
+  const Scenario& scenario;
+  const std::string& method;
+  std::uint64_t seed = 0;
+  double control_period = 0;               ///< s
+  const nlohmann::ordered_json& settings;  ///< kept in the recording
+  bool times = false;                      ///< with figures of the wall clock, MCAP only
+};
+
+/// As MCAP where the file's name ends in .mcap, otherwise as JSON lines (docs/recording.md). Throws IoError.
+std::unique_ptr<Recording> make_recording(const std::string& file, const RecordingFacts& facts);
 
 }  // namespace slalom::tools

@@ -3,12 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "lap_json.hpp"
 #include "lap_picture.hpp"
 #include "recording.hpp"
+#include "replay_recording.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/course.hpp"
 #include "stored_evaluation.hpp"
@@ -19,8 +21,9 @@ namespace {
 using namespace evaluation;
 
 struct Arguments {
+  ReplayArguments recording;
   std::string folder, method, scenario, course, plot, record;
-  int lap = 0;
+  int lap = -1;
 };
 
 /// Whether two rows of the same lap agree in all that repeats.
@@ -55,7 +58,8 @@ void plot(const Arguments& arguments, const Scenario& scenario, const LapRunner&
 }
 
 /// The exit status: 0 only if the lap is the one that was kept.
-int run(const Arguments& arguments) {
+int replay_lap(const Arguments& arguments) {
+  if (arguments.lap < 0) throw IoError("--lap", 0, "which lap of the evaluation?");
   const StoredEvaluation stored = load_evaluation(arguments.folder);
   const int index = stored.find(arguments.method, arguments.scenario);
   const Experiment& experiment = stored.experiments[static_cast<std::size_t>(index)];
@@ -69,7 +73,14 @@ int run(const Arguments& arguments) {
   const std::uint64_t seed = lap_seed(campaign.seed0, arguments.lap, experiment.obstacles);
   std::unique_ptr<Recording> recording;
   if (!arguments.record.empty()) {
-    recording = std::make_unique<Recording>(arguments.record, nlohmann::ordered_json::parse(stored.settings));
+    const auto settings = nlohmann::ordered_json::parse(stored.settings);
+    const ScenarioArguments told = campaign_arguments(stored, arguments.course);
+    recording = make_recording(arguments.record, {.arguments = told,
+                                                  .scenario = scenario,
+                                                  .method = experiment.method,
+                                                  .seed = seed,
+                                                  .control_period = runner.control_period(),
+                                                  .settings = settings});
     recording->begin_lap(arguments.lap, seed);
   }
   DrivenLine driven;
@@ -82,7 +93,7 @@ int run(const Arguments& arguments) {
               experiment.scenario.c_str(), arguments.lap, static_cast<unsigned long long>(seed),
               lap.finished ? "finished" : "timeout", lap.time, lap.contacts, lap.mean_sequence_cost);
   if (recording) {
-    recording->end_lap(lap_json(lap, arguments.lap));
+    recording->end_lap(lap, arguments.lap);
     recording->close();
     std::printf("recording: %s\n", arguments.record.c_str());
   }
@@ -104,18 +115,31 @@ int run(const Arguments& arguments) {
   return same ? 0 : 1;
 }
 
+int run(Arguments& arguments) {
+  if (std::filesystem::is_directory(arguments.folder)) return replay_lap(arguments);
+  arguments.recording.file = arguments.folder;
+  return replay_recording(arguments.recording);
+}
+
 }  // namespace
 
 CLI::App* add_replay_command(CLI::App& app, int& exit_status) {
-  CLI::App* command = app.add_subcommand("replay", "Drive a lap of an evaluation again: picture, recording");
+  CLI::App* command = app.add_subcommand(
+      "replay", "Show a recording in the browser; or drive a lap of an evaluation again: picture, recording");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("folder", arguments->folder, "The --out of an evaluation")->required();
-  command->add_option("--lap", arguments->lap, "Which, from 0")->required();
+  command->add_option("what", arguments->folder, "A recording in MCAP, or the --out of an evaluation")
+      ->required();
+  command->add_option("--html", arguments->recording.html,
+                      "Write the recording as a page that opens from disk, instead of serving it");
+  command->add_option("--host", arguments->recording.host, "Address to serve it on")->capture_default_str();
+  command->add_option("--port", arguments->recording.port, "0: any that is free")->capture_default_str();
+  command->add_option("--lap", arguments->lap, "Of an evaluation: which, from 0");
   command->add_option("--method", arguments->method, "Method, or method and options as results name them");
   command->add_option("--scenario", arguments->scenario, "pt or oa");
   command->add_option("--course", arguments->course, "Where the course is, if not found by its name");
   command->add_option("--plot", arguments->plot, "Draw it to this PNG");
-  command->add_option("--record", arguments->record, "Record every control step to this file (JSON lines)");
+  command->add_option("--record", arguments->record,
+                      "Record it to this file: MCAP if it ends in .mcap, else JSON lines");
   command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
   return command;
 }

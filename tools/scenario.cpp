@@ -74,6 +74,10 @@ void add_scenario_options(CLI::App& command, ScenarioArguments& a) {
           "lists them)")
       ->allow_extra_args(false);
   command.add_option("--obstacles", a.obstacles, "Parked cars on the course")->capture_default_str();
+  command
+      .add_option("--opponents", a.opponents,
+                  "Cars that drive along the course line at half its speed, --evaluation true only")
+      ->capture_default_str();
   command.add_option("--start", a.start, "x,y,yaw of the car's centre of gravity, m, m, rad [the course's]");
   command
       .add_option("--latency-ms", a.latency_ms, "From a scan to its command's effect, --evaluation true only")
@@ -116,6 +120,7 @@ Scenario load_scenario(const ScenarioArguments& arguments, const std::string& me
   scenario.folder = vehicle::find_course(arguments.course, roots);
   scenario.arena = evaluation::load_arena(scenario.folder, evaluation, roots);
   scenario.lap.obstacles = arguments.obstacles;
+  scenario.lap.opponents = arguments.opponents;
   scenario.lap.latency = 1e-3 * arguments.latency_ms;
   if (arguments.hardware) scenario.lap.hardware.emplace();
   scenario.lap.threads = arguments.threads;
@@ -144,6 +149,7 @@ Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario,
                 {"config", arguments.config},
                 {"evaluation", arguments.evaluation},
                 {"obstacles", arguments.obstacles},
+                {"opponents", arguments.opponents},
                 {"start", {start.x, start.y, start.yaw}},
                 {"latency_ms", arguments.latency_ms},
                 {"options", options_json(scenario.configuration, method)}};

@@ -28,12 +28,13 @@ struct ScenarioArguments {
   std::vector<std::string> set;  ///< key=value, in order
   std::string start;             ///< x,y,yaw or empty
   int obstacles = 0;
+  int opponents = 0;
   double latency_ms = 0;
   bool hardware = false;  ///< the conditions of a real car
   int threads = 1;
 };
 
-/// Adds --course, --config, --evaluation, --set, --start, --obstacles, --latency-ms,
+/// Adds --course, --config, --evaluation, --set, --start, --obstacles, --opponents, --latency-ms,
 /// --hardware and --threads.
 void add_scenario_options(CLI::App& command, ScenarioArguments& arguments);
 /// Adds --method to `method`, with the names known.

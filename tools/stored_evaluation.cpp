@@ -85,13 +85,11 @@ int StoredEvaluation::find(const std::string& name, const std::string& scenario)
   throw IoError(folder.string(), 0, "--method and --scenario must name one of these experiments:" + names);
 }
 
-evaluation::Campaign rebuild_campaign(const StoredEvaluation& stored, const std::string& course,
-                                      Scenario& scenario) {
+ScenarioArguments campaign_arguments(const StoredEvaluation& stored, const std::string& course) {
   const fs::path file = stored.folder / "settings.json";
-  evaluation::Campaign campaign;
+  ScenarioArguments arguments;
   try {
     const auto settings = Json::parse(stored.settings);
-    ScenarioArguments arguments;
     arguments.course = course.empty() ? settings.at("course").get<std::string>() : course;
     arguments.config = settings.at("config");
     arguments.evaluation = settings.at("evaluation");
@@ -100,6 +98,19 @@ evaluation::Campaign rebuild_campaign(const StoredEvaluation& stored, const std:
     for (const auto& [section, options] : settings.at("options").items())
       for (const auto& [key, value] : options.items())
         arguments.set.push_back(section + "." + key + "=" + option_text(value));
+  } catch (const nlohmann::json::exception& error) {
+    throw IoError(file.string(), 0, std::string("makes no sense: ") + error.what());
+  }
+  return arguments;
+}
+
+evaluation::Campaign rebuild_campaign(const StoredEvaluation& stored, const std::string& course,
+                                      Scenario& scenario) {
+  const fs::path file = stored.folder / "settings.json";
+  evaluation::Campaign campaign;
+  try {
+    const auto settings = Json::parse(stored.settings);
+    const ScenarioArguments arguments = campaign_arguments(stored, course);
     scenario = load_scenario(arguments, stored.experiments.front().method);
     if (const std::string hash = settings.at("course_hash"); hash != course_hash(*scenario.arena))
       throw IoError(scenario.folder.string(), 0, "is not the course of " + stored.folder.string());

@@ -25,6 +25,9 @@ struct StoredEvaluation {
 /// Throws IoError where the folder holds no evaluation or what it holds makes no sense.
 StoredEvaluation load_evaluation(const std::filesystem::path& folder);
 
+/// What it was driven with. `course` takes the place of the course's name where that is not empty.
+ScenarioArguments campaign_arguments(const StoredEvaluation& stored, const std::string& course);
+
 /// Makes the evaluation's laps drivable again: course, configuration with every option as it was. `course`
 /// takes the place of the course's name where that is not empty. Throws IoError if the course is another one.
 evaluation::Campaign rebuild_campaign(const StoredEvaluation& stored, const std::string& course,

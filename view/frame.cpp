@@ -77,7 +77,8 @@ double clearance_of(const sim::World& world) {
   return least;
 }
 
-std::string FrameEncoder::encode(const LapTick& tick, const sim::World& world, const StepFacts& facts) {
+std::string FrameEncoder::encode(const LapTick& tick, const StepFacts& facts) {
+  const sim::World& world = tick.world;
   const sim::CarState& car = world.state(0);
   const vehicle::PlannerOutput& out = tick.output;
   const SolveResult* solve = out.solve;
@@ -121,7 +122,7 @@ std::string FrameEncoder::encode(const LapTick& tick, const sim::World& world, c
       tick.time - laps.lap_start_time(),
       laps.progress() / world.track().lap_path()->length() - laps.laps(),
       laps.lateral(),
-      facts.clearance,
+      clearance_of(world),
       tick.seen.contact() ? 1.0 : 0.0,
       static_cast<double>(tick.contacts),
       tick.cost.total(),
@@ -289,7 +290,7 @@ std::string encode_bodies(const sim::World& world) {
   for (std::size_t i = 0; i < world.bodies(); ++i) {
     const sim::Box box = world.outline(i);
     const bool is_car = box.length == world.options().car.length && box.width == world.options().car.width;
-    const int kind = i < world.cars() ? 0 : world.disc(i) ? 3 : is_car ? 1 : 2;
+    const int kind = i == 0 ? 0 : i < world.cars() ? 4 : world.disc(i) ? 3 : is_car ? 1 : 2;
     const bool touched = i == 0 ? seen.contact()
                                 : std::find(seen.touching.begin(), seen.touching.end(),
                                             static_cast<int>(i)) != seen.touching.end();
@@ -310,7 +311,7 @@ std::string encode_ghost(const sim::World& world, std::span<const maps::Pose> pl
   to.put_pose({car.x, car.y, car.yaw});
   to.put(car.steer);
   to.put(car.speed);
-  to.put(static_cast<double>(world.laps(0)->laps()));
+  to.put(world.laps(0)->progress() / world.track().lap_path()->length());
   to.put(world.laps(0)->last_lap_time());
   to.put(static_cast<std::uint32_t>(plan.size()));
   to.begin_points({car.x, car.y});

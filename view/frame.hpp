@@ -15,7 +15,6 @@ std::span<const char* const> scalar_names() noexcept;
 
 /// What was known of a control step besides what LapTick says.
 struct StepFacts {
-  double clearance = 0;        ///< m from the body to the nearest wall or obstacle
   double deadline = 0;         ///< s that an update may take before the next is due
   double prediction_step = 0;  ///< s, of the plan
   int method = 0;              ///< index of the method that drove
@@ -29,7 +28,7 @@ class FrameEncoder {
   explicit FrameEncoder(int candidates = 160) : most_candidates_(candidates) {}
 
   /// A control step without its bodies.
-  std::string encode(const evaluation::LapTick& tick, const sim::World& world, const StepFacts& facts);
+  std::string encode(const evaluation::LapTick& tick, const StepFacts& facts);
 
  private:
   using States = std::span<vehicle::PredictedState>;

@@ -24,6 +24,7 @@ enum class Block : std::uint16_t {
   ghost = 10,
   grid = 20,
   path = 21,
+  file = 30,
 };
 
 /// Writes a binary message: "SLV1", then blocks of kind (u16), 0 (u16), length (u32) and payload, padded with
@@ -57,16 +58,18 @@ class FrameWriter {
     put(pose.yaw);
   }
 
-  /// The head of a list of points: their origin and what one count is worth, m.
+  /// The head of a list of points: their origin and what one count is worth, m. Each point follows as its
+  /// difference to the one before, which compresses better.
   void begin_points(const maps::Point& origin) {
     origin_ = origin;
+    last_x_ = last_y_ = 0;
     put(origin.x);
     put(origin.y);
     put_f32(unit);
   }
   void put_point(const maps::Point& point) {
-    put(counts(point.x - origin_.x));
-    put(counts(point.y - origin_.y));
+    put_difference(counts(point.x - origin_.x), last_x_);
+    put_difference(counts(point.y - origin_.y), last_y_);
   }
 
   void append(const std::string& bytes) { bytes_ += bytes; }
@@ -79,9 +82,16 @@ class FrameWriter {
     return static_cast<std::int16_t>(value > 32767 ? 32767 : value > -32767 ? value : -32767);
   }
 
+  /// Modulo 2^16, so that it always fits.
+  void put_difference(std::int16_t now, std::int16_t& last) {
+    put(static_cast<std::int16_t>(now - last));
+    last = now;
+  }
+
   std::string bytes_;
   std::size_t length_at_ = 0;
   maps::Point origin_;
+  std::int16_t last_x_ = 0, last_y_ = 0;
 };
 
 }  // namespace slalom::view

@@ -16,12 +16,16 @@ constexpr int most_catching_up = 4;  // ticks that a late clock may owe
 Session::Session(SessionOptions options, Server& server)
     : options_(std::move(options)), server_(server), waiting_(options_.wait_for_client) {
   load(options_.scenario);
+  if (!options_.against.empty()) start_ghost(options_.against, configuration_);
 }
 
 Session::~Session() = default;
 
 void Session::load(const ScenarioNames& names) {
-  LoadedScenario loaded = options_.load(names);
+  install(options_.load(names), names);
+}
+
+void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
   // All that may throw comes before anything is replaced.
   const auto runner = std::make_shared<const evaluation::LapRunner>(loaded.arena, loaded.configuration,
                                                                     names.method, loaded.lap);
@@ -33,18 +37,26 @@ void Session::load(const ScenarioNames& names) {
   names_ = names;
   scene_ = std::make_shared<const std::string>(encode_scene(*scenario_.arena));
   server_.broadcast({scene_, true});
+  end_ghost();
   restart();
   tell_options();
 }
 
+/// From the start, with the same seed; a ghost begins anew beside it.
 void Session::restart() {
   simulation_.emplace(make_runner(configuration_, names_.method), names_.seed);
-  ghost_.reset();
-  ghost_method_.clear();
+  if (ghost_) {
+    const auto& runner = ghost_->ride().runner();
+    if (runner.control_period() == simulation_->ride().runner().control_period())
+      ghost_.emplace(make_runner(runner.configuration(), runner.method()), names_.seed);
+    else
+      end_ghost();
+  }
   history_.clear();
   history_bytes_ = 0;
   laps_.clear();
-  viewed_ = -1;
+  viewed_ = stop_at_ = -1;
+  contact_.fill(-1);
   ++generation_;
   due_ = Clock::now();
   state_changed_ = true;
@@ -97,21 +109,24 @@ void Session::tick() {
   Step made;
   simulation_->tick(
       [&](const evaluation::LapTick& step) {
-        const sim::World& world = simulation_->ride().world();
-        const auto method = std::find(options_.methods.begin(), options_.methods.end(), names_.method);
+        const auto method =
+            std::find(options_.choices.methods.begin(), options_.choices.methods.end(), names_.method);
         made.tick = step.step;
         made.without_bodies =
-            encoder_.encode(step, world,
-                            {.clearance = clearance_of(world),
-                             .deadline = period.count(),
-                             .prediction_step = configuration_.vehicle.time_step,
-                             .method = static_cast<int>(method - options_.methods.begin())});
+            encoder_.encode(step, {.deadline = period.count(),
+                                   .prediction_step = configuration_.vehicle.time_step,
+                                   .method = static_cast<int>(method - options_.choices.methods.begin())});
         if (ghost_) made.without_bodies += encode_ghost(ghost_->ride().world(), ghost_plan_);
-        made.frame = std::make_shared<const std::string>(made.without_bodies + encode_bodies(world));
+        made.frame = std::make_shared<const std::string>(made.without_bodies + encode_bodies(step.world));
       },
       real_time_);
   keep(std::move(made));
   note_laps();
+  if (history_.back().tick == stop_at_) {
+    paused_ = true;
+    stop_at_ = -1;
+    state_changed_ = true;
+  }
   if (Clock::now() - last_frame_ >= least_frame_gap || paused_) {
     last_frame_ = Clock::now();
     server_.publish(history_.back().frame);
@@ -119,13 +134,25 @@ void Session::tick() {
 }
 
 void Session::note_laps() {
-  const sim::LapTimer& timer = *simulation_->ride().world().laps(0);
-  const int done = laps_.empty() ? 0 : laps_.back().lap;
+  note_laps_of(*simulation_, names_.method, false);
+  if (ghost_) note_laps_of(*ghost_, ghost_label_, true);
+}
+
+void Session::note_laps_of(const Simulation& simulation, const std::string& method, bool ghost) {
+  const sim::LapTimer& timer = *simulation.ride().world().laps(0);
+  int done = 0, before = 0;
+  for (const LapNote& lap : laps_) {
+    if (lap.ghost != ghost) continue;
+    done = lap.lap;
+    before += lap.contacts;
+  }
   if (timer.laps() <= done) return;
-  int before = 0;
-  for (const Lap& lap : laps_) before += lap.contacts;
-  laps_.push_back({simulation_->ticks(), timer.laps(), timer.last_lap_time(),
-                   simulation_->ride().contacts() - before, names_.method});
+  laps_.push_back({.tick = simulation.ticks(),
+                   .lap = timer.laps(),
+                   .time = timer.last_lap_time(),
+                   .contacts = simulation.ride().contacts() - before,
+                   .method = method,
+                   .ghost = ghost});
   state_changed_ = true;
 }
 

@@ -64,7 +64,7 @@ void Session::obey(const Received& received) {
     return refuse(received.client, "a command must be a JSON object");
   }
   try {
-    obey(command);
+    obey(received.client, command);
   } catch (const Malformed& error) {
     ++refused_;
     refuse(received.client, error.what());
@@ -73,11 +73,15 @@ void Session::obey(const Received& received) {
   }
 }
 
-void Session::obey(const Json& command) {
+void Session::obey(std::uint64_t client, const Json& command) {
   const std::string what = text(command, "do");
   state_changed_ = true;
   if (what == "scenario")
     obey_scenario(command);
+  else if (what == "lap")
+    obey_lap(command);
+  else if (what == "save")
+    save(client, text(command, "what"));
   else if (!obey_transport(what, command) && !obey_edit(what, command) && !obey_options(what, command))
     throw Malformed("do: '" + what.substr(0, 40) + "' is no command");
 }
@@ -87,6 +91,7 @@ bool Session::obey_transport(const std::string& what, const Json& command) {
     paused_ = true;
   } else if (what == "play") {
     go_to_viewed();
+    stop_at_ = -1;
     paused_ = waiting_ = false;
     due_ = Clock::now();
   } else if (what == "step") {
@@ -172,17 +177,41 @@ void Session::change(const vehicle::Configuration& configuration, const std::str
   tell_options();
 }
 
-void Session::start_ghost(const std::string& method) {
-  if (method.empty()) {
-    ghost_.reset();
-    ghost_method_.clear();
-    return;
-  }
-  const auto runner = make_runner(configuration_, method);
+void Session::end_ghost() {
+  ghost_.reset();
+  ghost_method_.clear();
+  ghost_label_.clear();
+}
+
+/// From now on, in a world of its own that has come the same way.
+void Session::start_ghost(const std::string& method, const vehicle::Configuration& configuration) {
+  if (method.empty()) return end_ghost();
+  const auto runner = make_runner(configuration, method);
   Simulation ghost(*simulation_, simulation_->ticks());
-  ghost.apply(ChangeDriver{runner});
+  if (method != names_.method || ghost.ticks() == 0) ghost.apply(ChangeDriver{runner});
   ghost_.emplace(std::move(ghost));
-  ghost_method_ = method;
+  ghost_method_ = ghost_label_ = method;
+}
+
+/// Another method, other options or both drive on from here; what drove goes on as a ghost.
+void Session::fork(const Json& command) {
+  const std::string method = text(command, "method"), before = names_.method;
+  vehicle::Configuration changed = configuration_;
+  const Json set = command.value("set", Json::array());
+  if (!set.is_array() || set.size() > 100) throw Malformed("set: must be a list of key=value");
+  for (const Json& each : set) {
+    const std::string assignment = each.is_string() ? each.get<std::string>() : "";
+    const auto equals = assignment.find('=');
+    if (equals == std::string::npos) throw Malformed("set: must be a list of key=value");
+    vehicle::set_option(changed, assignment.substr(0, equals), assignment.substr(equals + 1), method);
+  }
+  const auto runner = make_runner(changed, method);  // refuses before anything changes
+  if (runner->control_period() != simulation_->ride().runner().control_period())
+    throw std::invalid_argument("fork: the control period cannot change on the way");
+  go_to_viewed();
+  start_ghost(before, configuration_);
+  if (before == method) ghost_label_ = before + " as before";
+  change(changed, method, !set.empty());
 }
 
 bool Session::obey_options(const std::string& what, const Json& command) {
@@ -205,14 +234,10 @@ bool Session::obey_options(const std::string& what, const Json& command) {
     go_to_viewed();
     change(configuration_, text(command, "method"), false);
   } else if (what == "fork") {
-    go_to_viewed();
-    const std::string before = names_.method;
-    make_runner(configuration_, text(command, "method"));
-    start_ghost(before);
-    change(configuration_, text(command, "method"), false);
+    fork(command);
   } else if (what == "ghost") {
     go_to_viewed();
-    start_ghost(text(command, "method"));
+    start_ghost(text(command, "method"), configuration_);
   } else {
     return false;
   }
@@ -226,14 +251,16 @@ void Session::obey_scenario(const Json& command) {
   if (command.contains("config")) names.config = text(command, "config");
   if (command.contains("seed")) names.seed = count(text(command, "seed"));
   if (command.contains("obstacles")) names.obstacles = integer(command, "obstacles");
+  if (command.contains("opponents")) names.opponents = integer(command, "opponents");
+  if (names.opponents < 0 || names.opponents > 16) throw Malformed("opponents: must be in [0, 16]");
   if (names.obstacles < 0 || names.obstacles > 60) throw Malformed("obstacles: must be in [0, 60]");
   // A page may choose among what is known, not read any folder of this machine.
   const auto known = [](const std::vector<std::string>& all, const std::string& name) {
     return std::find(all.begin(), all.end(), name) != all.end();
   };
-  if (names.course != options_.scenario.course && !known(options_.courses, names.course))
+  if (names.course != options_.scenario.course && !known(options_.choices.courses, names.course))
     throw std::invalid_argument("course: '" + names.course + "' is not known here");
-  if (names.config != options_.scenario.config && !known(options_.configurations, names.config))
+  if (names.config != options_.scenario.config && !known(options_.choices.configurations, names.config))
     throw std::invalid_argument("config: '" + names.config + "' is not known here");
   load(names);
   paused_ = false;

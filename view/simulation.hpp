@@ -53,6 +53,8 @@ class Simulation {
   int ticks() const noexcept { return ride_.ticks(); }
   bool edited() const noexcept { return !log_.empty(); }
   const evaluation::Ride& ride() const noexcept { return ride_; }
+  /// Who drove first.
+  const std::shared_ptr<const evaluation::LapRunner>& first_runner() const noexcept { return first_runner_; }
 
  private:
   struct Logged {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "evaluation/hardware_drive.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/sim/pure_pursuit.hpp"
 
 namespace slalom::evaluation {
 
@@ -22,6 +24,8 @@ struct LapRunner::Drive {
   sim::ContactLog log;
   LapResult result;
   sim::Command acting;                                           ///< what the car does now
+  std::optional<sim::PurePursuit> opponents;                     ///< drives them all
+  std::vector<sim::Command> commands{1};                         ///< of all cars
   std::vector<std::pair<std::int64_t, sim::Command>> under_way;  ///< by the step in which they arrive
   double cost_state = 0, cost_collision = 0, cost_published = 0, cost_driven = 0;
   double input_error = 0, speed = 0, distance = 0, variance = 0, effective = 0;

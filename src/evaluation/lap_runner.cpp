@@ -59,6 +59,12 @@ LapRunner::LapRunner(std::shared_ptr<const Arena> arena, const vehicle::Configur
     settings.hardware->wheels.validate();
     settings.hardware->localiser.validate();
   }
+  require(settings.opponents >= 0 && settings.opponents <= 16,
+          "opponents: " + std::to_string(settings.opponents) + " must be in [0, 16]");
+  require(settings.opponent_speed > 0 && settings.opponent_speed <= 1,
+          "opponent_speed: " + std::to_string(settings.opponent_speed) + " must be in (0, 1]");
+  require(settings.opponents == 0 || (!published && arena_->course.closed),
+          "opponents: must be 0 in the published evaluation and on courses that are no loops");
   start_ = settings.start.value_or(arena_->start);
   vehicle::check_start(arena_->course, start_);
   make_planner();  // refuses what it does not like here and not in the first lap
@@ -97,6 +103,31 @@ std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t lap_seed) const
 } catch (const std::runtime_error& error) {
   throw std::runtime_error("course " + arena_->course.name + ": " + error.what() +
                            "; beside each of them a passage must stay open, so the course may be too narrow");
+}
+
+/// Evenly round the course, where no obstacle stands.
+std::vector<maps::Pose> LapRunner::place_opponents(const std::vector<maps::Pose>& obstacles) const {
+  const sim::LapPath& path = *arena_->track->lap_path();
+  const double begin = path.project({start_.x, start_.y}).arc, room = 1.0, step = 0.25;  // m
+  std::vector<maps::Pose> poses;
+  for (int i = 1; i <= settings_.opponents; ++i) {
+    double arc = begin + path.length() * i / (settings_.opponents + 1);
+    for (double tried = 0; tried < path.length(); tried += step, arc += step) {
+      const maps::Pose pose = path.at(arc);
+      const auto near = [&](const maps::Pose& other) {
+        return std::hypot(other.x - pose.x, other.y - pose.y) < room;
+      };
+      if (std::any_of(obstacles.begin(), obstacles.end(), near) ||
+          std::any_of(poses.begin(), poses.end(), near) || near(start_))
+        continue;
+      poses.push_back(pose);
+      break;
+    }
+  }
+  if (static_cast<int>(poses.size()) < settings_.opponents)
+    throw std::runtime_error("course " + arena_->course.name + ": no room for " +
+                             std::to_string(settings_.opponents) + " opponents");
+  return poses;
 }
 
 bool LapRunner::at_finish(const sim::World& world) const noexcept {
@@ -167,7 +198,7 @@ void LapRunner::control(Drive& drive, const TickCallback& on_tick, double furthe
   if (on_tick)
     on_tick({result.steps, seen.time, progress(drive.world),
              published ? drive.log.published() : drive.log.bodies_touched(), seen, scan, odometry, output,
-             *drive.planner, cost});
+             *drive.planner, drive.world, cost});
   ++result.steps;
 
   sim::Command command{output.command.steer, output.command.speed};
@@ -189,9 +220,12 @@ void LapRunner::advance(Drive& drive, bool past_finish) const {
       drive.acting = drive.under_way.front().second;
       drive.under_way.erase(drive.under_way.begin());
     }
-    const sim::Command acting =
-        drive.hardware ? drive.hardware->servo(drive.acting, time_step) : drive.acting;
-    drive.world.step({&acting, 1});
+    drive.commands[0] = drive.hardware ? drive.hardware->servo(drive.acting, time_step) : drive.acting;
+    for (std::size_t i = 1; i < drive.commands.size(); ++i) {
+      const sim::CarState& opponent = drive.world.state(i);
+      drive.commands[i] = drive.opponents->command({opponent.x, opponent.y, opponent.yaw});
+    }
+    drive.world.step(drive.commands);
     if (drive.hardware) drive.hardware->moved(drive.world.state(0), time_step);
     const sim::Observation seen = drive.world.observe(0);
     if (!seen.contact()) continue;
@@ -252,7 +286,19 @@ std::unique_ptr<LapRunner::Drive> LapRunner::begin(std::uint64_t seed) const {
   drive->result.seed = seed;
   drive->result.obstacles = place_obstacles(seed);
   drive->result.least_clearance = std::numeric_limits<double>::infinity();
-  drive->world.reset(seed, {&start_, 1}, drive->result.obstacles);
+  std::vector<maps::Pose> cars{start_};
+  if (settings_.opponents > 0) {
+    std::vector<sim::PathPoint> line;
+    for (const maps::ReferencePoint& point : arena_->path)
+      line.push_back({{point.x, point.y},
+                      settings_.opponent_speed * std::min(point.speed, configuration_.planner.max_speed)});
+    drive->opponents.emplace(std::move(line));
+    const auto opponents = place_opponents(drive->result.obstacles);
+    cars.insert(cars.end(), opponents.begin(), opponents.end());
+    drive->commands.resize(cars.size());
+  }
+  drive->world.reset(seed, cars, drive->result.obstacles);
+  for (std::size_t i = 1; i < cars.size(); ++i) drive->world.set_scanning(i, false);
   if (settings_.hardware)
     drive->hardware = std::make_unique<HardwareDrive>(*settings_.hardware, arena_->course.map, options.car,
                                                       drive->world.state(0), solver_seed(seed, "hardware"));

@@ -42,4 +42,8 @@ int Ride::contacts() const noexcept {
                                                               : drive_->log.bodies_touched();
 }
 
+std::span<const Contact> Ride::touches() const noexcept {
+  return drive_->result.touches;
+}
+
 }  // namespace slalom::evaluation

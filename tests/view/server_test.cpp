@@ -95,10 +95,11 @@ TEST(ViewServer, ServesOnAfterTenThousandMessagesOfNonsense) {
     WebClient talker(server.port());
     talker.get("/ws", true);
     for (int i = 0; i < 400; ++i) talker.send_message(i % 4 == 0 ? "\x01\x02" : "}{", i % 4 == 0 ? 2 : 1);
-    if (client % 2 == 0)
-      talker.send_message(std::string(5000, 'y'));
-    else
+    if (client % 2 == 1) {
       talker.say(std::string("\xff\xff\xff\xff\xff\xff", 6));
+      continue;
+    }
+    talker.send_message(std::string(5000, 'y'));
     while (!talker.next_message().empty()) {
     }
   }

@@ -38,9 +38,9 @@ SessionOptions session_options() {
     loaded.lap.obstacles = names.obstacles;
     return loaded;
   };
-  options.courses = {"stag", "eel"};
-  options.methods = {"svg_mppi", "mppi"};
-  options.configurations = {"default"};
+  options.choices.courses = {"stag", "eel"};
+  options.choices.methods = {"svg_mppi", "mppi"};
+  options.choices.configurations = {"default"};
   return options;
 }
 

@@ -27,7 +27,9 @@ struct LapSettings {
   int threads = 1;                    ///< of the solver; the result does not depend on it
   std::optional<HardwareConditions> hardware{};  ///< as on a real car, "true" evaluation only
   std::optional<std::uint64_t> layout{};         ///< the seed of the obstacles' places; else the lap's
-  bool further_costs = false;  ///< also `published_model_cost` and `driven_cost`, which take time
+  bool further_costs = false;   ///< also `published_model_cost` and `driven_cost`, which take time
+  int opponents = 0;            ///< cars that drive along the course line, 0 ... 16, on loops only
+  double opponent_speed = 0.5;  ///< of the line's speed, in (0, 1]
 };
 
 /// The seed of lap `lap`: seed0 + lap (obstacles + 5), as the published evaluation has it.
@@ -55,6 +57,7 @@ struct LapTick {
   const vehicle::Odometry& odometry;
   const vehicle::PlannerOutput& output;
   const vehicle::Planner& planner;
+  const sim::World& world;
   SequenceCostMeter::Cost cost;  ///< of the sequence sent
 };
 using TickCallback = std::function<void(const LapTick&)>;
@@ -117,6 +120,7 @@ class LapRunner {
   struct Drive;
   std::unique_ptr<Drive> begin(std::uint64_t seed) const;
   std::vector<maps::Pose> place_obstacles(std::uint64_t seed) const;
+  std::vector<maps::Pose> place_opponents(const std::vector<maps::Pose>& obstacles) const;
   std::unique_ptr<vehicle::Planner> make_planner() const;
   bool at_finish(const sim::World& world) const noexcept;
   double progress(const sim::World& world) const noexcept;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "slalom/evaluation/lap_runner.hpp"
 
@@ -32,6 +33,8 @@ class Ride {
   const LapRunner& runner() const noexcept { return *runner_; }
   /// Contacts so far, by the evaluation's way of counting.
   int contacts() const noexcept;
+  /// The first touch of each body so far.
+  std::span<const Contact> touches() const noexcept;
 
  private:
   std::shared_ptr<const LapRunner> runner_;

@@ -1,14 +1,8 @@
-import { decode, type Frame, type Scene, type Text } from "./protocol";
-
-export interface Handlers {
-  frame(frame: Frame): void;
-  scene(scene: Scene): void;
-  text(message: Text): void;
-  status(connected: boolean, attempts: number): void;
-}
+import type { Handlers, Link } from "./link";
+import { decode, type Text } from "./protocol";
 
 /** Keeps a WebSocket open: reconnects by itself, with a wait that grows to three seconds. */
-export class Connection {
+export class Connection implements Link {
   private socket?: WebSocket;
   private attempts = 0;
   private timer = 0;
@@ -44,7 +38,8 @@ export class Connection {
   private got(data: string | ArrayBuffer) {
     if (typeof data === "string") return this.handlers.text(JSON.parse(data) as Text);
     const message = decode(data);
-    if (message.scene) this.handlers.scene(message.scene);
+    if (message.file) this.handlers.file(message.file.name, message.file.content);
+    else if (message.scene) this.handlers.scene(message.scene);
     else if (message.frame) { this.received += 1; this.handlers.frame(message.frame); }
   }
 }

@@ -11,17 +11,25 @@ export function layout(root: HTMLElement) {
   <label class="field"><span>Against</span><select id="ghost" aria-label="second method, driven as a ghost on the same seed"></select></label>
   <label class="field wide"><span>Config</span><select id="config" aria-label="configuration"></select></label>
   <label class="field"><span>Obstacles</span><input id="obstacles" type="number" min="0" max="60" aria-label="parked cars" title="parked cars"></label>
+  <label class="field wide"><span>Opponents</span><input id="opponents" type="number" min="0" max="16" aria-label="cars that drive along the line" title="cars that drive along the line"></label>
   <label class="field"><span>Seed</span><input id="seed" type="number" min="0" aria-label="seed" title="seed"></label>
+  <span id="caption" hidden></span>
   <div class="grow"></div>
   <span class="pill" id="mode"><i></i><span id="mode-text">…</span></span>
   <span class="pill wide" id="connection"><i></i><span id="connection-text">connecting</span></span>
-  <button id="picture" class="wide" title="Save a picture of the scene">PNG</button>
+  <details class="menu" id="save"><summary role="button" title="Take it away (S)">Save</summary><div class="card">
+    <button id="save-picture">Picture<small>of the scene, PNG</small></button>
+    <button id="save-replay">Replay<small>a page that opens from disk</small></button>
+    <button id="save-recording">Recording<small>MCAP, for Foxglove and Lichtblick</small></button>
+    <button id="save-link">Link<small>the address of this scenario</small></button>
+  </div></details>
   <button id="theme" title="Dark or light (T)" aria-label="dark or light">◐</button>
   <button id="help" title="Keys and gestures (?)" aria-label="help">?</button>
 </header>
 <div id="stage">
   <canvas id="scene" tabindex="0" aria-label="the scene from above"></canvas>
-  <div id="label" hidden></div>
+  <div id="label" class="tag" hidden></div>
+  <div id="ghost-label" class="tag" hidden></div>
   <details id="layers" class="card" open><summary>Layers</summary>
     ${layers.map(([name, title, text]) => `<label title="${text}"><input type="checkbox" data-layer="${name}" checked>${title}<span class="swatch" data-swatch="${name}"></span></label>`).join("")}
     <div class="scale"><select id="term" aria-label="cost term that colours the candidates"></select><div id="ramp"></div><p><span id="scale-low">0</span><span>best to worst</span><span id="scale-high">1</span></p></div>
@@ -32,6 +40,7 @@ export function layout(root: HTMLElement) {
     <span class="extra">clearance</span><b class="extra" id="clearance">–<small>m</small></b>
     <span class="extra">planner</span><b class="extra" id="solve">–<small>ms</small></b>
     <span>contacts</span><b id="contacts">0</b>
+    <span id="gap-label" hidden>to ghost</span><b id="gap" hidden>–<small>m</small></b>
   </div>
   <div id="ruler" class="numbers wide"><span id="ruler-text"></span><div id="ruler-bar"></div></div>
   <div id="tools" class="card" role="toolbar" aria-label="touch the world">
@@ -47,7 +56,7 @@ export function layout(root: HTMLElement) {
 <div id="bar">
   <button id="play" title="Space">▶ Play</button>
   <button id="step" title="One tick (.)">+1 tick</button>
-  <button id="fork" title="From here on the other method drives, and this one goes on as a ghost" hidden>Fork</button>
+  <button id="fork" title="Let another method or other options drive on from here (K)" hidden>Fork…</button>
   <select id="rate" aria-label="speed of time">${[[0.1, "0.1×"], [0.25, "0.25×"], [0.5, "0.5×"], [1, "1×"], [2, "2×"], [4, "4×"], [0, "max"]].map(([v, t]) => `<option value="${v}"${v === 1 ? " selected" : ""}>${t}</option>`).join("")}</select>
   <input id="timeline" type="range" min="0" max="1" step="1" aria-label="the last minute">
   <span class="time numbers" id="time">0.00 s</span>
@@ -55,18 +64,20 @@ export function layout(root: HTMLElement) {
   <button id="restart" title="From the start again (R)">Restart</button>
 </div>
 <aside>
-  <nav><button data-pane="charts">Charts</button><button data-pane="options">Options</button><button data-pane="laps">Laps</button></nav>
+  <nav><button data-pane="charts">Charts</button><button data-pane="options">Options</button><button data-pane="laps">Laps</button><button data-pane="evaluation" hidden>Evaluation</button></nav>
   <div class="pane" id="pane-charts"><div id="charts"></div></div>
   <div class="pane" id="pane-options" hidden><div id="options"></div></div>
   <div class="pane" id="pane-laps" hidden><p id="about"></p><div id="laps"></div></div>
+  <div class="pane" id="pane-evaluation" hidden><div id="evaluation"></div></div>
 </aside>
 <div id="toast" class="card" role="status" hidden></div>
-<dialog id="help-box"></dialog>`;
+<dialog id="help-box"></dialog>
+<dialog id="fork-box"></dialog>`;
 }
 
 const keys: [string, string][] = [
   ["Space", "pause and go on"], [".", "one tick"], [",", "one tick back"], ["R", "from the start again"], ["F", "follow the car, heading up or not"], ["A", "show the whole course"],
-  ["1 2 3 4", "pole, box, parked car, select"], ["[ ]", "push the car to its left or right"], ["Delete", "take the selected obstacle away"], ["Ctrl Z, Ctrl Y", "undo and redo an option"], ["L", "layers"], ["T", "dark or light"], ["?", "this help"],
+  ["1 2 3 4", "pole, box, parked car, select"], ["[ ]", "push the car to its left or right"], ["Delete", "take the selected obstacle away"], ["Ctrl Z, Ctrl Y", "undo and redo an option"], ["K", "fork from the tick that is shown"], ["S", "save: picture, replay, recording"], ["L", "layers"], ["T", "dark or light"], ["?", "this help"],
 ];
 
 export function help(box: HTMLElement) {

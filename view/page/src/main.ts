@@ -1,11 +1,16 @@
 import "./style.css";
 import { Charts } from "./charts";
 import { Connection } from "./connection";
+import { EvaluationPane } from "./evaluation";
+import { ForkBox } from "./fork";
+import type { Link } from "./link";
 import { attachPointer, type Tool } from "./pointer";
 import { OptionsPane } from "./options";
+import { download, picture } from "./picture";
+import { Player, recordings } from "./player";
 import { layout, help } from "./layout";
 import { rampCss, themes } from "./palette";
-import type { Frame, Hello, State, Text } from "./protocol";
+import type { Frame, Hello, Scene, State, Text } from "./protocol";
 import { layers, SceneView, terms, type Layer, type Term } from "./scene";
 
 layout(document.getElementById("app")!);
@@ -18,25 +23,34 @@ let dirty = true;
 let scrubbing = false;
 
 const wanted = new URLSearchParams(location.hash.slice(1));
-let themeName: "dark" | "light" = (localStorage.getItem("slalom-theme") as "dark" | "light" | null) ?? (matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark");
+/** What was chosen before; a page from disk may not be allowed to remember. */
+function remembered(): "dark" | "light" | null {
+  try { return localStorage.getItem("slalom-theme") as "dark" | "light" | null; } catch { return null; }
+}
+let themeName: "dark" | "light" = remembered() ?? (matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark");
 const scene = new SceneView(get<HTMLCanvasElement>("scene"), themes[themeName]);
 const charts = new Charts(get("charts"));
 const scalar = (name: string) => (frame && hello ? frame.scalars[hello.scalars.indexOf(name)] : NaN);
 
-const connection = new Connection({
-  frame(next) { frame = next; showFrame(); },
-  scene(next) { scene.setScene(next); charts.clear(); dirty = true; },
+const handlers = {
+  frame(next: Frame) { frame = next; showFrame(); },
+  scene(next: Scene) { scene.setScene(next); charts.clear(); dirty = true; },
   text: got,
-  status(connected, attempts) {
+  file(name: string, content: Uint8Array) { download(name, content as BlobPart, name.endsWith(".html") ? "text/html" : "application/octet-stream"); toast(`Saved ${name}, ${(content.length / 1e6).toFixed(1)} MB.`); },
+  status(connected: boolean, attempts: number) {
     get("lost").hidden = connected || attempts === 0;
     get("lost-text").textContent = `Trying again … (attempt ${attempts}). The drive goes on without this page; nothing is lost but what it showed.`;
     get("connection").className = "pill" + (connected ? "" : " bad");
     get("connection-text").textContent = connected ? "connected" : "connection lost";
     if (connected) document.title = "Slalom";
   },
-});
-const send = (command: Record<string, unknown>) => connection.send(command);
+};
+const recorded = recordings(), isReplay = recorded.length > 0;
+const link: Link = isReplay ? new Player(handlers, recorded) : new Connection(handlers);
+const send = (command: Record<string, unknown>) => link.send(command);
 const options = new OptionsPane(get("options"), send, copy);
+const fork = new ForkBox(get<HTMLDialogElement>("fork-box"), send);
+const evaluation = new EvaluationPane(get("evaluation"), send, () => { scene.marks = evaluation.marks(); dirty = true; });
 
 function toast(message: string, bad = false) {
   const box = get("toast");
@@ -49,7 +63,9 @@ function toast(message: string, bad = false) {
 let toastTimer = 0;
 
 function copy(text: string, what: string) {
-  navigator.clipboard?.writeText(text).then(() => toast(`Copied as ${what}.`), () => toast(text));
+  const done = navigator.clipboard?.writeText(text);
+  if (done) done.then(() => toast(`Copied as ${what}.`), () => toast(text));
+  else toast(text);
 }
 
 function got(message: Text) {
@@ -60,10 +76,17 @@ function got(message: Text) {
     fill("method", message.methods);
     fill("config", message.configurations);
     fill("ghost", ["", ...message.methods], "no ghost");
-    obeyAddress();
   } else if (message.type === "state") showState(message);
-  else if (message.type === "options") options.show(message);
+  else if (message.type === "options") { options.show(message); fork.takeOptions(message); changedOptions = message.changed; showAddress(); }
   else if (message.type === "error") toast(message.message, true);
+  else if (message.type === "note") toast(message.message);
+  else if (message.type === "evaluation") {
+    document.querySelector<HTMLElement>('[data-pane="evaluation"]')!.hidden = false;
+    evaluation.show(message);
+    showPane("evaluation");
+    setTool("pan");
+    setFollow("fit");
+  }
 }
 
 function fill(id: string, names: string[], none = "") {
@@ -76,13 +99,30 @@ function choose(id: string, value: string) {
   if (document.activeElement !== select) select.value = value;
 }
 
-/** The address holds the scenario: #course=stag&method=mppi&seed=3. */
-function obeyAddress() {
+let changedOptions: string[] = [];
+
+/** The address holds the scenario: #course=stag&method=mppi&seed=3&set=mppi.samples=500. */
+function obeyAddress(now: State) {
   const scenario: Record<string, unknown> = {};
-  for (const key of ["course", "method", "config", "seed"]) if (wanted.has(key)) scenario[key] = wanted.get(key);
-  if (wanted.has("obstacles")) scenario.obstacles = Number(wanted.get("obstacles"));
+  for (const key of ["course", "method", "config", "seed"] as const) if (wanted.has(key) && wanted.get(key) !== now[key]) scenario[key] = wanted.get(key);
+  for (const key of ["obstacles", "opponents"] as const) if (wanted.has(key) && Number(wanted.get(key)) !== now[key]) scenario[key] = Number(wanted.get(key));
+  const set = wanted.getAll("set"), ghost = wanted.get("against");
   for (const key of [...wanted.keys()]) wanted.delete(key);
   if (Object.keys(scenario).length) send({ do: "scenario", ...scenario });
+  for (const each of set) {
+    const equals = each.indexOf("=");
+    if (equals > 0 && !changedOptions.includes(each)) send({ do: "set", key: each.slice(0, equals), value: each.slice(equals + 1) });
+  }
+  if (ghost && ghost !== now.ghost) send({ do: "ghost", method: ghost });
+}
+
+function showAddress() {
+  if (!state || isReplay || wanted.size) return;
+  const words = new URLSearchParams({ course: state.course, method: state.method, config: state.config, seed: state.seed, obstacles: String(state.obstacles) });
+  if (state.opponents) words.set("opponents", String(state.opponents));
+  if (state.ghost) words.set("against", state.ghost);
+  for (const each of changedOptions) words.append("set", each);
+  history.replaceState(null, "", `${location.pathname}${location.search}#${words.toString().replace(/%3D/g, "=").replace(/%5B/g, "[").replace(/%5D/g, "]")}`);
 }
 
 function showState(next: State) {
@@ -92,39 +132,44 @@ function showState(next: State) {
   choose("method", next.method);
   choose("config", next.config);
   choose("ghost", next.ghost);
-  for (const [id, value] of [["seed", next.seed], ["obstacles", String(next.obstacles)]]) {
+  for (const [id, value] of [["seed", next.seed], ["obstacles", String(next.obstacles)], ["opponents", String(next.opponents)]]) {
     const input = get<HTMLInputElement>(id);
     if (document.activeElement !== input) input.value = value;
   }
   const past = next.tick < next.newest;
   get("play").textContent = next.paused ? "▶ Play" : "❚❚ Pause";
   get("play").classList.toggle("primary", next.paused);
-  get("fork").hidden = !next.paused;
+  get("fork").hidden = !next.paused || isReplay;
   const mode = get("mode");
   mode.className = "pill" + (next.paused ? " warn" : "");
-  get("mode-text").textContent = (next.real_time ? "real time" : "lockstep") + (next.paused ? (past ? " · in the past" : " · paused") : next.rate === 0 ? " · as fast as it goes" : next.rate !== 1 ? ` · ${next.rate}×` : "");
-  mode.title = next.real_time ? "Commands take effect by the wall-clock time the planner took, as on a car" : "Time stands still while the planner works: the same seed gives the same drive on any machine";
+  get("mode-text").textContent = (isReplay ? "replay" : next.real_time ? "real time" : "lockstep") + (next.paused ? (past && !isReplay ? " · in the past" : " · paused") : next.rate === 0 ? " · as fast as it goes" : next.rate !== 1 ? ` · ${next.rate}×` : "");
+  mode.title = isReplay ? "A recording: it shows what was" : next.real_time ? "Commands take effect by the wall-clock time the planner took, as on a car" : "Time stands still while the planner works: the same seed gives the same drive on any machine";
   get<HTMLSelectElement>("rate").value = String(next.rate);
   get("real-time").classList.toggle("on", next.real_time);
   showTimeline();
   const best = Math.min(...next.laps.map((l) => l.time));
+  const name = (l: (typeof next.laps)[number]) => l.method + (l.ghost ? " (ghost)" : "");
   get("laps").innerHTML = next.laps.length
-    ? `<table><thead><tr><th>Lap</th><th>Method</th><th class="n">Time, s</th><th class="n">Contacts</th></tr></thead><tbody>${[...next.laps].reverse().map((l) => `<tr class="${l.time === best ? "best" : ""}"><td>${l.lap}</td><td>${l.method}</td><td class="n">${l.time.toFixed(2)}</td><td class="n">${l.contacts}</td></tr>`).join("")}</tbody></table>`
+    ? `<table><thead><tr><th>Lap</th><th>Method</th><th class="n">Time, s</th><th class="n">Contacts</th></tr></thead><tbody>${[...next.laps].reverse().map((l) => `<tr class="${l.time === best ? "best" : ""}"><td>${l.lap}</td><td>${name(l)}</td><td class="n">${l.time.toFixed(2)}</td><td class="n">${l.contacts}</td></tr>`).join("")}</tbody></table>`
     : "<p>No lap is complete yet.</p>";
   get("about").textContent = `${next.description} ${next.length.toFixed(1)} m, ${next.evaluation === "published" ? "evaluated as the published program" : "true physics"}${next.edited ? ", changed by hand" : ""}.`;
-  history.replaceState(null, "", `${location.pathname}${location.search}#course=${next.course}&method=${next.method}&config=${next.config}&seed=${next.seed}&obstacles=${next.obstacles}`);
+  if (wanted.size) obeyAddress(next);
+  showAddress();
+  evaluation.showState(next);
+  get("caption").textContent = isReplay ? `${next.course} · ${next.method} · seed ${next.seed} · ${next.obstacles} obstacles${next.opponents ? ` · ${next.opponents} opponents` : ""}` : "";
   dirty = true;
 }
 
 function showTimeline() {
   if (!state) return;
-  const slider = get<HTMLInputElement>("timeline"), newest = Math.max(state.newest, scalar("tick") || 0);
+  const slider = get<HTMLInputElement>("timeline"), newest = isReplay ? state.newest : Math.max(state.newest, scalar("tick") || 0);
   slider.min = String(Math.max(0, state.oldest));
   slider.max = String(Math.max(1, newest));
-  const tick = state.paused ? state.tick : newest;
+  const tick = state.paused || isReplay ? state.tick : newest;
   if (!scrubbing) slider.value = String(tick);
   const back = (newest - Number(slider.value)) * state.control_period;
-  get("time").textContent = back > 1e-6 ? `−${back.toFixed(2)} s` : `${(scalar("time") || 0).toFixed(2)} s`;
+  if (isReplay) get("time").textContent = `${(state.tick * state.control_period).toFixed(1)} of ${(newest * state.control_period).toFixed(1)} s`;
+  else get("time").textContent = back > 1e-6 ? `−${back.toFixed(2)} s` : `${(scalar("time") || 0).toFixed(2)} s`;
 }
 
 function showFrame() {
@@ -142,6 +187,13 @@ function showFrame() {
   const label = get("label");
   label.textContent = `${hello.methods[scalar("method")] ?? ""}${status && status !== "ok" ? " · " + status.replace(/_/g, " ") : ""}`;
   label.classList.toggle("blocked", status === "blocked");
+  const ghost = frame.ghost;
+  get("gap").hidden = get("gap-label").hidden = !ghost;
+  if (ghost && state) {
+    const ahead = (scalar("lap") + scalar("progress") - ghost.laps) * state.length;
+    get("gap").firstChild!.textContent = (ahead >= 0 ? "+" : "−") + Math.abs(ahead).toFixed(1);
+    get("ghost-label").textContent = "ghost · " + (state.ghost_label || state.ghost);
+  }
   if (!state?.paused) showTimeline();
   dirty = true;
 }
@@ -155,17 +207,22 @@ function resize() {
 new ResizeObserver(resize).observe(get("stage"));
 resize();
 
+/** Puts a label below (or above) what it names. */
+function place(label: HTMLElement, at: { x: number; y: number } | undefined, side: 1 | -1) {
+  label.hidden = !at;
+  if (!at) return;
+  const [x, y] = scene.camera.toScreen(at.x, at.y), away = 0.34 * scene.camera.zoom + 8;
+  label.style.transform = `translate(${Math.round(x - label.offsetWidth / 2)}px, ${Math.round(side > 0 ? y + away : y - away - label.offsetHeight)}px)`;
+}
+
 function draw() {
   if (dirty) {
     dirty = false;
     scene.draw();
     charts.draw();
-    const car = frame?.bodies[0], label = get("label");
-    label.hidden = !car;
-    if (car) {
-      const [x, y] = scene.camera.toScreen(car.x, car.y);
-      label.style.transform = `translate(${Math.round(x - label.offsetWidth / 2)}px, ${Math.round(y + 0.34 * scene.camera.zoom + 8)}px)`;
-    }
+    const car = frame?.bodies[0], ghost = scene.visible.has("ghost") ? frame?.ghost : undefined;
+    place(get("label"), car, 1);
+    place(get("ghost-label"), ghost, car && ghost && Math.abs(car.y - ghost.y) < 0.6 && Math.abs(car.x - ghost.x) < 1.5 ? -1 : 1);
     const metres = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20].find((m) => m * scene.camera.zoom >= 48) ?? 20;
     get("ruler-text").textContent = metres + " m";
     get("ruler-bar").style.width = metres * scene.camera.zoom + "px";
@@ -183,7 +240,7 @@ function setTheme(name: "dark" | "light") {
   get("ramp").style.background = rampCss(themes[name]);
   for (const [layer] of layers) {
     const swatch = document.querySelector<HTMLElement>(`[data-swatch="${layer}"]`), t = themes[name];
-    const colour = { costMap: t.cost, path: t.path, scan: t.scan, candidates: undefined, guides: t.guide, nominal: t.nominal, plan: t.plan, spread: t.spread, driven: t.driven }[layer];
+    const colour = { costMap: t.cost, path: t.path, scan: t.scan, candidates: undefined, guides: t.guide, nominal: t.nominal, plan: t.plan, spread: t.spread, driven: t.driven, obstacles: t.obstacle, opponents: t.opponent, ghost: t.ghost }[layer];
     if (swatch) swatch.style.background = colour ? `rgb(${colour.slice(0, 3).map((v) => Math.round(255 * v)).join(" ")} / ${Math.max(0.45, colour[3])})` : rampCss(t);
   }
   charts.rebuild();
@@ -201,12 +258,17 @@ function setFollow(next: "free" | "follow" | "heading" | "fit") {
   dirty = true;
 }
 
-attachPointer({ canvas: get<HTMLCanvasElement>("scene"), scene, send, tool: () => tool, redraw: () => (dirty = true) });
+function clicked(x: number, y: number) {
+  const mark = scene.markAt(evaluation.marks(), x, y);
+  if (mark) evaluation.go(mark.lap, mark.contact);
+  return mark !== undefined;
+}
+attachPointer({ canvas: get<HTMLCanvasElement>("scene"), scene, send, tool: () => tool, redraw: () => (dirty = true), clicked, fixed: isReplay });
 
 // Controls.
 const click = (id: string, act: () => void) => (get(id).onclick = act);
-const scenario = (key: string) => (get<HTMLInputElement>(key).onchange = () => { const value = get<HTMLInputElement>(key).value; send({ do: "scenario", [key]: key === "obstacles" ? Number(value) : value }); (document.activeElement as HTMLElement).blur(); });
-for (const key of ["course", "config", "seed", "obstacles"]) scenario(key);
+const scenario = (key: string) => (get<HTMLInputElement>(key).onchange = () => { const value = get<HTMLInputElement>(key).value; send({ do: "scenario", [key]: key === "obstacles" || key === "opponents" ? Number(value) : value }); (document.activeElement as HTMLElement).blur(); });
+for (const key of ["course", "config", "seed", "obstacles", "opponents"]) scenario(key);
 get<HTMLSelectElement>("method").onchange = () => { send({ do: "method", method: get<HTMLSelectElement>("method").value }); get("method").blur(); };
 get<HTMLSelectElement>("ghost").onchange = () => { send({ do: "ghost", method: get<HTMLSelectElement>("ghost").value }); get("ghost").blur(); };
 get<HTMLSelectElement>("rate").onchange = () => send({ do: "rate", rate: Number(get<HTMLSelectElement>("rate").value) });
@@ -215,10 +277,17 @@ click("play", play);
 click("step", () => send({ do: "step" }));
 click("restart", () => send({ do: "restart" }));
 click("real-time", () => send({ do: "real_time", on: !state?.real_time }));
-click("fork", () => { const other = hello?.methods.find((m) => m !== state?.method); const to = state?.ghost || other; if (to) send({ do: "fork", method: to }); });
-click("theme", () => { setTheme(themeName === "dark" ? "light" : "dark"); localStorage.setItem("slalom-theme", themeName); });
+const openFork = () => { if (isReplay || !hello || !state) return; if (!state.paused) send({ do: "pause" }); fork.open(hello, state); };
+click("fork", openFork);
+click("theme", () => { setTheme(themeName === "dark" ? "light" : "dark"); try { localStorage.setItem("slalom-theme", themeName); } catch { /* not allowed to remember */ } });
 click("help", () => get<HTMLDialogElement>("help-box").showModal());
-click("picture", () => { scene.draw(); const a = document.createElement("a"); a.download = `slalom-${state?.course}-${state?.tick}.png`; a.href = get<HTMLCanvasElement>("scene").toDataURL("image/png"); a.click(); });
+const menu = get<HTMLDetailsElement>("save");
+const save = (id: string, act: () => void) => click(id, () => { menu.open = false; act(); });
+save("save-picture", () => { scene.draw(); void picture(get<HTMLCanvasElement>("scene"), get("stage")).then((blob) => download(`slalom-${state?.course}-${state?.tick}.png`, blob, "image/png")); });
+save("save-replay", () => { if (!isReplay) { toast("Making a replay of the last minute …"); send({ do: "save", what: "replay" }); } else void fetch(location.href).then((r) => r.text()).then((text) => download("slalom-replay.html", text, "text/html"), () => toast("This page is the replay: it lies on your disk.")); });
+save("save-recording", () => { toast("Making a recording of the last minute …"); send({ do: "save", what: "recording" }); });
+save("save-link", () => copy(location.href, "a link"));
+document.addEventListener("pointerdown", (event) => { if (!menu.contains(event.target as Node)) menu.open = false; });
 click("nudge-left", () => send({ do: "nudge", left: 0.15 }));
 click("nudge-right", () => send({ do: "nudge", left: -0.15 }));
 const timeline = get<HTMLInputElement>("timeline");
@@ -247,6 +316,8 @@ const keys: Record<string, () => void> = {
   f: () => setFollow(scene.camera.follow === "follow" ? "heading" : "follow"),
   a: () => setFollow("fit"),
   "1": () => setTool("disc"), "2": () => setTool("box"), "3": () => setTool("car"), "4": () => setTool("pan"),
+  k: openFork,
+  s: () => { menu.open = !menu.open; },
   t: () => get("theme").click(),
   l: () => { get<HTMLDetailsElement>("layers").open = !get<HTMLDetailsElement>("layers").open; },
   "?": () => get<HTMLDialogElement>("help-box").showModal(),
@@ -264,12 +335,19 @@ addEventListener("keydown", (event) => {
 
 help(get("help-box"));
 get<HTMLSelectElement>("term").append(...terms.map((t) => new Option(t === "total" ? "total cost" : t + " cost", t, t === "total", t === "total")));
+if (isReplay) {
+  document.body.classList.add("replay");
+  get("caption").hidden = false;
+  get("option-list").inert = true;
+  get<HTMLSelectElement>("rate").querySelector('[value="0"]')?.remove();
+  get("timeline").setAttribute("aria-label", "the recording");
+}
 if (innerWidth < 900) get<HTMLDetailsElement>("layers").open = false;
 if (innerWidth < 900) scene.camera.zoom = 42;
 setTheme(themeName);
-setTool("disc");
+setTool(isReplay ? "pan" : "disc");
 showPane("charts");
 requestAnimationFrame(draw);
 
 // What the page knows, for tests and the curious.
-Object.assign(window, { slalom: { get frame() { return frame; }, get state() { return state; }, get hello() { return hello; }, get received() { return connection.received; }, scalar, scene, send } });
+Object.assign(window, { slalom: { get frame() { return frame; }, get state() { return state; }, get hello() { return hello; }, get received() { return link.received; }, replay: isReplay, scalar, scene, send } });

@@ -3,13 +3,22 @@ import type { SceneView } from "./scene";
 
 export type Tool = "disc" | "box" | "car" | "pan";
 
-interface Setting { canvas: HTMLCanvasElement; scene: SceneView; send(command: Record<string, unknown>): void; tool(): Tool; redraw(): void }
+interface Setting {
+  canvas: HTMLCanvasElement;
+  scene: SceneView;
+  send(command: Record<string, unknown>): void;
+  tool(): Tool;
+  redraw(): void;
+  fixed: boolean; // nothing can be touched
+  /** Whether a click at a place of the map frame (m) meant something else. */
+  clicked(x: number, y: number): boolean;
+}
 
 const slack = 5; // pixels that a click may move
 const gap = 40; // ms between two messages of a drag
 
 /** Mouse, pen and fingers on the scene: pan, zoom, pinch, drop, drag, take away. */
-export function attachPointer({ canvas, scene, send, tool, redraw }: Setting) {
+export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixed }: Setting) {
   const pointers = new Map<number, { x: number; y: number }>();
   let start: { x: number; y: number } | undefined;
   let moved = false;
@@ -34,6 +43,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw }: Setting) {
     moved = false;
     const [x, y] = scene.camera.toMap(p.x, p.y);
     dragged = scene.bodyAt(x, y);
+    if (fixed || dragged?.kind === 4) dragged = undefined; // opponents drive themselves
     scene.selected = dragged && dragged.kind !== 0 ? dragged.id : -1;
     if (dragged) grip = { x: dragged.x - x, y: dragged.y - y };
     redraw();
@@ -75,7 +85,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw }: Setting) {
     if (!start || pointers.size) return;
     const [x, y] = scene.camera.toMap(p.x, p.y);
     if (dragged && moved) move(dragged, x + grip.x, y + grip.y);
-    else if (!dragged && !moved && e.type === "pointerup" && tool() !== "pan") drop(x, y);
+    else if (!dragged && !moved && e.type === "pointerup" && !clicked(x, y) && tool() !== "pan") drop(x, y);
     start = dragged = undefined;
     redraw();
   };
@@ -89,7 +99,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw }: Setting) {
   canvas.addEventListener("contextmenu", (e) => {
     e.preventDefault();
     const p = place(e), [x, y] = scene.camera.toMap(p.x, p.y), body = scene.bodyAt(x, y);
-    if (body && body.kind !== 0) send({ do: "remove", body: body.id });
+    if (body && body.kind !== 0 && body.kind !== 4 && !fixed) send({ do: "remove", body: body.id });
   });
   canvas.addEventListener("wheel", (e) => {
     e.preventDefault();

@@ -27,7 +27,7 @@ export interface CostMap {
   x: number; y: number; yaw: number; rows: number; columns: number; resolution: number;
   centerX: number; centerY: number; cells: Uint8Array;
 }
-export interface Ghost { x: number; y: number; yaw: number; steer: number; speed: number; lap: number; lapTime: number; plan: Float32Array }
+export interface Ghost { x: number; y: number; yaw: number; steer: number; speed: number; laps: number; lapTime: number; plan: Float32Array }
 export interface Frame {
   scalars: Float64Array;
   scan?: Scan;
@@ -45,7 +45,7 @@ export interface Path { closed: boolean; xyv: Float32Array }
 export interface Scene { grid?: Grid; path?: Path }
 
 const MAGIC = 0x31564c53; // "SLV1"
-const kinds = { scalars: 1, scan: 2, costMap: 3, candidates: 4, guides: 5, nominal: 6, plan: 7, bodies: 8, covariance: 9, ghost: 10, grid: 20, path: 21 };
+const kinds = { scalars: 1, scan: 2, costMap: 3, candidates: 4, guides: 5, nominal: 6, plan: 7, bodies: 8, covariance: 9, ghost: 10, grid: 20, path: 21, file: 30 };
 
 class Reader {
   at: number;
@@ -63,15 +63,18 @@ class Reader {
 function points(r: Reader, count: number): Float32Array {
   const x = r.f64(), y = r.f64(), unit = r.f32();
   const out = new Float32Array(count * 2);
+  let u = 0, v = 0;
   for (let i = 0; i < count; ++i) {
-    out[2 * i] = x + unit * r.i16();
-    out[2 * i + 1] = y + unit * r.i16();
+    u = ((u + r.i16()) << 16) >> 16;
+    v = ((v + r.i16()) << 16) >> 16;
+    out[2 * i] = x + unit * u;
+    out[2 * i + 1] = y + unit * v;
   }
   return out;
 }
 
-/** Reads a binary message: a frame, or a scene (grid and path). */
-export function decode(buffer: ArrayBuffer): { frame?: Frame; scene?: Scene } {
+/** Reads a binary message: a frame, a scene (grid and path), or a file. */
+export function decode(buffer: ArrayBuffer): { frame?: Frame; scene?: Scene; file?: { name: string; content: Uint8Array } } {
   const view = new DataView(buffer);
   if (view.byteLength < 4 || view.getUint32(0, true) !== MAGIC) throw new Error("not a message of the live view");
   const frame: Frame = { scalars: new Float64Array(0), bodies: [] };
@@ -150,9 +153,9 @@ export function decode(buffer: ArrayBuffer): { frame?: Frame; scene?: Scene } {
         frame.covariance = r.f32s(length / 4);
         break;
       case kinds.ghost: {
-        const x = r.f64(), y = r.f64(), yaw = r.f64(), steer = r.f64(), speed = r.f64(), lap = r.f64(), lapTime = r.f64();
+        const x = r.f64(), y = r.f64(), yaw = r.f64(), steer = r.f64(), speed = r.f64(), laps = r.f64(), lapTime = r.f64();
         const n = r.u32();
-        frame.ghost = { x, y, yaw, steer, speed, lap, lapTime, plan: points(r, n) };
+        frame.ghost = { x, y, yaw, steer, speed, laps, lapTime, plan: points(r, n) };
         break;
       }
       case kinds.grid: {
@@ -167,6 +170,10 @@ export function decode(buffer: ArrayBuffer): { frame?: Frame; scene?: Scene } {
         scene.grid = { width, height, resolution, x, y, yaw, cells };
         isScene = true;
         break;
+      }
+      case kinds.file: {
+        const n = r.u32(), begin = r.at + ((n + 3) & ~3);
+        return { file: { name: new TextDecoder().decode(new Uint8Array(buffer, r.at, n)), content: new Uint8Array(buffer, begin, r.end - begin) } };
       }
       case kinds.path: {
         const n = r.u32(), closed = r.u32() !== 0;
@@ -190,14 +197,17 @@ export interface Hello {
   type: "hello"; protocol: number; scalars: string[]; statuses: string[]; courses: string[]; methods: string[]; configurations: string[];
   car: { length: number; width: number; front: number; rear: number };
   lidar: { angle_min: number; angle_increment: number; range_max: number };
-  history_seconds: number; control_period: number;
+  history_seconds: number; control_period: number; replay?: boolean;
 }
-export interface LapRow { lap: number; time: number; contacts: number; method: string }
+export interface LapRow { lap: number; time: number; contacts: number; method: string; ghost?: boolean }
 export interface State {
   type: "state"; course: string; description: string; length: number; method: string; config: string; evaluation: string;
-  seed: string; obstacles: number; paused: boolean; real_time: boolean; rate: number; tick: number; newest: number; oldest: number;
-  time: number; control_period: number; laps: LapRow[]; ghost: string; ended: string; generation: number; clients: number; edited: boolean;
+  seed: string; obstacles: number; opponents: number; paused: boolean; real_time: boolean; rate: number; tick: number; newest: number; oldest: number;
+  time: number; control_period: number; laps: LapRow[]; ghost: string; ghost_label: string; contact?: { experiment: number; lap: number; contact: number; tick: number }; generation: number; clients: number; edited: boolean;
 }
 export interface Options { type: "options"; sections: OptionSection[]; changed: string[]; command_line: string; yaml: string; undo: number; redo: number }
 export interface Problem { type: "error"; message: string }
-export type Text = Hello | State | Options | Problem;
+export interface Note { type: "note"; message: string }
+export interface EvaluationLap { experiment: number; lap: number; seed: string; finished: boolean; time: number; contacts: number; points: [number, number][] }
+export interface Evaluation { type: "evaluation"; folder: string; course: string; experiments: { label: string; scenario: string; obstacles: number }[]; laps: EvaluationLap[] }
+export type Text = Hello | State | Options | Problem | Note | Evaluation;

@@ -13,12 +13,17 @@ export const layers = [
   ["plan", "Plan", "what is sent to the car"],
   ["spread", "Spread", "two standard deviations of the plan, from the solver's covariance"],
   ["driven", "Driven line", "where the car has been"],
+  ["obstacles", "Obstacles", "parked cars, boxes, poles"],
+  ["opponents", "Opponents", "cars that drive along the line"],
+  ["ghost", "Ghost", "the second controller, in the same world"],
 ] as const;
 export type Layer = (typeof layers)[number][0];
 export const terms = ["distance", "yaw", "collision", "total"] as const;
 export type Term = (typeof terms)[number];
 
 type Point = [number, number];
+export interface Mark { x: number; y: number; shown: boolean }
+const opponent = 4; // kind of body
 
 export function corners(b: { x: number; y: number; yaw: number; length: number; width: number }): Point[] {
   const c = Math.cos(b.yaw), s = Math.sin(b.yaw), l = b.length / 2, w = b.width / 2;
@@ -54,6 +59,7 @@ export class SceneView {
   private driven: number[] = [];
   private drivenTicks: number[] = [];
   private bounds: [number, number, number, number] = [-5, -5, 5, 5];
+  marks: Mark[] = []; // contacts of an evaluation
   preview?: { x: number; y: number; kind: number };
 
   constructor(canvas: HTMLCanvasElement, theme: Theme) {
@@ -122,11 +128,15 @@ export class SceneView {
     if (this.visible.has("guides")) this.drawGuides(frame);
     if (this.visible.has("scan")) this.drawScan(frame);
     painter.flush();
-    for (const body of frame.bodies) if (body.kind !== 0) this.drawObstacle(body);
+    for (const body of frame.bodies) {
+      if (body.kind === opponent && this.visible.has("opponents")) this.drawCar(body.x, body.y, body.yaw, 0, theme.opponent, theme.carEdge, 1);
+      else if (body.kind !== 0 && body.kind !== opponent && this.visible.has("obstacles")) this.drawObstacle(body);
+    }
+    this.drawMarks();
     if (this.preview) this.drawPreview(this.preview);
     if (this.visible.has("nominal") && frame.nominal) this.dashed(frame.nominal.xy, frame.nominal.points, theme.nominal, 1.6);
     if (this.visible.has("plan") && frame.plan) this.drawPlan(frame);
-    if (frame.ghost) this.drawGhost(frame);
+    if (frame.ghost && this.visible.has("ghost")) this.drawGhost(frame);
     painter.flush();
     if (car) this.drawCar(car.x, car.y, car.yaw, frame.scalars[this.index("steer")] ?? 0, theme.car, car.touched ? theme.collided : theme.carEdge, 1);
     painter.flush();
@@ -250,6 +260,20 @@ export class SceneView {
   private drawPreview(p: { x: number; y: number; kind: number }) {
     const points = p.kind === 3 ? circle(p.x, p.y, 0.15) : corners({ ...p, yaw: 0, length: p.kind === 1 ? 0.58 : 0.4, width: p.kind === 1 ? 0.31 : 0.4 });
     this.painter.outline(points, this.theme.obstacle, 1.5);
+  }
+
+  private drawMarks() {
+    for (const m of this.marks) {
+      const r = (m.shown ? 9 : 5) / this.camera.zoom, colour = m.shown ? this.theme.selected : this.theme.mark;
+      this.painter.segment(m.x - r, m.y - r, m.x + r, m.y + r, colour, colour, m.shown ? 3.5 : 2.2);
+      this.painter.segment(m.x - r, m.y + r, m.x + r, m.y - r, colour, colour, m.shown ? 3.5 : 2.2);
+    }
+  }
+
+  /** The mark under a point of the map frame. */
+  markAt<M extends Mark>(marks: M[], x: number, y: number): M | undefined {
+    const within = marks.map((m) => ({ m, d: Math.hypot(m.x - x, m.y - y) })).filter(({ d }) => d < 10 / this.camera.zoom);
+    return within.sort((a, b) => a.d - b.d)[0]?.m;
   }
 
   private drawGhost(frame: Frame) {

@@ -1,7 +1,10 @@
 // Drives the page in a real Chromium: node test/browser.mjs PROGRAM [SCREENSHOT_FOLDER]
 import { spawn } from "node:child_process";
 import assert from "node:assert/strict";
-import { existsSync } from "node:fs";
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { chromium } from "playwright-core";
 
 const program = process.argv[2], pictures = process.argv[3];
@@ -11,9 +14,12 @@ if (!program || !browserPath) {
   process.exit(program ? 77 : 2);
 }
 
-/** Starts `slalom view` and waits for its address. */
-async function serve(...args) {
-  const child = spawn(program, ["view", "--course", "stag", "--obstacles", "4", "--seed", "3", ...args], { stdio: ["ignore", "pipe", "inherit"] });
+const folder = mkdtempSync(join(tmpdir(), "slalom-view-"));
+const serve = (...args) => start("view", "--course", "stag", "--obstacles", "4", "--seed", "3", ...args);
+
+/** Starts the program and waits for its address. */
+async function start(...args) {
+  const child = spawn(program, args, { stdio: ["ignore", "pipe", "inherit"] });
   const address = await new Promise((resolve, reject) => {
     let said = "";
     child.stdout.on("data", (data) => { said += data; const found = said.match(/http:\S+/); if (found) resolve(found[0]); });
@@ -28,9 +34,15 @@ const browser = await chromium.launch({
 });
 let server = await serve("--port", "0");
 const problems = [];
-const page = await browser.newPage({ viewport: { width: 1440, height: 900 }, colorScheme: "dark" });
-page.on("console", (m) => m.type() === "error" && problems.push(m.text()));
-page.on("pageerror", (e) => problems.push(e.message));
+/** A page whose errors are collected. */
+async function open(address) {
+  const opened = await browser.newPage({ viewport: { width: 1440, height: 900 }, colorScheme: "dark" });
+  opened.on("console", (m) => m.type() === "error" && problems.push(m.text()));
+  opened.on("pageerror", (e) => problems.push(e.message));
+  if (address) await opened.goto(address);
+  return opened;
+}
+const page = await open();
 
 const scalar = (name) => page.evaluate((n) => slalom.scalar(n), name);
 const state = () => page.evaluate(() => slalom.state);
@@ -138,6 +150,8 @@ await test("forks from the past with the other method and keeps this one as a gh
   await send({ do: "seek", tick: (await state()).newest - 20 });
   await until(() => slalom.state.tick === slalom.state.newest - 20);
   await page.click("#fork");
+  await page.selectOption("#fork-method", "mppi");
+  await page.click("#fork-go");
   await until(() => slalom.state.ghost === "svg_mppi" && slalom.state.method === "mppi");
   await page.click("#play");
   await until(() => slalom.frame.ghost && Math.hypot(slalom.frame.ghost.x - slalom.scalar("x"), slalom.frame.ghost.y - slalom.scalar("y")) > 0.02);
@@ -145,6 +159,150 @@ await test("forks from the past with the other method and keeps this one as a gh
   await picture("ghost");
   await page.selectOption("#ghost", "");
   await until(() => !slalom.frame.ghost);
+});
+
+await test("forks with other options of the same method", async () => {
+  await page.selectOption("#method", "svg_mppi");
+  await until(() => slalom.state.method === "svg_mppi" && slalom.scalar("tick") > 25);
+  await page.click("#play");
+  await until(() => slalom.state.paused);
+  await send({ do: "seek", tick: (await state()).newest - 20 });
+  await page.keyboard.press("k");
+  await page.selectOption("#fork-method", "svg_mppi");
+  await page.fill("#fork-options", "samples=640 vehicle.max_steering=0.3");
+  await page.click("#fork-go");
+  await until(() => /max_steering/.test(document.getElementById("toast").textContent) || slalom.state.ghost === "svg_mppi");
+  await page.keyboard.press("k");
+  await page.selectOption("#fork-method", "svg_mppi");
+  await page.fill("#fork-options", "samples=640");
+  await page.click("#fork-go");
+  await until(() => slalom.state.ghost_label === "svg_mppi as before");
+  await page.click("#play");
+  await until(() => slalom.scalar("samples") === 640 && /as before/.test(document.getElementById("ghost-label").textContent));
+  await send({ do: "undo" });
+  await page.selectOption("#ghost", "");
+});
+
+await test("a ghost on the same seed starts beside the car", async () => {
+  await page.selectOption("#ghost", "mppi");
+  await page.click("#restart");
+  await until(() => slalom.frame.ghost && slalom.scalar("tick") > 30 && slalom.scalar("tick") < 400 && Math.hypot(slalom.frame.ghost.x - slalom.scalar("x"), slalom.frame.ghost.y - slalom.scalar("y")) > 0.005);
+  assert.ok(Math.abs(await page.evaluate(() => slalom.frame.ghost.laps - slalom.scalar("lap") - slalom.scalar("progress"))) < 0.1);
+  await page.selectOption("#ghost", "");
+  await until(() => !slalom.frame.ghost);
+});
+
+await test("opponents drive along the line", async () => {
+  await page.fill("#opponents", "2");
+  await page.press("#opponents", "Enter");
+  await until(() => slalom.state.opponents === 2 && slalom.frame.bodies.filter((b) => b.kind === 4).length === 2);
+  const first = await page.evaluate(() => slalom.frame.bodies.find((b) => b.kind === 4).x);
+  await until((x) => Math.abs(slalom.frame.bodies.find((b) => b.kind === 4).x - x) > 0.3, first);
+  await send({ do: "scenario", opponents: 0 });
+  await until(() => slalom.state.opponents === 0);
+});
+
+await test("the address holds the scenario and what was changed", async () => {
+  await send({ do: "set", key: "svg_mppi.samples", value: "777" });
+  await until(() => location.hash.includes("set=svg_mppi.samples=777"));
+  const address = page.url();
+  await send({ do: "scenario", course: "eel", seed: "9" });
+  await until(() => slalom.state.course === "eel" && location.hash.includes("course=eel") && !location.hash.includes("777"));
+  const other = await open(address);
+  await other.waitForFunction(() => slalom.state?.course === "stag" && slalom.scalar("samples") === 777, undefined, { timeout: 20000 });
+  await other.close();
+  await send({ do: "reset_options" });
+});
+
+await test("keys are explained", async () => {
+  await page.keyboard.press("?");
+  await until(() => document.getElementById("help-box").open);
+  await picture("help");
+  await page.keyboard.press("Escape");
+});
+
+/** What the page saves when something is clicked. */
+async function saved(from, id) {
+  await from.click("#save > summary");
+  const [file] = await Promise.all([from.waitForEvent("download", { timeout: 60000 }), from.click(id)]);
+  const path = join(folder, file.suggestedFilename());
+  await file.saveAs(path);
+  return path;
+}
+
+await test("saves a picture", async () => {
+  const file = await saved(page, "#save-picture");
+  assert.equal(readFileSync(file).subarray(1, 4).toString(), "PNG");
+  assert.ok(statSync(file).size > 10000);
+});
+
+/** A replay that is open: it plays, at the speed that was chosen, and can be scrubbed. */
+async function plays(replay) {
+  const wait = (what, arg) => replay.waitForFunction(what, arg, { timeout: 20000 });
+  await wait(() => window.slalom?.replay && slalom.frame && slalom.state.newest > 40 && document.getElementById("label").textContent.includes("svg_mppi"));
+  const first = await replay.evaluate(() => slalom.state.tick);
+  await wait((t) => slalom.state.tick > t, first);
+  await replay.click("#play");
+  await wait(() => slalom.state.paused);
+  await replay.evaluate(() => { const t = document.getElementById("timeline"); t.value = "30"; t.dispatchEvent(new Event("input")); t.dispatchEvent(new Event("change")); });
+  await wait(() => slalom.state.tick === 30);
+  const there = await replay.evaluate(() => slalom.scalar("tick"));
+  await replay.click("#step");
+  await wait((t) => slalom.scalar("tick") === t + 1, there);
+  assert.deepEqual(await replay.evaluate(() => [...document.getElementById("rate").options].map((o) => Number(o.value))), [0.1, 0.25, 0.5, 1, 2, 4]);
+  await replay.selectOption("#rate", "4");
+  await replay.click("#play");
+  await wait(() => slalom.state.tick > 35);
+  assert.equal(await replay.evaluate(() => getComputedStyle(document.querySelector("[data-tool=disc]")).display), "none");
+}
+
+await test("the exported replay opens from disk and plays", async () => {
+  await until(() => slalom.scalar("tick") > 80);
+  const file = await saved(page, "#save-replay");
+  const replay = await open("file://" + file);
+  await plays(replay);
+  if (pictures) await replay.screenshot({ path: `${pictures}/replay.png` });
+  await replay.close();
+});
+
+await test("a recording saved from the page opens with slalom replay", async () => {
+  const file = await saved(page, "#save-recording");
+  const shown = await start("replay", file, "--port", "0"), replay = await open(shown.address);
+  await plays(replay);
+  await replay.close();
+  await shown.stop();
+});
+
+await test("a recording of slalom drive becomes a page", async () => {
+  const file = join(folder, "lap.mcap"), html = join(folder, "lap.html");
+  execFileSync(program, ["drive", "--course", "wren", "--seed", "2", "--obstacles", "3", "--record", file], { stdio: "ignore" });
+  execFileSync(program, ["replay", file, "--html", html], { stdio: "ignore" });
+  const replay = await open("file://" + html);
+  await plays(replay);
+  await replay.close();
+});
+
+await test("an evaluation: a click on a contact shows what led to it", async () => {
+  const out = join(folder, "evaluation");
+  execFileSync(program, ["eval", "--course", "wren", "--methods", "mppi", "--laps", "3", "--obstacles", "6", "--set", "mppi.samples=24", "--out", out], { stdio: "ignore" });
+  const shown = await start("view", "--eval", out, "--port", "0"), look = await open(shown.address);
+  const wait = (what, arg) => look.waitForFunction(what, arg, { timeout: 30000 });
+  await wait(() => document.querySelector("#evaluation [data-contact]"));
+  const contact = await look.getAttribute("#evaluation [data-contact]", "data-contact");
+  await look.click("#evaluation [data-contact]");
+  await wait((c) => slalom.state.contact && [slalom.state.contact.experiment, slalom.state.contact.lap, slalom.state.contact.contact].join("/") === c, contact);
+  const tick = await look.evaluate(() => slalom.state.contact.tick);
+  await wait((t) => slalom.scalar("tick") > 0 && slalom.scalar("tick") < t && slalom.scalar("contact") === 0, tick);
+  await wait((t) => slalom.state.paused && slalom.scalar("tick") >= t && slalom.scalar("contacts") > 0, tick);
+  if (pictures) await look.screenshot({ path: `${pictures}/evaluation.png` });
+  await look.click("#timeline");
+  const [x, y] = await look.evaluate(() => { setTimeout(() => 0); const m = slalom.scene.marks.at(-1); slalom.scene.fit(); slalom.scene.draw(); return slalom.scene.camera.toScreen(m.x, m.y); });
+  const box = await look.locator("#scene").boundingBox();
+  const generation = await look.evaluate(() => slalom.state.generation);
+  await look.mouse.click(box.x + x, box.y + y);
+  await wait((g) => slalom.state.generation > g && slalom.state.contact, generation);
+  await look.close();
+  await shown.stop();
 });
 
 await test("the page of another origin cannot connect", async () => {
@@ -183,5 +341,6 @@ await test("says that the connection is lost, and reconnects to a new server", a
 
 await browser.close();
 await server.stop();
+rmSync(folder, { recursive: true });
 console.log(failed ? `${failed} failed` : "all passed");
 process.exit(failed ? 1 : 0);

@@ -1,0 +1,139 @@
+// Recordings: the same drive gives the same bytes, what is damaged is refused by name, a replay page holds
+// what was recorded. That other programs read them is checked in view/page/test/mcap.mjs.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "frame.hpp"
+#include "recording/encodings.hpp"
+#include "recording/mcap_reader.hpp"
+#include "recording/recorder.hpp"
+#include "recording/replay.hpp"
+#include "slalom/core/error.hpp"
+
+namespace slalom::view {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::shared_ptr<const evaluation::Arena> arena() {
+  return evaluation::load_arena(SLALOM_COURSES "/wren", evaluation::Evaluation::true_physics, {});
+}
+
+/// The first control steps of a drive, recorded.
+std::string record(bool wall_clock, int ticks = 12) {
+  const auto where = arena();
+  vehicle::Configuration configuration;
+  vehicle::set_option(configuration, "samples", "64", "svg_mppi");
+  const evaluation::LapRunner runner(where, configuration, "svg_mppi", {.obstacles = 2});
+  evaluation::Ride ride(std::make_shared<const evaluation::LapRunner>(runner), 5);
+  std::ostringstream stream;
+  Recorder recorder(stream, {.settings = {{"settings", "{}"}}, .wall_clock = wall_clock});
+  recorder.add_text("{\"type\":\"hello\"}");
+  recorder.add_course(encode_scene(*where));
+  FrameEncoder encoder;
+  for (int i = 0; i < ticks; ++i)
+    ride.tick([&](const evaluation::LapTick& tick) {
+      recorder.add_frame(encoder.encode(tick, {}) + encode_bodies(tick.world));
+    });
+  recorder.finish();
+  return std::move(stream).str();
+}
+
+class Recordings : public ::testing::Test {
+ protected:
+  std::string file(const std::string& bytes) {
+    const auto path = fs::temp_directory_path() /
+                      (std::string("slalom_recording.") +
+                       ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".mcap");
+    std::ofstream(path, std::ios::binary) << bytes;
+    path_ = path;
+    return path.string();
+  }
+  void TearDown() override {
+    if (!path_.empty()) fs::remove(path_);
+  }
+  fs::path path_;
+};
+
+std::string refusal(const std::string& name) {
+  try {
+    load_replay(name);
+  } catch (const IoError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(Recordings, TheSameDriveGivesTheSameBytes) {
+  const std::string first = record(false);
+  EXPECT_EQ(first, record(false));
+  EXPECT_EQ(first.find("/wall_clock"), std::string::npos);
+  EXPECT_NE(record(true).find("/wall_clock"), std::string::npos);
+}
+
+TEST_F(Recordings, AReplayHoldsEveryFrameInOrder) {
+  const auto segments = load_replay(file(record(false, 12)));
+  ASSERT_EQ(segments.size(), 1u);
+  const std::string all = gunzip(segments[0]);
+  int frames = 0;
+  double last = -1;
+  for (std::size_t at = 0; at < all.size();) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, all.data() + at + 1, sizeof length);
+    const std::string_view message(all.data() + at + 5, length);
+    if (all[at] == 1) {
+      const FrameReader reader(message);
+      if (!reader.block(Block::scalars).empty()) {
+        const double tick = PayloadReader(reader.block(Block::scalars)).get<double>();
+        EXPECT_EQ(tick, last + 1);
+        last = tick;
+        ++frames;
+      }
+    }
+    at += 5 + length;
+  }
+  EXPECT_EQ(frames, 12);
+}
+
+TEST_F(Recordings, WhatIsNoRecordingOrIsDamagedIsRefusedByName) {
+  const std::string good = record(false, 3);
+  EXPECT_NE(
+      refusal(file("no recording at all, but long enough to have a head and a foot")).find("no recording"),
+      std::string::npos);
+  EXPECT_NE(refusal(file(good.substr(0, good.size() - 100))).find("cut short"), std::string::npos);
+  std::string damaged = good;
+  damaged[damaged.size() - 60] = static_cast<char>(damaged[damaged.size() - 60] ^ 1);
+  EXPECT_NE(refusal(file(damaged)).find("checksum"), std::string::npos);
+  damaged = good;
+  const std::size_t inside = damaged.find("replay/00000.gz") + 200;
+  damaged[inside] = static_cast<char>(damaged[inside] ^ 1);
+  EXPECT_NE(refusal(file(damaged)).find("checksum"), std::string::npos);
+  EXPECT_NE(refusal("/no/such/file.mcap").find("cannot be read"), std::string::npos);
+}
+
+TEST(Encodings, GoThereAndBack) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("a"), "YQ==");
+  EXPECT_EQ(base64("ab"), "YWI=");
+  EXPECT_EQ(base64("abc"), "YWJj");
+  std::string text;
+  for (int i = 0; i < 300000; ++i) text += static_cast<char>(i * i % 251);
+  EXPECT_EQ(gunzip(gzip(text)), text);
+  EXPECT_EQ(gunzip(gzip("")), "");
+  EXPECT_THROW(gunzip(gzip(text).substr(0, 1000)), std::invalid_argument);
+  EXPECT_THROW(gunzip("nothing"), std::invalid_argument);
+}
+
+TEST(ReplayPage, PutsTheReplayIntoThePage) {
+  const std::string page = replay_page("<body><script>\"</body>\"</script></body></html>", {"abc", "d"});
+  EXPECT_EQ(page,
+            "<body><script>\"</body>\"</script><script type=\"application/x-slalom-replay\">YWJj</script>\n"
+            "<script type=\"application/x-slalom-replay\">ZA==</script>\n</body></html>");
+}
+
+}  // namespace
+}  // namespace slalom::view

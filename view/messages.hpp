@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "slalom/evaluation/arena.hpp"
+#include "slalom/vehicle/configuration.hpp"
+
+/// The text messages that tell a page what is driven (docs/live-view.md, "Messages").
+namespace slalom::view {
+
+/// What is driven, in the words of the command line.
+struct ScenarioNames {
+  std::string course = "stag";
+  std::string method = "svg_mppi";
+  std::string config = "default";
+  std::uint64_t seed = 0;
+  int obstacles = 0;
+  int opponents = 0;
+  bool operator==(const ScenarioNames&) const = default;
+};
+
+/// What can be chosen.
+struct Choices {
+  std::vector<std::string> courses, methods, configurations;
+};
+
+/// Names and sizes that do not change while a page is open. `history`, `control_period`: s.
+std::string hello_message(const evaluation::Arena& arena, const Choices& choices, double history,
+                          double control_period);
+
+struct OptionsFacts {
+  const ScenarioNames& names;
+  const vehicle::Configuration& now;
+  const vehicle::Configuration& loaded;  ///< before anything was changed
+  const std::string& further_arguments;  ///< of the command line, begins with a space
+  std::size_t undo = 0, redo = 0;        ///< how many steps there are
+};
+/// Every option's declaration and value, and how the command line says it.
+std::string options_message(const OptionsFacts& facts);
+
+/// The command line that drives the same.
+std::string command_line(const OptionsFacts& facts);
+
+/// A lap that was driven.
+struct LapNote {
+  int tick = 0;  ///< at its end
+  int lap = 0;   ///< from 1
+  double time = 0;
+  int contacts = 0;
+  std::string method;
+  bool ghost = false;  ///< driven by the ghost
+};
+
+struct StateFacts {
+  const ScenarioNames& names;
+  const evaluation::Arena& arena;
+  const std::vector<LapNote>& laps;
+  double time = 0, control_period = 0;      ///< s
+  int tick = -1, newest = -1, oldest = -1;  ///< shown, and those that can be gone to
+  bool paused = false, real_time = false, edited = false;
+  double rate = 1;
+  std::string ghost{};        ///< its method; empty if there is none
+  std::string ghost_label{};  ///< what it is called
+  int generation = 0;
+  int clients = 0;
+  std::uint64_t refused = 0;
+  /// Of an evaluation, what is shown: experiment, lap, contact (-1 the whole lap), and the contact's tick.
+  std::array<int, 4> contact{-1, -1, -1, -1};
+};
+std::string state_message(const StateFacts& facts);
+
+}  // namespace slalom::view

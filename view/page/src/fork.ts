@@ -1,0 +1,41 @@
+import type { Hello, Options, State } from "./protocol";
+
+/** Asks what is to drive on from the tick that is shown. */
+export class ForkBox {
+  private options?: Options;
+
+  constructor(private readonly box: HTMLDialogElement, private readonly send: (command: Record<string, unknown>) => void) {
+    box.innerHTML = `<form method="dialog"><h2>Fork</h2>
+      <p>From the tick that is shown another controller drives on; the present one goes on as a ghost in the same world.</p>
+      <label class="line"><span>Method</span><select id="fork-method"></select></label>
+      <label class="line"><span>Options</span><input type="text" id="fork-options" placeholder="samples=512 temperature=1" spellcheck="false" autocomplete="off"></label>
+      <p id="fork-keys"></p>
+      <div class="row end"><button value="cancel">Cancel</button><button id="fork-go" class="primary" value="go">Fork here</button></div></form>`;
+    box.addEventListener("close", () => { if (box.returnValue === "go") this.go(); });
+    this.method.onchange = () => this.showKeys();
+  }
+
+  private get method() { return this.box.querySelector<HTMLSelectElement>("#fork-method")!; }
+  private get text() { return this.box.querySelector<HTMLInputElement>("#fork-options")!; }
+
+  takeOptions(options: Options) { this.options = options; }
+
+  open(hello: Hello, state: State) {
+    this.method.replaceChildren(...hello.methods.map((m) => new Option(m === state.method ? `${m} (drives now)` : m, m)));
+    this.method.value = state.ghost || (hello.methods.find((m) => m !== state.method) ?? state.method);
+    this.text.value = "";
+    this.showKeys();
+    this.box.returnValue = "";
+    this.box.showModal();
+  }
+
+  private showKeys() {
+    const own = this.options?.sections.find((s) => s.name === this.method.value);
+    this.box.querySelector("#fork-keys")!.textContent = own ? `Options of ${own.name}: ${own.options.map((o) => o.name).join(", ")}. Others as section.option=value.` : "Options of the method by name, others as section.option=value.";
+  }
+
+  private go() {
+    const set = this.text.value.trim().split(/\s+(?=[\w.]+=)/).filter(Boolean);
+    this.send({ do: "fork", method: this.method.value, set });
+  }
+}

@@ -1,0 +1,16 @@
+import type { Frame, Scene, Text } from "./protocol";
+
+/** Who gets what comes, from a server or from a recording. */
+export interface Handlers {
+  frame(frame: Frame): void;
+  scene(scene: Scene): void;
+  text(message: Text): void;
+  file(name: string, content: Uint8Array): void;
+  status(connected: boolean, attempts: number): void;
+}
+
+/** Where the page gets its messages from and sends its commands to. */
+export interface Link {
+  send(command: Record<string, unknown>): void;
+  readonly received: number; // frames
+}

@@ -1,0 +1,104 @@
+import type { Handlers, Link } from "./link";
+import { decode, type State, type Text } from "./protocol";
+
+/** The recording inside this page, if there is one. */
+export function recordings(): HTMLScriptElement[] {
+  return [...document.querySelectorAll<HTMLScriptElement>('script[type="application/x-slalom-replay"]')];
+}
+
+async function unpacked(script: HTMLScriptElement): Promise<ArrayBuffer> {
+  const text = atob(script.textContent!.trim()), packed = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
+  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+}
+
+/** Plays a recording: gives the page what a server would have sent, and obeys what concerns time. */
+export class Player implements Link {
+  received = 0;
+  private readonly frames: ArrayBuffer[] = [];
+  private readonly states: { from: number; state: State }[] = []; // each holds from this frame on
+  private at = 0; // frames, with a share of the next
+  private shown = -1;
+  private paused = false;
+  private rate = 1;
+  private last = 0;
+  private loading = true;
+
+  constructor(private readonly handlers: Handlers, scripts: HTMLScriptElement[]) {
+    void this.load(scripts);
+    requestAnimationFrame((now) => this.turn(now));
+  }
+
+  private async load(scripts: HTMLScriptElement[]) {
+    try {
+      for (const script of scripts) this.take(await unpacked(script));
+    } catch (error) {
+      this.handlers.text({ type: "error", message: `The recording cannot be read: ${error}` });
+    }
+    this.loading = false;
+    this.tell();
+  }
+
+  private take(bytes: ArrayBuffer) {
+    const view = new DataView(bytes);
+    for (let at = 0; at + 5 <= bytes.byteLength; ) {
+      const kind = view.getUint8(at), length = view.getUint32(at + 1, true), content = bytes.slice(at + 5, at + 5 + length);
+      at += 5 + length;
+      if (kind === 0) this.takeText(JSON.parse(new TextDecoder().decode(content)) as Text);
+      else if (new DataView(content).getUint16(4, true) >= 20) this.handlers.scene(decode(content).scene!);
+      else this.frames.push(content);
+    }
+    this.tell();
+  }
+
+  private takeText(message: Text) {
+    if (message.type === "state") this.states.push({ from: this.frames.length, state: message });
+    else this.handlers.text(message.type === "hello" ? { ...message, replay: true } : message);
+  }
+
+  private tell() {
+    const index = Math.max(0, Math.min(this.frames.length - 1, Math.floor(this.at)));
+    const held = this.states.filter((s) => s.from <= index).at(-1) ?? this.states[0];
+    if (!held) return;
+    this.handlers.text({ ...held.state, paused: this.paused, real_time: false, rate: this.rate, tick: index, newest: this.frames.length - 1, oldest: 0 });
+  }
+
+  private show() {
+    const index = Math.floor(this.at);
+    if (index === this.shown || !this.frames[index]) return;
+    const before = this.shown;
+    this.shown = index;
+    this.received += 1;
+    this.handlers.frame(decode(this.frames[index]).frame!);
+    if (this.paused || index % 10 === 0 || Math.abs(index - before) > 1) this.tell();
+  }
+
+  private turn(now: number) {
+    const period = this.states[0]?.state.control_period ?? 0.025, passed = Math.min(0.1, (now - this.last) / 1000);
+    this.last = now;
+    if (!this.paused && this.frames.length) {
+      this.at += (passed * this.rate) / period;
+      if (this.at >= this.frames.length - 1) {
+        this.at = this.frames.length - 1;
+        if (!this.loading) { this.paused = true; this.tell(); }
+      }
+    }
+    this.show();
+    requestAnimationFrame((then) => this.turn(then));
+  }
+
+  send(command: Record<string, unknown>) {
+    const end = this.frames.length - 1;
+    switch (command.do) {
+      case "play": if (this.at >= end) this.at = 0; this.paused = false; break;
+      case "pause": this.paused = true; break;
+      case "restart": this.at = 0; this.paused = false; break;
+      case "step": this.at = Math.min(end, Math.floor(this.at) + Number(command.ticks ?? 1)); this.paused = true; break;
+      case "seek": this.at = Math.min(end, Math.max(0, Number(command.tick))); this.paused = true; break;
+      case "rate": this.rate = Number(command.rate) || 4; break;
+      default: this.handlers.text({ type: "error", message: "This is a recording: it shows what was, and cannot be changed." }); return;
+    }
+    this.show();
+    this.tell();
+  }
+}

@@ -1,0 +1,180 @@
+#include "recording/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "frame.hpp"
+#include "recording/foxglove_schemas.hpp"
+
+namespace slalom::view {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t gap_between_drives = 1'000'000'000;  // ns
+
+/// Whether a figure of a frame is of the clock of the wall.
+bool is_wall_clock(std::string_view name) {
+  return name.size() > 3 && name.substr(name.size() - 3) == "_ms" && name != "deadline_ms";
+}
+
+Json maybe(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+/// Each name a number, or null where there is none.
+std::string figures_schema(bool wall_clock) {
+  Json properties = {{"timestamp",
+                      {{"type", "object"},
+                       {"properties", {{"sec", {{"type", "integer"}}}, {"nsec", {{"type", "integer"}}}}}}}};
+  for (const std::string_view name : scalar_names())
+    if (is_wall_clock(name) == wall_clock) properties[std::string(name)] = {{"type", {"number", "null"}}};
+  if (!wall_clock) {
+    properties["covariance"] = {{"type", "array"}, {"items", {{"type", "number"}}}};
+    properties["plan"] = {{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
+  }
+  return Json{{"type", "object"}, {"properties", properties}}.dump();
+}
+
+}  // namespace
+
+Recorder::Recorder(std::ostream& stream, RecorderOptions options)
+    : options_(std::move(options)),
+      writer_(stream, options_.library),
+      replay_([this](const std::string& segment) { attach(segment); }) {
+  writer_.add_metadata("slalom", options_.settings);
+  const auto schema = [&](const char* name, const std::string& text) {
+    return writer_.add_schema(name, "jsonschema", text);
+  };
+  const auto transform = schema("foxglove.FrameTransform", foxglove::frame_transform_schema());
+  const auto grid = schema("foxglove.Grid", foxglove::grid_schema());
+  const auto scan = schema("foxglove.LaserScan", foxglove::laser_scan_schema());
+  const auto scene = schema("foxglove.SceneUpdate", foxglove::scene_update_schema());
+  const auto tick = schema("slalom.Tick", figures_schema(false));
+  struct Plan {
+    const char* topic;
+    std::uint16_t schema;
+  };
+  const Plan plans[] = {{"/tf", transform},  {"/map", grid},   {"/course", scene},     {"/scan", scan},
+                        {"/cost_map", grid}, {"/cars", scene}, {"/candidates", scene}, {"/guides", scene},
+                        {"/plan", scene},    {"/tick", tick}};
+  for (const Plan& each : plans) channels_.push_back(writer_.add_channel(each.topic, "json", each.schema));
+  if (options_.wall_clock)
+    channels_.push_back(
+        writer_.add_channel("/wall_clock", "json", schema("slalom.WallClock", figures_schema(true))));
+}
+
+void Recorder::begin_drive() {
+  offset_ = time_ > 0 ? time_ + gap_between_drives : 0;
+  time_ = offset_;
+}
+
+void Recorder::add(Topic topic, const std::string& json) {
+  writer_.add_message(channels_[static_cast<std::size_t>(topic)], time_, json);
+}
+
+void Recorder::attach(const std::string& segment) {
+  char name[32];
+  std::snprintf(name, sizeof name, "replay/%05d.gz", segments_++);
+  writer_.add_attachment(name, "application/gzip", time_, segment);
+}
+
+void Recorder::add_text(std::string_view json) {
+  replay_.add_text(json);
+}
+
+void Recorder::add_course(std::string_view message) {
+  replay_.add_course(message);
+  const FrameReader reader(message);
+  PayloadReader grid(reader.block(Block::grid));
+  const auto width = grid.get<std::uint32_t>(), height = grid.get<std::uint32_t>();
+  const auto resolution = grid.get<double>();
+  const maps::Pose corner = grid.pose();
+  std::string cells;
+  for (auto runs = grid.get<std::uint32_t>(); runs > 0; --runs) {
+    const auto run = grid.get<std::uint32_t>();
+    constexpr char shades[] = {0, 100, 50};  // free, occupied, unknown
+    cells.append(run & 0xffffffu, shades[std::min(run >> 24, 2u)]);
+  }
+  cells.resize(std::size_t{width} * height);
+  add(Topic::map, foxglove::grid(time_, corner, width, resolution, "occupied", cells));
+
+  PayloadReader path(reader.block(Block::path));
+  const auto count = path.get<std::uint32_t>();
+  const bool closed = path.get<std::uint32_t>() != 0;
+  std::vector<maps::Point> points;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double x = path.f32();
+    points.push_back({x, path.f32()});
+    path.f32();  // the speed
+  }
+  if (closed && !points.empty()) points.push_back(points.front());
+  foxglove::Scene scene(time_);
+  scene.begin("course");
+  scene.line(points, {0.5, 0.56, 0.64, 0.7}, 1);
+  add(Topic::course, scene.take());
+}
+
+std::string Recorder::without_wall_clock(std::string_view frame, const FrameReader& reader) const {
+  std::string copy(frame);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const auto names = scalar_names();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (is_wall_clock(names[i]))
+      std::memcpy(copy.data() + reader.offset(Block::scalars) + 8 * i, &none, sizeof none);
+  return copy;
+}
+
+void Recorder::add_frame(std::string_view frame) {
+  const FrameReader reader(frame);
+  PayloadReader payload(reader.block(Block::scalars));
+  std::vector<double> scalars(scalar_names().size());
+  for (double& each : scalars) each = payload.get<double>();
+  constexpr std::size_t time_index = 1;
+  time_ = offset_ + static_cast<std::uint64_t>(std::llround(1e9 * scalars[time_index]));
+  replay_.add_frame(options_.wall_clock ? std::string(frame) : without_wall_clock(frame, reader));
+
+  add_tick(reader, scalars);
+  add_scan(reader);
+  add_cost_map(reader);
+  add_cars(reader);
+  add_candidates(reader);
+  add_guides(reader);
+  add_plan(reader);
+}
+
+void Recorder::finish() {
+  replay_.finish();
+  writer_.finish();
+}
+
+void Recorder::add_tick(const FrameReader& reader, const std::vector<double>& scalars) {
+  const Json stamp = {{"sec", time_ / 1'000'000'000}, {"nsec", time_ % 1'000'000'000}};
+  Json tick = {{"timestamp", stamp}}, times = {{"timestamp", stamp}};
+  const auto names = scalar_names();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    (is_wall_clock(names[i]) ? times : tick)[names[i]] = maybe(scalars[i]);
+  Json covariance = Json::array(), plan = Json::array();
+  const std::string_view variances = reader.block(Block::covariance);
+  PayloadReader variance(variances);
+  for (std::size_t i = 0; i < variances.size() / 4; ++i) covariance.push_back(variance.f32());
+  if (const auto block = reader.block(Block::plan); !block.empty()) {
+    PayloadReader states(block);
+    const auto count = states.get<std::uint32_t>();
+    const double x = states.get<double>(), y = states.get<double>();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      double v[6];
+      for (double& each : v) each = states.f32();
+      plan.push_back({maybe(x + v[0]), maybe(y + v[1]), maybe(v[2]), maybe(v[3]), maybe(v[4])});
+    }
+  }
+  tick["covariance"] = covariance;
+  tick["plan"] = plan;
+  add(Topic::tick, tick.dump());
+  if (options_.wall_clock) add(Topic::times, times.dump());
+}
+
+}  // namespace slalom::view

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "frame_reader.hpp"
+#include "recording/foxglove_messages.hpp"
+#include "recording/mcap_writer.hpp"
+#include "recording/replay.hpp"
+
+namespace slalom::view {
+
+/// What a recording says about itself and needs to know.
+struct RecorderOptions {
+  std::string library = "slalom";                         ///< who wrote it
+  std::map<std::string, std::string> settings;            ///< kept as the metadata "slalom"
+  double lidar_angle_min = 0, lidar_angle_increment = 0;  ///< rad
+  double lidar_range_max = 30;                            ///< m
+  bool wall_clock = false;  ///< also how long things took; without, the same drive gives the same bytes
+};
+
+/// Writes a drive as an MCAP file (docs/recording.md): topics with Foxglove's messages for other programs,
+/// and the live view's own messages as attachments, from which the page replays.
+class Recorder {
+ public:
+  Recorder(std::ostream& stream, RecorderOptions options);
+
+  /// The times of what comes now begin anew; they follow on those before.
+  void begin_drive();
+  /// A text message as the page gets it: hello, options, state.
+  void add_text(std::string_view json);
+  /// The course: its map and line.
+  void add_course(std::string_view message);
+  /// A control step.
+  void add_frame(std::string_view frame);
+  /// Closes the file's structure.
+  void finish();
+
+ private:
+  enum class Topic {
+    transform,
+    map,
+    course,
+    scan,
+    cost_map,
+    cars,
+    candidates,
+    guides,
+    plan,
+    tick,
+    times,
+    count
+  };
+
+  void add(Topic topic, const std::string& json);
+  void attach(const std::string& segment);
+  std::string without_wall_clock(std::string_view frame, const FrameReader& reader) const;
+  void add_tick(const FrameReader& reader, const std::vector<double>& scalars);
+  void add_scan(const FrameReader& reader);
+  void add_cost_map(const FrameReader& reader);
+  void add_cars(const FrameReader& reader);
+  void add_candidates(const FrameReader& reader);
+  void add_guides(const FrameReader& reader);
+  void add_plan(const FrameReader& reader);
+
+  RecorderOptions options_;
+  mcap::Writer writer_;
+  std::vector<std::uint16_t> channels_;
+  ReplaySegments replay_;
+  int segments_ = 0;
+  std::uint64_t time_ = 0, offset_ = 0;  ///< ns
+};
+
+}  // namespace slalom::view

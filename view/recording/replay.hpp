@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What the page replays from: the messages that it would have got from a live drive, in their order, cut
+/// into segments that are compressed one by one. A message is its kind (a byte: 0 text, 1 binary), its length
+/// (u32) and its bytes.
+namespace slalom::view {
+
+/// Cuts messages into segments.
+class ReplaySegments {
+ public:
+  using Take = std::function<void(std::string segment)>;
+
+  /// `take` gets each segment, compressed with gzip, when it is full or at `finish`.
+  explicit ReplaySegments(Take take) : take_(std::move(take)) {}
+
+  void add_text(std::string_view message) { add(0, message); }
+  void add_course(std::string_view message) { add(1, message); }
+  void add_frame(std::string_view message);
+  void finish();
+
+ private:
+  void add(char kind, std::string_view message);
+
+  Take take_;
+  std::string segment_;
+  int frames_ = 0;
+};
+
+/// The page with a replay inside: one file that needs no server. `page`: the page's HTML.
+std::string replay_page(std::string page, const std::vector<std::string>& segments);
+
+/// The segments of a recording in MCAP. Throws IoError on what is none.
+std::vector<std::string> load_replay(const std::string& file);
+
+}  // namespace slalom::view
