@@ -16,6 +16,7 @@ const strips: Strip[] = [
 ];
 
 const span = 20; // s that the strips show
+const gap = 0.5; // s without a frame that are drawn as a gap
 
 function css(name: string) { return getComputedStyle(document.documentElement).getPropertyValue(name).trim(); }
 
@@ -127,6 +128,10 @@ export class Charts {
       for (const p of this.plotted) for (const c of p.columns) c.length = keep;
       this.ticks = this.ticks.filter((t) => t.tick < tick);
     }
+    if (this.times.length && time - this.times[this.times.length - 1] > gap) { // nothing is known of what lies between
+      this.times.push(time - 1e-6);
+      for (const p of this.plotted) for (const c of p.columns) c.push(null as unknown as number);
+    }
     this.times.push(time);
     for (const p of this.plotted) p.strip.lines.forEach((l, i) => { const v = at(l.name); p.columns[i].push(Number.isFinite(v) ? v * (p.strip.scale ?? 1) : (null as unknown as number)); });
     let old = 0;
@@ -135,7 +140,7 @@ export class Charts {
       this.times.splice(0, old);
       for (const p of this.plotted) for (const c of p.columns) c.splice(0, old);
     }
-    this.ticks.push({ tick, ms: at("tick_ms") });
+    if (Number.isFinite(at("tick_ms"))) this.ticks.push({ tick, ms: at("tick_ms") });
     if (this.ticks.length > 500) this.ticks.shift();
     this.deadline = at("deadline_ms");
     this.latest = frame;
@@ -161,6 +166,7 @@ export class Charts {
       const x = Array.from({ length: c.length + 1 }, (_, i) => +(i * this.step).toFixed(4)), y = Array.from(c, Math.sqrt);
       this.covariance.plot?.setData([x, [...y, y[y.length - 1]]]);
     }
+    this.histogram.holder.parentElement!.hidden = !this.ticks.length;
     if (this.ticks.length) {
       const all = this.ticks.map((t) => t.ms).sort((a, b) => a - b);
       const top = Math.max(2, all[Math.floor(0.995 * (all.length - 1))] * 1.3), bins = 36, counts = new Array(bins).fill(0);

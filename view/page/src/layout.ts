@@ -38,7 +38,7 @@ export function layout(root: HTMLElement) {
     <span>speed</span><b id="speed">–<small>m/s</small></b>
     <span id="lap-number">lap 1</span><b id="lap-time">–<small>s</small></b>
     <span class="extra">clearance</span><b class="extra" id="clearance">–<small>m</small></b>
-    <span class="extra">planner</span><b class="extra" id="solve">–<small>ms</small></b>
+    <span class="extra" id="solve-label">planner</span><b class="extra" id="solve">–<small>ms</small></b>
     <span>contacts</span><b id="contacts">0</b>
     <span id="gap-label" hidden>to ghost</span><b id="gap" hidden>–<small>m</small></b>
   </div>

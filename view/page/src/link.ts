@@ -4,6 +4,8 @@ import type { Frame, Scene, Text } from "./protocol";
 export interface Handlers {
   frame(frame: Frame): void;
   scene(scene: Scene): void;
+  /** The figures of the frames before one that was jumped to. */
+  past(scalars: Float64Array[]): void;
   text(message: Text): void;
   file(name: string, content: Uint8Array): void;
   status(connected: boolean, attempts: number): void;

@@ -35,6 +35,16 @@ const scalar = (name: string) => (frame && hello ? frame.scalars[hello.scalars.i
 const handlers = {
   frame(next: Frame) { frame = next; showFrame(); },
   scene(next: Scene) { scene.setScene(next); charts.clear(); dirty = true; },
+  past(frames: Float64Array[]) {
+    charts.clear();
+    scene.clearDriven();
+    if (!hello) return;
+    for (const scalars of frames) {
+      charts.add({ scalars, bodies: [] }, hello);
+      const at = (name: string) => scalars[hello!.scalars.indexOf(name)];
+      scene.addDriven(at("tick"), at("x"), at("y"));
+    }
+  },
   text: got,
   file(name: string, content: Uint8Array) { download(name, content as BlobPart, name.endsWith(".html") ? "text/html" : "application/octet-stream"); toast(`Saved ${name}, ${(content.length / 1e6).toFixed(1)} MB.`); },
   status(connected: boolean, attempts: number) {
@@ -183,6 +193,7 @@ function showFrame() {
   get("lap-number").textContent = `lap ${scalar("lap") + 1}`;
   get("clearance").firstChild!.textContent = n("clearance", 2);
   get("solve").firstChild!.textContent = n("tick_ms", 2);
+  get("solve").hidden = get("solve-label").hidden = !Number.isFinite(scalar("tick_ms"));
   get("contacts").textContent = n("contacts", 0);
   const label = get("label");
   label.textContent = `${hello.methods[scalar("method")] ?? ""}${status && status !== "ok" ? " · " + status.replace(/_/g, " ") : ""}`;
@@ -221,8 +232,11 @@ function draw() {
     scene.draw();
     charts.draw();
     const car = frame?.bodies[0], ghost = scene.visible.has("ghost") ? frame?.ghost : undefined;
-    place(get("label"), car, 1);
-    place(get("ghost-label"), ghost, car && ghost && Math.abs(car.y - ghost.y) < 0.6 && Math.abs(car.x - ghost.x) < 1.5 ? -1 : 1);
+    // Behind the car, so that the label does not hide the plan; a ghost close by has its label on the other side.
+    const behind = (yaw: number) => (Math.sin(yaw + scene.camera.turn) < -0.25 ? -1 : 1);
+    place(get("label"), car, behind(car?.yaw ?? 0));
+    const near = car && ghost && Math.hypot(car.x - ghost.x, car.y - ghost.y) < 1.2;
+    place(get("ghost-label"), ghost, near ? (behind(car.yaw) > 0 ? -1 : 1) : behind(ghost?.yaw ?? 0));
     const metres = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20].find((m) => m * scene.camera.zoom >= 48) ?? 20;
     get("ruler-text").textContent = metres + " m";
     get("ruler-bar").style.width = metres * scene.camera.zoom + "px";

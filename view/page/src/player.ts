@@ -12,6 +12,13 @@ async function unpacked(script: HTMLScriptElement): Promise<ArrayBuffer> {
   return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
 }
 
+const history = 800; // frames, of what the charts show
+
+/** A frame's figures alone: its first block. */
+function scalarsOf(frame: ArrayBuffer): Float64Array {
+  return new Float64Array(frame.slice(12, 12 + new DataView(frame).getUint32(8, true)));
+}
+
 /** Plays a recording: gives the page what a server would have sent, and obeys what concerns time. */
 export class Player implements Link {
   received = 0;
@@ -69,6 +76,7 @@ export class Player implements Link {
     const before = this.shown;
     this.shown = index;
     this.received += 1;
+    if (index < before || index > before + 15) this.handlers.past(this.frames.slice(Math.max(0, index - history), index).map(scalarsOf));
     this.handlers.frame(decode(this.frames[index]).frame!);
     if (this.paused || index % 10 === 0 || Math.abs(index - before) > 1) this.tell();
   }

@@ -71,8 +71,7 @@ export class SceneView {
 
   setScene(scene: Scene) {
     this.scene = scene;
-    this.driven = [];
-    this.drivenTicks = [];
+    this.clearDriven();
     const grid = scene.grid;
     if (grid) this.painter.upload(this.map, grid.width, grid.height, smoothed(grid.cells.map((v) => (v === 0 ? 255 : 0)), grid.width, grid.height));
     const p = scene.path?.xyv;
@@ -90,6 +89,15 @@ export class SceneView {
 
   setFrame(frame: Frame, tick: number, x: number, y: number) {
     this.frame = frame;
+    this.addDriven(tick, x, y);
+  }
+
+  clearDriven() {
+    this.driven = [];
+    this.drivenTicks = [];
+  }
+
+  addDriven(tick: number, x: number, y: number) {
     while (this.drivenTicks.length && this.drivenTicks[this.drivenTicks.length - 1] >= tick) {
       this.drivenTicks.pop();
       this.driven.length -= 2;
