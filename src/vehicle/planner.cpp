@@ -107,8 +107,8 @@ struct Planner::Implementation {
     const CarStart start = history.lead_ahead(now);
     // Without a limit to its acceleration a rollout is at once as fast as the reference.
     const bool jumps = !problem.limit_acceleration;
-    const double furthest = std::max(std::abs(odometry.speed), 1.0) +
-                            (jumps ? 0 : problem.max_acceleration * horizon_time());
+    const double furthest =
+        std::max(std::abs(odometry.speed), 1.0) + (jumps ? 0 : problem.max_acceleration * horizon_time());
     field.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? horizon_time() : 0);
     const maps::ReferenceCell here = field.at(start.pose.x, start.pose.y);
     if (!problem.localisation_less && options.stop_when_blocked &&
