@@ -26,10 +26,10 @@
 /// Departures: the poses from elsewhere do not join the particles, where the first place that fits well would
 /// drive out the right one, but are followed for themselves, and the particles are put to such a place once
 /// it has fitted better for some time. The random numbers for drawing anew are a shifted radical inverse
-/// sequence, so that every length of it is nearly stratified. The fit that is averaged is that of the estimate
-/// by the likelihood field, the mean over beams, so that neither their number nor a parked car that the map
-/// does not know gives an alarm; its long-term average counts as at least `least_fit`, so that a global start
-/// is a search too. A rear axle in a wall counts as improbable.
+/// sequence, so that every length of it is nearly stratified. The fit that is averaged is that of the
+/// estimate by the likelihood field, the mean over beams, so that neither their number nor a parked car that
+/// the map does not know gives an alarm; its long-term average counts as at least `least_fit`, so that a
+/// global start is a search too. A rear axle in a wall counts as improbable.
 namespace slalom::vehicle {
 
 enum class LocaliserStatus {
