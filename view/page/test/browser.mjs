@@ -284,7 +284,7 @@ await test("a recording of slalom drive becomes a page", async () => {
 
 await test("an evaluation: a click on a contact shows what led to it", async () => {
   const out = join(folder, "evaluation");
-  execFileSync(program, ["eval", "--course", "wren", "--methods", "mppi", "--laps", "3", "--obstacles", "6", "--set", "mppi.samples=24", "--out", out], { stdio: "ignore" });
+  execFileSync(program, ["eval", "--course", "hare", "--methods", "mppi", "--laps", "3", "--obstacles", "6", "--config", "published", "--set", "mppi.samples=24", "--out", out], { stdio: "ignore" });
   const shown = await start("view", "--eval", out, "--port", "0"), look = await open(shown.address);
   const wait = (what, arg) => look.waitForFunction(what, arg, { timeout: 30000 });
   await wait(() => document.querySelector("#evaluation [data-contact]"));
