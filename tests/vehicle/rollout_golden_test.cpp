@@ -286,11 +286,12 @@ void check_in_float(const Checked<separate>& checked, const Case& c, simd::Targe
 }
 
 template <class Check>
-int for_each_case(const std::filesystem::path& folder, Check&& check) {
-  const auto maps = load_maps(folder / "maps");
-  const auto sets = nlohmann::json::parse(std::ifstream(folder / "rollout_cost" / "param_sets.json"));
+int for_each_case(const std::filesystem::path& folder, const std::filesystem::path& map_folder,
+                  Check&& check) {
+  const auto maps = load_maps(map_folder);
+  const auto sets = nlohmann::json::parse(std::ifstream(folder / "param_sets.json"));
   int compared = 0;
-  for (const Case& c : load_cases(folder / "rollout_cost")) {
+  for (const Case& c : load_cases(folder)) {
     const auto map = maps.find(c.map);
     if (map == maps.end()) {
       ADD_FAILURE() << "case " << c.id << ": there is no map " << c.map;
@@ -315,9 +316,10 @@ int for_each_case(const std::filesystem::path& folder, Check&& check) {
 }
 
 TEST(GoldenRollout, Double) {
-  SLALOM_GOLDEN_FOLDER(folder, "controller");
+  SLALOM_GOLDEN_FOLDER(folder, "controller/rollout_cost");
+  SLALOM_GOLDEN_FOLDER(map_folder, "controller/maps");
   double worst_state = 0, worst_cost = 0;
-  const int compared = for_each_case(folder, [&](const auto& checked, const Case& c) {
+  const int compared = for_each_case(folder, map_folder, [&](const auto& checked, const Case& c) {
     check_in_double(checked, c, worst_state, worst_cost);
   });
   std::cout << "rollout_cost, double: " << compared << " cases, largest error of a state " << worst_state
@@ -330,11 +332,13 @@ TEST(GoldenRollout, Double) {
 class GoldenRolloutOn : public ::testing::TestWithParam<simd::Target> {};
 
 TEST_P(GoldenRolloutOn, Float) {
-  SLALOM_GOLDEN_FOLDER(folder, "controller");
+  SLALOM_GOLDEN_FOLDER(folder, "controller/rollout_cost");
+  SLALOM_GOLDEN_FOLDER(map_folder, "controller/maps");
   if (!simd::supported(GetParam())) GTEST_SKIP() << "this processor has no " << simd::name(GetParam());
   FloatTally tally;
-  const int compared = for_each_case(
-      folder, [&](const auto& checked, const Case& c) { check_in_float(checked, c, GetParam(), tally); });
+  const int compared = for_each_case(folder, map_folder, [&](const auto& checked, const Case& c) {
+    check_in_float(checked, c, GetParam(), tally);
+  });
   std::cout << "rollout_cost, float32 on " << simd::name(GetParam()) << ": " << compared << " cases, "
             << tally.other_cells
             << " of them with another cell at an edge; largest relative error of the others " << tally.worst
