@@ -48,7 +48,7 @@ struct LogComparison {
   static constexpr int enough_laps = 10;
   /// "Inside" takes intervals that are no wider than this to each side: half of their MS, ten points of their
   /// collision rate.
-  static constexpr double telling_ratio = 0.5, telling_rate = 0.1;
+  static constexpr double telling_ratio = 0.5, telling_rate = 0.1;  ///< of MS, of the rate
 
   Agreement ms_agreement() const;
   Agreement contacts_agreement() const;  ///< inside without obstacles
