@@ -30,19 +30,18 @@ struct HardwareConditions {
 template <class Options, class Visit>
 requires is_options_of<Options, HardwareConditions>
 void visit_options(Options& o, Visit&& visit) {
-  const auto number = [&](auto& field, const char* name, const char* unit, const char* help, double min,
-                          double max) {
-    visit(field, Declaration{.name = name, .unit = unit, .help = help, .min = min, .max = max});
-  };
-  number(o.range_noise, "range_noise", "m", "of each range", 0, 1);
-  number(o.dropout, "dropout", "", "share of beams without a return", 0, 1);
-  number(o.steering_dead_time, "steering_dead_time", "s", "of the servo", 0, 1);
-  number(o.steering_time_constant, "steering_time_constant", "s", "of the servo's lag", 0, 10);
-  number(o.steering_gain, "steering_gain", "", "of the wheels' angle over the commanded", 0.1, 10);
-  number(o.steering_offset, "steering_offset", "rad", "to the left", -0.4, 0.4);
-  number(o.speed_gain, "speed_gain", "1/s", "acceleration per error of speed", 0.1, 100);
-  number(o.acceleration_max, "acceleration_max", "m/s^2", "and of braking", 0.1, 100);
-  number(o.longest_blind, "longest_blind", "s", "odometry alone carries the pose so long", 0, 10);
+  visit(o.range_noise, Declaration{"range_noise", "", "m", "of each range", 0, 1});
+  visit(o.dropout, Declaration{"dropout", "", "", "share of beams without a return", 0, 1});
+  visit(o.steering_dead_time, Declaration{"steering_dead_time", "", "s", "of the servo", 0, 1});
+  visit(o.steering_time_constant,
+        Declaration{"steering_time_constant", "", "s", "of the servo's lag", 0, 10});
+  visit(o.steering_gain,
+        Declaration{"steering_gain", "", "", "of the wheels' angle over the commanded", 0.1, 10});
+  visit(o.steering_offset, Declaration{"steering_offset", "", "rad", "to the left", -0.4, 0.4});
+  visit(o.speed_gain, Declaration{"speed_gain", "", "1/s", "acceleration per error of speed", 0.1, 100});
+  visit(o.acceleration_max, Declaration{"acceleration_max", "", "m/s^2", "and of braking", 0.1, 100});
+  visit(o.longest_blind,
+        Declaration{"longest_blind", "", "s", "odometry alone carries the pose so long", 0, 10});
 }
 
 /// How well the car knew where it was in a lap.

@@ -77,63 +77,65 @@ namespace detail {
 
 template <class Options, class Visit>
 void visit_localiser_scan(Options& o, Visit&& visit) {
-  const auto number = [&](auto& field, const char* name, const char* unit, const char* help, double min,
-                          double max) {
-    visit(field, Declaration{.name = name, .unit = unit, .help = help, .min = min, .max = max});
-  };
   visit(o.sensor_model, Declaration{.name = "sensor_model", .help = "how probable a range is at a pose"});
-  number(o.laser_x, "laser_x", "m", "of the laser from the rear axle", -10, 10);
-  number(o.laser_y, "laser_y", "m", "of the laser from the rear axle", -10, 10);
-  number(o.laser_yaw, "laser_yaw", "rad", "of the laser", -3.2, 3.2);
-  number(o.scan_readings, "scan_readings", "", "a scan has so many or is refused; 0: any", 0, 1e6);
-  number(o.beams, "beams", "", "of a scan that are used", 8, 1024);
-  number(o.least_beams, "least_beams", "", "readings that a scan must have to be used", 1, 1024);
-  number(o.range_cap, "range_cap", "m", "longer readings are not used", 0.5, 1000);
-  number(o.hit_deviation, "hit_deviation", "m", "of range and map together", 1e-3, 10);
-  number(o.hit_weight, "hit_weight", "", "share of readings from the map", 1e-3, 1);
-  number(o.short_weight, "short_weight", "", "share of readings from something before the map", 0, 1);
-  number(o.short_rate, "short_rate", "1/m", "how soon something comes before the map", 0, 100);
-  number(o.lost_weight, "lost_weight", "", "share of readings that do not come back", 0, 1);
-  number(o.random_weight, "random_weight", "", "share of readings from anywhere", 1e-6, 1);
-  number(o.beam_exponent, "beam_exponent", "", "of each beam's probability", 1e-3, 1);
-  number(o.table_cell, "table_cell", "m", "of the table of ranges, beam model", 0.01, 1);
-  number(o.table_angles, "table_angles", "", "of the table of ranges, beam model", 36, 1440);
+  visit(o.laser_x, Declaration{"laser_x", "", "m", "of the laser from the rear axle", -10, 10});
+  visit(o.laser_y, Declaration{"laser_y", "", "m", "of the laser from the rear axle", -10, 10});
+  visit(o.laser_yaw, Declaration{"laser_yaw", "", "rad", "of the laser", -3.2, 3.2});
+  visit(o.scan_readings,
+        Declaration{"scan_readings", "", "", "a scan has so many or is refused; 0: any", 0, 1e6});
+  visit(o.beams, Declaration{"beams", "", "", "of a scan that are used", 8, 1024});
+  visit(o.least_beams,
+        Declaration{"least_beams", "", "", "readings that a scan must have to be used", 1, 1024});
+  visit(o.range_cap, Declaration{"range_cap", "", "m", "longer readings are not used", 0.5, 1000});
+  visit(o.hit_deviation, Declaration{"hit_deviation", "", "m", "of range and map together", 1e-3, 10});
+  visit(o.hit_weight, Declaration{"hit_weight", "", "", "share of readings from the map", 1e-3, 1});
+  visit(o.short_weight,
+        Declaration{"short_weight", "", "", "share of readings from something before the map", 0, 1});
+  visit(o.short_rate,
+        Declaration{"short_rate", "", "1/m", "how soon something comes before the map", 0, 100});
+  visit(o.lost_weight, Declaration{"lost_weight", "", "", "share of readings that do not come back", 0, 1});
+  visit(o.random_weight, Declaration{"random_weight", "", "", "share of readings from anywhere", 1e-6, 1});
+  visit(o.beam_exponent, Declaration{"beam_exponent", "", "", "of each beam's probability", 1e-3, 1});
+  visit(o.table_cell, Declaration{"table_cell", "", "m", "of the table of ranges, beam model", 0.01, 1});
+  visit(o.table_angles, Declaration{"table_angles", "", "", "of the table of ranges, beam model", 36, 1440});
 }
 
 template <class Options, class Visit>
 void visit_localiser_filter(Options& o, Visit&& visit) {
-  const auto number = [&](auto& field, const char* name, const char* unit, const char* help, double min,
-                          double max) {
-    visit(field, Declaration{.name = name, .unit = unit, .help = help, .min = min, .max = max});
-  };
-  number(o.along_noise, "along_noise", "", "m per m driven, along the car", 0, 10);
-  number(o.across_noise, "across_noise", "", "m per m driven, sideways", 0, 10);
-  number(o.turn_noise, "turn_noise", "", "rad per rad turned", 0, 10);
-  number(o.drift_noise, "drift_noise", "rad/m", "of the yaw per m driven", 0, 10);
-  number(o.position_noise, "position_noise", "m", "per update", 1e-6, 1);
-  number(o.yaw_noise, "yaw_noise", "rad", "per update", 1e-6, 1);
-  number(o.max_speed, "max_speed", "m/s", "odometry that moves faster has jumped", 0.1, 100);
-  number(o.max_yaw_rate, "max_yaw_rate", "rad/s", "odometry that turns faster has jumped", 0.1, 1000);
-  number(o.start_deviation, "start_deviation", "m", "of particles about a given start", 0, 100);
-  number(o.start_yaw_deviation, "start_yaw_deviation", "rad", "of particles about a given start", 0, 7);
-  number(o.least_particles, "least_particles", "", "", 64, 1e6);
-  number(o.most_particles, "most_particles", "", "at least least_particles", 64, 1e6);
-  number(o.kld_error, "kld_error", "", "bound on the Kullback-Leibler divergence", 1e-3, 1);
-  number(o.kld_quantile, "kld_quantile", "", "of the standard normal", 0, 6);
-  number(o.bin_size, "bin_size", "m", "of the bins that are counted", 0.01, 10);
-  number(o.bin_angle, "bin_angle", "rad", "of the bins that are counted", 0.01, 3.2);
-  number(o.resample_below, "resample_below", "", "effective sample size over particles", 0, 1);
-  number(o.slow_rate, "slow_rate", "", "of the long-term average of the fit", 1e-6, 1);
-  number(o.fast_rate, "fast_rate", "", "of the short-term average of the fit", 1e-6, 1);
-  number(o.recovery_margin, "recovery_margin", "", "search where margin * fast < slow", 1, 100);
-  number(o.least_fit, "least_fit", "", "the long-term average counts as at least this", 0, 1);
-  number(o.search_time, "search_time", "s", "of searching after the last cause", 0, 1000);
-  number(o.search_memory, "search_memory", "s", "over which places are compared", 1e-3, 1000);
-  number(o.rival_margin, "rival_margin", "", "in log fit, to be taken instead", 0, 10);
-  number(o.most_hypotheses, "most_hypotheses", "", "places followed at once", 16, 4096);
-  number(o.search_factor, "search_factor", "", "random poses per hypothesis and update", 1, 1000);
-  number(o.good_share, "good_share", "", "of the weight near the estimate", 0, 1);
-  number(o.good_fit, "good_fit", "", "share of explained beams", 0, 1);
+  visit(o.along_noise, Declaration{"along_noise", "", "", "m per m driven, along the car", 0, 10});
+  visit(o.across_noise, Declaration{"across_noise", "", "", "m per m driven, sideways", 0, 10});
+  visit(o.turn_noise, Declaration{"turn_noise", "", "", "rad per rad turned", 0, 10});
+  visit(o.drift_noise, Declaration{"drift_noise", "", "rad/m", "of the yaw per m driven", 0, 10});
+  visit(o.position_noise, Declaration{"position_noise", "", "m", "per update", 1e-6, 1});
+  visit(o.yaw_noise, Declaration{"yaw_noise", "", "rad", "per update", 1e-6, 1});
+  visit(o.max_speed, Declaration{"max_speed", "", "m/s", "odometry that moves faster has jumped", 0.1, 100});
+  visit(o.max_yaw_rate,
+        Declaration{"max_yaw_rate", "", "rad/s", "odometry that turns faster has jumped", 0.1, 1000});
+  visit(o.start_deviation,
+        Declaration{"start_deviation", "", "m", "of particles about a given start", 0, 100});
+  visit(o.start_yaw_deviation,
+        Declaration{"start_yaw_deviation", "", "rad", "of particles about a given start", 0, 7});
+  visit(o.least_particles, Declaration{"least_particles", "", "", "", 64, 1e6});
+  visit(o.most_particles, Declaration{"most_particles", "", "", "at least least_particles", 64, 1e6});
+  visit(o.kld_error, Declaration{"kld_error", "", "", "bound on the Kullback-Leibler divergence", 1e-3, 1});
+  visit(o.kld_quantile, Declaration{"kld_quantile", "", "", "of the standard normal", 0, 6});
+  visit(o.bin_size, Declaration{"bin_size", "", "m", "of the bins that are counted", 0.01, 10});
+  visit(o.bin_angle, Declaration{"bin_angle", "", "rad", "of the bins that are counted", 0.01, 3.2});
+  visit(o.resample_below,
+        Declaration{"resample_below", "", "", "effective sample size over particles", 0, 1});
+  visit(o.slow_rate, Declaration{"slow_rate", "", "", "of the long-term average of the fit", 1e-6, 1});
+  visit(o.fast_rate, Declaration{"fast_rate", "", "", "of the short-term average of the fit", 1e-6, 1});
+  visit(o.recovery_margin,
+        Declaration{"recovery_margin", "", "", "search where margin * fast < slow", 1, 100});
+  visit(o.least_fit, Declaration{"least_fit", "", "", "the long-term average counts as at least this", 0, 1});
+  visit(o.search_time, Declaration{"search_time", "", "s", "of searching after the last cause", 0, 1000});
+  visit(o.search_memory, Declaration{"search_memory", "", "s", "over which places are compared", 1e-3, 1000});
+  visit(o.rival_margin, Declaration{"rival_margin", "", "", "in log fit, to be taken instead", 0, 10});
+  visit(o.most_hypotheses, Declaration{"most_hypotheses", "", "", "places followed at once", 16, 4096});
+  visit(o.search_factor,
+        Declaration{"search_factor", "", "", "random poses per hypothesis and update", 1, 1000});
+  visit(o.good_share, Declaration{"good_share", "", "", "of the weight near the estimate", 0, 1});
+  visit(o.good_fit, Declaration{"good_fit", "", "", "share of explained beams", 0, 1});
 }
 
 }  // namespace detail
