@@ -115,8 +115,10 @@ class LocaliserNode {
     if (!count_fits(*scan)) plain.count = 0;
     estimate_ = localiser_.update(plain, at, scan->header.stamp.toSec());
     slowest_ = std::max(slowest_, estimate_.update_time);
+    if (!estimate_.usable) doubt_ = estimate_.status;
     if (!trusted())
-      return say_("localisation: " + estimate_.status + ", health " + std::to_string(estimate_.health));
+      return say_("localisation: " + doubt_ + (estimate_.usable ? ", over, until it is sure" : "") +
+                  ", health " + std::to_string(estimate_.health));
     known_ = estimate_.pose;
     publish(*scan);
   }
@@ -234,6 +236,7 @@ class LocaliserNode {
   ros::Time last_scan_{0};
   std::optional<Pose> start_, known_;
   Estimate estimate_;
+  std::string doubt_ = "uncertain";  ///< what was wrong last
   double slowest_ = 0;
   Sayer say_;
 };

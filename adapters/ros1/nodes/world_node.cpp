@@ -100,7 +100,7 @@ class WorldNode {
     return true;
   }
 
-  /// What does not change: map, path, where the laser is, obstacles.
+  /// What does not change: map, path, where the laser is.
   void describe() {
     const auto course = slalom_bridge::load_course(course_);
     map_out_.publish(message_of(course.map));
@@ -120,6 +120,11 @@ class WorldNode {
     tf2_msgs::TFMessage tf;
     tf.transforms.push_back(transform(world_.laser(), "base_link", "laser", ros::Time::now()));
     tf_static_out_.publish(tf);
+  }
+
+  /// Obstacles and car. Said again and again: a display that has no transforms yet forgets what it cannot
+  /// place.
+  void mark() {
     visualization_msgs::MarkerArray array;
     for (const Pose& p : world_.obstacles()) {
       array.markers.push_back(
@@ -148,6 +153,8 @@ class WorldNode {
 
   void step(ros::Time due) {
     world_.step(steer_, commanded() ? speed_ : 0);
+    constexpr int marks_every = 40;
+    if (steps_++ % marks_every == 0) mark();
     const ros::Time stamp = due;
     const auto& seen = world_.reading();
     odometry_out_.publish(odometry(seen.odometry, seen, "odom", stamp));
@@ -177,6 +184,7 @@ class WorldNode {
   slalom_bridge::World world_;
   double timeout_;  // s
   double steer_ = 0, speed_ = 0;
+  int steps_ = 0;
   std::map<std::string, double> heard_;  // s, by the name of who commands
   ros::Publisher scan_out_, odometry_out_, truth_out_, laps_out_, contacts_out_, tf_out_, tf_static_out_,
       map_out_, waypoints_out_, markers_out_;
