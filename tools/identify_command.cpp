@@ -5,7 +5,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "bag_drive.hpp"
 #include "json_output.hpp"
+#include "ros_bag.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/identification.hpp"
 
@@ -13,6 +15,7 @@ namespace slalom::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using vehicle::Identification;
 using vehicle::Identified;
 
 struct Arguments {
@@ -25,8 +28,18 @@ double entry(const Json& tick, const char* key, std::size_t index) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
 
-/// The ticks of a recording (docs/recording.md). Throws IoError with file and line.
+std::vector<vehicle::DrivenSample> read_bag_samples(const std::string& file) {
+  std::vector<vehicle::DrivenSample> samples;
+  for (const BagTick& tick : load_bag_drive(file).ticks) {
+    const maps::Pose& pose = tick.odometry.pose;
+    samples.push_back({tick.time, pose.x, pose.y, pose.yaw, tick.odometry.speed, tick.command.steer});
+  }
+  return samples;
+}
+
+/// The ticks of a bag or a recording (docs/recording.md). Throws IoError with file and line.
 std::vector<vehicle::DrivenSample> read_recording(const std::string& file) {
+  if (is_bag(file)) return read_bag_samples(file);
   std::ifstream stream(file);
   if (!stream) throw IoError(file, 0, "cannot be read");
   std::vector<vehicle::DrivenSample> samples;
@@ -56,9 +69,29 @@ void print(std::FILE* out, const char* name, const Identified& value, const char
   std::fprintf(out, "\n");
 }
 
+/// What to write into a configuration file.
+void advise(std::FILE* out, const Identification& found) {
+  const double ratio = found.steering_gain.value / found.wheelbase.value;
+  const bool wheelbase_known = found.wheelbase.deviation < 0.1 * found.wheelbase.value;
+  if (!wheelbase_known)
+    std::fprintf(
+        out,
+        "This drive does not tell gain and wheelbase apart: gain over wheelbase is %.3f /m. Measure the "
+        "wheelbase and give it with --wheelbase.\n\n",
+        ratio);
+  std::fprintf(out,
+               "For a configuration file (correct gain and offset where the servo is driven):\n"
+               "vehicle:\n  steer_time_constant: %.3f\n  dead_time: %.3f\n",
+               found.time_constant.value, found.delay.value);
+  if (wheelbase_known)
+    std::fprintf(out, "  front_length: %.4f\n  rear_length: %.4f\n", 0.4808 * found.wheelbase.value,
+                 0.5192 * found.wheelbase.value);
+  std::fprintf(out, "planner:\n  observer_time_constant: %.3f\n", found.time_constant.value);
+}
+
 int run(const Arguments& arguments) {
   const auto samples = read_recording(arguments.recording);
-  const vehicle::Identification found = vehicle::identify(samples, arguments.options);
+  const Identification found = vehicle::identify(samples, arguments.options);
   std::FILE* words = arguments.json == "-" ? stderr : stdout;
   std::fprintf(words, "%d of %zu samples; %.1f %% of the turning explained, %.3f rad/s left\n\n",
                found.samples, samples.size(), 100 * found.explained, found.residual);
@@ -70,13 +103,7 @@ int run(const Arguments& arguments) {
   print(words, "understeer", found.understeer, "s^2/m");
   std::fprintf(words, "%-20s %9.4f        (way by the poses over way by the speed)\n\n", "speed scale",
                found.speed_scale);
-  std::fprintf(
-      words,
-      "For a configuration file (correct gain and offset where the servo is driven):\n"
-      "vehicle:\n  steer_time_constant: %.3f\n  dead_time: %.3f\n  front_length: %.4f\n  rear_length: %.4f\n"
-      "planner:\n  observer_time_constant: %.3f\n",
-      found.time_constant.value, found.delay.value, 0.4808 * found.wheelbase.value,
-      0.5192 * found.wheelbase.value, found.time_constant.value);
+  advise(words, found);
   if (arguments.json.empty()) return 0;
   const auto pair = [](const Identified& value) {
     return Json{{"value", value.value}, {"deviation", value.deviation}};
@@ -101,7 +128,7 @@ CLI::App* add_identify_command(CLI::App& app, int& exit_status) {
   CLI::App* command = app.add_subcommand(
       "identify", "Steering gain, trim, delay, lag and wheelbase of a car, from a recording");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("recording", arguments->recording, "As slalom drive --record or from_bag.py writes it")
+  command->add_option("recording", arguments->recording, "Of slalom drive --record, or a bag of ROS 1")
       ->required();
   command->add_option("--wheelbase", arguments->options.wheelbase, "m, if it was measured; else it is sought")
       ->check(CLI::Range(0.01, 20.0));

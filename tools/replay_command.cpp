@@ -6,11 +6,14 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "lap_json.hpp"
 #include "lap_picture.hpp"
 #include "recording.hpp"
+#include "replay_bag.hpp"
 #include "replay_recording.hpp"
+#include "ros_bag.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/course.hpp"
 #include "stored_evaluation.hpp"
@@ -22,7 +25,8 @@ using namespace evaluation;
 
 struct Arguments {
   ReplayArguments recording;
-  std::string folder, method, scenario, course, plot, record;
+  std::string folder, method, scenario, course, plot, record, config = "default";
+  std::vector<std::string> set;
   int lap = -1;
 };
 
@@ -115,8 +119,37 @@ int replay_lap(const Arguments& arguments) {
   return same ? 0 : 1;
 }
 
+/// A file that is gone when it goes out of scope.
+struct TemporaryFile {
+  std::string name = std::filesystem::temp_directory_path() /
+                     ("slalom_replay_" + std::to_string(std::random_device{}()) + ".mcap");
+  ~TemporaryFile() {
+    std::error_code ignored;
+    std::filesystem::remove(name, ignored);
+  }
+};
+
+/// A bag is made a recording, which is kept where --record says so and shown otherwise.
+int replay_bag(Arguments& arguments) {
+  const TemporaryFile temporary;
+  BagReplay replay{.file = arguments.folder, .record = arguments.record, .driver = {}};
+  if (replay.record.empty()) replay.record = temporary.name;
+  if (!arguments.method.empty()) replay.method = arguments.method;
+  replay.driver.course = arguments.course;
+  replay.driver.config = arguments.config;
+  replay.driver.set = arguments.set;
+  record_bag(replay);
+  if (!arguments.record.empty()) {
+    std::printf("recording: %s\n", arguments.record.c_str());
+    return 0;
+  }
+  arguments.recording.file = replay.record;
+  return replay_recording(arguments.recording);
+}
+
 int run(Arguments& arguments) {
   if (std::filesystem::is_directory(arguments.folder)) return replay_lap(arguments);
+  if (is_bag(arguments.folder)) return replay_bag(arguments);
   arguments.recording.file = arguments.folder;
   return replay_recording(arguments.recording);
 }
@@ -125,18 +158,28 @@ int run(Arguments& arguments) {
 
 CLI::App* add_replay_command(CLI::App& app, int& exit_status) {
   CLI::App* command = app.add_subcommand(
-      "replay", "Show a recording in the browser; or drive a lap of an evaluation again: picture, recording");
+      "replay",
+      "Show a recording or a bag in the browser; or drive a lap of an evaluation again: picture, recording");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("what", arguments->folder, "A recording in MCAP, or the --out of an evaluation")
+  command
+      ->add_option("what", arguments->folder,
+                   "A recording in MCAP, a bag of ROS 1, or the --out of an evaluation")
       ->required();
   command->add_option("--html", arguments->recording.html,
                       "Write the recording as a page that opens from disk, instead of serving it");
   command->add_option("--host", arguments->recording.host, "Address to serve it on")->capture_default_str();
   command->add_option("--port", arguments->recording.port, "0: any that is free")->capture_default_str();
   command->add_option("--lap", arguments->lap, "Of an evaluation: which, from 0");
-  command->add_option("--method", arguments->method, "Method, or method and options as results name them");
+  command->add_option("--method", arguments->method,
+                      "Of an evaluation: method, or method and options as results name them; of a bag: who "
+                      "looks on [svg_mppi]");
+  command->add_option("--config", arguments->config, "Of a bag: configuration of who looks on")
+      ->capture_default_str();
+  command->add_option("--set", arguments->set, "Of a bag: section.option=value; may be repeated")
+      ->allow_extra_args(false);
   command->add_option("--scenario", arguments->scenario, "pt or oa");
-  command->add_option("--course", arguments->course, "Where the course is, if not found by its name");
+  command->add_option("--course", arguments->course,
+                      "Where the course is, if not found by its name, or if a bag does not hold it");
   command->add_option("--plot", arguments->plot, "Draw it to this PNG");
   command->add_option("--record", arguments->record,
                       "Record it to this file: MCAP if it ends in .mcap, else JSON lines");

@@ -48,38 +48,44 @@ Evaluation evaluation_named(std::string_view text) {
 }
 
 sim::WorldOptions Arena::world_options() const {
-  if (evaluation == Evaluation::published) return sim::WorldOptions::gym_compatible();
   sim::WorldOptions options;
-  options.time_step = 0.005;
-  options.lidar.rate = 40;  // Hz, a scan for every command
-  // A car that touches something goes on if it can, so that one contact does not hide the next.
-  options.wall_response = options.body_response = sim::ContactResponse::slide;
+  if (evaluation == Evaluation::published) {
+    options = sim::WorldOptions::gym_compatible();
+  } else {
+    options.time_step = 0.005;
+    options.lidar.rate = 40;  // Hz, a scan for every command
+    // A car that touches something goes on if it can, so that one contact does not hide the next.
+    options.wall_response = options.body_response = sim::ContactResponse::slide;
+  }
+  if (lidar) options.lidar = *lidar;
   return options;
 }
 
-std::shared_ptr<const Arena> load_arena(const std::filesystem::path& folder, Evaluation evaluation,
-                                        const std::vector<std::filesystem::path>& course_roots) {
-  const bool published = evaluation == Evaluation::published;
+std::shared_ptr<Arena> make_arena(vehicle::Course course, Evaluation evaluation) {
   auto arena = std::make_shared<Arena>();
   arena->evaluation = evaluation;
-  maps::MapReading reading;
-  if (published) reading.rule = maps::MapRule::grey_threshold;
-  arena->course = vehicle::load_course(folder, reading);
-  const vehicle::Course& course = arena->course;
-
+  arena->course = std::move(course);
   std::vector<maps::Point> points;
-  for (const vehicle::Waypoint& point : course.waypoints) {
+  for (const vehicle::Waypoint& point : arena->course.waypoints) {
     points.push_back({point.x, point.y});
     arena->path.push_back({point.x, point.y, point.yaw, point.speed});
   }
   maps::check_reference_path(arena->path);
   arena->track = std::make_shared<const sim::Track>(
-      course.map, sim::LapPath(points),
-      sim::TrackOptions{.unknown_is_wall = false, .outside_is_wall = !published});
-  arena->obstacle_room = room_beside(*arena->track, course.obstacle_path);
+      arena->course.map, sim::LapPath(points),
+      sim::TrackOptions{.unknown_is_wall = false, .outside_is_wall = evaluation != Evaluation::published});
+  arena->obstacle_room = room_beside(*arena->track, arena->course.obstacle_path);
+  arena->start = arena->course.start;
+  arena->timeout = arena->course.timeout.value_or(0);
+  return arena;
+}
 
-  arena->start = course.start;
-  arena->timeout = course.timeout.value_or(0);
+std::shared_ptr<const Arena> load_arena(const std::filesystem::path& folder, Evaluation evaluation,
+                                        const std::vector<std::filesystem::path>& course_roots) {
+  const bool published = evaluation == Evaluation::published;
+  maps::MapReading reading;
+  if (published) reading.rule = maps::MapRule::grey_threshold;
+  auto arena = make_arena(vehicle::load_course(folder, reading), evaluation);
   if (published) {
     const std::string folder_name = std::filesystem::weakly_canonical(folder).filename().string();
     if (const auto known = vehicle::known_course(folder_name, course_roots)) {

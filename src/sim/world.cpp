@@ -243,12 +243,33 @@ StepStatus World::step(std::span<const Command> commands) noexcept {
       if (cars_[i].wall || !cars_[i].touching.empty()) respond(i);
     if (scan_is_due()) scan_all();
   }
+  count_laps();
+  return status;
+}
+
+void World::count_laps() noexcept {
   for (Car& car : cars_) {
     const maps::Point at{car.plant.state().x, car.plant.state().y};
     car.zone.update(at, time_);
     if (car.timer) car.timer->update(*track_->lap_path(), at, time_);
   }
-  return status;
+}
+
+void World::follow(std::span<const CarState> states) {
+  if (states.size() != cars_.size())
+    throw std::invalid_argument("states: " + std::to_string(states.size()) + " must be as many as cars, " +
+                                std::to_string(cars_.size()));
+  for (const CarState& state : states) require_finite("state", pose_of(state));
+  for (std::size_t i = 0; i < cars_.size(); ++i) {
+    cars_[i].before = states[i];
+    cars_[i].plant.set_state(states[i]);
+    boxes_[i].pose = pose_of(states[i]);
+  }
+  ++steps_;
+  time_ += options_.time_step;
+  find_contacts();
+  if (scan_is_due()) scan_all();
+  count_laps();
 }
 
 bool World::scan_is_due() const noexcept {

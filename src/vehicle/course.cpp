@@ -113,20 +113,23 @@ void load_path(Course& course, const fs::path& folder) {
   std::vector<int> lines;
   course.waypoints = detail::read_waypoints(file, form, lines);
   check_points(course.waypoints, lines, file);
-  const double longest = complete(course.waypoints);
-  // A lap's ends seldom meet exactly: files leave out one step or a little more.
-  course.closed = distance(course.waypoints.back(), course.waypoints.front()) <= 3 * longest;
-}
-
-void load_obstacle_path(Course& course, const fs::path& folder) {
-  if (const fs::path file = folder / obstacle_file; fs::exists(file)) {
-    course.obstacle_path = detail::read_points(file);
-    return;
-  }
-  for (const Waypoint& point : course.waypoints) course.obstacle_path.push_back({point.x, point.y});
 }
 
 }  // namespace
+
+void complete_course(Course& course, std::optional<bool> closed) {
+  if (course.waypoints.size() < 3)
+    throw std::invalid_argument(std::to_string(course.waypoints.size()) +
+                                " waypoints; at least 3 are needed");
+  const double longest = complete(course.waypoints);
+  const Waypoint &first = course.waypoints.front(), &last = course.waypoints.back();
+  // A lap's ends seldom meet exactly: files leave out one step or a little more.
+  course.closed = closed.value_or(distance(last, first) <= 3 * longest);
+  course.length = last.arc_length + (course.closed ? distance(last, first) : 0);
+  course.start = {first.x, first.y, first.yaw};
+  if (course.obstacle_path.empty())
+    for (const Waypoint& point : course.waypoints) course.obstacle_path.push_back({point.x, point.y});
+}
 
 Course load_course(const fs::path& folder, const maps::MapReading& reading) {
   if (!fs::is_directory(folder)) throw IoError(folder.string(), 0, "is no folder; a course is one");
@@ -134,25 +137,20 @@ Course load_course(const fs::path& folder, const maps::MapReading& reading) {
   course.name = fs::weakly_canonical(folder).filename().string();
   course.map = maps::load_ros_map(find_map(folder, course.notes), reading);
   load_path(course, folder);
-  load_obstacle_path(course, folder);
-  const Waypoint& first = course.waypoints.front();
-  course.start = {first.x, first.y, first.yaw};
-
-  if (const fs::path file = folder / course_file; fs::exists(file)) {
-    const detail::CourseFile said = detail::read_course_file(file);
-    course.name = said.name.value_or(course.name);
-    course.description = said.description.value_or("");
-    course.start = said.start.value_or(course.start);
-    course.closed = said.closed.value_or(course.closed);
-    course.timeout = said.timeout;
-    if (said.start) try {
-        check_start(course, course.start);
-      } catch (const std::invalid_argument& error) {
-        throw IoError(file.string(), said.start_line, std::string("key start: ") + error.what());
-      }
-  }
-  course.length = course.waypoints.back().arc_length;
-  if (course.closed) course.length += distance(course.waypoints.back(), course.waypoints.front());
+  if (const fs::path points = folder / obstacle_file; fs::exists(points))
+    course.obstacle_path = detail::read_points(points);
+  const fs::path file = folder / course_file;
+  const detail::CourseFile said = fs::exists(file) ? detail::read_course_file(file) : detail::CourseFile{};
+  complete_course(course, said.closed);
+  course.name = said.name.value_or(course.name);
+  course.description = said.description.value_or("");
+  course.start = said.start.value_or(course.start);
+  course.timeout = said.timeout;
+  if (said.start) try {
+      check_start(course, course.start);
+    } catch (const std::invalid_argument& error) {
+      throw IoError(file.string(), said.start_line, std::string("key start: ") + error.what());
+    }
   return course;
 }
 

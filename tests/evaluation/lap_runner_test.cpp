@@ -121,6 +121,40 @@ TEST(LapRunner, LatencyDelaysCommands) {
   EXPECT_NEAR(first_motion(0.1) - first_motion(0), 0.1, 1e-6);
 }
 
+TEST(LapRunner, HardwareLapsRepeatWithAnyThreadsAndHeedTheirConditions) {
+  const auto arena = wren();
+  const auto lap = [&](const HardwareConditions& conditions, std::uint64_t seed, int threads) {
+    const LapSettings settings{.threads = threads, .hardware = conditions};
+    return LapRunner(arena, configuration("default", 128), "svg_mppi", settings).run(seed);
+  };
+  const LapResult first = lap({}, 3, 1), threaded = lap({}, 3, 2), other = lap({}, 4, 1);
+  EXPECT_TRUE(first.finished);
+  EXPECT_EQ(bits(first), bits(threaded));
+  EXPECT_EQ(first.localisation.error, threaded.localisation.error);
+  EXPECT_EQ(first.localisation.yaw_error, threaded.localisation.yaw_error);
+  EXPECT_NE(first.localisation.error, other.localisation.error);
+  EXPECT_EQ(first.localisation.error.size() + static_cast<std::size_t>(first.localisation.blind),
+            static_cast<std::size_t>(first.steps));
+
+  HardwareConditions bent, late;
+  bent.steering_offset = 0.05;
+  late.steering_dead_time = 0.1;
+  EXPECT_NE(bits(lap(bent, 3, 1)), bits(first));
+  EXPECT_NE(bits(lap(late, 3, 1)), bits(first));
+}
+
+TEST(LapRunner, ACarThatCannotLocaliseStops) {
+  auto arena = std::make_shared<Arena>(*wren());
+  arena->timeout = 2;
+  HardwareConditions blind;
+  blind.dropout = 1;
+  const LapResult lap = LapRunner(arena, configuration("default", 64), "mppi", {.hardware = blind}).run(1);
+  EXPECT_FALSE(lap.finished);
+  EXPECT_GT(lap.localisation.blind, lap.steps / 2);
+  EXPECT_LT(lap.mean_speed, 0.5);
+  EXPECT_EQ(lap.contacts, 0);
+}
+
 TEST(LapRunner, RefusesWhatCannotBeDriven) {
   const auto arena = wren();
   const auto refusal = [&](const std::string& method, const LapSettings& settings,
@@ -141,6 +175,18 @@ TEST(LapRunner, RefusesWhatCannotBeDriven) {
   says(refusal("mppi", {.start = maps::Pose{1e6, 0, 0}}, usual), "start");
   says(refusal("mppi", {.latency = std::numeric_limits<double>::quiet_NaN()}, usual), "latency");
   says(refusal("mppi", {.threads = 0}, usual), "threads");
+  HardwareConditions lost;
+  lost.dropout = 2;
+  says(refusal("mppi", {.hardware = lost}, usual), "dropout");
+  lost = {};
+  lost.localiser.beams = 0;
+  says(refusal("mppi", {.hardware = lost}, usual), "beams");
+  try {
+    LapRunner(wren(Evaluation::published), usual, "mppi", {.hardware = HardwareConditions{}});
+    ADD_FAILURE() << "the published evaluation knows no hardware";
+  } catch (const std::invalid_argument& error) {
+    says(error.what(), "hardware");
+  }
   auto two = usual;
   vehicle::set_option(two, "mppi.variance", "[0.1, 0.2]");
   says(refusal("mppi", {}, two), "variance");

@@ -52,6 +52,30 @@ TEST(World, DrivingBackwardsIsNoLap) {
   EXPECT_LT(world.laps(0)->progress(), -40);
 }
 
+TEST(World, FollowsStatesThatAreKnown) {
+  WorldOptions options;
+  options.time_step = 0.05;
+  World world(options, testing::ring_track());
+  world.reset(1, start);
+  const double step = 0.02;  // rad of the ring
+  for (int i = 1; i <= 320; ++i) {
+    const double at = step * i;
+    const CarState state{
+        .x = 10 + 5.5 * std::cos(at), .y = 10 + 5.5 * std::sin(at), .speed = 2.2, .yaw = at + 1.5708};
+    world.follow(std::array{state});
+    EXPECT_EQ(world.state(0), state);
+    EXPECT_FALSE(world.observe(0).wall);
+  }
+  EXPECT_EQ(world.laps(0)->laps(), 1);
+  EXPECT_NEAR(world.laps(0)->last_lap_time(), 0.05 * 2 * 3.141592653589793 / step, 0.1);
+  EXPECT_NEAR(world.time(), 16, 1e-9);
+  world.follow(std::array{CarState{.x = 10 + 7.0, .y = 10}});  // in the outer wall, and it stays there
+  EXPECT_TRUE(world.observe(0).wall);
+  EXPECT_EQ(world.state(0).x, 17.0);
+  EXPECT_THROW(world.follow(std::array{CarState{.x = nan}}), std::invalid_argument);
+  EXPECT_THROW(world.follow({}), std::invalid_argument);
+}
+
 TEST(World, PuttingACarElsewhereIsNoProgress) {
   World world({}, testing::ring_track());
   world.reset(1, start);

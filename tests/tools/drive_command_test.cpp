@@ -2,38 +2,21 @@
 // words.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "slalom/maps/ros_map.hpp"
-#include "tools/program.hpp"
+#include "tools/scratch_folder.hpp"
 
 namespace slalom::tools {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::content;
 using testing::run_program;
 
-std::string content(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-class DriveCommand : public ::testing::Test {
+class DriveCommand : public testing::ScratchFolder {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("slalom_drive_command.") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// Drives on the smallest course with few samples, unless the arguments say otherwise.
   testing::Run drive(const std::string& arguments) const {
     return run_program("drive --course wren --set samples=256 " + arguments, folder_.string());
@@ -46,14 +29,6 @@ class DriveCommand : public ::testing::Test {
     fs::copy(fs::path(SLALOM_COURSES) / "wren", copy);
     return copy;
   }
-  void expect_refused(const std::string& arguments, const std::vector<std::string>& says) const {
-    const auto run = run_program("drive " + arguments, folder_.string());
-    EXPECT_NE(run.status, 0) << arguments;
-    for (const auto& word : says)
-      EXPECT_NE(run.output.find(word), std::string::npos) << arguments << ": " << run.output;
-  }
-
-  fs::path folder_;
 };
 
 TEST_F(DriveCommand, FinishesLapsAndTellsInJson) {
@@ -155,28 +130,28 @@ TEST_F(DriveCommand, DrivesThePublishedEvaluation) {
 }
 
 TEST_F(DriveCommand, RefusesBadArguments) {
-  expect_refused("--course nowhere", {"nowhere", "known: "});
-  expect_refused("--config nothing", {"nothing", "known: ", "published"});
-  expect_refused("--method magic", {"magic", "svg_mppi"});
-  expect_refused("--evaluation maybe", {"maybe", "true or published"});
-  expect_refused("--set samples", {"--set", "key=value"});
-  expect_refused("--set sampels=3", {"--set", "sampels", "did you mean svg_mppi.samples?"});
-  expect_refused("--set samples=0", {"--set", "samples", "'0'", "must be in [1,"});
-  expect_refused("--set vehicle.time_step=soon", {"vehicle.time_step", "'soon'", "must be a number"});
-  expect_refused("--set planner.verify_plan=maybe", {"'maybe'", "true or false"});
-  expect_refused("--set guide_weight=heavy", {"'heavy'", "must be one of"});
-  expect_refused("--set variance=[0.1,0.2]", {"variance", "2 values"});
-  expect_refused("--start 0,0", {"--start", "x,y,yaw"});
-  expect_refused("--start 0,0,nan", {"--start", "finite"});
-  expect_refused("--course wren --start 1e6,0,0", {"start", "on the map"});
-  expect_refused("--obstacles -1", {"obstacles", "[0, 1000]"});
-  expect_refused("--obstacles 900", {"parked cars found a place"});
-  expect_refused("--laps 0", {"--laps", "[1, 100000]"});
-  expect_refused("--threads 0", {"threads", "[1, 1024]"});
-  expect_refused("--latency-ms -5", {"latency"});
-  expect_refused("--evaluation published --latency-ms 5", {"latency", "published"});
-  expect_refused("--seed many", {"--seed"});
-  expect_refused("--record /proc/none/x", {"/proc/none/x", "cannot be written"});
+  expect_refused("drive --course nowhere", {"nowhere", "known: "});
+  expect_refused("drive --config nothing", {"nothing", "known: ", "published"});
+  expect_refused("drive --method magic", {"magic", "svg_mppi"});
+  expect_refused("drive --evaluation maybe", {"maybe", "true or published"});
+  expect_refused("drive --set samples", {"--set", "key=value"});
+  expect_refused("drive --set sampels=3", {"--set", "sampels", "did you mean svg_mppi.samples?"});
+  expect_refused("drive --set samples=0", {"--set", "samples", "'0'", "must be in [1,"});
+  expect_refused("drive --set vehicle.time_step=soon", {"vehicle.time_step", "'soon'", "must be a number"});
+  expect_refused("drive --set planner.verify_plan=maybe", {"'maybe'", "true or false"});
+  expect_refused("drive --set guide_weight=heavy", {"'heavy'", "must be one of"});
+  expect_refused("drive --set variance=[0.1,0.2]", {"variance", "2 values"});
+  expect_refused("drive --start 0,0", {"--start", "x,y,yaw"});
+  expect_refused("drive --start 0,0,nan", {"--start", "finite"});
+  expect_refused("drive --course wren --start 1e6,0,0", {"start", "on the map"});
+  expect_refused("drive --obstacles -1", {"obstacles", "[0, 1000]"});
+  expect_refused("drive --obstacles 900", {"parked cars found a place"});
+  expect_refused("drive --laps 0", {"--laps", "[1, 100000]"});
+  expect_refused("drive --threads 0", {"threads", "[1, 1024]"});
+  expect_refused("drive --latency-ms -5", {"latency"});
+  expect_refused("drive --evaluation published --latency-ms 5", {"latency", "published"});
+  expect_refused("drive --seed many", {"--seed"});
+  expect_refused("drive --record /proc/none/x", {"/proc/none/x", "cannot be written"});
 }
 
 TEST_F(DriveCommand, RefusesAStartInAWall) {
@@ -187,7 +162,7 @@ TEST_F(DriveCommand, RefusesAStartInAWall) {
       const auto at =
           maps::transform(map.origin, {(column + 0.5) * map.resolution, (row + 0.5) * map.resolution});
       return expect_refused(
-          "--course wren --start " + std::to_string(at.x) + "," + std::to_string(at.y) + ",0",
+          "drive --course wren --start " + std::to_string(at.x) + "," + std::to_string(at.y) + ",0",
           {"start", "in a wall"});
     }
   FAIL() << "the map has no wall";
@@ -196,35 +171,36 @@ TEST_F(DriveCommand, RefusesAStartInAWall) {
 TEST_F(DriveCommand, RefusesSpoiledCourses) {
   fs::path course = spoiled();
   fs::remove(course / "map.yaml");
-  expect_refused("--course spoiled", {"holds no map"});
+  expect_refused("drive --course spoiled", {"holds no map"});
 
   course = spoiled();
   fs::remove(course / "map.png");
-  expect_refused("--course spoiled", {"map.png"});
+  expect_refused("drive --course spoiled", {"map.png"});
 
   course = spoiled();
   std::ofstream(course / "map.png") << "no image";
-  expect_refused("--course spoiled", {"map.png"});
+  expect_refused("drive --course spoiled", {"map.png"});
 
   course = spoiled();
   std::ofstream(course / "raceline.csv")
       << "# s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2\n"
          "0; 0; 0; 0; 0; 1; 0\n1; nan; 0; 0; 0; 1; 0\n2; 2; 0; 0; 0; 1; 0\n";
-  expect_refused("--course spoiled", {"raceline.csv:3", "finite"});
+  expect_refused("drive --course spoiled", {"raceline.csv:3", "finite"});
 
   course = spoiled();
   std::ofstream(course / "raceline.csv") << "# s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2\n"
                                             "0; 0; 0; 0; 0; 1; 0\n1; 1; 0; 0; 0; 1; 0\n";
-  expect_refused("--course spoiled", {"raceline.csv", "at least 3"});
+  expect_refused("drive --course spoiled", {"raceline.csv", "at least 3"});
 
   course = spoiled();
   fs::remove(course / "raceline.csv");
-  expect_refused("--course spoiled", {"waypoint file"});
+  expect_refused("drive --course spoiled", {"waypoint file"});
 
   std::ofstream(folder_ / "broken.yaml") << "svg_mppi:\n  samples: [\n";
-  expect_refused("--config broken.yaml", {"broken.yaml", "is not YAML"});
+  expect_refused("drive --config broken.yaml", {"broken.yaml", "is not YAML"});
   std::ofstream(folder_ / "wrong.yaml") << "svg_mppi:\n  samples: many\n";
-  expect_refused("--config wrong.yaml", {"wrong.yaml:2", "svg_mppi.samples", "'many'", "must be an integer"});
+  expect_refused("drive --config wrong.yaml",
+                 {"wrong.yaml:2", "svg_mppi.samples", "'many'", "must be an integer"});
 }
 
 TEST(OptionsCommand, ListsDeclarations) {

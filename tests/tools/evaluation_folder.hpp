@@ -1,29 +1,20 @@
 #pragma once
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "tools/program.hpp"
+#include "tools/scratch_folder.hpp"
 
 /// Tests that run evaluations in a folder of their own.
 namespace slalom::testing {
 
 namespace fs = std::filesystem;
-
-inline std::string content(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 inline bool contains(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
@@ -60,20 +51,9 @@ inline std::size_t count_lines(const fs::path& file) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-class EvaluationFolder : public ::testing::Test {
+class EvaluationFolder : public ScratchFolder {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              (std::string("slalom_evaluation.") + test->test_suite_name() + "." + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  slalom::testing::Run run(const std::string& arguments) const {
-    return run_program(arguments, folder_.string());
-  }
+  testing::Run run(const std::string& arguments) const { return program(arguments); }
 
   /// Starts the program, kills it after so many milliseconds; true if that is what ended it.
   bool kill_after(const std::string& arguments, int milliseconds) const {
@@ -92,8 +72,6 @@ class EvaluationFolder : public ::testing::Test {
     waitpid(child, &status, 0);
     return WIFSIGNALED(status);
   }
-
-  fs::path folder_;
 };
 
 }  // namespace slalom::testing

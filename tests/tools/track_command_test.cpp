@@ -3,44 +3,23 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/vehicle/course.hpp"
-#include "tools/program.hpp"
+#include "tools/scratch_folder.hpp"
 
 namespace slalom::tools {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::content;
 using testing::run_program;
 
-std::string content(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-/// A scratch folder of the running test.
-class TrackCommand : public ::testing::Test {
+class TrackCommand : public testing::ScratchFolder {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("slalom_track_command.") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  testing::Run track(const std::string& arguments) const {
-    return run_program("track " + arguments, folder_.string());
-  }
-
-  fs::path folder_;
+  testing::Run track(const std::string& arguments) const { return program("track " + arguments); }
 };
 
 /// The text after `command: ` in a course.yaml of ours, without its quotes and the program's name.

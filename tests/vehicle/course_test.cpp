@@ -80,6 +80,22 @@ TEST(Course, FarEndsMakeAnOpenCourse) {
   EXPECT_DOUBLE_EQ(profile_time(course), 4);
 }
 
+TEST(Course, IsCompletedFromItsPoints) {
+  Course course;
+  for (const double at : {0.0, 0.5, 1.0, 1.5})
+    course.waypoints.push_back({std::cos(pi * at), std::sin(pi * at), 0, 1, 0});
+  complete_course(course);
+  EXPECT_TRUE(course.closed);
+  EXPECT_NEAR(course.length, 4 * std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(course.start.yaw, 0.75 * pi, 1e-12);
+  EXPECT_EQ(course.obstacle_path.size(), 4u);
+  complete_course(course, false);
+  EXPECT_FALSE(course.closed);
+  EXPECT_NEAR(course.length, 3 * std::sqrt(2.0), 1e-12);
+  course.waypoints.resize(2);
+  EXPECT_THROW(complete_course(course), std::invalid_argument);
+}
+
 TEST(Course, CapsSpeedsAndTellsTheProfilesTime) {
   const CourseFolder folder;
   Course course = load_course(folder.path());

@@ -5,6 +5,7 @@ usage: race_test.py PREFIX_OF_INSTALL [LAPS [OBSTACLES [COURSE]]]
 """
 import collections
 import os
+import subprocess
 import sys
 import tempfile
 import time
@@ -76,6 +77,18 @@ def read_back(file):
           f"mean speed {sum(speeds) / len(speeds):.2f} m/s, {laps} laps", flush=True)
 
 
+def show(file):
+    """What the program makes of the bag, where the install has it."""
+    program = f"{PREFIX}/bin/slalom"
+    if not os.path.exists(program):
+        return print("skipped: slalom replay and identify: the program is not installed", flush=True)
+    for words in (("replay", file, "--record", file + ".mcap"), ("replay", file, "--record", file + ".jsonl"),
+                  ("identify", file, "--wheelbase", "0.3302")):
+        done = subprocess.run([program, *words], capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, done.stderr
+        print("ok: slalom", words[0], *done.stdout.strip().splitlines(), sep="\n   ", flush=True)
+
+
 def main():
     folder = tempfile.mkdtemp(prefix="slalom_race_")
     start("/usr/bin/roslaunch", "-p", str(PORT), "slalom_ros1", "race.launch", f"course:={COURSE}", f"obstacles:={OBSTACLES}",
@@ -109,6 +122,7 @@ def main():
     bags = [f for f in os.listdir(folder) if f.endswith(".bag")]
     assert len(bags) == 1, bags
     read_back(f"{folder}/{bags[0]}")
+    show(f"{folder}/{bags[0]}")
 
 
 try:

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -32,10 +33,14 @@ struct Arena {
       obstacle_room;   ///< m from each point of the obstacle path to the wall on its wider side
   maps::Pose start;    ///< of the car's centre of gravity, map frame
   double timeout = 0;  ///< s; 0: three times the profile's lap time
+  std::optional<sim::LidarOptions> lidar;  ///< where it is not the evaluation's own
 
   /// The world of this evaluation.
   sim::WorldOptions world_options() const;
 };
+
+/// Makes a course ready. Throws std::invalid_argument on a path or map that cannot be driven on.
+std::shared_ptr<Arena> make_arena(vehicle::Course course, Evaluation evaluation);
 
 /// Loads the course in `folder`. `course_roots` are where the table of known courses lies: the published
 /// evaluation takes start and timeout from it. Throws IoError, std::invalid_argument.

@@ -116,6 +116,11 @@ class World {
   /// Moves by one time step. Command i is for driven car i; cars without one coast as configured.
   StepStatus step(std::span<const Command> commands) noexcept;
 
+  /// Moves by one time step, at whose end the driven cars are in these states, as somebody saw them: for
+  /// replays. Contacts and laps are found, and nothing responds. Throws std::invalid_argument on states that
+  /// are not finite or not as many as driven cars.
+  void follow(std::span<const CarState> states);
+
   /// Whether a car scans; all driven ones do unless told otherwise.
   void set_scanning(std::size_t car, bool scans);
 
@@ -184,6 +189,7 @@ class World {
   void publish(Car& car) noexcept;
   void gym_scan_and_contacts() noexcept;
   void scan_all() noexcept;
+  void count_laps() noexcept;
   bool scan_is_due() const noexcept;
 
   WorldOptions options_;

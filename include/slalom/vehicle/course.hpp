@@ -51,6 +51,11 @@ struct Course {
 /// line, column or key, value and rule.
 Course load_course(const std::filesystem::path& folder, const maps::MapReading& reading = {});
 
+/// Fills what follows from the waypoints' points: their yaw and arc length, the course's length, its start,
+/// whether it is closed where `closed` does not say so, and its obstacle path if there is none. Throws
+/// std::invalid_argument on fewer than 3 points.
+void complete_course(Course& course, std::optional<bool> closed = {});
+
 /// Lowers every waypoint's speed to at most `max_speed` (m/s, > 0, else std::invalid_argument).
 void cap_speed(Course& course, double max_speed);
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slalom/maps/laser_scan.hpp"
+#include "slalom/vehicle/course.hpp"
+#include "slalom/vehicle/planner.hpp"
+
+namespace slalom::tools {
+
+/// What was known when a scan was taken, and what was commanded after it.
+struct BagTick {
+  double time = 0;            ///< s since the first scan
+  maps::LaserScanView shape;  ///< of the scan, without its ranges
+  std::vector<float> ranges;
+  vehicle::Odometry odometry;  ///< pose as localised, map frame; speed as the wheels say
+  vehicle::Command command;
+};
+
+/// A drive of a car, from a bag that adapters/ros1/launch/record.launch has recorded.
+struct BagDrive {
+  std::vector<BagTick> ticks;  ///< of scans for which pose, speed and command are known
+  int left_out = 0;            ///< other scans
+  std::optional<maps::OccupancyGrid> map;
+  std::vector<vehicle::Waypoint> path;  ///< empty if the bag holds none
+  std::optional<maps::Pose> laser;      ///< from the rear axle
+};
+
+/// Throws IoError on what is no bag (see read_bag), on messages of other types and on a missing topic.
+BagDrive load_bag_drive(const std::string& file);
+
+}  // namespace slalom::tools
