@@ -51,8 +51,8 @@ SLALOM_INLINE void box_muller(const typename simd::detail::VectorTypes<F::lanes>
   const F squared = max(minus_two_log(uniform), F(1e-14f));
   const F radius = squared * reciprocal_sqrt(squared);
   // The signed fraction of a half turn; the top bit but one chooses sine or cosine, the top one the sign.
-  const I fraction = reinterpret_cast<I>(b << 2) >> 1;  // in 2^-30 quarter turns / 2
-  const F angle = F(__builtin_convertvector(fraction, V)) * F(0.7853981634f / 1073741824.0f);
+  const I fraction = reinterpret_cast<I>(b << 2);  // in 2^-31 quarter turns / 2
+  const F angle = F(__builtin_convertvector(fraction, V)) * F(0.7853981634f / 2147483648.0f);
   const F x2 = angle * angle;
   const F s =
       angle + angle * x2 * (F(-1.6666654611e-1f) + x2 * (F(8.3321608736e-3f) + x2 * F(-1.9515295891e-4f)));
@@ -62,16 +62,17 @@ SLALOM_INLINE void box_muller(const typename simd::detail::VectorTypes<F::lanes>
   const I turned = reinterpret_cast<I>(b << 1);  // sign bit: an odd number of quarters
   const V cosine = turned < 0 ? s.v : c.v, sine = turned < 0 ? c.v : s.v;
   constexpr int sign = static_cast<int>(0x80000000u);
-  const I half = reinterpret_cast<I>(b) & sign;
-  first = radius * F(reinterpret_cast<V>(reinterpret_cast<I>(cosine) ^ (half ^ (turned & sign))));
-  second = radius * F(reinterpret_cast<V>(reinterpret_cast<I>(sine) ^ half));
+  const F signed_radius(reinterpret_cast<V>(reinterpret_cast<I>(radius.v) ^ (reinterpret_cast<I>(b) & sign)));
+  first = signed_radius * F(reinterpret_cast<V>(reinterpret_cast<I>(cosine) ^ (turned & sign)));
+  second = signed_radius * F(sine);
 }
 
 /// Four consecutive rows come from one block of Threefry, so a block a lane serves a pack of samples.
 template <class Target>
-SLALOM_INLINE void fill(SequenceBatch& batch, int first, int count, const KeyWords& key) {
+SLALOM_INLINE void fill(SequenceBatch& batch, int first, int count, const KeyWords& given_key) {
   using F = Pack<Target>;
   using U = typename simd::detail::VectorTypes<F::lanes>::Unsigned;
+  const KeyWords key = given_key;  // a copy, which no store can change: its schedule stays outside the loops
   const int rows = batch.steps() * batch.inputs();
   float* values = batch.row(0, 0);
   const std::ptrdiff_t stride = batch.stride();

@@ -37,6 +37,8 @@ class GridView {
         center_y_(center_y),
         rows_axis_{-1.0 / resolution, (center_x + 0.5 * resolution * rows) / resolution + 1.0},
         columns_axis_{-1.0 / resolution, (center_y + 0.5 * resolution * columns) / resolution + 1.0},
+        last_row_(rows + 1),
+        last_column_(columns + 1),
         scale_(rows_axis_.scale),
         offset_x_(rows_axis_.offset),
         offset_y_(columns_axis_.offset) {}
@@ -72,9 +74,9 @@ class GridView {
   SLALOM_INLINE_CALLS simd::IntPack<Target> index_of_cell(const Pack<Target>& row_position,
                                                           const Pack<Target>& column_position) const {
     using I = typename simd::IntPack<Target>::Vector;
-    I row = clamped_index<Target>(row_position, rows_ + 1);
+    I row = clamped_index<Target>(row_position, last_row_);
     simd::Operations<Target>::shift_left(row, stride_log2_);
-    return simd::IntPack<Target>(row + clamped_index<Target>(column_position, columns_ + 1));
+    return simd::IntPack<Target>(row + clamped_index<Target>(column_position, last_column_));
   }
 
  private:
@@ -109,6 +111,7 @@ class GridView {
   double center_x_ = 0;
   double center_y_ = 0;
   GridAxis rows_axis_, columns_axis_;
+  int last_row_ = 1, last_column_ = 1;  ///< of the ring; kept to be broadcast from memory
   Coefficient scale_, offset_x_, offset_y_;
 };
 

@@ -49,9 +49,12 @@ using RolloutFunction = void (*)(const P&, const float*, const SequenceBatch&, i
 #endif
 
 /// Defines the rollout loop `rollout_<name>` for one instruction set with `packs` packs in flight: enough to
-/// hide latencies, few enough for the registers. It is a macro because clang inlines only the calls that
-/// stand in the body of a `flatten` function itself: so the problem's functions are called right here.
-#define SLALOM_DEFINE_ROLLOUT(name, ATTRIBUTES, Target, packs)                                               \
+/// hide latencies, few enough for the registers. All samples start from one state, so what is seen there is
+/// looked up once. With `ahead` 1 what a pack sees is looked up while the pack before it takes its step: a
+/// processor does not see past one pack's step to the loads of the next. That costs registers, of which the
+/// narrow sets have few. It is a macro because clang inlines only the calls that stand in the body of a
+/// `flatten` function itself: so the problem's functions are called right here.
+#define SLALOM_DEFINE_ROLLOUT(name, ATTRIBUTES, Target, packs, ahead)                                        \
   template <class P>                                                                                         \
   ATTRIBUTES void rollout_##name(const P& problem, const float* initial_state, const SequenceBatch& batch,   \
                                  int first, int count, float* costs, std::uint8_t* collided) {               \
@@ -61,6 +64,7 @@ using RolloutFunction = void (*)(const P&, const float*, const SequenceBatch&, i
     const std::ptrdiff_t stride = batch.stride();                                                            \
     const StateOf<P, F> start =                                                                              \
         broadcast_state<P, F>(initial_state, std::make_index_sequence<state_size<P>>{});                     \
+    const SeenOf<P, F> seen_first = look_up<P, F>(problem, start);                                           \
     HeldInput<P, F> reach, before;                                                                           \
     if constexpr (limits_rates<P>) {                                                                         \
       for (int i = 0; i < P::inputs; ++i) {                                                                  \
@@ -76,32 +80,38 @@ using RolloutFunction = void (*)(const P&, const float*, const SequenceBatch&, i
         r[j].hit = mask_t<F>(false);                                                                         \
         if constexpr (limits_rates<P>) r[j].previous = before;                                               \
       }                                                                                                      \
+      SeenOf<P, F> seen = seen_first;                                                                        \
       const float* row = batch.row(0, 0) + sample;                                                           \
       for (int k = 0; k < steps; ++k, row += P::inputs * stride) {                                           \
         SLALOM_UNROLL for (int j = 0; j < packs; ++j) {                                                      \
+          SeenOf<P, F> looked =                                                                              \
+              k == 0 && j + ahead < packs ? seen_first : look_up<P, F>(problem, r[(j + ahead) % packs].x);   \
+          const SeenOf<P, F>& now = ahead ? seen : looked;                                                   \
           InputOf<P, F> u;                                                                                   \
           SLALOM_UNROLL for (int i = 0; i < P::inputs; ++i) u[i] = F::load(row + i * stride + j * F::lanes); \
           if constexpr (limits_rates<P>) hold_rate(u, r[j].previous, reach);                                 \
-          const auto seen = look_up<P, F>(problem, r[j].x);                                                  \
-          accumulate<F>(stage_cost<P, F>(problem, r[j].x, seen, u, k), r[j].total, r[j].hit);                \
-          r[j].x = step<P, F>(problem, r[j].x, seen, u, k);                                                  \
+          accumulate<F>(stage_cost<P, F>(problem, r[j].x, now, u, k), r[j].total, r[j].hit);                 \
+          r[j].x = step<P, F>(problem, r[j].x, now, u, k);                                                   \
+          if constexpr (ahead != 0) seen = looked;                                                           \
         }                                                                                                    \
       }                                                                                                      \
       SLALOM_UNROLL for (int j = 0; j < packs; ++j) {                                                        \
-        const auto seen = look_up<P, F>(problem, r[j].x);                                                    \
-        accumulate<F>(terminal_cost<P, F>(problem, r[j].x, seen), r[j].total, r[j].hit);                     \
-        const int at = sample + j * F::lanes;                                                                \
-        r[j].total.store(costs + at);                                                                        \
-        for (int lane = 0; lane < F::lanes; ++lane) collided[at + lane] = r[j].hit.v[lane] != 0;             \
+        SeenOf<P, F> looked =                                                                                \
+            j + ahead < packs ? look_up<P, F>(problem, r[(j + ahead) % packs].x) : seen_first;               \
+        const SeenOf<P, F>& now = ahead ? seen : looked;                                                     \
+        accumulate<F>(terminal_cost<P, F>(problem, r[j].x, now), r[j].total, r[j].hit);                      \
+        if constexpr (ahead != 0) seen = looked;                                                             \
+        r[j].total.store(costs + sample + j * F::lanes);                                                     \
+        simd::Operations<simd::Target>::store_mask(r[j].hit.v, collided + sample + j * F::lanes);            \
       }                                                                                                      \
     }                                                                                                        \
   }
 
-SLALOM_DEFINE_ROLLOUT(generic, SLALOM_TARGET_GENERIC, Generic, 2)
+SLALOM_DEFINE_ROLLOUT(generic, SLALOM_TARGET_GENERIC, Generic, 2, 0)
 #if SLALOM_X86
-SLALOM_DEFINE_ROLLOUT(sse4, SLALOM_TARGET_SSE4, Sse4, 2)
-SLALOM_DEFINE_ROLLOUT(avx2, SLALOM_TARGET_AVX2, Avx2, 2)
-SLALOM_DEFINE_ROLLOUT(avx512, SLALOM_TARGET_AVX512, Avx512, 4)
+SLALOM_DEFINE_ROLLOUT(sse4, SLALOM_TARGET_SSE4, Sse4, 2, 0)
+SLALOM_DEFINE_ROLLOUT(avx2, SLALOM_TARGET_AVX2, Avx2, 4, 1)
+SLALOM_DEFINE_ROLLOUT(avx512, SLALOM_TARGET_AVX512, Avx512, 4, 1)
 #endif
 
 #undef SLALOM_DEFINE_ROLLOUT

@@ -142,6 +142,31 @@ struct Mask {
   SLALOM_INLINE friend Mask operator&(const Mask& a, const Mask& b) { return Mask(a.v & b.v); }
   SLALOM_INLINE friend Mask operator|(const Mask& a, const Mask& b) { return Mask(a.v | b.v); }
   SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(~a.v); }
+  bool operator[](int lane) const { return v[lane] != 0; }
+};
+/// AVX-512 compares into registers of a bit a lane, and selects by them.
+template <>
+struct Mask<Avx512> {
+  using Vector = std::uint16_t;
+  Vector v;  ///< a bit a lane
+
+  Mask() = default;
+  SLALOM_INLINE Mask(const Vector& bits) : v(bits) {}
+  SLALOM_INLINE Mask(const Mask& other) : v(other.v) {}
+  SLALOM_INLINE Mask& operator=(const Mask& other) {
+    v = other.v;
+    return *this;
+  }
+  SLALOM_INLINE explicit Mask(bool value) : v(static_cast<Vector>(-static_cast<int>(value))) {}
+
+  SLALOM_INLINE friend Mask operator&(const Mask& a, const Mask& b) {
+    return Mask(static_cast<Vector>(a.v & b.v));
+  }
+  SLALOM_INLINE friend Mask operator|(const Mask& a, const Mask& b) {
+    return Mask(static_cast<Vector>(a.v | b.v));
+  }
+  SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(static_cast<Vector>(~a.v)); }
+  bool operator[](int lane) const { return ((v >> lane) & 1) != 0; }
 };
 
 /// A pack of 32-bit integers.

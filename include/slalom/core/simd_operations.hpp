@@ -24,6 +24,10 @@ struct PortableOperations {
   static void less_or_equal(const F& a, const F& b, I& r) { r = a <= b; }
   /// `a` where all bits of the condition are set, `b` where none is.
   static void select(const I& condition, const F& a, const F& b, F& r) { r = condition ? a : b; }
+  /// 1 or 0 a lane.
+  static void store_mask(const I& mask, std::uint8_t* to) {
+    for (int i = 0; i < lanes; ++i) to[i] = mask[i] != 0;
+  }
   static void sqrt(const F& a, F& r) {
     for (int i = 0; i < lanes; ++i) r[i] = __builtin_sqrtf(a[i]);
   }
@@ -167,15 +171,20 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
   SLALOM_ISA_AVX512 static void max(const F& a, const F& b, F& r) {
     r = (F)_mm512_maskz_max_ps(all, (__m512)a, (__m512)b);
   }
-  /// g++ 12 compares vectors of 512 bits, and selects by them, one lane after the other.
-  SLALOM_ISA_AVX512 static void less(const F& a, const F& b, I& r) {
-    r = (I)_mm512_movm_epi32(_mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ));
+  SLALOM_ISA_AVX512 static void less(const F& a, const F& b, std::uint16_t& r) {
+    r = _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
   }
-  SLALOM_ISA_AVX512 static void less_or_equal(const F& a, const F& b, I& r) {
-    r = (I)_mm512_movm_epi32(_mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LE_OQ));
+  SLALOM_ISA_AVX512 static void less_or_equal(const F& a, const F& b, std::uint16_t& r) {
+    r = _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LE_OQ);
   }
-  SLALOM_ISA_AVX512 static void select(const I& condition, const F& a, const F& b, F& r) {
-    r = (F)_mm512_mask_blend_ps(_mm512_movepi32_mask((__m512i)condition), (__m512)b, (__m512)a);
+  SLALOM_ISA_AVX512 static void select(const std::uint16_t& condition, const F& a, const F& b, F& r) {
+    r = (F)_mm512_mask_blend_ps(condition, (__m512)b, (__m512)a);
+  }
+  SLALOM_ISA_AVX512 static void store_mask(const std::uint16_t& mask, std::uint8_t* to) {
+    constexpr std::uint64_t ones = 0x0101010101010101u;
+    const std::uint64_t low = _pdep_u64(mask, ones), high = _pdep_u64(mask >> 8, ones);
+    std::memcpy(to, &low, sizeof low);
+    std::memcpy(to + 8, &high, sizeof high);
   }
   SLALOM_ISA_AVX512 static void sqrt(const F& a, F& r) { r = (F)_mm512_maskz_sqrt_ps(all, (__m512)a); }
   SLALOM_ISA_AVX512 static void reciprocal_sqrt(const F& a, F& r) {
@@ -222,9 +231,12 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
   /// Four 128-bit loads a register, then a 4 x 4 transpose in every 128-bit block.
   SLALOM_ISA_AVX512 SLALOM_INLINE static void load_cells(const float* from, const I& index, F& r0, F& r1,
                                                          F& r2, F& r3) {
+    // Stored in halves: loads of single values are served late by a store of 512 bits.
     alignas(64) std::int32_t at[16];
-    *reinterpret_cast<I*>(at) = index << 2;
-    __asm__("" : "+m"(at));
+    const __m512i scaled = (__m512i)(index << 2);
+    _mm256_store_si256(reinterpret_cast<__m256i*>(at), _mm512_maskz_extracti64x4_epi64(0xff, scaled, 0));
+    _mm256_store_si256(reinterpret_cast<__m256i*>(at + 8), _mm512_maskz_extracti64x4_epi64(0xff, scaled, 1));
+    __asm__("" : "+m"(at));  // or g++ extracts the lanes one by one from the register, which is slower
     F row[4];
     for (int k = 0; k < 4; ++k) {
       __m512 v = _mm512_zextps128_ps512(_mm_loadu_ps(from + at[k]));
