@@ -31,7 +31,9 @@ class ScratchFolder : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  testing::Run program(const std::string& arguments) const { return run_program(arguments, folder_.string()); }
+  testing::Run program(const std::string& arguments) const {
+    return run_program(arguments, folder_.string());
+  }
   /// The program ends with a status other than 0 and says each of these words.
   void expect_refused(const std::string& arguments, const std::vector<std::string>& says) const {
     const testing::Run run = program(arguments);
