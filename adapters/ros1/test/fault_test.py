@@ -23,6 +23,7 @@ from tf2_msgs.msg import TFMessage
 FOLDER = tempfile.mkdtemp(prefix="slalom_faults_")
 OBSTACLES = 3
 nodes = {}
+starts = []  # (time, name) of every node's process
 
 
 class Car:
@@ -110,6 +111,7 @@ class Car:
 
 
 def run(name, *arguments):
+    starts.append((time.time(), f"/{name}"))
     nodes[name] = start(f"{NODES}/{name.rstrip('2')}_node", f"__name:={name}", *arguments, log=f"{FOLDER}/nodes.log")
 
 
@@ -211,7 +213,9 @@ def planner_death(car, drive):
 def check_reasons(car):
     last, count = {}, 0
     for at, node, text in car.reasons:
-        assert at - last.get(node, 0) > 0.9, f"{node} says too much: {text}"
+        said = last.get(node, 0)
+        again = any(name == node and said < begun <= at for begun, name in starts)  # its process is another
+        assert again or at - said > 0.9, f"{node} says too much: {text}"
         last[node] = at
         count += 1
     print(f"ok: {count} reasons, none within a second of the one before of the same node", flush=True)
