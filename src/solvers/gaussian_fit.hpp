@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 /// A Gaussian fitted to points of its density (Guo, "A Simple Algorithm for Fitting a Gaussian Function",
 /// IEEE Signal Processing Magazine 28(5), 2011): ln y = z0 + z1 x + z2 x^2 is fitted by least squares in
@@ -94,16 +95,25 @@ inline GaussianFit solve_normal_equations(Matrix3 a, std::array<double, 3> b) {
   return {};
 }
 
-/// Fits `count` points; densities below 1e-10 count as 1e-10.
-inline GaussianFit fit_gaussian(const double* x, const double* density, int count) {
+/// What the densities of `count` points say, whatever their abscissas: their squares and their logarithms.
+/// Densities below 1e-10 count as 1e-10.
+inline void fit_weights(const double* density, int count, double* square, double* logarithm) {
+  for (int k = 0; k < count; ++k) {
+    const double y = std::max(density[k], 1e-10);
+    square[k] = y * y;
+    logarithm[k] = std::log(y);
+  }
+}
+
+/// Fits `count` points, from their abscissas and `fit_weights`.
+inline GaussianFit fit_gaussian(const double* x, const double* square, const double* logarithm, int count) {
   Matrix3 a{};
   std::array<double, 3> b{};
   for (int k = 0; k < count; ++k) {
-    const double y = std::max(density[k], 1e-10), square = y * y, log_y = std::log(y);
     for (int i = 0; i < 3; ++i) {
-      double power = square;
+      double power = square[k];
       for (int p = 0; p < i; ++p) power *= x[k];
-      b[i] += power * log_y;
+      b[i] += power * logarithm[k];
       for (int j = 0; j < 3; ++j) {
         a[i][j] += power;
         power *= x[k];
@@ -111,6 +121,14 @@ inline GaussianFit fit_gaussian(const double* x, const double* density, int coun
     }
   }
   return solve_normal_equations(a, b);
+}
+
+/// Fits points of few densities.
+inline GaussianFit fit_gaussian(const std::vector<double>& x, const std::vector<double>& density) {
+  std::vector<double> square(x.size()), logarithm(x.size());
+  const int count = static_cast<int>(x.size());
+  fit_weights(density.data(), count, square.data(), logarithm.data());
+  return fit_gaussian(x.data(), square.data(), logarithm.data(), count);
 }
 
 /// The variance -1 / (2 z2); infinite where the fit says nothing: undetermined, or convex unless the absolute

@@ -57,6 +57,8 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       made_(static_cast<std::size_t>(count_)),
       points_(path_costs_.size()),
       density_(path_costs_.size()),
+      square_(path_costs_.size()),
+      logarithm_(path_costs_.size()),
       abscissa_(path_costs_.size()) {
   for (std::size_t r = 0; r < rows_; ++r) {
     const double variance = static_cast<double>(deviation_[r]);
@@ -259,7 +261,10 @@ void Guides::fit_variance(float* variance) noexcept {
       if (options_.fit_all_guides || g == best_) points_[count++] = static_cast<int>(path_at(l, g));
   const std::span<const int> points(points_.data(), count);
   const bool known = best_cost_ < infinite && count > 0;
-  if (known) densities(points);
+  if (known) {
+    densities(points);
+    fit_weights(density_.data(), static_cast<int>(count), square_.data(), logarithm_.data());
+  }
   for (std::size_t r = 0; r < rows_; ++r) {
     const int input = static_cast<int>(r) % inputs_;
     const double least = options_.variance_min[input], most = options_.variance_max[input];
@@ -268,7 +273,8 @@ void Guides::fit_variance(float* variance) noexcept {
       for (std::size_t i = 0; i < count; ++i) {
         abscissa_[i] = path_[static_cast<std::size_t>(points[i]) * rows_ + r];
       }
-      const GaussianFit fit = fit_gaussian(abscissa_.data(), density_.data(), static_cast<int>(count));
+      const GaussianFit fit =
+          fit_gaussian(abscissa_.data(), square_.data(), logarithm_.data(), static_cast<int>(count));
       fitted = fitted_variance(fit, options_.fit_absolute_curvature);
       if (options_.fit_standard_deviation) fitted = std::sqrt(fitted);
     }

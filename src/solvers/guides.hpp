@@ -81,7 +81,7 @@ class Guides {
   std::vector<double> path_;                                                  ///< [iteration][guide][row]
   std::vector<float> path_float_, path_costs_;
   std::vector<int> made_, points_;  ///< iterations made [guide]; points of a fit
-  std::vector<double> density_, abscissa_;
+  std::vector<double> density_, square_, logarithm_, abscissa_;
   int iterations_ = 0;
   int best_ = 0;
   bool best_collides_ = false;

@@ -16,6 +16,22 @@ namespace {
                                const Placement<float>& to, Range range) {                                    \
     body::place<Pack_##name>(noise, samples, to, range);                                                     \
   }                                                                                                          \
+  ATTRIBUTES Tally<float> finish_##name(const Rows<float>& v, const float* linear, Range range,              \
+                                        float* costs, float* totals) {                                       \
+    return body::finish<Pack_##name>(v, linear, range, costs, totals);                                       \
+  }                                                                                                          \
+  ATTRIBUTES void two_moments_##name(const Rows<float>& v, const float* first, const float* second,          \
+                                     const float* centre, Range range, float* sums) {                        \
+    body::two_moments<Pack_##name>(v, first, second, centre, range, sums);                                   \
+  }                                                                                                          \
+  ATTRIBUTES void take_##name(const Rows<float>& from, const int* indices, Range range,                      \
+                              const Rows<float>& to) {                                                       \
+    body::take<Pack_##name>(from, indices, range, to);                                                       \
+  }                                                                                                          \
+  ATTRIBUTES WeightSums<float> split_weights_##name(float falling, float growing, Range range,               \
+                                                    float* evaluated, float* rejected) {                     \
+    return body::split_weights<Pack_##name>(falling, growing, range, evaluated, rejected);                   \
+  }                                                                                                          \
   ATTRIBUTES void add_linear_##name(const Rows<float>& v, const float* coefficient, Range range,             \
                                     float* totals) {                                                         \
     body::add_linear<Pack_##name>(v, coefficient, range, totals);                                            \
@@ -87,6 +103,7 @@ namespace {
   constexpr Kernels kernels_##name{place_##name,                                                             \
                                    add_linear_##name,                                                        \
                                    add_squared_distance_##name,                                              \
+                                   finish_##name,                                                            \
                                    make_finite_##name,                                                       \
                                    minimum_##name,                                                           \
                                    exponential_weights_##name,                                               \
@@ -100,6 +117,9 @@ namespace {
                                    particle_gradients_##name,                                                \
                                    place_round_##name,                                                       \
                                    stein_directions_##name,                                                  \
+                                   two_moments_##name,                                                       \
+                                   take_##name,                                                              \
+                                   split_weights_##name,                                                     \
                                    published_rejection_##name,                                               \
                                    rejection_logarithm_##name};
 

@@ -43,6 +43,18 @@ struct WeightSums {
   Real cost = 0;     ///< sum of w times the cost given
 };
 
+/// What the samples of a range came to.
+template <class Real>
+struct Tally {
+  Real least_cost = 0;   ///< infinite if none is finite
+  Real least_total = 0;  ///< likewise
+  int finite = 0;        ///< totals
+};
+
+/// Sums over the samples of a range for two lists of weights, one after the other: w[k] v[row][k] and
+/// w[k] (v[row][k] - centre[row])^2.
+inline constexpr int moments = 4;
+
 /// How gradients of particles are estimated: see surrogate_gradient.hpp. Exponents are
 /// S / temperature + sum linear[row] v[row].
 template <class Real>
@@ -75,6 +87,9 @@ struct Kernels {
   /// totals[k] += sum over rows of weight[row] (v[row][k] - centre[row])^2.
   void (*add_squared_distance)(const Rows<float>& v, const float* centre, const float* weight, Range range,
                                float* totals);
+  /// Costs become +infinity where they are not finite, and likewise the totals, costs[k] + sum over rows of
+  /// linear[row] v[row][k]; `linear` may be null.
+  Tally<float> (*finish)(const Rows<float>& v, const float* linear, Range range, float* costs, float* totals);
   /// Replaces what is not finite by +infinity.
   void (*make_finite)(Range range, float* costs);
   float (*minimum)(const float* costs, Range range);
@@ -109,6 +124,15 @@ struct Kernels {
   /// SVGD's directions [row][particle] for the particles of a range.
   void (*stein_directions)(const Rows<float>& x, const Rows<float>& gradient, int count, float bandwidth,
                            Range particles, const Rows<float>& phi);
+  /// sums[row * moments ...] of two lists of weights.
+  void (*two_moments)(const Rows<float>& v, const float* first, const float* second, const float* centre,
+                      Range range, float* sums);
+  /// to[row][k] = from[row][indices[k]].
+  void (*take)(const Rows<float>& from, const int* indices, Range range, const Rows<float>& to);
+  /// evaluated and rejected become the positive and the negative part of evaluated / falling - rejected /
+  /// growing; their sums are `weight` and `squared`.
+  WeightSums<float> (*split_weights)(float falling, float growing, Range range, float* evaluated,
+                                     float* rejected);
   /// Logarithms of the inverse of the published program's probabilities of keeping samples.
   void (*published_rejection)(const Rows<float>& v, const RejectionRows<float>& densities, Range range,
                               float* logarithms);

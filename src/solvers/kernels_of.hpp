@@ -44,6 +44,10 @@ struct KernelsOf<float> {
                                Range particles, const Rows<float>& phi) {
     kernels().stein_directions(x, gradient, count, bandwidth, particles, phi);
   }
+  static WeightSums<float> split_weights(float falling, float growing, Range range, float* evaluated,
+                                         float* rejected) {
+    return kernels().split_weights(falling, growing, range, evaluated, rejected);
+  }
   static void published_rejection(const Rows<float>& v, const RejectionRows<float>& densities, Range range,
                                   float* logarithms) {
     kernels().published_rejection(v, densities, range, logarithms);
@@ -84,6 +88,10 @@ struct KernelsOf<double> {
   static void stein_directions(const Rows<double>& x, const Rows<double>& gradient, int count,
                                double bandwidth, Range particles, const Rows<double>& phi) {
     body::stein_directions<double>(x, gradient, count, bandwidth, particles, phi);
+  }
+  static WeightSums<double> split_weights(double falling, double growing, Range range, double* evaluated,
+                                          double* rejected) {
+    return body::split_weights<double>(falling, growing, range, evaluated, rejected);
   }
   static void published_rejection(const Rows<double>& v, const RejectionRows<double>& densities, Range range,
                                   double* logarithms) {

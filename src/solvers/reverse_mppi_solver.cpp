@@ -35,15 +35,15 @@ class ReverseMppiSolver final : public detail::SolverBase {
         inverse_(size()),
         zero_(size()),
         shifted_(size()),
-        sums_(size()),
+        sums_(size() * detail::moments),
         moment_mean_(size()),
         moment_variance_(size()),
         published_(rows()),
         own_distance_(static_cast<std::size_t>(inflated_.stride())),
         rejected_distance_(own_distance_.size()),
         keep_(own_distance_.size()),
-        picker_(inflated_.samples()),
-        picked_(static_cast<std::size_t>(options.samples)),
+        picker_(inflated_.samples(), options.samples),
+        picked_(static_cast<std::size_t>(samples_.stride())),
         evaluated_(static_cast<std::size_t>(samples_.stride())),
         rejected_(evaluated_.size()) {
     for (Gaussian* g : {&now_, &now_rejected_, &start_, &start_rejected_}) {
@@ -127,11 +127,8 @@ class ReverseMppiSolver final : public detail::SolverBase {
       RandomStream random(key(2 * iteration + 1));
       picker_.pick(keep_.data(), samples_.samples(), options_.resampling == Resampling::systematic, random,
                    picked_.data());
-      for (int r = 0; r < rows(); ++r) {
-        const float* from = inflated_.row_view().row(r);
-        float* to = samples_.row_view().row(r);
-        for (std::size_t k = 0; k < picked_.size(); ++k) to[k] = from[picked_[k]];
-      }
+      detail::kernels().take(inflated_.row_view(), picked_.data(), {0, samples_.stride()},
+                             samples_.row_view());
     }
     result_.times.draw += detail::seconds(begin, detail::Clock::now());
   }
@@ -202,22 +199,20 @@ class ReverseMppiSolver final : public detail::SolverBase {
       inverse_[r] =
           detail::inverse_variance(before.variance[r], static_cast<float>(options_.inverse_variance_offset));
     std::copy(before.mean.begin(), before.mean.end(), shifted_.begin());
-    // The rejected distribution first: both moments are taken about the samples' mean.
-    if (sums.rejected > 0) descend(rejected_, now_rejected_);
-    descend(evaluated_, now_);
+    samples_.two_moments(evaluated_.data(), rejected_.data(), shifted_.data(), sums_.data(), pool());
+    if (sums.rejected > 0) descend(2, now_rejected_);
+    descend(0, now_);
     result_.times.update += detail::seconds(begin, detail::Clock::now());
     return true;
   }
 
-  /// Mirror descent of a distribution towards the moments of weighted samples.
-  void descend(const std::vector<float>& weights, Gaussian& g) noexcept {
-    std::copy_n(weights.begin(), samples_.weights().size(), samples_.weights().begin());
-    samples_.weighted_sums(zero_.data(), sums_.data(), pool());
-    for (std::size_t r = 0; r < size(); ++r) moment_mean_[r] = static_cast<float>(sums_[r]);
-    samples_.weighted_squares(shifted_.data(), sums_.data(), pool());
+  /// Mirror descent of a distribution towards the moments of weighted samples, of which `list` is the first
+  /// in `sums_`. The squares are taken about the mean of the samples' distribution.
+  void descend(std::size_t list, Gaussian& g) noexcept {
     for (std::size_t r = 0; r < size(); ++r) {
       const double scale = options_.dimensionless_variance ? static_cast<double>(inverse_[r]) : 1.0;
-      moment_variance_[r] = static_cast<float>(sums_[r] * scale);
+      moment_mean_[r] = static_cast<float>(sums_[r * detail::moments + list]);
+      moment_variance_[r] = static_cast<float>(sums_[r * detail::moments + list + 1] * scale);
     }
     detail::mirror_descent(static_cast<float>(options_.step), moment_mean_.data(), moment_variance_.data(),
                            rows(), g.mean.data(), g.variance.data());

@@ -46,13 +46,9 @@ ReverseSums reverse_weights(const Real* totals, Real temperature, Real ratio, Re
   const Real spread = (-most - least) / temperature;
   sums.log_growth = static_cast<double>(spread + std::log(growing));
   growing += offset * std::exp(-spread);
-  for (int k = range.first; k < end; ++k) {
-    const Real difference = evaluated[k] / falling - ratio * rejected[k] / growing;
-    evaluated[k] = std::max(difference, Real(0));
-    rejected[k] = std::max(-difference, Real(0));
-    sums.evaluated += static_cast<double>(evaluated[k]);
-    sums.rejected += static_cast<double>(rejected[k]);
-  }
+  const WeightSums<Real> parts = K::split_weights(falling, growing / ratio, range, evaluated, rejected);
+  sums.evaluated = static_cast<double>(parts.weight);
+  sums.rejected = static_cast<double>(parts.squared);
   if (sums.evaluated > 0) K::scale(static_cast<Real>(1 / sums.evaluated), range, evaluated);
   if (sums.rejected > 0) K::scale(static_cast<Real>(1 / sums.rejected), range, rejected);
   return sums;

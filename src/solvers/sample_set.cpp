@@ -48,7 +48,8 @@ SampleSet::SampleSet(int steps, int inputs, int samples, NoiseShape shape)
       census_(static_cast<std::size_t>(tiles())),
       weight_sums_(static_cast<std::size_t>(tiles())),
       least_(static_cast<std::size_t>(tiles())),
-      row_sums_(static_cast<std::size_t>(tiles()) * static_cast<std::size_t>(steps * inputs)) {}
+      row_sums_(static_cast<std::size_t>(tiles()) * static_cast<std::size_t>(steps * inputs)),
+      moment_sums_(row_sums_.size() * moments) {}
 
 Range SampleSet::range(int tile) const noexcept {
   const int first = tile * tile_;
@@ -76,26 +77,19 @@ void SampleSet::prepare(RandomKey key, ThreadPool& pool) noexcept {
 void SampleSet::finish_tile(int tile, const BatchEvaluator* evaluator, const float* linear,
                             Census& census) noexcept {
   const Range r = range(tile);
-  const Kernels& k = kernels();
   const int count = std::min(r.count, samples() - r.first);
   if (evaluator) evaluator->evaluate(values_, r.first, count, costs_.data(), collided_.data());
-  k.make_finite(r, costs_.data());
   for (int i = r.first + count; i < r.first + r.count; ++i) {
     costs_[static_cast<std::size_t>(i)] = infinite;
     collided_[static_cast<std::size_t>(i)] = 0;
   }
-  std::copy_n(costs_.data() + r.first, r.count, totals_.data() + r.first);
-  if (linear) {
-    k.add_linear(row_view(), linear, r, totals_.data());
-    k.make_finite(r, totals_.data());
-  }
-  census.minimum_cost = k.minimum(costs_.data(), r);
-  census.minimum_total = k.minimum(totals_.data(), r);
+  const Tally<float> tally = kernels().finish(row_view(), linear, r, costs_.data(), totals_.data());
+  census.minimum_cost = tally.least_cost;
+  census.minimum_total = tally.least_total;
+  census.finite = tally.finite;
   census.evaluated = count;
-  for (int i = r.first; i < r.first + count; ++i) {
-    census.finite += totals_[static_cast<std::size_t>(i)] < infinite;
-    census.collided += collided_[static_cast<std::size_t>(i)] != 0;
-  }
+  const std::uint8_t* hit = collided_.data() + r.first;
+  census.collided = static_cast<int>(std::count_if(hit, hit + count, [](std::uint8_t h) { return h != 0; }));
 }
 
 void SampleSet::skip_tile(int tile, Census& census) noexcept {
@@ -270,6 +264,18 @@ void SampleSet::weighted_sums(const float* centre, double* sums, ThreadPool& poo
 
 void SampleSet::weighted_squares(const float* centre, double* sums, ThreadPool& pool) noexcept {
   sum_rows(kernels().weighted_squares, centre, sums, pool);
+}
+
+void SampleSet::two_moments(const float* first, const float* second, const float* centre, double* sums,
+                            ThreadPool& pool) noexcept {
+  const std::size_t n = static_cast<std::size_t>(rows()) * moments;
+  pool.run(tiles(), [&](int tile) {
+    kernels().two_moments(row_view(), first, second, centre, range(tile),
+                          &moment_sums_[static_cast<std::size_t>(tile) * n]);
+  });
+  std::fill_n(sums, n, 0.0);
+  for (std::size_t tile = 0; tile < static_cast<std::size_t>(tiles()); ++tile)
+    for (std::size_t i = 0; i < n; ++i) sums[i] += static_cast<double>(moment_sums_[tile * n + i]);
 }
 
 }  // namespace slalom::detail

@@ -105,6 +105,10 @@ class SampleSet {
   void weighted_sums(const float* centre, double* sums, ThreadPool& pool) noexcept;
   /// sums[row] = sum of w (v - centre)^2.
   void weighted_squares(const float* centre, double* sums, ThreadPool& pool) noexcept;
+  /// sums[row * moments ...] of two lists of weights [padded sample]: w v and w (v - centre)^2 of the first,
+  /// then of the second.
+  void two_moments(const float* first, const float* second, const float* centre, double* sums,
+                   ThreadPool& pool) noexcept;
 
  private:
   using RowSums = void (*)(const Rows<float>&, const float*, const float*, Range, float*);
@@ -134,6 +138,7 @@ class SampleSet {
   std::vector<WeightSums<float>> weight_sums_;  ///< [tile]
   std::vector<float> least_;                    ///< [tile]
   std::vector<float> row_sums_;                 ///< [tile][row]
+  std::vector<float> moment_sums_;              ///< [tile][row][moment]
 };
 
 }  // namespace slalom::detail

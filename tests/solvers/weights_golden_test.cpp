@@ -76,7 +76,7 @@ TEST(Golden, GaussianFitting) {
   for_each_line(folder / "cases.jsonl", [&](const Json& json) {
     comparison.next_case();
     const auto x = numbers<double>(json["x"]), y = numbers<double>(json["y"]);
-    const auto fit = detail::fit_gaussian(x.data(), y.data(), static_cast<int>(x.size()));
+    const auto fit = detail::fit_gaussian(x, y);
     const double fitted = std::sqrt(detail::fitted_variance(fit, true)), expected = number(json["variance"]);
     EXPECT_EQ(std::isinf(fitted), std::isinf(expected)) << case_name(json) << ": the rank decision differs";
     undetermined += std::isinf(expected);
