@@ -28,9 +28,11 @@ class InputWatch {
     reason_ = reason;
     at_ = caused_at_ = wall();
   }
-  /// What may be but the consequence of a fault reported lately, which then stays the reason.
+  /// What may be but the consequence of a fault reported lately, which then stays the reason, for longer than
+  /// a Sayer waits.
   void report_consequence(const std::string& reason) {
-    if (wall() - caused_at_ > 2 * limits_.settle_time) reason_ = reason;
+    constexpr double lately = 1.2;  // s
+    if (wall() - caused_at_ > lately) reason_ = reason;
     at_ = wall();
   }
   /// The last fault while it is not settled; else empty.
