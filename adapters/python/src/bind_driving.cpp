@@ -13,7 +13,12 @@ using evaluation::Arena;
 std::vector<std::filesystem::path> course_roots() {
   const auto module = py::module_::import("slalom");
   const auto file = module.attr("__file__").cast<std::string>();
-  auto roots = vehicle::course_roots(std::filesystem::path(file).parent_path());
+  const auto package = std::filesystem::path(file).parent_path();
+  auto roots = vehicle::course_roots(package);
+  // An installed package lies in lib/python3/dist-packages, or the like, below the prefix.
+  for (auto above = package; above.has_relative_path(); above = above.parent_path())
+    if (const auto courses = above / "share" / "slalom" / "courses"; std::filesystem::is_directory(courses))
+      roots.push_back(courses);
   return roots;
 }
 
