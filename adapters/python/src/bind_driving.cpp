@@ -10,16 +10,21 @@ namespace {
 
 using evaluation::Arena;
 
-std::vector<std::filesystem::path> course_roots() {
-  const auto module = py::module_::import("slalom");
-  const auto file = module.attr("__file__").cast<std::string>();
-  const auto package = std::filesystem::path(file).parent_path();
-  auto roots = vehicle::course_roots(package);
-  // An installed package lies in lib/python3/dist-packages, or the like, below the prefix.
+using Roots = std::vector<std::filesystem::path>;
+
+/// Where a program in the package's folder looks, then what lies above it: `what` of the source tree it was
+/// built in, or share/slalom/`what` of the prefix it was installed to.
+Roots roots_of(Roots (*search)(const std::filesystem::path&), const char* what) {
+  const auto file = py::module_::import("slalom").attr("__file__").cast<std::string>();
+  const auto package = std::filesystem::weakly_canonical(file).parent_path();
+  Roots roots = search(package);
   for (auto above = package; above.has_relative_path(); above = above.parent_path())
-    if (const auto courses = above / "share" / "slalom" / "courses"; std::filesystem::is_directory(courses))
-      roots.push_back(courses);
+    for (const auto& house : {above / "share" / "slalom", above})
+      if (std::filesystem::exists(house / "courses" / "known.yaml")) roots.push_back(house / what);
   return roots;
+}
+Roots course_roots() {
+  return roots_of(vehicle::course_roots, "courses");
 }
 
 py::tuple to_tuple(const maps::Pose& pose) {
@@ -36,10 +41,16 @@ std::shared_ptr<const Arena> load(const std::string& course, const std::string& 
                                 roots);
 }
 
-/// `{"section.option": value}` or the options of the method itself.
-vehicle::Configuration configure(const std::string& method, const py::dict& options) {
+/// `config`, a name or a file, or the classes' defaults where it is empty; then `{"section.option": value}`
+/// or the options of the method itself.
+vehicle::Configuration configure(const std::string& method, const std::string& config,
+                                 const py::dict& options) {
   vehicle::Configuration configuration;
   solver_options(method);
+  if (!config.empty()) {
+    const Roots roots = roots_of(vehicle::configuration_roots, "configs");
+    configuration = vehicle::load_configuration(vehicle::find_configuration(config, roots), roots);
+  }
   for (const auto& [key, value] : options) {
     std::string text = py::isinstance<py::bool_>(value) ? (value.cast<bool>() ? "true" : "false")
                                                         : py::str(value).cast<std::string>();
@@ -170,13 +181,16 @@ py::dict lap_dict(const evaluation::LapResult& lap) {
 
 void bind_planner(py::module_& module) {
   py::class_<vehicle::Planner>(module, "Planner", "From LiDAR scan and odometry to steering and speed.")
-      .def(py::init([](const Arena& arena, const std::string& method, const py::dict& options) {
-             const auto configuration = configure(method, options);
+      .def(py::init([](const Arena& arena, const std::string& method, const py::dict& options,
+                       const std::string& config) {
+             const auto configuration = configure(method, config, options);
              return vehicle::Planner(configuration.planner, configuration.vehicle, arena.path,
                                      arena.course.closed, vehicle::make_solver(configuration, method, 1));
            }),
-           py::arg("course"), py::arg("method") = "svg_mppi", py::arg("options") = py::dict(),
-           "`options`: {'samples': 2000, 'planner.max_speed': 4, 'vehicle....': ...}")
+           py::arg("course"), py::arg("method") = "svg_mppi", py::arg("options") = py::dict(), py::kw_only(),
+           py::arg("config") = "",
+           "`config`: 'default', 'published' or a file; else the classes' defaults. `options`: {'samples': "
+           "2000, 'planner.max_speed': 4, 'vehicle....': ...}")
       .def(
           "update",
           [](vehicle::Planner& self,
@@ -217,10 +231,10 @@ void bind_planner(py::module_& module) {
   module.def(
       "drive_lap",
       [](const std::shared_ptr<Arena>& arena, const std::string& method, std::uint64_t seed, int obstacles,
-         const py::dict& options) {
+         const py::dict& options, const std::string& config) {
         evaluation::LapSettings settings;
         settings.obstacles = obstacles;
-        evaluation::LapRunner runner(arena, configure(method, options), method, settings);
+        evaluation::LapRunner runner(arena, configure(method, config, options), method, settings);
         evaluation::LapResult lap;
         {
           const py::gil_scoped_release unlock;
@@ -229,7 +243,7 @@ void bind_planner(py::module_& module) {
         return lap_dict(lap);
       },
       py::arg("course"), py::arg("method") = "svg_mppi", py::kw_only(), py::arg("seed") = 0,
-      py::arg("obstacles") = 0, py::arg("options") = py::dict(),
+      py::arg("obstacles") = 0, py::arg("options") = py::dict(), py::arg("config") = "",
       "Drives one lap in lockstep and returns its figures, as `slalom eval` counts them.");
 }
 

@@ -49,6 +49,13 @@ def test_a_lap_is_driven_and_counted():
     assert same["time"] == lap["time"] and same["mean_sequence_cost"] == lap["mean_sequence_cost"]
 
 
+def test_a_configuration_drives_a_lap():
+    lap = slalom.drive_lap(slalom.Course("wren"), "svg_mppi", seed=1, config="default", options={"samples": 256})
+    assert lap["finished"] and lap["contacts"] == 0
+    with pytest.raises(slalom.IoError, match="no_such_configuration"):
+        slalom.drive_lap(slalom.Course("wren"), "svg_mppi", config="no_such_configuration")
+
+
 def test_mistakes_are_told():
     with pytest.raises(slalom.IoError, match="nowhere_to_be_found"):
         slalom.Course("nowhere_to_be_found")
