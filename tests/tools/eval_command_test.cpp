@@ -234,6 +234,25 @@ TEST_F(EvalCommand, ALapIsReplayedToTheLastBitAndTwoRunsAreCompared) {
     EXPECT_EQ(result.at("ms_p"), 1);
   }
   EXPECT_NE(run("compare one nowhere").status, 0);
+
+  // Folders of evaluations: each place, then all its laps together.
+  for (const char* place : {"a/wren", "a/again", "b/wren", "b/again", "c/other"}) {
+    fs::create_directories((folder_ / place).parent_path());
+    fs::copy(folder_ / "one", folder_ / place, fs::copy_options::recursive);
+  }
+  const ProgramRun places = run("compare a b --json places.json");
+  ASSERT_EQ(places.status, 0) << places.output;
+  const auto all = nlohmann::json::parse(content(folder_ / "places.json")).at("results");
+  ASSERT_EQ(all.size(), 6u);
+  EXPECT_EQ(all.at(0).at("place"), "again");
+  EXPECT_EQ(all.at(2).at("place"), "wren");
+  for (std::size_t sum : {4u, 5u}) {
+    EXPECT_EQ(all.at(sum).at("place"), "all 2");
+    EXPECT_EQ(all.at(sum).at("first").at("laps").get<int>(), 2 * all.at(0).at("first").at("laps").get<int>());
+    EXPECT_NEAR(all.at(sum).at("first").at("ms_mean").get<double>(),
+                all.at(sum - 4).at("first").at("ms_mean").get<double>(), 1e-12);
+  }
+  EXPECT_TRUE(contains(run("compare a c").output, "nor a folder of such"));
 }
 
 TEST_F(EvalCommand, ReproduceWithoutBerlinSaysWhatIsMissing) {
