@@ -256,12 +256,22 @@ std::vector<std::string> Canvas::wrapped(const std::string& words, double size, 
   return lines;
 }
 
+double Canvas::fitting_size(const std::string& words, double size, double least, double width) {
+  cairo_t* c = cairo_.get();
+  cairo_select_font_face(c, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_BOLD);
+  cairo_set_font_size(c, size);
+  cairo_text_extents_t extents;
+  cairo_text_extents(c, words.c_str(), &extents);
+  return std::clamp(size * width / std::max(extents.x_advance, 1.0), least, size);
+}
+
 void Canvas::legend(const std::string& title, const std::string& facts, double slowest, double fastest) {
   cairo_t* c = cairo_.get();
   const double margin = 36, base = map_height_;
-  text(margin, base + 64, 40, title, ink, true, 0);
-
   const double bar_width = 260, bar_left = width_ - margin - bar_width, bar_top = base + 84;
+  // A lap of an evaluation is named by all that was set for it.
+  text(margin, base + 64, fitting_size(title, 40, 14, bar_left - 3 * margin), title, ink, true, 0);
+
   const auto lines = wrapped(facts, 22, bar_left - 2 * margin);
   for (std::size_t i = 0; i < lines.size(); ++i)
     text(margin, base + (lines.size() == 1 ? 108 : 100) + 30 * static_cast<double>(i), 22, lines[i],

@@ -62,6 +62,8 @@ class Canvas {
   void draw_cells(const maps::OccupancyGrid& map);
   void text(double x, double y, double size, const std::string& words, Colour colour, bool bold,
             double align);
+  /// The size, between `least` and `size`, at which bold words are at most `width` pixels wide.
+  double fitting_size(const std::string& words, double size, double least, double width);
   /// Breaks a line of facts at its middle dots, so that none is wider than `width` pixels.
   std::vector<std::string> wrapped(const std::string& words, double size, double width);
 

@@ -11,7 +11,7 @@ namespace {
 
 view::RecorderOptions recorder_options(const RecordingFacts& facts) {
   const sim::WorldOptions world = facts.scenario.arena->world_options();
-  return {.library = std::string("slalom ") + version(),
+  return {.program = std::string("slalom ") + version(),
           .settings = {{"settings", facts.settings.dump()}},
           .lidar_angle_min = world.lidar.angle_min(),
           .lidar_angle_increment = world.lidar.angle_increment(),

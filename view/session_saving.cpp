@@ -68,7 +68,7 @@ void Session::save(std::uint64_t client, const std::string& what) {
   for (const Step& step : history_) frames.push_back(step.frame);
   const sim::WorldOptions world = scenario_.arena->world_options();
   RecorderOptions recorder{
-      .library = options_.program,
+      .program = options_.program,
       .settings = {{"settings", nlohmann::json{{"command_line", command_line()}}.dump()}},
       .lidar_angle_min = world.lidar.angle_min(),
       .lidar_angle_increment = world.lidar.angle_increment(),

@@ -43,7 +43,7 @@ std::string figures_schema(bool wall_clock) {
 
 Recorder::Recorder(std::ostream& stream, RecorderOptions options)
     : options_(std::move(options)),
-      writer_(stream, options_.library),
+      writer_(stream, options_.program),
       replay_([this](const std::string& segment) { attach(segment); }) {
   writer_.add_metadata("slalom", options_.settings);
   const auto schema = [&](const char* name, const std::string& text) {

@@ -16,7 +16,7 @@ namespace slalom::view {
 
 /// What a recording says about itself and needs to know.
 struct RecorderOptions {
-  std::string library = "slalom";                         ///< who wrote it
+  std::string program = "slalom";                         ///< who wrote it
   std::map<std::string, std::string> settings;            ///< kept as the metadata "slalom"
   double lidar_angle_min = 0, lidar_angle_increment = 0;  ///< rad
   double lidar_range_max = 30;                            ///< m
