@@ -62,9 +62,10 @@ CLI::App* add_eval_command(CLI::App& app, int& exit_status) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command
-      ->add_option("--set", arguments->sweeps,
-                   "key=v1,v2,...: one experiment for each value (and each combination where it is said more "
-                   "than once)")
+      ->add_option(
+          "--set", arguments->sweeps,
+          "key=v1,v2,...: one experiment for each value (and each combination where it is said more "
+          "than once); world.friction=0.7,1 and so on make the world harder: slalom options lists them")
       ->allow_extra_args(false);
   command->add_flag("--report", arguments->report, "Also write report.html and its figures");
   add_evaluation_options(*command, arguments->evaluation);

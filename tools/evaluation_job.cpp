@@ -58,7 +58,7 @@ bool applies_to(const Sweep& sweep, const std::string& method) {
   const auto dot = sweep.key.find('.');
   if (dot == std::string::npos) return true;
   const std::string section = sweep.key.substr(0, dot);
-  return section == method || section == "vehicle" || section == "planner";
+  return section == method || section == "vehicle" || section == "planner" || section == "world";
 }
 
 Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
@@ -199,6 +199,7 @@ Json Evaluated::summary() const {
          {"finished", r.finished},
          {"timeouts", r.timeouts},
          {"contacts", r.collisions},
+         {"impassable", r.impassable},
          {"ms_mean", r.ms_mean},
          {"ms_ci", interval_json(r.ms_ci)},
          {"state_cost_mean", r.state_cost_mean},
@@ -303,6 +304,18 @@ void print_results(const Evaluated& evaluated, std::FILE* out) {
                  e.label().c_str(), e.scenario.c_str(), r.laps, r.ms_mean, r.ms_ci.low, r.ms_ci.high,
                  r.collisions, rate, 100 * r.success_rate, r.solve_ms_p50);
   }
+  // Laps of the same number have the same obstacles: those of the first experiment speak for all.
+  std::string laps;
+  int impassable = 0, experiment = -1;
+  for (const LapRow& row : evaluated.rows) {
+    if (row.impassable == 0 || (experiment >= 0 && row.experiment != experiment)) continue;
+    experiment = row.experiment;
+    impassable += row.impassable;
+    laps += (laps.empty() ? "" : ", ") + std::to_string(row.lap);
+  }
+  if (impassable > 0)
+    std::fprintf(out, "%d obstacles leave no way that a car of this width could take, in laps %s\n",
+                 impassable, laps.c_str());
 }
 
 }  // namespace slalom::tools

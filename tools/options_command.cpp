@@ -68,13 +68,16 @@ void run(const Arguments& arguments) {
     std::cout << vehicle::to_yaml(configuration);
     return;
   }
-  const auto standard = vehicle::list_sections(vehicle::Configuration{});
-  const auto sections = vehicle::list_sections(configuration);
+  auto standard = vehicle::list_sections(vehicle::Configuration{});
+  auto sections = vehicle::list_sections(configuration);
+  // No part of a configuration: what evaluations set of the world they drive in.
+  for (auto* list : {&standard, &sections})
+    list->push_back({"world", list_options(evaluation::LapSettings{})});
   Json json;
   for (std::size_t s = 0; s < sections.size(); ++s) {
     const auto& section = sections[s];
     const bool wanted = arguments.method.empty() || section.name == arguments.method ||
-                        section.name == "vehicle" || section.name == "planner";
+                        section.name == "vehicle" || section.name == "planner" || section.name == "world";
     if (!wanted) continue;
     Json entries = Json::array();
     for (std::size_t i = 0; i < section.options.size(); ++i)
@@ -95,7 +98,7 @@ CLI::App* add_options_command(CLI::App& app, int& exit_status) {
   command->add_option("--set", arguments->scenario.set, "section.option=value; may be repeated")
       ->allow_extra_args(false);
   command->add_option("--method", arguments->method,
-                      "Only this method's section, and those of vehicle and planner");
+                      "Only this method's section, and those of vehicle, planner and world");
   command->add_option("--json", arguments->json, "Write them as JSON to this file, or to standard output: -");
   command->add_flag("--yaml", arguments->yaml, "Print the whole configuration as a file");
   command->callback([arguments, &exit_status] {

@@ -52,6 +52,23 @@ maps::Pose parse_pose(const std::string& text) {
   return {values[0], values[1], values[2]};
 }
 
+/// Every --set: of the configuration, or of the world.
+void apply_settings(const std::vector<std::string>& assignments, const std::string& method,
+                    vehicle::Configuration& configuration, evaluation::LapSettings& lap) {
+  for (const std::string& assignment : assignments) {
+    const auto equals = assignment.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw IoError("--set", 0, "'" + assignment + "' must be key=value");
+    const std::string key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
+    try {
+      if (!evaluation::set_world_option(lap, key, value))
+        vehicle::set_option(configuration, key, value, method);
+    } catch (const std::invalid_argument& error) {
+      throw IoError("--set", 0, error.what());
+    }
+  }
+}
+
 }  // namespace
 
 fs::path program_folder() {
@@ -99,16 +116,8 @@ vehicle::Configuration load_configuration(const ScenarioArguments& arguments, co
   const auto roots = vehicle::configuration_roots(program_folder());
   auto configuration =
       vehicle::load_configuration(vehicle::find_configuration(arguments.config, roots), roots);
-  for (const std::string& assignment : arguments.set) {
-    const auto equals = assignment.find('=');
-    if (equals == std::string::npos || equals == 0)
-      throw IoError("--set", 0, "'" + assignment + "' must be key=value");
-    try {
-      vehicle::set_option(configuration, assignment.substr(0, equals), assignment.substr(equals + 1), method);
-    } catch (const std::invalid_argument& error) {
-      throw IoError("--set", 0, error.what());
-    }
-  }
+  evaluation::LapSettings world;
+  apply_settings(arguments.set, method, configuration, world);
   return configuration;
 }
 
@@ -124,6 +133,7 @@ Scenario load_scenario(const ScenarioArguments& arguments, const std::string& me
   scenario.lap.latency = 1e-3 * arguments.latency_ms;
   if (arguments.hardware) scenario.lap.hardware.emplace();
   scenario.lap.threads = arguments.threads;
+  apply_settings(arguments.set, method, scenario.configuration, scenario.lap);
   if (!arguments.start.empty()) scenario.lap.start = parse_pose(arguments.start);
   return scenario;
 }
@@ -153,6 +163,8 @@ Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario,
                 {"start", {start.x, start.y, start.yaw}},
                 {"latency_ms", arguments.latency_ms},
                 {"options", options_json(scenario.configuration, method)}};
+  for (const OptionEntry& entry : list_options(scenario.lap))
+    settings["options"]["world"][entry.declaration.name] = value_json(entry.value);
   if (arguments.hardware) settings["hardware"] = true;
   return settings;
 }

@@ -98,12 +98,13 @@ bool CampaignWork::finish() {
 LapRunner make_runner(const Campaign& campaign, int index) {
   const Experiment& experiment = campaign.experiments.at(static_cast<std::size_t>(index));
   vehicle::Configuration configuration = campaign.configuration;
-  for (const auto& [key, value] : experiment.set)
-    vehicle::set_option(configuration, key, value, experiment.method);
   LapSettings settings;
   settings.obstacles = experiment.obstacles;
   settings.latency = campaign.latency;
   settings.further_costs = campaign.further_costs;
+  for (const auto& [key, value] : experiment.set)
+    if (!set_world_option(settings, key, value))
+      vehicle::set_option(configuration, key, value, experiment.method);
   return LapRunner(campaign.arena, configuration, experiment.method, settings);
 }
 

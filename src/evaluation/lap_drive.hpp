@@ -13,9 +13,9 @@ namespace slalom::evaluation {
 
 /// A lap under way.
 struct LapRunner::Drive {
-  Drive(const sim::WorldOptions& options, const Arena& arena, const vehicle::Configuration& configuration,
-        std::unique_ptr<vehicle::Planner> driver)
-      : world(options, arena.track), planner(std::move(driver)), meter(arena.path, configuration.vehicle) {}
+  Drive(const sim::WorldOptions& options, const Arena& arena, const std::vector<maps::ReferencePoint>& path,
+        const vehicle::Configuration& configuration, std::unique_ptr<vehicle::Planner> driver)
+      : world(options, arena.track), planner(std::move(driver)), meter(path, configuration.vehicle) {}
 
   sim::World world;
   std::unique_ptr<vehicle::Planner> planner;

@@ -7,6 +7,8 @@
 #include <stdexcept>
 
 #include "evaluation/lap_drive.hpp"
+#include "slalom/core/option_access.hpp"
+#include "slalom/evaluation/passage.hpp"
 #include "slalom/sim/placement.hpp"
 #include "slalom/sim/shapes.hpp"
 
@@ -47,24 +49,26 @@ LapRunner::LapRunner(std::shared_ptr<const Arena> arena, const vehicle::Configur
   require(arena_ != nullptr, "arena: a lap needs one");
   require(settings.obstacles >= 0 && settings.obstacles <= 1000,
           "obstacles: " + std::to_string(settings.obstacles) + " must be in [0, 1000]");
-  require(settings.latency >= 0 && settings.latency <= 1,
-          "latency: " + std::to_string(settings.latency) + " must be in [0, 1] s");
+  validate_options(settings, "world");
   require(settings.threads >= 1 && settings.threads <= 1024,
           "threads: " + std::to_string(settings.threads) + " must be in [1, 1024]");
   const bool published = arena_->evaluation == Evaluation::published;
-  require(!published || settings.latency == 0, "latency: must be 0 in the published evaluation");
+  if (published) {
+    const auto standard = list_options(LapSettings{}), chosen = list_options(settings);
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      require(chosen[i] == standard[i], std::string(chosen[i].declaration.name) + ": must be " +
+                                            to_text(standard[i].value) + " in the published evaluation");
+  }
   require(!published || !settings.hardware, "hardware: not in the published evaluation");
   if (settings.hardware) {
     validate_options(*settings.hardware, "hardware");
     settings.hardware->wheels.validate();
     settings.hardware->localiser.validate();
   }
-  require(settings.opponents >= 0 && settings.opponents <= 16,
-          "opponents: " + std::to_string(settings.opponents) + " must be in [0, 16]");
-  require(settings.opponent_speed > 0 && settings.opponent_speed <= 1,
-          "opponent_speed: " + std::to_string(settings.opponent_speed) + " must be in (0, 1]");
-  require(settings.opponents == 0 || (!published && arena_->course.closed),
-          "opponents: must be 0 in the published evaluation and on courses that are no loops");
+  require(settings.opponents == 0 || arena_->course.closed,
+          "opponents: must be 0 on courses that are no loops");
+  path_ = arena_->path;
+  for (maps::ReferencePoint& point : path_) point.speed *= settings.speed_scale;
   start_ = settings.start.value_or(arena_->start);
   vehicle::check_start(arena_->course, start_);
   make_planner();  // refuses what it does not like here and not in the first lap
@@ -72,6 +76,7 @@ LapRunner::LapRunner(std::shared_ptr<const Arena> arena, const vehicle::Configur
   vehicle::Course capped;
   capped.waypoints = arena_->course.waypoints;
   capped.closed = arena_->course.closed;
+  for (vehicle::Waypoint& point : capped.waypoints) point.speed *= settings.speed_scale;
   vehicle::cap_speed(capped, configuration_.planner.max_speed);
   timeout_ = arena_->timeout > 0 ? arena_->timeout : timeout_laps * vehicle::profile_time(capped);
   if (!arena_->course.closed && !published)
@@ -85,7 +90,7 @@ double LapRunner::control_period() const noexcept {
 }
 
 std::unique_ptr<vehicle::Planner> LapRunner::make_planner() const {
-  return std::make_unique<vehicle::Planner>(configuration_.planner, configuration_.vehicle, arena_->path,
+  return std::make_unique<vehicle::Planner>(configuration_.planner, configuration_.vehicle, path_,
                                             arena_->course.closed,
                                             vehicle::make_solver(configuration_, method_, settings_.threads));
 }
@@ -221,6 +226,7 @@ void LapRunner::advance(Drive& drive, bool past_finish) const {
       drive.under_way.erase(drive.under_way.begin());
     }
     drive.commands[0] = drive.hardware ? drive.hardware->servo(drive.acting, time_step) : drive.acting;
+    drive.commands[0].steering *= settings_.steering_gain;
     for (std::size_t i = 1; i < drive.commands.size(); ++i) {
       const sim::CarState& opponent = drive.world.state(i);
       drive.commands[i] = drive.opponents->command({opponent.x, opponent.y, opponent.yaw});
@@ -279,9 +285,13 @@ std::unique_ptr<LapRunner::Drive> LapRunner::begin(std::uint64_t seed) const {
     const double period = configuration_.planner.control_period;
     options.time_step = period / std::max(1.0, std::ceil(period / options.time_step - 1e-9));
     options.lidar.rate = 1 / period;
+    options.lidar.noise = settings_.range_noise;
+    options.lidar.dropout = settings_.dropout;
+    options.car.friction = settings_.friction;
+    if (settings_.saturating_tyres) options.plant.dynamics.model = sim::Model::saturating;
   }
   if (settings_.hardware) HardwareDrive::apply(*settings_.hardware, options);
-  auto drive = std::make_unique<Drive>(options, *arena_, configuration_, make_planner());
+  auto drive = std::make_unique<Drive>(options, *arena_, path_, configuration_, make_planner());
   drive->planner->reset(solver_seed(seed, method_));
   drive->result.seed = seed;
   drive->result.obstacles = place_obstacles(seed);
@@ -289,7 +299,7 @@ std::unique_ptr<LapRunner::Drive> LapRunner::begin(std::uint64_t seed) const {
   std::vector<maps::Pose> cars{start_};
   if (settings_.opponents > 0) {
     std::vector<sim::PathPoint> line;
-    for (const maps::ReferencePoint& point : arena_->path)
+    for (const maps::ReferencePoint& point : path_)
       line.push_back({{point.x, point.y},
                       settings_.opponent_speed * std::min(point.speed, configuration_.planner.max_speed)});
     drive->opponents.emplace(std::move(line));
@@ -298,6 +308,10 @@ std::unique_ptr<LapRunner::Drive> LapRunner::begin(std::uint64_t seed) const {
     drive->commands.resize(cars.size());
   }
   drive->world.reset(seed, cars, drive->result.obstacles);
+  std::vector<sim::Box> parked;
+  for (std::size_t i = cars.size(); i < drive->world.bodies(); ++i) parked.push_back(drive->world.outline(i));
+  drive->result.impassable =
+      static_cast<int>(impassable(*arena_->track, parked, {.radius = 0.5 * options.car.width}).size());
   for (std::size_t i = 1; i < cars.size(); ++i) drive->world.set_scanning(i, false);
   if (settings_.hardware)
     drive->hardware = std::make_unique<HardwareDrive>(*settings_.hardware, arena_->course.map, options.car,

@@ -33,6 +33,7 @@ void visit_columns(Row& r, Visit&& visit) {
   visit("steps", r.steps);
   visit("contacts", r.contacts);
   visit("wall", r.wall);
+  visit("impassable", r.impassable);
   visit("minimum_clearance", r.minimum_clearance);
   visit("mean_speed", r.mean_speed);
   visit("mean_path_distance", r.mean_path_distance);
@@ -141,6 +142,7 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
   r.steps = result.steps;
   r.contacts = result.bodies_touched;
   r.wall = result.wall;
+  r.impassable = result.impassable;
   r.minimum_clearance = result.least_clearance;
   r.mean_speed = result.mean_speed;
   r.mean_path_distance = result.mean_path_distance;

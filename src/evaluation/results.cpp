@@ -37,6 +37,7 @@ ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index
     r.finished += row->finished;
     r.timeouts += row->timeout;
     r.collisions += row->collision;
+    r.impassable += row->impassable;
     successes += row->success;
     if (row->finished) lap_times.push_back(row->lap_time);
     r.solve_ms_max = std::max(r.solve_ms_max, row->max_calculation_time);

@@ -155,6 +155,35 @@ TEST(LapRunner, ACarThatCannotLocaliseStops) {
   EXPECT_EQ(lap.contacts, 0);
 }
 
+TEST(LapRunner, TheWorldCanBeMadeHarder) {
+  const auto arena = wren();
+  const auto lap = [&](const char* key, const char* value) {
+    LapSettings settings;
+    if (key) {
+      EXPECT_TRUE(set_world_option(settings, key, value)) << key;
+    }
+    return LapRunner(arena, configuration("default", 64), "mppi", settings).run(0);
+  };
+  const LapResult usual = lap(nullptr, nullptr);
+  for (const auto& [key, value] :
+       std::vector<std::pair<const char*, const char*>>{{"world.friction", "0.6"},
+                                                        {"world.saturating_tyres", "true"},
+                                                        {"world.steering_gain", "0.9"},
+                                                        {"world.range_noise", "0.05"},
+                                                        {"world.dropout", "0.2"},
+                                                        {"world.latency", "0.05"}})
+    EXPECT_NE(bits(lap(key, value)), bits(usual)) << key;
+  const LapResult fast = lap("world.speed_scale", "1.2"), slow = lap("world.speed_scale", "0.8");
+  EXPECT_NEAR(slow.mean_speed / usual.mean_speed, 0.8, 0.03);
+  EXPECT_NEAR(fast.mean_speed / usual.mean_speed, 1.2, 0.05);
+  LapSettings settings;
+  EXPECT_FALSE(set_world_option(settings, "vehicle.friction", "1"));
+  EXPECT_THROW(set_world_option(settings, "world.fricton", "1"), std::invalid_argument);
+  EXPECT_THROW(set_world_option(settings, "world.friction", "-1"), std::invalid_argument);
+  EXPECT_THROW(LapRunner(wren(Evaluation::published), configuration("default"), "mppi", {.friction = 0.7}),
+               std::invalid_argument);
+}
+
 TEST(LapRunner, RefusesWhatCannotBeDriven) {
   const auto arena = wren();
   const auto refusal = [&](const std::string& method, const LapSettings& settings,

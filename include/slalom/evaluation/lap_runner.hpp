@@ -11,26 +11,13 @@
 #include <vector>
 
 #include "slalom/evaluation/arena.hpp"
-#include "slalom/evaluation/hardware.hpp"
+#include "slalom/evaluation/lap_settings.hpp"
 #include "slalom/evaluation/sequence_cost.hpp"
 #include "slalom/sim/world.hpp"
 #include "slalom/vehicle/configuration.hpp"
 #include "slalom/vehicle/planner.hpp"
 
 namespace slalom::evaluation {
-
-/// What a lap is besides course, configuration and method.
-struct LapSettings {
-  int obstacles = 0;                  ///< parked cars, 0 ... 1000
-  std::optional<maps::Pose> start{};  ///< of the centre of gravity; else the arena's
-  double latency = 0;                 ///< s from a scan to its command's effect, "true" evaluation only
-  int threads = 1;                    ///< of the solver; the result does not depend on it
-  std::optional<HardwareConditions> hardware{};  ///< as on a real car, "true" evaluation only
-  std::optional<std::uint64_t> layout{};         ///< the seed of the obstacles' places; else the lap's
-  bool further_costs = false;   ///< also `published_model_cost` and `driven_cost`, which take time
-  int opponents = 0;            ///< cars that drive along the course line, 0 ... 16, on loops only
-  double opponent_speed = 0.5;  ///< of the line's speed, in (0, 1]
-};
 
 /// The seed of lap `lap`: seed0 + lap (obstacles + 5), as the published evaluation has it.
 constexpr std::uint64_t lap_seed(std::uint64_t seed0, int lap, int obstacles) {
@@ -88,6 +75,7 @@ struct LapResult {
   std::array<int, 7> planner_status{};  ///< control steps by vehicle::PlannerStatus
   std::vector<Contact> touches;
   std::vector<maps::Pose> obstacles;
+  int impassable = 0;               ///< of these, as evaluation::impassable tells
   std::vector<float> solve_ms;      ///< wall clock of each solve
   std::vector<float> tick_ms;       ///< wall clock of each planner update
   LocalisationRecord localisation;  ///< with `hardware`
@@ -129,6 +117,7 @@ class LapRunner {
   void finish(Drive& drive) const;
 
   std::shared_ptr<const Arena> arena_;
+  std::vector<maps::ReferencePoint> path_;  ///< the arena's, with the speeds of this lap
   vehicle::Configuration configuration_;
   std::string method_;
   LapSettings settings_;

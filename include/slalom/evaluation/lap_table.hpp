@@ -43,8 +43,9 @@ struct LapRow {
   int steps = 0;
   int contacts = 0;  ///< different bodies touched, all walls as one
   bool wall = false;
-  double minimum_clearance = 0;                          ///< m
-  double mean_speed = 0;                                 ///< m/s
+  int impassable = 0;            ///< obstacles that no car of this width could have passed
+  double minimum_clearance = 0;  ///< m
+  double mean_speed = 0;         ///< m/s
   double mean_path_distance = 0, max_path_distance = 0;  ///< m
   double mean_variance = 0, mean_effective_samples = 0;
   double ms_published_model = 0, ms_driven = 0;

@@ -14,6 +14,7 @@ struct ExperimentResult {
   int experiment = 0;
   int laps = 0, finished = 0, timeouts = 0;
   int collisions = 0;  ///< contacts as the evaluation counts them
+  int impassable = 0;  ///< obstacles, of all laps, that no car could have passed
   double ms_mean = 0;  ///< MS: mean over laps of the mean sequence cost
   Interval ms_ci;      ///< bootstrap over laps
   double state_cost_mean = 0, collision_cost_mean = 0;
