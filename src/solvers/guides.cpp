@@ -104,7 +104,9 @@ void Guides::restart_others(RandomKey key) noexcept {
       const double place = restart_knots_ * static_cast<double>(step) / options_.horizon;
       const int k = static_cast<int>(place);
       const double part = place - k;
-      const double deviation = (1 - part) * knot(k, input, g) + part * knot(k + 1, input, g);
+      // A horizon of less than four steps has no fourth knot, and needs none.
+      const int next = std::min(k + 1, options_.horizon - 1);
+      const double deviation = (1 - part) * knot(k, input, g) + part * knot(next, input, g);
       theta_[at(g) + r] =
           std::clamp(theta_[at(0) + r] + std::sqrt(options_.restart_variance[input]) * deviation,
                      static_cast<double>(low_[r]), static_cast<double>(high_[r]));

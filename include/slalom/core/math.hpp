@@ -187,7 +187,7 @@ SLALOM_INLINE void sin_cos(const Pack<Target>& x, Pack<Target>& s, Pack<Target>&
   const F half_turns = rounded_product(x, 0.318309886f, bits);
   F r;
   if constexpr (Target::fused) {
-    r = x - half_turns * F(3.14159274f);
+    simd::Operations<Target>::subtract_product(x.v, half_turns.v, F(3.14159274f).v, r.v);
     r = r + half_turns * F(8.74227766e-8f);
   } else {  // pi in three parts, the first two short enough for exact products
     r = x - half_turns * F(3.140625f);
@@ -247,9 +247,10 @@ SLALOM_INLINE Pack<Target> log(const Pack<Target>& x) {
   using F = Pack<Target>;
   using I = typename simd::IntPack<Target>::Vector;
   using V = typename F::Vector;
-  const I bits = reinterpret_cast<I>(x.v);
-  const I e = (bits - 0x3f3504f3) >> 23;
-  const F m = F(reinterpret_cast<V>(bits - (e << 23))) - F(1.0f);
+  using U = typename simd::detail::VectorTypes<Target::lanes>::Unsigned;
+  const U bits = reinterpret_cast<U>(x.v);  // unsigned, since below 0 the differences overflow
+  const I e = reinterpret_cast<I>(bits - 0x3f3504f3u) >> 23;
+  const F m = F(reinterpret_cast<V>(bits - (reinterpret_cast<U>(e) << 23))) - F(1.0f);
   const F n = F(__builtin_convertvector(e, V));
   const F m2 = m * m;
   F p = F(7.0376836292e-2f);

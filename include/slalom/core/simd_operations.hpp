@@ -20,6 +20,8 @@ struct PortableOperations {
 
   static void min(const F& a, const F& b, F& r) { r = a < b ? a : b; }
   static void max(const F& a, const F& b, F& r) { r = a > b ? a : b; }
+  /// a - b c; where Target::fused with one rounding, whatever the compiler makes of other products and sums.
+  static void subtract_product(const F& a, const F& b, const F& c, F& r) { r = a - b * c; }
   static void less(const F& a, const F& b, I& r) { r = a < b; }
   static void less_or_equal(const F& a, const F& b, I& r) { r = a <= b; }
   /// `a` where all bits of the condition are set, `b` where none is.
@@ -60,6 +62,9 @@ template <>
 struct Operations<Generic> : PortableOperations<Generic> {
   static void min(const F& a, const F& b, F& r) { r = (F)vminq_f32((float32x4_t)a, (float32x4_t)b); }
   static void max(const F& a, const F& b, F& r) { r = (F)vmaxq_f32((float32x4_t)a, (float32x4_t)b); }
+  static void subtract_product(const F& a, const F& b, const F& c, F& r) {
+    r = (F)vfmsq_f32((float32x4_t)a, (float32x4_t)b, (float32x4_t)c);
+  }
   static void sqrt(const F& a, F& r) { r = (F)vsqrtq_f32((float32x4_t)a); }
   static void reciprocal_sqrt(const F& a, F& r) { r = 1.0f / (F)vsqrtq_f32((float32x4_t)a); }
   static void round(const F& a, F& r) { r = (F)vrndnq_f32((float32x4_t)a); }
@@ -126,6 +131,9 @@ struct Operations<Avx2> : PortableOperations<Avx2> {
   SLALOM_ISA_AVX2 static void max(const F& a, const F& b, F& r) {
     r = (F)_mm256_max_ps((__m256)a, (__m256)b);
   }
+  SLALOM_ISA_AVX2 static void subtract_product(const F& a, const F& b, const F& c, F& r) {
+    r = (F)_mm256_fnmadd_ps((__m256)b, (__m256)c, (__m256)a);
+  }
   SLALOM_ISA_AVX2 static void sqrt(const F& a, F& r) { r = (F)_mm256_sqrt_ps((__m256)a); }
   SLALOM_ISA_AVX2 static void reciprocal_sqrt(const F& a, F& r) {
     const F e = (F)_mm256_rsqrt_ps((__m256)a);
@@ -170,6 +178,9 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
   }
   SLALOM_ISA_AVX512 static void max(const F& a, const F& b, F& r) {
     r = (F)_mm512_maskz_max_ps(all, (__m512)a, (__m512)b);
+  }
+  SLALOM_ISA_AVX512 static void subtract_product(const F& a, const F& b, const F& c, F& r) {
+    r = (F)_mm512_fnmadd_ps((__m512)b, (__m512)c, (__m512)a);
   }
   SLALOM_ISA_AVX512 static void less(const F& a, const F& b, std::uint16_t& r) {
     r = _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
