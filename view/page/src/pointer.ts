@@ -85,7 +85,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
     if (!start || pointers.size) return;
     const [x, y] = scene.camera.toMap(p.x, p.y);
     if (dragged && moved) move(dragged, x + grip.x, y + grip.y);
-    else if (!dragged && !moved && e.type === "pointerup" && !clicked(x, y) && tool() !== "pan") drop(x, y);
+    else if (!moved && e.type === "pointerup" && !clicked(x, y) && !dragged && tool() !== "pan") drop(x, y); // a mark may lie on a body
     start = dragged = undefined;
     redraw();
   };

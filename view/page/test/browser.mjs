@@ -296,10 +296,17 @@ await test("an evaluation: a click on a contact shows what led to it", async () 
   await wait((t) => slalom.state.paused && slalom.scalar("tick") >= t && slalom.scalar("contacts") > 0, tick);
   if (pictures) await look.screenshot({ path: `${pictures}/evaluation.png` });
   await look.click("#timeline");
-  const [x, y] = await look.evaluate(() => { setTimeout(() => 0); const m = slalom.scene.marks.at(-1); slalom.scene.fit(); slalom.scene.draw(); return slalom.scene.camera.toScreen(m.x, m.y); });
-  const box = await look.locator("#scene").boundingBox();
   const generation = await look.evaluate(() => slalom.state.generation);
-  await look.mouse.click(box.x + x, box.y + y);
+  // Where the mark is on the page now: a note that comes or goes above the scene moves it.
+  const mark = () => look.evaluate(() => {
+    slalom.scene.fit();
+    slalom.scene.draw();
+    const m = slalom.scene.marks.at(-1), [x, y] = slalom.scene.camera.toScreen(m.x, m.y), box = document.querySelector("#scene").getBoundingClientRect();
+    return [box.x + x, box.y + y];
+  });
+  let at = await mark();
+  for (let before; String(before) !== String(at); at = await mark()) { before = at; await look.waitForTimeout(300); }
+  await look.mouse.click(...at);
   await wait((g) => slalom.state.generation > g && slalom.state.contact, generation);
   await look.close();
   await shown.stop();
