@@ -1,6 +1,6 @@
 // How late a solve can be: 100,000 solves of `svg_mppi` on the reference workload with a deadline of 2 ms,
 // one every millisecond as a controller would, while another process keeps the other core busy. Status 1 if
-// more returned later than 5 ms than the clock stood still for as long.
+// one returned later than 5 ms.
 // Between solves it looks at the clock for as long, to tell apart what the machine itself does (a virtual one
 // is taken off its core now and then).
 //   slalom_latency_bench [solves] [threads] [milliseconds between two]
@@ -132,7 +132,7 @@ int run(long solves, int threads, double period) {
       "in as much time spent on looking at the clock alone: %ld gaps beyond that, the longest %.3f ms\n",
       made.gaps, 1e3 * made.longest_gap);
   print_histogram(made.times);
-  return made.late > made.gaps;
+  return made.late > 0;
 }
 
 }  // namespace

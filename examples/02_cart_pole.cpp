@@ -48,5 +48,5 @@ int main() {
                                    .variance_max = 8,
                                    .seed = seed}});
   });
-  return report("the pole stands", mppi, svg_mppi, 19);
+  return report("the pole stands", mppi, svg_mppi, 20);
 }

@@ -20,6 +20,6 @@ def stands(controller):
 common = dict(horizon=60, samples=2048, temperature=0.1, input_min=-10, input_max=10)
 mppi = succeeded(lambda seed: stands(slalom.Mppi(cart_pole, **common, variance=8, seed=seed)))
 svg_mppi = succeeded(lambda seed: stands(slalom.SvgMppi(
-    cart_pole, **common, guide_step=0.5, guide_variance=4, gradient_variance=2, gradient_temperature=0.1,
+    cart_pole, **common, guide_step=0.2, guide_variance=4, gradient_variance=2, gradient_temperature=0.1,
     variance_min=4, variance_max=8, seed=seed)))
-report("the pole stands", mppi, svg_mppi, 19)
+report("the pole stands", mppi, svg_mppi, 20)

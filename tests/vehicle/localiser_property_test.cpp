@@ -51,8 +51,7 @@ TEST(LocaliserTracking, StaysWithinCentimetresOnEveryCourse) {
       const bool long_straights = std::string(name) == "swift";
       EXPECT_LT(got.mean, long_straights ? 0.15 : 0.08) << name << " seed " << seed;
       EXPECT_LT(got.p99, long_straights ? 0.6 : 0.25) << name << " seed " << seed;
-      // There it may say so, but no longer than a car may drive on without a pose: 0.1 s.
-      EXPECT_LE(got.not_ok, long_straights ? 4 : 0) << name << " seed " << seed;
+      EXPECT_EQ(got.not_ok, 0) << name << " seed " << seed;
     }
   }
 }
