@@ -26,6 +26,10 @@ constexpr double jump_slack = 0.1;
 /// How long (s) the last known motion is taken to go on where odometry has jumped.
 constexpr double longest_guess = 0.2;
 
+/// Where the expected range changes by more than this many times the way across the beam, it is taken for the
+/// edge of something and not for a wall that is grazed; ranges (m) below the other one count as it.
+constexpr double steepest_wall = 8, shortest_lever = 0.05;
+
 /// Another place (m, rad) is none if it is so near, and the particles are put about it so closely.
 constexpr double near_place = 0.5, near_yaw = 0.3;
 /// A place that has long fitted well is given up for a clearly better one only, since opposite directions of
@@ -114,6 +118,7 @@ struct Localiser::Implementation {
     forget();
     output.pose = pose;
     trust = most_trust;
+    settled = true;
   }
   void forget() noexcept {
     output = {};
@@ -122,6 +127,7 @@ struct Localiser::Implementation {
     slow = fast = 0;
     search_until = -1;
     trust = 0;
+    settled = false;
     search.clear();
   }
 
@@ -148,6 +154,7 @@ struct Localiser::Implementation {
   double elapsed = 0;                  ///< s, since the last update
   double fit = 0, slow = 0, fast = 0;  ///< of the estimate: now, and averaged
   double trust = 0;                    ///< s, for which the place has not been doubtful, as it were
+  bool settled = false;                ///< the place was given, or was kept to the end of a search
   double search_until = -1;            ///< s, stamp
   double place_log_fit = 0;  ///< of the particles' place, averaged as those of the search's hypotheses are
 };
@@ -207,6 +214,12 @@ bool Localiser::Implementation::choose_beams(const maps::LaserScanView& scan) no
     beams.end_y[at] = static_cast<float>(options.laser_y + range * std::sin(bearing));
     beams.range[at] = static_cast<float>(range);
     const double bin = maps::wrap_angle(bearing) * bins_per_turn;
+    const double across = bins_per_turn / std::max(range, shortest_lever);
+    beams.forward_x[at] = static_cast<float>(std::cos(bearing));
+    beams.forward_y[at] = static_cast<float>(std::sin(bearing));
+    beams.sideways_x[at] = static_cast<float>(-across * std::sin(bearing));
+    beams.sideways_y[at] = static_cast<float>(across * std::cos(bearing));
+    beams.steepest[at] = static_cast<float>(steepest_wall / across);
     beams.bin[at] = std::min(static_cast<float>(bin < 0 ? bin + options.table_angles : bin),
                              static_cast<float>(options.table_angles - 1e-3));
   };
@@ -275,10 +288,18 @@ void Localiser::Implementation::use_scan() noexcept {
 void Localiser::Implementation::look_elsewhere() noexcept {
   const bool doubtful = options.recovery_margin * fast < std::max(slow, options.least_fit);
   const bool was_searching = output.searching;
-  trust = doubtful ? trust * doubt_keeps : std::min(trust + std::max(0.0, elapsed), most_trust);
+  // A place that this search has found competes with the others on equal terms until the search is over.
+  if (doubtful) {
+    trust *= doubt_keeps;
+  } else if (settled) {
+    trust = std::min(trust + std::max(0.0, elapsed), most_trust);
+  }
   if (doubtful) search_until = stamp + options.search_time;
   output.searching = doubtful || (was_searching && stamp < search_until);
-  if (!output.searching) return;
+  if (!output.searching) {
+    settled = true;
+    return;
+  }
   if (!was_searching) search.clear();
 
   const maps::Pose place = relative(origin, output.pose);
@@ -294,6 +315,7 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   particles.spread_about(best->pose, relocated_deviation, relocated_yaw_deviation, next_key());
   place_log_fit = best->log_fit;
   trust = 0;
+  settled = false;
   output.relocated = true;
   estimate();
 }

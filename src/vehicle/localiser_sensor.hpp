@@ -12,13 +12,27 @@ namespace slalom::vehicle::detail {
 /// The beams of a scan that are used, in the frame of the rear axle, structure of arrays.
 struct ScanBeams {
   explicit ScanBeams(int capacity)
-      : end_x(static_cast<std::size_t>(capacity)), end_y(end_x), range(end_x), bin(end_x) {}
+      : end_x(static_cast<std::size_t>(capacity)),
+        end_y(end_x),
+        range(end_x),
+        bin(end_x),
+        forward_x(end_x),
+        forward_y(end_x),
+        sideways_x(end_x),
+        sideways_y(end_x),
+        steepest(end_x) {}
 
   std::vector<float> end_x, end_y;  ///< m
   std::vector<float> range;         ///< m; range_cap where nothing was hit
   std::vector<float> bin;           ///< bearing in angles of the range table, in [0, table_angles)
-  int hits = 0;                     ///< the first so many came back
-  int count = 0;                    ///< all, those without return last
+  // What the expected range changes by where the laser is moved by d (m, in this frame): by -(forward . d),
+  // and by (sideways . d) times the difference (m) between two successive ranges of the table, which is told
+  // from a corner by being at most `steepest`.
+  std::vector<float> forward_x, forward_y;    ///< the beam's direction
+  std::vector<float> sideways_x, sideways_y;  ///< 1/m, across the beam
+  std::vector<float> steepest;                ///< m
+  int hits = 0;                               ///< the first so many came back
+  int count = 0;                              ///< all, those without return last
 };
 
 /// Particles in the frame of the grid (metres from the corner of cell (0, 0)), structure of arrays, padded to
@@ -30,8 +44,10 @@ struct ParticlePoses {
   int count = 0;
 };
 
-/// Expected ranges from the centres of free cells in equal steps of angle. A cell of the grid below holds the
-/// number of its row of ranges; row 0 stands for "in a wall" and is all 0. An entry holds two successive
+/// Expected ranges from the centres of free cells in equal steps of angle; the way from there to the laser is
+/// made up for as if the wall that a beam meets were straight (dr = -d_forward + d_sideways r'(angle) / r),
+/// without which walls that a beam grazes would seem to lie half a metre off. A cell of the grid below holds
+/// the number of its row of ranges; row 0 stands for "in a wall" and is all 0. An entry holds two successive
 /// ranges as 16-bit parts of `range_unit`, so that one look-up serves an interpolation.
 struct RangeTable {
   maps::CellGrid<1> rows{1, 1};

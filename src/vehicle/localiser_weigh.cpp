@@ -26,11 +26,17 @@ SLALOM_INLINE void by_field(const WeighInput& in) {
   }
 }
 
-/// The two 16-bit ranges of the entries `index`, interpolated.
+/// What a table of ranges has at an angle between two of its own: the range interpolated and the difference
+/// of the two, m.
 template <class Target>
-SLALOM_INLINE Pack<Target> expected_range(const WeighInput& in,
-                                          const typename simd::IntPack<Target>::Vector& index,
-                                          const Pack<Target>& fraction) {
+struct Expected {
+  Pack<Target> range, difference;
+};
+
+template <class Target>
+SLALOM_INLINE Expected<Target> expected_range(const WeighInput& in,
+                                              const typename simd::IntPack<Target>::Vector& index,
+                                              const Pack<Target>& fraction) {
   using F = Pack<Target>;
   using I = typename simd::IntPack<Target>::Vector;
   F entry;
@@ -38,7 +44,19 @@ SLALOM_INLINE Pack<Target> expected_range(const WeighInput& in,
   const I bits = reinterpret_cast<I>(entry.v);
   const F here(__builtin_convertvector(bits & 0xffff, typename F::Vector));
   const F next(__builtin_convertvector((bits >> 16) & 0xffff, typename F::Vector));
-  return (here + fraction * (next - here)) * F(in.range_unit);
+  const F difference = (next - here) * F(in.range_unit);
+  return {here * F(in.range_unit) + fraction * difference, difference};
+}
+
+/// Where in its cell a position lies: m from the cell's centre, along an axis that is counted against it.
+template <class Target>
+SLALOM_INLINE Pack<Target> from_cell_center(const GridAxis& axis, double resolution,
+                                            const Pack<Target>& position) {
+  using F = Pack<Target>;
+  using I = typename simd::IntPack<Target>::Vector;
+  const F cells = position * F(static_cast<float>(axis.scale)) + F(static_cast<float>(axis.offset));
+  const F whole(__builtin_convertvector(__builtin_convertvector(cells.v, I), typename F::Vector));
+  return (F(0.5f) - (cells - whole)) * F(static_cast<float>(resolution));
 }
 
 template <class Target>
@@ -53,7 +71,11 @@ SLALOM_INLINE void by_ranges(const WeighInput& in) {
     const F yaw = F::load(in.particles.yaw + i);
     F s, c;
     sin_cos(yaw, s, c);
-    const F cell = look_up(in.rows, x + laser_x * c - laser_y * s, y + laser_x * s + laser_y * c);
+    const F from_x = x + laser_x * c - laser_y * s, from_y = y + laser_x * s + laser_y * c;
+    const F cell = look_up(in.rows, from_x, from_y);
+    const F off_x = from_cell_center(in.rows.rows_axis(), in.rows.resolution(), from_x);
+    const F off_y = from_cell_center(in.rows.columns_axis(), in.rows.resolution(), from_y);
+    const F off_forward = off_x * c + off_y * s, off_left = off_y * c - off_x * s;
     const I row = __builtin_convertvector(cell.v, I) * in.angles;
     const F turns = wrap_angle(yaw) * F(0.15915494309f);  // -1/2 .. 1/2
     const F start = select(turns < F(0.0f), turns + F(1.0f), turns) * angles;
@@ -66,16 +88,21 @@ SLALOM_INLINE void by_ranges(const WeighInput& in) {
     };
     F total(0.0f);
     for (int k = 0; k < beams.hits; ++k) {
-      const F range(beams.range[static_cast<std::size_t>(k)]), expected = expected_at(k);
-      const F before(in.short_scale *
-                     __builtin_expf(-in.short_rate * beams.range[static_cast<std::size_t>(k)]));
+      const std::size_t beam = static_cast<std::size_t>(k);
+      const F range(beams.range[beam]), steepest(beams.steepest[beam]);
+      const auto [at_center, difference] = expected_at(k);
+      const F straight = select(difference * difference > steepest * steepest, F(0.0f), difference);
+      const F expected =
+          at_center - (off_forward * F(beams.forward_x[beam]) + off_left * F(beams.forward_y[beam])) +
+          straight * (off_forward * F(beams.sideways_x[beam]) + off_left * F(beams.sideways_y[beam]));
+      const F before(in.short_scale * __builtin_expf(-in.short_rate * beams.range[beam]));
       const F off = range - expected;
       const F p = F(in.hit) * exp(off * off * F(in.hit_scale)) + F(in.random) +
                   select(range < expected, before, F(0.0f));
       total = total + log(p);
     }
     for (int k = beams.hits; k < beams.count; ++k)
-      total = total + select(expected_at(k) >= F(in.nothing_from), F(0.0f), F(in.lost));
+      total = total + select(expected_at(k).range >= F(in.nothing_from), F(0.0f), F(in.lost));
     (total * mean + look_up(in.place, x, y)).store(in.log_fit + i);
   }
 }

@@ -61,7 +61,7 @@ struct LocaliserOptions {
   double fast_rate = 0.3;         ///< alpha_fast, of the short-term one
   double recovery_margin = 1.25;  ///< nu: other places are searched where nu * fast < slow
   double least_fit = 0.6;         ///< the long-term average counts as at least this
-  double search_time = 1.0;       ///< s, for which the search goes on after the last cause
+  double search_time = 2.0;       ///< s, for which the search goes on after the last cause
   double search_memory = 0.25;    ///< s, time constant over which places are compared by their fit
   double rival_margin = 0.05;     ///< in log fit, by which another place must be better to be taken
   int most_hypotheses = 96;       ///< places followed at once, 16 .. 4096
