@@ -144,9 +144,11 @@ Json differing_settings(const Json& a, const Json& b) {
 }
 
 std::string p_text(double p) {
+  if (!std::isfinite(p)) return "-";
+  if (p < 0.001) return "< 0.001 *";
   char text[32];
-  std::snprintf(text, sizeof text, "%.4f%s", p, p < 0.05 ? " *" : "");
-  return std::isfinite(p) ? text : "-";
+  std::snprintf(text, sizeof text, "%.3f%s", p, p < 0.05 ? " *" : "");
+  return text;
 }
 
 void print(const std::vector<Match>& matches, std::FILE* out) {

@@ -43,6 +43,7 @@ td.words,th.words{text-align:left}
 tr.explained td{border-bottom:0;padding-bottom:1px}
 tr.why td{text-align:left;white-space:normal;color:var(--faint);font-size:13px;padding:0 10px 8px 16px}
 td small{color:var(--faint);font-size:12.5px}
+@media(max-width:1300px){td small{display:block}th{white-space:normal;vertical-align:bottom}}
 .pill{display:inline-block;border-radius:99px;padding:0 9px;font-size:12.5px;font-weight:600;color:#fff;background:var(--faint)}
 .inside{background:var(--good)}.outside{background:var(--bad)}
 img{max-width:100%;max-height:1000px;display:block;margin:14px auto 6px}
@@ -92,6 +93,11 @@ std::string number(double value, int digits = 3) {
                               : digits,
                 value);
   return text;
+}
+
+/// A p-value (0 .. 1), a dash where there is none.
+std::string p_value(double p) {
+  return p < 0.001 ? "&lt; 0.001" : number(p);
 }
 
 std::string with_interval(double value, const Interval& i, double scale = 1, int digits = 3) {
@@ -225,10 +231,10 @@ std::string paired_table(const Report& report) {
     const auto& other = experiments[static_cast<std::size_t>(index)];
     rows += "<tr><td>" + escaped(name_of(index)) + "</td><td>" + other.scenario + "</td><td>" +
             std::to_string(c.laps) + "</td><td>" + number(turned ? c.ms_difference : -c.ms_difference) +
-            "</td><td>" + number(c.ms_p, 4) + "</td><td>" +
+            "</td><td>" + p_value(c.ms_p) + "</td><td>" +
             std::to_string(turned ? c.only_b_succeeds : c.only_a_succeeds) + "</td><td>" +
             std::to_string(turned ? c.only_a_succeeds : c.only_b_succeeds) + "</td><td>" +
-            number(c.success_p, 4) + "</td></tr>\n";
+            p_value(c.success_p) + "</td></tr>\n";
   }
   if (rows.empty()) return {};
   return "<section><h2>Lap by lap against SVG-MPPI</h2><p class=\"caption\">The same seeds: the same "
