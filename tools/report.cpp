@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "recording/encodings.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
 
@@ -66,20 +67,6 @@ std::string escaped(const std::string& text) {
     } else {
       out += c;
     }
-  }
-  return out;
-}
-
-std::string base64(const std::string& data) {
-  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < data.size(); i += 3) {
-    const auto byte = [&](std::size_t k) {
-      return k < data.size() ? static_cast<std::uint32_t>(static_cast<unsigned char>(data[k])) : 0u;
-    };
-    const std::uint32_t three = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-    for (int k = 0; k < 4; ++k)
-      out += i + static_cast<std::size_t>(k) > data.size() ? '=' : digits[three >> (18 - 6 * k) & 63];
   }
   return out;
 }
@@ -173,7 +160,7 @@ std::string table(const Report& report, const std::string& section, const std::s
 
 std::string image(const ReportFigure& figure) {
   return "<img alt=\"" + escaped(figure.title) + "\" src=\"data:" + figure.mime + ";base64," +
-         base64(figure.data) + "\"><p class=\"caption\">" + escaped(figure.caption) + "</p>\n";
+         view::base64(figure.data) + "\"><p class=\"caption\">" + escaped(figure.caption) + "</p>\n";
 }
 
 std::string tile(const std::string& value, const std::string& words) {

@@ -1,6 +1,7 @@
 #include "slalom/core/thread_pool.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <chrono>
@@ -31,6 +32,29 @@ TEST(ThreadPool, WorkersThatHaveGoneToSleepWakeAgain) {
     ASSERT_EQ(sum, 28);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+}
+
+long voluntary_switches() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_nvcsw;
+}
+
+TEST(ThreadPool, AThreadSleepsAtMostOnceARound) {
+  constexpr int threads = 3, rounds = 200;
+  ThreadPool pool(threads);
+  const long before = voluntary_switches();
+  for (int round = 0; round < rounds; ++round) {
+    pool.run(4 * threads, [](int) {  // longer together than anyone spins
+      const auto until = std::chrono::steady_clock::now() + std::chrono::microseconds(30);
+      while (std::chrono::steady_clock::now() < until) {
+      }
+    });
+    std::this_thread::sleep_for(std::chrono::microseconds(200));  // workers go to sleep
+  }
+  const long switches = voluntary_switches() - before;
+  EXPECT_GE(switches, 2 * rounds) << "nobody slept: nothing was measured";
+  EXPECT_LE(switches, (threads + 1) * rounds);  // the caller sleeps once more, between the rounds
 }
 
 TEST(ThreadPool, RefusesAbsurdSizes) {
