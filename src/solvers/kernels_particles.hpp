@@ -64,6 +64,10 @@ SLALOM_INLINE void place_round(const Rows<RealOf<F>>& samples, const Rows<RealOf
   }
 }
 
+/// Kernels below exp of this count as 0 beside the 1 of a particle with itself: subnormal ones would make
+/// every operation on them slow.
+constexpr double least_exponent = -70;
+
 /// phi of `packs` packs of particles from `i` on: see `stein_directions`.
 template <int packs, class F>
 SLALOM_INLINE void stein_block(const Rows<RealOf<F>>& x, const Rows<RealOf<F>>& gradient, int count,
@@ -96,7 +100,9 @@ SLALOM_INLINE void stein_block(const Rows<RealOf<F>>& x, const Rows<RealOf<F>>& 
     }
     for (int b = 0; b < packs; ++b) {
       for (int q = 0; q < together; ++q) {
-        kernel[b][q] = exp(kernel[b][q] * negative_inverse) * (j + q < count ? share : F(0.0f));
+        const F exponent = kernel[b][q] * negative_inverse;
+        const F weight = exp(exponent) * (j + q < count ? share : F(0.0f));
+        kernel[b][q] = select(exponent < F(Real(least_exponent)), F(0.0f), weight);
         kernel_sum[b] = kernel_sum[b] + kernel[b][q];
       }
     }
