@@ -102,6 +102,21 @@ bool is_table_order(const LapRow& a, const LapRow& b) {
   return std::pair(a.experiment, a.lap) < std::pair(b.experiment, b.lap);
 }
 
+/// A table is written when all laps are there; what misses some was changed by others.
+void check_complete(const fs::path& table, const std::vector<LapRow>& sorted,
+                    const std::vector<Experiment>& experiments) {
+  std::size_t at = 0;
+  for (int e = 0; e < static_cast<int>(experiments.size()); ++e) {
+    const Experiment& experiment = experiments[static_cast<std::size_t>(e)];
+    for (int lap = 0; lap < experiment.laps; ++lap, ++at) {
+      if (at < sorted.size() && sorted[at].experiment == e && sorted[at].lap == lap) continue;
+      throw IoError(table.string(), 0,
+                    "lap " + std::to_string(lap) + " of " + experiment.label() + ", " + experiment.scenario +
+                        ": is missing; named " + journal_name + " the file can be gone on with");
+    }
+  }
+}
+
 }  // namespace
 
 LapStore::LapStore(const fs::path& folder, const Campaign& campaign, bool resume)
@@ -130,11 +145,12 @@ LapStore::LapStore(const fs::path& folder, const Campaign& campaign, bool resume
     replace_file(settings, with_build(campaign.settings, campaign.build));
   }
   if (fs::exists(table)) {
-    rows_ = read_rows(table, experiments_, false);
+    rows_ = read_rows(table, experiments_, false, campaign.seed0);
     std::sort(rows_.begin(), rows_.end(), is_table_order);
+    check_complete(table, rows_, experiments_);
     return;
   }
-  if (fs::exists(journal)) rows_ = read_rows(journal, experiments_, true);
+  if (fs::exists(journal)) rows_ = read_rows(journal, experiments_, true, campaign.seed0);
   // Written anew, so that a line that was cut short is gone for good.
   std::string text = csv_header() + "\n";
   for (const LapRow& row : rows_) text += csv_line(row, experiments_) + "\n";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <numeric>
@@ -80,6 +81,12 @@ void parse_cell(const std::string& text, const char* column, Field& field) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), field);
     if (error != std::errc{} || end != text.data() + text.size() || text.empty()) {
       throw std::invalid_argument(std::string(column) + ": '" + text + "' must be a number");
+    }
+    if constexpr (std::is_floating_point_v<Field>) {
+      // Where there is no wall the clearance has no end; all else is finite, and means must not be spoiled.
+      const bool endless = std::string_view(column) == "minimum_clearance" && std::isinf(field) && field > 0;
+      if (!std::isfinite(field) && !endless)
+        throw std::invalid_argument(std::string(column) + ": '" + text + "' must be a finite number");
     }
   }
 }
@@ -210,8 +217,21 @@ LapRow parse_line(const std::string& line, const std::vector<Experiment>& experi
   return row;
 }
 
+namespace {
+
+void check_seed(const LapRow& row, const Experiment& experiment, std::uint64_t seed0) {
+  const std::uint64_t seed = lap_seed(seed0, row.lap, experiment.obstacles);
+  if (row.seed == seed) return;
+  throw std::invalid_argument("seed: " + std::to_string(row.seed) + " must be " + std::to_string(seed) +
+                              ", that of lap " + std::to_string(row.lap) + " from seed0 " +
+                              std::to_string(seed0) + " with " + std::to_string(experiment.obstacles) +
+                              " obstacles");
+}
+
+}  // namespace
+
 std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vector<Experiment>& experiments,
-                              bool forgive_last) {
+                              bool forgive_last, std::optional<std::uint64_t> seed0) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw IoError(file.string(), 0, "cannot be read");
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
@@ -234,11 +254,13 @@ std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vect
       LapRow row = parse_line(line, experiments);
       if (!seen.insert({row.experiment, row.lap}).second)
         throw std::invalid_argument("lap: stands here twice");
+      if (seed0) check_seed(row, experiments[static_cast<std::size_t>(row.experiment)], *seed0);
       rows.push_back(std::move(row));
     } catch (const std::invalid_argument& error) {
       throw IoError(file.string(), number, error.what());
     }
   }
+  if (number == 0 && !forgive_last) throw IoError(file.string(), 1, "the header is missing");
   return rows;
 }
 

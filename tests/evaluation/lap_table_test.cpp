@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "slalom/core/error.hpp"
+#include "slalom/evaluation/campaign.hpp"
 
 namespace slalom::evaluation {
 namespace {
@@ -44,10 +47,11 @@ class LapTable : public ::testing::Test {
   void TearDown() override { fs::remove(file_); }
 
   void write(const std::string& text) const { std::ofstream(file_, std::ios::binary) << text; }
-  std::string complaint(const std::string& text, bool forgive_last = false) const {
+  std::string complaint(const std::string& text, bool forgive_last = false,
+                        std::optional<std::uint64_t> seed0 = {}) const {
     write(text);
     try {
-      read_rows(file_, experiments, forgive_last);
+      read_rows(file_, experiments, forgive_last, seed0);
     } catch (const IoError& error) {
       return error.what();
     }
@@ -102,6 +106,90 @@ TEST_F(LapTable, NamesLineAndColumnOfWhatMakesNoSense) {
   std::string word = first_;
   word.replace(word.find("18446744073709551615"), 20, "twelve");
   EXPECT_NE(complaint(head_ + word).find("seed: 'twelve' must be a number"), std::string::npos);
+}
+
+TEST_F(LapTable, RefusesNumbersThatAreNone) {
+  LapRow spoiled = row(0, 2);
+  for (const double number : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    spoiled.state_cost = number;
+    EXPECT_NE(complaint(head_ + csv_line(spoiled, experiments) + "\n").find(":2: state_cost: '"),
+              std::string::npos)
+        << number;
+  }
+  spoiled = row(0, 2);
+  spoiled.minimum_clearance = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(complaint(head_ + csv_line(spoiled, experiments) + "\n"), "") << "where there is no wall";
+}
+
+TEST_F(LapTable, RefusesASeedThatIsNotTheLaps) {
+  LapRow plain = row(0, 2), among_obstacles = row(1, 1);
+  plain.seed = 7 + 2 * 5;
+  among_obstacles.seed = 7 + 1 * 10;
+  const auto text = [&] {
+    return head_ + csv_line(plain, experiments) + "\n" + csv_line(among_obstacles, experiments) + "\n";
+  };
+  EXPECT_EQ(complaint(text(), false, 7), "");
+  EXPECT_NE(complaint(text(), false, 8).find(":2: seed: 17 must be 18"), std::string::npos);
+  among_obstacles.seed = 7 + 1 * 5;
+  EXPECT_NE(complaint(text(), true, 7).find(":3: seed: 12 must be 17"), std::string::npos);
+}
+
+TEST_F(LapTable, NamesAMissingHeader) {
+  EXPECT_NE(complaint("").find(".csv:1: the header is missing"), std::string::npos);
+  EXPECT_EQ(complaint("", true), "") << "a journal that was killed at once";
+}
+
+class LapStoreFolder : public ::testing::Test {
+ protected:
+  LapStoreFolder() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("slalom_lap_store.") + test->name());
+    fs::remove_all(folder_);
+    campaign_.experiments = {{"mppi", {}, "pt", 0, 2}};
+    campaign_.settings = "{}";
+  }
+  ~LapStoreFolder() override { fs::remove_all(folder_); }
+
+  /// Completes an evaluation, puts what `spoil` makes of its laps.csv in its place, and resumes.
+  template <class Spoil>
+  std::string complaint_when_resumed(Spoil&& spoil) {
+    fs::remove_all(folder_);
+    std::string text = csv_header() + "\n";
+    {
+      LapStore store(folder_, campaign_, false);
+      for (int lap = 0; lap < 2; ++lap) {
+        LapRow r = row(0, lap);
+        r.seed = lap_seed(0, lap, 0);
+        store.add(r);
+        text += csv_line(r, campaign_.experiments) + "\n";
+      }
+      store.complete();
+    }
+    std::ofstream(folder_ / "laps.csv", std::ios::binary) << spoil(text);
+    try {
+      LapStore(folder_, campaign_, true);
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  fs::path folder_;
+  Campaign campaign_;
+};
+
+TEST_F(LapStoreFolder, ResumesOnlyFromAWholeTableOfItsOwn) {
+  const auto without_last = [](const std::string& text) {
+    return text.substr(0, text.rfind('\n', text.size() - 2) + 1);
+  };
+  EXPECT_EQ(complaint_when_resumed([](const std::string& text) { return text; }), "");
+  EXPECT_NE(complaint_when_resumed([](const std::string&) { return ""; }).find("laps.csv:1: the header"),
+            std::string::npos);
+  EXPECT_NE(complaint_when_resumed(without_last).find("laps.csv: lap 1 of mppi, pt: is missing"),
+            std::string::npos);
+  campaign_.seed0 = 5;
+  EXPECT_NE(complaint_when_resumed([](const std::string& text) { return text; }).find("laps.csv:2: seed: 0"),
+            std::string::npos);
 }
 
 }  // namespace

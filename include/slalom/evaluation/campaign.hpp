@@ -69,7 +69,8 @@ class LapStore {
  public:
   /// Opens `folder` for the campaign. Throws IoError if it cannot be written, if it holds results and
   /// `resume` is not said, if it holds an evaluation with other settings (naming what differs), if its laps
-  /// are corrupt, and if laps are missing and another build of the program drove those that are there.
+  /// are corrupt or not of its seeds, if a laps.csv misses some, and if laps are missing and another build of
+  /// the program drove those that are there.
   LapStore(const std::filesystem::path& folder, const Campaign& campaign, bool resume);
   ~LapStore();
   LapStore(const LapStore&) = delete;

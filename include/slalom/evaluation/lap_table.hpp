@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -69,10 +70,10 @@ std::string csv_line(const LapRow& row, const std::vector<Experiment>& experimen
 /// A row from such a line. Throws std::invalid_argument naming the column, its value and the rule.
 LapRow parse_line(const std::string& line, const std::vector<Experiment>& experiments);
 
-/// Reads rows. Throws IoError naming file and line where a line is not a row of one of the experiments, or a
-/// lap stands twice. With `forgive_last`, a last line that is not complete (a run was killed while it wrote)
-/// is passed over.
+/// Reads rows. Throws IoError naming file and line where a line is not a row of one of the experiments, a lap
+/// stands twice, or its seed is not that of the lap where `seed0` is given. With `forgive_last`, a last line
+/// that is not complete (a run was killed while it wrote) is passed over, and so is a file without a header.
 std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vector<Experiment>& experiments,
-                              bool forgive_last);
+                              bool forgive_last, std::optional<std::uint64_t> seed0 = {});
 
 }  // namespace slalom::evaluation
