@@ -1,10 +1,12 @@
 #include "slalom/maps/image.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "png_io.hpp"
 #include "slalom/core/error.hpp"
@@ -39,6 +41,14 @@ class PgmReader {
   }
 
   void skip_one() { ++position_; }
+
+  /// Whether nothing more follows; many programs end even binary pixels with a line end.
+  bool at_end(bool text) {
+    if (text) skip_blank();
+    const std::string_view rest = std::string_view(bytes_).substr(std::min(position_, bytes_.size()));
+    return rest.empty() || rest == "\n" || rest == "\r\n";
+  }
+
   std::size_t left() const { return position_ < bytes_.size() ? bytes_.size() - position_ : 0; }
   [[noreturn]] void fail(const std::string& rule) const { throw IoError(path_.string(), 0, rule); }
 
@@ -86,6 +96,11 @@ GreyImage read_pgm(const std::filesystem::path& path) {
         text ? reader.number("a pixel", largest) : reader.binary(static_cast<int>(size));
     if (value > largest) reader.fail("a pixel must be at most " + std::to_string(largest));
     grey = static_cast<std::uint8_t>((value * 255 + largest / 2) / largest);
+  }
+  // Of another size than its header says, it would be a map with every row out of place.
+  if (!reader.at_end(text)) {
+    reader.fail("the PGM holds more than the " + std::to_string(width) + " x " + std::to_string(height) +
+                " pixels of its header");
   }
   return image;
 }

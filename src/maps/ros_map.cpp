@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "slalom/core/error.hpp"
@@ -36,12 +37,17 @@ class Reader {
     if (!stream || std::filesystem::is_directory(path)) {
       throw IoError(path.string(), 0, "the map's yaml file does not exist or cannot be read");
     }
+    std::vector<YAML::Node> documents;
     try {
-      root_ = YAML::Load(stream);
+      documents = YAML::LoadAll(stream);
     } catch (const YAML::Exception& error) {
       throw IoError(path.string(), error.mark.line + 1, "no valid yaml: " + error.msg);
     }
+    if (documents.size() > 1)
+      throw IoError(path.string(), documents[1].Mark().line + 1, "a second yaml document: must be only one");
+    if (!documents.empty()) root_ = documents[0];
     if (!root_.IsMap()) throw IoError(path.string(), 1, "a map's yaml file must hold `key: value` pairs");
+    refuse_repeated_keys();
   }
 
   std::optional<YAML::Node> find(const char* key) const {
@@ -62,13 +68,26 @@ class Reader {
   }
 
   double number(const char* key, const YAML::Node& node, const char* rule) const {
+    return number(key, node, rule, node);
+  }
+  /// A number that is a part of the key's value, `whole`.
+  double number(const char* key, const YAML::Node& node, const char* rule, const YAML::Node& whole) const {
     double value = 0;
     if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value))
-      fail(key, node, rule);
+      fail(key, whole, rule);
     return value;
   }
 
  private:
+  /// yaml-cpp lets one of them win without a word.
+  void refuse_repeated_keys() const {
+    std::set<std::string> seen;
+    for (const auto& entry : root_)
+      if (entry.first.IsScalar() && !seen.insert(entry.first.Scalar()).second)
+        throw IoError(path_.string(), entry.first.Mark().line + 1,
+                      "the key `" + entry.first.Scalar() + "` is said twice");
+  }
+
   std::filesystem::path path_;
   YAML::Node root_;
 };
@@ -113,7 +132,7 @@ Header read_header(const std::filesystem::path& path, const MapReading& reading)
   const YAML::Node origin = reader.need("origin");
   if (!origin.IsSequence() || origin.size() != 3) reader.fail("origin", origin, triple);
   std::array<double, 3> values{};
-  for (std::size_t i = 0; i < 3; ++i) values[i] = reader.number("origin", origin[i], triple);
+  for (std::size_t i = 0; i < 3; ++i) values[i] = reader.number("origin", origin[i], triple, origin);
   header.origin = {values[0], values[1], values[2]};
 
   if (reading.image_extension.empty()) {

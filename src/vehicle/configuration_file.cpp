@@ -53,13 +53,10 @@ void read_section(Configuration& configuration, const fs::path& file, const std:
                   const YAML::Node& options) {
   if (options.IsNull()) return;
   if (!options.IsMap()) detail::refuse(file, options, section, "must be a map of options to values");
-  std::set<std::string> seen;
   for (const auto& entry : options) {
     if (!entry.first.IsScalar())
       detail::refuse(file, entry.first, section, "has a key that is no plain word");
     const std::string key = section + "." + entry.first.Scalar();
-    if (!seen.insert(key).second)
-      throw IoError(file.string(), line_of(entry.first), "key " + key + ": is said twice");
     read_option(configuration, file, key, entry.first, entry.second);
   }
 }
@@ -79,13 +76,10 @@ Configuration load_deep(const fs::path& file, const std::vector<fs::path>& roots
     configuration = load_deep(
         fs::is_regular_file(beside) ? beside : find_configuration(base.Scalar(), places), roots, depth + 1);
   }
-  std::set<std::string> seen;
   for (const auto& entry : root) {
     if (!entry.first.IsScalar())
       throw IoError(file.string(), line_of(entry.first), "a section's name must be a plain word");
     const std::string section = entry.first.Scalar();
-    if (!seen.insert(section).second)
-      throw IoError(file.string(), line_of(entry.first), "key " + section + ": is said twice");
     if (section == "base") continue;
     bool known = false;
     std::vector<std::string> names = {"base"};

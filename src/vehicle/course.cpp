@@ -42,8 +42,9 @@ std::string names_of(const std::vector<fs::path>& files) {
 
 /// The one file meant out of those that qualify.
 const fs::path& only_one(const fs::path& folder, const std::vector<fs::path>& candidates,
-                         const std::string& what) {
-  if (candidates.empty()) throw IoError(folder.string(), 0, "holds no " + what + "; a course needs one");
+                         const std::string& what, const std::string& left_aside) {
+  if (candidates.empty())
+    throw IoError(folder.string(), 0, "holds no " + what + "; a course needs one" + left_aside);
   if (candidates.size() > 1)
     throw IoError(
         folder.string(), 0,
@@ -53,18 +54,22 @@ const fs::path& only_one(const fs::path& folder, const std::vector<fs::path>& ca
 
 fs::path find_map(const fs::path& folder, std::vector<std::string>& notes) {
   std::vector<fs::path> candidates;
+  std::string left_aside;
   for (const auto& file : files_with(folder, {".yaml", ".yml"})) {
     if (file.filename() == course_file) continue;
-    if (detail::may_be_map(file))
+    if (detail::may_be_map(file)) {
       candidates.push_back(file);
-    else
+    } else {
       notes.push_back(file.filename().string() + " is left aside: it names no map image");
+      left_aside += "; " + notes.back();
+    }
   }
-  return only_one(folder, candidates, "map (a .yaml file with the key image)");
+  return only_one(folder, candidates, "map (a .yaml file with the key image)", left_aside);
 }
 
 fs::path find_waypoints(const fs::path& folder, detail::CsvForm& form, std::vector<std::string>& notes) {
   std::vector<fs::path> candidates;
+  std::string left_aside;
   for (const auto& file : files_with(folder, {".csv"})) {
     if (file.filename() == obstacle_file) continue;
     if (const auto candidate_form = detail::csv_form(file); candidate_form != detail::CsvForm::other) {
@@ -72,11 +77,13 @@ fs::path find_waypoints(const fs::path& folder, detail::CsvForm& form, std::vect
       form = candidate_form;
     } else {
       notes.push_back(file.filename().string() + " is left aside: it is in neither form of a waypoint file");
+      left_aside += "; " + notes.back();
     }
   }
   return only_one(folder, candidates,
                   "waypoint file (a .csv with the header opt_x,opt_y,...,ref_v or rows "
-                  "s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2)");
+                  "s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2)",
+                  left_aside);
 }
 
 /// Drops a last row that repeats the first, then requires three points of which no two neighbours are the
@@ -92,6 +99,27 @@ void check_points(std::vector<Waypoint>& points, std::vector<int>& lines, const 
     if (distance(points[i - 1], points[i]) == 0)
       throw IoError(file.string(), lines[i],
                     "repeats the point of the row before; successive waypoints must differ");
+}
+
+/// The column and row of a point of the map frame, in cells.
+maps::Point in_cells(const maps::OccupancyGrid& map, const maps::Point& point) {
+  const maps::Point at = maps::inverse_transform(map.origin, point);
+  return {at.x / map.resolution, at.y / map.resolution};
+}
+
+bool on_map(const maps::OccupancyGrid& map, const maps::Point& cell) {
+  return cell.x >= 0 && cell.y >= 0 && cell.x < map.width && cell.y < map.height;
+}
+
+/// A waypoint may stand in a wall, which real lines graze, but beside the map nothing is known.
+void check_on_map(const Course& course, const std::vector<int>& lines, const fs::path& file) {
+  for (std::size_t i = 0; i < course.waypoints.size(); ++i) {
+    const Waypoint& point = course.waypoints[i];
+    if (on_map(course.map, in_cells(course.map, {point.x, point.y}))) continue;
+    throw IoError(
+        file.string(), lines[i],
+        "waypoint (" + std::to_string(point.x) + ", " + std::to_string(point.y) + ") must be on the map");
+  }
 }
 
 /// Fills yaw and arc length from the points and returns the longest step between two rows.
@@ -113,6 +141,7 @@ void load_path(Course& course, const fs::path& folder) {
   std::vector<int> lines;
   course.waypoints = detail::read_waypoints(file, form, lines);
   check_points(course.waypoints, lines, file);
+  check_on_map(course, lines, file);
 }
 
 }  // namespace
@@ -179,9 +208,8 @@ void check_start(const Course& course, const maps::Pose& start, double clearance
   if (!std::isfinite(start.x) || !std::isfinite(start.y) || !std::isfinite(start.yaw))
     refuse("must be finite");
   const auto& map = course.map;
-  const maps::Point at = maps::inverse_transform(map.origin, {start.x, start.y});
-  const double column = at.x / map.resolution, row = at.y / map.resolution;
-  if (!(column >= 0 && row >= 0 && column < map.width && row < map.height)) refuse("must be on the map");
+  const auto [column, row] = in_cells(map, {start.x, start.y});
+  if (!on_map(map, {column, row})) refuse("must be on the map");
   const int reach = static_cast<int>(std::ceil(clearance / map.resolution));
   for (int dy = -reach; dy <= reach; ++dy)
     for (int dx = -reach; dx <= reach; ++dx) {

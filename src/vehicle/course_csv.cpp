@@ -90,6 +90,10 @@ Columns optimised_line_columns(const std::filesystem::path& file, const Line& he
   if (speed == names.end())
     throw IoError(file.string(), header.number,
                   "column ref_v: missing in '" + header.text + "'; the header must be opt_x,opt_y,...,ref_v");
+  for (const char* name : {"opt_x", "opt_y", "ref_v"})
+    if (std::count(names.begin(), names.end(), name) > 1)
+      throw IoError(file.string(), header.number,
+                    "column " + std::string(name) + ": stands twice in '" + header.text + "'");
   Columns columns;
   columns.count = names.size();
   columns.speed = static_cast<std::size_t>(speed - names.begin());
@@ -147,6 +151,11 @@ std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm 
     waypoints.push_back(waypoint);
     lines.push_back(line.number);
   }
+  const auto drives = [](const Waypoint& waypoint) { return waypoint.speed > 0; };
+  if (!waypoints.empty() && std::none_of(waypoints.begin(), waypoints.end(), drives))
+    throw IoError(
+        file.string(), lines.front(),
+        "column " + std::string(columns.speed_name) + ": 0 in every row; one at least must be above 0");
   return waypoints;
 }
 

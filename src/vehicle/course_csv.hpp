@@ -15,7 +15,8 @@ enum class CsvForm { optimised_line, raceline, other };
 CsvForm csv_form(const std::filesystem::path& file);
 
 /// Position and speed of every row; yaw and arc length are left 0. Throws IoError for cells that are no
-/// finite numbers, wrong column counts and negative speeds. `lines` gets the line number of every row.
+/// finite numbers, wrong column counts, negative speeds and speeds that are all 0. `lines` gets the line
+/// number of every row.
 std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm form,
                                      std::vector<int>& lines);
 

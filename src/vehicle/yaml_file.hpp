@@ -7,7 +7,8 @@
 
 namespace slalom::vehicle::detail {
 
-/// Throws IoError if the file cannot be read or is not YAML.
+/// The one document of a file. Throws IoError if it cannot be read, is not YAML, holds more than one document
+/// or says a key twice.
 YAML::Node load_yaml(const std::filesystem::path& file);
 
 /// Throws the IoError that the value `at` of `key` breaks `rule`.

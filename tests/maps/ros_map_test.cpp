@@ -79,6 +79,14 @@ TEST_F(RosMap, BinaryPgmOfOneAndTwoBytes) {
   EXPECT_EQ(load_image(folder_ / "map.pgm").grey, (std::vector<std::uint8_t>{0, 255}));
 }
 
+TEST_F(RosMap, APgmMayEndWithALineEnd) {
+  for (const char* text :
+       {"P5 2 1 255 ab", "P5 2 1 255 ab\n", "P5 2 1 255 ab\r\n", "P2 2 1 255 97 98 \n\n# made by hand\n"}) {
+    write("map.pgm", text);
+    EXPECT_EQ(load_image(folder_ / "map.pgm").grey, (std::vector<std::uint8_t>{97, 98})) << text;
+  }
+}
+
 TEST_F(RosMap, SavedMapsReadBackTheSame) {
   OccupancyGrid grid{37, 11, 0.0625, {1.0 / 3, -2.7e-5, 3.1}, {}};
   for (int i = 0; i < 37 * 11; ++i) grid.cells.push_back(static_cast<Occupancy>(i * 7919 % 31 % 3));
@@ -116,6 +124,9 @@ TEST_F(RosMap, BadYamlIsNamed) {
     expect_error(map(image + "resolution: 0.05\norigin: " + bad + "\n" + thresholds), 3, "`origin: ");
   }
   expect_error(map("resolution: 0.05\norigin: [0, 0, 0]\n" + thresholds), 0, "`image` is missing");
+  expect_error(map(image + "resolution: 0.05\norigin: [a, b, 0]\n" + thresholds), 3, "`origin: [a, b, 0]`");
+  expect_error(map(geometry + thresholds + "resolution: 0.1\n"), 7, "`resolution` is said twice");
+  expect_error(map(geometry + thresholds + "---\nnegate: 1\n"), 8, "second yaml document");
   expect_error(map("image: [a]\nresolution: 0.05\norigin: [0, 0, 0]\n" + thresholds), 1, "a file name");
 }
 
@@ -154,6 +165,9 @@ TEST_F(RosMap, BadImagesAreNamed) {
                                       {"P5 2 2 255 abc", "truncated"},
                                       {"P5 2 2 65535 abcdefg", "truncated"},
                                       {"P5 2 2 100 zzzz", "at most 100"},
+                                      {"P5 2 2 255 abcdef", "more than the 2 x 2 pixels"},
+                                      {"P5 2 1 65535 abcdef", "more than the 2 x 1 pixels"},
+                                      {"P2 2 2 255 0 0 0 0 7", "more than the 2 x 2 pixels"},
                                       {"\x89PNG\r\n\x1a\n", "PNG"},
                                       {"\x89Png", "PNG"}}) {
     write("map.pgm", content);
