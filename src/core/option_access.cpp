@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -27,6 +28,12 @@ std::string number_text(double value) {
   char buffer[32];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
   return {buffer, end};
+}
+
+/// A value as people write it: 100000000, not 1e+08.
+std::string shown(double value) {
+  const bool whole = std::abs(value) < 1e15 && value == std::floor(value);
+  return whole ? std::to_string(static_cast<std::int64_t>(value)) : number_text(value);
 }
 
 /// How many single-letter changes lead from one word to the other.
@@ -78,9 +85,9 @@ std::string to_text(const OptionValue& value) {
 
 std::string range_rule(const Declaration& d) {
   if (std::isinf(d.min) && std::isinf(d.max)) return "must be a number";
-  if (std::isinf(d.max)) return "must be at least " + number_text(d.min);
-  if (std::isinf(d.min)) return "must be at most " + number_text(d.max);
-  return "must be in [" + number_text(d.min) + ", " + number_text(d.max) + "]";
+  if (std::isinf(d.max)) return "must be at least " + shown(d.min);
+  if (std::isinf(d.min)) return "must be at most " + shown(d.max);
+  return "must be in [" + shown(d.min) + ", " + shown(d.max) + "]";
 }
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& names) {
@@ -106,6 +113,9 @@ template <class Integer>
 Integer parse_whole(std::string_view text, const char* rule) {
   Integer value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range && end == text.data() + text.size())
+    refuse(text, "must be an integer from " + std::to_string(std::numeric_limits<Integer>::min()) + " to " +
+                     std::to_string(std::numeric_limits<Integer>::max()));
   if (error != std::errc{} || end != text.data() + text.size()) refuse(text, rule);
   return value;
 }
@@ -152,8 +162,7 @@ int parse_choice(std::string_view text, const char* const* names) {
 }
 
 void check_range(const Declaration& declaration, double value) {
-  if (!(value >= declaration.min && value <= declaration.max))
-    refuse(number_text(value), range_rule(declaration));
+  if (!(value >= declaration.min && value <= declaration.max)) refuse(shown(value), range_rule(declaration));
 }
 
 }  // namespace detail

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/option_access.hpp"
+
 namespace slalom::detail {
 
 namespace {
@@ -44,8 +46,8 @@ SolverBase::SolverBase(int horizon, int inputs, const PerInput& input_min, const
     const int input = r % inputs;
     const float low = not_below(input_min[input]), high = not_above(input_max[input]);
     if (!(low <= high)) {
-      throw std::invalid_argument("input_min: " + std::to_string(input_min[input]) +
-                                  " is above input_max: " + std::to_string(input_max[input]));
+      throw std::invalid_argument("input_min: " + to_text(input_min[input]) +
+                                  " is above input_max: " + to_text(input_max[input]));
     }
     low_[static_cast<std::size_t>(r)] = low;
     high_[static_cast<std::size_t>(r)] = high;

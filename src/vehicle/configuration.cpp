@@ -33,6 +33,19 @@ std::string resolved(std::string_view key, std::string_view default_section) {
   throw std::invalid_argument(message);
 }
 
+/// A list of the wrong length would only be found when a solver is made, far from where it was said.
+template <class Options>
+void check_count(const Options& options, std::string_view name, std::string_view text) {
+  constexpr std::size_t inputs = PathTracking<false>::inputs;
+  static_assert(inputs == 1, "the message speaks of one");
+  for (const OptionEntry& entry : list_options(options)) {
+    const auto* values = std::get_if<std::vector<double>>(&entry.value);
+    if (name == entry.declaration.name && values && values->size() != inputs)
+      throw std::invalid_argument("'" + std::string(text) + "' has " + std::to_string(values->size()) +
+                                  " values; it takes one, for the steering is the only input");
+  }
+}
+
 }  // namespace
 
 std::vector<SolverOptions> Configuration::every_method() {
@@ -47,7 +60,13 @@ std::unique_ptr<Solver> make_solver(const Configuration& configuration, std::str
   for (const SolverOptions& each : configuration.methods)
     if (method == solver_name(each)) chosen = each;
   std::visit([&](auto& options) { options.threads = threads; }, chosen);
-  return slalom::make_solver(chosen, PathTracking<false>::inputs);
+  try {
+    return slalom::make_solver(chosen, PathTracking<false>::inputs);
+  } catch (const std::invalid_argument& error) {
+    const std::string section = std::string(method) + ".", message = error.what();
+    if (message.rfind(section, 0) == 0) throw;
+    throw std::invalid_argument(section + message);  // rules between options do not know the section
+  }
 }
 
 void set_option(Configuration& configuration, std::string_view key, std::string_view text,
@@ -57,8 +76,12 @@ void set_option(Configuration& configuration, std::string_view key, std::string_
   bool found = false;
   try {
     visit_sections(configuration, [&](std::string_view section, auto& options) {
-      if (dot != std::string::npos && section == std::string_view(full).substr(0, dot))
-        found = slalom::set_option(options, std::string_view(full).substr(dot + 1), text);
+      if (dot == std::string::npos || section != std::string_view(full).substr(0, dot)) return;
+      const std::string_view name = std::string_view(full).substr(dot + 1);
+      auto changed = options;
+      found = slalom::set_option(changed, name, text);
+      check_count(changed, name, text);
+      options = std::move(changed);
     });
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("key " + std::string(key) + ": " + error.what());

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <set>
 
 #include "slalom/core/error.hpp"
@@ -13,6 +15,8 @@ namespace fs = std::filesystem;
 constexpr const char* folder_name = "configs";
 constexpr const char* marker = "published.yaml";  // tells a folder of ours from another of that name
 constexpr int deepest_base = 8;
+
+using Lines = std::map<std::string, int>;  ///< where a file says which key
 
 int line_of(const YAML::Node& node) {
   return node.Mark().line + 1;
@@ -39,6 +43,8 @@ bool is_choice(const Configuration& configuration, const std::string& key) {
 
 void read_option(Configuration& configuration, const fs::path& file, const std::string& key,
                  const YAML::Node& at, const YAML::Node& value) {
+  // yaml-cpp puts a value that is not there where the next thing begins.
+  if (value.IsNull()) throw IoError(file.string(), line_of(at), "key " + key + ": has no value");
   const std::string text = text_of(file, key, value);
   if (value.IsScalar() && value.Tag() == "!" && !is_choice(configuration, key))
     detail::refuse(file, value, key, "must stand without quotes");
@@ -50,7 +56,7 @@ void read_option(Configuration& configuration, const fs::path& file, const std::
 }
 
 void read_section(Configuration& configuration, const fs::path& file, const std::string& section,
-                  const YAML::Node& options) {
+                  const YAML::Node& options, Lines& lines) {
   if (options.IsNull()) return;
   if (!options.IsMap()) detail::refuse(file, options, section, "must be a map of options to values");
   for (const auto& entry : options) {
@@ -58,6 +64,44 @@ void read_section(Configuration& configuration, const fs::path& file, const std:
       detail::refuse(file, entry.first, section, "has a key that is no plain word");
     const std::string key = section + "." + entry.first.Scalar();
     read_option(configuration, file, key, entry.first, entry.second);
+    lines[key] = line_of(entry.first);
+  }
+}
+
+/// Rules between the keys of a file, which hold whatever their order.
+void check_together(const Configuration& configuration, const fs::path& file, Lines& lines) {
+  const std::string speed = "planner.max_speed", same = "vehicle.max_speed";
+  if (lines.count(speed) && lines.count(same)) {
+    const bool ordered = lines[same] < lines[speed];
+    const std::string &first = ordered ? same : speed, &second = ordered ? speed : same;
+    throw IoError(file.string(), lines[second],
+                  "key " + second + ": is another name of " + first + ", which line " +
+                      std::to_string(lines[first]) + " says already");
+  }
+  for (const SolverOptions& method : configuration.methods)
+    std::visit(
+        [&](const auto& o) {
+          if (o.input_min[0] <= o.input_max[0]) return;
+          const std::string section = std::string(solver_name(method)) + ".";
+          throw IoError(file.string(), std::max(lines[section + "input_min"], lines[section + "input_max"]),
+                        "key " + section + "input_min: '" + to_text(o.input_min[0]) + "' must be at most " +
+                            section + "input_max, '" + to_text(o.input_max[0]) + "'");
+        },
+        method);
+}
+
+/// The file that `base` names: one beside the file, or a configuration known by name.
+fs::path find_base(const fs::path& file, const YAML::Node& base, const std::vector<fs::path>& roots) {
+  const fs::path beside = file.parent_path() / base.Scalar();
+  if (fs::is_regular_file(beside)) return beside;
+  auto places = roots;
+  places.insert(places.begin(), file.parent_path());
+  try {
+    return find_configuration(base.Scalar(), places);
+  } catch (const IoError& error) {
+    const std::string what = error.what();
+    throw IoError(file.string(), line_of(base),
+                  "key base: '" + base.Scalar() + "' " + what.substr(error.file().size() + 2));
   }
 }
 
@@ -70,12 +114,9 @@ Configuration load_deep(const fs::path& file, const std::vector<fs::path>& roots
     if (!base.IsScalar()) detail::refuse(file, base, "base", "must be the name or file of a configuration");
     if (depth == deepest_base)
       detail::refuse(file, base, "base", "leads round in circles, or deeper than 8 files");
-    auto places = roots;
-    places.insert(places.begin(), file.parent_path());
-    const fs::path beside = file.parent_path() / base.Scalar();
-    configuration = load_deep(
-        fs::is_regular_file(beside) ? beside : find_configuration(base.Scalar(), places), roots, depth + 1);
+    configuration = load_deep(find_base(file, base, roots), roots, depth + 1);
   }
+  Lines lines;
   for (const auto& entry : root) {
     if (!entry.first.IsScalar())
       throw IoError(file.string(), line_of(entry.first), "a section's name must be a plain word");
@@ -95,8 +136,9 @@ Configuration load_deep(const fs::path& file, const std::vector<fs::path>& roots
                     "key " + section + ": is none of the sections " + all +
                         (near.empty() ? "" : "; did you mean " + near + "?"));
     }
-    read_section(configuration, file, section, entry.second);
+    read_section(configuration, file, section, entry.second, lines);
   }
+  check_together(configuration, file, lines);
   return configuration;
 }
 

@@ -73,6 +73,9 @@ CourseFile read_course_file(const std::filesystem::path& file) {
   if (!root.IsMap()) throw IoError(file.string(), root.Mark().line + 1, "must be a map of keys to values");
   for (const auto& entry : root) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
+    // yaml-cpp puts a value that is not there where the next thing begins.
+    if (entry.second.IsNull())
+      throw IoError(file.string(), entry.first.Mark().line + 1, "key " + key + ": has no value");
     const Value value(file, key, entry.second);
     if (key == "name") {
       result.name = value.text();

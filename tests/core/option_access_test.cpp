@@ -65,7 +65,10 @@ TEST(OptionAccess, RefusesWithValueAndRule) {
   EXPECT_EQ(refusal("loud", "yes"), "'yes' must be true or false");
   EXPECT_EQ(refusal("count", "2.5"), "'2.5' must be an integer");
   EXPECT_EQ(refusal("count", "11"), "'11' must be in [1, 10]");
-  EXPECT_EQ(refusal("count", "99999999999"), "'99999999999' must be an integer");
+  EXPECT_EQ(refusal("count", "99999999999"),
+            "'99999999999' must be an integer from -2147483648 to 2147483647");
+  EXPECT_EQ(refusal("count", "100000000"), "'100000000' must be in [1, 10]");
+  EXPECT_EQ(refusal("count", "99999999999x"), "'99999999999x' must be an integer");
   EXPECT_EQ(refusal("seed", "-1"), "'-1' must be an integer from 0 to 18446744073709551615");
   EXPECT_EQ(refusal("gain", "fast"), "'fast' must be a number");
   EXPECT_EQ(refusal("gain", "nan"), "'nan' must be a number");
@@ -75,6 +78,11 @@ TEST(OptionAccess, RefusesWithValueAndRule) {
   EXPECT_EQ(refusal("spread", "[]"), "'' must be a number");
   EXPECT_EQ(refusal("spread", "[1, 2"), "'[1, 2' must be a number or a list [a, b] of one number per input");
   EXPECT_EQ(refusal("mood", "tired"), "'tired' must be one of calm, wild");
+}
+
+TEST(OptionAccess, WritesWholeLimitsOut) {
+  EXPECT_EQ(range_rule({.name = "samples", .min = 1, .max = 1e6}), "must be in [1, 1000000]");
+  EXPECT_EQ(range_rule({.name = "step", .min = 1e-6, .max = 0.5}), "must be in [1e-06, 0.5]");
 }
 
 TEST(OptionAccess, ListsValuesThatReadBack) {

@@ -58,7 +58,9 @@ TEST_F(ConfigurationFile, StartsFromAnother) {
   EXPECT_EQ(c.vehicle.rear_length, 0.135);
   EXPECT_EQ(c.vehicle.dead_time, 0.01);
   EXPECT_NE(refusal("base: x.yaml\n").find("circles"), std::string::npos);
-  EXPECT_NE(refusal("base: nobody\n").find("neither a file nor a configuration"), std::string::npos);
+  EXPECT_EQ(refusal("\nbase: nobody\n")
+                .rfind("x.yaml:2: key base: 'nobody' is neither a file nor a configuration", 0),
+            0u);
 }
 
 TEST_F(ConfigurationFile, RefusesWithFileLineKeyValueAndRule) {
@@ -86,6 +88,36 @@ TEST_F(ConfigurationFile, RefusesWithFileLineKeyValueAndRule) {
   EXPECT_NE(refusal("vehicle: {a: [}\n").find("x.yaml:1: is not YAML"), std::string::npos);
   EXPECT_EQ(refusal("vehicle: {dead_time: .nan}\n"),
             "x.yaml:1: key vehicle.dead_time: '.nan' must be a number");
+}
+
+TEST_F(ConfigurationFile, RefusesWhatOneOfTwoWouldWinWithoutAWord) {
+  EXPECT_EQ(
+      refusal("vehicle:\n  max_speed: 6\nplanner:\n  max_speed: 3\n"),
+      "x.yaml:4: key planner.max_speed: is another name of vehicle.max_speed, which line 2 says already");
+  EXPECT_EQ(
+      refusal("planner:\n  max_speed: 3\nvehicle:\n  max_speed: 6\n"),
+      "x.yaml:4: key vehicle.max_speed: is another name of planner.max_speed, which line 2 says already");
+  EXPECT_EQ(refusal("vehicle: {dead_time: 0}\n---\nvehicle: {dead_time: 0.01}\n"),
+            "x.yaml:3: a second YAML document: must be only one");
+  EXPECT_EQ(refusal("vehicle: {dead_time: 0}\nvehicle: {dead_time: 0.01}\n"),
+            "x.yaml:2: key vehicle: is said twice");
+  write("slow.yaml", "planner: {max_speed: 3}\n");
+  EXPECT_EQ(refusal("base: slow.yaml\nvehicle: {max_speed: 6}\n"), "accepted")
+      << "one file goes before another";
+  EXPECT_EQ(refusal("---\nvehicle: {dead_time: 0}\n...\n"), "accepted") << "marks of one document";
+}
+
+TEST_F(ConfigurationFile, NamesTheLineOfWhatAMethodWouldRefuse) {
+  EXPECT_EQ(refusal("mppi:\n  input_min: 1\n  input_max: -1\n"),
+            "x.yaml:3: key mppi.input_min: '1' must be at most mppi.input_max, '-1'");
+  EXPECT_EQ(
+      refusal("svg_mppi:\n  variance: [1, 2, 3]\n"),
+      "x.yaml:2: key svg_mppi.variance: '[1, 2, 3]' has 3 values; it takes one, for the steering is the only "
+      "input");
+  EXPECT_EQ(refusal("svg_mppi:\n  temperature:\n  samples: 10\n"),
+            "x.yaml:2: key svg_mppi.temperature: has no value");
+  EXPECT_NE(refusal("svg_mppi:\n  samples: 10\n\ttemperature: 1\n").find("begins with a tab"),
+            std::string::npos);
 }
 
 TEST_F(ConfigurationFile, IsWrittenAsItIsRead) {
@@ -129,6 +161,22 @@ TEST(ConfigurationKey, IsSetFromText) {
             "key vehicle.max_sped: is no option of vehicle; did you mean vehicle.max_speed?");
   EXPECT_NE(refusal("speed", "5").find("section.option"), std::string::npos);
   EXPECT_EQ(c.planner.max_speed, 6);
+  const std::string before = to_yaml(c);
+  EXPECT_NE(refusal("mppi.variance", "[1, 2]").find("key mppi.variance: '[1, 2]' has 2 values"),
+            std::string::npos);
+  EXPECT_EQ(to_yaml(c), before) << "what is refused changes nothing";
+}
+
+TEST(ConfigurationKey, IsNamedWhereAMethodRefusesIt) {
+  Configuration c;
+  set_option(c, "mppi.input_min", "1");
+  set_option(c, "mppi.input_max", "-1");
+  try {
+    make_solver(c, "mppi", 1);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(std::string(error.what()), "mppi.input_min: 1 is above input_max: -1");
+  }
 }
 
 }  // namespace

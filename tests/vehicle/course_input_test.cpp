@@ -102,6 +102,7 @@ const std::vector<Spoiled>& cases() {
        file("course.yaml", "closed: true\nname: x\nclosed: false\n"),
        {"course.yaml:3:", "closed", "twice"}},
       {"start_key_twice", file("course.yaml", "start: {x: 1, y: 1, yaw: 0, x: 2}\n"), {"start.x", "twice"}},
+      {"no_value", file("course.yaml", "timeout:\nname: x\n"), {"course.yaml:1:", "timeout", "no value"}},
       {"two_documents", file("course.yaml", "name: x\n---\nname: y\n"), {"course.yaml:3:", "second YAML"}},
       {"start_key", file("course.yaml", "start: {x: 1, y: 1, jaw: 0}\n"), {"course.yaml:1:", "start.jaw"}},
       {"start_missing",

@@ -40,12 +40,13 @@ void visit_sections(AnyConfiguration& configuration, Visit&& visit) {
 ///     base: published            # optional: another configuration to start from
 ///     svg_mppi:
 ///       samples: 4000
-///       variance: [0.1, 0.2]     # one value per input, or a single one for all
+///       variance: [0.1]          # of the steering; a list may stand wherever methods take one value per
+///       input
 ///     vehicle:
 ///       max_speed: 6             # another name of planner.max_speed
 ///
 /// Throws IoError with file, line, key, value and rule for everything that is not known, not of its type, out
-/// of range or said twice.
+/// of range, said twice or at odds with another key of the file, and for a second document.
 Configuration load_configuration(const std::filesystem::path& file,
                                  const std::vector<std::filesystem::path>& roots = {});
 
