@@ -40,8 +40,7 @@ void visit_sections(AnyConfiguration& configuration, Visit&& visit) {
 ///     base: published            # optional: another configuration to start from
 ///     svg_mppi:
 ///       samples: 4000
-///       variance: [0.1]          # of the steering; a list may stand wherever methods take one value per
-///       input
+///       variance: 0.1            # a list of one value per input, [0.1], says the same
 ///     vehicle:
 ///       max_speed: 6             # another name of planner.max_speed
 ///
