@@ -142,7 +142,7 @@ struct Mask {
   SLALOM_INLINE friend Mask operator&(const Mask& a, const Mask& b) { return Mask(a.v & b.v); }
   SLALOM_INLINE friend Mask operator|(const Mask& a, const Mask& b) { return Mask(a.v | b.v); }
   SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(~a.v); }
-  bool operator[](int lane) const { return v[lane] != 0; }
+  bool operator[](int lane) const { return v[lane] != 0; }  ///< of a lane
 };
 /// AVX-512 compares into registers of a bit a lane, and selects by them.
 template <>
@@ -166,7 +166,7 @@ struct Mask<Avx512> {
     return Mask(static_cast<Vector>(a.v | b.v));
   }
   SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(static_cast<Vector>(~a.v)); }
-  bool operator[](int lane) const { return ((v >> lane) & 1) != 0; }
+  bool operator[](int lane) const { return ((v >> lane) & 1) != 0; }  ///< of a lane
 };
 
 /// A pack of 32-bit integers.
@@ -215,7 +215,7 @@ struct Pack {
     return p;
   }
   SLALOM_INLINE void store(float* to) const { std::memcpy(to, &v, sizeof v); }
-  float operator[](int lane) const { return v[lane]; }
+  float operator[](int lane) const { return v[lane]; }  ///< of a lane
 
   SLALOM_INLINE friend Pack operator+(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v + b.v); }
   SLALOM_INLINE friend Pack operator-(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v - b.v); }

@@ -9,6 +9,7 @@
 /// Obstacles that nobody could have driven past, so that they can be counted apart.
 namespace slalom::evaluation {
 
+/// What the search takes for granted.
 struct PassageRules {
   double radius =
       0.155;          ///< m, half the car's width: the disc about a point of its axle that must get through
