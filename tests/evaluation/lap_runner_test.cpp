@@ -217,7 +217,8 @@ TEST(LapRunner, RefusesWhatCannotBeDriven) {
     says(error.what(), "hardware");
   }
   auto two = usual;
-  vehicle::set_option(two, "mppi.variance", "[0.1, 0.2]");
+  for (SolverOptions& method : two.methods)
+    if (auto* mppi = std::get_if<MppiOptions>(&method)) mppi->variance = {0.1, 0.2};
   says(refusal("mppi", {}, two), "variance");
 }
 
