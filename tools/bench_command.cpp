@@ -66,7 +66,9 @@ class Bench {
       : arguments_(arguments),
         words_(arguments.json == "-" ? stderr : stdout),
         configuration_(configuration_of(arguments)),
-        target_(simd::active_target()) {}
+        target_(simd::active_target()) {
+    for (const std::string& method : arguments.methods) solver_options(method);  // refuses an unknown one
+  }
 
   int run() {
     json_["target"] = simd::name(target_);

@@ -241,6 +241,13 @@ int run(const Arguments& arguments) {
     auto found = match_all(place, a, b, same_world);
     if (found.empty())
       throw IoError(b.folder.string(), 0, "has no scenario that " + a.folder.string() + " has");
+    for (const Match& m : found) {
+      for (const auto& [side, stored] : {std::pair{&m.a, &a}, std::pair{&m.b, &b}})
+        if (side->rows.empty())
+          throw IoError(stored->folder.string(), 0,
+                        "has no lap of " + side->experiment.label() + ", " + side->experiment.scenario +
+                            ": there is nothing to compare");
+    }
     matches.insert(matches.end(), found.begin(), found.end());
     for (const auto* e : {&a, &b})
       if (!e->complete) std::fprintf(words, "note: %s is not complete\n", e->folder.c_str());

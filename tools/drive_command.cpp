@@ -205,15 +205,18 @@ CLI::App* add_drive_command(CLI::App& app, int& exit_status) {
   const auto arguments = std::make_shared<Arguments>();
   add_scenario_options(*command, arguments->scenario);
   add_method_option(*command, arguments->method);
-  command->add_option("--seed", arguments->seed, "Of the first lap; lap k has seed + k (obstacles + 5)")
+  command->add_option("--seed", arguments->seed, "Of the first lap; each further one has obstacles + 5 more")
       ->capture_default_str();
   command->add_option("--laps", arguments->laps, "How many, each from a fresh start")->capture_default_str();
   command->add_option("--json", arguments->json,
                       "Write the results as JSON to this file, or to standard output: -");
-  command->add_option("--record", arguments->record,
-                      "Record every control step to this file: MCAP if it ends in .mcap, else JSON lines");
-  command->add_flag("--record-times", arguments->record_times,
-                    "With the wall clock's figures, which differ from run to run (MCAP)");
+  auto* record = command->add_option(
+      "--record", arguments->record,
+      "Record every control step to this file: MCAP if it ends in .mcap, else JSON lines");
+  command
+      ->add_flag("--record-times", arguments->record_times,
+                 "With the wall clock's figures, which differ from run to run (MCAP)")
+      ->needs(record);
   command->add_option("--plot", arguments->plot, "Draw the last lap to this PNG");
   command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
   return command;

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <thread>
 
 #include "build_identity.hpp"
@@ -23,43 +22,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using namespace evaluation;
-
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts(1);
-  int depth = 0;
-  for (const char c : text) {
-    depth += (c == '[') - (c == ']');
-    if (c == at && depth == 0) {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
-}
-
-struct Sweep {
-  std::string key;
-  std::vector<std::string> values;
-};
-
-Sweep parse_sweep(const std::string& text) {
-  const auto equals = text.find('=');
-  if (equals == std::string::npos || equals == 0)
-    throw IoError("--set", 0, "'" + text + "' must be key=value or key=v1,v2,...");
-  Sweep sweep{text.substr(0, equals), split(text.substr(equals + 1), ',')};
-  for (const auto& value : sweep.values) {
-    if (value.empty()) throw IoError("--set", 0, "'" + text + "': a value is missing");
-  }
-  return sweep;
-}
-
-bool applies_to(const Sweep& sweep, const std::string& method) {
-  const auto dot = sweep.key.find('.');
-  if (dot == std::string::npos) return true;
-  const std::string section = sweep.key.substr(0, dot);
-  return section == method || section == "vehicle" || section == "planner" || section == "world";
-}
 
 Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
                  const std::vector<Experiment>& experiments) {
@@ -82,6 +44,14 @@ Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
           {"seed0", arguments.seed0},
           {"experiments", list},
           {"options", options}};
+}
+
+/// Settings that are there must be some. What is no JSON at all the store refuses itself.
+void require_object(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) return;
+  const Json there = Json::parse(stream, nullptr, false);
+  if (!there.is_discarded() && !there.is_object()) throw IoError(file.string(), 0, "is no JSON object");
 }
 
 Json interval_json(const Interval& i) {
@@ -133,10 +103,7 @@ void add_evaluation_options(CLI::App& command, EvaluationArguments& a) {
       .add_option("--evaluation", a.scenario.evaluation,
                   "true: right physics; published: as the paper's program counted")
       ->capture_default_str();
-  command
-      .add_option("--latency-ms", a.scenario.latency_ms,
-                  "From a scan to its command's effect, --evaluation true only")
-      ->capture_default_str();
+  add_latency_option(command, a.scenario.latency_ms);
   command.add_option("--seed0", a.seed0, "Lap k has seed seed0 + k (obstacles + 5)")->capture_default_str();
   command
       .add_option("--jobs", a.jobs,
@@ -148,41 +115,6 @@ void add_evaluation_options(CLI::App& command, EvaluationArguments& a) {
   command.add_flag("--any-build", a.any_build,
                    "With --resume: go on although another build of the program drove the laps so far");
   command.add_option("--json", a.json, "Write the summary also to this file, or to standard output: -");
-}
-
-std::vector<Experiment> make_experiments(const std::vector<std::string>& methods,
-                                         const std::vector<std::string>& scenarios, int laps, int obstacles,
-                                         const std::vector<std::string>& sweeps) {
-  std::vector<Experiment> experiments;
-  if (laps < 1 || laps > 1000000)
-    throw IoError("--laps", 0, std::to_string(laps) + " must be in [1, 1000000]");
-  for (const std::string& scenario : scenarios) {
-    if (scenario != "pt" && scenario != "oa")
-      throw IoError("--scenario", 0, "'" + scenario + "' must be pt or oa");
-    for (const std::string& method : methods) {
-      solver_options(method);  // refuses an unknown method
-      std::vector<Experiment> variants{{method, {}, scenario, scenario == "pt" ? 0 : obstacles, laps}};
-      for (const std::string& text : sweeps) {
-        const Sweep sweep = parse_sweep(text);
-        if (!applies_to(sweep, method)) continue;
-        std::vector<Experiment> next;
-        for (const Experiment& variant : variants) {
-          for (const std::string& value : sweep.values) {
-            next.push_back(variant);
-            next.back().set.emplace_back(sweep.key, value);
-          }
-        }
-        variants = std::move(next);
-      }
-      experiments.insert(experiments.end(), variants.begin(), variants.end());
-    }
-  }
-  // In laps.csv nothing would tell two of the same apart.
-  std::set<std::string> seen;
-  for (const Experiment& e : experiments)
-    if (!seen.insert(e.label() + ", " + e.scenario).second)
-      throw IoError("--methods, --scenario, --set", 0, "say '" + e.label() + ", " + e.scenario + "' twice");
-  return experiments;
 }
 
 Json Evaluated::summary() const {
@@ -258,11 +190,17 @@ bool drive_campaign(const Campaign& campaign, const EvaluationArguments& argumen
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int jobs = arguments.jobs > 0 ? arguments.jobs : rank_count() > 1 ? 1 : cores;
   // What cannot be driven must not leave a folder behind.
+  for (const Experiment& e : campaign.experiments) {
+    vehicle::Configuration trial = campaign.configuration;
+    LapSettings world;
+    for (const auto& [key, value] : e.set) apply_setting(key, value, e.method, trial, world);
+  }
   for (int i = 0; i < static_cast<int>(campaign.experiments.size()); ++i) make_runner(campaign, i);
   if (rank() > 0) {
     drive_for_first_rank(campaign, jobs, cancel);
     return false;
   }
+  require_object(std::filesystem::path(arguments.out) / "settings.json");
   LapStore store(arguments.out, campaign, arguments.resume);
   CampaignProgressBar bar(title);
   CampaignWork work(

@@ -26,12 +26,19 @@ struct EvaluationArguments {
 /// --json.
 void add_evaluation_options(CLI::App& command, EvaluationArguments& arguments);
 
+/// Whether an option does anything to laps of a method: its own, or one of vehicle, planner, world.
+bool applies_to(const std::string& key, const std::string& method);
+/// Throws IoError where it does nothing to any of them.
+void require_driven(const std::string& key, const std::vector<std::string>& methods);
+/// Throws IoError where both keys are the same option of one of them.
+void refuse_twice(const std::string& key, const std::string& other, const std::vector<std::string>& methods);
+
 /// Of what of a course decides a lap (FNV-1a).
 std::string course_hash(const evaluation::Arena& arena);
 
 /// The experiments of a comparison: every method in every scenario ("pt", "oa") with every combination of the
 /// values of `sweeps` ("key=v1,v2,..."). A sweep over an option of a method's own applies to that method
-/// alone. Throws IoError.
+/// alone, which must be one of them. Throws IoError.
 std::vector<evaluation::Experiment> make_experiments(const std::vector<std::string>& methods,
                                                      const std::vector<std::string>& scenarios, int laps,
                                                      int obstacles, const std::vector<std::string>& sweeps);

@@ -35,8 +35,11 @@ std::vector<ExplainedMethod> chosen(const std::vector<std::string>& names) {
     if (at == known.end()) {
       std::string all = "all";
       for (const ExplainedMethod& m : known) all += ", " + m.name;
-      throw std::invalid_argument("method: " + name + " is not one of " + all);
+      if (name == "all") throw std::invalid_argument("--method: all stands for every method: say it alone");
+      throw std::invalid_argument("--method: " + name + " is not one of " + all);
     }
+    if (std::count(names.begin(), names.end(), name) > 1)
+      throw std::invalid_argument("--method: " + name + " is said twice");
     result.push_back(*at);
   }
   return result;

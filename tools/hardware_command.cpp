@@ -34,6 +34,7 @@ struct Task {
   int layout = -1;  ///< -1: path tracking
   std::uint64_t seed = 0;
   LapResult result;
+  bool done = false;
 };
 
 struct Driver {
@@ -78,6 +79,7 @@ bool drive(std::vector<Task>& tasks, const std::vector<Driver>& drivers,
         if (task->layout >= 0) settings.layout = static_cast<std::uint64_t>(1000 + task->layout);
         task->result = LapRunner(arena, driver.configuration, driver.method, settings)
                            .run(task->seed, {}, &interrupt.raised());
+        task->done = !task->result.cancelled;
       } catch (...) {
         const std::lock_guard lock(mutex);
         failed = std::current_exception();
@@ -113,7 +115,7 @@ Json summarise(const std::vector<Task>& tasks, std::size_t driver, bool among_ob
   int laps = 0, finished = 0, contacts = 0, touched = 0, blind = 0, steps = 0;
   double time = 0;
   for (const Task& task : tasks) {
-    if (task.driver != driver || (task.layout >= 0) != among_obstacles) continue;
+    if (!task.done || task.driver != driver || (task.layout >= 0) != among_obstacles) continue;
     const LapResult& r = task.result;
     ++laps;
     finished += r.finished;
@@ -168,27 +170,41 @@ void print_row(std::FILE* out, const std::string& label, const char* scenario, c
 }
 
 int run(const Arguments& arguments) {
+  if (arguments.tracking_laps == 0 && arguments.layouts == 0)
+    throw IoError("--tracking-laps, --layouts", 0,
+                  "one of them must be more than 0: there is no lap to drive");
   std::vector<Driver> drivers;
-  for (const std::string& text : arguments.drivers) drivers.push_back(make_driver(text, arguments));
+  for (const std::string& text : arguments.drivers) {
+    if (std::count(arguments.drivers.begin(), arguments.drivers.end(), text) > 1)
+      throw IoError("--drivers", 0, "'" + text + "' is said twice");
+    drivers.push_back(make_driver(text, arguments));
+  }
   const auto roots = vehicle::course_roots(program_folder());
   const auto arena =
       load_arena(vehicle::find_course(arguments.course, roots), Evaluation::true_physics, roots);
   std::vector<Task> tasks;
   for (std::size_t d = 0; d < drivers.size(); ++d) {
     for (int lap = 0; lap < arguments.tracking_laps; ++lap)
-      tasks.push_back({d, -1, static_cast<std::uint64_t>(lap + 1), {}});
+      tasks.push_back({d, -1, static_cast<std::uint64_t>(lap + 1), {}, false});
     for (int layout = 0; layout < arguments.layouts; ++layout)
       for (int lap = 0; lap < arguments.laps; ++lap)
-        tasks.push_back({d, layout, static_cast<std::uint64_t>(100 + 10 * layout + lap), {}});
+        tasks.push_back({d, layout, static_cast<std::uint64_t>(100 + 10 * layout + lap), {}, false});
   }
-  if (!drive(tasks, drivers, arena, arguments)) return 1;
+  const bool whole = drive(tasks, drivers, arena, arguments);
+  if (!whole)
+    std::fprintf(stderr, "interrupted after %td of %zu laps\n",
+                 std::count_if(tasks.begin(), tasks.end(), [](const Task& task) { return task.done; }),
+                 tasks.size());
   std::FILE* words = arguments.json == "-" ? stderr : stdout;
   std::fprintf(words, "%-20s %-3s %7s %8s %18s %8s %18s %17s %15s\n", "driver", "", "done", "MS", "95 %",
                "contacts", "collision rate", "pose m, mean p99", "ms, p50 p99");
   Json rows = Json::array();
   for (std::size_t d = 0; d < drivers.size(); ++d) {
     for (const bool among : {false, true}) {
-      if ((among ? arguments.layouts * arguments.laps : arguments.tracking_laps) == 0) continue;
+      const bool any = std::any_of(tasks.begin(), tasks.end(), [&](const Task& task) {
+        return task.done && task.driver == d && (task.layout >= 0) == among;
+      });
+      if (!any) continue;
       Json row = summarise(tasks, d, among, arguments);
       print_row(words, drivers[d].label, among ? "oa" : "pt", row);
       Json named{{"driver", drivers[d].label}, {"scenario", among ? "oa" : "pt"}};
@@ -196,17 +212,18 @@ int run(const Arguments& arguments) {
       rows.push_back(named);
     }
   }
-  if (arguments.json.empty()) return 0;
+  if (arguments.json.empty()) return whole ? 0 : 1;
   Json conditions;
   for (const OptionEntry& entry : list_options(HardwareConditions{}))
     conditions[entry.declaration.name] = to_text(entry.value);
-  write_json({{"course", arguments.course},
-              {"latency_ms", arguments.latency_ms},
-              {"obstacles", arguments.obstacles},
-              {"conditions", conditions},
-              {"results", rows}},
-             arguments.json);
-  return 0;
+  Json told{{"course", arguments.course},
+            {"latency_ms", arguments.latency_ms},
+            {"obstacles", arguments.obstacles},
+            {"conditions", conditions},
+            {"results", rows}};
+  if (!whole) told["interrupted"] = true;
+  write_json(told, arguments.json);
+  return whole ? 0 : 1;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "identify_command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -39,12 +40,18 @@ std::vector<vehicle::DrivenSample> read_bag_samples(const std::string& file) {
 
 /// The ticks of a bag or a recording (docs/recording.md). Throws IoError with file and line.
 std::vector<vehicle::DrivenSample> read_recording(const std::string& file) {
+  if (std::filesystem::is_directory(file)) throw IoError(file, 0, "is a folder, not a recording");
   if (is_bag(file)) return read_bag_samples(file);
   std::ifstream stream(file);
   if (!stream) throw IoError(file, 0, "cannot be read");
   std::vector<vehicle::DrivenSample> samples;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
+    // What an MCAP file begins with.
+    if (number == 1 && line.rfind("\x89MCAP", 0) == 0)
+      throw IoError(file, 0,
+                    "is in MCAP, JSON lines are needed: slalom drive --record with a name that does not end "
+                    "in .mcap");
     try {
       const Json record = Json::parse(line);
       const std::string type = record.at("type");
@@ -91,7 +98,13 @@ void advise(std::FILE* out, const Identification& found) {
 
 int run(const Arguments& arguments) {
   const auto samples = read_recording(arguments.recording);
-  const Identification found = vehicle::identify(samples, arguments.options);
+  const Identification found = [&] {
+    try {
+      return vehicle::identify(samples, arguments.options);
+    } catch (const std::invalid_argument& error) {
+      throw IoError(arguments.recording, 0, error.what());
+    }
+  }();
   std::FILE* words = arguments.json == "-" ? stderr : stdout;
   std::fprintf(words, "%d of %zu samples; %.1f %% of the turning explained, %.3f rad/s left\n\n",
                found.samples, samples.size(), 100 * found.explained, found.residual);
@@ -128,7 +141,9 @@ CLI::App* add_identify_command(CLI::App& app, int& exit_status) {
   CLI::App* command = app.add_subcommand(
       "identify", "Steering gain, trim, delay, lag and wheelbase of a car, from a recording");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("recording", arguments->recording, "Of slalom drive --record, or a bag of ROS 1")
+  command
+      ->add_option("recording", arguments->recording,
+                   "Of slalom drive --record, in JSON lines; or a bag of ROS 1")
       ->required();
   command->add_option("--wheelbase", arguments->options.wheelbase, "m, if it was measured; else it is sought")
       ->check(CLI::Range(0.01, 20.0));

@@ -2,8 +2,10 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
+#include <new>
 
 #include "bench_command.hpp"
+#include "command_line.hpp"
 #include "compare_command.hpp"
 #include "drive_command.hpp"
 #include "eval_command.hpp"
@@ -14,12 +16,15 @@
 #include "ranks.hpp"
 #include "replay_command.hpp"
 #include "reproduce_command.hpp"
+#include "slalom/core/dispatch.hpp"
 #include "slalom/core/version.hpp"
 #include "track_command.hpp"
 #include "tune_command.hpp"
 #include "view_command.hpp"
 
-int main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
   int exit_status = 0;
   CLI::App app{
       "Slalom: sampling-based stochastic optimal control that commits to one good way round an obstacle",
@@ -39,15 +44,31 @@ int main(int argc, char** argv) {
   slalom::tools::add_track_command(app, exit_status);
   slalom::tools::add_tune_command(app, exit_status);
   slalom::tools::add_view_command(app, exit_status);
+  app.parse_complete_callback([&app] {
+    for (const CLI::App* command : app.get_subcommands()) slalom::tools::check_command_line(*command);
+    // Solvers ask where nothing can be thrown; a SLALOM_TARGET that makes no sense is refused here.
+    slalom::simd::active_target();
+  });
+  // Under mpirun all processes stumble over the same thing.
+  const auto complain = [](const char* what) {
+    if (slalom::tools::rank() == 0) std::cerr << "slalom: " << what << "\n";
+    return 1;
+  };
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const int status = app.exit(error);
     return status == 0 ? 0 : 2;
+  } catch (const std::bad_alloc&) {
+    return complain("there is not enough memory for so many samples or so long a horizon");
   } catch (const std::exception& error) {
-    // Under mpirun all processes stumble over the same thing.
-    if (slalom::tools::rank() == 0) std::cerr << "slalom: " << error.what() << "\n";
-    return 1;
+    return complain(error.what());
   }
   return exit_status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return slalom::tools::after_output(run(argc, argv));
 }

@@ -97,10 +97,13 @@ CLI::App* add_options_command(CLI::App& app, int& exit_status) {
       ->capture_default_str();
   command->add_option("--set", arguments->scenario.set, "section.option=value; may be repeated")
       ->allow_extra_args(false);
-  command->add_option("--method", arguments->method,
-                      "Only this method's section, and those of vehicle, planner and world");
-  command->add_option("--json", arguments->json, "Write them as JSON to this file, or to standard output: -");
-  command->add_flag("--yaml", arguments->yaml, "Print the whole configuration as a file");
+  auto* method = command->add_option("--method", arguments->method,
+                                     "Only this method's section, and those of vehicle, planner and world");
+  auto* json = command->add_option("--json", arguments->json,
+                                   "Write them as JSON to this file, or to standard output: -");
+  command->add_flag("--yaml", arguments->yaml, "Print the whole configuration as a file")
+      ->excludes(method)
+      ->excludes(json);
   command->callback([arguments, &exit_status] {
     run(*arguments);
     exit_status = 0;

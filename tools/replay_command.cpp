@@ -27,8 +27,37 @@ struct Arguments {
   ReplayArguments recording;
   std::string folder, method, scenario, course, plot, record, config = "default";
   std::vector<std::string> set;
-  int lap = -1;
+  int lap = 0;
+  bool lap_said = false;
 };
+
+/// What can be replayed; each heeds options of its own.
+enum Kind { lap_of_evaluation = 1, bag = 2, recording = 4 };
+constexpr const char* kind_name(Kind kind) {
+  return kind == lap_of_evaluation ? "a lap of an evaluation" : kind == bag ? "a bag" : "a recording in MCAP";
+}
+
+constexpr struct {
+  const char* option;
+  int kinds;
+} heeded[] = {{"--lap", lap_of_evaluation},
+              {"--scenario", lap_of_evaluation},
+              {"--plot", lap_of_evaluation},
+              {"--method", lap_of_evaluation | bag},
+              {"--course", lap_of_evaluation | bag},
+              {"--record", lap_of_evaluation | bag},
+              {"--config", bag},
+              {"--set", bag},
+              {"--html", bag | recording},
+              {"--host", bag | recording},
+              {"--port", bag | recording}};
+
+/// Throws IoError where an option was said that would be passed over.
+void refuse_unheeded(const CLI::App& command, Kind kind) {
+  for (const auto& [option, kinds] : heeded)
+    if (command.count(option) > 0 && (kinds & kind) == 0)
+      throw IoError(option, 0, std::string("does nothing where ") + kind_name(kind) + " is replayed");
+}
 
 /// Whether two rows of the same lap agree in all that repeats.
 bool same_lap(LapRow a, const LapRow& b, const std::vector<Experiment>& experiments) {
@@ -63,8 +92,8 @@ void plot(const Arguments& arguments, const Scenario& scenario, const LapRunner&
 
 /// The exit status: 0 only if the lap is the one that was kept.
 int replay_lap(const Arguments& arguments) {
-  if (arguments.lap < 0) throw IoError("--lap", 0, "which lap of the evaluation?");
   const StoredEvaluation stored = load_evaluation(arguments.folder);
+  if (!arguments.lap_said) throw IoError("--lap", 0, "which lap of the evaluation?");
   const int index = stored.find(arguments.method, arguments.scenario);
   const Experiment& experiment = stored.experiments[static_cast<std::size_t>(index)];
   if (arguments.lap < 0 || arguments.lap >= experiment.laps)
@@ -129,8 +158,11 @@ struct TemporaryFile {
   }
 };
 
-/// A bag is made a recording, which is kept where --record says so and shown otherwise.
+/// A bag is made a recording, which is kept where --record says so, shown otherwise, and a page with --html.
 int replay_bag(Arguments& arguments) {
+  if (!arguments.record.empty() && !arguments.recording.html.empty() &&
+      std::filesystem::path(arguments.record).extension() != ".mcap")
+    throw IoError("--record", 0, arguments.record + " must end in .mcap with --html: the page shows MCAP");
   const TemporaryFile temporary;
   BagReplay replay{.file = arguments.folder, .record = arguments.record, .driver = {}};
   if (replay.record.empty()) replay.record = temporary.name;
@@ -139,17 +171,20 @@ int replay_bag(Arguments& arguments) {
   replay.driver.config = arguments.config;
   replay.driver.set = arguments.set;
   record_bag(replay);
-  if (!arguments.record.empty()) {
-    std::printf("recording: %s\n", arguments.record.c_str());
-    return 0;
-  }
+  if (!arguments.record.empty()) std::printf("recording: %s\n", arguments.record.c_str());
+  if (!arguments.record.empty() && arguments.recording.html.empty()) return 0;
   arguments.recording.file = replay.record;
   return replay_recording(arguments.recording);
 }
 
-int run(Arguments& arguments) {
-  if (std::filesystem::is_directory(arguments.folder)) return replay_lap(arguments);
-  if (is_bag(arguments.folder)) return replay_bag(arguments);
+int run(Arguments& arguments, const CLI::App& command) {
+  const Kind kind = std::filesystem::is_directory(arguments.folder) ? lap_of_evaluation
+                    : is_bag(arguments.folder)                      ? bag
+                                                                    : recording;
+  refuse_unheeded(command, kind);
+  arguments.lap_said = command.count("--lap") > 0;
+  if (kind == lap_of_evaluation) return replay_lap(arguments);
+  if (kind == bag) return replay_bag(arguments);
   arguments.recording.file = arguments.folder;
   return replay_recording(arguments.recording);
 }
@@ -165,10 +200,13 @@ CLI::App* add_replay_command(CLI::App& app, int& exit_status) {
       ->add_option("what", arguments->folder,
                    "A recording in MCAP, a bag of ROS 1, or the --out of an evaluation")
       ->required();
-  command->add_option("--html", arguments->recording.html,
-                      "Write the recording as a page that opens from disk, instead of serving it");
-  command->add_option("--host", arguments->recording.host, "Address to serve it on")->capture_default_str();
-  command->add_option("--port", arguments->recording.port, "0: any that is free")->capture_default_str();
+  auto* html =
+      command->add_option("--html", arguments->recording.html,
+                          "Write the recording as a page that opens from disk, instead of serving it");
+  auto* host = command->add_option("--host", arguments->recording.host, "Address to serve it on");
+  host->capture_default_str();
+  auto* port = command->add_option("--port", arguments->recording.port, "0: any that is free");
+  port->capture_default_str();
   command->add_option("--lap", arguments->lap, "Of an evaluation: which, from 0");
   command->add_option("--method", arguments->method,
                       "Of an evaluation: method, or method and options as results name them; of a bag: who "
@@ -181,9 +219,10 @@ CLI::App* add_replay_command(CLI::App& app, int& exit_status) {
   command->add_option("--course", arguments->course,
                       "Where the course is, if not found by its name, or if a bag does not hold it");
   command->add_option("--plot", arguments->plot, "Draw it to this PNG");
-  command->add_option("--record", arguments->record,
-                      "Record it to this file: MCAP if it ends in .mcap, else JSON lines");
-  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
+  auto* record = command->add_option("--record", arguments->record,
+                                     "Record it to this file: MCAP if it ends in .mcap, else JSON lines");
+  for (auto* served : {host, port}) served->excludes(html)->excludes(record);
+  command->callback([arguments, command, &exit_status] { exit_status = run(*arguments, *command); });
   return command;
 }
 

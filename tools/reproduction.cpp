@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "slalom/core/error.hpp"
+
 namespace slalom::tools {
 
 namespace {
@@ -180,8 +182,22 @@ std::vector<Experiment> paper_experiments(const std::vector<std::string>& sectio
   return experiments;
 }
 
+namespace {
+
+/// A folder that was named is meant: without a single log in it it is the wrong one.
+void require_logs(const fs::path& published) {
+  if (!fs::is_directory(published)) throw IoError("--published", 0, published.string() + " is no folder");
+  for (const PaperRow& row : paper_rows())
+    if (fs::is_regular_file(published / row.log_pt) || fs::is_regular_file(published / row.log_oa)) return;
+  throw IoError("--published", 0,
+                published.string() + " holds none of the authors' logs (src/eval/log of " + authors + ")");
+}
+
+}  // namespace
+
 LogFolders find_logs(const std::string& published, const std::string& course) {
   LogFolders folders;
+  if (!published.empty()) require_logs(published);
   const std::string where = std::string("The authors publish map and logs at ") + authors + ".";
   if (course != logs_course)
     folders.notes.push_back("The paper's laps were driven on Berlin; these are laps of " + course +
@@ -189,8 +205,6 @@ LogFolders find_logs(const std::string& published, const std::string& course) {
   if (published.empty()) {
     folders.notes.push_back("No logs of the authors: --published names their folder (src/eval/log there). " +
                             where);
-  } else if (!fs::is_directory(published)) {
-    folders.notes.push_back("No logs of the authors: there is no folder " + published + ". " + where);
   } else if (course == logs_course) {
     folders.published = published;
     const fs::path beside = fs::weakly_canonical(published).parent_path() / "lockstep";

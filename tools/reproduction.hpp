@@ -52,7 +52,8 @@ struct LogFolders {
 };
 
 /// Looks for the published logs in `published` and for a folder `lockstep` beside it. Only laps of the
-/// course they were driven on can be compared with them.
+/// course they were driven on can be compared with them. Throws IoError where `published` is not empty and
+/// holds no log.
 LogFolders find_logs(const std::string& published, const std::string& course);
 
 /// One per experiment. Throws IoError on a log that is there but cannot be read.

@@ -59,17 +59,21 @@ void apply_settings(const std::vector<std::string>& assignments, const std::stri
     const auto equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0)
       throw IoError("--set", 0, "'" + assignment + "' must be key=value");
-    const std::string key = assignment.substr(0, equals), value = assignment.substr(equals + 1);
-    try {
-      if (!evaluation::set_world_option(lap, key, value))
-        vehicle::set_option(configuration, key, value, method);
-    } catch (const std::invalid_argument& error) {
-      throw IoError("--set", 0, error.what());
-    }
+    apply_setting(assignment.substr(0, equals), assignment.substr(equals + 1), method, configuration, lap);
   }
 }
 
 }  // namespace
+
+void apply_setting(const std::string& key, const std::string& value, const std::string& method,
+                   vehicle::Configuration& configuration, evaluation::LapSettings& lap) {
+  try {
+    if (!evaluation::set_world_option(lap, key, value))
+      vehicle::set_option(configuration, key, value, method);
+  } catch (const std::invalid_argument& error) {
+    throw IoError("--set", 0, error.what());
+  }
+}
 
 fs::path program_folder() {
   std::error_code failed;
@@ -96,12 +100,17 @@ void add_scenario_options(CLI::App& command, ScenarioArguments& a) {
                   "Cars that drive along the course line at half its speed, --evaluation true only")
       ->capture_default_str();
   command.add_option("--start", a.start, "x,y,yaw of the car's centre of gravity, m, m, rad [the course's]");
-  command
-      .add_option("--latency-ms", a.latency_ms, "From a scan to its command's effect, --evaluation true only")
-      ->capture_default_str();
+  add_latency_option(command, a.latency_ms);
   command.add_flag("--hardware", a.hardware,
                    "As on a real car: noise, slip, a guessed pose, a servo unlike the model");
   command.add_option("--threads", a.threads, "Threads of the solver; results do not depend on it")
+      ->capture_default_str();
+}
+
+void add_latency_option(CLI::App& command, double& latency_ms) {
+  command
+      .add_option("--latency-ms", latency_ms, "From a scan to its command's effect, --evaluation true only")
+      ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
 }
 

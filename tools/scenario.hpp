@@ -37,6 +37,8 @@ struct ScenarioArguments {
 /// Adds --course, --config, --evaluation, --set, --start, --obstacles, --opponents, --latency-ms,
 /// --hardware and --threads.
 void add_scenario_options(CLI::App& command, ScenarioArguments& arguments);
+/// Adds --latency-ms, in ms.
+void add_latency_option(CLI::App& command, double& latency_ms);
 /// Adds --method to `method`, with the names known.
 void add_method_option(CLI::App& command, std::string& method);
 
@@ -46,6 +48,10 @@ struct Scenario {
   vehicle::Configuration configuration;
   evaluation::LapSettings lap;
 };
+
+/// One --set, of the configuration or of the world. Throws IoError, with --set as the file.
+void apply_setting(const std::string& key, const std::string& value, const std::string& method,
+                   vehicle::Configuration& configuration, evaluation::LapSettings& lap);
 
 /// The configuration alone: the file, then every --set; a key without a section is one of `method`. Throws
 /// IoError, which for --set names it as the file.

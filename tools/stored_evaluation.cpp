@@ -56,6 +56,7 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
   stored.settings.assign(std::istreambuf_iterator<char>(stream), {});
   try {
     const auto settings = Json::parse(stored.settings);
+    if (!settings.is_object()) throw IoError(file.string(), 0, "is no JSON object");
     for (const auto& e : settings.at("experiments")) {
       stored.experiments.push_back(
           {e.at("method"), parse_set(e.at("set")), e.at("scenario"), e.at("obstacles"), e.at("laps")});

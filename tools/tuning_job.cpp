@@ -85,7 +85,12 @@ TuningJob::TuningJob(TuningArguments arguments)
       if (courses_[i].arena->course.name == courses_.back().arena->course.name)
         throw IoError("--course", 0, "'" + courses_.back().arena->course.name + "' stands there twice");
   }
+  const auto key_of = [](const std::string& text) { return text.substr(0, text.find('=')); };
+  for (std::size_t i = 0; i < arguments_.set.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      refuse_twice(key_of(arguments_.set[i]), key_of(arguments_.set[j]), {arguments_.method});
   for (const std::string& text : searched) {
+    require_driven(key_of(text), {arguments_.method});
     try {
       dimensions_.push_back(parse_dimension(text, courses_[0].configuration, arguments_.method));
     } catch (const std::invalid_argument& error) {
@@ -209,8 +214,9 @@ bool TuningJob::search(int round, const std::atomic<bool>& cancel, std::FILE* wo
       ranking.push_back(
           {{"set", set_json(candidates[c])}, {"laps", values[c].size()}, {"objective", mean(values[c])}});
     result_["steps"].push_back({{"step", step}, {"ranking", ranking}});
-    std::fprintf(words, "%s: %zu candidates, %zu laps each; best %.4g: %s\n", step.c_str(), candidates.size(),
-                 values[order[0]].size(), mean(values[order[0]]), label(candidates[order[0]]).c_str());
+    std::fprintf(words, "%s: %zu candidates, %zu lap%s each; best %.4g: %s\n", step.c_str(),
+                 candidates.size(), values[order[0]].size(), values[order[0]].size() == 1 ? "" : "s",
+                 mean(values[order[0]]), label(candidates[order[0]]).c_str());
     std::fflush(words);
     const std::size_t left =
         i + 1 < rungs_.size()
@@ -249,8 +255,8 @@ bool TuningJob::hold_out(const std::atomic<bool>& cancel, std::FILE* words) {
                          {"difference_ci", {interval.low, interval.high}},
                          {"wilcoxon_p", p},
                          {"results", driven.results}};
-  std::fprintf(words, "\nheld-out seeds, %zu laps each: %s\n  as it stands %.4g\n", start.size(),
-               arguments_.objective.c_str(), mean(start));
+  std::fprintf(words, "\nheld-out seeds, %zu lap%s each: %s\n  as it stands %.4g\n", start.size(),
+               start.size() == 1 ? "" : "s", arguments_.objective.c_str(), mean(start));
   if (!best_.set.empty())
     std::fprintf(words, "  best found   %.4g, difference %.4g (95 %%: %.4g to %.4g), Wilcoxon p = %.3g\n",
                  mean(best), mean(differences), interval.low, interval.high, p);
@@ -284,8 +290,8 @@ void TuningJob::write_best() const {
 bool TuningJob::run(const std::atomic<bool>& cancel, std::FILE* words) {
   const int searched = laps_of(rungs_) * places() * arguments_.rounds,
             held_out = 2 * arguments_.held_out * places();
-  std::fprintf(words, "%d rounds of %d candidates: %d laps; then %d on held-out seeds\n", arguments_.rounds,
-               rungs_.front().candidates, searched, held_out);
+  std::fprintf(words, "%d round%s of %d candidates: %d laps; then %d on held-out seeds\n", arguments_.rounds,
+               arguments_.rounds == 1 ? "" : "s", rungs_.front().candidates, searched, held_out);
   std::fflush(words);
   keep_plan();
   result_ = {{"plan", plan()}, {"laps", searched + held_out}, {"steps", Json::array()}};

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "slalom/core/error.hpp"
 #include "slalom/solvers/make_solver.hpp"
 #include "slalom/vehicle/course.hpp"
 
@@ -55,6 +57,12 @@ std::string further_arguments(const ScenarioArguments& a) {
 }
 
 view::ServerOptions server_options(const std::string& host, std::uint16_t port, const std::string& token) {
+  // What stands for itself in an address (RFC 3986, section 2.3): browsers send all else in another form.
+  const auto stands_for_itself = [](unsigned char c) {
+    return (c < 128 && std::isalnum(c)) || c == '-' || c == '.' || c == '_' || c == '~';
+  };
+  if (!std::all_of(token.begin(), token.end(), stands_for_itself))
+    throw IoError("--token", 0, "'" + token + "' must have only letters, digits and - . _ ~");
   view::ServerOptions options;
   options.host = host;
   options.port = port;

@@ -18,7 +18,7 @@ int method_index(const view::Choices& choices, const std::string& method);
 std::string further_arguments(const ScenarioArguments& arguments);
 
 /// Where to listen. Whoever can reach the machine could take the wheel; so whoever is not on it needs to know
-/// a token, made at random if none is given.
+/// a token, made at random if none is given. Throws IoError where an address cannot hold the token.
 view::ServerOptions server_options(const std::string& host, std::uint16_t port, const std::string& token);
 /// Tells the user where the page is.
 void print_address(const view::Server& server, const view::ServerOptions& options);

@@ -100,7 +100,7 @@ TEST_F(TrackCommand, RefusesBadOptions) {
   };
   const Bad all[] = {{"", "--out is required", 2},
                      {"--out x --length 2", "length", 1},
-                     {"--out x --length nan", "length", 1},
+                     {"--out x --length nan", "length", 2},
                      {"--out x --length 25 --width 3", "length", 1},
                      {"--out x --width 1e9", "width", 1},
                      {"--out x --character furious", "furious", 1},

@@ -1,0 +1,203 @@
+// What every command refuses alike: nothing that was asked for is passed over, and no result is lost unsaid.
+#include <nlohmann/json.hpp>
+
+#include "tools/evaluation_folder.hpp"
+
+namespace slalom::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::contains;
+using testing::content;
+
+const std::string wren = SLALOM_COURSES "/wren";
+
+class CommandLine : public testing::EvaluationFolder {
+ protected:
+  /// In the scratch folder; a program that serves where it should have refused is ended.
+  testing::Run timed(const std::string& arguments, const std::string& before = "") const {
+    return testing::run_shell(before + " timeout 100 '" SLALOM_PROGRAM "' " + arguments, folder_.string());
+  }
+  void refuses(const std::string& arguments, const std::vector<std::string>& says, int status = 1) const {
+    const testing::Run run = timed(arguments);
+    EXPECT_EQ(run.status, status) << arguments << ": " << run.output;
+    for (const auto& word : says) EXPECT_TRUE(contains(run.output, word)) << arguments << ": " << run.output;
+    EXPECT_FALSE(contains(run.output, "json.exception")) << run.output;
+  }
+  std::string evaluation(const std::string& out) const {
+    return "eval --course " + wren + " --methods mppi --scenario pt --laps 1 --set mppi.samples=48 --out " +
+           out;
+  }
+};
+
+TEST_F(CommandLine, AnUnknownInstructionSetEndsNoCommandByAnAbort) {
+  for (const std::string arguments :
+       {"drive --course wren", "explain", "view --port 0", "bench", "hardware", "options"}) {
+    const testing::Run run = timed(arguments, "SLALOM_TARGET=foo");
+    EXPECT_EQ(run.status, 1) << arguments << ": " << run.output;
+    EXPECT_TRUE(contains(run.output, "slalom: SLALOM_TARGET=foo: not one of avx512")) << run.output;
+  }
+  EXPECT_EQ(timed("drive --help", "SLALOM_TARGET=foo").status, 0);
+}
+
+TEST_F(CommandLine, AFullStandardOutputIsAnError) {
+  ASSERT_TRUE(fs::exists("/dev/full"));
+  for (const std::string arguments : {"options", "options --json -", "options --yaml", "--help", "--version",
+                                      "explain --method mppi --solves 1 --json -"}) {
+    EXPECT_EQ(timed(arguments + " >/dev/null").status, 0) << arguments;
+    const testing::Run run = timed(arguments + " >/dev/full");
+    EXPECT_EQ(run.status, 1) << arguments;
+    EXPECT_TRUE(contains(run.output, "slalom: standard output: cannot be written")) << run.output;
+  }
+}
+
+TEST_F(CommandLine, WhatCannotBeWrittenIsFoundOutBeforeTheWork) {
+  std::ofstream(folder_ / "kept.json") << "kept";
+  std::ofstream(folder_ / "lap.jsonl") << "{}\n";
+  for (const std::string arguments :
+       {"drive --course wren --json kept.json --plot ", "drive --course wren --record new.jsonl --json ",
+        "hardware --json ", "bench --json ", "bench --plot ", "explain --plot ", "replay lap.jsonl --html ",
+        "identify lap.jsonl --json ", "eval --out e --json ", "tune --set samples=10:20 --out e --json "})
+    refuses(arguments + "nodir/x.png", {"slalom: nodir/x.png: cannot be written: No such file"});
+  refuses("explain --json .", {".: cannot be written: is a folder"});
+  EXPECT_EQ(content(folder_ / "kept.json"), "kept");
+  EXPECT_FALSE(fs::exists(folder_ / "new.jsonl"));
+  EXPECT_FALSE(fs::exists(folder_ / "e"));
+}
+
+TEST_F(CommandLine, OneFileHoldsOneThing) {
+  std::ofstream(folder_ / "in.jsonl") << "{}\n";
+  refuses("drive --course wren --json same.out --record same.out", {"--json", "--record", "same.out"}, 2);
+  refuses("drive --course wren --json a.png --plot ./a.png", {"--json", "--plot", "a.png"}, 2);
+  refuses("identify in.jsonl --json in.jsonl", {"recording", "--json", "in.jsonl"}, 2);
+  EXPECT_EQ(content(folder_ / "in.jsonl"), "{}\n");
+  refuses("drive --course wren --record -", {"--record", "only --json can go to standard output"}, 2);
+  refuses("explain --plot -", {"--plot", "only --json can go to standard output"}, 2);
+  refuses("explain --plot x.jpg", {"--plot", "x.jpg must end in .png"}, 2);
+  EXPECT_FALSE(fs::exists(folder_ / "x.jpg") || fs::exists(folder_ / "same.out"));
+  EXPECT_EQ(timed("explain --method mppi --solves 1 --json /dev/null --plot /dev/null").status, 0);
+}
+
+TEST_F(CommandLine, EmptyNegativeAndUndefinedValuesAreRefused) {
+  for (const std::string arguments :
+       {"drive --json ''", "drive --plot ''", "drive --record ''", "drive --start ''", "view --token ''",
+        "track --out ''", "eval --methods '' --out e", "compare '' ''"})
+    refuses(arguments, {"the value is empty"}, 2);
+  for (const std::string arguments : {"drive --seed -1", "explain --seed -1", "track --out t --seed -1",
+                                      "view --seed -1", "drive --seed 99999999999999999999"})
+    refuses(arguments, {"--seed", "must be a whole number from 0"}, 2);
+  refuses("eval --out e --seed0 -1", {"--seed0: -1 must be"}, 2);
+  refuses("bench --seconds nan", {"--seconds: nan must be a number"}, 2);
+  refuses("hardware --latency-ms nan", {"--latency-ms: nan must be a number"}, 2);
+  refuses("drive --latency-ms -1", {"--latency-ms", "-1", "1000"}, 2);
+  refuses("eval --out e --latency-ms -1", {"--latency-ms", "-1", "1000"}, 2);
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(CommandLine, OptionsThatCannotBothBeHeededAreRefused) {
+  refuses("options --json - --yaml", {"--json", "--yaml"}, 2);
+  refuses("options --yaml --method mppi", {"--method", "--yaml"}, 2);
+  refuses("drive --record-times", {"--record-times", "--record"}, 2);
+  refuses("bench --methods foo", {"foo", "svg_mppi"});
+  refuses("explain --method all,mppi", {"all stands for every method"});
+  refuses("explain --method mppi,mppi", {"mppi is said twice"});
+  refuses("hardware --drivers mppi@default,mppi@default", {"'mppi@default' is said twice"});
+  refuses("hardware --tracking-laps 0 --layouts 0", {"--tracking-laps, --layouts"});
+}
+
+TEST_F(CommandLine, OptionsOfAMethodThatIsNotDrivenAreRefused) {
+  const std::string eval = "eval --course " + wren + " --methods mppi --out e ",
+                    tune = "tune --course " + wren + " --method svg_mppi --out e ";
+  refuses(eval + "--set svg_mppi.samples=256,512", {"--set", "svg_mppi.samples", "no method that is driven"});
+  refuses(tune + "--set mppi.samples=10:20", {"--set", "mppi.samples", "no method that is driven"});
+  refuses(tune + "--set temperature=2:3 --set svg_mppi.temperature=1:2", {"--set", "said twice"});
+  refuses(tune + "--set samples=64 --set samples=10:20", {"--set", "said twice"});
+  refuses(eval + "--set temperature=2,3 --set mppi.temperature=1", {"--set", "said twice"});
+  refuses(eval + "--set mppi.sampels=3", {"--set: ", "did you mean mppi.samples"});
+  EXPECT_FALSE(fs::exists(folder_ / "e"));
+}
+
+TEST_F(CommandLine, ReproduceTakesACourseAndLogsAtTheirWord) {
+  refuses("reproduce --course nowhere/berlin --out r", {"nowhere/berlin"});
+  const std::string command = "reproduce --course " + wren + " --out /proc/none --published logs";
+  refuses(command, {"--published", "logs is no folder"});
+  fs::create_directories(folder_ / "logs/path_tracking");
+  refuses(command, {"--published", "logs holds none of the authors' logs"});
+  std::ofstream(folder_ / "logs/path_tracking/svg_mppi.csv");
+  refuses(command, {"slalom: /proc/none"});
+}
+
+TEST_F(CommandLine, ReplayPassesOverNoOption) {
+  fs::create_directories(folder_ / "ev");
+  refuses("replay ev --lap 0", {"ev/settings.json"});
+  ASSERT_EQ(timed(evaluation("ev")).status, 0);
+  refuses("replay ev", {"--lap: which lap"});
+  refuses("replay ev --lap -1", {"--lap", "-1 must be in [0, 0]"});
+  for (const std::string option : {"--html x.html", "--set mppi.samples=3", "--config default", "--port 0"})
+    refuses("replay ev --lap 0 " + option,
+            {option.substr(0, option.find(' ')), "does nothing where a lap of an evaluation is replayed"});
+  std::ofstream(folder_ / "a.mcap");
+  for (const std::string option : {"--plot a.png", "--record q.mcap", "--method foo", "--config nosuch",
+                                   "--course nosuch", "--lap 0", "--scenario pt", "--set a=1"})
+    refuses("replay a.mcap --html q.html " + option,
+            {option.substr(0, option.find(' ')), "does nothing where a recording in MCAP is replayed"});
+  refuses("replay a.bag --plot a.png", {"--plot", "does nothing where a bag is replayed"});
+  refuses("replay a.bag --record a.jsonl --html a.html", {"--record", "must end in .mcap with --html"});
+  refuses("replay a.mcap --html q.html --port 0", {"--port", "--html"}, 2);
+  EXPECT_FALSE(fs::exists(folder_ / "x.html"));
+}
+
+TEST_F(CommandLine, EvaluationsThatHoldNothingAreNamed) {
+  ASSERT_EQ(timed(evaluation("ev")).status, 0);
+  fs::copy(folder_ / "ev", folder_ / "none");
+  const std::string table = content(folder_ / "ev/laps.csv");
+  std::ofstream(folder_ / "none/laps.csv") << table.substr(0, table.find('\n') + 1);
+  refuses("compare ev none", {"none", "has no lap of mppi"});
+  refuses("compare none ev", {"none", "has no lap of mppi"});
+  std::ofstream(folder_ / "ev/settings.json") << "[]";
+  refuses(evaluation("ev") + " --resume", {"ev/settings.json: is no JSON object"});
+  refuses("replay ev --lap 0", {"ev/settings.json: is no JSON object"});
+}
+
+TEST_F(CommandLine, IdentifySaysWhatItReads) {
+  ASSERT_EQ(timed("drive --course wren --method mppi --set samples=64 --record a.mcap --record-times").status,
+            0);
+  refuses("identify a.mcap", {"a.mcap", "JSON lines are needed"});
+  refuses("identify .", {".: is a folder"});
+  std::ofstream(folder_ / "empty.jsonl") << "{\"type\":\"recording\",\"version\":1}\n";
+  refuses("identify empty.jsonl", {"empty.jsonl: ", "usable samples"});
+}
+
+TEST_F(CommandLine, CtrlCInHardwareKeepsWhatWasDriven) {
+  const testing::Run run = testing::run_shell(
+      "'" SLALOM_PROGRAM "' hardware --course " + wren +
+          " --drivers mppi@default --set samples=64 --tracking-laps 1000 --layouts 0 --json hw.json "
+          "> words.txt 2> laps.txt & pid=$!; for i in $(seq 600); do grep -q 'lap 2 of' laps.txt && break; "
+          "sleep 0.1; done; kill -INT $pid; wait $pid",
+      folder_.string());
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(contains(content(folder_ / "laps.txt"), "interrupted after ")) << content(folder_ / "laps.txt");
+  const json told = json::parse(content(folder_ / "hw.json"));
+  EXPECT_EQ(told["interrupted"], true);
+  ASSERT_EQ(told["results"].size(), 1u);
+  EXPECT_GE(told["results"][0]["laps"], 1);
+  EXPECT_LT(told["results"][0]["laps"], 1000);
+}
+
+TEST_F(CommandLine, ATokenMustFitIntoAnAddress) {
+  refuses("view --port 0 --token 'a b/&?#'", {"--token", "'a b/&?#' must have only letters, digits"});
+}
+
+TEST_F(CommandLine, TooLittleMemoryIsSaid) {
+#if !SLALOM_TESTS_MEMORY
+  GTEST_SKIP() << "sanitizers take more address space than the limit leaves";
+#endif
+  const testing::Run run =
+      timed("drive --course wren --set samples=4194304 --set horizon=10000", "ulimit -v 3000000;");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(contains(run.output, "not enough memory")) << run.output;
+}
+
+}  // namespace
+}  // namespace slalom::tools
