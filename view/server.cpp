@@ -189,9 +189,9 @@ class Server::Implementation::Client : public std::enable_shared_from_this<Clien
     write_next();
   }
 
-  void offer(const std::shared_ptr<const std::string>& frame) {
+  void offer(const std::shared_ptr<const std::string>& newest) {
     if (frame_) ++server_.counters.frames_dropped;
-    frame_ = frame;
+    frame_ = newest;
     write_next();
   }
 
