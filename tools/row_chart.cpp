@@ -68,7 +68,8 @@ Axis logarithmic_axis(std::vector<double> values) {
   std::erase_if(values, [](double v) { return v <= 0; });
   if (values.empty()) values = {1, 10};
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  const bool wide = *most / *least > 200;
+  const double greatest = *most;
+  const bool wide = greatest / *least > 200;
   std::vector<double> steps;
   for (int decade = -9; decade < 9; ++decade) {
     for (const double digit : {1.0, 2.0, 5.0})
@@ -78,7 +79,7 @@ Axis logarithmic_axis(std::vector<double> values) {
   for (const double step : steps)
     if (step <= *least) axis.low = step;
   axis.high = *std::find_if(steps.begin(), steps.end() - 1,
-                            [&](double step) { return step >= *most && step > axis.low; });
+                            [&](double step) { return step >= greatest && step > axis.low; });
   for (const double step : steps)
     if (step >= axis.low * 0.999 && step <= axis.high * 1.001) axis.ticks.push_back(step);
   return axis;

@@ -41,8 +41,7 @@ class Drive {
   static constexpr double time_step = 0.005, period = 0.025;  // s
 
   Drive(const Place& place, const maps::Pose& start, std::uint64_t seed)
-      : place_(place),
-        world_(world_options(), place.track),
+      : world_(world_options(), place.track),
         pursuit_(place.path, {.lookahead = 0.9}),
         odometry_(sim::CarParameters{}, {.seed = seed}) {
     world_.reset(seed, std::array{start});
@@ -97,7 +96,6 @@ class Drive {
     ranges_.assign(ranges.begin(), ranges.end());
   }
 
-  const Place& place_;
   sim::World world_;
   sim::PurePursuit pursuit_;
   sim::WheelOdometry odometry_;

@@ -182,7 +182,8 @@ void check_in_double(const Checked<separate>& checked, const Case& c, double& wo
 }
 
 template <class F, bool separate>
-void visited_cells(const Checked<separate>& checked, const Case& c, std::vector<Cells>& visited) {
+SLALOM_INLINE_CALLS void visited_cells(const Checked<separate>& checked, const Case& c,
+                                       std::vector<Cells>& visited) {
   auto s = checked.template start<F>(c);
   for (int k = 0; k < 15; ++k) {
     F local_x = s.x, local_y = s.y;

@@ -56,8 +56,9 @@ void set_field(Field& field, const std::string& name, py::handle value) {
 /// Sets the options that are given. `where` stands before their names in errors.
 template <class Options>
 void set_from_keywords(Options& options, const py::kwargs& keywords, const std::string& where) {
-  for (const auto& [key, value] : keywords) {
-    const std::string name = key.template cast<std::string>();
+  for (const auto& keyword : keywords) {
+    const std::string name = keyword.first.template cast<std::string>();
+    const py::handle value = keyword.second;
     std::vector<std::string> names;
     bool found = false;
     visit_options(options, [&](auto& field, const Declaration& declaration) {

@@ -47,8 +47,10 @@ struct Car {
   template <class T>
   mask_t<T> hits(const State<T>& x) const {
     mask_t<T> hit = abs(x.y) > T(half_road - 0.9);
-    for (std::size_t i = 0; i < parked_x.size(); ++i)
-      hit = hit | ((abs(x.x + T(1.3) - T(parked_x[i])) < T(4.5)) & (abs(x.y - T(parked_y[i])) < T(1.9)));
+    for (std::size_t i = 0; i < parked_x.size(); ++i) {
+      const T beyond = max(abs(x.x + T(1.3) - T(parked_x[i])) - T(4.5), abs(x.y - T(parked_y[i])) - T(1.9));
+      hit = hit | (beyond < T(0));
+    }
     return hit;
   }
 };
