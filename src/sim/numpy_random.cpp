@@ -121,6 +121,11 @@ std::uint32_t NumpyRandom::below(std::uint32_t count) noexcept {
   return static_cast<std::uint32_t>(product >> 32);
 }
 
+// Here and not in the header, since this file forms no fused multiply-add.
+double NumpyRandom::uniform(double low, double high) noexcept {
+  return low + (high - low) * unit();
+}
+
 double NumpyRandom::normal() noexcept {
   const Ziggurat& table = ziggurat();
   while (true) {

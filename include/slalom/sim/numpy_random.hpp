@@ -23,7 +23,7 @@ class NumpyRandom {
   std::uint32_t below(std::uint32_t count) noexcept;
 
   /// Generator.uniform(low, high).
-  double uniform(double low, double high) noexcept { return low + (high - low) * unit(); }
+  double uniform(double low, double high) noexcept;
 
   /// Generator.normal(0, 1).
   double normal() noexcept;
