@@ -98,7 +98,8 @@ std::string course_hash(const Arena& arena) {
 
 void add_evaluation_options(CLI::App& command, EvaluationArguments& a) {
   command.add_option("--course", a.scenario.course, "A course by name, or its folder")->capture_default_str();
-  command.add_option("--config", a.scenario.config, "default, published, or a file")->capture_default_str();
+  command.add_option("--config", a.scenario.config, "default, default_speed, published, hardware, or a file")
+      ->capture_default_str();
   command
       .add_option("--evaluation", a.scenario.evaluation,
                   "true: right physics; published: as the paper's program counted")

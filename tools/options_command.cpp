@@ -93,7 +93,9 @@ void run(const Arguments& arguments) {
 CLI::App* add_options_command(CLI::App& app, int& exit_status) {
   CLI::App* command = app.add_subcommand("options", "List what can be set, with values, units, ranges");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--config", arguments->scenario.config, "default, published, or a file")
+  command
+      ->add_option("--config", arguments->scenario.config,
+                   "default, default_speed, published, hardware, or a file")
       ->capture_default_str();
   command->add_option("--set", arguments->scenario.set, "section.option=value; may be repeated")
       ->allow_extra_args(false);

@@ -44,7 +44,7 @@ td.words,th.words{text-align:left}
 tr.explained td{border-bottom:0;padding-bottom:1px}
 tr.why td{text-align:left;white-space:normal;color:var(--faint);font-size:13px;padding:0 10px 8px 16px}
 td small{color:var(--faint);font-size:12.5px}
-@media(max-width:1300px){td small{display:block}th{white-space:normal;vertical-align:bottom}}
+@media(max-width:1300px){td small{display:block}th{white-space:normal;vertical-align:bottom}td:first-child{white-space:normal}}
 .pill{display:inline-block;border-radius:99px;padding:0 9px;font-size:12.5px;font-weight:600;color:#fff;background:var(--faint)}
 .inside{background:var(--good)}.outside{background:var(--bad)}
 img{max-width:100%;max-height:1000px;display:block;margin:14px auto 6px}

@@ -83,7 +83,8 @@ fs::path program_folder() {
 
 void add_scenario_options(CLI::App& command, ScenarioArguments& a) {
   command.add_option("--course", a.course, "A course by name, or its folder")->capture_default_str();
-  command.add_option("--config", a.config, "default, published, or a file")->capture_default_str();
+  command.add_option("--config", a.config, "default, default_speed, published, hardware, or a file")
+      ->capture_default_str();
   command
       .add_option("--evaluation", a.evaluation,
                   "true: right physics; published: as the paper's program counted")

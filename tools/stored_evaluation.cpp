@@ -54,6 +54,7 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
   std::ifstream stream(file);
   if (!stream) throw IoError(file.string(), 0, "cannot be read: is this the --out of slalom eval?");
   stored.settings.assign(std::istreambuf_iterator<char>(stream), {});
+  std::uint64_t seed0 = 0;
   try {
     const auto settings = Json::parse(stored.settings);
     if (!settings.is_object()) throw IoError(file.string(), 0, "is no JSON object");
@@ -61,13 +62,14 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
       stored.experiments.push_back(
           {e.at("method"), parse_set(e.at("set")), e.at("scenario"), e.at("obstacles"), e.at("laps")});
     }
+    seed0 = settings.at("seed0");
   } catch (const nlohmann::json::exception& error) {
     throw IoError(file.string(), 0, std::string("makes no sense: ") + error.what());
   }
   const fs::path table = folder / "laps.csv", journal = folder / "laps.journal.csv";
   stored.complete = fs::exists(table);
-  stored.rows = stored.complete ? evaluation::read_rows(table, stored.experiments, false)
-                                : evaluation::read_rows(journal, stored.experiments, true);
+  stored.rows = stored.complete ? evaluation::read_rows(table, stored.experiments, false, seed0)
+                                : evaluation::read_rows(journal, stored.experiments, true, seed0);
   return stored;
 }
 

@@ -59,6 +59,11 @@ std::string headless(std::string message) {
   return message.substr(4);
 }
 
+/// How many states a sequence of inputs leads through.
+std::size_t states_of(const vehicle::Planner& planner, std::span<const float> inputs) {
+  return inputs.size() / static_cast<std::size_t>(planner.solver().inputs()) + 1;
+}
+
 }  // namespace
 
 std::span<const char* const> scalar_names() noexcept {
@@ -139,20 +144,22 @@ std::string FrameEncoder::encode(const LapTick& tick, const StepFacts& facts) {
   put_candidates(to, tick);
   put_guides(to, tick);
   to.begin(Block::nominal);
-  to.put(static_cast<std::uint32_t>(solve->nominal.size() + 1));
+  to.put(static_cast<std::uint32_t>(states_of(tick.planner, solve->nominal)));
   to.begin_points({car.x, car.y});
   put_states(to, tick.planner, solve->nominal);
   to.end();
   put_plan(to, tick);
   to.begin(Block::covariance);
-  for (const float variance : solve->covariance) to.put(variance);
+  const auto width = static_cast<std::size_t>(tick.planner.solver().inputs());
+  for (std::size_t row = 0; row < solve->covariance.size(); row += width) to.put(solve->covariance[row]);
   to.end();
   return to.take();
 }
 
 FrameEncoder::States FrameEncoder::predict(const vehicle::Planner& planner, std::span<const float> inputs) {
-  if (states_.size() < inputs.size() + 1) states_.resize(inputs.size() + 1);
-  const States states(states_.data(), inputs.size() + 1);
+  const std::size_t count = states_of(planner, inputs);
+  if (states_.size() < count) states_.resize(count);
+  const States states(states_.data(), count);
   cost_ = planner.predict(inputs, states);
   return states;
 }
@@ -203,11 +210,12 @@ void FrameEncoder::put_candidates(FrameWriter& to, const LapTick& tick) {
   if (!solve.samples || solve.costs.empty()) return;
   const SequenceBatch& batch = *solve.samples;
   const int count = std::min(most_candidates_, batch.samples()), steps = batch.steps();
+  const int inputs = batch.inputs();
   // Evenly spread over the samples, so that the picture is as dense in every region as they are.
   const auto chosen = [&](int i) {
     return static_cast<int>(static_cast<long long>(i) * batch.samples() / count);
   };
-  sequence_.resize(static_cast<std::size_t>(steps));
+  sequence_.resize(static_cast<std::size_t>(steps * inputs));
   FrameWriter points;  // the points follow the terms, and one prediction makes both
   points.begin_points({tick.seen.pose.x, tick.seen.pose.y});
   to.begin(Block::candidates);
@@ -215,7 +223,8 @@ void FrameEncoder::put_candidates(FrameWriter& to, const LapTick& tick) {
   to.put(static_cast<std::uint16_t>(steps + 1));
   for (int i = 0; i < count; ++i) {
     const int k = chosen(i);
-    for (int t = 0; t < steps; ++t) sequence_[static_cast<std::size_t>(t)] = batch.at(t, 0, k);
+    for (int row = 0; row < steps * inputs; ++row)
+      sequence_[static_cast<std::size_t>(row)] = batch.at(row / inputs, row % inputs, k);
     put_states(points, tick.planner, sequence_);
     const auto at = static_cast<std::size_t>(k);
     to.put_f32(cost_.distance);
@@ -240,7 +249,7 @@ void FrameEncoder::put_guides(FrameWriter& to, const LapTick& tick) {
   to.begin(Block::guides);
   to.put(static_cast<std::uint16_t>(guides.sequences));
   to.put(static_cast<std::uint16_t>(std::max(1, path)));
-  to.put(static_cast<std::uint16_t>(length + 1));
+  to.put(static_cast<std::uint16_t>(states_of(tick.planner, shown.values.first(length))));
   to.put(std::uint16_t{0});
   to.begin_points({tick.seen.pose.x, tick.seen.pose.y});
   const int sequences = std::max(1, path) * guides.sequences;
@@ -255,14 +264,15 @@ void FrameEncoder::put_plan(FrameWriter& to, const LapTick& tick) {
   const auto inputs = tick.output.inputs;
   const auto& plan = tick.output.predicted;
   const auto variances = tick.output.solve->covariance;
-  constexpr float nudge = 0.01f;  // rad
+  constexpr float nudge = 0.01f;  // rad, m/s^2
+  const auto width = static_cast<std::size_t>(tick.output.inputs_per_step);
   std::vector<double> spread(plan.size(), 0.0);
   sequence_.assign(inputs.begin(), inputs.end());
   for (std::size_t j = 0; j < inputs.size() && j < variances.size(); ++j) {
     sequence_[j] += nudge;
     const States moved = predict(tick.planner, sequence_);
     sequence_[j] = inputs[j];
-    for (std::size_t k = j + 1; k < plan.size(); ++k) {
+    for (std::size_t k = j / width + 1; k < plan.size(); ++k) {
       const maps::Pose& p = plan[k].pose;
       const double across =
           -std::sin(p.yaw) * (moved[k].pose.x - p.x) + std::cos(p.yaw) * (moved[k].pose.y - p.y);

@@ -183,7 +183,9 @@ void LapRunner::control(Drive& drive, const TickCallback& on_tick, double furthe
     drive.cost_published += drive.meter.published_model(output).total();
     drive.cost_driven += drive.meter.present().total();
   }
-  for (const float input : output.inputs) drive.input_error += std::abs(static_cast<double>(input));
+  const auto width = static_cast<std::size_t>(output.inputs_per_step);  // the first input is the steering
+  for (std::size_t row = 0; row < output.inputs.size(); row += width)
+    drive.input_error += std::abs(static_cast<double>(output.inputs[row]));
   drive.speed += seen.speed;
   const double off_path = drive.meter.path_distance();
   drive.distance += off_path;
@@ -196,8 +198,10 @@ void LapRunner::control(Drive& drive, const TickCallback& on_tick, double furthe
     ++drive.solves;
     drive.effective += solve.effective_sample_size;
     double variance = 0;
-    for (const float v : solve.covariance) variance += static_cast<double>(v);
-    if (!solve.covariance.empty()) drive.variance += variance / static_cast<double>(solve.covariance.size());
+    for (std::size_t row = 0; row < solve.covariance.size(); row += width)
+      variance += static_cast<double>(solve.covariance[row]);
+    if (!solve.covariance.empty())
+      drive.variance += variance / static_cast<double>(solve.covariance.size() / width);
     result.solve_ms.push_back(static_cast<float>(1e3 * solve.times.total));
   }
   if (on_tick)

@@ -69,8 +69,8 @@ struct SequenceCostMeter::Implementation {
   maps::LocalCostMap cost_map{cost_map_options()};
   maps::ReferenceField field;
   std::unique_ptr<CarRollout> own, published;
-  std::vector<float> inputs;
   std::vector<PredictedState> states;
+  std::vector<float> inputs;
   maps::Pose robot;
   GridView<1> obstacles;  ///< of this meter's own cost map or of one made elsewhere
   maps::Point low, high;  ///< m, the part of the field that is made, map frame
@@ -81,8 +81,10 @@ struct SequenceCostMeter::Implementation {
         field(path, maps::ReferenceFieldOptions::published()),
         own(CarRollout::make(m)),
         published(CarRollout::make(published_problem())),
-        inputs(static_cast<std::size_t>(std::ceil(steps * time_step / m.time_step - 1e-9))),
-        states(std::max<std::size_t>(inputs.size(), steps) + 1) {}
+        states(std::max<std::size_t>(
+                   static_cast<std::size_t>(std::ceil(steps * time_step / m.time_step - 1e-9)), steps) +
+               1),
+        inputs((states.size() - 1) * static_cast<std::size_t>(own->inputs())) {}
 
   Problem::State<double> state_of(const PredictedState& p) const {
     Problem::State<double> s{};
@@ -139,19 +141,24 @@ struct SequenceCostMeter::Implementation {
     return sum;
   }
 
-  /// The sequence sent, an input every `spacing` (s), the last one held.
-  std::span<const float> held(const vehicle::PlannerOutput& output, std::size_t count, double spacing) {
+  /// The first `used` inputs a step of the sequence sent, a step every `spacing` (s), the last one held.
+  std::span<const float> held(const vehicle::PlannerOutput& output, int used, std::size_t count,
+                              double spacing) {
+    const auto width = static_cast<std::size_t>(output.inputs_per_step),
+               taken = static_cast<std::size_t>(used);
     for (std::size_t k = 0; k < count; ++k) {
       const auto i = static_cast<std::size_t>(static_cast<double>(k) * spacing / model.time_step + 1e-9);
-      inputs[k] = output.inputs[std::min(i, output.inputs.size() - 1)];
+      const std::size_t step = std::min(i, output.inputs.size() / width - 1);
+      std::copy_n(&output.inputs[step * width], taken, &inputs[k * taken]);
     }
-    return {inputs.data(), count};
+    return {inputs.data(), count * taken};
   }
 
   Ruler predict(CarRollout& rollout, const vehicle::PlannerOutput& output, std::span<const float> sequence,
                 double spacing) {
     const PredictedState& first = output.predicted.front();
-    const std::span<PredictedState> reached(states.data(), sequence.size() + 1);
+    const std::size_t count = sequence.size() / static_cast<std::size_t>(rollout.inputs());
+    const std::span<PredictedState> reached(states.data(), count + 1);
     // Where it leads is not known before. Most often it is about where the planner's own prediction leads; if
     // not, once more with the whole field.
     make_field(output.predicted, 0.5);
@@ -167,9 +174,7 @@ struct SequenceCostMeter::Implementation {
 
 SequenceCostMeter::SequenceCostMeter(std::span<const maps::ReferencePoint> path,
                                      const PathTrackingOptions& model)
-    : implementation_(std::make_unique<Implementation>(path, model)) {
-  implementation_->inputs.resize(std::max<std::size_t>(implementation_->inputs.size(), steps));
-}
+    : implementation_(std::make_unique<Implementation>(path, model)) {}
 SequenceCostMeter::~SequenceCostMeter() = default;
 SequenceCostMeter::SequenceCostMeter(SequenceCostMeter&&) noexcept = default;
 SequenceCostMeter& SequenceCostMeter::operator=(SequenceCostMeter&&) noexcept = default;
@@ -195,14 +200,15 @@ SequenceCostMeter::Cost SequenceCostMeter::planned(const vehicle::PlannerOutput&
   if (reached >= steps * time_step - 1e-9) return m.cost_of(resampled(output.predicted, m.model.time_step));
   const auto count = m.states.size() - 1;
   const auto needed = static_cast<std::size_t>(std::ceil(steps * time_step / m.model.time_step - 1e-9));
-  return m.cost_of(m.predict(*m.own, output, m.held(output, std::min(needed, count), m.model.time_step),
+  return m.cost_of(m.predict(*m.own, output,
+                             m.held(output, m.own->inputs(), std::min(needed, count), m.model.time_step),
                              m.model.time_step));
 }
 
 SequenceCostMeter::Cost SequenceCostMeter::published_model(const vehicle::PlannerOutput& output) noexcept {
   Implementation& m = *implementation_;
   if (output.predicted.empty()) return present();
-  return m.cost_of(m.predict(*m.published, output, m.held(output, steps, time_step), time_step));
+  return m.cost_of(m.predict(*m.published, output, m.held(output, 1, steps, time_step), time_step));
 }
 
 SequenceCostMeter::Cost SequenceCostMeter::present() const noexcept {

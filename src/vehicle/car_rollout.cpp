@@ -6,9 +6,9 @@ namespace slalom::vehicle::detail {
 
 namespace {
 
-template <bool separate_local>
+template <bool separate_local, int input_count = 1>
 class Rollout final : public CarRollout {
-  using Problem = PathTracking<separate_local>;
+  using Problem = PathTracking<separate_local, input_count>;
   using State = typename Problem::template State<double>;
 
  public:
@@ -38,10 +38,11 @@ class Rollout final : public CarRollout {
   }
 
   const BatchEvaluator& evaluator() const noexcept override { return evaluator_; }
+  int inputs() const noexcept override { return input_count; }
 
   bool start_collides() const noexcept override {
     const Problem& problem = evaluator_.problem();
-    return problem.stage_cost(start_, problem.look_up(start_), Input<double, 1>{{0}}).collided;
+    return problem.stage_cost(start_, problem.look_up(start_), Input<double, input_count>{}).collided;
   }
 
   PredictedCost predict(std::span<const float> inputs,
@@ -51,11 +52,14 @@ class Rollout final : public CarRollout {
     PredictedCost total;
     State s = start_;
     bool was_free = false;
-    for (std::size_t k = 0; k <= inputs.size(); ++k) {
+    const std::size_t steps = inputs.size() / input_count;
+    for (std::size_t k = 0; k <= steps; ++k) {
       states[k] = predicted(s);
       const auto seen = problem.look_up(s);
-      const bool last = k == inputs.size();
-      const Input<double, 1> u{{last ? 0.0 : static_cast<double>(inputs[k])}};
+      const bool last = k == steps;
+      Input<double, input_count> u{};
+      for (std::size_t i = 0; !last && i < input_count; ++i)
+        u.value[i] = static_cast<double>(inputs[k * input_count + i]);
       const Cost<double> cost = last ? problem.terminal_cost(s, seen) : problem.stage_cost(s, seen, u);
       const double collision =
           problem.collision_cost(seen, last ? options.outside_terminal_cost : options.outside_cost);
@@ -91,6 +95,7 @@ class Rollout final : public CarRollout {
 }  // namespace
 
 std::unique_ptr<CarRollout> CarRollout::make(const PathTrackingOptions& options) {
+  if (input_count(options) == 2) return std::make_unique<Rollout<false, 2>>(options);
   if (options.straight_local_rollout) return std::make_unique<Rollout<true>>(options);
   return std::make_unique<Rollout<false>>(options);
 }

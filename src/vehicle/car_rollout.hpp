@@ -16,7 +16,7 @@ struct CarStart {
   double steer = 0;  ///< rad
 };
 
-/// The vehicle problem with or without its second trajectory, behind one face.
+/// The vehicle problem with or without its second trajectory or input, behind one face.
 class CarRollout {
  public:
   static std::unique_ptr<CarRollout> make(const PathTrackingOptions& options);
@@ -26,10 +26,11 @@ class CarRollout {
                         const maps::Pose& robot) noexcept = 0;
   virtual void set_start(const CarStart& start, double target_speed) noexcept = 0;
   virtual const BatchEvaluator& evaluator() const noexcept = 0;
+  virtual int inputs() const noexcept = 0;
   /// Whether the start itself collides.
   virtual bool start_collides() const noexcept = 0;
-  /// The states (inputs.size() + 1 of them) of one control sequence. It collides if a state after the first
-  /// free one does, or if none is free: a car that touches something already must be let go.
+  /// The states (one more than steps) of one control sequence, [step][input]. It collides if a state after
+  /// the first free one does, or if none is free: a car that touches something already must be let go.
   virtual PredictedCost predict(std::span<const float> inputs,
                                 std::span<PredictedState> states) const noexcept = 0;
 };

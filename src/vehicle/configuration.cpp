@@ -35,14 +35,16 @@ std::string resolved(std::string_view key, std::string_view default_section) {
 
 /// A list of the wrong length would only be found when a solver is made, far from where it was said.
 template <class Options>
-void check_count(const Options& options, std::string_view name, std::string_view text) {
-  constexpr std::size_t inputs = PathTracking<false>::inputs;
-  static_assert(inputs == 1, "the message speaks of one");
+void check_count(const Options& options, std::string_view name, std::string_view text, int inputs) {
   for (const OptionEntry& entry : list_options(options)) {
     const auto* values = std::get_if<std::vector<double>>(&entry.value);
-    if (name == entry.declaration.name && values && values->size() != inputs)
-      throw std::invalid_argument("'" + std::string(text) + "' has " + std::to_string(values->size()) +
-                                  " values; it takes one, for the steering is the only input");
+    if (name != entry.declaration.name || !values) continue;
+    if (values->size() == 1 || static_cast<int>(values->size()) == inputs) continue;
+    const char* const rule = inputs == 1 ? "it takes one, for the steering is the only input as long as "
+                                           "vehicle.speed is not 'input'"
+                                         : "it takes one, or two: for steering and acceleration";
+    throw std::invalid_argument("'" + std::string(text) + "' has " + std::to_string(values->size()) +
+                                " values; " + rule);
   }
 }
 
@@ -61,7 +63,7 @@ std::unique_ptr<Solver> make_solver(const Configuration& configuration, std::str
     if (method == solver_name(each)) chosen = each;
   std::visit([&](auto& options) { options.threads = threads; }, chosen);
   try {
-    return slalom::make_solver(chosen, PathTracking<false>::inputs);
+    return slalom::make_solver(chosen, input_count(configuration.vehicle));
   } catch (const std::invalid_argument& error) {
     const std::string section = std::string(method) + ".", message = error.what();
     if (message.rfind(section, 0) == 0) throw;
@@ -80,7 +82,7 @@ void set_option(Configuration& configuration, std::string_view key, std::string_
       const std::string_view name = std::string_view(full).substr(dot + 1);
       auto changed = options;
       found = slalom::set_option(changed, name, text);
-      check_count(changed, name, text);
+      check_count(changed, name, text, input_count(configuration.vehicle));
       options = std::move(changed);
     });
   } catch (const std::invalid_argument& error) {

@@ -68,6 +68,18 @@ void read_section(Configuration& configuration, const fs::path& file, const std:
   }
 }
 
+void check_section(const Configuration& configuration, const fs::path& file, const YAML::Node& name) {
+  std::vector<std::string> names = {"base"};
+  visit_sections(configuration, [&](const char* section, const auto&) { names.emplace_back(section); });
+  if (std::find(names.begin(), names.end(), name.Scalar()) != names.end()) return;
+  std::string all;
+  for (const auto& each : names) all += (all.empty() ? "" : ", ") + each;
+  const std::string near = nearest_name(name.Scalar(), names);
+  throw IoError(file.string(), line_of(name),
+                "key " + name.Scalar() + ": is none of the sections " + all +
+                    (near.empty() ? "" : "; did you mean " + near + "?"));
+}
+
 /// Rules between the keys of a file, which hold whatever their order.
 void check_together(const Configuration& configuration, const fs::path& file, Lines& lines) {
   const std::string speed = "planner.max_speed", same = "vehicle.max_speed";
@@ -78,14 +90,27 @@ void check_together(const Configuration& configuration, const fs::path& file, Li
                   "key " + second + ": is another name of " + first + ", which line " +
                       std::to_string(lines[first]) + " says already");
   }
+  const int inputs = input_count(configuration.vehicle);
+  for (const Section& section : list_sections(configuration)) {
+    for (const OptionEntry& entry : section.options) {
+      const auto* values = std::get_if<std::vector<double>>(&entry.value);
+      if (!values || static_cast<int>(values->size()) <= inputs) continue;
+      // Only possible with a base of two inputs.
+      throw IoError(file.string(), lines["vehicle.speed"],
+                    "key vehicle.speed: the steering is the only input then, but " + section.name + "." +
+                        entry.declaration.name + " has two values in the base");
+    }
+  }
   for (const SolverOptions& method : configuration.methods)
     std::visit(
         [&](const auto& o) {
-          if (o.input_min[0] <= o.input_max[0]) return;
-          const std::string section = std::string(solver_name(method)) + ".";
-          throw IoError(file.string(), std::max(lines[section + "input_min"], lines[section + "input_max"]),
-                        "key " + section + "input_min: '" + to_text(o.input_min[0]) + "' must be at most " +
-                            section + "input_max, '" + to_text(o.input_max[0]) + "'");
+          for (int i = 0; i < inputs; ++i) {
+            if (o.input_min[i] <= o.input_max[i]) continue;
+            const std::string section = std::string(solver_name(method)) + ".";
+            throw IoError(file.string(), std::max(lines[section + "input_min"], lines[section + "input_max"]),
+                          "key " + section + "input_min: '" + to_text(o.input_min[i]) + "' must be at most " +
+                              section + "input_max, '" + to_text(o.input_max[i]) + "'");
+          }
         },
         method);
 }
@@ -117,26 +142,16 @@ Configuration load_deep(const fs::path& file, const std::vector<fs::path>& roots
     configuration = load_deep(find_base(file, base, roots), roots, depth + 1);
   }
   Lines lines;
-  for (const auto& entry : root) {
-    if (!entry.first.IsScalar())
-      throw IoError(file.string(), line_of(entry.first), "a section's name must be a plain word");
-    const std::string section = entry.first.Scalar();
-    if (section == "base") continue;
-    bool known = false;
-    std::vector<std::string> names = {"base"};
-    visit_sections(configuration, [&](const char* name, const auto&) {
-      known = known || section == name;
-      names.emplace_back(name);
-    });
-    if (!known) {
-      std::string all;
-      for (const auto& name : names) all += (all.empty() ? "" : ", ") + name;
-      const std::string near = nearest_name(section, names);
-      throw IoError(file.string(), line_of(entry.first),
-                    "key " + section + ": is none of the sections " + all +
-                        (near.empty() ? "" : "; did you mean " + near + "?"));
+  // The vehicle goes first: how many inputs it has decides what is right in the methods' sections.
+  for (const bool vehicles : {true, false}) {
+    for (const auto& entry : root) {
+      const bool plain = entry.first.IsScalar();
+      if ((plain && entry.first.Scalar() == "vehicle") != vehicles) continue;
+      if (!plain) throw IoError(file.string(), line_of(entry.first), "a section's name must be a plain word");
+      if (entry.first.Scalar() == "base") continue;
+      check_section(configuration, file, entry.first);
+      read_section(configuration, file, entry.first.Scalar(), entry.second, lines);
     }
-    read_section(configuration, file, section, entry.second, lines);
   }
   check_together(configuration, file, lines);
   return configuration;

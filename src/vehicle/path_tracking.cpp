@@ -13,8 +13,8 @@ double disc_radius(const PathTrackingOptions& options) {
 
 }  // namespace
 
-template <bool separate_local>
-PathTracking<separate_local>::PathTracking(const PathTrackingOptions& options)
+template <bool separate_local, int input_count>
+PathTracking<separate_local, input_count>::PathTracking(const PathTrackingOptions& options)
     : options_(options),
       held_steps_(
           options.hold_first_input ? static_cast<int>(std::ceil(options.dead_time / options.time_step)) : 0),
@@ -25,6 +25,7 @@ PathTracking<separate_local>::PathTracking(const PathTrackingOptions& options)
       terminal_distance_weight_(options.terminal_distance_weight),
       terminal_yaw_weight_(options.terminal_yaw_weight),
       outside_terminal_cost_(options.outside_terminal_cost),
+      speed_weight_(options.speed_weight),
       collision_weight_(options.collision_weight),
       slip_ratio_(options.front_length / (options.front_length + options.rear_length)),
       inverse_length_(options.bicycle == BicycleForm::published
@@ -44,14 +45,15 @@ PathTracking<separate_local>::PathTracking(const PathTrackingOptions& options)
   soft_cost_ = options.soft_margin > 0 ? options.soft_cost : 0;
 }
 
-template <bool separate_local>
-double PathTracking<separate_local>::clearance_reach(const PathTrackingOptions& options) {
+template <bool separate_local, int input_count>
+double PathTracking<separate_local, input_count>::clearance_reach(const PathTrackingOptions& options) {
   return disc_radius(options) + options.body_margin + options.soft_margin + 0.01;
 }
 
-template <bool separate_local>
-void PathTracking<separate_local>::set_maps(const GridView<4>& reference, const GridView<1>& obstacles,
-                                            double robot_x, double robot_y, double robot_yaw) {
+template <bool separate_local, int input_count>
+void PathTracking<separate_local, input_count>::set_maps(const GridView<4>& reference,
+                                                         const GridView<1>& obstacles, double robot_x,
+                                                         double robot_y, double robot_yaw) {
   reference_ = reference;
   obstacles_ = obstacles;
   const double c = std::cos(robot_yaw), s = std::sin(robot_yaw);
@@ -69,5 +71,6 @@ void PathTracking<separate_local>::set_maps(const GridView<4>& reference, const 
 
 template class PathTracking<false>;
 template class PathTracking<true>;
+template class PathTracking<false, 2>;
 
 }  // namespace slalom::vehicle

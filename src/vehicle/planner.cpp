@@ -90,7 +90,9 @@ struct Planner::Implementation {
         history(o.control_period, delay_of(o, p), o.observer_time_constant, p.front_length + p.rear_length),
         states(static_cast<std::size_t>(solver->horizon()) + 1),
         candidate_states(states.size()),
-        candidate(static_cast<std::size_t>(solver->horizon())) {}
+        candidate(static_cast<std::size_t>(solver->horizon()) * static_cast<std::size_t>(solver->inputs())) {
+    output.inputs_per_step = solver->inputs();
+  }
 
   /// No plan can be made: the wheels stay as they are, the car stops.
   void stop(PlannerStatus status) noexcept {
@@ -155,12 +157,15 @@ struct Planner::Implementation {
 
   double horizon_time() const noexcept { return problem.time_step * solver->horizon(); }
 
+  /// The speed to ask for where the path's is `here`.
   double command_speed(double here) const noexcept {
     if (problem.localisation_less) return std::min(problem.reference_speed, options.max_speed);
-    if (options.speed_lookahead <= 0) return here;
-    const double step =
-        std::min(options.speed_lookahead / problem.time_step, static_cast<double>(states.size() - 1));
+    const bool planned = input_count(problem) == 2;  // the plan has speeds of its own
+    if (options.speed_lookahead <= 0 && !planned) return here;
+    const double last = static_cast<double>(states.size() - 1),
+                 step = std::clamp(options.speed_lookahead / problem.time_step, planned ? 1.0 : 0.0, last);
     const PredictedState& ahead = states[static_cast<std::size_t>(step + 0.5)];
+    if (planned) return ahead.speed;
     const maps::ReferenceCell cell = field.at(ahead.pose.x, ahead.pose.y);
     return cell.distance < field.options().outside.distance ? cell.speed : here;
   }
@@ -193,8 +198,10 @@ struct Planner::Implementation {
       if (cheapest < 0 || result.costs[i] < result.costs[static_cast<std::size_t>(cheapest)]) cheapest = k;
     }
     if (cheapest >= 0) {
-      for (std::size_t t = 0; t < candidate.size(); ++t)
-        candidate[t] = result.samples->at(static_cast<int>(t), 0, cheapest);
+      for (std::size_t row = 0; row < candidate.size(); ++row) {
+        const int at = static_cast<int>(row), inputs = solver->inputs();
+        candidate[row] = result.samples->at(at / inputs, at % inputs, cheapest);
+      }
       consider(candidate);
     }
     return best;
@@ -208,8 +215,17 @@ Planner::Planner(const PlannerOptions& options, const PathTrackingOptions& probl
   if (delay_of(options, problem) > 32 * options.control_period) {
     throw std::invalid_argument("planner.latency: with vehicle.dead_time it is more than 32 control periods");
   }
-  if (!solver || solver->inputs() != 1)
-    throw std::invalid_argument("planner: needs a solver of one input, the steering");
+  if (input_count(problem) == 2 && (problem.straight_local_rollout || problem.localisation_less)) {
+    throw std::invalid_argument(
+        "vehicle.speed: 'input' goes neither with vehicle.straight_local_rollout nor with "
+        "vehicle.localisation_less");
+  }
+  if (!solver || solver->inputs() != input_count(problem)) {
+    throw std::invalid_argument("planner: needs a solver of " +
+                                std::string(input_count(problem) == 2
+                                                ? "two inputs, steering and acceleration"
+                                                : "one input, the steering"));
+  }
   implementation_ = std::make_unique<Implementation>(options, problem, path, std::move(solver));
 }
 

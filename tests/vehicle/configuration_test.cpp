@@ -113,7 +113,20 @@ TEST_F(ConfigurationFile, NamesTheLineOfWhatAMethodWouldRefuse) {
   EXPECT_EQ(
       refusal("svg_mppi:\n  variance: [1, 2, 3]\n"),
       "x.yaml:2: key svg_mppi.variance: '[1, 2, 3]' has 3 values; it takes one, for the steering is the only "
-      "input");
+      "input as long as vehicle.speed is not 'input'");
+  EXPECT_EQ(refusal("svg_mppi:\n  variance: [1, 2]\nvehicle:\n  speed: input\n"), "accepted")
+      << "whatever the order";
+  EXPECT_EQ(
+      refusal("svg_mppi:\n  variance: [1, 2, 3]\nvehicle:\n  speed: input\n"),
+      "x.yaml:2: key svg_mppi.variance: '[1, 2, 3]' has 3 values; it takes one, or two: for steering and "
+      "acceleration");
+  write("two.yaml", "svg_mppi: {variance: [1, 2]}\nvehicle: {speed: input}\n");
+  EXPECT_EQ(refusal("base: two.yaml\nvehicle:\n  speed: reference\n"),
+            "x.yaml:3: key vehicle.speed: the steering is the only input then, but svg_mppi.variance has two "
+            "values "
+            "in the base");
+  EXPECT_EQ(refusal("vehicle: {speed: input}\nmppi:\n  input_min: [-1, 3]\n  input_max: [1, 2]\n"),
+            "x.yaml:4: key mppi.input_min: '3' must be at most mppi.input_max, '2'");
   EXPECT_EQ(refusal("svg_mppi:\n  temperature:\n  samples: 10\n"),
             "x.yaml:2: key svg_mppi.temperature: has no value");
   EXPECT_NE(refusal("svg_mppi:\n  samples: 10\n\ttemperature: 1\n").find("begins with a tab"),

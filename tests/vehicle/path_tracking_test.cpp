@@ -100,6 +100,35 @@ TEST(PathTracking, SpeedFollowsTheReferenceWithinItsLimits) {
   EXPECT_NEAR(next_speed(5), 4.9, 1e-12);
 }
 
+TEST(PathTracking, AccelerationAsAnInputStaysWithinTheCarsLimitsAndThePathsSpeed) {
+  PathTrackingOptions options;
+  options.speed = SpeedForm::input;
+  options.max_acceleration = 4;
+  options.max_deceleration = 2;
+  options.speed_weight = 0.5;
+  options.body = BodyForm::box;
+  PathTracking<false, 2> car(options);
+  const Maps maps;  // 3 m/s, 2 m off the path
+  maps.give_to(car);
+  const auto at = [](double speed) { return decltype(car)::State<double>{0, 0, 0, speed, 0, 0}; };
+  const auto next_speed = [&](double speed, double acceleration) {
+    return car.step(at(speed), car.look_up(at(speed)), Input<double, 2>{{0, acceleration}}, 0).speed;
+  };
+  EXPECT_NEAR(next_speed(1, 2), 1.1, 1e-12);
+  EXPECT_NEAR(next_speed(1, 100), 1.2, 1e-12);
+  EXPECT_NEAR(next_speed(1, -1), 0.95, 1e-12);
+  EXPECT_NEAR(next_speed(1, -100), 0.9, 1e-12);
+  EXPECT_NEAR(next_speed(2.95, 4), 3, 1e-12) << "the path's speed is the limit";
+  EXPECT_NEAR(next_speed(5, 4), 4.9, 1e-12) << "and is come down to as brakes allow";
+  EXPECT_NEAR(next_speed(0.05, -2), 0, 1e-12) << "never backwards";
+  const auto cost = [&](double speed) {
+    return car.stage_cost(at(speed), car.look_up(at(speed)), Input<double, 2>{}).value;
+  };
+  EXPECT_NEAR(cost(3), 4, 1e-12);
+  EXPECT_NEAR(cost(1), 4 + 0.5 * 4, 1e-12);
+  EXPECT_NEAR(cost(5), 4, 1e-12) << "too fast is the model's to forbid";
+}
+
 TEST(PathTracking, LocalPositionIsThatInTheRobotsFrame) {
   Maps maps;
   maps.obstacles[static_cast<std::size_t>(3 * 16 + 4)] = 100;  // x in (1, 2], y in (0, 1], robot frame

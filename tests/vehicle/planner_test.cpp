@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "slalom/solvers/make_solver.hpp"
@@ -119,6 +121,47 @@ TEST(Planner, BrakesWhereNoPlanIsFree) {
     speed = std::max(out.command.speed, 0.2);
   }
   EXPECT_LT(speed, 0.21);
+}
+
+TEST(Planner, WithTheAccelerationAsAnInputItIsFastWhereItCanAndSlowsDownInTime) {
+  PathTrackingOptions car = small_car();
+  car.speed = SpeedForm::input;
+  car.max_acceleration = car.max_deceleration = 6;
+  SvgMppiOptions method;
+  method.horizon = 20;
+  method.samples = 1024;
+  method.variance = {0.03, 4};
+  method.guide_variance = method.gradient_variance = {0.01, 4};
+  method.guide_step = {0.005, 2};
+  method.variance_min = {0.001, 0.5};
+  method.variance_max = {0.1, 9};
+  method.input_min = {-0.4, -6};
+  method.input_max = {0.4, 6};
+  method.seed = 7;
+  // The car goes straight on at the speed it is told; a wall across the lane stands ahead.
+  const auto drive = [&](double wall) {
+    Planner planner(careful(), car, lane(), false, make_solver(method, 2));
+    double x = 5, speed = 3;
+    bool blocked = false;
+    for (int i = 0; i < 120; ++i) {
+      Corridor corridor{.wall = wall - x};
+      const PlannerOutput& out = planner.update({corridor.scan(), {{x, 0, 0}, speed}});
+      EXPECT_EQ(out.inputs_per_step, 2);
+      EXPECT_EQ(out.inputs.size(), 40u);
+      EXPECT_EQ(out.predicted.size(), 21u);
+      blocked |= out.status == PlannerStatus::blocked;
+      speed = std::clamp(out.command.speed, speed - 6 * 0.025, speed + 6 * 0.025);
+      x += speed * 0.025;
+    }
+    return std::tuple{x, speed, blocked};
+  };
+  const auto [far, fast, free] = drive(1000);
+  EXPECT_GT(fast, 2.7);
+  EXPECT_FALSE(free);
+  const auto [near, slow, blocked] = drive(8);
+  EXPECT_LT(near, 8 - 0.461) << "the wall is not reached";
+  EXPECT_LT(slow, 0.6);
+  EXPECT_FALSE(blocked) << "a plan that slows down is free all the time";
 }
 
 TEST(Planner, GoesBackFromWhatItStandsAgainst) {
@@ -237,6 +280,13 @@ TEST(Planner, AnUpdateAllocatesNothing) {
 TEST(Planner, RefusesWhatItCannotDriveWith) {
   EXPECT_THROW(Planner(careful(), small_car(), lane(), false, nullptr), std::invalid_argument);
   EXPECT_THROW(Planner(careful(), small_car(), lane(), false, make_solver(SvgMppiOptions{}, 2)),
+               std::invalid_argument);
+  PathTrackingOptions two = small_car();
+  two.speed = SpeedForm::input;
+  EXPECT_THROW(Planner(careful(), two, lane(), false, make_solver(SvgMppiOptions{}, 1)),
+               std::invalid_argument);
+  two.straight_local_rollout = true;
+  EXPECT_THROW(Planner(careful(), two, lane(), false, make_solver(SvgMppiOptions{}, 2)),
                std::invalid_argument);
   PlannerOptions slow = careful();
   slow.latency = 0.9;

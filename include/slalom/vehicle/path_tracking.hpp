@@ -11,7 +11,8 @@
 ///     cost of a state = distance_weight d^2 + yaw_weight e^2 + collision_weight c
 ///
 /// with d the distance to the path, e the yaw error, c the value of the cost map (Honda et al., ICRA 2024,
-/// section V-A).
+/// section V-A). Steering is the only input there, and the speed is the path's. Where the acceleration is an
+/// input too, `speed_weight` times the square of the speed lost to the path's is added.
 namespace slalom::vehicle {
 
 /// Where the reference point of the bicycle lies, and so what its yaw gain is.
@@ -31,9 +32,10 @@ enum class SpeedForm {
   reference,  ///< the reference field's speed at the position
   constant,   ///< the present speed
   linear,     ///< towards the reference speed at the start, with constant acceleration
+  input,      ///< the second input is the acceleration; the reference field's speed is the limit
 };
 inline const char* const* enum_names(SpeedForm) {
-  static constexpr const char* const names[] = {"reference", "constant", "linear", nullptr};
+  static constexpr const char* const names[] = {"reference", "constant", "linear", "input", nullptr};
   return names;
 }
 
@@ -61,6 +63,7 @@ struct PathTrackingOptions {
   double yaw_weight = 0.01;
   double terminal_distance_weight = 1;
   double terminal_yaw_weight = 0.01;
+  double speed_weight = 1;             ///< s^2/m^2, where the acceleration is an input
   double collision_weight = 1;         ///< times the cost map's values, 100 where occupied
   double max_acceleration = 5;         ///< m/s^2, for `limit_acceleration` and the linear form
   double max_deceleration = 3;         ///< m/s^2, likewise
@@ -137,6 +140,11 @@ void visit_options(Options& o, Visit&& visit) {
         Declaration{.name = "terminal_distance_weight", .help = "the same at the last state", .min = 0});
   visit(o.terminal_yaw_weight,
         Declaration{.name = "terminal_yaw_weight", .help = "the same at the last state", .min = 0});
+  visit(o.speed_weight,
+        Declaration{.name = "speed_weight",
+                    .help = "weight of the squared speed lost to the path's, s^2/m^2, where the acceleration "
+                            "is an input",
+                    .min = 0});
   visit(o.collision_weight,
         Declaration{
             .name = "collision_weight", .help = "times the cost map's value, 100 where occupied", .min = 0});
@@ -224,16 +232,22 @@ struct CarState<T, true> {
   T local_x, local_y, local_yaw, local_steer;  ///< m, m, rad, rad
 };
 
-/// The problem for the solvers. `separate_local` is `straight_local_rollout` at compile time. Input:
-/// steering, rad, of a magnitude below pi/2, as that of the start's steering.
-template <bool separate_local>
+/// How many inputs the problem with these options has: 1, or 2 where the acceleration is one.
+constexpr int input_count(const PathTrackingOptions& options) noexcept {
+  return options.speed == SpeedForm::input ? 2 : 1;
+}
+
+/// The problem for the solvers. `separate_local` is `straight_local_rollout` at compile time, `input_count`
+/// that of the options. Inputs: steering, rad, of a magnitude below pi/2, as that of the start's steering;
+/// and acceleration, m/s^2, of which no more than `max_deceleration` and `max_acceleration` takes effect.
+template <bool separate_local, int input_count = 1>
 class PathTracking {
  public:
   template <class T>
   using State = CarState<T, separate_local>;
-  static constexpr int inputs = 1;
+  static constexpr int inputs = input_count;
 
-  /// `options` must be valid.
+  /// `options` must be valid, and have as many inputs.
   explicit PathTracking(const PathTrackingOptions& options);
 
   const PathTrackingOptions& options() const { return options_; }
@@ -259,12 +273,16 @@ class PathTracking {
   }
 
   template <class T>
-  State<T> step(const State<T>& s, const Surroundings<T>& seen, const Input<T, 1>& u, int k) const {
+  State<T> step(const State<T>& s, const Surroundings<T>& seen, const Input<T, inputs>& u, int k) const {
     State<T> next;
     const bool first = options_.hold_first_input && k == 0;
     const T command = options_.hold_first_input && !first && k <= held_steps_ ? s.held : u[0];
     next.held = first ? u[0] : s.held;
-    next.speed = next_speed(s.speed, seen.speed);
+    if constexpr (inputs == 2) {
+      next.speed = next_speed(s.speed, seen.speed, u[1]);
+    } else {
+      next.speed = next_speed(s.speed, seen.speed);
+    }
     const T travelled = s.speed * T(time_step_);
     move(s.x, s.y, s.yaw, s.steer, command, travelled, next.x, next.y, next.yaw, next.steer);
     if constexpr (separate_local) {
@@ -275,7 +293,7 @@ class PathTracking {
   }
 
   template <class T>
-  Cost<T> stage_cost(const State<T>& s, const Surroundings<T>& seen, const Input<T, 1>&) const {
+  Cost<T> stage_cost(const State<T>& s, const Surroundings<T>& seen, const Input<T, inputs>&) const {
     return cost(s, seen, distance_weight_, yaw_weight_, outside_cost_);
   }
   template <class T>
@@ -365,6 +383,13 @@ class PathTracking {
     if (!options_.limit_acceleration) return reference;
     return min(max(reference, speed - T(speed_loss_)), speed + T(speed_gain_));
   }
+  /// With the acceleration asked for, as far as the car is capable of it; never backwards, and no faster than
+  /// the reference as soon as brakes allow.
+  template <class T>
+  SLALOM_INLINE T next_speed(const T& speed, const T& reference, const T& acceleration) const {
+    const T slowest = speed - T(speed_loss_), fastest = min(speed + T(speed_gain_), max(reference, slowest));
+    return max(min(max(speed + acceleration * T(time_step_), slowest), fastest), T(0));
+  }
 
   template <class T>
   SLALOM_INLINE Cost<T> cost(const State<T>& s, const Surroundings<T>& seen,
@@ -376,6 +401,7 @@ class PathTracking {
       const T yaw_error = select(seen.outside > T(0), seen.yaw, wrap_angle(s.yaw - seen.yaw));
       value = value + (T(distance_weight) * square(seen.distance) + T(yaw_weight) * square(yaw_error));
     }
+    if constexpr (inputs == 2) value = value + T(speed_weight_) * square(max(seen.speed - s.speed, T(0)));
     return {value, mask_t<T>((seen.obstacle < T(0)) | (seen.obstacle >= T(100)))};
   }
 
@@ -393,6 +419,7 @@ class PathTracking {
   Coefficient time_step_;
   Coefficient distance_weight_, yaw_weight_, outside_cost_;
   Coefficient terminal_distance_weight_, terminal_yaw_weight_, outside_terminal_cost_;
+  Coefficient speed_weight_;
   Coefficient collision_weight_;
   Coefficient slip_ratio_;
   Coefficient inverse_length_;
@@ -405,5 +432,6 @@ class PathTracking {
 
 extern template class PathTracking<false>;
 extern template class PathTracking<true>;
+extern template class PathTracking<false, 2>;
 
 }  // namespace slalom::vehicle

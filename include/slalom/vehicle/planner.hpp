@@ -30,7 +30,8 @@ struct PlannerOptions {
   double laser_x = 0.275;               ///< m, of the laser from the rear axle
   double laser_y = 0;                   ///< m, to the left
   double laser_yaw = 0;                 ///< rad
-  double speed_lookahead = 0;     ///< s, the commanded speed is that of the path so far ahead; published: 0
+  double speed_lookahead = 0;     ///< s, the commanded speed is that of the path so far ahead, or of the plan
+                                  ///< where the acceleration is an input; published: 0
   double deadline = 0;            ///< s a solve may take; 0: no limit
   bool stop_when_blocked = true;  ///< brake when no plan is free of collisions; published: false
   bool verify_plan =
@@ -81,7 +82,8 @@ void visit_options(Options& o, Visit&& visit) {
       Declaration{.name = "laser_yaw", .unit = "rad", .help = "where the laser looks", .min = -7, .max = 7});
   visit(o.speed_lookahead, Declaration{.name = "speed_lookahead",
                                        .unit = "s",
-                                       .help = "the commanded speed is that of the path so far ahead",
+                                       .help = "the commanded speed is that of the path so far ahead, or of "
+                                               "the plan where the acceleration is an input",
                                        .min = 0,
                                        .max = 2});
   visit(
@@ -167,7 +169,9 @@ struct PlannerInput {
 struct PlannerOutput {
   PlannerStatus status = PlannerStatus::ok;
   Command command;
-  std::span<const float> inputs;  ///< the sequence that is sent, steering in rad; empty where none is
+  std::span<const float> inputs;  ///< [step][input], the sequence that is sent: steering in rad, and with
+                                  ///< two inputs acceleration in m/s^2; empty where none is
+  int inputs_per_step = 1;
   std::span<const PredictedState> predicted;  ///< horizon + 1 states of the sequence that is sent
   double state_cost = 0;      ///< of the predicted states by the planner's own cost, without collisions
   double collision_cost = 0;  ///< of the predicted states by the planner's own cost
@@ -181,7 +185,7 @@ struct PlannerOutput {
 class Planner {
  public:
   /// `path` as for the reference field; `closed` whether it is a loop. Throws std::invalid_argument on
-  /// options out of range, on a bad path and on a solver that does not have one input.
+  /// options out of range, on a bad path and on a solver that does not have the problem's inputs.
   Planner(const PlannerOptions& options, const PathTrackingOptions& problem,
           std::span<const maps::ReferencePoint> path, bool closed, std::unique_ptr<Solver> solver);
   ~Planner();
@@ -193,8 +197,8 @@ class Planner {
   /// Forgets everything: solver, observer, commands under way.
   void reset(std::uint64_t seed) noexcept;
 
-  /// The states (inputs.size() + 1 of them) and costs of any control sequence, from where the last update
-  /// that made a plan began, over its maps. For viewers; it may be called between updates.
+  /// The states (one more than steps) and costs of any control sequence, [step][input], from where the last
+  /// update that made a plan began, over its maps. For viewers; it may be called between updates.
   PredictedCost predict(std::span<const float> inputs, std::span<PredictedState> states) const noexcept;
 
   const Solver& solver() const noexcept;
