@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <thread>
 
 #include "bench_plot.hpp"
@@ -41,6 +42,11 @@ vehicle::Configuration configuration_of(const Arguments& arguments) {
   scenario.set = arguments.set;
   vehicle::Configuration made = load_configuration(scenario, "svg_mppi");
   if (arguments.config.empty()) made.vehicle.straight_local_rollout = false;
+  if (input_count(made.vehicle) != 1) {
+    throw std::invalid_argument(
+        "key vehicle.speed: 'input' must not be set here: what is measured has the steering "
+        "as its only input");
+  }
   return made;
 }
 

@@ -47,6 +47,20 @@ TEST(LapRunner, FinishesALap) {
   EXPECT_EQ(lap.solve_ms.size(), static_cast<std::size_t>(lap.steps));
 }
 
+TEST(LapRunner, DrivesWithTheAccelerationAsAnInputByEveryMethod) {
+  for (const char* method : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
+    SCOPED_TRACE(method);
+    const LapResult lap =
+        LapRunner(wren(), configuration("default_speed"), method, {.further_costs = true}).run(0);
+    EXPECT_TRUE(std::isfinite(lap.mean_sequence_cost));
+    EXPECT_TRUE(std::isfinite(lap.published_model_cost));
+    if (method != std::string("svg_mppi")) continue;
+    EXPECT_TRUE(lap.finished);
+    EXPECT_EQ(lap.contacts, 0);
+    EXPECT_LT(lap.time, 1.3 * LapRunner(wren(), configuration("default"), method, {}).run(0).time);
+  }
+}
+
 TEST(LapRunner, RepeatsBitForBitInAnyOrderWithAnyThreads) {
   const auto arena = wren();
   LapSettings settings{.obstacles = 3};

@@ -2,6 +2,8 @@
 // options.
 #include "session.hpp"
 
+#include "frame_reader.hpp"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -183,6 +185,21 @@ TEST_F(ViewSession, SetsUndoesAndForks) {
   EXPECT_EQ(scalar(forked, "method"), 1);
   tell({{"do", "set"}, {"key", "mppi.samples"}, {"value", "0"}});
   EXPECT_NE(next("error")["message"].get<std::string>().find("must be in"), std::string::npos);
+}
+
+TEST_F(ViewSession, ShowsWaysOfTwoInputsStateByState) {
+  tell({{"do", "set"}, {"key", "vehicle.speed"}, {"value", "input"}});
+  const std::string shown = step_to(3);
+  const FrameReader reader(shown);
+  EXPECT_EQ(PayloadReader(reader.block(Block::plan)).get<std::uint32_t>(), 15u);
+  EXPECT_EQ(PayloadReader(reader.block(Block::nominal)).get<std::uint32_t>(), 15u);
+  EXPECT_EQ(reader.block(Block::covariance).size(), 14 * sizeof(float)) << "of the steering";
+  PayloadReader candidates(reader.block(Block::candidates)), guides(reader.block(Block::guides));
+  EXPECT_GT(candidates.get<std::uint16_t>(), 0);
+  EXPECT_EQ(candidates.get<std::uint16_t>(), 15);
+  EXPECT_GT(guides.get<std::uint16_t>(), 0);
+  EXPECT_GT(guides.get<std::uint16_t>(), 0);
+  EXPECT_EQ(guides.get<std::uint16_t>(), 15);
 }
 
 TEST_F(ViewSession, RefusesWhatIsNoCommandAndGoesOn) {
