@@ -90,9 +90,7 @@ struct Planner::Implementation {
         history(o.control_period, delay_of(o, p), o.observer_time_constant, p.front_length + p.rear_length),
         states(static_cast<std::size_t>(solver->horizon()) + 1),
         candidate_states(states.size()),
-        candidate(static_cast<std::size_t>(solver->horizon()) * static_cast<std::size_t>(solver->inputs())) {
-    output.inputs_per_step = solver->inputs();
-  }
+        candidate(static_cast<std::size_t>(solver->horizon()) * static_cast<std::size_t>(solver->inputs())) {}
 
   /// No plan can be made: the wheels stay as they are, the car stops.
   void stop(PlannerStatus status) noexcept {
@@ -130,6 +128,7 @@ struct Planner::Implementation {
     std::span<const float> sent = result.inputs;
     if (options.verify_plan && cost.collided) cost = find_free_sequence(result, cost, sent);
     output.inputs = sent;
+    output.inputs_per_step = rollout->inputs();
     output.predicted = states;
     output.state_cost = cost.state;
     output.collision_cost = cost.collision;

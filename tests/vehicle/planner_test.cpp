@@ -141,6 +141,7 @@ TEST(Planner, WithTheAccelerationAsAnInputItIsFastWhereItCanAndSlowsDownInTime) 
   // The car goes straight on at the speed it is told; a wall across the lane stands ahead.
   const auto drive = [&](double wall) {
     Planner planner(careful(), car, lane(), false, make_solver(method, 2));
+    planner.reset(7);
     double x = 5, speed = 3;
     bool blocked = false;
     for (int i = 0; i < 120; ++i) {
