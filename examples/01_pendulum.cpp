@@ -48,7 +48,7 @@ int main() {
   const int mppi = succeeded([](auto seed) {
     return stands(slalom::Mppi{Pendulum{},
                                {.horizon = 60,
-                                .samples = 512,
+                                .samples = 1024,
                                 .temperature = 0.2,
                                 .variance = 4,
                                 .input_min = {-5},
@@ -58,7 +58,7 @@ int main() {
   const int svg_mppi = succeeded([](auto seed) {
     return stands(slalom::SvgMppi{Pendulum{},
                                   {.horizon = 60,
-                                   .samples = 512,
+                                   .samples = 1024,
                                    .temperature = 0.2,
                                    .input_min = {-5},
                                    .input_max = {5},

@@ -26,7 +26,7 @@ int main() {
   const int mppi = succeeded([](auto seed) {
     return stands(slalom::Mppi{CartPole{},
                                {.horizon = 60,
-                                .samples = 2048,
+                                .samples = 4096,
                                 .temperature = 0.1,
                                 .variance = 8,
                                 .input_min = {-10},
@@ -36,11 +36,11 @@ int main() {
   const int svg_mppi = succeeded([](auto seed) {
     return stands(slalom::SvgMppi{CartPole{},
                                   {.horizon = 60,
-                                   .samples = 2048,
+                                   .samples = 4096,
                                    .temperature = 0.1,
                                    .input_min = {-10},
                                    .input_max = {10},
-                                   .guide_step = 0.5,
+                                   .guide_step = 0.2,
                                    .guide_variance = 4,
                                    .gradient_variance = 2,
                                    .gradient_temperature = 0.1,

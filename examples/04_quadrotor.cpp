@@ -27,7 +27,7 @@ int main() {
     const int mppi = succeeded([&](auto seed) {
       return arrives(slalom::Mppi{Quadrotor{},
                                   {.horizon = 40,
-                                   .samples = 1024,
+                                   .samples = 2048,
                                    .temperature = temperature,
                                    .variance = {2, 8},
                                    .input_min = {-6, -20},
@@ -37,7 +37,7 @@ int main() {
     const int svg_mppi = succeeded([&](auto seed) {
       return arrives(slalom::SvgMppi{Quadrotor{},
                                      {.horizon = 40,
-                                      .samples = 1024,
+                                      .samples = 2048,
                                       .temperature = temperature,
                                       .input_min = {-6, -20},
                                       .input_max = {6, 20},

@@ -27,7 +27,7 @@ int main() {
     const int mppi = succeeded([&](auto seed) {
       return arrives(slalom::Mppi{Car{},
                                   {.horizon = 30,
-                                   .samples = 1024,
+                                   .samples = 2048,
                                    .temperature = temperature,
                                    .variance = {0.1, 2},
                                    .input_min = {-0.5, -6},
@@ -37,7 +37,7 @@ int main() {
     const int svg_mppi = succeeded([&](auto seed) {
       return arrives(slalom::SvgMppi{Car{},
                                      {.horizon = 30,
-                                      .samples = 1024,
+                                      .samples = 2048,
                                       .temperature = temperature,
                                       .input_min = {-0.5, -6},
                                       .input_max = {0.5, 3},

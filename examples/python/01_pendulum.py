@@ -34,7 +34,7 @@ def stands(controller):
     return np.cos(x[0]) > 0.995 and abs(x[1]) < 0.5
 
 
-common = dict(horizon=60, samples=512, temperature=0.2, input_min=-5, input_max=5)
+common = dict(horizon=60, samples=1024, temperature=0.2, input_min=-5, input_max=5)
 mppi = succeeded(lambda seed: stands(slalom.Mppi(pendulum, **common, variance=4, seed=seed)))
 svg_mppi = succeeded(lambda seed: stands(slalom.SvgMppi(
     pendulum, **common, gradient_variance=1, variance_min=1, variance_max=4, seed=seed)))

@@ -17,7 +17,7 @@ def stands(controller):
     return np.cos(x[2]) > 0.99 and abs(x[3]) < 0.5
 
 
-common = dict(horizon=60, samples=2048, temperature=0.1, input_min=-10, input_max=10)
+common = dict(horizon=60, samples=4096, temperature=0.1, input_min=-10, input_max=10)
 mppi = succeeded(lambda seed: stands(slalom.Mppi(cart_pole, **common, variance=8, seed=seed)))
 svg_mppi = succeeded(lambda seed: stands(slalom.SvgMppi(
     cart_pole, **common, guide_step=0.2, guide_variance=4, gradient_variance=2, gradient_temperature=0.1,

@@ -23,7 +23,7 @@ def arrives(controller):
 
 
 for temperature in 0.3, 1.0:
-    common = dict(horizon=40, temperature=temperature, input_min=[-6, -20], input_max=[6, 20])
+    common = dict(horizon=40, samples=2048, temperature=temperature, input_min=[-6, -20], input_max=[6, 20])
     mppi = succeeded(lambda seed: arrives(slalom.Mppi(quadrotor, **common, variance=[2, 8], seed=seed)))
     svg_mppi = succeeded(lambda seed: arrives(slalom.SvgMppi(
         quadrotor, **common, guide_step=[0.5, 2], guide_variance=[1, 4], gradient_variance=[1, 4],

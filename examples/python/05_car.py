@@ -24,7 +24,7 @@ def arrives(controller):
 
 
 for temperature in 0.3, 1.0:
-    common = dict(horizon=30, temperature=temperature, input_min=[-0.5, -6], input_max=[0.5, 3])
+    common = dict(horizon=30, samples=2048, temperature=temperature, input_min=[-0.5, -6], input_max=[0.5, 3])
     mppi = succeeded(lambda seed: arrives(slalom.Mppi(car, **common, variance=[0.1, 2], seed=seed)))
     svg_mppi = succeeded(lambda seed: arrives(slalom.SvgMppi(
         car, **common, guide_step=[0.025, 0.5], guide_variance=[0.05, 1], gradient_variance=[0.05, 1],

@@ -5,27 +5,34 @@
 /// Bodies of the kernels that shape noise: see noise_shape.hpp.
 namespace slalom::detail::body {
 
-/// z <- L z over the rows first, first + step, ... of one input, from the last backwards, in place. Four
-/// packs share an entry of L.
+/// `colour` for the `packs` packs from sample k on, which share every entry of L.
+template <int packs, class F>
+SLALOM_INLINE void colour_packs(const Rows<RealOf<F>>& z, const RealOf<F>* factor, int first, int step,
+                                int k) {
+  using L = Lanes<F>;
+  const int steps = (z.rows - first + step - 1) / step;
+  for (int t = steps - 1; t >= 0; --t) {
+    const RealOf<F>* row = factor + static_cast<std::ptrdiff_t>(t) * (t + 1) / 2;
+    F sum[packs];
+    for (int b = 0; b < packs; ++b) sum[b] = F(0.0f);
+    for (int s = 0; s <= t; ++s) {
+      const F entry(row[s]);
+      const RealOf<F>* from = z.row(first + s * step) + k;
+      for (int b = 0; b < packs; ++b) sum[b] = sum[b] + entry * L::load(from + b * L::count);
+    }
+    for (int b = 0; b < packs; ++b) L::store(sum[b], z.row(first + t * step) + k + b * L::count);
+  }
+}
+
+/// z <- L z over the rows first, first + step, ... of one input, from the last backwards, in place.
 template <class F>
 SLALOM_INLINE void colour(const Rows<RealOf<F>>& z, const RealOf<F>* factor, int first, int step,
                           Range range) {
-  using L = Lanes<F>;
-  constexpr int packs = 4;
-  const int steps = (z.rows - first + step - 1) / step;
-  for (int k = range.first; k < range.first + range.count; k += packs * L::count) {
-    for (int t = steps - 1; t >= 0; --t) {
-      const RealOf<F>* row = factor + static_cast<std::ptrdiff_t>(t) * (t + 1) / 2;
-      F sum[packs];
-      for (int b = 0; b < packs; ++b) sum[b] = F(0.0f);
-      for (int s = 0; s <= t; ++s) {
-        const F entry(row[s]);
-        const RealOf<F>* from = z.row(first + s * step) + k;
-        for (int b = 0; b < packs; ++b) sum[b] = sum[b] + entry * L::load(from + b * L::count);
-      }
-      for (int b = 0; b < packs; ++b) L::store(sum[b], z.row(first + t * step) + k + b * L::count);
-    }
-  }
+  constexpr int lanes = Lanes<F>::count;
+  const int end = range.first + range.count;
+  int k = range.first;
+  for (; k + 4 * lanes <= end; k += 4 * lanes) colour_packs<4, F>(z, factor, first, step, k);
+  for (; k < end; k += lanes) colour_packs<1, F>(z, factor, first, step, k);
 }
 
 /// z <- z exp(s y - s^2). `y` is laid out like z, `spread` [row] is s.

@@ -109,6 +109,35 @@ TEST(FillNormal, RowsSamplesAndStreamsAreNotCorrelated) {
   }
 }
 
+/// The two values of a pair come from the same 32 bits: nothing of that may be seen between them.
+TEST(FillNormal, PairsFillThePlaneEvenly) {
+  const int rows = 8, samples = 1 << 18, parts = 64;
+  SequenceBatch batch(rows, 1, samples);
+  fill_normal(batch, 0, samples, {17, 1});
+  std::vector<int> cells(parts * parts), octants(8);
+  const auto part = [&](double x) {
+    return static_cast<std::size_t>(std::min(0.5 * std::erfc(-x / std::sqrt(2.0)) * parts, parts - 1.0));
+  };
+  for (int row = 0; row < rows; row += 2)
+    for (int k = 0; k < samples; ++k) {
+      const double x = static_cast<double>(batch.at(row, 0, k)),
+                   y = static_cast<double>(batch.at(row + 1, 0, k));
+      ++cells[part(x) * parts + part(y)];
+      const auto octant = static_cast<std::size_t>(4 * (x < 0) + 2 * (y < 0) + (std::abs(x) < std::abs(y)));
+      octants[octant] += std::hypot(x, y) > 4;
+    }
+  const auto chi_squared = [](const std::vector<int>& counts) {
+    double sum = 0, chi2 = 0;
+    for (const int count : counts) sum += count;
+    const double expected = sum / static_cast<double>(counts.size());
+    for (const int count : counts) chi2 += (count - expected) * (count - expected) / expected;
+    return chi2;
+  };
+  const double freedom = parts * parts - 1.0;
+  EXPECT_NEAR(chi_squared(cells), freedom, 5 * std::sqrt(2 * freedom));
+  EXPECT_LT(chi_squared(octants), 36);  // 7 degrees of freedom: the 1 - 1e-5 quantile is 35.3
+}
+
 TEST(RandomStream, UniformFillsItsRangeEvenly) {
   RandomStream stream({42, 0});
   std::vector<int> bins(64);

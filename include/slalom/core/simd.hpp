@@ -87,8 +87,9 @@ struct Avx512 {
   static constexpr bool fused = true;
 };
 
-/// Batches are padded to a multiple of this many samples, whatever the instruction set.
-inline constexpr int padding = 64;
+/// Batches are padded to a multiple of this many samples, the lanes of the widest pack, whatever the
+/// instruction set.
+inline constexpr int padding = 16;
 
 namespace detail {
 

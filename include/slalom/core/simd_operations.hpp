@@ -42,6 +42,9 @@ struct PortableOperations {
     r = (a + magic) - magic;
   }
   static void shift_left(I& a, int count) { a = a << count; }
+  static void reverse_bytes(I& a) {
+    a = (a << 24) | ((a & 0xff00) << 8) | ((a >> 8) & 0xff00) | ((a >> 24) & 0xff);
+  }
   static void gather(const float* from, const I& index, F& r) {
     for (int i = 0; i < lanes; ++i) r[i] = from[index[i]];
   }
@@ -65,6 +68,7 @@ struct Operations<Generic> : PortableOperations<Generic> {
   static void subtract_product(const F& a, const F& b, const F& c, F& r) {
     r = (F)vfmsq_f32((float32x4_t)a, (float32x4_t)b, (float32x4_t)c);
   }
+  static void reverse_bytes(I& a) { a = (I)vrev32q_u8((uint8x16_t)a); }
   static void sqrt(const F& a, F& r) { r = (F)vsqrtq_f32((float32x4_t)a); }
   static void reciprocal_sqrt(const F& a, F& r) { r = 1.0f / (F)vsqrtq_f32((float32x4_t)a); }
   static void round(const F& a, F& r) { r = (F)vrndnq_f32((float32x4_t)a); }
@@ -93,6 +97,8 @@ namespace detail {
 /// Whether this processor's AVX-512 gathers of 64 bits beat as many loads; set before main begins. Results do
 /// not depend on it.
 extern const bool gathers_are_fast;
+/// Bytes 3 2 1 0, 7 6 5 4, ...: the order of a shuffle that reverses those of each 32-bit lane.
+inline constexpr __m128i reversed_bytes = {0x0405060700010203, 0x0c0d0e0f08090a0b};
 }  // namespace detail
 
 /// Joins two vectors, for instance of 4 lanes each into one of 8.
@@ -109,6 +115,9 @@ struct Operations<Sse4> : PortableOperations<Sse4> {
   }
   SLALOM_ISA_SSE4 static void round(const F& a, F& r) {
     r = (F)_mm_round_ps((__m128)a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+  }
+  SLALOM_ISA_SSE4 static void reverse_bytes(I& a) {
+    a = (I)_mm_shuffle_epi8((__m128i)a, detail::reversed_bytes);
   }
   SLALOM_ISA_SSE4 static void gather_cells(const float* from, const I& index, F& r0, F& r1, F& r2, F& r3) {
     __m128 a = _mm_loadu_ps(from + 4 * static_cast<std::ptrdiff_t>(index[0]));
@@ -145,6 +154,9 @@ struct Operations<Avx2> : PortableOperations<Avx2> {
   /// By a count a lane, which takes one step of the processor where a common count takes two.
   SLALOM_ISA_AVX2 static void shift_left(I& a, int count) {
     a = (I)_mm256_sllv_epi32((__m256i)a, _mm256_set1_epi32(count));
+  }
+  SLALOM_ISA_AVX2 static void reverse_bytes(I& a) {
+    a = (I)_mm256_shuffle_epi8((__m256i)a, _mm256_broadcastsi128_si256(detail::reversed_bytes));
   }
   SLALOM_ISA_AVX2 static void gather(const float* from, const I& index, F& r) {
     r = (F)_mm256_i32gather_ps(from, (__m256i)index, 4);
@@ -207,6 +219,10 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
   }
   SLALOM_ISA_AVX512 static void shift_left(I& a, int count) {
     a = (I)_mm512_maskz_sllv_epi32(all, (__m512i)a, _mm512_set1_epi32(count));
+  }
+  SLALOM_ISA_AVX512 static void reverse_bytes(I& a) {
+    const __m512i order = _mm512_maskz_broadcast_i32x4(all, detail::reversed_bytes);
+    a = (I)_mm512_maskz_shuffle_epi8(~__mmask64{0}, (__m512i)a, order);
   }
   SLALOM_ISA_AVX512 static void gather(const float* from, const I& index, F& r) {
     r = (F)_mm512_mask_i32gather_ps(_mm512_setzero_ps(), all, (__m512i)index, from, 4);
