@@ -116,7 +116,7 @@ bool drive(int samples, int cycles) {
   std::array<double, 4> terms{};
   double collided = 0, sum = 0;
   for (int cycle = 0; cycle < cycles; ++cycle) {
-    if (cycle == cycles / 2) x = {7, 7, std::atan2(1, 1)};
+    if (cycle == cycles / 2) x = {7.4, 7.4, std::atan2(1, 1)};
     evaluator.set_state(x);
     const auto begin = std::chrono::steady_clock::now();
     const SolveResult& result = solver->solve(evaluator, {.elapsed = problem.dt});
