@@ -73,7 +73,7 @@ TEST(NormalPair, AllPairsTogetherAreNormal) {
     EXPECT_NEAR(census.power[4], 3, 2e-5);
     for (int i = 0; i < 3; ++i) {
       const double expected = 0.5 * std::erfc((3 + i) / std::sqrt(2.0)) * 4294967296.0;
-      // As many as independent draws would miss it by at most, in one of three cases.
+      // One standard deviation of as many independent draws.
       EXPECT_NEAR(static_cast<double>(census.above[i]), expected, std::sqrt(expected)) << "beyond " << 3 + i;
       EXPECT_EQ(census.above[i], census.below[i]);
     }

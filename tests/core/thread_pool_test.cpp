@@ -63,7 +63,7 @@ TEST(ThreadPool, AThreadSleepsAtMostOnceARound) {
     most = sleeps(pool, rounds, std::chrono::microseconds(pause));
     EXPECT_LE(most, (pool.threads() + 1) * rounds);  // the caller sleeps once more, between the rounds
   }
-  EXPECT_GT(most, rounds) << "no worker slept: nothing was measured";
+  EXPECT_GE(most, 2 * rounds) << "nobody slept: nothing was measured";
 }
 
 TEST(ThreadPool, RefusesAbsurdSizes) {
