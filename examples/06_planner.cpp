@@ -5,7 +5,7 @@
 
 #include <slalom/evaluation/arena.hpp>
 #include <slalom/solvers/make_solver.hpp>
-#include <slalom/vehicle/planner.hpp>
+#include <slalom/vehicle/planner/planner.hpp>
 
 #include "seeds.hpp"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "slalom/maps/laser_scan.hpp"
-#include "slalom/vehicle/course.hpp"
-#include "slalom/vehicle/planner.hpp"
+#include "slalom/vehicle/course/course.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
 
 namespace slalom::tools {
 

@@ -10,7 +10,7 @@
 #include "json_output.hpp"
 #include "ros_bag.hpp"
 #include "slalom/core/error.hpp"
-#include "slalom/vehicle/identification.hpp"
+#include "slalom/vehicle/model/identification.hpp"
 
 namespace slalom::tools {
 namespace {

@@ -15,7 +15,7 @@
 #include "replay_recording.hpp"
 #include "ros_bag.hpp"
 #include "slalom/core/error.hpp"
-#include "slalom/vehicle/course.hpp"
+#include "slalom/vehicle/course/course.hpp"
 #include "stored_evaluation.hpp"
 
 namespace slalom::tools {

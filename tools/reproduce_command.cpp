@@ -10,7 +10,7 @@
 #include "ranks.hpp"
 #include "report.hpp"
 #include "slalom/core/error.hpp"
-#include "slalom/vehicle/course.hpp"
+#include "slalom/vehicle/course/course.hpp"
 
 namespace slalom::tools {
 namespace {

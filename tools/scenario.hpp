@@ -9,7 +9,7 @@
 
 #include "slalom/evaluation/arena.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
-#include "slalom/vehicle/configuration.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
 
 namespace CLI {
 class App;

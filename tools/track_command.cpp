@@ -14,7 +14,7 @@
 #include <string>
 
 #include "json_output.hpp"
-#include "slalom/vehicle/track_generator.hpp"
+#include "slalom/vehicle/course/track_generator.hpp"
 #include "track_picture.hpp"
 
 namespace slalom::tools {

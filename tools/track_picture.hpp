@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "slalom/vehicle/track_generator.hpp"
+#include "slalom/vehicle/course/track_generator.hpp"
 
 namespace slalom::tools {
 

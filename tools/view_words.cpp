@@ -9,7 +9,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/solvers/make_solver.hpp"
-#include "slalom/vehicle/course.hpp"
+#include "slalom/vehicle/course/course.hpp"
 
 namespace slalom::tools {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "frame.hpp"
 #include "slalom/core/option_access.hpp"
-#include "slalom/vehicle/planner.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
 
 namespace slalom::view {
 namespace {

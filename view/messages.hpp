@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "slalom/evaluation/arena.hpp"
-#include "slalom/vehicle/configuration.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
 
 /// The text messages that tell a page what is driven (docs/live-view.md, "Messages").
 namespace slalom::view {

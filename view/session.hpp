@@ -17,7 +17,7 @@
 #include "server.hpp"
 #include "simulation.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
-#include "slalom/vehicle/configuration.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
 
 namespace slalom::view {
 

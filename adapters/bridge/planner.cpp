@@ -2,8 +2,8 @@
 #include <stdexcept>
 
 #include "bridge/convert.hpp"
-#include "slalom/vehicle/configuration.hpp"
-#include "slalom/vehicle/planner.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
 
 namespace slalom_bridge {
 

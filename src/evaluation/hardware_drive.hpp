@@ -4,8 +4,8 @@
 
 #include "slalom/evaluation/hardware.hpp"
 #include "slalom/sim/world.hpp"
-#include "slalom/vehicle/localiser.hpp"
-#include "slalom/vehicle/planner.hpp"
+#include "slalom/vehicle/localisation/localiser.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
 
 namespace slalom::evaluation {
 

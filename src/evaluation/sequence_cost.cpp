@@ -7,7 +7,7 @@
 
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"
-#include "vehicle/car_rollout.hpp"
+#include "vehicle/planner/car_rollout.hpp"
 
 namespace slalom::evaluation {
 

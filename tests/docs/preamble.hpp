@@ -6,7 +6,7 @@
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/sim/world.hpp"
 #include "slalom/slalom.hpp"
-#include "slalom/vehicle/planner.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
 
 namespace {
 

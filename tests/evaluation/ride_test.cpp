@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "slalom/vehicle/configuration.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
 
 namespace slalom::evaluation {
 namespace {

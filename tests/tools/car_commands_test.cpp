@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "slalom/maps/ros_map.hpp"
-#include "slalom/vehicle/course.hpp"
+#include "slalom/vehicle/course/course.hpp"
 #include "tools/bag_writer.hpp"
 #include "tools/scratch_folder.hpp"
 

@@ -9,7 +9,7 @@
 #include "slalom/maps/distance_field.hpp"
 #include "slalom/sim/plant.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
-#include "slalom/vehicle/course.hpp"
+#include "slalom/vehicle/course/course.hpp"
 
 namespace slalom::tools {
 namespace {

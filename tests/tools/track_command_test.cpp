@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "slalom/maps/ros_map.hpp"
-#include "slalom/vehicle/course.hpp"
+#include "slalom/vehicle/course/course.hpp"
 #include "tools/scratch_folder.hpp"
 
 namespace slalom::tools {

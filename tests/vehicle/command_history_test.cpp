@@ -1,4 +1,4 @@
-#include "vehicle/command_history.hpp"
+#include "vehicle/planner/command_history.hpp"
 
 #include <gtest/gtest.h>
 

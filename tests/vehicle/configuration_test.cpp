@@ -1,5 +1,5 @@
 // Configuration files and keys: every mistake has a message with file, line, key, value and rule.
-#include "slalom/vehicle/configuration.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "slalom/core/error.hpp"
-#include "slalom/vehicle/course.hpp"
+#include "slalom/vehicle/course/course.hpp"
 #include "vehicle/course_folder.hpp"
 
 namespace slalom::vehicle {

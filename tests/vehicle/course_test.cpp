@@ -1,5 +1,5 @@
 // What a sound course holds after loading, and how courses are found.
-#include "slalom/vehicle/course.hpp"
+#include "slalom/vehicle/course/course.hpp"
 
 #include <gtest/gtest.h>
 

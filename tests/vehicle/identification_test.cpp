@@ -1,5 +1,5 @@
 // What identify finds of cars whose steering is known.
-#include "slalom/vehicle/identification.hpp"
+#include "slalom/vehicle/model/identification.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,8 @@
 #include "slalom/sim/pure_pursuit.hpp"
 #include "slalom/sim/wheel_odometry.hpp"
 #include "slalom/sim/world.hpp"
-#include "slalom/vehicle/course.hpp"
-#include "slalom/vehicle/localiser.hpp"
+#include "slalom/vehicle/course/course.hpp"
+#include "slalom/vehicle/localisation/localiser.hpp"
 
 namespace slalom::vehicle::test {
 

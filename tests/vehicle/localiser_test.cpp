@@ -1,4 +1,4 @@
-#include "slalom/vehicle/localiser.hpp"
+#include "slalom/vehicle/localisation/localiser.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "slalom/vehicle/path_tracking.hpp"
+#include "slalom/vehicle/model/path_tracking.hpp"
 
 #include <gtest/gtest.h>
 

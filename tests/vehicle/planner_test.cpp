@@ -1,4 +1,4 @@
-#include "slalom/vehicle/planner.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "slalom/solvers/make_solver.hpp"
 #include "solvers/count_allocations.hpp"
-#include "vehicle/back_up.hpp"
+#include "vehicle/planner/back_up.hpp"
 
 namespace slalom::vehicle {
 namespace {

@@ -1,7 +1,7 @@
 // The options with which the golden data are compared are those of `--config published`.
 #include <gtest/gtest.h>
 
-#include "slalom/vehicle/configuration.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
 #include "solvers/published_options.hpp"
 
 namespace slalom::vehicle {

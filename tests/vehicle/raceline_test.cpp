@@ -1,5 +1,5 @@
 // The line of least curvature: known answers and optimality.
-#include "slalom/vehicle/raceline.hpp"
+#include "slalom/vehicle/course/raceline.hpp"
 
 #include <gtest/gtest.h>
 

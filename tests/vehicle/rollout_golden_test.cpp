@@ -12,7 +12,7 @@
 #include "golden.hpp"
 #include "maps/grid_map_csv.hpp"
 #include "slalom/core/problem_evaluator.hpp"
-#include "slalom/vehicle/path_tracking.hpp"
+#include "slalom/vehicle/model/path_tracking.hpp"
 
 namespace slalom::vehicle {
 namespace {

@@ -1,5 +1,5 @@
 // Speed profiles: known answers.
-#include "slalom/vehicle/speed_profile.hpp"
+#include "slalom/vehicle/course/speed_profile.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Properties that every generated track has, over seeds, characters, lengths and widths.
-#include "slalom/vehicle/track_generator.hpp"
+#include "slalom/vehicle/course/track_generator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "slalom/maps/distance_field.hpp"
-#include "slalom/vehicle/course.hpp"
+#include "slalom/vehicle/course/course.hpp"
 
 namespace slalom::vehicle {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "slalom/vehicle/configuration.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
 #include "workload/reference_workload.hpp"
 #include "workload/statistics.hpp"
 

@@ -8,7 +8,7 @@
 #include "slalom/core/simd.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"
-#include "slalom/vehicle/path_tracking.hpp"
+#include "slalom/vehicle/model/path_tracking.hpp"
 #include "workload/yardstick.hpp"
 
 /// The workload `reference` that speed is measured on: the vehicle problem with the published parameters and

@@ -2,7 +2,7 @@
 
 #include "controller.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
-#include "slalom/vehicle/course.hpp"
+#include "slalom/vehicle/course/course.hpp"
 
 namespace slalom::python {
 

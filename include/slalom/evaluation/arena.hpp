@@ -9,7 +9,7 @@
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/sim/track.hpp"
 #include "slalom/sim/world.hpp"
-#include "slalom/vehicle/course.hpp"
+#include "slalom/vehicle/course/course.hpp"
 
 /// Laps that can be counted and compared: what is driven, how a lap is judged, one lap in lockstep.
 namespace slalom::evaluation {

@@ -4,7 +4,7 @@
 
 #include "slalom/core/options.hpp"
 #include "slalom/sim/wheel_odometry.hpp"
-#include "slalom/vehicle/localiser_options.hpp"
+#include "slalom/vehicle/localisation/localiser_options.hpp"
 
 /// What a lap on a real car has that one in a clean simulation does not: a LiDAR with noise and lost beams, a
 /// pose that is guessed from it and from wheels that slip, and a servo that is not the one of the model.

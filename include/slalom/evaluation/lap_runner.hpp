@@ -14,8 +14,8 @@
 #include "slalom/evaluation/lap_settings.hpp"
 #include "slalom/evaluation/sequence_cost.hpp"
 #include "slalom/sim/world.hpp"
-#include "slalom/vehicle/configuration.hpp"
-#include "slalom/vehicle/planner.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
 
 namespace slalom::evaluation {
 

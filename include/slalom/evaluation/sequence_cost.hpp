@@ -6,7 +6,7 @@
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_path.hpp"
-#include "slalom/vehicle/planner.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
 
 namespace slalom::evaluation {
 

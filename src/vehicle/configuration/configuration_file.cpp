@@ -1,0 +1,201 @@
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <set>
+
+#include "slalom/core/error.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
+#include "vehicle/yaml_file.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* folder_name = "configs";
+constexpr const char* marker = "published.yaml";  // tells a folder of ours from another of that name
+constexpr int deepest_base = 8;
+
+using Lines = std::map<std::string, int>;  ///< where a file says which key
+
+int line_of(const YAML::Node& node) {
+  return node.Mark().line + 1;
+}
+
+/// An option's value as text: a scalar, or a list of scalars as "[a, b]".
+std::string text_of(const fs::path& file, const std::string& key, const YAML::Node& value) {
+  if (value.IsScalar()) return value.Scalar();
+  if (!value.IsSequence()) detail::refuse(file, value, key, "must have a value, or a list of values");
+  std::string text;
+  for (const YAML::Node& each : value) {
+    if (!each.IsScalar()) detail::refuse(file, each, key, "must be a list of plain values");
+    text += (text.empty() ? "[" : ", ") + each.Scalar();
+  }
+  return text.empty() ? "[]" : text + "]";
+}
+
+bool is_choice(const Configuration& configuration, const std::string& key) {
+  for (const Section& section : list_sections(configuration))
+    for (const OptionEntry& entry : section.options)
+      if (section.name + "." + entry.declaration.name == key) return !entry.choices.empty();
+  return true;
+}
+
+void read_option(Configuration& configuration, const fs::path& file, const std::string& key,
+                 const YAML::Node& at, const YAML::Node& value) {
+  // yaml-cpp puts a value that is not there where the next thing begins.
+  if (value.IsNull()) throw IoError(file.string(), line_of(at), "key " + key + ": has no value");
+  const std::string text = text_of(file, key, value);
+  if (value.IsScalar() && value.Tag() == "!" && !is_choice(configuration, key))
+    detail::refuse(file, value, key, "must stand without quotes");
+  try {
+    set_option(configuration, key, text);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(file.string(), line_of(at), error.what());
+  }
+}
+
+void read_section(Configuration& configuration, const fs::path& file, const std::string& section,
+                  const YAML::Node& options, Lines& lines) {
+  if (options.IsNull()) return;
+  if (!options.IsMap()) detail::refuse(file, options, section, "must be a map of options to values");
+  for (const auto& entry : options) {
+    if (!entry.first.IsScalar())
+      detail::refuse(file, entry.first, section, "has a key that is no plain word");
+    const std::string key = section + "." + entry.first.Scalar();
+    read_option(configuration, file, key, entry.first, entry.second);
+    lines[key] = line_of(entry.first);
+  }
+}
+
+void check_section(const Configuration& configuration, const fs::path& file, const YAML::Node& name) {
+  std::vector<std::string> names = {"base"};
+  visit_sections(configuration, [&](const char* section, const auto&) { names.emplace_back(section); });
+  if (std::find(names.begin(), names.end(), name.Scalar()) != names.end()) return;
+  std::string all;
+  for (const auto& each : names) all += (all.empty() ? "" : ", ") + each;
+  const std::string near = nearest_name(name.Scalar(), names);
+  throw IoError(file.string(), line_of(name),
+                "key " + name.Scalar() + ": is none of the sections " + all +
+                    (near.empty() ? "" : "; did you mean " + near + "?"));
+}
+
+/// Rules between the keys of a file, which hold whatever their order.
+void check_together(const Configuration& configuration, const fs::path& file, Lines& lines) {
+  const std::string speed = "planner.max_speed", same = "vehicle.max_speed";
+  if (lines.count(speed) && lines.count(same)) {
+    const bool ordered = lines[same] < lines[speed];
+    const std::string &first = ordered ? same : speed, &second = ordered ? speed : same;
+    throw IoError(file.string(), lines[second],
+                  "key " + second + ": is another name of " + first + ", which line " +
+                      std::to_string(lines[first]) + " says already");
+  }
+  const int inputs = input_count(configuration.vehicle);
+  for (const Section& section : list_sections(configuration)) {
+    for (const OptionEntry& entry : section.options) {
+      const auto* values = std::get_if<std::vector<double>>(&entry.value);
+      if (!values || static_cast<int>(values->size()) <= inputs) continue;
+      // Only possible with a base of two inputs.
+      throw IoError(file.string(), lines["vehicle.speed"],
+                    "key vehicle.speed: the steering is the only input then, but " + section.name + "." +
+                        entry.declaration.name + " has two values in the base");
+    }
+  }
+  for (const SolverOptions& method : configuration.methods)
+    std::visit(
+        [&](const auto& o) {
+          for (int i = 0; i < inputs; ++i) {
+            if (o.input_min[i] <= o.input_max[i]) continue;
+            const std::string section = std::string(solver_name(method)) + ".";
+            throw IoError(file.string(), std::max(lines[section + "input_min"], lines[section + "input_max"]),
+                          "key " + section + "input_min: '" + to_text(o.input_min[i]) + "' must be at most " +
+                              section + "input_max, '" + to_text(o.input_max[i]) + "'");
+          }
+        },
+        method);
+}
+
+/// The file that `base` names: one beside the file, or a configuration known by name.
+fs::path find_base(const fs::path& file, const YAML::Node& base, const std::vector<fs::path>& roots) {
+  const fs::path beside = file.parent_path() / base.Scalar();
+  if (fs::is_regular_file(beside)) return beside;
+  auto places = roots;
+  places.insert(places.begin(), file.parent_path());
+  try {
+    return find_configuration(base.Scalar(), places);
+  } catch (const IoError& error) {
+    const std::string what = error.what();
+    throw IoError(file.string(), line_of(base),
+                  "key base: '" + base.Scalar() + "' " + what.substr(error.file().size() + 2));
+  }
+}
+
+Configuration load_deep(const fs::path& file, const std::vector<fs::path>& roots, int depth) {
+  const YAML::Node root = detail::load_yaml(file);
+  Configuration configuration;
+  if (root.IsNull()) return configuration;
+  if (!root.IsMap()) throw IoError(file.string(), line_of(root), "must be a map of sections");
+  if (const YAML::Node base = root["base"]) {
+    if (!base.IsScalar()) detail::refuse(file, base, "base", "must be the name or file of a configuration");
+    if (depth == deepest_base)
+      detail::refuse(file, base, "base", "leads round in circles, or deeper than 8 files");
+    configuration = load_deep(find_base(file, base, roots), roots, depth + 1);
+  }
+  Lines lines;
+  // The vehicle goes first: how many inputs it has decides what is right in the methods' sections.
+  for (const bool vehicles : {true, false}) {
+    for (const auto& entry : root) {
+      const bool plain = entry.first.IsScalar();
+      if ((plain && entry.first.Scalar() == "vehicle") != vehicles) continue;
+      if (!plain) throw IoError(file.string(), line_of(entry.first), "a section's name must be a plain word");
+      if (entry.first.Scalar() == "base") continue;
+      check_section(configuration, file, entry.first);
+      read_section(configuration, file, entry.first.Scalar(), entry.second, lines);
+    }
+  }
+  check_together(configuration, file, lines);
+  return configuration;
+}
+
+}  // namespace
+
+Configuration load_configuration(const fs::path& file, const std::vector<fs::path>& roots) {
+  return load_deep(file, roots, 0);
+}
+
+std::vector<fs::path> configuration_roots(const fs::path& program_folder) {
+  std::vector<fs::path> candidates;
+  if (const char* chosen = std::getenv("SLALOM_CONFIGS_DIR"); chosen && *chosen)
+    candidates.emplace_back(chosen);
+  const fs::path program = fs::weakly_canonical(program_folder);
+  fs::path above = program;
+  for (int level = 0; level < 5 && above.has_parent_path(); ++level, above = above.parent_path())
+    if (fs::exists(above / folder_name / marker)) candidates.push_back(above / folder_name);
+  candidates.push_back(program.parent_path() / "share" / "slalom" / folder_name);
+  std::vector<fs::path> roots;
+  for (const auto& candidate : candidates)
+    if (fs::is_directory(candidate)) roots.push_back(candidate);
+  return roots;
+}
+
+fs::path find_configuration(const std::string& name_or_file, const std::vector<fs::path>& roots) {
+  if (name_or_file.empty())
+    throw IoError("config", 0, "the name is empty; give a file or the name of a configuration");
+  if (fs::is_regular_file(name_or_file)) return name_or_file;
+  std::set<std::string> known;
+  std::string searched, names;
+  for (const auto& root : roots) {
+    if (const fs::path file = root / (name_or_file + ".yaml"); fs::is_regular_file(file)) return file;
+    searched += (searched.empty() ? "" : ", ") + root.string();
+    if (!fs::is_directory(root)) continue;
+    for (const auto& entry : fs::directory_iterator(root))
+      if (entry.path().extension() == ".yaml") known.insert(entry.path().stem().string());
+  }
+  for (const auto& name : known) names += (names.empty() ? "" : ", ") + name;
+  throw IoError(
+      name_or_file, 0,
+      "is neither a file nor a configuration known by name (known: " + (names.empty() ? "none" : names) +
+          "; searched: " + (searched.empty() ? "nowhere" : searched) + ")");
+}
+
+}  // namespace slalom::vehicle

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "slalom/vehicle/course/track_generator.hpp"
+#include "vehicle/course/closed_curve.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// The tightest radius (m) that a centre line may have: the inner wall must fit, and a 1/10 car must get
+/// round.
+double least_radius(const TrackOptions& options);
+
+/// A closed centre line as generate_track promises it, in equal steps of about 0.1 m, about as wide as can be
+/// in x. Throws std::invalid_argument if none is found.
+Curve make_centre_line(const TrackOptions& options);
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,224 @@
+#include "slalom/vehicle/course/course.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "slalom/core/error.hpp"
+#include "slalom/maps/ros_map.hpp"
+#include "vehicle/course/course_csv.hpp"
+#include "vehicle/course/course_yaml.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* obstacle_file = "opp_ref_path.csv";
+constexpr const char* course_file = "course.yaml";
+constexpr double slowest_profile_speed = 0.1;  // m/s, keeps the time of a profile that stops finite
+
+double distance(const Waypoint& a, const Waypoint& b) {
+  return std::hypot(b.x - a.x, b.y - a.y);
+}
+
+/// The files of a folder whose name ends in one of `extensions`, in the order of their names.
+std::vector<fs::path> files_with(const fs::path& folder, const std::vector<std::string>& extensions) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const auto extension = entry.path().extension().string();
+    if (entry.is_regular_file() && std::count(extensions.begin(), extensions.end(), extension))
+      files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string names_of(const std::vector<fs::path>& files) {
+  std::string names;
+  for (const auto& file : files) names += (names.empty() ? "" : ", ") + file.filename().string();
+  return names;
+}
+
+/// The one file meant out of those that qualify.
+const fs::path& only_one(const fs::path& folder, const std::vector<fs::path>& candidates,
+                         const std::string& what, const std::string& left_aside) {
+  if (candidates.empty())
+    throw IoError(folder.string(), 0, "holds no " + what + "; a course needs one" + left_aside);
+  if (candidates.size() > 1)
+    throw IoError(
+        folder.string(), 0,
+        "holds more than one " + what + " (" + names_of(candidates) + "); a course needs exactly one");
+  return candidates.front();
+}
+
+fs::path find_map(const fs::path& folder, std::vector<std::string>& notes) {
+  std::vector<fs::path> candidates;
+  std::string left_aside;
+  for (const auto& file : files_with(folder, {".yaml", ".yml"})) {
+    if (file.filename() == course_file) continue;
+    if (detail::may_be_map(file)) {
+      candidates.push_back(file);
+    } else {
+      notes.push_back(file.filename().string() + " is left aside: it names no map image");
+      left_aside += "; " + notes.back();
+    }
+  }
+  return only_one(folder, candidates, "map (a .yaml file with the key image)", left_aside);
+}
+
+fs::path find_waypoints(const fs::path& folder, detail::CsvForm& form, std::vector<std::string>& notes) {
+  std::vector<fs::path> candidates;
+  std::string left_aside;
+  for (const auto& file : files_with(folder, {".csv"})) {
+    if (file.filename() == obstacle_file) continue;
+    if (const auto candidate_form = detail::csv_form(file); candidate_form != detail::CsvForm::other) {
+      candidates.push_back(file);
+      form = candidate_form;
+    } else {
+      notes.push_back(file.filename().string() + " is left aside: it is in neither form of a waypoint file");
+      left_aside += "; " + notes.back();
+    }
+  }
+  return only_one(folder, candidates,
+                  "waypoint file (a .csv with the header opt_x,opt_y,...,ref_v or rows "
+                  "s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2)",
+                  left_aside);
+}
+
+/// Drops a last row that repeats the first, then requires three points of which no two neighbours are the
+/// same.
+void check_points(std::vector<Waypoint>& points, std::vector<int>& lines, const fs::path& file) {
+  if (points.size() > 1 && distance(points.front(), points.back()) == 0) {
+    points.pop_back();
+    lines.pop_back();
+  }
+  if (points.size() < 3)
+    throw IoError(file.string(), 0, std::to_string(points.size()) + " waypoints; at least 3 are needed");
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if (distance(points[i - 1], points[i]) == 0)
+      throw IoError(file.string(), lines[i],
+                    "repeats the point of the row before; successive waypoints must differ");
+}
+
+/// The column and row of a point of the map frame, in cells.
+maps::Point in_cells(const maps::OccupancyGrid& map, const maps::Point& point) {
+  const maps::Point at = maps::inverse_transform(map.origin, point);
+  return {at.x / map.resolution, at.y / map.resolution};
+}
+
+bool on_map(const maps::OccupancyGrid& map, const maps::Point& cell) {
+  return cell.x >= 0 && cell.y >= 0 && cell.x < map.width && cell.y < map.height;
+}
+
+/// A waypoint may stand in a wall, which real lines graze, but beside the map nothing is known.
+void check_on_map(const Course& course, const std::vector<int>& lines, const fs::path& file) {
+  for (std::size_t i = 0; i < course.waypoints.size(); ++i) {
+    const Waypoint& point = course.waypoints[i];
+    if (on_map(course.map, in_cells(course.map, {point.x, point.y}))) continue;
+    throw IoError(
+        file.string(), lines[i],
+        "waypoint (" + std::to_string(point.x) + ", " + std::to_string(point.y) + ") must be on the map");
+  }
+}
+
+/// Fills yaw and arc length from the points and returns the longest step between two rows.
+double complete(std::vector<Waypoint>& points) {
+  double longest = 0;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const double step = distance(points[i], points[i + 1]);
+    points[i].yaw = std::atan2(points[i + 1].y - points[i].y, points[i + 1].x - points[i].x);
+    points[i + 1].arc_length = points[i].arc_length + step;
+    longest = std::max(longest, step);
+  }
+  points.back().yaw = points[points.size() - 2].yaw;
+  return longest;
+}
+
+void load_path(Course& course, const fs::path& folder) {
+  detail::CsvForm form = detail::CsvForm::other;
+  const fs::path file = find_waypoints(folder, form, course.notes);
+  std::vector<int> lines;
+  course.waypoints = detail::read_waypoints(file, form, lines);
+  check_points(course.waypoints, lines, file);
+  check_on_map(course, lines, file);
+}
+
+}  // namespace
+
+void complete_course(Course& course, std::optional<bool> closed) {
+  if (course.waypoints.size() < 3)
+    throw std::invalid_argument(std::to_string(course.waypoints.size()) +
+                                " waypoints; at least 3 are needed");
+  const double longest = complete(course.waypoints);
+  const Waypoint &first = course.waypoints.front(), &last = course.waypoints.back();
+  // A lap's ends seldom meet exactly: files leave out one step or a little more.
+  course.closed = closed.value_or(distance(last, first) <= 3 * longest);
+  course.length = last.arc_length + (course.closed ? distance(last, first) : 0);
+  course.start = {first.x, first.y, first.yaw};
+  if (course.obstacle_path.empty())
+    for (const Waypoint& point : course.waypoints) course.obstacle_path.push_back({point.x, point.y});
+}
+
+Course load_course(const fs::path& folder, const maps::MapReading& reading) {
+  if (!fs::is_directory(folder)) throw IoError(folder.string(), 0, "is no folder; a course is one");
+  Course course;
+  course.name = fs::weakly_canonical(folder).filename().string();
+  course.map = maps::load_ros_map(find_map(folder, course.notes), reading);
+  load_path(course, folder);
+  if (const fs::path points = folder / obstacle_file; fs::exists(points))
+    course.obstacle_path = detail::read_points(points);
+  const fs::path file = folder / course_file;
+  const detail::CourseFile said = fs::exists(file) ? detail::read_course_file(file) : detail::CourseFile{};
+  complete_course(course, said.closed);
+  course.name = said.name.value_or(course.name);
+  course.description = said.description.value_or("");
+  course.start = said.start.value_or(course.start);
+  course.timeout = said.timeout;
+  if (said.start) try {
+      check_start(course, course.start);
+    } catch (const std::invalid_argument& error) {
+      throw IoError(file.string(), said.start_line, std::string("key start: ") + error.what());
+    }
+  return course;
+}
+
+void cap_speed(Course& course, double max_speed) {
+  if (!(max_speed > 0))
+    throw std::invalid_argument("max_speed: " + std::to_string(max_speed) + " must be above 0 m/s");
+  for (Waypoint& point : course.waypoints) point.speed = std::min(point.speed, max_speed);
+}
+
+double profile_time(const Course& course) {
+  const auto& points = course.waypoints;
+  double time = 0;
+  const auto stretch = [&](const Waypoint& a, const Waypoint& b) {
+    return distance(a, b) / std::max(0.5 * (a.speed + b.speed), slowest_profile_speed);
+  };
+  for (std::size_t i = 1; i < points.size(); ++i) time += stretch(points[i - 1], points[i]);
+  if (course.closed && points.size() > 1) time += stretch(points.back(), points.front());
+  return time;
+}
+
+void check_start(const Course& course, const maps::Pose& start, double clearance) {
+  const auto refuse = [&](const std::string& rule) {
+    throw std::invalid_argument("start (" + std::to_string(start.x) + ", " + std::to_string(start.y) + ", " +
+                                std::to_string(start.yaw) + ") " + rule);
+  };
+  if (!std::isfinite(start.x) || !std::isfinite(start.y) || !std::isfinite(start.yaw))
+    refuse("must be finite");
+  const auto& map = course.map;
+  const auto [column, row] = in_cells(map, {start.x, start.y});
+  if (!on_map(map, {column, row})) refuse("must be on the map");
+  const int reach = static_cast<int>(std::ceil(clearance / map.resolution));
+  for (int dy = -reach; dy <= reach; ++dy)
+    for (int dx = -reach; dx <= reach; ++dx) {
+      const int x = static_cast<int>(column) + dx, y = static_cast<int>(row) + dy;
+      const double apart = std::hypot(x + 0.5 - column, y + 0.5 - row) * map.resolution;
+      if ((apart <= clearance || (dx == 0 && dy == 0)) && map.contains(x, y) &&
+          map.at(x, y) == maps::Occupancy::occupied)
+        refuse("must not be in a wall or nearer to one than " + std::to_string(clearance) + " m");
+    }
+}
+
+}  // namespace slalom::vehicle

@@ -1,0 +1,176 @@
+#include "vehicle/course/course_csv.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "slalom/core/error.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+constexpr int raceline_columns = 7;
+const char* const raceline_header = "s_m;x_m;y_m;psi_rad;kappa_radpm;vx_mps;ax_mps2";
+
+std::string_view trimmed(std::string_view text) {
+  const char* const blanks = " \t\r\n\f\v";
+  const auto first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::vector<std::string_view> split(std::string_view line, char separator) {
+  std::vector<std::string_view> cells;
+  for (;;) {
+    const auto end = line.find(separator);
+    cells.push_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return cells;
+    line.remove_prefix(end + 1);
+  }
+}
+
+struct Line {
+  int number = 0;
+  std::string text;  ///< without blanks at either end, never empty
+};
+
+std::vector<Line> read_lines(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw IoError(file.string(), 0, "cannot be opened");
+  std::vector<Line> lines;
+  std::string text;
+  for (int number = 1; std::getline(stream, text); ++number) {
+    if (number == 1 && text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3);
+    if (const auto content = trimmed(text); !content.empty()) lines.push_back({number, std::string(content)});
+  }
+  if (stream.bad()) throw IoError(file.string(), 0, "cannot be read");
+  return lines;
+}
+
+std::string without_blanks(std::string_view text) {
+  std::string result;
+  for (const char c : text)
+    if (c != ' ' && c != '\t') result += c;
+  return result;
+}
+
+/// One table of numbers: which file and line it is at, and how its columns are called.
+struct Row {
+  const std::filesystem::path& file;
+  const Line& line;
+  const std::vector<std::string_view>& cells;
+
+  double number(std::size_t column, std::string_view column_name) const {
+    std::string_view cell = cells[column];
+    if (cell.size() > 1 && cell.front() == '+') cell.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    const bool parsed = error == std::errc{} && end == cell.data() + cell.size() && !cell.empty();
+    if (!parsed || !std::isfinite(value))
+      throw IoError(file.string(), line.number,
+                    "column " + std::string(column_name) + ": '" + std::string(cells[column]) +
+                        "' must be a finite number");
+    return value;
+  }
+};
+
+/// Where a waypoint's x, y and speed are.
+struct Columns {
+  char separator = ',';
+  std::size_t count = 0, x = 0, y = 1, speed = 0;
+  const char *x_name = "opt_x", *y_name = "opt_y", *speed_name = "ref_v";
+};
+
+Columns optimised_line_columns(const std::filesystem::path& file, const Line& header) {
+  const auto names = split(header.text, ',');
+  const auto speed = std::find(names.begin(), names.end(), "ref_v");
+  if (speed == names.end())
+    throw IoError(file.string(), header.number,
+                  "column ref_v: missing in '" + header.text + "'; the header must be opt_x,opt_y,...,ref_v");
+  for (const char* name : {"opt_x", "opt_y", "ref_v"})
+    if (std::count(names.begin(), names.end(), name) > 1)
+      throw IoError(file.string(), header.number,
+                    "column " + std::string(name) + ": stands twice in '" + header.text + "'");
+  Columns columns;
+  columns.count = names.size();
+  columns.speed = static_cast<std::size_t>(speed - names.begin());
+  return columns;
+}
+
+Columns raceline_form_columns() {
+  return {';', raceline_columns, 1, 2, 5, "x_m", "y_m", "vx_mps"};
+}
+
+bool is_comment(const Line& line) {
+  return line.text.front() == '#';
+}
+
+}  // namespace
+
+CsvForm csv_form(const std::filesystem::path& file) {
+  for (const Line& line : read_lines(file)) {
+    if (is_comment(line)) {
+      if (without_blanks(line.text.substr(1)) == raceline_header) return CsvForm::raceline;
+      continue;
+    }
+    const auto cells = split(line.text, ',');
+    if (cells.size() >= 2 && cells[0] == "opt_x" && cells[1] == "opt_y") return CsvForm::optimised_line;
+    return split(line.text, ';').size() == raceline_columns ? CsvForm::raceline : CsvForm::other;
+  }
+  return CsvForm::other;
+}
+
+std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm form,
+                                     std::vector<int>& lines) {
+  const auto content = read_lines(file);
+  std::size_t first = 0;
+  while (first < content.size() && is_comment(content[first])) ++first;
+  const Columns columns = form == CsvForm::optimised_line ? optimised_line_columns(file, content[first++])
+                                                          : raceline_form_columns();
+  std::vector<Waypoint> waypoints;
+  lines.clear();
+  for (; first < content.size(); ++first) {
+    const Line& line = content[first];
+    const auto cells = split(line.text, columns.separator);
+    if (cells.size() != columns.count)
+      throw IoError(file.string(), line.number,
+                    std::to_string(cells.size()) + " columns; every row must have " +
+                        std::to_string(columns.count) + ", separated by '" + columns.separator + "'");
+    const Row row{file, line, cells};
+    Waypoint waypoint;
+    waypoint.x = row.number(columns.x, columns.x_name);
+    waypoint.y = row.number(columns.y, columns.y_name);
+    waypoint.speed = row.number(columns.speed, columns.speed_name);
+    if (waypoint.speed < 0)
+      throw IoError(file.string(), line.number,
+                    "column " + std::string(columns.speed_name) + ": " + std::string(cells[columns.speed]) +
+                        " must be at least 0");
+    waypoints.push_back(waypoint);
+    lines.push_back(line.number);
+  }
+  const auto drives = [](const Waypoint& waypoint) { return waypoint.speed > 0; };
+  if (!waypoints.empty() && std::none_of(waypoints.begin(), waypoints.end(), drives))
+    throw IoError(
+        file.string(), lines.front(),
+        "column " + std::string(columns.speed_name) + ": 0 in every row; one at least must be above 0");
+  return waypoints;
+}
+
+std::vector<maps::Point> read_points(const std::filesystem::path& file) {
+  std::vector<maps::Point> points;
+  for (const Line& line : read_lines(file)) {
+    const auto cells = split(line.text, ',');
+    if (cells.size() < 2)
+      throw IoError(file.string(), line.number,
+                    "1 column; every row must have x and y first, separated by ','");
+    const Row row{file, line, cells};
+    points.push_back({row.number(0, "0 (x)"), row.number(1, "1 (y)")});
+  }
+  if (points.empty()) throw IoError(file.string(), 0, "no points; at least one is needed to place obstacles");
+  return points;
+}
+
+}  // namespace slalom::vehicle::detail

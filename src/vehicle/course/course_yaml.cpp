@@ -1,0 +1,120 @@
+#include "vehicle/course/course_yaml.hpp"
+
+#include <cmath>
+
+#include "slalom/core/error.hpp"
+#include "vehicle/yaml_file.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+/// One value of a file: knows how to complain about itself.
+class Value {
+ public:
+  Value(const std::filesystem::path& file, std::string key, YAML::Node node)
+      : file_(file), key_(std::move(key)), node_(std::move(node)) {}
+
+  [[noreturn]] void refuse(const std::string& rule) const { detail::refuse(file_, node_, key_, rule); }
+
+  double number() const {
+    double value = 0;
+    if (!node_.IsScalar() || !YAML::convert<double>::decode(node_, value) || !std::isfinite(value))
+      refuse("must be a finite number");
+    return value;
+  }
+
+  double positive() const {
+    const double value = number();
+    if (!(value > 0)) refuse("must be above 0");
+    return value;
+  }
+
+  std::string text() const {
+    if (!node_.IsScalar()) refuse("must be a text");
+    return node_.Scalar();
+  }
+
+  bool flag() const {
+    bool value = false;
+    if (!node_.IsScalar() || !YAML::convert<bool>::decode(node_, value)) refuse("must be true or false");
+    return value;
+  }
+
+  maps::Pose pose() const {
+    if (!node_.IsMap()) refuse("must be {x, y, yaw} in m, m, rad");
+    for (const auto& entry : node_) {
+      const std::string name = entry.first.Scalar();
+      if (name != "x" && name != "y" && name != "yaw")
+        Value(file_, key_ + "." + name, entry.first).refuse("is not a key; a pose has x, y and yaw");
+    }
+    return {member("x").number(), member("y").number(), member("yaw").number()};
+  }
+
+  Value member(const std::string& name) const {
+    const YAML::Node child = node_[name];
+    if (!child) throw IoError(file_.string(), line(), "key " + key_ + "." + name + ": missing");
+    return {file_, key_ + "." + name, child};
+  }
+
+  int line() const { return node_.Mark().line + 1; }
+
+ private:
+  std::filesystem::path file_;
+  std::string key_;
+  YAML::Node node_;
+};
+
+}  // namespace
+
+CourseFile read_course_file(const std::filesystem::path& file) {
+  const YAML::Node root = load_yaml(file);
+  CourseFile result;
+  if (root.IsNull()) return result;
+  if (!root.IsMap()) throw IoError(file.string(), root.Mark().line + 1, "must be a map of keys to values");
+  for (const auto& entry : root) {
+    const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
+    // yaml-cpp puts a value that is not there where the next thing begins.
+    if (entry.second.IsNull())
+      throw IoError(file.string(), entry.first.Mark().line + 1, "key " + key + ": has no value");
+    const Value value(file, key, entry.second);
+    if (key == "name") {
+      result.name = value.text();
+    } else if (key == "description") {
+      result.description = value.text();
+    } else if (key == "command") {
+      value.text();
+    } else if (key == "start") {
+      result.start = value.pose();
+      result.start_line = value.line();
+    } else if (key == "timeout") {
+      result.timeout = value.positive();
+    } else if (key == "closed") {
+      result.closed = value.flag();
+    } else {
+      throw IoError(file.string(), entry.first.Mark().line + 1,
+                    "key " + key + ": is none of name, description, command, start, timeout, closed");
+    }
+  }
+  return result;
+}
+
+std::optional<KnownCourse> read_known_course(const std::filesystem::path& file, const std::string& name) {
+  const YAML::Node root = load_yaml(file);
+  if (!root.IsMap()) throw IoError(file.string(), 0, "must be a map of course names to {start, timeout}");
+  const YAML::Node node = root[name];
+  if (!node) return std::nullopt;
+  const Value entry(file, name, node);
+  if (!node.IsMap()) entry.refuse("must be {start, timeout}");
+  return KnownCourse{entry.member("start").pose(), entry.member("timeout").positive()};
+}
+
+bool may_be_map(const std::filesystem::path& file) {
+  try {
+    const YAML::Node root = YAML::LoadFile(file.string());
+    return !root.IsMap() || root["image"];
+  } catch (const YAML::Exception&) {
+    return true;
+  }
+}
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,205 @@
+#include "slalom/vehicle/course/track_generator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "slalom/vehicle/course/raceline.hpp"
+#include "vehicle/course/centre_line.hpp"
+#include "vehicle/course/closed_curve.hpp"
+#include "vehicle/course/track_map.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+using detail::Curve;
+using detail::dot;
+using detail::operator+;
+using detail::operator-;
+using detail::operator*;
+
+constexpr double program_step = 0.25;   // m between the points of the raceline's quadratic program
+constexpr double raceline_step = 0.11;  // m
+constexpr int curvature_reach = 3;      // rows, takes the noise out of second differences
+
+void require(bool holds, const char* key, double value, const char* rule) {
+  if (!holds)
+    throw std::invalid_argument(std::string(key) + ": " + std::to_string(value) + " must be " + rule);
+}
+
+Curve make_raceline(const Curve& centre_line, const TrackOptions& options) {
+  // A multiple of 16 halves evenly down to the coarsest level.
+  const int count = 16 * static_cast<int>(std::ceil(options.length / program_step / 16));
+  Curve line = detail::resampled(centre_line, count);
+  const auto offsets = minimum_curvature_offsets(line, 0.5 * options.width - options.wall_margin);
+  const Curve normals = detail::normals(line);
+  for (int i = 0; i < count; ++i) line[i] = line[i] + offsets[i] * normals[i];
+  return detail::resampled(line, static_cast<int>(std::floor(detail::length(line) / raceline_step)));
+}
+
+/// Brings the row in the middle of the longest run at (nearly) the highest speed to the front: a start with a
+/// clear view.
+std::size_t start_row(const std::vector<double>& speed) {
+  const std::size_t n = speed.size();
+  const double fast = 0.97 * *std::max_element(speed.begin(), speed.end());
+  std::size_t best = 0, best_run = 0, run = 0;
+  for (std::size_t i = 0; i < 2 * n; ++i) {
+    run = speed[i % n] >= fast ? std::min(run + 1, n) : 0;
+    if (run > best_run) {
+      best_run = run;
+      best = (i + n - run / 2) % n;
+    }
+  }
+  return best;
+}
+
+std::vector<RacelinePoint> with_profile(Curve& line, const SpeedLimits& limits, double& lap_time) {
+  const std::size_t n = line.size();
+  const double step = detail::length(line) / static_cast<double>(n);
+  auto curvature = detail::curvature(line, curvature_reach);
+  auto speed = speed_profile(curvature, step, limits);
+  const auto first = static_cast<std::ptrdiff_t>(start_row(speed));
+  std::rotate(line.begin(), line.begin() + first, line.end());
+  std::rotate(curvature.begin(), curvature.begin() + first, curvature.end());
+  std::rotate(speed.begin(), speed.begin() + first, speed.end());
+  lap_time = 0;
+  std::vector<RacelinePoint> raceline(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t next = (i + 1) % n;
+    const maps::Point ahead = line[next] - line[(i + n - 1) % n];
+    const double acceleration = (speed[next] * speed[next] - speed[i] * speed[i]) / (2 * step);
+    raceline[i] = {static_cast<double>(i) * step,
+                   line[i].x,
+                   line[i].y,
+                   std::atan2(ahead.y, ahead.x),
+                   curvature[i],
+                   speed[i],
+                   acceleration};
+    lap_time += 2 * step / (speed[i] + speed[next]);
+  }
+  return raceline;
+}
+
+/// Where cars are parked: on the raceline, but so far to one side that there is room to pass on the other. A
+/// parked car stands with any heading up to 0.1 m off this path and reaches 0.33 m from its middle.
+std::vector<maps::Point> make_obstacle_path(const Curve& centre_line, const Curve& line,
+                                            const TrackOptions& options) {
+  constexpr double reach = 0.43, room = 1.0, off_wall = 0.25, switch_over = 0.1;  // m
+  const double half = 0.5 * options.width;
+  const double least = std::clamp(room + reach - half, 0.0, half - off_wall);
+  const Curve normals = detail::normals(centre_line);
+  std::vector<maps::Point> path;
+  double side = 1;
+  for (std::size_t i = 0; i < centre_line.size(); ++i) {
+    const auto nearest = *std::min_element(line.begin(), line.end(), [&](maps::Point a, maps::Point b) {
+      return dot(a - centre_line[i], a - centre_line[i]) < dot(b - centre_line[i], b - centre_line[i]);
+    });
+    const double offset = dot(nearest - centre_line[i], normals[i]);
+    if (std::abs(offset) > switch_over) side = offset > 0 ? 1 : -1;
+    path.push_back(centre_line[i] + (side * std::max(side * offset, least)) * normals[i]);
+  }
+  return path;
+}
+
+std::size_t nearest_row(const Curve& curve, maps::Point point) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < curve.size(); ++i)
+    if (dot(curve[i] - point, curve[i] - point) < dot(curve[best] - point, curve[best] - point)) best = i;
+  return best;
+}
+
+}  // namespace
+
+const char* name(TrackCharacter character) noexcept {
+  switch (character) {
+    case TrackCharacter::balanced:
+      return "balanced";
+    case TrackCharacter::fast:
+      return "fast";
+    case TrackCharacter::twisty:
+      return "twisty";
+    case TrackCharacter::narrow:
+      return "narrow";
+  }
+  return "unknown";
+}
+
+TrackCharacter track_character(const std::string& text) {
+  for (const auto character :
+       {TrackCharacter::balanced, TrackCharacter::fast, TrackCharacter::twisty, TrackCharacter::narrow})
+    if (text == name(character)) return character;
+  throw std::invalid_argument("character: '" + text + "' must be balanced, fast, twisty or narrow");
+}
+
+double usual_top_speed(TrackCharacter character) noexcept {
+  switch (character) {
+    case TrackCharacter::fast:
+      return 7.0;
+    case TrackCharacter::twisty:
+      return 5.0;
+    case TrackCharacter::narrow:
+      return 4.5;
+    case TrackCharacter::balanced:
+      break;
+  }
+  return 6.0;
+}
+
+double usual_width(TrackCharacter character) noexcept {
+  switch (character) {
+    case TrackCharacter::fast:
+      return 2.6;
+    case TrackCharacter::narrow:
+      return 1.5;
+    case TrackCharacter::twisty:
+    case TrackCharacter::balanced:
+      break;
+  }
+  return 2.2;
+}
+
+void validate(const TrackOptions& options) {
+  const auto within = [](double v, double low, double high) { return v >= low && v <= high; };
+  require(within(options.length, 20, 1000), "length", options.length, "within 20 and 1000 m");
+  require(within(options.width, 1.2, 10), "width", options.width, "within 1.2 and 10 m");
+  require(within(options.wall, 0.1, 1), "wall", options.wall, "within 0.1 and 1 m");
+  require(within(options.resolution, 0.02, 0.1), "resolution", options.resolution, "within 0.02 and 0.1 m");
+  require(options.wall >= 2 * options.resolution, "wall", options.wall, "at least 2 cells of the map thick");
+  require(within(options.wall_margin, 0.3, 0.5 * options.width - 0.1), "wall_margin", options.wall_margin,
+          "at least 0.3 m and leave 0.1 m to either side of the centre line");
+  require(options.length >= 16 * (0.5 * options.width + options.wall), "length", options.length,
+          "at least 16 times half the width and the wall, or the track cannot close on itself");
+  require(within(options.limits.top_speed, 0.5, 20), "top_speed", options.limits.top_speed,
+          "within 0.5 and 20 m/s");
+  const auto acceleration = [&](const char* key, double value) {
+    require(within(value, 0.5, 15), key, value, "within 0.5 and 15 m/s^2");
+  };
+  acceleration("lateral_acceleration", options.limits.lateral_acceleration);
+  acceleration("acceleration", options.limits.acceleration);
+  acceleration("braking", options.limits.braking);
+}
+
+Track generate_track(const TrackOptions& options) {
+  validate(options);
+  Track track;
+  track.options = options;
+  Curve centre_line = detail::make_centre_line(options);
+  Curve line = make_raceline(centre_line, options);
+  track.raceline = with_profile(line, options.limits, track.lap_time);
+
+  const maps::Point start = line.front();
+  for (RacelinePoint& point : track.raceline) {
+    point.x -= start.x;
+    point.y -= start.y;
+  }
+  for (maps::Point& point : line) point = point - start;
+  for (maps::Point& point : centre_line) point = point - start;
+  const auto first = static_cast<std::ptrdiff_t>(nearest_row(centre_line, {0, 0}));
+  std::rotate(centre_line.begin(), centre_line.begin() + first, centre_line.end());
+  track.obstacle_path = make_obstacle_path(centre_line, line, options);
+  track.map = detail::draw_map(centre_line, options);
+  track.centre_line = std::move(centre_line);
+  return track;
+}
+
+}  // namespace slalom::vehicle

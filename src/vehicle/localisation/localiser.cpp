@@ -1,0 +1,392 @@
+#include "slalom/vehicle/localisation/localiser.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "localiser_particles.hpp"
+#include "localiser_search.hpp"
+#include "localiser_sensor.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+using detail::Motion;
+using detail::Particles;
+using detail::ScanBeams;
+using detail::SensorTables;
+
+/// A stamp so far (s) before the last one is not late: the clock has been set back.
+constexpr double clock_set_back = 1.0;
+/// What odometry may move or turn at once in addition to its limits: m, rad.
+constexpr double jump_slack = 0.1;
+/// How long (s) the last known motion is taken to go on where odometry has jumped.
+constexpr double longest_guess = 0.2;
+
+/// Where the expected range changes by more than this many times the way across the beam, it is taken for the
+/// edge of something and not for a wall that is grazed; ranges (m) below the other one count as it.
+constexpr double steepest_wall = 8, shortest_lever = 0.05;
+
+/// Another place (m, rad) is none if it is so near, and the particles are put about it so closely.
+constexpr double near_place = 0.5, near_yaw = 0.3;
+/// A place that has long fitted well is given up for a clearly better one only, since opposite directions of
+/// a corridor look alike: the margin grows by itself for every `trust_unit` (s) and doubt wears it off by
+/// updates.
+constexpr double trust_unit = 0.3, most_trust = 5, doubt_keeps = 0.93, least_trust = 0.3;
+constexpr double relocated_deviation = 0.15, relocated_yaw_deviation = 0.08;
+
+bool is_finite(const maps::Pose& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
+}
+
+/// The pose `to` in the frame of `from`.
+maps::Pose relative(const maps::Pose& from, const maps::Pose& to) {
+  const maps::Point p = maps::inverse_transform(from, {to.x, to.y});
+  return {p.x, p.y, maps::wrap_angle(to.yaw - from.yaw)};
+}
+
+maps::Pose compose(const maps::Pose& frame, const maps::Pose& pose) {
+  const maps::Point p = maps::transform(frame, {pose.x, pose.y});
+  return {p.x, p.y, maps::wrap_angle(frame.yaw + pose.yaw)};
+}
+
+const maps::OccupancyGrid& checked(const maps::OccupancyGrid& map) {
+  const auto require = [](bool holds, const std::string& what) {
+    if (!holds) throw std::invalid_argument("localiser: " + what);
+  };
+  require(map.width >= 1 && map.height >= 1 && map.width <= 32766 && map.height <= 32766,
+          "map size: " + std::to_string(map.width) + " x " + std::to_string(map.height) +
+              ": must be 1 to 32766 each");
+  require(map.cells.size() == static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height),
+          "map cells: " + std::to_string(map.cells.size()) + ": must be width x height");
+  require(std::isfinite(map.resolution) && map.resolution > 0,
+          "map resolution: " + std::to_string(map.resolution) + ": must be finite and > 0");
+  require(is_finite(map.origin), "map origin: must be finite");
+  require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::free) > 0,
+          "map: must have a free cell");
+  require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::occupied) > 0,
+          "map: must have an occupied cell");
+  return map;
+}
+
+const LocaliserOptions& checked(const LocaliserOptions& options) {
+  options.validate();
+  return options;
+}
+
+}  // namespace
+
+void LocaliserOptions::validate() const {
+  validate_options(*this, "localiser");
+  if (most_particles < least_particles) {
+    throw std::invalid_argument("localiser.most_particles: " + std::to_string(most_particles) +
+                                " is below least_particles, " + std::to_string(least_particles));
+  }
+  if (least_beams > beams) {
+    throw std::invalid_argument("localiser.least_beams: " + std::to_string(least_beams) +
+                                " is above beams, " + std::to_string(beams));
+  }
+  if (!(slow_rate < fast_rate)) {
+    throw std::invalid_argument("localiser.slow_rate: " + std::to_string(slow_rate) +
+                                " is not below fast_rate, " + std::to_string(fast_rate));
+  }
+}
+
+struct Localiser::Implementation {
+  Implementation(const maps::OccupancyGrid& map, const LocaliserOptions& o)
+      : options(checked(o)),
+        origin(checked(map).origin),
+        sensor(map, options),
+        particles(map, options),
+        search(map, options),
+        beams(options.beams) {
+    start_everywhere();
+  }
+
+  RandomKey next_key() noexcept { return {options.seed, ++stream}; }
+
+  void start_everywhere() noexcept {
+    particles.spread_everywhere(next_key());
+    forget();
+  }
+  void start_at(const maps::Pose& pose) noexcept {
+    particles.spread_about(relative(origin, pose), options.start_deviation, options.start_yaw_deviation,
+                           next_key());
+    forget();
+    output.pose = pose;
+    trust = most_trust;
+    settled = true;
+  }
+  void forget() noexcept {
+    output = {};
+    output.particles = particles.count();
+    has_odometry = false;
+    slow = fast = 0;
+    search_until = -1;
+    trust = 0;
+    settled = false;
+    search.clear();
+  }
+
+  LocaliserStatus move(const LocaliserInput& input) noexcept;
+  bool choose_beams(const maps::LaserScanView& scan) noexcept;
+  void use_scan() noexcept;
+  void estimate() noexcept;
+  void look_elsewhere() noexcept;
+
+  LocaliserOptions options;
+  maps::Pose origin;  ///< of the grid, map frame
+  SensorTables sensor;
+  Particles particles;
+  detail::Search search;
+  ScanBeams beams;
+  LocaliserOutput output;
+  std::uint64_t stream = 0;
+
+  bool has_odometry = false;
+  maps::Pose odometry;
+  double stamp = 0;
+  maps::Pose velocity;                 ///< m/s and rad/s in the car's frame, of the last good motion
+  maps::Pose step;                     ///< m and rad in the car's frame, since the last update
+  double elapsed = 0;                  ///< s, since the last update
+  double fit = 0, slow = 0, fast = 0;  ///< of the estimate: now, and averaged
+  double trust = 0;                    ///< s, for which the place has not been doubtful, as it were
+  bool settled = false;                ///< the place was given, or was kept to the end of a search
+  double search_until = -1;            ///< s, stamp
+  double place_log_fit = 0;  ///< of the particles' place, averaged as those of the search's hypotheses are
+};
+
+/// Moves the particles by what the odometry says since the last update.
+LocaliserStatus Localiser::Implementation::move(const LocaliserInput& input) noexcept {
+  LocaliserStatus status = LocaliserStatus::ok;
+  Motion motion;
+  if (has_odometry) {
+    elapsed = input.stamp - stamp;
+    motion.step = relative(odometry, input.odometry);
+    const double distance = std::hypot(motion.step.x, motion.step.y);
+    const bool jumped = elapsed <= 0 || distance > options.max_speed * elapsed + jump_slack ||
+                        std::abs(motion.step.yaw) > options.max_yaw_rate * elapsed + jump_slack;
+    if (jumped) {
+      const double guess = std::clamp(elapsed, 0.0, longest_guess);
+      motion.step = {velocity.x * guess, velocity.y * guess, velocity.yaw * guess};
+      status = LocaliserStatus::odometry_jump;
+    } else {
+      velocity = {motion.step.x / elapsed, motion.step.y / elapsed, motion.step.yaw / elapsed};
+    }
+  } else {
+    velocity = {};
+    elapsed = 0;
+  }
+  const double distance = std::hypot(motion.step.x, motion.step.y);
+  const double doubt = status == LocaliserStatus::ok ? 1 : 3;
+  motion.along = doubt * (options.along_noise * distance + options.position_noise);
+  motion.across = doubt * (options.across_noise * distance + options.position_noise);
+  motion.turn = doubt * (options.turn_noise * std::abs(motion.step.yaw) + options.drift_noise * distance +
+                         options.yaw_noise);
+  step = motion.step;
+  particles.move(motion, next_key());
+  output.pose = compose(output.pose, motion.step);
+  has_odometry = true;
+  odometry = input.odometry;
+  stamp = input.stamp;
+  return status;
+}
+
+/// Chooses readings evenly over the scan: of every part of it the first usable one. False if the scan is of
+/// no use.
+bool Localiser::Implementation::choose_beams(const maps::LaserScanView& scan) noexcept {
+  beams.hits = beams.count = 0;
+  const std::size_t readings = scan.ranges.size();
+  if (readings == 0 || !std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) ||
+      !std::isfinite(scan.range_min) || std::isnan(scan.range_max)) {
+    return false;
+  }
+  if (options.scan_readings > 0 && readings != static_cast<std::size_t>(options.scan_readings)) return false;
+  const std::size_t parts = std::min(readings, static_cast<std::size_t>(options.beams));
+  const double bins_per_turn = options.table_angles / (2 * std::numbers::pi);
+  const auto add = [&](std::size_t at, double range, std::size_t reading) {
+    const double bearing =
+        options.laser_yaw + scan.angle_min + static_cast<double>(reading) * scan.angle_increment;
+    beams.end_x[at] = static_cast<float>(options.laser_x + range * std::cos(bearing));
+    beams.end_y[at] = static_cast<float>(options.laser_y + range * std::sin(bearing));
+    beams.range[at] = static_cast<float>(range);
+    const double bin = maps::wrap_angle(bearing) * bins_per_turn;
+    const double across = bins_per_turn / std::max(range, shortest_lever);
+    beams.forward_x[at] = static_cast<float>(std::cos(bearing));
+    beams.forward_y[at] = static_cast<float>(std::sin(bearing));
+    beams.sideways_x[at] = static_cast<float>(-across * std::sin(bearing));
+    beams.sideways_y[at] = static_cast<float>(across * std::cos(bearing));
+    beams.steepest[at] = static_cast<float>(steepest_wall / across);
+    beams.bin[at] = std::min(static_cast<float>(bin < 0 ? bin + options.table_angles : bin),
+                             static_cast<float>(options.table_angles - 1e-3));
+  };
+  const double least = std::max(scan.range_min, 0.0), most = std::min(options.range_cap, scan.range_max);
+  std::size_t lost = parts;  // those without return gather at the back
+  for (std::size_t part = 0; part < parts; ++part) {
+    const std::size_t begin = part * readings / parts, end = (part + 1) * readings / parts;
+    std::size_t missed = end;
+    for (std::size_t i = begin + (end - begin) / 2, looked = 0; looked < end - begin; ++looked) {
+      const double range = static_cast<double>(scan.ranges[i]);
+      if (range > least && range < most) {
+        add(static_cast<std::size_t>(beams.hits++), range, i);
+        missed = end;
+        break;
+      }
+      if (range >= most && missed == end) missed = i;
+      if (++i == end) i = begin;
+    }
+    if (missed != end) add(--lost, options.range_cap, missed);
+  }
+  beams.count = beams.hits;
+  for (; lost < parts; ++lost, ++beams.count) {
+    const std::size_t to = static_cast<std::size_t>(beams.count);
+    beams.end_x[to] = beams.end_x[lost];
+    beams.end_y[to] = beams.end_y[lost];
+    beams.range[to] = beams.range[lost];
+    beams.bin[to] = beams.bin[lost];
+  }
+  return beams.hits >= options.least_beams;
+}
+
+void Localiser::Implementation::estimate() noexcept {
+  const Particles::Estimate found = particles.estimate();
+  const auto explained = sensor.explain(found.pose, beams);
+  output.fit = explained.share;
+  fit = explained.fit;
+  output.share = found.share;
+  output.health = output.fit * output.share;
+  output.pose = compose(origin, found.pose);
+  // The covariance turned from the grid's frame into the map's: R C R^T on x and y.
+  const double c = std::cos(origin.yaw), s = std::sin(origin.yaw);
+  const double turn[3][3] = {{c, -s, 0}, {s, c, 0}, {0, 0, 1}};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      double sum = 0;
+      for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < 3; ++l) sum += turn[i][k] * found.covariance[k][l] * turn[j][l];
+      output.covariance[i][j] = sum;
+    }
+  }
+}
+
+/// Weighs the particles by the scan, estimates, and draws anew where that is due (Table 8.3).
+void Localiser::Implementation::use_scan() noexcept {
+  output.particles = particles.count();
+  output.effective_samples = particles.weigh(sensor, beams, options.beam_exponent);
+  estimate();
+  slow = slow == 0 ? fit : slow + options.slow_rate * (fit - slow);
+  fast = fast == 0 ? fit : fast + options.fast_rate * (fit - fast);
+  output.resampled = output.effective_samples < options.resample_below * particles.count();
+  if (output.resampled) particles.resample(next_key());
+  look_elsewhere();
+}
+
+/// Searches other places while there is cause to, and moves the particles to one that fits better.
+void Localiser::Implementation::look_elsewhere() noexcept {
+  const bool doubtful = options.recovery_margin * fast < std::max(slow, options.least_fit);
+  const bool was_searching = output.searching;
+  // A place that this search has found competes with the others on equal terms until the search is over.
+  if (doubtful) {
+    trust *= doubt_keeps;
+  } else if (settled) {
+    trust = std::min(trust + std::max(0.0, elapsed), most_trust);
+  }
+  if (doubtful) search_until = stamp + options.search_time;
+  output.searching = doubtful || (was_searching && stamp < search_until);
+  if (!output.searching) {
+    settled = true;
+    return;
+  }
+  if (!was_searching) search.clear();
+
+  const maps::Pose place = relative(origin, output.pose);
+  const double memory = std::exp(-std::max(0.0, elapsed) / options.search_memory);
+  const double now = search.log_fit_at(place, sensor, beams);
+  place_log_fit = was_searching ? memory * place_log_fit + (1 - memory) * now : now;
+  search.update(step, sensor, beams, memory, next_key());
+  const detail::Search::Hypothesis* best = search.best();
+  if (!best || best->log_fit < place_log_fit + options.rival_margin * (1 + trust / trust_unit)) return;
+  const double apart = std::hypot(best->pose.x - place.x, best->pose.y - place.y);
+  const double turned = std::abs(maps::wrap_angle(best->pose.yaw - place.yaw));
+  if (output.share > options.good_share && apart < near_place && turned < near_yaw) return;
+  particles.spread_about(best->pose, relocated_deviation, relocated_yaw_deviation, next_key());
+  place_log_fit = best->log_fit;
+  trust = 0;
+  settled = false;
+  output.relocated = true;
+  estimate();
+}
+
+Localiser::Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options)
+    : implementation_(std::make_unique<Implementation>(map, options)) {}
+Localiser::~Localiser() = default;
+Localiser::Localiser(Localiser&&) noexcept = default;
+Localiser& Localiser::operator=(Localiser&&) noexcept = default;
+
+bool Localiser::start_at(const maps::Pose& pose) noexcept {
+  if (!is_finite(pose)) return false;
+  implementation_->start_at(pose);
+  return true;
+}
+void Localiser::start_everywhere() noexcept {
+  implementation_->start_everywhere();
+}
+void Localiser::reset(std::uint64_t seed) noexcept {
+  implementation_->options.seed = seed;
+  implementation_->stream = 0;
+  implementation_->start_everywhere();
+}
+
+const LocaliserOutput& Localiser::update(const LocaliserInput& input) noexcept {
+  const auto begin = std::chrono::steady_clock::now();
+  Implementation& self = *implementation_;
+  LocaliserOutput& out = self.output;
+  const auto finish = [&](LocaliserStatus status) -> const LocaliserOutput& {
+    out.status = status;
+    out.update_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return out;
+  };
+  out.relocated = false;
+  out.resampled = false;
+  out.beams = 0;
+  if (!is_finite(input.odometry) || !std::isfinite(input.stamp)) return finish(LocaliserStatus::bad_odometry);
+  if (self.has_odometry && input.stamp <= self.stamp && input.stamp > self.stamp - clock_set_back)
+    return finish(LocaliserStatus::stale);
+  const LocaliserStatus moved = self.move(input);
+  if (!self.choose_beams(input.scan)) return finish(LocaliserStatus::bad_scan);
+  out.beams = self.beams.hits;
+  self.use_scan();
+  if (moved != LocaliserStatus::ok) return finish(moved);
+  const bool good =
+      out.share >= self.options.good_share && out.fit >= self.options.good_fit && self.trust >= least_trust;
+  return finish(good ? LocaliserStatus::ok : LocaliserStatus::uncertain);
+}
+
+const LocaliserOutput& Localiser::output() const noexcept {
+  return implementation_->output;
+}
+maps::Pose Localiser::carried_to(const maps::Pose& odometry) const noexcept {
+  const Implementation& self = *implementation_;
+  if (!self.has_odometry || !is_finite(odometry)) return self.output.pose;
+  return compose(self.output.pose, relative(self.odometry, odometry));
+}
+maps::Pose Localiser::odometry_frame() const noexcept {
+  const Implementation& self = *implementation_;
+  if (!self.has_odometry) return self.output.pose;
+  return compose(self.output.pose, relative(self.odometry, {}));
+}
+int Localiser::particle_count() const noexcept {
+  return implementation_->particles.count();
+}
+Particle Localiser::particle(int index) const noexcept {
+  const Implementation& self = *implementation_;
+  return {compose(self.origin, self.particles.pose(index)), self.particles.weight(index)};
+}
+const LocaliserOptions& Localiser::options() const noexcept {
+  return implementation_->options;
+}
+
+}  // namespace slalom::vehicle

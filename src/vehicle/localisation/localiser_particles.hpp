@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "localiser_bins.hpp"
+#include "localiser_sensor.hpp"
+#include "slalom/core/random.hpp"
+#include "slalom/core/sequence_batch.hpp"
+#include "slalom/maps/pose.hpp"
+#include "slalom/vehicle/localisation/localiser_options.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// The free cells of a map, to draw poses from.
+class FreeSpace {
+ public:
+  /// `map` has been checked and has a free cell.
+  explicit FreeSpace(const maps::OccupancyGrid& map);
+  /// Uniform over the free space and all yaws; in the frame of the grid.
+  maps::Pose random_pose(RandomStream& random) const noexcept;
+
+ private:
+  std::vector<std::uint32_t> cells_;
+  int width_;
+  double resolution_;
+};
+
+/// How the car moved between two updates, in its frame at the first one, and how sure that is.
+struct Motion {
+  maps::Pose step;    ///< m, rad
+  double along = 0;   ///< m, standard deviations
+  double across = 0;  ///< m
+  double turn = 0;    ///< rad
+};
+
+/// The particles of the filter, in the frame of the grid (metres from the corner of cell (0, 0)), and what is
+/// done to them. Nothing allocates after construction.
+class Particles {
+ public:
+  /// `map` has been checked and has a free cell.
+  Particles(const maps::OccupancyGrid& map, const LocaliserOptions& options);
+
+  void spread_about(const maps::Pose& pose, double deviation, double yaw_deviation, RandomKey key) noexcept;
+  void spread_everywhere(RandomKey key) noexcept;
+
+  void move(const Motion& motion, RandomKey key) noexcept;
+
+  /// Multiplies the weights by the particles' fits to the power of `exponent`; the effective sample size
+  /// after that.
+  double weigh(const SensorTables& sensor, const ScanBeams& beams, double exponent) noexcept;
+
+  /// Draws anew by weight, as many as the spread asks for.
+  void resample(RandomKey key) noexcept;
+
+  struct Estimate {
+    maps::Pose pose;
+    double covariance[3][3] = {};
+    double share = 0;  ///< of the weight that lies near the pose
+  };
+  /// The mean and the spread of the particles about the heaviest bin.
+  Estimate estimate() noexcept;
+
+  int count() const noexcept { return count_; }
+  maps::Pose pose(int i) const noexcept { return {x(i), y(i), yaw(i)}; }
+  double weight(int i) const noexcept { return weights_[static_cast<std::size_t>(i)]; }
+
+ private:
+  double x(int i) const noexcept { return now_.row(0, 0)[i]; }
+  double y(int i) const noexcept { return now_.row(0, 1)[i]; }
+  double yaw(int i) const noexcept { return now_.row(0, 2)[i]; }
+  void put(SequenceBatch& to, int i, const maps::Pose& pose) noexcept;
+  void make_uniform(int count) noexcept;
+  void accumulate_weights() noexcept;
+  int draw(double uniform) const noexcept;
+
+  LocaliserOptions options_;
+  FreeSpace free_space_;
+  SequenceBatch now_, next_, noise_;  ///< [1][x, y, yaw][particle]
+  AlignedBuffer log_fit_;
+  std::vector<double> weights_, cumulative_;
+  std::vector<int>
+      guide_;  ///< for each of `count` equal parts of [0, 1): the first particle that reaches into it
+  PoseBins bins_, places_;
+  int count_ = 0;
+};
+
+}  // namespace slalom::vehicle::detail

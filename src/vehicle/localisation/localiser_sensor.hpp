@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "slalom/maps/cell_grid.hpp"
+#include "slalom/maps/occupancy_grid.hpp"
+#include "slalom/vehicle/localisation/localiser_options.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// The beams of a scan that are used, in the frame of the rear axle, structure of arrays.
+struct ScanBeams {
+  explicit ScanBeams(int capacity)
+      : end_x(static_cast<std::size_t>(capacity)),
+        end_y(end_x),
+        range(end_x),
+        bin(end_x),
+        forward_x(end_x),
+        forward_y(end_x),
+        sideways_x(end_x),
+        sideways_y(end_x),
+        steepest(end_x) {}
+
+  std::vector<float> end_x, end_y;  ///< m
+  std::vector<float> range;         ///< m; range_cap where nothing was hit
+  std::vector<float> bin;           ///< bearing in angles of the range table, in [0, table_angles)
+  // What the expected range changes by where the laser is moved by d (m, in this frame): by -(forward . d),
+  // and by (sideways . d) times the difference (m) between two successive ranges of the table, which is told
+  // from a corner by being at most `steepest`.
+  std::vector<float> forward_x, forward_y;    ///< the beam's direction
+  std::vector<float> sideways_x, sideways_y;  ///< 1/m, across the beam
+  std::vector<float> steepest;                ///< m
+  int hits = 0;                               ///< the first so many came back
+  int count = 0;                              ///< all, those without return last
+};
+
+/// Particles in the frame of the grid (metres from the corner of cell (0, 0)), structure of arrays, padded to
+/// whole packs.
+struct ParticlePoses {
+  const float* x = nullptr;
+  const float* y = nullptr;
+  const float* yaw = nullptr;
+  int count = 0;
+};
+
+/// Expected ranges from the centres of free cells in equal steps of angle; the way from there to the laser is
+/// made up for as if the wall that a beam meets were straight (dr = -d_forward + d_sideways r'(angle) / r),
+/// without which walls that a beam grazes would seem to lie half a metre off. A cell of the grid below holds
+/// the number of its row of ranges; row 0 stands for "in a wall" and is all 0. An entry holds two successive
+/// ranges as 16-bit parts of `range_unit`, so that one look-up serves an interpolation.
+struct RangeTable {
+  maps::CellGrid<1> rows{1, 1};
+  maps::GridGeometry geometry;
+  std::vector<std::uint32_t> pairs;  ///< rows x angles
+  int angles = 0;
+  float range_unit = 0;  ///< m
+};
+
+/// What the map says of a scan.
+class SensorTables {
+ public:
+  /// `map` has been checked. Throws std::invalid_argument where the range table would be too large.
+  SensorTables(const maps::OccupancyGrid& map, const LocaliserOptions& options);
+
+  /// The mean over beams of the logarithm of each beam's probability over the highest possible one, for each
+  /// particle; the padding's values mean nothing. Needs beams.count >= 1, of the likelihood field hits >= 1.
+  void weigh(const ParticlePoses& particles, const ScanBeams& beams, float* log_fit) const noexcept;
+
+  /// As `weigh`, by the likelihood field whatever the options say: it changes more smoothly with the pose.
+  void weigh_by_field(const ParticlePoses& particles, const ScanBeams& beams, float* log_fit) const noexcept;
+
+  /// How well a pose explains the beams that came back.
+  struct Explained {
+    double share = 0;  ///< of beams that end near a wall, 0 .. 1
+    double fit = 0;    ///< mean over beams of each one's probability over the highest possible one, 0 .. 1
+  };
+  Explained explain(const maps::Pose& pose_grid, const ScanBeams& beams) const noexcept;
+
+ private:
+  void make_field(const maps::OccupancyGrid& map, const LocaliserOptions& options);
+  void make_ranges(const maps::OccupancyGrid& map, const LocaliserOptions& options);
+
+  LocaliserOptions options_;
+  maps::GridGeometry geometry_;
+  maps::CellGrid<1> field_;  ///< log of the probability of a beam's end over the highest one
+  maps::CellGrid<1> place_;  ///< log of the probability of a rear axle there: 0 in free cells
+  RangeTable table_;
+  float explained_from_ = 0;  ///< of `field_`
+};
+
+/// Everything that a kernel reads.
+struct WeighInput {
+  ParticlePoses particles;
+  const ScanBeams* beams = nullptr;
+  GridView<1> field, place, rows;
+  const std::uint32_t* pairs = nullptr;
+  int angles = 0;
+  float range_unit = 0;
+  float laser_x = 0, laser_y = 0;
+  float hit_scale = 0;     ///< -1 / (2 sigma^2), 1/m^2
+  float hit = 0;           ///< probability density at the expected range, over the highest one
+  float random = 0;        ///< of a range from anywhere, over the highest one
+  float short_scale = 0;   ///< of a range from something in front, at 0 m
+  float short_rate = 0;    ///< 1/m
+  float lost = 0;          ///< that a beam does not come back though it should, over that it rightly does not
+  float nothing_from = 0;  ///< m, expected ranges from which on nothing is hit
+  float* log_fit = nullptr;
+};
+
+void weigh_by_field(const WeighInput& input) noexcept;
+void weigh_by_ranges(const WeighInput& input) noexcept;
+
+}  // namespace slalom::vehicle::detail

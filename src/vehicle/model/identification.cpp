@@ -1,0 +1,297 @@
+#include "slalom/vehicle/model/identification.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "slalom/maps/pose.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+constexpr int parameters = 6;  // gain, offset, delay, time constant, wheelbase, understeer
+using Parameters = std::array<double, parameters>;
+using Normal = std::array<std::array<double, parameters>, parameters>;
+
+constexpr double longest_gap = 0.2;  // s
+constexpr double settling = 0.5;     // s at the beginning of a piece, in which the wheels' angle is not known
+constexpr double longest_delay = 0.3;  // s
+constexpr int least_samples = 200;
+constexpr double steps[parameters] = {1e-4, 1e-5, 1e-4, 1e-4, 1e-4, 1e-5};  // of the differences
+
+/// One turn from a sample to the next.
+struct Turn {
+  double begin = 0, end = 0;  ///< s
+  double turned = 0;          ///< rad
+  double speed = 0;           ///< m/s
+  std::size_t sample = 0;
+  bool first = false;  ///< of a piece
+  bool counts = false;
+};
+
+std::vector<Turn> turns_of(std::span<const DrivenSample> samples, double least_speed) {
+  std::vector<Turn> turns;
+  double piece_begin = 0;
+  bool fresh = true;
+  for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
+    const DrivenSample &a = samples[i], &b = samples[i + 1];
+    const double dt = b.time - a.time;
+    const double all =
+        a.time + b.time + a.yaw + b.yaw + a.speed + b.speed + a.steer_command + a.x + b.x + a.y + b.y;
+    if (!std::isfinite(all) || dt <= 0 || dt > longest_gap) {
+      fresh = true;
+      continue;
+    }
+    Turn t{a.time, b.time, maps::wrap_angle(b.yaw - a.yaw), 0.5 * (a.speed + b.speed), i, fresh, false};
+    if (fresh) piece_begin = a.time;
+    fresh = false;
+    t.counts = std::abs(t.speed) >= least_speed && a.time - piece_begin >= settling;
+    turns.push_back(t);
+  }
+  return turns;
+}
+
+/// The turns that the parameters predict minus those seen, one per turn that counts.
+class Model {
+ public:
+  Model(std::span<const DrivenSample> samples, const std::vector<Turn>& turns)
+      : samples_(samples), turns_(turns) {}
+
+  void residuals(const Parameters& p, std::vector<double>& out) const {
+    out.clear();
+    double steer = 0;
+    std::size_t acting = 0, first = 0;
+    for (const Turn& t : turns_) {
+      if (t.first) {
+        first = acting = t.sample;
+        steer = p[0] * samples_[first].steer_command + p[1];
+      }
+      double at = t.begin, integral = 0;
+      while (at < t.end - 1e-12) {
+        // The command that acts now, and until when.
+        while (acting < t.sample && samples_[acting + 1].time + p[2] <= at + 1e-12) ++acting;
+        const double next = acting < t.sample ? samples_[acting + 1].time + p[2] : t.end;
+        const double until = std::clamp(next, at + 1e-6, t.end);
+        integral += run(steer, p[0] * samples_[acting].steer_command + p[1], p[3], until - at);
+        at = until;
+      }
+      if (t.counts) out.push_back(t.speed * integral / (p[4] + p[5] * t.speed * t.speed) - t.turned);
+    }
+  }
+
+ private:
+  /// Lets the wheels follow `target` for `dt`; the integral of the steering's tangent by Simpson's rule.
+  static double run(double& steer, double target, double lag, double dt) {
+    const double half = std::exp(-0.5 * dt / lag);
+    const double middle = target + (steer - target) * half, end = target + (steer - target) * half * half;
+    const double integral = dt / 6 * (std::tan(steer) + 4 * std::tan(middle) + std::tan(end));
+    steer = end;
+    return integral;
+  }
+
+  std::span<const DrivenSample> samples_;
+  const std::vector<Turn>& turns_;
+};
+
+double square_sum(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double v : values) sum += v * v;
+  return sum;
+}
+
+Parameters within_bounds(Parameters p) {
+  p[0] = std::clamp(p[0], 0.05, 20.0);
+  p[1] = std::clamp(p[1], -0.5, 0.5);
+  p[2] = std::clamp(p[2], 0.0, longest_delay);
+  p[3] = std::clamp(p[3], 2e-3, 2.0);
+  p[4] = std::clamp(p[4], 0.02, 20.0);
+  p[5] = std::clamp(p[5], -0.02, 1.0);
+  return p;
+}
+
+/// Solves a x = b for the parameters that are sought; nothing if it cannot be.
+std::optional<Parameters> solve(Normal a, Parameters b, const std::array<bool, parameters>& sought) {
+  for (int i = 0; i < parameters; ++i) {
+    if (sought[static_cast<std::size_t>(i)]) continue;
+    for (int j = 0; j < parameters; ++j) a[i][j] = a[j][i] = i == j;
+    b[i] = 0;
+  }
+  for (int k = 0; k < parameters; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < parameters; ++i)
+      if (std::abs(a[i][k]) > std::abs(a[pivot][k])) pivot = i;
+    if (!(std::abs(a[pivot][k]) > 1e-300)) return std::nullopt;
+    std::swap(a[k], a[pivot]);
+    std::swap(b[k], b[pivot]);
+    for (int i = k + 1; i < parameters; ++i) {
+      const double factor = a[i][k] / a[k][k];
+      for (int j = k; j < parameters; ++j) a[i][j] -= factor * a[k][j];
+      b[i] -= factor * b[k];
+    }
+  }
+  for (int k = parameters - 1; k >= 0; --k) {
+    for (int j = k + 1; j < parameters; ++j) b[k] -= a[k][j] * b[j];
+    b[k] /= a[k][k];
+  }
+  return b;
+}
+
+struct Fit {
+  Parameters p{};
+  Normal normal{};  ///< J^T J
+  double sum = 0;   ///< of squared residuals
+};
+
+class Fitter {
+ public:
+  Fitter(const Model& model, const std::array<bool, parameters>& sought) : model_(model), sought_(sought) {}
+
+  Fit fit(const Parameters& start) {
+    Fit best;
+    best.p = start;
+    model_.residuals(best.p, residuals_);
+    best.sum = square_sum(residuals_);
+    double damping = 1e-3;
+    for (int iteration = 0; iteration < 60; ++iteration) {
+      Parameters slope{};
+      linearise(best, slope);
+      bool better = false;
+      double gained = 0;
+      while (!better && damping < 1e12) {
+        Normal damped = best.normal;
+        for (int i = 0; i < parameters; ++i) damped[i][i] *= 1 + damping;
+        const auto step = solve(damped, slope, sought_);
+        Parameters tried = best.p;
+        for (int i = 0; step && i < parameters; ++i) tried[i] -= (*step)[i];
+        tried = within_bounds(tried);
+        model_.residuals(tried, trial_);
+        const double sum = square_sum(trial_);
+        better = step && sum < best.sum;
+        if (better) {
+          gained = best.sum - sum;
+          best.p = tried;
+          best.sum = sum;
+          residuals_ = trial_;
+        }
+        damping *= better ? 0.2 : 8;
+      }
+      if (!better || gained < 1e-10 * best.sum) break;
+    }
+    Parameters slope{};
+    linearise(best, slope);
+    return best;
+  }
+
+ private:
+  void linearise(Fit& fit, Parameters& slope) {
+    std::array<std::vector<double>, parameters> columns;
+    for (std::size_t i = 0; i < parameters; ++i) {
+      if (!sought_[i]) continue;
+      Parameters low = fit.p, high = fit.p;
+      low[i] -= steps[i];
+      high[i] += steps[i];
+      model_.residuals(high, columns[i]);
+      model_.residuals(low, trial_);
+      for (std::size_t k = 0; k < trial_.size(); ++k)
+        columns[i][k] = (columns[i][k] - trial_[k]) / (2 * steps[i]);
+    }
+    for (std::size_t i = 0; i < parameters; ++i) {
+      slope[i] = 0;
+      for (std::size_t k = 0; k < columns[i].size(); ++k) slope[i] += columns[i][k] * residuals_[k];
+      for (std::size_t j = 0; j < parameters; ++j) {
+        fit.normal[i][j] = 0;
+        for (std::size_t k = 0; k < columns[i].size() && k < columns[j].size(); ++k)
+          fit.normal[i][j] += columns[i][k] * columns[j][k];
+      }
+    }
+  }
+
+  const Model& model_;
+  std::array<bool, parameters> sought_;
+  std::vector<double> residuals_, trial_;
+};
+
+void require_enough(std::span<const DrivenSample> samples, const std::vector<Turn>& turns) {
+  int used = 0;
+  double low = 1e9, high = -1e9;
+  for (const Turn& t : turns) {
+    if (!t.counts) continue;
+    ++used;
+    low = std::min(low, samples[t.sample].steer_command);
+    high = std::max(high, samples[t.sample].steer_command);
+  }
+  if (used < least_samples)
+    throw std::invalid_argument("identify: " + std::to_string(used) + " usable samples, must be at least " +
+                                std::to_string(least_samples) + "; drive for longer");
+  if (high - low < 0.1)
+    throw std::invalid_argument("identify: the steering moves by " + std::to_string(high - low) +
+                                " rad, must be at least 0.1; drive curves to both sides");
+}
+
+double speed_scale(std::span<const DrivenSample> samples, const std::vector<Turn>& turns) {
+  double by_pose = 0, by_speed = 0;
+  // Over a second at a time: noise of single poses would lengthen the way.
+  for (std::size_t i = 0; i < turns.size();) {
+    double way = 0;
+    std::size_t j = i;
+    while (j < turns.size() && !(j > i && turns[j].first) && turns[j].end - turns[i].begin < 0.25) {
+      way += std::abs(turns[j].speed) * (turns[j].end - turns[j].begin);
+      ++j;
+    }
+    if (j > i && turns[i].counts && std::abs(turns[i].turned) < 0.05) {
+      const DrivenSample &a = samples[turns[i].sample], &b = samples[turns[j - 1].sample + 1];
+      by_pose += std::hypot(b.x - a.x, b.y - a.y);
+      by_speed += way;
+    }
+    i = std::max(j, i + 1);
+  }
+  return by_speed > 0 ? by_pose / by_speed : 1;
+}
+
+}  // namespace
+
+Identification identify(std::span<const DrivenSample> samples, const IdentificationOptions& options) {
+  if (!(options.wheelbase >= 0) || !(options.least_speed > 0))
+    throw std::invalid_argument("identify: wheelbase must be at least 0 m, least_speed above 0 m/s");
+  const std::vector<Turn> turns = turns_of(samples, options.least_speed);
+  require_enough(samples, turns);
+  const Model model(samples, turns);
+  const bool given = options.wheelbase > 0;
+  Fitter fitter(model, {true, true, true, true, !given, true});
+  Fit best;
+  best.sum = INFINITY;
+  for (const double delay : {0.0, 0.05, 0.1, 0.2}) {
+    const Fit fit = fitter.fit({1, 0, delay, 0.08, given ? options.wheelbase : 0.33, 0.0});
+    if (fit.sum < best.sum) best = fit;
+  }
+  Identification found;
+  found.speed_scale = speed_scale(samples, turns);
+  double rate = 0, rate_squares = 0, dt = 0;
+  for (const Turn& t : turns) {
+    if (!t.counts) continue;
+    ++found.samples;
+    rate += t.turned;
+    rate_squares += t.turned * t.turned;
+    dt += t.end - t.begin;
+  }
+  const double n = found.samples, variance = best.sum / std::max(1.0, n - parameters);
+  found.residual = std::sqrt(best.sum / n) / (dt / n);
+  found.explained = 1 - best.sum / std::max(1e-300, rate_squares - rate * rate / n);
+  Identified* const values[parameters] = {&found.steering_gain, &found.steering_offset, &found.delay,
+                                          &found.time_constant, &found.wheelbase,       &found.understeer};
+  for (std::size_t i = 0; i < parameters; ++i) {
+    values[i]->value = best.p[i];
+    if (i == 4 && given) continue;
+    Parameters unit{};
+    unit[i] = 1;
+    const auto column = solve(best.normal, unit, {true, true, true, true, !given, true});
+    values[i]->deviation = column ? std::sqrt(std::max(0.0, variance * (*column)[i])) : INFINITY;
+  }
+  return found;
+}
+
+}  // namespace slalom::vehicle

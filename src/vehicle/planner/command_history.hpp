@@ -1,0 +1,74 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "vehicle/planner/car_rollout.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// The steering commands under way: sent one a control period, each acting on the steering a delay later.
+/// From them it knows how the car will move until a new command can take effect, and what the wheels' angle,
+/// which nobody measures, has become.
+class CommandHistory {
+ public:
+  /// `delay` (s) at most 32 `period`s (s); `time_constant` (s) of the steering's lag; `wheelbase` m.
+  CommandHistory(double period, double delay, double time_constant, double wheelbase)
+      : period_(period), delay_(delay), time_constant_(time_constant), wheelbase_(wheelbase) {}
+
+  void reset() noexcept {
+    sent_.fill(0);
+    steer_ = 0;
+  }
+
+  /// The wheels' angle now, rad.
+  double steer() const noexcept { return steer_; }
+
+  /// A command is sent now; a period passes.
+  void send(double steer) noexcept {
+    for (std::size_t i = sent_.size() - 1; i > 0; --i) sent_[i] = sent_[i - 1];
+    sent_[0] = steer;
+    for_each_acting(-delay_, period_ - delay_, 1,
+                    [&](double command, double duration) { turn_wheels(steer_, command, duration); });
+  }
+
+  /// The car from now on until the next command takes effect, at constant speed.
+  CarStart lead_ahead(CarStart car) const noexcept {
+    for_each_acting(-delay_, 0, 0, [&](double command, double duration) {
+      const int pieces = static_cast<int>(std::ceil(duration / 0.01 - 1e-9));
+      for (int i = 0; i < pieces; ++i) {
+        const double dt = duration / pieces, before = car.steer;
+        turn_wheels(car.steer, command, dt);
+        const double turned = car.speed * dt * std::tan(0.5 * (before + car.steer)) / wheelbase_;
+        car.pose.x += car.speed * dt * std::cos(car.pose.yaw + 0.5 * turned);
+        car.pose.y += car.speed * dt * std::sin(car.pose.yaw + 0.5 * turned);
+        car.pose.yaw += turned;
+      }
+    });
+    return car;
+  }
+
+ private:
+  /// Calls `act(command, duration)` for the commands sent in the time from `begin` to `end` (s; 0 is when the
+  /// newest command was sent if `newest` is 1, and a period later if it is 0).
+  template <class Act>
+  void for_each_acting(double begin, double end, int newest, Act&& act) const noexcept {
+    const int oldest =
+        std::min(static_cast<int>(sent_.size()) - 1, static_cast<int>(std::ceil(-begin / period_)) + 1);
+    for (int i = oldest; i >= 0; --i) {
+      const double sent = -(i + 1 - newest) * period_;
+      const double from = std::max(begin, sent), to = std::min(end, sent + period_);
+      if (to > from + 1e-12) act(sent_[static_cast<std::size_t>(i)], to - from);
+    }
+  }
+  void turn_wheels(double& steer, double command, double duration) const noexcept {
+    steer += (command - steer) * (1 - std::exp(-duration / time_constant_));
+  }
+
+  double period_, delay_, time_constant_, wheelbase_;
+  std::array<double, 34> sent_{};
+  double steer_ = 0;
+};
+
+}  // namespace slalom::vehicle::detail

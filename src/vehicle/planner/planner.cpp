@@ -1,0 +1,281 @@
+#include "slalom/vehicle/planner/planner.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "slalom/maps/clearance_map.hpp"
+#include "slalom/maps/reference_field.hpp"
+#include "vehicle/planner/back_up.hpp"
+#include "vehicle/planner/car_rollout.hpp"
+#include "vehicle/planner/command_history.hpp"
+
+namespace slalom::vehicle {
+
+namespace {
+
+using detail::BackUp;
+using detail::CarRollout;
+using detail::CarStart;
+using detail::CommandHistory;
+
+maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options,
+                                           const PathTrackingOptions& problem) {
+  maps::LocalCostMapOptions made;
+  if (options.published_maps) {
+    made = maps::LocalCostMapOptions::published();
+  } else {
+    made.footprint = {problem.body_front, problem.body_rear, problem.body_width / 2, problem.body_width / 2};
+    made.margin = problem.body_margin;
+    made.soft_margin = problem.soft_margin;
+    made.soft = problem.soft_cost;
+  }
+  made.laser = {options.laser_x, options.laser_y, options.laser_yaw};
+  made.outside = -1;  // so that the problem can tell "off the map" from "occupied"
+  return made;
+}
+
+maps::ClearanceMapOptions clearance_options(const PathTrackingOptions& problem) {
+  maps::ClearanceMapOptions made;
+  made.reach = PathTracking<false>::clearance_reach(problem);
+  return made;
+}
+
+maps::ReferenceFieldOptions field_options(const PlannerOptions& options) {
+  return options.published_maps ? maps::ReferenceFieldOptions::published() : maps::ReferenceFieldOptions{};
+}
+
+std::vector<maps::ReferencePoint> capped(std::span<const maps::ReferencePoint> path, double max_speed) {
+  std::vector<maps::ReferencePoint> made(path.begin(), path.end());
+  for (auto& point : made) point.speed = std::min(point.speed, max_speed);
+  return made;
+}
+
+bool finite(const Odometry& o) {
+  return std::isfinite(o.pose.x) && std::isfinite(o.pose.y) && std::isfinite(o.pose.yaw) &&
+         std::isfinite(o.speed);
+}
+
+/// Commands are remembered only where the dead time is compensated; the published observer knows neither.
+double delay_of(const PlannerOptions& options, const PathTrackingOptions& problem) {
+  return options.latency + (problem.hold_first_input ? 0 : problem.dead_time);
+}
+
+}  // namespace
+
+struct Planner::Implementation {
+  PlannerOptions options;
+  PathTrackingOptions problem;
+  std::unique_ptr<Solver> solver;
+  maps::LocalCostMap cost_map;
+  maps::ClearanceMap clearance_map;
+  maps::ReferenceField field;
+  std::unique_ptr<CarRollout> rollout;
+  CommandHistory history;
+  BackUp back_up;
+  std::vector<PredictedState> states, candidate_states;
+  std::vector<float> candidate;
+  PlannerOutput output;
+
+  Implementation(const PlannerOptions& o, const PathTrackingOptions& p,
+                 std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> s)
+      : options(o),
+        problem(p),
+        solver(std::move(s)),
+        cost_map(cost_map_options(o, p)),
+        clearance_map(clearance_options(p)),
+        field(capped(path, o.max_speed), field_options(o)),
+        rollout(CarRollout::make(p)),
+        history(o.control_period, delay_of(o, p), o.observer_time_constant, p.front_length + p.rear_length),
+        states(static_cast<std::size_t>(solver->horizon()) + 1),
+        candidate_states(states.size()),
+        candidate(static_cast<std::size_t>(solver->horizon()) * static_cast<std::size_t>(solver->inputs())) {}
+
+  /// No plan can be made: the wheels stay as they are, the car stops.
+  void stop(PlannerStatus status) noexcept {
+    output.status = status;
+    output.command = {history.steer(), 0};
+    output.inputs = {};
+    output.predicted = {};
+    output.solve = nullptr;
+    output.state_cost = output.collision_cost = 0;
+  }
+
+  void plan(const Odometry& odometry) noexcept {
+    const CarStart now{odometry.pose, odometry.speed, history.steer()};
+    const CarStart start = history.lead_ahead(now);
+    // Without a limit to its acceleration a rollout is at once as fast as the reference.
+    const bool jumps = !problem.limit_acceleration;
+    const double furthest =
+        std::max(std::abs(odometry.speed), 1.0) + (jumps ? 0 : problem.max_acceleration * horizon_time());
+    field.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? horizon_time() : 0);
+    const maps::ReferenceCell here = field.at(start.pose.x, start.pose.y);
+    if (!problem.localisation_less && options.stop_when_blocked &&
+        here.distance >= field.options().outside.distance) {
+      return stop(PlannerStatus::off_course);
+    }
+    const bool discs = problem.body == BodyForm::discs;
+    rollout->set_maps(field.view(), discs ? clearance_map.view() : cost_map.view(), odometry.pose);
+    rollout->set_start(start, problem.localisation_less ? problem.reference_speed : here.speed);
+    SolveRequest request{.elapsed = options.control_period};
+    if (options.deadline > 0) request.deadline = options.deadline;
+    const SolveResult& result = solver->solve(rollout->evaluator(), request);
+    output.solve = &result;
+    output.status =
+        result.status == Status::degenerate ? PlannerStatus::solver_degenerate : PlannerStatus::ok;
+    PredictedCost cost = rollout->predict(result.inputs, states);
+    std::span<const float> sent = result.inputs;
+    if (options.verify_plan && cost.collided) cost = find_free_sequence(result, cost, sent);
+    output.inputs = sent;
+    output.inputs_per_step = rollout->inputs();
+    output.predicted = states;
+    output.state_cost = cost.state;
+    output.collision_cost = cost.collision;
+    output.command.steer =
+        std::clamp(static_cast<double>(sent[0]), -options.steer_limit, options.steer_limit);
+    output.command.speed = command_speed(here.speed);
+    if (options.verify_plan && options.stop_when_blocked) slow_down(cost, odometry.speed);
+  }
+
+  /// Brakes where no plan is free. A car that is too near to something already is past braking: while it
+  /// moves it follows the best plan, once it stands it creeps along it to come free, and if that leads
+  /// nowhere it goes back.
+  void slow_down(const PredictedCost& cost, double speed) noexcept {
+    constexpr double creep = 0.5;  // m/s
+    const bool too_near = rollout->start_collides();
+    if (options.back_up && back_up.update(!cost.collided && !too_near, speed, options.control_period)) {
+      output.command = {0, -BackUp::speed};
+    } else if (too_near && speed < 2 * creep) {
+      output.command.speed = std::min(output.command.speed, creep);
+    } else if (cost.collided && !too_near) {
+      output.command.speed = std::max(0.0, speed - 2 * problem.max_deceleration * options.control_period);
+    }
+    if (cost.collided) output.status = PlannerStatus::blocked;
+  }
+
+  double horizon_time() const noexcept { return problem.time_step * solver->horizon(); }
+
+  /// The speed to ask for where the path's is `here`.
+  double command_speed(double here) const noexcept {
+    if (problem.localisation_less) return std::min(problem.reference_speed, options.max_speed);
+    const bool planned = input_count(problem) == 2;  // the plan has speeds of its own
+    if (options.speed_lookahead <= 0 && !planned) return here;
+    const double last = static_cast<double>(states.size() - 1),
+                 step = std::clamp(options.speed_lookahead / problem.time_step, planned ? 1.0 : 0.0, last);
+    const PredictedState& ahead = states[static_cast<std::size_t>(step + 0.5)];
+    if (planned) return ahead.speed;
+    const maps::ReferenceCell cell = field.at(ahead.pose.x, ahead.pose.y);
+    return cell.distance < field.options().outside.distance ? cell.speed : here;
+  }
+
+  /// The plan collides: tries the nominal, the guides and the best sample that does not; keeps the cheapest.
+  PredictedCost find_free_sequence(const SolveResult& result, const PredictedCost& of_plan,
+                                   std::span<const float>& sent) noexcept {
+    PredictedCost best = of_plan;
+    const auto consider = [&](std::span<const float> inputs) {
+      if (inputs.size() != candidate.size()) return;
+      const PredictedCost cost = rollout->predict(inputs, candidate_states);
+      const bool better = best.collided != cost.collided
+                              ? best.collided
+                              : cost.state + cost.collision < best.state + best.collision;
+      if (!better) return;
+      best = cost;
+      sent = inputs;
+      states.swap(candidate_states);
+      if (!cost.collided) output.status = PlannerStatus::unverified;
+    };
+    consider(result.nominal);
+    for (int g = 0; g < result.guides.sequences; ++g) {
+      consider(
+          result.guides.values.subspan(static_cast<std::size_t>(g) * candidate.size(), candidate.size()));
+    }
+    int cheapest = -1;
+    for (int k = 0; result.samples && k < result.samples->samples(); ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      if (result.collided[i] || !std::isfinite(result.costs[i])) continue;
+      if (cheapest < 0 || result.costs[i] < result.costs[static_cast<std::size_t>(cheapest)]) cheapest = k;
+    }
+    if (cheapest >= 0) {
+      for (std::size_t row = 0; row < candidate.size(); ++row) {
+        const int at = static_cast<int>(row), inputs = solver->inputs();
+        candidate[row] = result.samples->at(at / inputs, at % inputs, cheapest);
+      }
+      consider(candidate);
+    }
+    return best;
+  }
+};
+
+Planner::Planner(const PlannerOptions& options, const PathTrackingOptions& problem,
+                 std::span<const maps::ReferencePoint> path, bool, std::unique_ptr<Solver> solver) {
+  validate_options(options, "planner");
+  validate_options(problem, "vehicle");
+  if (delay_of(options, problem) > 32 * options.control_period) {
+    throw std::invalid_argument("planner.latency: with vehicle.dead_time it is more than 32 control periods");
+  }
+  if (input_count(problem) == 2 && (problem.straight_local_rollout || problem.localisation_less)) {
+    throw std::invalid_argument(
+        "vehicle.speed: 'input' goes neither with vehicle.straight_local_rollout nor with "
+        "vehicle.localisation_less");
+  }
+  if (!solver || solver->inputs() != input_count(problem)) {
+    throw std::invalid_argument("planner: needs a solver of " +
+                                std::string(input_count(problem) == 2
+                                                ? "two inputs, steering and acceleration"
+                                                : "one input, the steering"));
+  }
+  implementation_ = std::make_unique<Implementation>(options, problem, path, std::move(solver));
+}
+
+Planner::~Planner() = default;
+Planner::Planner(Planner&&) noexcept = default;
+Planner& Planner::operator=(Planner&&) noexcept = default;
+
+const PlannerOutput& Planner::update(const PlannerInput& input) noexcept {
+  const auto begin = std::chrono::steady_clock::now();
+  Implementation& p = *implementation_;
+  PlannerOutput& out = p.output;
+  out.scan = p.cost_map.update(input.scan);
+  p.cost_map.add_points(input.obstacles);
+  if (p.problem.body == BodyForm::discs) {
+    p.clearance_map.clear();
+    p.clearance_map.add(p.cost_map.points());
+    p.clearance_map.add(input.obstacles);
+  }
+  out.steer_estimate = p.history.steer();
+  const bool blind = !out.scan.accepted || out.scan.invalid == out.scan.beams;
+  const bool seen_free = out.scan.accepted && input.scan.ranges.size() > 1 && !blind;
+  if (!finite(input.odometry)) {
+    p.stop(PlannerStatus::bad_odometry);
+  } else if (!seen_free) {
+    p.stop(PlannerStatus::bad_scan);
+  } else {
+    p.plan(input.odometry);
+  }
+  p.history.send(out.command.steer);
+  out.tick_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+void Planner::reset(std::uint64_t seed) noexcept {
+  implementation_->history.reset();
+  implementation_->back_up.reset();
+  implementation_->solver->reset(seed);
+  implementation_->cost_map.clear();
+  implementation_->output = {};
+}
+
+PredictedCost Planner::predict(std::span<const float> inputs,
+                               std::span<PredictedState> states) const noexcept {
+  return implementation_->rollout->predict(inputs, states);
+}
+
+const Solver& Planner::solver() const noexcept {
+  return *implementation_->solver;
+}
+const maps::LocalCostMap& Planner::cost_map() const noexcept {
+  return implementation_->cost_map;
+}
+
+}  // namespace slalom::vehicle
