@@ -19,10 +19,10 @@
 #include <thread>
 #include <vector>
 
+#include "bench/workload/reference_workload.hpp"
+#include "bench/workload/statistics.hpp"
 #include "slalom/core/dispatch.hpp"
 #include "slalom/solvers/make_solver.hpp"
-#include "workload/reference_workload.hpp"
-#include "workload/statistics.hpp"
 
 namespace slalom::tools {
 namespace {

@@ -13,10 +13,10 @@
 #include <cstdlib>
 #include <vector>
 
+#include "bench/workload/statistics.hpp"
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/solvers/make_solver.hpp"
-#include "workload/statistics.hpp"
 
 namespace slalom {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/workload/reference_workload.hpp"
 #include "slalom/core/dispatch.hpp"
-#include "workload/reference_workload.hpp"
 
 /// The rollouts of the vehicle problem on every instruction set, beside the yardstick: ns_per_step of one
 /// core.

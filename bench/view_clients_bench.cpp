@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "frame.hpp"
-#include "session.hpp"
+#include "view/protocol/frame.hpp"
+#include "view/session/session.hpp"
 #include "view/web_client.hpp"
 
 namespace {

@@ -4,23 +4,23 @@
 #include <iostream>
 #include <new>
 
-#include "bench_command.hpp"
-#include "command_line.hpp"
-#include "compare_command.hpp"
-#include "drive_command.hpp"
-#include "eval_command.hpp"
-#include "explain_command.hpp"
-#include "hardware_command.hpp"
-#include "identify_command.hpp"
-#include "options_command.hpp"
-#include "ranks.hpp"
-#include "replay_command.hpp"
-#include "reproduce_command.hpp"
 #include "slalom/core/dispatch.hpp"
 #include "slalom/core/version.hpp"
-#include "track_command.hpp"
-#include "tune_command.hpp"
-#include "view_command.hpp"
+#include "tools/commands/bench_command.hpp"
+#include "tools/commands/compare_command.hpp"
+#include "tools/commands/drive_command.hpp"
+#include "tools/commands/eval_command.hpp"
+#include "tools/commands/explain_command.hpp"
+#include "tools/commands/hardware_command.hpp"
+#include "tools/commands/identify_command.hpp"
+#include "tools/commands/options_command.hpp"
+#include "tools/commands/replay_command.hpp"
+#include "tools/commands/reproduce_command.hpp"
+#include "tools/commands/track_command.hpp"
+#include "tools/commands/tune_command.hpp"
+#include "tools/commands/view_command.hpp"
+#include "tools/evaluation/ranks.hpp"
+#include "tools/terminal/command_line.hpp"
 
 namespace {
 

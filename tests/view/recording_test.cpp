@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "frame.hpp"
-#include "recording/encodings.hpp"
-#include "recording/mcap_reader.hpp"
-#include "recording/recorder.hpp"
-#include "recording/replay.hpp"
+#include "view/protocol/frame.hpp"
+#include "view/recording/encodings.hpp"
+#include "view/recording/mcap_reader.hpp"
+#include "view/recording/recorder.hpp"
+#include "view/recording/replay.hpp"
 #include "slalom/core/error.hpp"
 
 namespace slalom::view {

@@ -1,6 +1,6 @@
 // The server of the live view: who may come in, what becomes of nonsense, of floods and of clients that never
 // read.
-#include "server.hpp"
+#include "view/server/server.hpp"
 
 #include <gtest/gtest.h>
 

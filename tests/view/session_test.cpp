@@ -1,8 +1,8 @@
 // What a session does with commands: the drive of the command line, time travel that is exact, edits,
 // options.
-#include "session.hpp"
+#include "view/session/session.hpp"
 
-#include "frame_reader.hpp"
+#include "view/protocol/frame_reader.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 # Writes INPUT as the C++ source OUTPUT that defines slalom::view::page_gzip().
 file(READ ${INPUT} hex HEX)
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
-file(WRITE ${OUTPUT} "#include \"page_data.hpp\"
+file(WRITE ${OUTPUT} "#include \"view/server/page_data.hpp\"
 namespace slalom::view {
 namespace {
 constexpr unsigned char bytes[] = {${bytes}};

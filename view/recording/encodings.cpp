@@ -1,4 +1,4 @@
-#include "recording/encodings.hpp"
+#include "view/recording/encodings.hpp"
 
 #include <zlib.h>
 

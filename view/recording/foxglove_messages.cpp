@@ -1,11 +1,11 @@
-#include "recording/foxglove_messages.hpp"
+#include "view/recording/foxglove_messages.hpp"
 
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "recording/encodings.hpp"
+#include "view/recording/encodings.hpp"
 
 namespace slalom::view::foxglove {
 namespace {

@@ -1,4 +1,4 @@
-#include "recording/foxglove_schemas.hpp"
+#include "view/recording/foxglove_schemas.hpp"
 
 #include <nlohmann/json.hpp>
 #include <utility>

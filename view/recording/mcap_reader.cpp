@@ -1,12 +1,12 @@
-#include "recording/mcap_reader.hpp"
+#include "view/recording/mcap_reader.hpp"
 
 #include <zlib.h>
 
 #include <cstring>
 #include <fstream>
 
-#include "recording/mcap_bytes.hpp"
 #include "slalom/core/error.hpp"
+#include "view/recording/mcap_bytes.hpp"
 
 namespace slalom::view::mcap {
 namespace {

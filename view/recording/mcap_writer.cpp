@@ -1,4 +1,4 @@
-#include "recording/mcap_writer.hpp"
+#include "view/recording/mcap_writer.hpp"
 
 #include <zlib.h>
 #include <zstd.h>

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "recording/mcap_bytes.hpp"
+#include "view/recording/mcap_bytes.hpp"
 
 namespace slalom::view::mcap {
 

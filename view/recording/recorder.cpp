@@ -1,4 +1,4 @@
-#include "recording/recorder.hpp"
+#include "view/recording/recorder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "frame.hpp"
-#include "recording/foxglove_schemas.hpp"
+#include "view/protocol/frame.hpp"
+#include "view/recording/foxglove_schemas.hpp"
 
 namespace slalom::view {
 namespace {

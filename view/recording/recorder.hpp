@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "frame_reader.hpp"
-#include "recording/foxglove_messages.hpp"
-#include "recording/mcap_writer.hpp"
-#include "recording/replay.hpp"
+#include "view/protocol/frame_reader.hpp"
+#include "view/recording/foxglove_messages.hpp"
+#include "view/recording/mcap_writer.hpp"
+#include "view/recording/replay.hpp"
 
 namespace slalom::view {
 

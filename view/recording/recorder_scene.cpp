@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recording/recorder.hpp"
+#include "view/recording/recorder.hpp"
 
 namespace slalom::view {
 namespace {

@@ -1,11 +1,11 @@
-#include "recording/replay.hpp"
+#include "view/recording/replay.hpp"
 
 #include <algorithm>
 #include <cstdint>
 
-#include "recording/encodings.hpp"
-#include "recording/mcap_reader.hpp"
 #include "slalom/core/error.hpp"
+#include "view/recording/encodings.hpp"
+#include "view/recording/mcap_reader.hpp"
 
 namespace slalom::view {
 namespace {

@@ -1,0 +1,139 @@
+#include "bench/workload/reference_workload.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "slalom/core/problem_evaluator.hpp"
+#include "slalom/core/random.hpp"
+
+namespace slalom::tools {
+
+namespace {
+
+/// The course's middle in polar form, squeezed along y.
+constexpr double squeeze = 0.8;
+double radius(double turn) {
+  return 8 + 2.5 * std::cos(3 * turn);
+}
+maps::Point middle(double turn) {
+  return {radius(turn) * std::cos(turn), squeeze * radius(turn) * std::sin(turn)};
+}
+
+constexpr double half_width = 1.1, car_radius = 0.28;
+
+bool blocked(double x, double y) {
+  const double turn = std::atan2(y / squeeze, x);
+  if (std::abs(std::hypot(x, y / squeeze) - radius(turn)) > half_width) return true;
+  const maps::Point near = middle(0.27), far = middle(0.6);
+  return std::hypot(x - near.x - 0.5, y - near.y) < car_radius ||
+         std::hypot(x - far.x + 0.4, y - far.y) < car_radius;
+}
+
+constexpr int beams = 1080;
+constexpr double first_beam = -2.35, field_of_view = 4.7;
+
+}  // namespace
+
+std::vector<maps::ReferencePoint> reference_course() {
+  std::vector<maps::ReferencePoint> path;
+  double travelled = 0;
+  maps::Point last = middle(0);
+  for (int i = 0; i < 100000; ++i) {
+    const double turn = 2 * std::numbers::pi * i / 100000;
+    const maps::Point here = middle(turn);
+    travelled += std::hypot(here.x - last.x, here.y - last.y);
+    last = here;
+    if (i > 0 && travelled < 0.05) continue;
+    travelled = 0;
+    const maps::Point ahead = middle(turn + 1e-5);
+    path.push_back({here.x, here.y, std::atan2(ahead.y - here.y, ahead.x - here.x), 4 + std::cos(3 * turn)});
+  }
+  return path;
+}
+
+maps::LaserScanView ReferenceScan::view() const {
+  return {ranges, first_beam, field_of_view / (beams - 1), 0.02, 30};
+}
+
+ReferenceScan reference_scan(const maps::Pose& robot) {
+  const maps::Pose laser = maps::LocalCostMapOptions{}.laser;
+  const double x0 = robot.x + laser.x * std::cos(robot.yaw), y0 = robot.y + laser.x * std::sin(robot.yaw);
+  ReferenceScan scan;
+  for (int i = 0; i < beams; ++i) {
+    const double angle = robot.yaw + first_beam + i * field_of_view / (beams - 1);
+    double range = 0.05;
+    while (range < 12 && !blocked(x0 + range * std::cos(angle), y0 + range * std::sin(angle))) range += 0.02;
+    scan.ranges.push_back(static_cast<float>(range));
+  }
+  return scan;
+}
+
+vehicle::PathTrackingOptions reference_problem(bool two_trajectories) {
+  vehicle::PathTrackingOptions o;
+  o.front_length = 0.189;
+  o.rear_length = 0.135;
+  o.bicycle = vehicle::BicycleForm::published;
+  o.outside_terminal_cost = 10;
+  o.body = vehicle::BodyForm::box;
+  o.limit_acceleration = false;
+  o.exact_lag = false;
+  o.hold_first_input = true;
+  o.straight_local_rollout = two_trajectories;
+  o.linear_sign_error = true;
+  return o;
+}
+
+ReferenceWorkload::ReferenceWorkload()
+    : field_(reference_course(), maps::ReferenceFieldOptions::published()), cost_map_([] {
+        auto options = maps::LocalCostMapOptions::published();
+        options.outside = -1;
+        return options;
+      }()) {
+  const maps::ReferencePoint first = reference_course().front();
+  robot_ = {first.x + 0.1, first.y, first.yaw + 0.05};
+  start_ = {robot_.x, robot_.y, robot_.yaw, first.speed, 0.05};
+  field_.update({robot_.x, robot_.y});
+  cost_map_.update(reference_scan(robot_).view());
+}
+
+namespace {
+
+template <bool two_trajectories>
+std::unique_ptr<BatchEvaluator> make_evaluator(const ReferenceWorkload& w,
+                                               const vehicle::PathTrackingOptions& options,
+                                               simd::Target target) {
+  using Problem = vehicle::PathTracking<two_trajectories>;
+  Problem problem(options);
+  problem.set_maps(w.field().view(), w.cost_map().view(), w.robot().x, w.robot().y, w.robot().yaw);
+  auto made = std::make_unique<ProblemEvaluator<Problem>>(problem, target);
+  typename ProblemEvaluator<Problem>::State s{};  // in the robot's frame the car stands at the origin
+  s.x = w.start().x;
+  s.y = w.start().y;
+  s.yaw = w.start().yaw;
+  s.speed = w.start().speed;
+  s.steer = w.start().steer;
+  made->set_state(s);
+  return made;
+}
+
+}  // namespace
+
+std::unique_ptr<BatchEvaluator> ReferenceWorkload::evaluator(const vehicle::PathTrackingOptions& problem,
+                                                             simd::Target target) const {
+  return problem.straight_local_rollout ? make_evaluator<true>(*this, problem, target)
+                                        : make_evaluator<false>(*this, problem, target);
+}
+
+SequenceBatch ReferenceWorkload::sequences(int samples, int steps_wanted) const {
+  SequenceBatch batch(steps_wanted, 1, samples);
+  RandomStream random({1, 2});
+  for (int t = 0; t < steps_wanted; ++t) {
+    for (int k = 0; k < batch.stride(); ++k) {
+      batch.at(t, 0, k) = static_cast<float>(std::clamp(0.05 + 0.2 * random.normal(), -0.45, 0.45));
+    }
+  }
+  return batch;
+}
+
+}  // namespace slalom::tools

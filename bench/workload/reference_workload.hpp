@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bench/workload/yardstick.hpp"
+#include "slalom/core/batch_evaluator.hpp"
+#include "slalom/core/sequence_batch.hpp"
+#include "slalom/core/simd.hpp"
+#include "slalom/maps/local_cost_map.hpp"
+#include "slalom/maps/reference_field.hpp"
+#include "slalom/vehicle/model/path_tracking.hpp"
+
+/// The workload `reference` that speed is measured on: the vehicle problem with the published parameters and
+/// 14 inputs (15 states), on a course with two parked cars, the same in every run.
+namespace slalom::tools {
+
+/// A closed course with straights and turns, points every 5 cm, speeds 3 to 5 m/s.
+std::vector<maps::ReferencePoint> reference_course();
+
+/// What a LiDAR of 1080 beams sees from a pose on that course: its walls, 1.1 m to either side of the middle,
+/// and two parked cars, 2.5 and 6 m ahead of the first point. m.
+struct ReferenceScan {
+  std::vector<float> ranges;
+  maps::LaserScanView view() const;
+};
+ReferenceScan reference_scan(const maps::Pose& robot);
+
+/// The published vehicle problem; `two_trajectories` as the published program has it.
+vehicle::PathTrackingOptions reference_problem(bool two_trajectories);
+
+/// Maps, start and control sequences in place.
+class ReferenceWorkload {
+ public:
+  static constexpr int steps = 14;
+
+  ReferenceWorkload();
+
+  const CarStart& start() const { return start_; }
+  const maps::Pose& robot() const { return robot_; }
+  const maps::ReferenceField& field() const { return field_; }
+  const maps::LocalCostMap& cost_map() const { return cost_map_; }
+
+  /// Normal samples of `steps` inputs, steering in [-0.45, 0.45] rad, round a sequence that goes straight on.
+  SequenceBatch sequences(int samples, int steps_wanted = steps) const;
+
+  Yardstick yardstick() const { return {reference_problem(false), field_, cost_map_, robot_}; }
+
+  /// The vehicle problem with the maps and the start in place, for one instruction set.
+  std::unique_ptr<BatchEvaluator> evaluator(const vehicle::PathTrackingOptions& problem,
+                                            simd::Target target) const;
+
+ private:
+  maps::Pose robot_;
+  CarStart start_;
+  maps::ReferenceField field_;
+  maps::LocalCostMap cost_map_;
+};
+
+}  // namespace slalom::tools

@@ -1,0 +1,225 @@
+#include "tools/commands/bench_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <thread>
+
+#include "bench/workload/measurements.hpp"
+#include "bench/workload/peak.hpp"
+#include "slalom/core/dispatch.hpp"
+#include "tools/drawing/bench_plot.hpp"
+#include "tools/scenario/scenario.hpp"
+#include "tools/terminal/json_output.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  std::string config, json, plot;
+  std::vector<std::string> set, methods;
+  double seconds = 0.5;
+  bool scaling = false;
+};
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+/// `reference` is the published configuration with one trajectory a rollout, whatever files say else.
+vehicle::Configuration configuration_of(const Arguments& arguments) {
+  ScenarioArguments scenario;
+  scenario.config = arguments.config.empty() ? "published" : arguments.config;
+  scenario.set = arguments.set;
+  vehicle::Configuration made = load_configuration(scenario, "svg_mppi");
+  if (arguments.config.empty()) made.vehicle.straight_local_rollout = false;
+  if (input_count(made.vehicle) != 1) {
+    throw std::invalid_argument(
+        "key vehicle.speed: 'input' must not be set here: what is measured has the steering "
+        "as its only input");
+  }
+  return made;
+}
+
+Json json_of(const TimeStatistics& t) {
+  return {{"p50", t.p50}, {"p99", t.p99}, {"max", t.max}, {"min", t.min}};
+}
+
+/// Changes the sample count of any method's options.
+SolverOptions with(SolverOptions options, int samples, int threads, int horizon = 0) {
+  std::visit(
+      [&](auto& o) {
+        o.samples = samples > 0 ? samples : o.samples;
+        o.threads = threads;
+        if (horizon > 0) o.horizon = horizon;
+      },
+      options);
+  return options;
+}
+
+class Bench {
+ public:
+  explicit Bench(const Arguments& arguments)
+      : arguments_(arguments),
+        words_(arguments.json == "-" ? stderr : stdout),
+        configuration_(configuration_of(arguments)),
+        target_(simd::active_target()) {
+    for (const std::string& method : arguments.methods) solver_options(method);  // refuses an unknown one
+  }
+
+  int run() {
+    json_["target"] = simd::name(target_);
+    json_["cpu"] = processor();
+    json_["compiler"] = __VERSION__;
+    json_["config"] = arguments_.config.empty() ? "reference" : arguments_.config;
+    std::fprintf(words_, "%s, %s, %s; workload %s\n", processor().c_str(), simd::name(target_), __VERSION__,
+                 json_["config"].get<std::string>().c_str());
+    rollouts();
+    for (const SolverOptions& options : configuration_.methods) {
+      const std::string name = solver_name(options);
+      const auto& wanted = arguments_.methods;
+      if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end()) method(options);
+    }
+    tick();
+    if (arguments_.scaling || !arguments_.plot.empty()) scaling();
+    if (!arguments_.json.empty()) write_json(json_, arguments_.json);
+    return 0;
+  }
+
+ private:
+  void rollouts() {
+    const RolloutSpeed speed = measure_rollouts(workload_, configuration_.vehicle, 8000,
+                                                ReferenceWorkload::steps, target_, arguments_.seconds);
+    const double peak = measured_peak_gflops(target_), rate = operations_per_step / speed.rollout.p50;
+    json_["yardstick_ns_per_step"] = speed.yardstick.p50;
+    json_["rollout_ns_per_step"] = speed.rollout.p50;
+    json_["rollout_times_faster"] = speed.yardstick.p50 / speed.rollout.p50;
+    json_["rollout_gflops"] = rate;
+    json_["peak_gflops"] = peak;
+    json_["share_of_peak"] = rate / peak;
+    std::fprintf(words_,
+                 "yardstick %.1f ns a step, rollouts %.3f ns: %.1f times faster (least times: %.1f); %.0f "
+                 "GFLOP/s, %.0f %% of this core's %.0f\n",
+                 speed.yardstick.p50, speed.rollout.p50, speed.yardstick.p50 / speed.rollout.p50,
+                 speed.yardstick.min / speed.rollout.min, rate, 100 * rate / peak, peak);
+    std::fprintf(words_, "%-14s %8s %8s %8s %10s %9s | %s\n", "ms", "p50", "p99", "max", "yardstick",
+                 "prepared", "draw, evaluate, guide, update (us)");
+  }
+
+  void method(const SolverOptions& options) {
+    const SolveSpeed s =
+        measure_solve(workload_, configuration_.vehicle, with(options, 0, 1), arguments_.seconds);
+    Json& json = json_["methods"][s.method];
+    json["solve_ms"] = json_of(s.solve);
+    json["solve_yardstick_steps"] = s.solve.p50 * 1e6 / s.yardstick.p50;
+    json["prepared_ms"] = json_of(s.prepared);
+    json["yardstick_ns_per_step"] = s.yardstick.p50;
+    json["degenerate_share"] = s.degenerate_share;
+    json["stage_ms"] = {{"draw", 1e3 * s.stages.draw},
+                        {"evaluate", 1e3 * s.stages.evaluate},
+                        {"guide", 1e3 * s.stages.guide},
+                        {"update", 1e3 * s.stages.update}};
+    std::fprintf(words_, "%-14s %8.3f %8.3f %8.3f %7.1f ns %9.3f | %.0f, %.0f, %.0f, %.0f\n",
+                 s.method.c_str(), s.solve.p50, s.solve.p99, s.solve.max, s.yardstick.p50, s.prepared.p50,
+                 1e6 * s.stages.draw, 1e6 * s.stages.evaluate, 1e6 * s.stages.guide, 1e6 * s.stages.update);
+  }
+
+  void tick() {
+    const TickSpeed speed = measure_tick(configuration_, arguments_.seconds);
+    json_["tick_ms"] = speed.tick.p50;
+    json_["tick"] = {{"whole_ms", json_of(speed.tick)}, {"without_solve_ms", json_of(speed.round_solver)}};
+    std::fprintf(words_, "planner's tick %.3f ms (p99 %.3f), without the solve %.3f ms\n", speed.tick.p50,
+                 speed.tick.p99, speed.round_solver.p50);
+  }
+
+  SolveSpeed solve(const char* name, int samples, int threads, int horizon = 0) {
+    for (const SolverOptions& options : configuration_.methods) {
+      if (std::string(solver_name(options)) == name)
+        return measure_solve(workload_, configuration_.vehicle, with(options, samples, threads, horizon),
+                             0.1 * arguments_.seconds);
+    }
+    throw std::invalid_argument(std::string("no method ") + name);
+  }
+
+  void scaling() {
+    Json& json = json_["scaling"];
+    std::vector<BenchCurve> curves;
+    for (const char* name : {"mppi", "svg_mppi"}) {
+      BenchCurve curve{name, {}, {}};
+      for (int log2 = 7; log2 <= 17; ++log2) {
+        const SolveSpeed s = solve(name, 1 << log2, 1);
+        curve.samples.push_back(1 << log2);
+        curve.milliseconds.push_back(s.solve.p50);
+        json["samples"][name].push_back({{"samples", 1 << log2}, {"solve_ms", s.solve.p50}});
+        std::fprintf(words_, "%-9s K %6d  %9.3f ms\n", name, 1 << log2, s.solve.p50);
+      }
+      curves.push_back(curve);
+    }
+    for (int horizon = 7; horizon <= 112; horizon *= 2) {
+      const SolveSpeed s = solve("svg_mppi", 0, 1, horizon);
+      json["horizon"].push_back({{"steps", horizon}, {"solve_ms", s.solve.p50}});
+      std::fprintf(words_, "svg_mppi  T %6d  %9.3f ms\n", horizon, s.solve.p50);
+    }
+    const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    for (int threads = 1; threads <= cores; threads *= 2) {
+      const SolveSpeed s = solve("svg_mppi", 0, threads);
+      json["threads"].push_back({{"threads", threads}, {"solve_ms", s.solve.p50}});
+      std::fprintf(words_, "svg_mppi  threads %d  %6.3f ms\n", threads, s.solve.p50);
+    }
+    for (const simd::Target target :
+         {simd::Target::generic, simd::Target::sse4, simd::Target::avx2, simd::Target::avx512}) {
+      if (!simd::supported(target)) continue;
+      const RolloutSpeed s = measure_rollouts(workload_, configuration_.vehicle, 8000,
+                                              ReferenceWorkload::steps, target, 0.2 * arguments_.seconds);
+      json["targets"].push_back({{"target", simd::name(target)},
+                                 {"rollout_ns_per_step", s.rollout.p50},
+                                 {"yardstick_ns_per_step", s.yardstick.p50}});
+      std::fprintf(words_, "rollouts  %-8s %6.3f ns a step, %.1f times the yardstick\n", simd::name(target),
+                   s.rollout.p50, s.yardstick.p50 / s.rollout.p50);
+    }
+    if (!arguments_.plot.empty())
+      plot_bench(curves, processor() + ", " + simd::name(target_) + ", one thread", arguments_.plot);
+  }
+
+  const Arguments& arguments_;
+  std::FILE* words_;
+  vehicle::Configuration configuration_;
+  simd::Target target_;
+  ReferenceWorkload workload_;
+  Json json_;
+};
+
+}  // namespace
+
+CLI::App* add_bench_command(CLI::App& app, int& exit_status) {
+  CLI::App* command = app.add_subcommand(
+      "bench", "Measure rollouts, every method and the planner's tick on this machine, beside a yardstick");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("--config", arguments->config,
+                      "Measure this configuration; without it the fixed workload: the published methods and "
+                      "problem, one trajectory a rollout");
+  command->add_option("--set", arguments->set, "section.option=value; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--methods", arguments->methods, "Only these, separated by commas")->delimiter(',');
+  command->add_option("--seconds", arguments->seconds, "For every measurement")
+      ->check(CLI::Range(0.01, 600.0))
+      ->capture_default_str();
+  command->add_flag("--scaling", arguments->scaling,
+                    "Also over samples, horizon, threads and instruction sets");
+  command->add_option("--plot", arguments->plot, "Write solve times over samples as PNG to this file");
+  command->add_option("--json", arguments->json, "Write JSON to this file, or to standard output: -");
+  command->footer("SLALOM_TARGET=avx2 (avx512, sse4, generic) forces an instruction set.");
+  command->callback([arguments, &exit_status] { exit_status = Bench(*arguments).run(); });
+  return command;
+}
+
+}  // namespace slalom::tools

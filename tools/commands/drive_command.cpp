@@ -1,0 +1,225 @@
+#include "tools/commands/drive_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "slalom/core/error.hpp"
+#include "slalom/core/version.hpp"
+#include "tools/drawing/lap_picture.hpp"
+#include "tools/recording/recording.hpp"
+#include "tools/report/lap_json.hpp"
+#include "tools/scenario/scenario.hpp"
+#include "tools/terminal/interrupt.hpp"
+#include "tools/terminal/json_output.hpp"
+#include "tools/terminal/progress_line.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using evaluation::LapResult;
+
+struct Arguments {
+  ScenarioArguments scenario;
+  std::string method = "svg_mppi";
+  std::uint64_t seed = 0;
+  int laps = 1;
+  std::string json, record, plot;
+  bool record_times = false;
+};
+
+/// A drive of several laps and where it tells about itself.
+class DriveJob {
+ public:
+  explicit DriveJob(const Arguments& arguments)
+      : arguments_(arguments),
+        words_(arguments.json == "-" ? stderr : stdout),
+        scenario_(load_scenario(arguments.scenario, arguments.method)),
+        runner_(scenario_.arena, scenario_.configuration, arguments.method, scenario_.lap),
+        settings_(settings_json(arguments.scenario, scenario_, arguments.method)) {
+    settings_["seed"] = arguments.seed;
+    settings_["laps"] = arguments.laps;
+    settings_["timeout_s"] = runner_.timeout();
+    settings_["control_period_s"] = runner_.control_period();
+    if (!arguments.record.empty())
+      recording_ = make_recording(arguments.record, {.arguments = arguments.scenario,
+                                                     .scenario = scenario_,
+                                                     .method = arguments.method,
+                                                     .seed = arguments.seed,
+                                                     .control_period = runner_.control_period(),
+                                                     .settings = settings_,
+                                                     .times = arguments.record_times});
+  }
+
+  /// The exit status.
+  int run() {
+    for (const auto& note : scenario_.arena->course.notes)
+      std::fprintf(words_, "note: %s: %s\n", scenario_.arena->course.name.c_str(), note.c_str());
+    std::fprintf(words_, "%s on %s, configuration %s, evaluation %s, %d obstacles, seed %llu\n",
+                 arguments_.method.c_str(), scenario_.arena->course.name.c_str(),
+                 arguments_.scenario.config.c_str(), arguments_.scenario.evaluation.c_str(),
+                 scenario_.lap.obstacles, static_cast<unsigned long long>(arguments_.seed));
+    try {
+      const InterruptFlag interrupt;
+      for (int lap = 0; lap < arguments_.laps && !interrupt.raised(); ++lap) drive(lap, interrupt.raised());
+    } catch (...) {
+      if (!laps_.empty()) write_results();
+      throw;
+    }
+    if (!laps_.empty()) write_results();
+    return finished() == arguments_.laps ? 0 : 1;
+  }
+
+ private:
+  void drive(int lap, const std::atomic<bool>& interrupted) {
+    const std::uint64_t seed = evaluation::lap_seed(arguments_.seed, lap, scenario_.lap.obstacles);
+    if (recording_) recording_->begin_lap(lap + 1, seed);
+    driven_ = {};
+    LapResult result;
+    {
+      ProgressLine progress(words_);
+      const auto on_tick = [&](const evaluation::LapTick& tick) {
+        progress.show(lap + 1, arguments_.laps, tick);
+        if (recording_) recording_->add(tick);
+        if (arguments_.plot.empty()) return;
+        driven_.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
+        driven_.speeds.push_back(tick.seen.speed);
+      };
+      result = runner_.run(seed, on_tick, &interrupted);
+    }
+    if (result.steps == 0) return;
+    laps_.push_back(std::move(result));
+    say(laps_.back());
+    if (recording_) recording_->end_lap(laps_.back(), lap + 1);
+  }
+
+  int finished() const {
+    return static_cast<int>(
+        std::count_if(laps_.begin(), laps_.end(), [](const auto& l) { return l.finished; }));
+  }
+
+  static const char* outcome(const LapResult& lap) {
+    return lap.finished ? "finished" : lap.cancelled ? "interrupted" : "timeout";
+  }
+
+  void say(const LapResult& lap) const {
+    auto times = lap.solve_ms;
+    std::sort(times.begin(), times.end());
+    std::fprintf(words_,
+                 "lap %zu: %s, %.2f s, %d steps, %d contact%s, cost %.3f (state %.3f, collision %.3f), mean "
+                 "%.2f m/s, solve %.2f ms (p99 %.2f)\n",
+                 laps_.size(), outcome(lap), lap.time, lap.steps, lap.contacts, lap.contacts == 1 ? "" : "s",
+                 lap.mean_sequence_cost, lap.state_cost, lap.collision_cost, lap.mean_speed,
+                 times.empty() ? 0.0 : percentile(times, 0.5), times.empty() ? 0.0 : percentile(times, 0.99));
+    std::fflush(words_);
+  }
+
+  Json summary() const {
+    int contacts = 0;
+    double cost = 0;
+    for (const auto& lap : laps_) {
+      contacts += lap.contacts;
+      cost += lap.mean_sequence_cost;
+    }
+    const double chances = static_cast<double>(scenario_.lap.obstacles) * static_cast<double>(laps_.size());
+    return {{"laps_finished", finished()},
+            {"contacts", contacts},
+            {"collision_rate", chances > 0 ? Json(contacts / chances) : Json(nullptr)},
+            {"mean_sequence_cost", cost / static_cast<double>(laps_.size())}};
+  }
+
+  void write_results() {
+    const Json total = summary();
+    if (laps_.size() > 1)
+      std::fprintf(words_, "%d of %d laps finished, %d contacts, cost %.3f\n", finished(), arguments_.laps,
+                   total["contacts"].get<int>(), total["mean_sequence_cost"].get<double>());
+    if (recording_) {
+      recording_->close();
+      std::fprintf(words_, "recording: %s\n", arguments_.record.c_str());
+    }
+    if (!arguments_.json.empty()) write_json(results(total), arguments_.json);
+    if (!arguments_.plot.empty()) {
+      plot();
+      std::fprintf(words_, "picture: %s\n", arguments_.plot.c_str());
+    }
+  }
+
+  Json results(const Json& total) const {
+    Json laps = Json::array();
+    for (std::size_t i = 0; i < laps_.size(); ++i)
+      laps.push_back(lap_json(laps_[i], static_cast<int>(i) + 1));
+    Json settings = settings_;
+    settings["threads"] = scenario_.lap.threads;
+    return {{"program", std::string("slalom ") + version()},
+            {"settings", settings},
+            {"summary", total},
+            {"laps", laps},
+            {"solve_ms", times_json(solve_times(laps_))}};
+  }
+
+  void plot() const {
+    const LapResult& lap = laps_.back();
+    char facts[200];
+    std::snprintf(
+        facts, sizeof facts,
+        "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d contact%s \xC2\xB7 cost %.2f \xC2\xB7 %d "
+        "obstacles, seed %llu",
+        outcome(lap), lap.time, lap.mean_speed, lap.contacts, lap.contacts == 1 ? "" : "s",
+        lap.mean_sequence_cost, scenario_.lap.obstacles, static_cast<unsigned long long>(lap.seed));
+    // The world of the published evaluation takes unknown ground for free; a picture should not.
+    const auto map = vehicle::load_course(scenario_.folder).map;
+    draw_lap({.map = map,
+              .path = scenario_.arena->path,
+              .closed = scenario_.arena->course.closed,
+              .driven = driven_,
+              .lap = lap,
+              .start = runner_.start(),
+              .title = arguments_.method + " on " + scenario_.arena->course.name,
+              .facts = facts},
+             arguments_.plot);
+  }
+
+  const Arguments& arguments_;
+  std::FILE* words_;
+  Scenario scenario_;
+  evaluation::LapRunner runner_;
+  Json settings_;
+  std::unique_ptr<Recording> recording_;
+  DrivenLine driven_;
+  std::vector<LapResult> laps_;
+};
+
+int run(const Arguments& arguments) {
+  if (arguments.laps < 1 || arguments.laps > 100000)
+    throw IoError("--laps", 0, std::to_string(arguments.laps) + " must be in [1, 100000]");
+  return DriveJob(arguments).run();
+}
+
+}  // namespace
+
+CLI::App* add_drive_command(CLI::App& app, int& exit_status) {
+  CLI::App* command = app.add_subcommand("drive", "Drive laps, with a summary, results in JSON, a picture");
+  const auto arguments = std::make_shared<Arguments>();
+  add_scenario_options(*command, arguments->scenario);
+  add_method_option(*command, arguments->method);
+  command->add_option("--seed", arguments->seed, "Of the first lap; each further one has obstacles + 5 more")
+      ->capture_default_str();
+  command->add_option("--laps", arguments->laps, "How many, each from a fresh start")->capture_default_str();
+  command->add_option("--json", arguments->json,
+                      "Write the results as JSON to this file, or to standard output: -");
+  auto* record = command->add_option(
+      "--record", arguments->record,
+      "Record every control step to this file: MCAP if it ends in .mcap, else JSON lines");
+  command
+      ->add_flag("--record-times", arguments->record_times,
+                 "With the wall clock's figures, which differ from run to run (MCAP)")
+      ->needs(record);
+  command->add_option("--plot", arguments->plot, "Draw the last lap to this PNG");
+  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
+  return command;
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,76 @@
+#include "tools/commands/eval_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/evaluation/evaluation_job.hpp"
+#include "tools/evaluation/ranks.hpp"
+#include "tools/report/report.hpp"
+#include "tools/terminal/json_output.hpp"
+
+namespace slalom::tools {
+namespace {
+
+struct Arguments {
+  EvaluationArguments evaluation;
+  std::vector<std::string> methods{"svg_mppi"}, scenarios{"oa"}, sweeps;
+  int laps = 20;
+  int obstacles = 5;
+  bool report = false;
+};
+
+int run(const Arguments& arguments) {
+  const auto experiments = make_experiments(arguments.methods, arguments.scenarios, arguments.laps,
+                                            arguments.obstacles, arguments.sweeps);
+  Evaluated evaluated;
+  if (!run_evaluation(arguments.evaluation, experiments, evaluated)) return rank() > 0 ? 0 : 1;
+  const auto summary = evaluated.summary();
+  const std::string file = arguments.evaluation.out + "/summary.json";
+  write_json(summary, file);
+  std::FILE* words = arguments.evaluation.json == "-" ? stderr : stdout;
+  if (arguments.report) {
+    Report report{"Methods compared", evaluated, {}, {}, {}};
+    for (const auto& r : evaluated.results) {
+      const auto& e = evaluated.campaign.experiments[static_cast<std::size_t>(r.experiment)];
+      report.rows.push_back({"methods", e.label(), "", r.experiment});
+    }
+    write_report(report, arguments.evaluation.out);
+  }
+  print_results(evaluated, words);
+  std::fprintf(words, "%s\n", file.c_str());
+  if (!arguments.evaluation.json.empty()) write_json(summary, arguments.evaluation.json);
+  return 0;
+}
+
+}  // namespace
+
+CLI::App* add_eval_command(CLI::App& app, int& exit_status) {
+  CLI::App* command =
+      app.add_subcommand("eval", "Compare methods over many laps: intervals, paired tests, every lap kept");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("--methods", arguments->methods, "Separated by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  command
+      ->add_option("--scenario", arguments->scenarios,
+                   "pt: path tracking, oa: among obstacles; or both: pt,oa")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--laps", arguments->laps, "Of every method in every scenario")->capture_default_str();
+  command->add_option("--obstacles", arguments->obstacles, "Parked cars a lap in scenario oa")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--set", arguments->sweeps,
+          "key=v1,v2,...: one experiment for each value (and each combination where it is said more "
+          "than once); world.friction=0.7,1 and so on make the world harder: slalom options lists them")
+      ->allow_extra_args(false);
+  command->add_flag("--report", arguments->report, "Also write report.html and its figures");
+  add_evaluation_options(*command, arguments->evaluation);
+  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
+  return command;
+}
+
+}  // namespace slalom::tools

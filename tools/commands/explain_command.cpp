@@ -1,0 +1,156 @@
+#include "tools/commands/explain_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "slalom/core/option_access.hpp"
+#include "tools/explanation/explain_picture.hpp"
+#include "tools/explanation/explanation.hpp"
+#include "tools/terminal/json_output.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  std::vector<std::string> methods{"svg_mppi"}, set;
+  std::string plot, json;
+  std::uint64_t seed = 0;
+  int solves = 10;
+};
+
+/// The methods asked for, in the order asked; `all` are all.
+std::vector<ExplainedMethod> chosen(const std::vector<std::string>& names) {
+  const std::vector<ExplainedMethod> known = explained_methods();
+  if (names == std::vector<std::string>{"all"}) return known;
+  std::vector<ExplainedMethod> result;
+  for (const std::string& name : names) {
+    const auto at =
+        std::find_if(known.begin(), known.end(), [&](const ExplainedMethod& m) { return m.name == name; });
+    if (at == known.end()) {
+      std::string all = "all";
+      for (const ExplainedMethod& m : known) all += ", " + m.name;
+      if (name == "all") throw std::invalid_argument("--method: all stands for every method: say it alone");
+      throw std::invalid_argument("--method: " + name + " is not one of " + all);
+    }
+    if (std::count(names.begin(), names.end(), name) > 1)
+      throw std::invalid_argument("--method: " + name + " is said twice");
+    result.push_back(*at);
+  }
+  return result;
+}
+
+/// `key=value` for every method shown that has such an option, `problem.key=value` for the problem.
+void apply(const std::string& word, std::vector<ExplainedMethod>& methods, problems::PassingPoint& point) {
+  const auto equals = word.find('=');
+  if (equals == std::string::npos) throw std::invalid_argument("--set " + word + ": must be key=value");
+  std::string key = word.substr(0, equals);
+  const std::string value = word.substr(equals + 1);
+  bool found = false;
+  std::vector<std::string> names;
+  const auto try_on = [&](auto& options, const std::string& section) {
+    for (const OptionEntry& entry : list_options(options)) names.push_back(section + entry.declaration.name);
+    found = set_option(options, std::string_view(key).substr(section.size()), value) || found;
+  };
+  try {
+    if (key.rfind("problem.", 0) == 0) {
+      try_on(point, "problem.");
+    } else {
+      for (ExplainedMethod& method : methods) std::visit([&](auto& o) { try_on(o, ""); }, method.options);
+    }
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("--set " + key + ": " + error.what());
+  }
+  if (found) return;
+  const std::string near = nearest_name(key, names);
+  throw std::invalid_argument("--set " + key + ": is no option of what is shown" +
+                              (near.empty() ? "" : "; did you mean " + near + "?"));
+}
+
+Json to_json(const Explanation& e) {
+  Json samples = Json::array(), guides = Json::array();
+  const auto beside = static_cast<std::size_t>(e.beside);
+  for (const ExplainedSample& s : e.samples)
+    samples.push_back(
+        {{"beside", s.way[beside]}, {"cost", s.cost}, {"weight", s.weight}, {"collided", s.collided}});
+  for (const auto& steps : e.guides) {
+    Json ways = Json::array();
+    for (const Way& way : steps) ways.push_back(way);
+    guides.push_back(std::move(ways));
+  }
+  return {{"method", e.method},
+          {"status", e.status},
+          {"inputs", e.inputs},
+          {"plan", e.plan},
+          {"cost", e.plan_cost},
+          {"collided", e.plan_collides},
+          {"mean", e.mean},
+          {"deviation", e.deviation},
+          {"beside_state", e.beside},
+          {"effective_samples", e.effective_samples},
+          {"guide_ways", std::move(guides)},
+          {"samples", std::move(samples)},
+          {"optimal", {{"temperature", e.temperature}, {"place", e.places}, {"density", e.density}}}};
+}
+
+void run(const Arguments& arguments) {
+  std::vector<ExplainedMethod> methods = chosen(arguments.methods);
+  problems::PassingPoint point;
+  for (const std::string& word : arguments.set) apply(word, methods, point);
+  std::vector<Explanation> explanations;
+  Json json{{"seed", arguments.seed}, {"solves", arguments.solves}, {"methods", Json::array()}};
+  for (const ExplainedMethod& method : methods) {
+    explanations.push_back(explain(method, point, arguments.solves, arguments.seed));
+    const Explanation& e = explanations.back();
+    const auto beside = static_cast<std::size_t>(e.beside);
+    if (arguments.json != "-") {
+      std::printf(
+          "%-20s the plan %s, %.2f m %s of the disc's centre, cost %.2f; distribution there %.2f +- %.2f m\n",
+          e.method.c_str(), e.plan_collides ? "hits the disc" : "passes",
+          std::abs(e.plan[beside] - point.disc_y), e.plan[beside] > point.disc_y ? "left" : "right",
+          e.plan_cost, e.mean[beside], e.deviation[beside]);
+    }
+    if (!arguments.json.empty()) json["methods"].push_back(to_json(e));
+  }
+  if (!arguments.json.empty()) write_json(json, arguments.json);
+  if (!arguments.plot.empty())
+    save_png(draw_explanations(explanations), arguments.plot, explanations.size() > 4 ? 1 : 2);
+}
+
+}  // namespace
+
+CLI::App* add_explain_command(CLI::App& app, int& exit_status) {
+  CLI::App* command = app.add_subcommand(
+      "explain", "Show what methods make of a problem with two ways: samples, guides, plan, distribution");
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option(
+          "--method", arguments->methods,
+          "Separated by commas: mppi, svg_mppi, svg_mppi_nominal, svg_mppi_covariance, reverse_mppi, "
+          "sv_mpc, cem; or all")
+      ->delimiter(',')
+      ->capture_default_str();
+  command
+      ->add_option("--set", arguments->set,
+                   "option=value of the methods shown, or problem.option=value; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--solves", arguments->solves, "From the same state; the last is shown")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Of the random numbers")->capture_default_str();
+  command->add_option("--plot", arguments->plot, "Draw them side by side to this PNG");
+  command->add_option("--json", arguments->json,
+                      "Write everything as JSON to this file, or to standard output: -");
+  command->callback([arguments, &exit_status] {
+    run(*arguments);
+    exit_status = 0;
+  });
+  return command;
+}
+
+}  // namespace slalom::tools

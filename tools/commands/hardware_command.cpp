@@ -1,0 +1,267 @@
+#include "tools/commands/hardware_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "slalom/core/error.hpp"
+#include "slalom/evaluation/statistics.hpp"
+#include "tools/scenario/scenario.hpp"
+#include "tools/terminal/interrupt.hpp"
+#include "tools/terminal/json_output.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using namespace evaluation;
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  std::string course = "wren", json;
+  std::vector<std::string> drivers{"mppi@hardware", "svg_mppi@hardware", "svg_mppi@default"}, set;
+  int tracking_laps = 10, layouts = 6, laps = 3, obstacles = 5, jobs = 1;
+  double latency_ms = 10;
+};
+
+/// A lap to be driven, and how it was.
+struct Task {
+  std::size_t driver = 0;
+  int layout = -1;  ///< -1: path tracking
+  std::uint64_t seed = 0;
+  LapResult result;
+  bool done = false;
+};
+
+struct Driver {
+  std::string label, method;
+  vehicle::Configuration configuration;
+};
+
+Driver make_driver(const std::string& text, const Arguments& arguments) {
+  const auto at = text.find('@');
+  Driver driver{text, text.substr(0, at), {}};
+  ScenarioArguments scenario;
+  scenario.config = at == std::string::npos ? "hardware" : text.substr(at + 1);
+  scenario.set = arguments.set;
+  driver.configuration = load_configuration(scenario, driver.method);
+  // All know the latency: it is a property of the computer that can be measured at rest.
+  driver.configuration.planner.latency = 1e-3 * arguments.latency_ms;
+  return driver;
+}
+
+/// All laps, in parallel; the results do not depend on how many at a time. False if told to end.
+bool drive(std::vector<Task>& tasks, const std::vector<Driver>& drivers,
+           const std::shared_ptr<const Arena>& arena, const Arguments& arguments) {
+  std::mutex mutex;
+  std::size_t next = 0;
+  std::exception_ptr failed;
+  const InterruptFlag interrupt;
+  const auto work = [&] {
+    for (;;) {
+      Task* task = nullptr;
+      {
+        const std::lock_guard lock(mutex);
+        if (next == tasks.size() || failed || interrupt.raised()) return;
+        task = &tasks[next++];
+        std::fprintf(stderr, "lap %zu of %zu: %s\n", next, tasks.size(), drivers[task->driver].label.c_str());
+      }
+      try {
+        const Driver& driver = drivers[task->driver];
+        LapSettings settings;
+        settings.latency = 1e-3 * arguments.latency_ms;
+        settings.hardware = HardwareConditions{};
+        settings.obstacles = task->layout < 0 ? 0 : arguments.obstacles;
+        if (task->layout >= 0) settings.layout = static_cast<std::uint64_t>(1000 + task->layout);
+        task->result = LapRunner(arena, driver.configuration, driver.method, settings)
+                           .run(task->seed, {}, &interrupt.raised());
+        task->done = !task->result.cancelled;
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        failed = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int i = 1; i < arguments.jobs; ++i) threads.emplace_back(work);
+  work();
+  for (auto& thread : threads) thread.join();
+  if (failed) std::rethrow_exception(failed);
+  return !interrupt.raised();
+}
+
+double percentile(std::vector<float> values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return static_cast<double>(*at);
+}
+double mean_of(const std::vector<float>& values) {
+  double sum = 0;
+  for (const float v : values) sum += static_cast<double>(v);
+  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : sum / static_cast<double>(values.size());
+}
+
+/// The laps of one driver in one scenario.
+Json summarise(const std::vector<Task>& tasks, std::size_t driver, bool among_obstacles,
+               const Arguments& arguments) {
+  std::vector<double> costs;
+  std::vector<float> errors, yaw_errors, update_ms, solve_ms;
+  int laps = 0, finished = 0, contacts = 0, touched = 0, blind = 0, steps = 0;
+  double time = 0;
+  for (const Task& task : tasks) {
+    if (!task.done || task.driver != driver || (task.layout >= 0) != among_obstacles) continue;
+    const LapResult& r = task.result;
+    ++laps;
+    finished += r.finished;
+    contacts += r.contacts;
+    touched += r.contacts > 0;
+    blind += r.localisation.blind;
+    steps += r.steps;
+    costs.push_back(r.mean_sequence_cost);
+    if (r.finished) time += r.time;
+    const auto append = [](std::vector<float>& all, const std::vector<float>& more) {
+      all.insert(all.end(), more.begin(), more.end());
+    };
+    append(errors, r.localisation.error);
+    append(yaw_errors, r.localisation.yaw_error);
+    append(update_ms, r.localisation.update_ms);
+    append(solve_ms, r.solve_ms);
+  }
+  const Interval ms = bootstrap_mean(costs);
+  Json row{{"laps", laps},
+           {"finished", finished},
+           {"ms_mean", mean(costs)},
+           {"ms_ci", {ms.low, ms.high}},
+           {"contacts", contacts},
+           {"laps_with_contact", touched},
+           {"lap_time_mean", finished > 0 ? Json(time / finished) : Json(nullptr)},
+           {"blind_steps_share", steps > 0 ? static_cast<double>(blind) / steps : 0},
+           {"localisation_error_m", {{"mean", mean_of(errors)}, {"p99", percentile(errors, 0.99)}}},
+           {"localisation_error_rad", {{"mean", mean_of(yaw_errors)}, {"p99", percentile(yaw_errors, 0.99)}}},
+           {"localisation_ms", {{"p50", percentile(update_ms, 0.5)}, {"p99", percentile(update_ms, 0.99)}}},
+           {"solve_ms", {{"p50", percentile(solve_ms, 0.5)}, {"p99", percentile(solve_ms, 0.99)}}}};
+  if (among_obstacles) {
+    const int chances = laps * arguments.obstacles;
+    const Interval rate = wilson_interval(contacts, chances);
+    row["collision_rate"] = static_cast<double>(contacts) / std::max(1, chances);
+    row["collision_rate_ci"] = {rate.low, rate.high};
+  }
+  return row;
+}
+
+void print_row(std::FILE* out, const std::string& label, const char* scenario, const Json& r) {
+  char rate[40] = "-";
+  if (r.contains("collision_rate"))
+    std::snprintf(rate, sizeof rate, "%.1f (%.1f-%.1f) %%", 100 * r["collision_rate"].get<double>(),
+                  100 * r["collision_rate_ci"][0].get<double>(),
+                  100 * r["collision_rate_ci"][1].get<double>());
+  std::fprintf(out, "%-20s %-3s %3d/%-3d %8.3f %8.3f -%8.3f %8d %18s %10.3f %6.3f %8.2f %6.2f\n",
+               label.c_str(), scenario, r["finished"].get<int>(), r["laps"].get<int>(),
+               r["ms_mean"].get<double>(), r["ms_ci"][0].get<double>(), r["ms_ci"][1].get<double>(),
+               r["contacts"].get<int>(), rate, r["localisation_error_m"]["mean"].get<double>(),
+               r["localisation_error_m"]["p99"].get<double>(), r["localisation_ms"]["p50"].get<double>(),
+               r["localisation_ms"]["p99"].get<double>());
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.tracking_laps == 0 && arguments.layouts == 0)
+    throw IoError("--tracking-laps, --layouts", 0,
+                  "one of them must be more than 0: there is no lap to drive");
+  std::vector<Driver> drivers;
+  for (const std::string& text : arguments.drivers) {
+    if (std::count(arguments.drivers.begin(), arguments.drivers.end(), text) > 1)
+      throw IoError("--drivers", 0, "'" + text + "' is said twice");
+    drivers.push_back(make_driver(text, arguments));
+  }
+  const auto roots = vehicle::course_roots(program_folder());
+  const auto arena =
+      load_arena(vehicle::find_course(arguments.course, roots), Evaluation::true_physics, roots);
+  std::vector<Task> tasks;
+  for (std::size_t d = 0; d < drivers.size(); ++d) {
+    for (int lap = 0; lap < arguments.tracking_laps; ++lap)
+      tasks.push_back({d, -1, static_cast<std::uint64_t>(lap + 1), {}, false});
+    for (int layout = 0; layout < arguments.layouts; ++layout)
+      for (int lap = 0; lap < arguments.laps; ++lap)
+        tasks.push_back({d, layout, static_cast<std::uint64_t>(100 + 10 * layout + lap), {}, false});
+  }
+  const bool whole = drive(tasks, drivers, arena, arguments);
+  if (!whole)
+    std::fprintf(stderr, "interrupted after %td of %zu laps\n",
+                 std::count_if(tasks.begin(), tasks.end(), [](const Task& task) { return task.done; }),
+                 tasks.size());
+  std::FILE* words = arguments.json == "-" ? stderr : stdout;
+  std::fprintf(words, "%-20s %-3s %7s %8s %18s %8s %18s %17s %15s\n", "driver", "", "done", "MS", "95 %",
+               "contacts", "collision rate", "pose m, mean p99", "ms, p50 p99");
+  Json rows = Json::array();
+  for (std::size_t d = 0; d < drivers.size(); ++d) {
+    for (const bool among : {false, true}) {
+      const bool any = std::any_of(tasks.begin(), tasks.end(), [&](const Task& task) {
+        return task.done && task.driver == d && (task.layout >= 0) == among;
+      });
+      if (!any) continue;
+      Json row = summarise(tasks, d, among, arguments);
+      print_row(words, drivers[d].label, among ? "oa" : "pt", row);
+      Json named{{"driver", drivers[d].label}, {"scenario", among ? "oa" : "pt"}};
+      named.update(row);
+      rows.push_back(named);
+    }
+  }
+  if (arguments.json.empty()) return whole ? 0 : 1;
+  Json conditions;
+  for (const OptionEntry& entry : list_options(HardwareConditions{}))
+    conditions[entry.declaration.name] = to_text(entry.value);
+  Json told{{"course", arguments.course},
+            {"latency_ms", arguments.latency_ms},
+            {"obstacles", arguments.obstacles},
+            {"conditions", conditions},
+            {"results", rows}};
+  if (!whole) told["interrupted"] = true;
+  write_json(told, arguments.json);
+  return whole ? 0 : 1;
+}
+
+}  // namespace
+
+CLI::App* add_hardware_command(CLI::App& app, int& exit_status) {
+  CLI::App* command = app.add_subcommand(
+      "hardware",
+      "Laps under the conditions of a real car: noise, slip, a guessed pose, a servo unlike the model");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("--course", arguments->course, "A course by name, or its folder")
+      ->capture_default_str();
+  command->add_option("--drivers", arguments->drivers, "method@configuration, separated by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--set", arguments->set, "section.option=value, for every driver")
+      ->allow_extra_args(false);
+  command->add_option("--tracking-laps", arguments->tracking_laps, "Without obstacles")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+  command->add_option("--layouts", arguments->layouts, "Of obstacles, the same for every driver")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  command->add_option("--laps", arguments->laps, "In each layout")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command->add_option("--obstacles", arguments->obstacles, "Parked cars in a layout")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command
+      ->add_option("--latency-ms", arguments->latency_ms, "From a scan to its command's effect on the servo")
+      ->check(CLI::Range(0.0, 500.0))
+      ->capture_default_str();
+  command->add_option("--jobs", arguments->jobs, "Laps driven at a time")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_option("--json", arguments->json, "Write the results to this file, or to standard output: -");
+  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
+  return command;
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,159 @@
+#include "tools/commands/identify_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "slalom/core/error.hpp"
+#include "slalom/vehicle/model/identification.hpp"
+#include "tools/bags/bag_drive.hpp"
+#include "tools/bags/ros_bag.hpp"
+#include "tools/terminal/json_output.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using vehicle::Identification;
+using vehicle::Identified;
+
+struct Arguments {
+  std::string recording, json;
+  vehicle::IdentificationOptions options;
+};
+
+double entry(const Json& tick, const char* key, std::size_t index) {
+  const Json& value = tick.at(key).at(index);
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+
+std::vector<vehicle::DrivenSample> read_bag_samples(const std::string& file) {
+  std::vector<vehicle::DrivenSample> samples;
+  for (const BagTick& tick : load_bag_drive(file).ticks) {
+    const maps::Pose& pose = tick.odometry.pose;
+    samples.push_back({tick.time, pose.x, pose.y, pose.yaw, tick.odometry.speed, tick.command.steer});
+  }
+  return samples;
+}
+
+/// The ticks of a bag or a recording (docs/recording.md). Throws IoError with file and line.
+std::vector<vehicle::DrivenSample> read_recording(const std::string& file) {
+  if (std::filesystem::is_directory(file)) throw IoError(file, 0, "is a folder, not a recording");
+  if (is_bag(file)) return read_bag_samples(file);
+  std::ifstream stream(file);
+  if (!stream) throw IoError(file, 0, "cannot be read");
+  std::vector<vehicle::DrivenSample> samples;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    // What an MCAP file begins with.
+    if (number == 1 && line.rfind("\x89MCAP", 0) == 0)
+      throw IoError(file, 0,
+                    "is in MCAP, JSON lines are needed: slalom drive --record with a name that does not end "
+                    "in .mcap");
+    try {
+      const Json record = Json::parse(line);
+      const std::string type = record.at("type");
+      if (number == 1 && type != "recording") throw IoError(file, 1, "is not the beginning of a recording");
+      if (type != "tick") continue;
+      samples.push_back({record.at("time"), entry(record, "odometry", 0), entry(record, "odometry", 1),
+                         entry(record, "odometry", 2), entry(record, "odometry", 3),
+                         entry(record, "command", 0)});
+    } catch (const Json::exception& error) {
+      throw IoError(file, number, std::string("is no record: ") + error.what());
+    }
+  }
+  return samples;
+}
+
+void print(std::FILE* out, const char* name, const Identified& value, const char* unit) {
+  std::fprintf(out, "%-20s %9.4f %-6s", name, value.value, unit);
+  if (value.deviation > 0)
+    std::fprintf(out, " +- %.4f", value.deviation);
+  else
+    std::fprintf(out, " (given)");
+  std::fprintf(out, "\n");
+}
+
+/// What to write into a configuration file.
+void advise(std::FILE* out, const Identification& found) {
+  const double ratio = found.steering_gain.value / found.wheelbase.value;
+  const bool wheelbase_known = found.wheelbase.deviation < 0.1 * found.wheelbase.value;
+  if (!wheelbase_known)
+    std::fprintf(
+        out,
+        "This drive does not tell gain and wheelbase apart: gain over wheelbase is %.3f /m. Measure the "
+        "wheelbase and give it with --wheelbase.\n\n",
+        ratio);
+  std::fprintf(out,
+               "For a configuration file (correct gain and offset where the servo is driven):\n"
+               "vehicle:\n  steer_time_constant: %.3f\n  dead_time: %.3f\n",
+               found.time_constant.value, found.delay.value);
+  if (wheelbase_known)
+    std::fprintf(out, "  front_length: %.4f\n  rear_length: %.4f\n", 0.4808 * found.wheelbase.value,
+                 0.5192 * found.wheelbase.value);
+  std::fprintf(out, "planner:\n  observer_time_constant: %.3f\n", found.time_constant.value);
+}
+
+int run(const Arguments& arguments) {
+  const auto samples = read_recording(arguments.recording);
+  const Identification found = [&] {
+    try {
+      return vehicle::identify(samples, arguments.options);
+    } catch (const std::invalid_argument& error) {
+      throw IoError(arguments.recording, 0, error.what());
+    }
+  }();
+  std::FILE* words = arguments.json == "-" ? stderr : stdout;
+  std::fprintf(words, "%d of %zu samples; %.1f %% of the turning explained, %.3f rad/s left\n\n",
+               found.samples, samples.size(), 100 * found.explained, found.residual);
+  print(words, "steering gain", found.steering_gain, "");
+  print(words, "steering offset", found.steering_offset, "rad");
+  print(words, "delay", found.delay, "s");
+  print(words, "time constant", found.time_constant, "s");
+  print(words, "wheelbase", found.wheelbase, "m");
+  print(words, "understeer", found.understeer, "s^2/m");
+  std::fprintf(words, "%-20s %9.4f        (way by the poses over way by the speed)\n\n", "speed scale",
+               found.speed_scale);
+  advise(words, found);
+  if (arguments.json.empty()) return 0;
+  const auto pair = [](const Identified& value) {
+    return Json{{"value", value.value}, {"deviation", value.deviation}};
+  };
+  write_json({{"samples", found.samples},
+              {"explained", found.explained},
+              {"residual", found.residual},
+              {"steering_gain", pair(found.steering_gain)},
+              {"steering_offset", pair(found.steering_offset)},
+              {"delay", pair(found.delay)},
+              {"time_constant", pair(found.time_constant)},
+              {"wheelbase", pair(found.wheelbase)},
+              {"understeer", pair(found.understeer)},
+              {"speed_scale", found.speed_scale}},
+             arguments.json);
+  return 0;
+}
+
+}  // namespace
+
+CLI::App* add_identify_command(CLI::App& app, int& exit_status) {
+  CLI::App* command = app.add_subcommand(
+      "identify", "Steering gain, trim, delay, lag and wheelbase of a car, from a recording");
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("recording", arguments->recording,
+                   "Of slalom drive --record, in JSON lines; or a bag of ROS 1")
+      ->required();
+  command->add_option("--wheelbase", arguments->options.wheelbase, "m, if it was measured; else it is sought")
+      ->check(CLI::Range(0.01, 20.0));
+  command->add_option("--least-speed", arguments->options.least_speed, "m/s, below it samples are not used")
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
+  command->add_option("--json", arguments->json,
+                      "Write what was found to this file, or to standard output: -");
+  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
+  return command;
+}
+
+}  // namespace slalom::tools

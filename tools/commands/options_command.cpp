@@ -1,0 +1,116 @@
+#include "tools/commands/options_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/scenario/scenario.hpp"
+#include "tools/terminal/json_output.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  ScenarioArguments scenario;
+  std::string method, json;
+  bool yaml = false;
+};
+
+std::string range_text(const OptionEntry& entry) {
+  if (!entry.choices.empty()) {
+    std::string all;
+    for (const auto& choice : entry.choices) all += (all.empty() ? "" : " | ") + choice;
+    return all;
+  }
+  const Declaration& d = entry.declaration;
+  if (std::isinf(d.min) && std::isinf(d.max)) return "";
+  if (std::isinf(d.max)) return ">= " + to_text(d.min);
+  if (std::isinf(d.min)) return "<= " + to_text(d.max);
+  return to_text(d.min) + " .. " + to_text(d.max);
+}
+
+Json entry_json(const OptionEntry& entry, const OptionEntry& standard) {
+  const Declaration& d = entry.declaration;
+  const auto bound = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  Json json = {{"name", d.name},
+               {"type", type_name(entry)},
+               {"value", to_text(entry.value)},
+               {"default", to_text(standard.value)},
+               {"unit", d.unit},
+               {"symbol", d.symbol},
+               {"help", d.help},
+               {"min", bound(d.min)},
+               {"max", bound(d.max)}};
+  if (!entry.choices.empty()) json["choices"] = entry.choices;
+  return json;
+}
+
+void print_section(const vehicle::Section& section) {
+  std::printf("%s\n", section.name.c_str());
+  for (const OptionEntry& entry : section.options) {
+    const Declaration& d = entry.declaration;
+    std::string what = d.help;
+    if (*d.symbol) what += std::string(what.empty() ? "" : " ") + "(" + d.symbol + ")";
+    std::printf("  %-26s %12s %-8s %-22s %s\n", d.name, to_text(entry.value).c_str(), d.unit,
+                range_text(entry).c_str(), what.c_str());
+  }
+}
+
+void run(const Arguments& arguments) {
+  const std::string method = arguments.method.empty() ? solver_names().front() : arguments.method;
+  const auto configuration = load_configuration(arguments.scenario, method);
+  if (arguments.yaml) {
+    std::cout << vehicle::to_yaml(configuration);
+    return;
+  }
+  auto standard = vehicle::list_sections(vehicle::Configuration{});
+  auto sections = vehicle::list_sections(configuration);
+  // No part of a configuration: what evaluations set of the world they drive in.
+  for (auto* list : {&standard, &sections})
+    list->push_back({"world", list_options(evaluation::LapSettings{})});
+  Json json;
+  for (std::size_t s = 0; s < sections.size(); ++s) {
+    const auto& section = sections[s];
+    const bool wanted = arguments.method.empty() || section.name == arguments.method ||
+                        section.name == "vehicle" || section.name == "planner" || section.name == "world";
+    if (!wanted) continue;
+    Json entries = Json::array();
+    for (std::size_t i = 0; i < section.options.size(); ++i)
+      entries.push_back(entry_json(section.options[i], standard[s].options[i]));
+    json[section.name] = std::move(entries);
+    if (arguments.json.empty()) print_section(section);
+  }
+  if (!arguments.json.empty()) write_json(json, arguments.json);
+}
+
+}  // namespace
+
+CLI::App* add_options_command(CLI::App& app, int& exit_status) {
+  CLI::App* command = app.add_subcommand("options", "List what can be set, with values, units, ranges");
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("--config", arguments->scenario.config,
+                   "default, default_speed, published, hardware, or a file")
+      ->capture_default_str();
+  command->add_option("--set", arguments->scenario.set, "section.option=value; may be repeated")
+      ->allow_extra_args(false);
+  auto* method = command->add_option("--method", arguments->method,
+                                     "Only this method's section, and those of vehicle, planner and world");
+  auto* json = command->add_option("--json", arguments->json,
+                                   "Write them as JSON to this file, or to standard output: -");
+  command->add_flag("--yaml", arguments->yaml, "Print the whole configuration as a file")
+      ->excludes(method)
+      ->excludes(json);
+  command->callback([arguments, &exit_status] {
+    run(*arguments);
+    exit_status = 0;
+  });
+  return command;
+}
+
+}  // namespace slalom::tools

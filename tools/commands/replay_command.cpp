@@ -1,0 +1,229 @@
+#include "tools/commands/replay_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "slalom/core/error.hpp"
+#include "slalom/vehicle/course/course.hpp"
+#include "tools/bags/replay_bag.hpp"
+#include "tools/bags/ros_bag.hpp"
+#include "tools/drawing/lap_picture.hpp"
+#include "tools/evaluation/stored_evaluation.hpp"
+#include "tools/live_view/replay_recording.hpp"
+#include "tools/recording/recording.hpp"
+#include "tools/report/lap_json.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using namespace evaluation;
+
+struct Arguments {
+  ReplayArguments recording;
+  std::string folder, method, scenario, course, plot, record, config = "default";
+  std::vector<std::string> set;
+  int lap = 0;
+  bool lap_said = false;
+};
+
+/// What can be replayed; each heeds options of its own.
+enum Kind { lap_of_evaluation = 1, bag = 2, recording = 4 };
+constexpr const char* kind_name(Kind kind) {
+  return kind == lap_of_evaluation ? "a lap of an evaluation" : kind == bag ? "a bag" : "a recording in MCAP";
+}
+
+constexpr struct {
+  const char* option;
+  int kinds;
+} heeded[] = {{"--lap", lap_of_evaluation},
+              {"--scenario", lap_of_evaluation},
+              {"--plot", lap_of_evaluation},
+              {"--method", lap_of_evaluation | bag},
+              {"--course", lap_of_evaluation | bag},
+              {"--record", lap_of_evaluation | bag},
+              {"--config", bag},
+              {"--set", bag},
+              {"--html", bag | recording},
+              {"--host", bag | recording},
+              {"--port", bag | recording}};
+
+/// Throws IoError where an option was said that would be passed over.
+void refuse_unheeded(const CLI::App& command, Kind kind) {
+  for (const auto& [option, kinds] : heeded)
+    if (command.count(option) > 0 && (kinds & kind) == 0)
+      throw IoError(option, 0, std::string("does nothing where ") + kind_name(kind) + " is replayed");
+}
+
+/// Whether two rows of the same lap agree in all that repeats.
+bool same_lap(LapRow a, const LapRow& b, const std::vector<Experiment>& experiments) {
+  a.mean_calculation_time = b.mean_calculation_time;
+  a.max_calculation_time = b.max_calculation_time;
+  a.min_calculation_time = b.min_calculation_time;
+  a.solve_p50 = b.solve_p50;
+  a.solve_p99 = b.solve_p99;
+  a.wall_time = b.wall_time;
+  return csv_line(a, experiments) == csv_line(b, experiments);
+}
+
+void plot(const Arguments& arguments, const Scenario& scenario, const LapRunner& runner,
+          const DrivenLine& driven, const LapResult& lap, const std::string& label) {
+  char facts[200];
+  std::snprintf(
+      facts, sizeof facts,
+      "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d contacts \xC2\xB7 cost %.2f \xC2\xB7 seed %llu",
+      lap.finished ? "finished" : "timeout", lap.time, lap.mean_speed, lap.contacts, lap.mean_sequence_cost,
+      static_cast<unsigned long long>(lap.seed));
+  const auto map = vehicle::load_course(scenario.folder).map;
+  draw_lap({.map = map,
+            .path = scenario.arena->path,
+            .closed = scenario.arena->course.closed,
+            .driven = driven,
+            .lap = lap,
+            .start = runner.start(),
+            .title = label,
+            .facts = facts},
+           arguments.plot);
+}
+
+/// The exit status: 0 only if the lap is the one that was kept.
+int replay_lap(const Arguments& arguments) {
+  const StoredEvaluation stored = load_evaluation(arguments.folder);
+  if (!arguments.lap_said) throw IoError("--lap", 0, "which lap of the evaluation?");
+  const int index = stored.find(arguments.method, arguments.scenario);
+  const Experiment& experiment = stored.experiments[static_cast<std::size_t>(index)];
+  if (arguments.lap < 0 || arguments.lap >= experiment.laps)
+    throw IoError(
+        "--lap", 0,
+        std::to_string(arguments.lap) + " must be in [0, " + std::to_string(experiment.laps - 1) + "]");
+  Scenario scenario;
+  const Campaign campaign = rebuild_campaign(stored, arguments.course, scenario);
+  LapRunner runner = make_runner(campaign, index);
+  const std::uint64_t seed = lap_seed(campaign.seed0, arguments.lap, experiment.obstacles);
+  std::unique_ptr<Recording> recording;
+  if (!arguments.record.empty()) {
+    const auto settings = nlohmann::ordered_json::parse(stored.settings);
+    const ScenarioArguments told = campaign_arguments(stored, arguments.course);
+    recording = make_recording(arguments.record, {.arguments = told,
+                                                  .scenario = scenario,
+                                                  .method = experiment.method,
+                                                  .seed = seed,
+                                                  .control_period = runner.control_period(),
+                                                  .settings = settings});
+    recording->begin_lap(arguments.lap, seed);
+  }
+  DrivenLine driven;
+  const LapResult lap = runner.run(seed, [&](const LapTick& tick) {
+    if (recording) recording->add(tick);
+    driven.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
+    driven.speeds.push_back(tick.seen.speed);
+  });
+  std::printf("%s, %s, lap %d, seed %llu: %s, %.2f s, %d contacts, cost %.3f\n", experiment.label().c_str(),
+              experiment.scenario.c_str(), arguments.lap, static_cast<unsigned long long>(seed),
+              lap.finished ? "finished" : "timeout", lap.time, lap.contacts, lap.mean_sequence_cost);
+  if (recording) {
+    recording->end_lap(lap, arguments.lap);
+    recording->close();
+    std::printf("recording: %s\n", arguments.record.c_str());
+  }
+  if (!arguments.plot.empty()) {
+    plot(arguments, scenario, runner, driven, lap, experiment.label() + " on " + campaign.arena->course.name);
+    std::printf("picture: %s\n", arguments.plot.c_str());
+  }
+  const LapRow now = make_row(index, arguments.lap, lap, 0);
+  const auto kept = std::find_if(stored.rows.begin(), stored.rows.end(), [&](const LapRow& row) {
+    return row.experiment == index && row.lap == arguments.lap;
+  });
+  if (kept == stored.rows.end()) {
+    std::printf("the evaluation has not driven this lap yet\n");
+    return 0;
+  }
+  const bool same = same_lap(now, *kept, stored.experiments);
+  std::printf(same ? "it is the lap of the evaluation, to the last bit\n"
+                   : "it is NOT the lap of the evaluation: another version or instruction set drove that\n");
+  return same ? 0 : 1;
+}
+
+/// A file that is gone when it goes out of scope.
+struct TemporaryFile {
+  std::string name = std::filesystem::temp_directory_path() /
+                     ("slalom_replay_" + std::to_string(std::random_device{}()) + ".mcap");
+  ~TemporaryFile() {
+    std::error_code ignored;
+    std::filesystem::remove(name, ignored);
+  }
+};
+
+/// A bag is made a recording, which is kept where --record says so, shown otherwise, and a page with --html.
+int replay_bag(Arguments& arguments) {
+  if (!arguments.record.empty() && !arguments.recording.html.empty() &&
+      std::filesystem::path(arguments.record).extension() != ".mcap")
+    throw IoError("--record", 0, arguments.record + " must end in .mcap with --html: the page shows MCAP");
+  const TemporaryFile temporary;
+  BagReplay replay{.file = arguments.folder, .record = arguments.record, .driver = {}};
+  if (replay.record.empty()) replay.record = temporary.name;
+  if (!arguments.method.empty()) replay.method = arguments.method;
+  replay.driver.course = arguments.course;
+  replay.driver.config = arguments.config;
+  replay.driver.set = arguments.set;
+  record_bag(replay);
+  if (!arguments.record.empty()) std::printf("recording: %s\n", arguments.record.c_str());
+  if (!arguments.record.empty() && arguments.recording.html.empty()) return 0;
+  arguments.recording.file = replay.record;
+  return replay_recording(arguments.recording);
+}
+
+int run(Arguments& arguments, const CLI::App& command) {
+  const Kind kind = std::filesystem::is_directory(arguments.folder) ? lap_of_evaluation
+                    : is_bag(arguments.folder)                      ? bag
+                                                                    : recording;
+  refuse_unheeded(command, kind);
+  arguments.lap_said = command.count("--lap") > 0;
+  if (kind == lap_of_evaluation) return replay_lap(arguments);
+  if (kind == bag) return replay_bag(arguments);
+  arguments.recording.file = arguments.folder;
+  return replay_recording(arguments.recording);
+}
+
+}  // namespace
+
+CLI::App* add_replay_command(CLI::App& app, int& exit_status) {
+  CLI::App* command = app.add_subcommand(
+      "replay",
+      "Show a recording or a bag in the browser; or drive a lap of an evaluation again: picture, recording");
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      ->add_option("what", arguments->folder,
+                   "A recording in MCAP, a bag of ROS 1, or the --out of an evaluation")
+      ->required();
+  auto* html =
+      command->add_option("--html", arguments->recording.html,
+                          "Write the recording as a page that opens from disk, instead of serving it");
+  auto* host = command->add_option("--host", arguments->recording.host, "Address to serve it on");
+  host->capture_default_str();
+  auto* port = command->add_option("--port", arguments->recording.port, "0: any that is free");
+  port->capture_default_str();
+  command->add_option("--lap", arguments->lap, "Of an evaluation: which, from 0");
+  command->add_option("--method", arguments->method,
+                      "Of an evaluation: method, or method and options as results name them; of a bag: who "
+                      "looks on [svg_mppi]");
+  command->add_option("--config", arguments->config, "Of a bag: configuration of who looks on")
+      ->capture_default_str();
+  command->add_option("--set", arguments->set, "Of a bag: section.option=value; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--scenario", arguments->scenario, "pt or oa");
+  command->add_option("--course", arguments->course,
+                      "Where the course is, if not found by its name, or if a bag does not hold it");
+  command->add_option("--plot", arguments->plot, "Draw it to this PNG");
+  auto* record = command->add_option("--record", arguments->record,
+                                     "Record it to this file: MCAP if it ends in .mcap, else JSON lines");
+  for (auto* served : {host, port}) served->excludes(html)->excludes(record);
+  command->callback([arguments, command, &exit_status] { exit_status = run(*arguments, *command); });
+  return command;
+}
+
+}  // namespace slalom::tools

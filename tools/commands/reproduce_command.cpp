@@ -1,0 +1,165 @@
+#include "tools/commands/reproduce_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "slalom/core/error.hpp"
+#include "slalom/vehicle/course/course.hpp"
+#include "tools/evaluation/evaluation_job.hpp"
+#include "tools/evaluation/ranks.hpp"
+#include "tools/report/report.hpp"
+#include "tools/terminal/json_output.hpp"
+
+namespace slalom::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* our_course = "stag";
+
+struct Arguments {
+  EvaluationArguments evaluation;
+  std::string published;
+  std::vector<std::string> sections{"baseline", "ablation", "sweep"};
+  int laps_pt = 30, laps_oa = 100, obstacles = 5;
+  bool quick = false, course_said = false;
+};
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using UniqueFile = std::unique_ptr<std::FILE, CloseFile>;
+
+/// Berlin cannot come with the program; without it, and where no course was named, a course of ours shows
+/// that everything works.
+std::string course_or_ours(const Arguments& arguments, std::FILE* words) {
+  const std::string& course = arguments.evaluation.scenario.course;
+  try {
+    vehicle::find_course(course, vehicle::course_roots(program_folder()));
+    return course;
+  } catch (const IoError&) {
+    if (arguments.course_said) throw;
+    std::fprintf(words, "note: there is no course '%s'; driving on '%s', a course of ours, instead.\n",
+                 course.c_str(), our_course);
+    return our_course;
+  }
+}
+
+/// The rows of a section beside what the authors logged.
+void print_section(const std::string& section, const Evaluated& evaluated,
+                   const std::vector<Reference>& references, std::FILE* out) {
+  std::fprintf(out, "\n%s\n%-32s %-2s %5s  %-26s %-26s %-22s %-22s %s\n", section.c_str(), "", "", "laps",
+               "MS (95 %)", "published MS", "collision rate, %", "published", "verdict");
+  const auto cell = [](double value, const evaluation::Interval& i, double scale, int digits) {
+    char text[80];
+    std::snprintf(text, sizeof text, "%.*f (%.*f - %.*f)", digits, scale * value, digits, scale * i.low,
+                  digits, scale * i.high);
+    return std::string(text);
+  };
+  for (const char* scenario : {"pt", "oa"}) {
+    for (const PaperRow& row : paper_rows()) {
+      if (row.section != section) continue;
+      for (const auto& r : evaluated.results) {
+        const auto index = static_cast<std::size_t>(r.experiment);
+        const auto& e = evaluated.campaign.experiments[index];
+        if (e.scenario != scenario || !drives(e, row)) continue;
+        const auto& theirs = references[index].published;
+        std::fprintf(out, "%-32s %-2s %5d  %-26s %-26s %-22s %-22s %s\n", row.name.c_str(), scenario, r.laps,
+                     cell(r.ms_mean, r.ms_ci, 1, 3).c_str(),
+                     theirs ? cell(theirs->ms_mean, theirs->ms_ci, 1, 3).c_str() : "-",
+                     r.collision_rate ? cell(*r.collision_rate, *r.collision_rate_ci, 100, 1).c_str() : "-",
+                     theirs && theirs->collision_rate
+                         ? cell(*theirs->collision_rate, *theirs->collision_rate_ci, 100, 1).c_str()
+                         : "-",
+                     references[index].verdict.c_str());
+      }
+    }
+  }
+}
+
+void add_report_rows(const std::string& section, Report& report) {
+  for (const PaperRow& row : paper_rows()) {
+    if (row.section != section) continue;
+    for (const auto& r : report.evaluated.results) {
+      const auto& e = report.evaluated.campaign.experiments[static_cast<std::size_t>(r.experiment)];
+      if (drives(e, row)) report.rows.push_back({section, row.name, row.note, r.experiment});
+    }
+  }
+}
+
+void check(const Arguments& arguments) {
+  for (const std::string& section : arguments.sections) {
+    if (section != "baseline" && section != "ablation" && section != "sweep")
+      throw IoError("--sections", 0, "'" + section + "' must be baseline, ablation or sweep");
+  }
+  for (const auto& [option, laps] :
+       {std::pair("--laps-pt", arguments.laps_pt), {"--laps-oa", arguments.laps_oa}}) {
+    if (laps < 1 || laps > 1000000)
+      throw IoError(option, 0, std::to_string(laps) + " must be in [1, 1000000]");
+  }
+}
+
+int run(Arguments arguments) {
+  check(arguments);
+  const UniqueFile nowhere(rank() > 0 ? std::fopen("/dev/null", "w") : nullptr);
+  std::FILE* words = nowhere ? nowhere.get() : arguments.evaluation.json == "-" ? stderr : stdout;
+  const auto tenth = [&](int laps) { return arguments.quick ? (laps + 9) / 10 : laps; };
+  arguments.evaluation.scenario.course = course_or_ours(arguments, words);
+  const auto experiments = paper_experiments(arguments.sections, tenth(arguments.laps_pt),
+                                             tenth(arguments.laps_oa), arguments.obstacles);
+  const LogFolders folders =
+      find_logs(arguments.published, fs::path(arguments.evaluation.scenario.course).filename().string());
+  for (const std::string& note : folders.notes) std::fprintf(words, "note: %s\n", note.c_str());
+  std::fflush(words);
+  // A log that cannot be read must not be found out after hours of driving.
+  find_references(folders, experiments, {});
+
+  Evaluated evaluated;
+  if (!run_evaluation(arguments.evaluation, experiments, evaluated)) return rank() > 0 ? 0 : 1;
+  const auto references = find_references(folders, experiments, evaluated.rows);
+  auto summary = evaluated.summary();
+  for (std::size_t i = 0; i < references.size(); ++i) add_reference(summary["results"][i], references[i]);
+  summary["notes"] = folders.notes;
+  const std::string file = arguments.evaluation.out + "/summary.json";
+  write_json(summary, file);
+  Report report{"The paper's simulation section, driven again", evaluated, {}, references, folders.notes};
+  for (const std::string& section : arguments.sections) add_report_rows(section, report);
+  write_report(report, arguments.evaluation.out);
+  for (const std::string& section : arguments.sections) print_section(section, evaluated, references, words);
+  std::fprintf(words, "\n%s\n%s/report.html\n", file.c_str(), arguments.evaluation.out.c_str());
+  if (!arguments.evaluation.json.empty()) write_json(summary, arguments.evaluation.json);
+  return 0;
+}
+
+}  // namespace
+
+CLI::App* add_reproduce_command(CLI::App& app, int& exit_status) {
+  CLI::App* command = app.add_subcommand(
+      "reproduce", "The paper's simulation section: every row beside the authors' figures, with a verdict");
+  const auto arguments = std::make_shared<Arguments>();
+  auto& scenario = arguments->evaluation.scenario;
+  scenario.course = "berlin";
+  scenario.config = scenario.evaluation = "published";
+  add_evaluation_options(*command, arguments->evaluation);
+  command->add_option("--published", arguments->published, "The folder of the authors' logs");
+  command->add_option("--sections", arguments->sections, "Of: baseline, ablation, sweep")
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--laps-pt", arguments->laps_pt, "Of every row in path tracking")
+      ->capture_default_str();
+  command->add_option("--laps-oa", arguments->laps_oa, "Of every row among obstacles")->capture_default_str();
+  command->add_flag("--quick", arguments->quick, "A tenth of the laps");
+  command
+      ->add_option("--set", scenario.set,
+                   "section.option=value, for all rows: the same section, otherwise driven")
+      ->allow_extra_args(false);
+  command->callback([arguments, command, &exit_status] {
+    arguments->course_said = command->count("--course") > 0;
+    exit_status = run(*arguments);
+  });
+  return command;
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,165 @@
+#include "tools/commands/track_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include "slalom/vehicle/course/track_generator.hpp"
+#include "tools/drawing/track_picture.hpp"
+#include "tools/terminal/json_output.hpp"
+
+namespace slalom::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using vehicle::Track;
+using vehicle::TrackOptions;
+
+struct Arguments {
+  TrackOptions options;
+  std::string character = vehicle::name(TrackOptions{}.character);
+  std::optional<double> width, top_speed;
+  std::string out, name, description, json;
+  bool no_picture = false;
+};
+
+std::string short_number(double value) {
+  std::ostringstream stream;
+  stream.imbue(std::locale::classic());
+  stream << value;
+  return stream.str();
+}
+
+/// A word as a shell reads it back.
+std::string shell_word(const std::string& text) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+/// The folder's own name, also where the path ends in a slash or is ".".
+std::string folder_name(const std::string& folder) {
+  const fs::path path = fs::absolute(folder).lexically_normal();
+  return (path.has_filename() ? path.filename() : path.parent_path().filename()).string();
+}
+
+/// The command that makes the same track again, wherever the folder lies: --out is its last part only.
+std::string command_of(const Arguments& arguments, const TrackOptions& options) {
+  const TrackOptions defaults;
+  std::string text = "slalom track --seed " + std::to_string(options.seed) + " --length " +
+                     short_number(options.length) + " --width " + short_number(options.width) +
+                     " --character " + arguments.character;
+  const auto add = [&](const char* flag, double value, double usual) {
+    if (value != usual) text += std::string(" ") + flag + " " + short_number(value);
+  };
+  add("--top-speed", options.limits.top_speed, vehicle::usual_top_speed(options.character));
+  add("--lateral-acceleration", options.limits.lateral_acceleration, defaults.limits.lateral_acceleration);
+  add("--acceleration", options.limits.acceleration, defaults.limits.acceleration);
+  add("--braking", options.limits.braking, defaults.limits.braking);
+  add("--wall-margin", options.wall_margin, defaults.wall_margin);
+  const std::string folder = folder_name(arguments.out);
+  if (arguments.name != folder) text += " --name " + shell_word(arguments.name);
+  if (!arguments.description.empty()) text += " --description " + shell_word(arguments.description);
+  return text + " --out " + shell_word(folder);
+}
+
+nlohmann::ordered_json summary_of(const Track& track, const Arguments& arguments,
+                                  const std::string& command) {
+  double slowest = track.raceline.front().speed, fastest = slowest, sharpest = 0;
+  for (const auto& point : track.raceline) {
+    slowest = std::min(slowest, point.speed);
+    fastest = std::max(fastest, point.speed);
+    sharpest = std::max(sharpest, std::abs(point.curvature));
+  }
+  const auto& last = track.raceline.back();
+  const double step = last.arc_length / static_cast<double>(track.raceline.size() - 1);
+  return {
+      {"name", arguments.name},
+      {"folder", arguments.out},
+      {"command", command},
+      {"seed", track.options.seed},
+      {"character", arguments.character},
+      {"length_m", track.options.length},
+      {"width_m", track.options.width},
+      {"raceline_length_m", last.arc_length + step},
+      {"raceline_least_radius_m", 1 / sharpest},
+      {"slowest_mps", slowest},
+      {"fastest_mps", fastest},
+      {"profile_lap_s", track.lap_time},
+      {"map",
+       {{"width", track.map.width}, {"height", track.map.height}, {"resolution_m", track.map.resolution}}}};
+}
+
+void run(Arguments arguments) {
+  TrackOptions options = arguments.options;
+  options.character = vehicle::track_character(arguments.character);
+  options.width = arguments.width.value_or(vehicle::usual_width(options.character));
+  options.limits.top_speed = arguments.top_speed.value_or(vehicle::usual_top_speed(options.character));
+  if (arguments.name.empty()) arguments.name = folder_name(arguments.out);
+  const std::string command = command_of(arguments, options);
+
+  const Track track = vehicle::generate_track(options);
+  vehicle::save_track(track, arguments.out, {arguments.name, arguments.description, command});
+  if (!arguments.no_picture) draw_track(track, arguments.name, fs::path(arguments.out) / "picture.png");
+
+  const auto summary = summary_of(track, arguments, command);
+  std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
+  char text[256];
+  std::snprintf(text, sizeof text, "%s: %.0f m long, %.1f m wide, %.1f to %.1f m/s, profile lap %.1f s\n",
+                arguments.name.c_str(), options.length, options.width, summary["slowest_mps"].get<double>(),
+                summary["fastest_mps"].get<double>(), track.lap_time);
+  words << text << "written to " << arguments.out << "\n";
+  if (!arguments.json.empty()) write_json(summary, arguments.json);
+}
+
+}  // namespace
+
+CLI::App* add_track_command(CLI::App& app, int& exit_status) {
+  CLI::App* command =
+      app.add_subcommand("track", "Make a course: map, raceline with speeds, obstacle path, picture");
+  const auto arguments = std::make_shared<Arguments>();
+  TrackOptions& options = arguments->options;
+  command->add_option("--out", arguments->out, "Folder to write; made if it does not exist")->required();
+  command->add_option("--seed", options.seed, "Which track; the same options and seed give the same files")
+      ->capture_default_str();
+  command->add_option("--length", options.length, "Length of the centre line, m, 20..1000")
+      ->capture_default_str();
+  command->add_option("--width", arguments->width,
+                      "From wall to wall, m, 1.2..10 [by character: 2.2, 2.6, 2.2, 1.5]");
+  command->add_option("--character", arguments->character, "balanced, fast, twisty or narrow")
+      ->capture_default_str();
+  command->add_option("--top-speed", arguments->top_speed, "m/s [by character: 6, 7, 5, 4.5]");
+  command
+      ->add_option("--lateral-acceleration", options.limits.lateral_acceleration,
+                   "Limit of the speed profile, m/s^2")
+      ->capture_default_str();
+  command->add_option("--acceleration", options.limits.acceleration, "Limit of the speed profile, m/s^2")
+      ->capture_default_str();
+  command->add_option("--braking", options.limits.braking, "Limit of the speed profile, m/s^2")
+      ->capture_default_str();
+  command->add_option("--wall-margin", options.wall_margin, "How far the raceline keeps from the walls, m")
+      ->capture_default_str();
+  command->add_option("--name", arguments->name, "Name of the course [the folder's]");
+  command->add_option("--description", arguments->description, "A sentence for course.yaml");
+  command->add_option("--json", arguments->json,
+                      "Write a summary as JSON to this file, or to standard output: -");
+  command->add_flag("--no-picture", arguments->no_picture, "Do not draw picture.png");
+  command->callback([arguments, &exit_status] {
+    run(*arguments);
+    exit_status = 0;
+  });
+  return command;
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,93 @@
+#include "tools/commands/view_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "slalom/core/version.hpp"
+#include "tools/live_view/view_evaluation.hpp"
+#include "tools/live_view/view_words.hpp"
+#include "tools/scenario/scenario.hpp"
+#include "tools/terminal/interrupt.hpp"
+#include "view/server/page_data.hpp"
+#include "view/server/server.hpp"
+#include "view/session/session.hpp"
+
+namespace slalom::tools {
+namespace {
+
+struct Arguments {
+  ScenarioArguments scenario;
+  std::string method = "svg_mppi";
+  std::uint64_t seed = 0;
+  std::string host = "127.0.0.1";
+  std::uint16_t port = 8400;
+  std::string token, against, evaluation;
+  bool record_times = false;
+};
+
+view::SessionOptions session_options(const Arguments& arguments) {
+  view::SessionOptions options;
+  options.scenario = {.course = arguments.scenario.course,
+                      .method = arguments.method,
+                      .config = arguments.scenario.config,
+                      .seed = arguments.seed,
+                      .obstacles = arguments.scenario.obstacles,
+                      .opponents = arguments.scenario.opponents};
+  options.load = [given = arguments.scenario](const view::ScenarioNames& names) {
+    ScenarioArguments a = given;
+    a.course = names.course;
+    a.config = names.config;
+    a.obstacles = names.obstacles;
+    a.opponents = names.opponents;
+    Scenario scenario = load_scenario(a, names.method);
+    return view::LoadedScenario{scenario.arena, scenario.configuration, scenario.lap};
+  };
+  options.choices = choices();
+  options.against = arguments.against;
+  options.record_times = arguments.record_times;
+  options.program = std::string("slalom ") + version();
+  options.further_arguments = further_arguments(arguments.scenario);
+  return options;
+}
+
+int run(const Arguments& arguments) {
+  const view::ServerOptions options = server_options(arguments.host, arguments.port, arguments.token);
+  view::Server server(options, {{"/", {"text/html; charset=utf-8", "gzip", view::page_gzip()}}});
+  view::SessionOptions session_of = session_options(arguments);
+  if (!arguments.evaluation.empty()) open_evaluation(arguments.evaluation, session_of);
+  view::Session session(std::move(session_of), server);
+  const InterruptFlag interrupt;
+  print_address(server, options);
+  session.run(interrupt.raised());
+  return 0;
+}
+
+}  // namespace
+
+CLI::App* add_view_command(CLI::App& app, int& exit_status) {
+  CLI::App* command =
+      app.add_subcommand("view", "Drive, and serve a page on which everything can be seen and touched");
+  const auto arguments = std::make_shared<Arguments>();
+  arguments->scenario.obstacles = 8;
+  add_scenario_options(*command, arguments->scenario);
+  add_method_option(*command, arguments->method);
+  command->add_option("--seed", arguments->seed, "Of the drive")->capture_default_str();
+  command->add_option("--against", arguments->against, "A second method, driven as a ghost on the same seed");
+  command->add_option(
+      "--eval", arguments->evaluation,
+      "Open an evaluation (the --out of slalom eval): its laps, and what led to each contact");
+  command->add_flag("--record-times", arguments->record_times,
+                    "Recordings saved from the page hold the wall clock's figures too");
+  command
+      ->add_option("--host", arguments->host,
+                   "Address to listen on; others than this machine's own need the token")
+      ->capture_default_str();
+  command->add_option("--port", arguments->port, "0: any that is free")->capture_default_str();
+  command->add_option("--token", arguments->token,
+                      "Ask for this token; made at random where --host opens the view to others");
+  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
+  return command;
+}
+
+}  // namespace slalom::tools

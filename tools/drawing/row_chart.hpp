@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/drawing/drawing.hpp"
+
+namespace slalom::tools {
+
+/// A value and how sure it is, or how far it reaches.
+struct Span {
+  double value = 0, low = 0, high = 0;
+};
+
+/// What a row of a panel shows: all values (a box), or one value with a span. Nothing where there is none.
+struct Marks {
+  std::vector<double> values;
+  std::optional<Span> span;
+};
+
+/// A column of a chart: the same quantity for every row.
+struct Panel {
+  enum class Kind {
+    boxes,  ///< quartiles, whiskers to 1.5 times their distance, values beyond as points, mean as a diamond;
+            ///< logarithmic
+    bars,   ///< from 0, with their spans; linear
+    spans,  ///< a point with its span; logarithmic
+  };
+  std::string title, axis;
+  Kind kind = Kind::boxes;
+  std::vector<Marks> ours, theirs;  ///< a row each; `theirs` may be empty
+};
+
+/// Rows of names with panels beside them.
+struct RowChart {
+  std::vector<std::string> names;
+  std::vector<Panel> panels;
+  std::string our_key = "Slalom", their_key;  ///< what the two colours mean; no key without `their_key`
+};
+
+Drawing draw_chart(const RowChart& chart);
+
+}  // namespace slalom::tools

@@ -1,0 +1,260 @@
+#include "tools/evaluation/evaluation_job.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "slalom/core/dispatch.hpp"
+#include "slalom/core/error.hpp"
+#include "slalom/core/version.hpp"
+#include "tools/evaluation/build_identity.hpp"
+#include "tools/evaluation/ranks.hpp"
+#include "tools/terminal/campaign_progress.hpp"
+#include "tools/terminal/interrupt.hpp"
+#include "tools/terminal/json_output.hpp"
+
+namespace slalom::tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using namespace evaluation;
+
+Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
+                 const std::vector<Experiment>& experiments) {
+  Json options, list = Json::array();
+  for (const Experiment& e : experiments) {
+    options.update(options_json(scenario.configuration, e.method));
+    list.push_back({{"method", e.method},
+                    {"scenario", e.scenario},
+                    {"set", e.set_text()},
+                    {"obstacles", e.obstacles},
+                    {"laps", e.laps}});
+  }
+  return {{"version", version()},
+          {"instruction_set", simd::name(simd::active_target())},
+          {"course", scenario.arena->course.name},
+          {"course_hash", course_hash(*scenario.arena)},
+          {"config", arguments.scenario.config},
+          {"evaluation", arguments.scenario.evaluation},
+          {"latency_ms", arguments.scenario.latency_ms},
+          {"seed0", arguments.seed0},
+          {"experiments", list},
+          {"options", options}};
+}
+
+/// Settings that are there must be some. What is no JSON at all the store refuses itself.
+void require_object(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) return;
+  const Json there = Json::parse(stream, nullptr, false);
+  if (!there.is_discarded() && !there.is_object()) throw IoError(file.string(), 0, "is no JSON object");
+}
+
+Json interval_json(const Interval& i) {
+  return {i.low, i.high};
+}
+template <class Value, class Make>
+Json optional_json(const std::optional<Value>& value, Make&& make) {
+  return value ? Json(make(*value)) : Json(nullptr);
+}
+
+Json machine_json() {
+  Json machine{{"cores", std::thread::hardware_concurrency()}, {"cpu", nullptr}};
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.rfind("model name", 0) == 0) {
+      machine["cpu"] = line.substr(line.find(':') + 2);
+      break;
+    }
+  }
+  return machine;
+}
+
+}  // namespace
+
+std::string course_hash(const Arena& arena) {
+  std::uint64_t hash = 14695981039346656037ull;
+  const auto mix = [&](const void* data, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i)
+      hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211ull;
+  };
+  mix(arena.course.map.cells.data(), arena.course.map.cells.size());
+  for (const auto& point : arena.path) {
+    const double values[] = {point.x, point.y, point.yaw, point.speed};
+    mix(values, sizeof values);
+  }
+  for (const auto& point : arena.course.obstacle_path) {
+    const double values[] = {point.x, point.y};
+    mix(values, sizeof values);
+  }
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+void add_evaluation_options(CLI::App& command, EvaluationArguments& a) {
+  command.add_option("--course", a.scenario.course, "A course by name, or its folder")->capture_default_str();
+  command.add_option("--config", a.scenario.config, "default, default_speed, published, hardware, or a file")
+      ->capture_default_str();
+  command
+      .add_option("--evaluation", a.scenario.evaluation,
+                  "true: right physics; published: as the paper's program counted")
+      ->capture_default_str();
+  add_latency_option(command, a.scenario.latency_ms);
+  command.add_option("--seed0", a.seed0, "Lap k has seed seed0 + k (obstacles + 5)")->capture_default_str();
+  command
+      .add_option("--jobs", a.jobs,
+                  "Laps driven at a time; 0: one per processor core, under mpirun one per process")
+      ->capture_default_str();
+  command.add_option("--out", a.out, "Folder for laps.csv and summary.json")->required();
+  command.add_flag("--resume", a.resume,
+                   "Go on with the evaluation in --out; no finished lap is driven again");
+  command.add_flag("--any-build", a.any_build,
+                   "With --resume: go on although another build of the program drove the laps so far");
+  command.add_option("--json", a.json, "Write the summary also to this file, or to standard output: -");
+}
+
+Json Evaluated::summary() const {
+  Json list = Json::array();
+  for (const ExperimentResult& r : results) {
+    const Experiment& e = campaign.experiments[static_cast<std::size_t>(r.experiment)];
+    const auto rate = [](double v) { return v; };
+    list.push_back(
+        {{"method", e.method},
+         {"set", e.set_text()},
+         {"scenario", e.scenario},
+         {"obstacles", e.obstacles},
+         {"laps", r.laps},
+         {"finished", r.finished},
+         {"timeouts", r.timeouts},
+         {"contacts", r.collisions},
+         {"impassable", r.impassable},
+         {"ms_mean", r.ms_mean},
+         {"ms_ci", interval_json(r.ms_ci)},
+         {"state_cost_mean", r.state_cost_mean},
+         {"collision_cost_mean", r.collision_cost_mean},
+         {"collision_rate", optional_json(r.collision_rate, rate)},
+         {"collision_rate_ci", optional_json(r.collision_rate_ci, interval_json)},
+         {"collision_rate_bootstrap_ci", optional_json(r.collision_rate_bootstrap_ci, interval_json)},
+         {"success_rate", r.success_rate},
+         {"success_rate_ci", interval_json(r.success_rate_ci)},
+         {"lap_time_mean", std::isnan(r.lap_time_mean) ? Json(nullptr) : Json(r.lap_time_mean)},
+         {"solve_ms",
+          {{"mean", r.solve_ms_mean},
+           {"p50", r.solve_ms_p50},
+           {"p99", r.solve_ms_p99},
+           {"max", r.solve_ms_max}}}});
+  }
+  Json pairs = Json::array();
+  for (const PairedComparison& c : compare_pairs(rows, campaign.experiments)) {
+    const Experiment &a = campaign.experiments[static_cast<std::size_t>(c.a)],
+                     &b = campaign.experiments[static_cast<std::size_t>(c.b)];
+    pairs.push_back({{"scenario", a.scenario},
+                     {"a", a.label()},
+                     {"b", b.label()},
+                     {"laps", c.laps},
+                     {"ms_difference", c.ms_difference},
+                     {"ms_wilcoxon_p", c.ms_p},
+                     {"only_a_succeeds", c.only_a_succeeds},
+                     {"only_b_succeeds", c.only_b_succeeds},
+                     {"success_mcnemar_p", c.success_p},
+                     {"contacts_wilcoxon_p", c.collision_p}});
+  }
+  return {{"program", std::string("slalom ") + version()},
+          {"build", build_identity()},
+          {"settings", Json::parse(campaign.settings)},
+          {"machine", machine_json()},
+          {"results", list},
+          {"comparisons", pairs}};
+}
+
+Campaign make_campaign(const EvaluationArguments& arguments, const Scenario& scenario,
+                       const std::vector<Experiment>& experiments) {
+  return {.arena = scenario.arena,
+          .configuration = scenario.configuration,
+          .experiments = experiments,
+          .seed0 = arguments.seed0,
+          .latency = scenario.lap.latency,
+          .settings = settings_of(arguments, scenario, experiments).dump(2),
+          .build = build_identity(),
+          .any_build = arguments.any_build};
+}
+
+bool drive_campaign(const Campaign& campaign, const EvaluationArguments& arguments, const std::string& title,
+                    const std::atomic<bool>& cancel, std::vector<LapRow>& rows) {
+  if (arguments.jobs < 0 || arguments.jobs > 1024)
+    throw IoError("--jobs", 0, std::to_string(arguments.jobs) + " must be in [0, 1024]");
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const int jobs = arguments.jobs > 0 ? arguments.jobs : rank_count() > 1 ? 1 : cores;
+  // What cannot be driven must not leave a folder behind.
+  for (const Experiment& e : campaign.experiments) {
+    vehicle::Configuration trial = campaign.configuration;
+    LapSettings world;
+    for (const auto& [key, value] : e.set) apply_setting(key, value, e.method, trial, world);
+  }
+  for (int i = 0; i < static_cast<int>(campaign.experiments.size()); ++i) make_runner(campaign, i);
+  if (rank() > 0) {
+    drive_for_first_rank(campaign, jobs, cancel);
+    return false;
+  }
+  require_object(std::filesystem::path(arguments.out) / "settings.json");
+  LapStore store(arguments.out, campaign, arguments.resume);
+  CampaignProgressBar bar(title);
+  CampaignWork work(
+      campaign, store, [&](const CampaignProgress& p) { bar.show(p); }, cancel);
+  drive_with_ranks(campaign, work, jobs, cancel);
+  if (!work.finish()) {
+    std::fprintf(stderr, "interrupted after %zu laps; --resume goes on\n", store.rows().size());
+    return false;
+  }
+  rows = store.rows();
+  return true;
+}
+
+bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Experiment>& experiments,
+                    Evaluated& evaluated) {
+  if (experiments.empty()) throw IoError("--methods", 0, "names no method");
+  const Scenario scenario = load_scenario(arguments.scenario, experiments.front().method);
+  evaluated.course_folder = scenario.folder;
+  evaluated.campaign = make_campaign(arguments, scenario, experiments);
+  const InterruptFlag interrupt;
+  if (!drive_campaign(evaluated.campaign, arguments, "", interrupt.raised(), evaluated.rows)) return false;
+  evaluated.results = summarise(evaluated.rows, evaluated.campaign.experiments);
+  return true;
+}
+
+void print_results(const Evaluated& evaluated, std::FILE* out) {
+  std::size_t width = 6;
+  for (const Experiment& e : evaluated.campaign.experiments) width = std::max(width, e.label().size());
+  std::fprintf(out, "%-*s  %-3s %5s %9s %19s %9s %17s %8s %9s\n", static_cast<int>(width), "method", "",
+               "laps", "MS", "95 %", "contacts", "collision rate", "success", "solve ms");
+  for (const ExperimentResult& r : evaluated.results) {
+    const Experiment& e = evaluated.campaign.experiments[static_cast<std::size_t>(r.experiment)];
+    char rate[40] = "-";
+    if (r.collision_rate) {
+      std::snprintf(rate, sizeof rate, "%.1f (%.1f-%.1f) %%", 100 * *r.collision_rate,
+                    100 * r.collision_rate_ci->low, 100 * r.collision_rate_ci->high);
+    }
+    std::fprintf(out, "%-*s  %-3s %5d %9.3f %8.3f - %8.3f %9d %17s %6.1f %% %9.3f\n", static_cast<int>(width),
+                 e.label().c_str(), e.scenario.c_str(), r.laps, r.ms_mean, r.ms_ci.low, r.ms_ci.high,
+                 r.collisions, rate, 100 * r.success_rate, r.solve_ms_p50);
+  }
+  // Laps of the same number have the same obstacles: those of the first experiment speak for all.
+  std::string laps;
+  int impassable = 0, experiment = -1;
+  for (const LapRow& row : evaluated.rows) {
+    if (row.impassable == 0 || (experiment >= 0 && row.experiment != experiment)) continue;
+    experiment = row.experiment;
+    impassable += row.impassable;
+    laps += (laps.empty() ? "" : ", ") + std::to_string(row.lap);
+  }
+  if (impassable > 0)
+    std::fprintf(out, "%d obstacles leave no way that a car of this width could take, in laps %s\n",
+                 impassable, laps.c_str());
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <atomic>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "slalom/evaluation/campaign.hpp"
+#include "slalom/evaluation/results.hpp"
+#include "tools/scenario/scenario.hpp"
+
+/// What `eval` and `reproduce` share: an evaluation from its words to laps.csv and summary.json.
+namespace slalom::tools {
+
+struct EvaluationArguments {
+  ScenarioArguments scenario;  ///< `set` holds what applies to all experiments
+  std::uint64_t seed0 = 0;
+  int jobs = 0;  ///< 0: one per processor core
+  std::string out;
+  bool resume = false;
+  bool any_build = false;
+  std::string json;  ///< a copy of the summary: a file, or - for standard output
+};
+
+/// Adds --course, --config, --evaluation, --latency-ms, --seed0, --jobs, --out, --resume, --any-build and
+/// --json.
+void add_evaluation_options(CLI::App& command, EvaluationArguments& arguments);
+
+/// Whether an option does anything to laps of a method: its own, or one of vehicle, planner, world.
+bool applies_to(const std::string& key, const std::string& method);
+/// Throws IoError where it does nothing to any of them.
+void require_driven(const std::string& key, const std::vector<std::string>& methods);
+/// Throws IoError where both keys are the same option of one of them.
+void refuse_twice(const std::string& key, const std::string& other, const std::vector<std::string>& methods);
+
+/// Of what of a course decides a lap (FNV-1a).
+std::string course_hash(const evaluation::Arena& arena);
+
+/// The experiments of a comparison: every method in every scenario ("pt", "oa") with every combination of the
+/// values of `sweeps` ("key=v1,v2,..."). A sweep over an option of a method's own applies to that method
+/// alone, which must be one of them. Throws IoError.
+std::vector<evaluation::Experiment> make_experiments(const std::vector<std::string>& methods,
+                                                     const std::vector<std::string>& scenarios, int laps,
+                                                     int obstacles, const std::vector<std::string>& sweeps);
+
+/// An evaluation that has been driven.
+struct Evaluated {
+  evaluation::Campaign campaign;
+  std::vector<evaluation::LapRow> rows;
+  std::vector<evaluation::ExperimentResult> results;
+  std::filesystem::path course_folder;
+  nlohmann::ordered_json summary() const;
+};
+
+/// All that is driven, with the settings that are kept beside the laps.
+evaluation::Campaign make_campaign(const EvaluationArguments& arguments, const Scenario& scenario,
+                                   const std::vector<evaluation::Experiment>& experiments);
+
+/// Drives what is still missing in `arguments.out`, with a progress line that begins with `title`. False if
+/// it was interrupted, which it says, and in every process under mpirun but the first, which has the rows.
+/// Throws IoError and what a lap throws.
+bool drive_campaign(const evaluation::Campaign& campaign, const EvaluationArguments& arguments,
+                    const std::string& title, const std::atomic<bool>& cancel,
+                    std::vector<evaluation::LapRow>& rows);
+
+/// Drives it with a progress line; false (and no summary) where drive_campaign is. Throws what that throws.
+bool run_evaluation(const EvaluationArguments& arguments,
+                    const std::vector<evaluation::Experiment>& experiments, Evaluated& evaluated);
+
+/// A table of the results for people.
+void print_results(const Evaluated& evaluated, std::FILE* out);
+
+}  // namespace slalom::tools

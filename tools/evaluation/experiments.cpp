@@ -1,0 +1,117 @@
+// What is driven in an evaluation, from --methods, --scenario and --set.
+#include <set>
+
+#include "slalom/core/error.hpp"
+#include "tools/evaluation/evaluation_job.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using evaluation::Experiment;
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  for (const char c : text) {
+    depth += (c == '[') - (c == ']');
+    if (c == at && depth == 0) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+struct Sweep {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+Sweep parse_sweep(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw IoError("--set", 0, "'" + text + "' must be key=value or key=v1,v2,...");
+  Sweep sweep{text.substr(0, equals), split(text.substr(equals + 1), ',')};
+  for (const auto& value : sweep.values) {
+    if (value.empty()) throw IoError("--set", 0, "'" + text + "': a value is missing");
+  }
+  return sweep;
+}
+
+/// The sweeps, each of which does something to a method that is driven.
+std::vector<Sweep> parse_sweeps(const std::vector<std::string>& texts,
+                                const std::vector<std::string>& methods) {
+  std::vector<Sweep> sweeps;
+  for (const std::string& text : texts) {
+    Sweep sweep = parse_sweep(text);
+    require_driven(sweep.key, methods);
+    for (const Sweep& other : sweeps) refuse_twice(sweep.key, other.key, methods);
+    sweeps.push_back(std::move(sweep));
+  }
+  return sweeps;
+}
+
+}  // namespace
+
+bool applies_to(const std::string& key, const std::string& method) {
+  const auto dot = key.find('.');
+  if (dot == std::string::npos) return true;
+  const std::string section = key.substr(0, dot);
+  return section == method || section == "vehicle" || section == "planner" || section == "world";
+}
+
+void require_driven(const std::string& key, const std::vector<std::string>& methods) {
+  std::string names;
+  for (const std::string& method : methods) {
+    if (applies_to(key, method)) return;
+    names += (names.empty() ? "" : ", ") + method;
+  }
+  throw IoError("--set", 0, "'" + key + "' is an option of no method that is driven (" + names + ")");
+}
+
+void refuse_twice(const std::string& key, const std::string& other, const std::vector<std::string>& methods) {
+  const auto full = [](const std::string& name, const std::string& method) {
+    return name.find('.') == std::string::npos ? method + "." + name : name;
+  };
+  for (const std::string& method : methods)
+    if (full(key, method) == full(other, method))
+      throw IoError("--set", 0, "'" + key + "' is said twice; several values: " + key + "=v1,v2,...");
+}
+
+std::vector<Experiment> make_experiments(const std::vector<std::string>& methods,
+                                         const std::vector<std::string>& scenarios, int laps, int obstacles,
+                                         const std::vector<std::string>& texts) {
+  std::vector<Experiment> experiments;
+  if (laps < 1 || laps > 1000000)
+    throw IoError("--laps", 0, std::to_string(laps) + " must be in [1, 1000000]");
+  for (const std::string& method : methods) solver_options(method);  // refuses an unknown method
+  const std::vector<Sweep> sweeps = parse_sweeps(texts, methods);
+  for (const std::string& scenario : scenarios) {
+    if (scenario != "pt" && scenario != "oa")
+      throw IoError("--scenario", 0, "'" + scenario + "' must be pt or oa");
+    for (const std::string& method : methods) {
+      std::vector<Experiment> variants{{method, {}, scenario, scenario == "pt" ? 0 : obstacles, laps}};
+      for (const Sweep& sweep : sweeps) {
+        if (!applies_to(sweep.key, method)) continue;
+        std::vector<Experiment> next;
+        for (const Experiment& variant : variants) {
+          for (const std::string& value : sweep.values) {
+            next.push_back(variant);
+            next.back().set.emplace_back(sweep.key, value);
+          }
+        }
+        variants = std::move(next);
+      }
+      experiments.insert(experiments.end(), variants.begin(), variants.end());
+    }
+  }
+  // In laps.csv nothing would tell two of the same apart.
+  std::set<std::string> seen;
+  for (const Experiment& e : experiments)
+    if (!seen.insert(e.label() + ", " + e.scenario).second)
+      throw IoError("--methods, --scenario, --set", 0, "say '" + e.label() + ", " + e.scenario + "' twice");
+  return experiments;
+}
+
+}  // namespace slalom::tools

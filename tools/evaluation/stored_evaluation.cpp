@@ -1,0 +1,132 @@
+#include "tools/evaluation/stored_evaluation.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "slalom/core/error.hpp"
+#include "tools/evaluation/evaluation_job.hpp"
+
+namespace slalom::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using evaluation::Experiment;
+
+/// What Experiment::set_text made of them: "key=value key=value", commas as semicolons.
+std::vector<std::pair<std::string, std::string>> parse_set(const std::string& text) {
+  std::vector<std::pair<std::string, std::string>> set;
+  int depth = 0;
+  std::string word;
+  const auto take = [&] {
+    const auto equals = word.find('=');
+    if (equals != std::string::npos) set.emplace_back(word.substr(0, equals), word.substr(equals + 1));
+    word.clear();
+  };
+  for (char c : text) {
+    depth += (c == '[') - (c == ']');
+    if (c == ';') c = ',';
+    if (c == ' ' && depth == 0) {
+      take();
+    } else {
+      word += c;
+    }
+  }
+  take();
+  return set;
+}
+
+std::string option_text(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::string text = "[";
+  for (const auto& each : value) text += (text.size() > 1 ? ", " : "") + option_text(each);
+  return text + "]";
+}
+
+}  // namespace
+
+StoredEvaluation load_evaluation(const fs::path& folder) {
+  StoredEvaluation stored;
+  stored.folder = folder;
+  const fs::path file = folder / "settings.json";
+  std::ifstream stream(file);
+  if (!stream) throw IoError(file.string(), 0, "cannot be read: is this the --out of slalom eval?");
+  stored.settings.assign(std::istreambuf_iterator<char>(stream), {});
+  std::uint64_t seed0 = 0;
+  try {
+    const auto settings = Json::parse(stored.settings);
+    if (!settings.is_object()) throw IoError(file.string(), 0, "is no JSON object");
+    for (const auto& e : settings.at("experiments")) {
+      stored.experiments.push_back(
+          {e.at("method"), parse_set(e.at("set")), e.at("scenario"), e.at("obstacles"), e.at("laps")});
+    }
+    seed0 = settings.at("seed0");
+  } catch (const nlohmann::json::exception& error) {
+    throw IoError(file.string(), 0, std::string("makes no sense: ") + error.what());
+  }
+  const fs::path table = folder / "laps.csv", journal = folder / "laps.journal.csv";
+  stored.complete = fs::exists(table);
+  stored.rows = stored.complete ? evaluation::read_rows(table, stored.experiments, false, seed0)
+                                : evaluation::read_rows(journal, stored.experiments, true, seed0);
+  return stored;
+}
+
+int StoredEvaluation::find(const std::string& name, const std::string& scenario) const {
+  std::vector<int> by_label, by_method;
+  std::string names;
+  for (int i = 0; i < static_cast<int>(experiments.size()); ++i) {
+    const Experiment& e = experiments[static_cast<std::size_t>(i)];
+    names += "\n  " + e.label() + ", " + e.scenario;
+    if (!scenario.empty() && e.scenario != scenario) continue;
+    if (name.empty() || e.method == name) by_method.push_back(i);
+    if (e.label() == name) by_label.push_back(i);
+  }
+  if (by_label.size() == 1) return by_label.front();
+  if (by_label.empty() && by_method.size() == 1) return by_method.front();
+  throw IoError(folder.string(), 0, "--method and --scenario must name one of these experiments:" + names);
+}
+
+ScenarioArguments campaign_arguments(const StoredEvaluation& stored, const std::string& course) {
+  const fs::path file = stored.folder / "settings.json";
+  ScenarioArguments arguments;
+  try {
+    const auto settings = Json::parse(stored.settings);
+    arguments.course = course.empty() ? settings.at("course").get<std::string>() : course;
+    arguments.config = settings.at("config");
+    arguments.evaluation = settings.at("evaluation");
+    arguments.latency_ms = settings.at("latency_ms");
+    // The file may say something else by now: every option is set as it was.
+    for (const auto& [section, options] : settings.at("options").items())
+      for (const auto& [key, value] : options.items())
+        arguments.set.push_back(section + "." + key + "=" + option_text(value));
+  } catch (const nlohmann::json::exception& error) {
+    throw IoError(file.string(), 0, std::string("makes no sense: ") + error.what());
+  }
+  return arguments;
+}
+
+evaluation::Campaign rebuild_campaign(const StoredEvaluation& stored, const std::string& course,
+                                      Scenario& scenario) {
+  const fs::path file = stored.folder / "settings.json";
+  evaluation::Campaign campaign;
+  try {
+    const auto settings = Json::parse(stored.settings);
+    const ScenarioArguments arguments = campaign_arguments(stored, course);
+    scenario = load_scenario(arguments, stored.experiments.front().method);
+    if (const std::string hash = settings.at("course_hash"); hash != course_hash(*scenario.arena))
+      throw IoError(scenario.folder.string(), 0, "is not the course of " + stored.folder.string());
+    campaign.arena = scenario.arena;
+    campaign.configuration = scenario.configuration;
+    campaign.experiments = stored.experiments;
+    campaign.seed0 = settings.at("seed0");
+    campaign.latency = scenario.lap.latency;
+    campaign.settings = stored.settings;
+  } catch (const nlohmann::json::exception& error) {
+    throw IoError(file.string(), 0, std::string("makes no sense: ") + error.what());
+  }
+  return campaign;
+}
+
+}  // namespace slalom::tools

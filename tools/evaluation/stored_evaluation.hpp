@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "slalom/evaluation/campaign.hpp"
+#include "tools/scenario/scenario.hpp"
+
+/// An evaluation read back from its folder.
+namespace slalom::tools {
+
+struct StoredEvaluation {
+  std::filesystem::path folder;
+  std::string settings;  ///< as settings.json has them
+  std::vector<evaluation::Experiment> experiments;
+  std::vector<evaluation::LapRow> rows;  ///< of a run that is not done: those it has so far
+  bool complete = false;
+
+  /// The experiment so named: by its label (method and options) or, where only one has it, by its method; an
+  /// empty scenario fits any. Throws IoError naming those there are.
+  int find(const std::string& name, const std::string& scenario) const;
+};
+
+/// Throws IoError where the folder holds no evaluation or what it holds makes no sense.
+StoredEvaluation load_evaluation(const std::filesystem::path& folder);
+
+/// What it was driven with. `course` takes the place of the course's name where that is not empty.
+ScenarioArguments campaign_arguments(const StoredEvaluation& stored, const std::string& course);
+
+/// Makes the evaluation's laps drivable again: course, configuration with every option as it was. `course`
+/// takes the place of the course's name where that is not empty. Throws IoError if the course is another one.
+evaluation::Campaign rebuild_campaign(const StoredEvaluation& stored, const std::string& course,
+                                      Scenario& scenario);
+
+}  // namespace slalom::tools

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <atomic>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "slalom/evaluation/tuning.hpp"
+#include "tools/evaluation/evaluation_job.hpp"
+
+namespace slalom::tools {
+
+struct TuningArguments {
+  EvaluationArguments evaluation;  ///< its course: one, or several separated by commas
+  std::string method = "svg_mppi";
+  std::string objective = "ms";
+  std::vector<std::string> scenarios{"oa"}, set;
+  int obstacles = 5;
+  int budget = 400;  ///< laps of the search
+  int laps = 4;      ///< of every candidate to begin with, in every scenario on every course
+  int rounds = 2;
+  int held_out = 30;  ///< laps of the final figure, in every scenario on every course; 0: none
+};
+
+/// A search, from its words to `best.yaml` and `tune.json`. Every step of it is an evaluation of its own in
+/// the folder: a search that was interrupted goes on where it was, and its laps can be replayed.
+class TuningJob {
+ public:
+  /// Throws IoError, std::invalid_argument.
+  explicit TuningJob(TuningArguments arguments);
+
+  /// False if it was interrupted.
+  bool run(const std::atomic<bool>& cancel, std::FILE* words);
+
+  const nlohmann::ordered_json& result() const noexcept { return result_; }
+
+ private:
+  /// What candidates drove in a step.
+  struct Driven {
+    std::vector<std::vector<double>> values;  ///< of each candidate: of its laps, in the same order for all
+    nlohmann::ordered_json results = nlohmann::ordered_json::array();
+  };
+
+  int places() const { return static_cast<int>(courses_.size() * arguments_.scenarios.size()); }
+  nlohmann::ordered_json plan() const;
+  void keep_plan() const;
+  bool drive(const std::string& step, const std::vector<evaluation::Candidate>& candidates, int first_lap,
+             int laps, const std::atomic<bool>& cancel, Driven& driven) const;
+  bool search(int round, const std::atomic<bool>& cancel, std::FILE* words);
+  bool hold_out(const std::atomic<bool>& cancel, std::FILE* words);
+  void write_best() const;
+
+  TuningArguments arguments_;
+  evaluation::Objective objective_;
+  std::vector<Scenario> courses_;
+  std::vector<evaluation::SearchDimension> dimensions_;
+  std::vector<evaluation::Rung> rungs_;  ///< of every round
+  evaluation::Candidate best_;           ///< at first the configuration as it stands, which sets nothing
+  nlohmann::ordered_json result_;
+};
+
+}  // namespace slalom::tools

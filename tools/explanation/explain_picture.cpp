@@ -1,0 +1,256 @@
+#include "tools/explanation/explain_picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace slalom::tools {
+namespace {
+
+constexpr Colour ink{0.13, 0.16, 0.22, 1}, faint_ink{0.42, 0.46, 0.54, 1}, rule{0.89, 0.91, 0.94, 1},
+    frame{0.78, 0.81, 0.86, 1}, white{1, 1, 1, 1}, disc_fill{0.36, 0.39, 0.45, 1},
+    disc_shade{0.36, 0.39, 0.45, 0.13}, bad{0.80, 0.24, 0.20, 0.09}, bad_key{0.80, 0.24, 0.20, 0.45},
+    ours{0.12, 0.42, 0.78, 1}, ours_light{0.12, 0.42, 0.78, 0.16}, optimum{0.90, 0.58, 0.10, 1},
+    optimum_light{0.96, 0.72, 0.26, 0.30}, guide{0.55, 0.16, 0.66, 1}, good_verdict{0.05, 0.48, 0.30, 1},
+    bad_verdict{0.75, 0.16, 0.14, 1};
+constexpr double margin = 22, header = 92, caption = 46, space_width = 330, space_height = 250, gap = 8,
+                 density_width = 104, axis_left = 34, axis_below = 34, between = 30, reach = 1.5;
+constexpr double cell_width = axis_left + space_width + gap + density_width,
+                 cell_height = caption + space_height + axis_below;
+constexpr int drawn_samples = 100;
+
+std::string number(const char* form, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, form, value);
+  return text;
+}
+
+/// From cheap (deep green) over yellow to dear (pale).
+Colour cost_colour(double share, double opacity) {
+  const Colour stops[] = {
+      {0.02, 0.36, 0.36, 1}, {0.12, 0.62, 0.44, 1}, {0.68, 0.80, 0.36, 1}, {0.93, 0.88, 0.58, 1}};
+  const double at = std::clamp(share, 0.0, 1.0) * 3;
+  const int i = std::min(2, static_cast<int>(at));
+  const double part = at - i;
+  const auto mix = [&](double a, double b) { return a + part * (b - a); };
+  const Colour &a = stops[i], &b = stops[i + 1];
+  return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue), opacity};
+}
+
+/// One method's part of the picture.
+struct Cell {
+  const Explanation& e;
+  double left, top;  ///< of the plot in space, pixels
+
+  double length() const { return e.point.speed * e.point.dt * static_cast<double>(e.plan.size() - 1); }
+  double x(double metres) const { return left + space_width * metres / length(); }
+  double y(double metres) const { return top + space_height * (reach - metres) / (2 * reach); }
+  double density_left() const { return left + space_width + gap; }
+  Pen::Points points(const Way& way) const {
+    Pen::Points result;
+    for (std::size_t k = 0; k < way.size(); ++k)
+      result.emplace_back(x(e.point.speed * e.point.dt * static_cast<double>(k)), y(way[k]));
+    return result;
+  }
+};
+
+/// The samples that collide first, then the others from dear to cheap; the heavier, the bolder.
+void draw_samples(Pen& pen, const Cell& cell) {
+  std::vector<const ExplainedSample*> drawn;
+  const auto& all = cell.e.samples;
+  double least = 1e300, heaviest = 0;
+  for (const auto& s : all) {
+    if (!s.collided) least = std::min(least, s.cost);
+    heaviest = std::max(heaviest, s.weight);
+  }
+  for (std::size_t i = 0; i < std::min<std::size_t>(drawn_samples, all.size()); ++i) drawn.push_back(&all[i]);
+  std::sort(drawn.begin(), drawn.end(), [](const auto* a, const auto* b) {
+    return a->collided != b->collided ? a->collided : a->cost > b->cost;
+  });
+  for (const ExplainedSample* s : drawn) {
+    if (s->collided) {
+      pen.path(cell.points(s->way), bad, 1);
+    } else {
+      const double share = heaviest > 0 ? s->weight / heaviest : 0;
+      pen.path(cell.points(s->way), cost_colour((s->cost - least) / 4, 0.34 + 0.5 * share),
+               0.8 + 1.6 * share);
+    }
+  }
+}
+
+void draw_distribution(Pen& pen, const Cell& cell) {
+  Way low, high;
+  for (std::size_t k = 0; k < cell.e.mean.size(); ++k) {
+    low.push_back(cell.e.mean[k] - 2 * cell.e.deviation[k]);
+    high.push_back(cell.e.mean[k] + 2 * cell.e.deviation[k]);
+  }
+  Pen::Points outline = cell.points(high), back = cell.points(low);
+  outline.insert(outline.end(), back.rbegin(), back.rend());
+  pen.area(outline, ours_light);
+  for (const Way& edge : {low, high}) pen.path(cell.points(edge), {ours.red, ours.green, ours.blue, 0.55}, 1);
+}
+
+/// Every guide's way after each step, pale where it began and strong where it ended.
+void draw_guides(Pen& pen, const Cell& cell) {
+  for (const auto& steps : cell.e.guides) {
+    const std::size_t count = steps.size();
+    for (std::size_t l = 0; l < count; ++l) {
+      const double age = static_cast<double>(l + 1) / static_cast<double>(count);
+      const bool last = l + 1 == count;
+      pen.path(cell.points(steps[l]),
+               {guide.red, guide.green, guide.blue, last ? 1 : 0.10 + 0.35 * age * age}, last ? 2 : 1);
+    }
+  }
+}
+
+void draw_space(Pen& pen, const Cell& cell) {
+  const auto& point = cell.e.point;
+  pen.box(cell.left, cell.top, space_width, space_height, white, {}, 0, 0);
+  pen.clip(cell.left, cell.top, space_width, space_height);
+  for (const double at : {-1.0, 0.0, 1.0})
+    pen.line(cell.left, cell.y(at), cell.left + space_width, cell.y(at), rule, 1);
+  draw_samples(pen, cell);
+  draw_distribution(pen, cell);
+  Pen::Points rim;
+  for (int i = 0; i < 90; ++i) {
+    const double angle = 6.283185307179586 * i / 90;
+    rim.emplace_back(cell.x(point.disc_x + point.disc_radius * std::cos(angle)),
+                     cell.y(point.disc_y + point.disc_radius * std::sin(angle)));
+  }
+  pen.area(rim, disc_fill);
+  draw_guides(pen, cell);
+  pen.path(cell.points(cell.e.plan), white, 5.5);
+  pen.path(cell.points(cell.e.plan), ink, 3);
+  pen.disc(cell.x(0), cell.y(0), 5, ink);
+  pen.unclip();
+  pen.box(cell.left, cell.top, space_width, space_height, {0, 0, 0, 0}, frame, 1, 0);
+  for (int i = 0; i <= static_cast<int>(cell.length() + 1e-9); ++i)
+    pen.text(cell.x(i), cell.top + space_height + 15, 11, number("%g", i), faint_ink, 0.5);
+  for (const double at : {-1.0, 0.0, 1.0})
+    pen.text(cell.left - 7, cell.y(at) + 4, 11, number("%g", at), faint_ink, 1);
+  pen.text(cell.left + space_width / 2, cell.top + space_height + 29, 11, "ahead, m", faint_ink, 0.5);
+}
+
+/// Densities of the place beside the disc, along the same axis as in space.
+void draw_density(Pen& pen, const Cell& cell) {
+  const Explanation& e = cell.e;
+  const double left = cell.density_left(), mean = e.mean[static_cast<std::size_t>(e.beside)],
+               deviation = std::max(1e-3, e.deviation[static_cast<std::size_t>(e.beside)]);
+  const auto gaussian = [&](double place) {
+    const double z = (place - mean) / deviation;
+    return std::exp(-0.5 * z * z) / (deviation * 2.5066282746310002);
+  };
+  double highest = gaussian(mean);
+  for (const double d : e.density) highest = std::max(highest, d);
+  // Two densities are compared by shape, so both share a scale, cut where one is a needle.
+  highest = std::min(highest, 3.0 * *std::max_element(e.density.begin(), e.density.end()));
+  const auto across = [&](double density) {
+    return left + std::min(density / highest, 1.0) * (density_width - 6);
+  };
+  pen.box(left, cell.top, density_width, space_height, white, {}, 0, 0);
+  pen.clip(left, cell.top, density_width, space_height);
+  const double disc_top = cell.y(e.point.disc_y + e.point.disc_radius);
+  pen.box(left, disc_top, density_width, cell.y(e.point.disc_y - e.point.disc_radius) - disc_top, disc_shade,
+          {}, 0, 0);
+  const auto curve = [&](auto value) {
+    Pen::Points points;
+    for (int i = 0; i <= 300; ++i) {
+      const double place = -reach + 2 * reach * i / 300;
+      points.emplace_back(across(value(place)), cell.y(place));
+    }
+    return points;
+  };
+  const auto closed = [&](Pen::Points points) {
+    points.emplace_back(left, cell.y(reach));
+    points.insert(points.begin(), {left, cell.y(-reach)});
+    return points;
+  };
+  const auto best = [&](double place) {
+    const double at = (place - e.places.front()) / (e.places[1] - e.places[0]);
+    const auto i = static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(e.places.size() - 2)));
+    return e.density[i] + (at - static_cast<double>(i)) * (e.density[i + 1] - e.density[i]);
+  };
+  pen.area(closed(curve(best)), optimum_light);
+  pen.path(curve(best), optimum, 1.6);
+  pen.area(closed(curve(gaussian)), ours_light);
+  pen.path(curve(gaussian), ours, 2);
+  const double plan = cell.y(e.plan[static_cast<std::size_t>(e.beside)]);
+  pen.line(left, plan, left + density_width, plan, ink, 2);
+  pen.unclip();
+  pen.box(left, cell.top, density_width, space_height, {0, 0, 0, 0}, frame, 1, 0);
+  pen.text(left + density_width / 2, cell.top + space_height + 15, 11, "density", faint_ink, 0.5);
+  pen.text(left + density_width / 2, cell.top + space_height + 29, 11, "beside the disc", faint_ink, 0.5);
+}
+
+void draw_caption(Pen& pen, const Cell& cell) {
+  const Explanation& e = cell.e;
+  const double place = e.plan[static_cast<std::size_t>(e.beside)];
+  pen.text(cell.left, cell.top - 26, 16, e.method, ink, 0, true);
+  pen.text(cell.left + space_width + gap + density_width, cell.top - 26, 12, e.about, faint_ink, 1);
+  const std::string verdict = e.plan_collides ? "The plan hits the disc."
+                              : place > 0 ? "The plan passes on the left, " + number("%.2f m", place) + "."
+                                          : "The plan passes on the right, " + number("%.2f m", -place) + ".";
+  pen.text(cell.left, cell.top - 8, 12.5, verdict, e.plan_collides ? bad_verdict : good_verdict, 0, true);
+  pen.text(cell.left + space_width + gap + density_width, cell.top - 8, 12,
+           number("%.0f of ", e.effective_samples) +
+               number("%.0f samples count", static_cast<double>(e.samples.size())),
+           faint_ink, 1);
+}
+
+/// Returns where the next entry begins.
+double key_text(Pen& pen, double x, double y, const std::string& words) {
+  pen.text(x, y + 4, 12, words, ink);
+  return x + 6.15 * static_cast<double>(words.size()) + 22;
+}
+
+/// What lines and colours mean, in two rows.
+void draw_key(Pen& pen, double left) {
+  double x = left, y = 56;
+  pen.line(x, y, x + 22, y, ink, 3);
+  x = key_text(pen, x + 28, y, "plan");
+  for (int i = 0; i < 44; ++i) pen.line(x + i, y, x + i + 1.2, y, cost_colour(i / 44.0, 1), 5);
+  x = key_text(pen, x + 50, y, "samples, cheap to dear; bold: heavy");
+  pen.line(x, y, x + 22, y, bad_key, 2);
+  key_text(pen, x + 28, y, "samples that hit");
+  x = left;
+  y = 76;
+  pen.line(x, y, x + 22, y, guide, 2);
+  x = key_text(pen, x + 28, y, "guide, pale where it came from");
+  pen.box(x, y - 6, 22, 12, ours_light, ours, 1.2);
+  x = key_text(pen, x + 28, y, "resulting distribution, 2 deviations");
+  pen.box(x, y - 6, 22, 12, optimum_light, optimum, 1.2);
+  key_text(pen, x + 28, y, "optimal distribution q*");
+}
+
+}  // namespace
+
+Drawing draw_explanations(const std::vector<Explanation>& explanations) {
+  const int count = static_cast<int>(explanations.size());
+  const int columns = count <= 1 ? 1 : count == 4 || count == 2 ? 2 : 3;
+  const int rows = (count + columns - 1) / columns;
+  Drawing drawing;
+  drawing.width = std::max(2 * margin + columns * cell_width + (columns - 1) * between, 660.0);
+  drawing.height = header + rows * cell_height + (rows - 1) * between * 0.5 + margin * 0.6;
+  drawing.draw = [explanations, columns](Pen& pen) {
+    const Explanation& first = explanations.front();
+    pen.text(margin, 30, 19, "A point passes a disc: left and right are equally good", ink, 0, true);
+    draw_key(pen, margin);
+    for (std::size_t i = 0; i < explanations.size(); ++i) {
+      const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
+      const Cell cell{explanations[i], margin + axis_left + column * (cell_width + between),
+                      header + caption + row * (cell_height + between * 0.5)};
+      draw_space(pen, cell);
+      draw_density(pen, cell);
+      draw_caption(pen, cell);
+    }
+    if (columns > 1) {
+      pen.text(margin + columns * cell_width + (columns - 1) * between, 30, 12,
+               "solve " + std::to_string(first.solves) + " from the same state, temperature " +
+                   number("%g", first.temperature),
+               faint_ink, 1);
+    }
+  };
+  return drawing;
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,81 @@
+#include "tools/live_view/view_evaluation.hpp"
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "tools/evaluation/stored_evaluation.hpp"
+#include "tools/live_view/view_words.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// "x:y x:y" as pairs.
+Json points(const std::string& text) {
+  Json all = Json::array();
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const auto colon = word.find(':');
+    if (colon != std::string::npos)
+      all.push_back({std::stod(word.substr(0, colon)), std::stod(word.substr(colon + 1))});
+  }
+  return all;
+}
+
+std::string evaluation_message(const StoredEvaluation& stored, const std::string& course) {
+  Json experiments = Json::array(), laps = Json::array();
+  for (const auto& each : stored.experiments)
+    experiments.push_back(
+        {{"label", each.label()}, {"scenario", each.scenario}, {"obstacles", each.obstacles}});
+  for (const auto& row : stored.rows)
+    laps.push_back({{"experiment", row.experiment},
+                    {"lap", row.lap},
+                    {"seed", std::to_string(row.seed)},
+                    {"finished", row.finished},
+                    {"time", row.lap_time},
+                    {"contacts", row.collision},
+                    {"points", points(row.contact_points)}});
+  return Json{{"type", "evaluation"},
+              {"folder", stored.folder.filename().empty() ? stored.folder.parent_path().filename().string()
+                                                          : stored.folder.filename().string()},
+              {"course", course},
+              {"experiments", experiments},
+              {"laps", laps}}
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+void open_evaluation(const std::string& folder, view::SessionOptions& options) {
+  const auto stored = std::make_shared<const StoredEvaluation>(load_evaluation(folder));
+  Scenario scenario;
+  const auto campaign = std::make_shared<const evaluation::Campaign>(rebuild_campaign(*stored, "", scenario));
+  const ScenarioArguments arguments = campaign_arguments(*stored, "");
+  options.evaluation = evaluation_message(*stored, campaign->arena->course.name);
+  options.load_lap = [stored, campaign, arguments](int experiment, int lap) {
+    if (experiment < 0 || experiment >= std::ssize(campaign->experiments))
+      throw std::invalid_argument("experiment: there is none of this number");
+    const evaluation::Experiment& e = campaign->experiments[static_cast<std::size_t>(experiment)];
+    if (lap < 0 || lap >= e.laps) throw std::invalid_argument("lap: there is none of this number");
+    const evaluation::LapRunner runner = make_runner(*campaign, experiment);
+    view::LoadedLap loaded;
+    loaded.names = {.course = arguments.course,
+                    .method = e.method,
+                    .config = arguments.config,
+                    .seed = evaluation::lap_seed(campaign->seed0, lap, e.obstacles),
+                    .obstacles = e.obstacles};
+    loaded.scenario = {.arena = campaign->arena,
+                       .configuration = runner.configuration(),
+                       .lap = {.obstacles = e.obstacles, .latency = campaign->latency}};
+    return loaded;
+  };
+  const view::LoadedLap first = options.load_lap(0, 0);
+  options.scenario = first.names;
+  options.load = [first, load = options.load](const view::ScenarioNames& names) {
+    return names == first.names ? first.scenario : load(names);
+  };
+}
+
+}  // namespace slalom::tools

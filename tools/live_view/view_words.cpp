@@ -1,0 +1,82 @@
+#include "tools/live_view/view_words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "slalom/core/error.hpp"
+#include "slalom/solvers/make_solver.hpp"
+#include "slalom/vehicle/course/course.hpp"
+
+namespace slalom::tools {
+namespace {
+
+/// The configurations that ship.
+std::vector<std::string> configuration_names() {
+  std::vector<std::string> names;
+  for (const auto& root : vehicle::configuration_roots(program_folder()))
+    for (const auto& entry : std::filesystem::directory_iterator(root))
+      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+std::string random_token() {
+  std::random_device random;
+  std::array<char, 33> text{};
+  for (std::size_t i = 0; i < 4; ++i) std::snprintf(text.data() + 8 * i, 9, "%08x", random());
+  return text.data();
+}
+
+}  // namespace
+
+view::Choices choices() {
+  view::Choices choices;
+  choices.courses = vehicle::course_names(vehicle::course_roots(program_folder()));
+  for (const char* name : solver_names()) choices.methods.emplace_back(name);
+  choices.configurations = configuration_names();
+  return choices;
+}
+
+int method_index(const view::Choices& choices, const std::string& method) {
+  const auto& all = choices.methods;
+  return static_cast<int>(std::find(all.begin(), all.end(), method) - all.begin());
+}
+
+std::string further_arguments(const ScenarioArguments& a) {
+  std::string words;
+  if (a.evaluation != "true") words += " --evaluation " + a.evaluation;
+  if (!a.start.empty()) words += " --start " + a.start;
+  if (a.latency_ms > 0) words += " --latency-ms " + nlohmann::json(a.latency_ms).dump();
+  for (const std::string& each : a.set) words += " --set '" + each + "'";
+  return words;
+}
+
+view::ServerOptions server_options(const std::string& host, std::uint16_t port, const std::string& token) {
+  // What stands for itself in an address (RFC 3986, section 2.3): browsers send all else in another form.
+  const auto stands_for_itself = [](unsigned char c) {
+    return (c < 128 && std::isalnum(c)) || c == '-' || c == '.' || c == '_' || c == '~';
+  };
+  if (!std::all_of(token.begin(), token.end(), stands_for_itself))
+    throw IoError("--token", 0, "'" + token + "' must have only letters, digits and - . _ ~");
+  view::ServerOptions options;
+  options.host = host;
+  options.port = port;
+  options.token = token.empty() && !view::is_loopback(host) ? random_token() : token;
+  return options;
+}
+
+void print_address(const view::Server& server, const view::ServerOptions& options) {
+  const bool is_v6 = options.host.find(':') != std::string::npos;
+  std::printf("http://%s:%u/%s\n", (is_v6 ? "[" + options.host + "]" : options.host).c_str(),
+              static_cast<unsigned>(server.port()),
+              options.token.empty() ? "" : ("?token=" + options.token).c_str());
+  std::printf("open this address in a browser; Ctrl-C ends\n");
+  std::fflush(stdout);
+}
+
+}  // namespace slalom::tools

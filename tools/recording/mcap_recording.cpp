@@ -1,0 +1,79 @@
+#include "tools/recording/mcap_recording.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "slalom/core/error.hpp"
+#include "slalom/core/version.hpp"
+#include "tools/live_view/view_words.hpp"
+
+namespace slalom::tools {
+namespace {
+
+view::RecorderOptions recorder_options(const RecordingFacts& facts) {
+  const sim::WorldOptions world = facts.scenario.arena->world_options();
+  return {.program = std::string("slalom ") + version(),
+          .settings = {{"settings", facts.settings.dump()}},
+          .lidar_angle_min = world.lidar.angle_min(),
+          .lidar_angle_increment = world.lidar.angle_increment(),
+          .wall_clock = facts.times};
+}
+
+}  // namespace
+
+McapRecording::McapRecording(const std::string& file, const RecordingFacts& facts)
+    : file_(file),
+      further_arguments_(further_arguments(facts.arguments)),
+      arena_(facts.scenario.arena),
+      configuration_(facts.scenario.configuration),
+      choices_(choices()),
+      names_{.course = arena_->course.name,
+             .method = facts.method,
+             .config = facts.arguments.config,
+             .seed = facts.seed,
+             .obstacles = facts.scenario.lap.obstacles,
+             .opponents = facts.scenario.lap.opponents},
+      control_period_(facts.control_period),
+      stream_(file, std::ios::binary),
+      recorder_(stream_, recorder_options(facts)) {
+  if (!stream_) throw IoError(file, 0, "cannot be written");
+  recorder_.add_text(view::hello_message(*arena_, choices_, 0, control_period_));
+  recorder_.add_course(view::encode_scene(*arena_));
+  recorder_.add_text(view::options_message({.names = names_,
+                                            .now = configuration_,
+                                            .loaded = configuration_,
+                                            .further_arguments = further_arguments_}));
+}
+
+void McapRecording::tell_state() {
+  recorder_.add_text(view::state_message(
+      {.names = names_, .arena = *arena_, .laps = laps_, .control_period = control_period_}));
+}
+
+void McapRecording::begin_lap(int, std::uint64_t seed) {
+  names_.seed = seed;
+  recorder_.begin_drive();
+  tell_state();
+}
+
+void McapRecording::add(const evaluation::LapTick& tick) {
+  ++ticks_;
+  recorder_.add_frame(encoder_.encode(tick, {.deadline = control_period_,
+                                             .prediction_step = configuration_.vehicle.time_step,
+                                             .method = method_index(choices_, names_.method)}) +
+                      view::encode_bodies(tick.world));
+}
+
+void McapRecording::end_lap(const evaluation::LapResult& lap, int number) {
+  if (!lap.finished) return;
+  laps_.push_back(
+      {.tick = ticks_, .lap = number, .time = lap.time, .contacts = lap.contacts, .method = names_.method});
+  tell_state();
+}
+
+void McapRecording::close() {
+  recorder_.finish();
+  stream_.close();
+  if (!stream_) throw IoError(file_, 0, "cannot be written to its end; the disk may be full");
+}
+
+}  // namespace slalom::tools

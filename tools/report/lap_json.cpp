@@ -1,0 +1,78 @@
+#include "tools/report/lap_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace slalom::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json pose_json(const maps::Pose& pose) {
+  return {pose.x, pose.y, pose.yaw};
+}
+
+Json finite_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+}  // namespace
+
+Json lap_json(const evaluation::LapResult& lap, int number) {
+  Json status = Json::object();
+  for (std::size_t i = 0; i < lap.planner_status.size(); ++i)
+    if (lap.planner_status[i] > 0)
+      status[vehicle::name(static_cast<vehicle::PlannerStatus>(i))] = lap.planner_status[i];
+  Json touches = Json::array(), obstacles = Json::array();
+  for (const auto& touch : lap.touches)
+    touches.push_back({{"time_s", touch.time},
+                       {"pose", pose_json(touch.pose)},
+                       {"body", touch.body < 0 ? Json("wall") : Json(touch.body)}});
+  for (const auto& obstacle : lap.obstacles) obstacles.push_back(pose_json(obstacle));
+  return {{"lap", number},
+          {"seed", lap.seed},
+          {"finished", lap.finished},
+          {"timeout", lap.timeout},
+          {"interrupted", lap.cancelled},
+          {"contacts", lap.contacts},
+          {"bodies_touched", lap.bodies_touched},
+          {"wall_touched", lap.wall},
+          {"time_s", lap.time},
+          {"steps", lap.steps},
+          {"state_cost", finite_or_null(lap.state_cost)},
+          {"collision_cost", finite_or_null(lap.collision_cost)},
+          {"mean_sequence_cost", finite_or_null(lap.mean_sequence_cost)},
+          {"input_error", finite_or_null(lap.input_error)},
+          {"mean_speed", finite_or_null(lap.mean_speed)},
+          {"mean_path_distance", finite_or_null(lap.mean_path_distance)},
+          {"max_path_distance", finite_or_null(lap.max_path_distance)},
+          {"least_clearance", finite_or_null(lap.least_clearance)},
+          {"impassable", lap.impassable},
+          {"mean_variance", finite_or_null(lap.mean_variance)},
+          {"mean_effective_samples", finite_or_null(lap.mean_effective_samples)},
+          {"planner_status", status},
+          {"touches", touches},
+          {"obstacles", obstacles}};
+}
+
+double percentile(const std::vector<float>& sorted, double share) {
+  const double rank = std::ceil(share * static_cast<double>(sorted.size()));
+  return static_cast<double>(sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1]);
+}
+
+Json times_json(std::vector<float> milliseconds) {
+  if (milliseconds.empty()) return {{"p50", nullptr}, {"p99", nullptr}, {"max", nullptr}};
+  std::sort(milliseconds.begin(), milliseconds.end());
+  return {{"p50", percentile(milliseconds, 0.5)},
+          {"p99", percentile(milliseconds, 0.99)},
+          {"max", static_cast<double>(milliseconds.back())}};
+}
+
+std::vector<float> solve_times(const std::vector<evaluation::LapResult>& laps) {
+  std::vector<float> all;
+  for (const auto& lap : laps) all.insert(all.end(), lap.solve_ms.begin(), lap.solve_ms.end());
+  return all;
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tools/evaluation/evaluation_job.hpp"
+#include "tools/evaluation/reproduction.hpp"
+
+/// An evaluation to look at: one HTML file that needs no other, and its figures as files of their own.
+namespace slalom::tools {
+
+/// An experiment as a row of a table.
+struct ReportRow {
+  std::string section, name, note;
+  int experiment = 0;
+};
+
+struct Report {
+  std::string title;
+  const Evaluated& evaluated;
+  std::vector<ReportRow> rows;
+  std::vector<Reference> references;  ///< one per experiment; empty: nothing to compare with
+  std::vector<std::string> notes;
+
+  const evaluation::Experiment& experiment(const ReportRow& row) const {
+    return evaluated.campaign.experiments[static_cast<std::size_t>(row.experiment)];
+  }
+  const evaluation::ExperimentResult& result(const ReportRow& row) const {
+    return evaluated.results[static_cast<std::size_t>(row.experiment)];
+  }
+  /// Null without anything published.
+  const Reference* reference(const ReportRow& row) const {
+    const auto i = static_cast<std::size_t>(row.experiment);
+    return i < references.size() && references[i].published ? &references[i] : nullptr;
+  }
+};
+
+/// A figure in words and as an image.
+struct ReportFigure {
+  std::string name;     ///< of its files
+  std::string section;  ///< below which it stands; empty: at the end
+  std::string title, caption;
+  std::string mime, data;  ///< of the image
+};
+
+/// Boxes of costs and bars of collision rates for every section; times of computation. Writes SVG and PNG to
+/// `folder`.
+std::vector<ReportFigure> report_charts(const Report& report, const std::filesystem::path& folder);
+/// Driven lines of two methods on one map, and where contacts happen. Drives up to 4 laps again. Writes PNG.
+std::vector<ReportFigure> report_pictures(const Report& report, const std::filesystem::path& folder);
+
+/// Writes report.html, and figures/ beside it. Throws IoError.
+void write_report(const Report& report, const std::filesystem::path& folder);
+
+}  // namespace slalom::tools

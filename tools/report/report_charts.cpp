@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <fstream>
+
+#include "slalom/core/error.hpp"
+#include "tools/drawing/row_chart.hpp"
+#include "tools/report/report.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using evaluation::LapRow;
+
+ReportFigure save(const Drawing& drawing, ReportFigure figure, const std::filesystem::path& folder) {
+  figure.mime = "image/svg+xml";
+  figure.data = to_svg(drawing);
+  const auto file = folder / (figure.name + ".svg");
+  std::ofstream stream(file, std::ios::binary);
+  stream << figure.data;
+  if (!stream.flush()) throw IoError(file.string(), 0, "cannot be written");
+  save_png(drawing, folder / (figure.name + ".png"));
+  return figure;
+}
+
+Marks cost_marks(const Report& report, const ReportRow& row) {
+  Marks marks;
+  for (const LapRow& lap : report.evaluated.rows)
+    if (lap.experiment == row.experiment) marks.values.push_back(lap.mean_sequence_cost());
+  return marks;
+}
+
+/// Rows of a section, by name: its experiment in each scenario.
+struct NamedRow {
+  std::string name;
+  const ReportRow *pt = nullptr, *oa = nullptr;
+};
+
+std::vector<NamedRow> named_rows(const Report& report, const std::string& section) {
+  std::vector<NamedRow> rows;
+  for (const ReportRow& row : report.rows) {
+    if (row.section != section) continue;
+    auto found = std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.name == row.name; });
+    if (found == rows.end()) found = rows.insert(rows.end(), NamedRow{row.name});
+    (report.experiment(row).scenario == "pt" ? found->pt : found->oa) = &row;
+  }
+  return rows;
+}
+
+bool has_references(const Report& report) {
+  return std::any_of(report.references.begin(), report.references.end(),
+                     [](const Reference& r) { return r.published.has_value(); });
+}
+
+Panel cost_panel(const Report& report, const std::vector<NamedRow>& rows, const char* title,
+                 const ReportRow* NamedRow::*scenario) {
+  Panel panel{
+      .title = title, .axis = "mean sequence cost (MS) of a lap, lower is better", .ours = {}, .theirs = {}};
+  for (const NamedRow& row : rows) {
+    Marks ours, theirs;
+    if (const ReportRow* at = row.*scenario) {
+      ours = cost_marks(report, *at);
+      if (const Reference* r = report.reference(*at)) theirs.values = r->log->ms;
+    }
+    panel.ours.push_back(ours);
+    panel.theirs.push_back(theirs);
+  }
+  if (!has_references(report)) panel.theirs.clear();
+  return panel;
+}
+
+Panel collision_panel(const Report& report, const std::vector<NamedRow>& rows) {
+  Panel panel{.title = "Obstacles: contacts",
+              .axis = "collision rate, %, with its 95 % interval",
+              .kind = Panel::Kind::bars,
+              .ours = {},
+              .theirs = {}};
+  for (const NamedRow& row : rows) {
+    Marks ours, theirs;
+    if (row.oa) {
+      const auto& r = report.result(*row.oa);
+      ours.span =
+          Span{100 * *r.collision_rate, 100 * r.collision_rate_ci->low, 100 * r.collision_rate_ci->high};
+      if (const Reference* reference = report.reference(*row.oa)) {
+        const auto& c = *reference->published;
+        theirs.span =
+            Span{100 * *c.collision_rate, 100 * c.collision_rate_ci->low, 100 * c.collision_rate_ci->high};
+      }
+    }
+    panel.ours.push_back(ours);
+    panel.theirs.push_back(theirs);
+  }
+  if (!has_references(report)) panel.theirs.clear();
+  return panel;
+}
+
+RowChart section_chart(const Report& report, const std::string& section) {
+  const auto rows = named_rows(report, section);
+  RowChart chart;
+  for (const NamedRow& row : rows) chart.names.push_back(row.name);
+  const auto any = [&](auto member) {
+    return std::any_of(rows.begin(), rows.end(), [&](const NamedRow& r) { return r.*member != nullptr; });
+  };
+  if (any(&NamedRow::pt))
+    chart.panels.push_back(cost_panel(report, rows, "Path tracking: cost", &NamedRow::pt));
+  if (any(&NamedRow::oa)) {
+    chart.panels.push_back(cost_panel(report, rows, "Obstacles: cost", &NamedRow::oa));
+    chart.panels.push_back(collision_panel(report, rows));
+  }
+  if (has_references(report)) chart.their_key = "published laps";
+  return chart;
+}
+
+/// Computing times, of all laps of a row: the mean over laps, to the longest solve.
+RowChart time_chart(const Report& report, const std::string& section) {
+  RowChart chart;
+  Panel panel{.title = "One solve",
+              .axis = "ms: mean, reaching to the longest of all",
+              .kind = Panel::Kind::spans,
+              .ours = {},
+              .theirs = {}};
+  for (const NamedRow& row : named_rows(report, section)) {
+    const ReportRow& at = row.oa ? *row.oa : *row.pt;
+    const auto& r = report.result(at);
+    chart.names.push_back(row.name);
+    panel.ours.push_back({{}, Span{r.solve_ms_mean, r.solve_ms_mean, r.solve_ms_max}});
+    Marks theirs;
+    if (const Reference* reference = report.reference(at); reference && reference->log->solve_ms_mean)
+      theirs.span = Span{*reference->log->solve_ms_mean, *reference->log->solve_ms_mean,
+                         reference->log->solve_ms_max.value_or(*reference->log->solve_ms_mean)};
+    panel.theirs.push_back(theirs);
+  }
+  if (has_references(report)) {
+    chart.their_key = "published: 12 threads of a Core i9";
+  } else {
+    panel.theirs.clear();
+  }
+  chart.our_key = "Slalom, one thread a lap";
+  chart.panels.push_back(panel);
+  return chart;
+}
+
+}  // namespace
+
+std::vector<ReportFigure> report_charts(const Report& report, const std::filesystem::path& folder) {
+  std::vector<std::string> sections;
+  for (const ReportRow& row : report.rows)
+    if (std::find(sections.begin(), sections.end(), row.section) == sections.end())
+      sections.push_back(row.section);
+  std::vector<ReportFigure> figures;
+  for (const std::string& section : sections) {
+    figures.push_back(save(
+        draw_chart(section_chart(report, section)),
+        {section,
+         section,
+         "",
+         "Every lap counts. Boxes: quartiles and median, whiskers to 1.5 times the box, laps beyond them as "
+         "points, the mean as a diamond; the axes of costs are logarithmic. Bars: collision rate with its "
+         "95 % Wilson interval.",
+         {},
+         {}},
+        folder));
+  }
+  if (!sections.empty()) {
+    figures.push_back(save(draw_chart(time_chart(report, sections.front())),
+                           {"compute_times",
+                            "",
+                            "Time to compute",
+                            "Wall-clock time of a solve, from its mean to the longest of all laps, "
+                            "logarithmic. It depends on the "
+                            "machine and on what else runs there; every other figure repeats exactly.",
+                            {},
+                            {}},
+                           folder));
+  }
+  return figures;
+}
+
+}  // namespace slalom::tools

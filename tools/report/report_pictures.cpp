@@ -1,0 +1,219 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "slalom/core/error.hpp"
+#include "slalom/sim/shapes.hpp"
+#include "slalom/vehicle/course/course.hpp"
+#include "tools/drawing/canvas.hpp"
+#include "tools/drawing/lap_picture.hpp"
+#include "tools/report/report.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using namespace evaluation;
+
+constexpr Colour blue{0.12, 0.42, 0.78, 1}, orange{0.91, 0.45, 0.10, 1}, path_colour{0.62, 0.66, 0.73, 0.9},
+    obstacle_fill{0.32, 0.36, 0.44, 1}, white{1, 1, 1, 1};
+constexpr std::array<Colour, 6> palette = {{blue,
+                                            orange,
+                                            {0.20, 0.60, 0.36, 1},
+                                            {0.70, 0.25, 0.55, 1},
+                                            {0.55, 0.42, 0.20, 1},
+                                            {0.35, 0.35, 0.40, 1}}};
+constexpr int long_side = 1300;
+
+ReportFigure save(const Canvas& canvas, ReportFigure figure, const std::filesystem::path& folder) {
+  const auto file = folder / (figure.name + ".png");
+  canvas.save(file);
+  std::ifstream stream(file, std::ios::binary);
+  figure.mime = "image/png";
+  figure.data.assign(std::istreambuf_iterator<char>(stream), {});
+  return figure;
+}
+
+struct Line {
+  DrivenLine driven;
+  LapResult lap;
+};
+
+Line drive_again(const Campaign& campaign, int experiment, int lap) {
+  LapRunner runner = make_runner(campaign, experiment);
+  Line line;
+  const int obstacles = campaign.experiments[static_cast<std::size_t>(experiment)].obstacles;
+  line.lap = runner.run(lap_seed(campaign.seed0, lap, obstacles), [&](const LapTick& tick) {
+    line.driven.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
+  });
+  return line;
+}
+
+/// SVG-MPPI as it is and plain MPPI, if both drove; else the first two.
+std::vector<int> pair_of(const Report& report, const std::string& scenario) {
+  std::vector<int> all, chosen;
+  for (const ReportRow& row : report.rows) {
+    if (report.experiment(row).scenario == scenario &&
+        std::find(all.begin(), all.end(), row.experiment) == all.end())
+      all.push_back(row.experiment);
+  }
+  const auto& experiments = report.evaluated.campaign.experiments;
+  const auto take = [&](auto&& fits) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](int i) {
+      return chosen.size() < 2 && std::find(chosen.begin(), chosen.end(), i) == chosen.end() &&
+             fits(experiments[static_cast<std::size_t>(i)]);
+    });
+    if (found != all.end()) chosen.push_back(*found);
+  };
+  take([](const Experiment& e) { return e.method == "svg_mppi" && e.set.empty(); });
+  // The paper draws plain MPPI with this variance.
+  const auto before = chosen.size();
+  take([](const Experiment& e) { return e.method == "mppi" && e.set_text() == "mppi.variance=0.075"; });
+  if (chosen.size() == before) take([](const Experiment& e) { return e.method == "mppi"; });
+  take([](const Experiment&) { return true; });
+  take([](const Experiment&) { return true; });
+  return chosen;
+}
+
+/// The first lap that the second one touches something in and the first does not; else the first of all.
+int telling_lap(const Report& report, const std::vector<int>& pair) {
+  std::map<int, std::array<int, 2>> contacts;
+  for (const LapRow& row : report.evaluated.rows)
+    for (std::size_t side = 0; side < pair.size(); ++side)
+      if (row.experiment == pair[side]) contacts[row.lap][side] = row.collision;
+  for (const auto& [lap, count] : contacts)
+    if (count[0] == 0 && count[1] > 0) return lap;
+  return 0;
+}
+
+std::vector<maps::Point> points_of(const std::vector<maps::ReferencePoint>& path) {
+  std::vector<maps::Point> points;
+  for (const auto& point : path) points.push_back({point.x, point.y});
+  return points;
+}
+
+ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, const std::string& scenario,
+                          const std::vector<int>& pair, const std::filesystem::path& folder) {
+  const Campaign& campaign = report.evaluated.campaign;
+  const int lap = scenario == "pt" ? 0 : telling_lap(report, pair);
+  std::vector<Line> lines;
+  for (const int experiment : pair) lines.push_back(drive_again(campaign, experiment, lap));
+  const auto path = points_of(campaign.arena->path);
+  auto shown = path;
+  for (const Line& line : lines)
+    shown.insert(shown.end(), line.driven.points.begin(), line.driven.points.end());
+  Canvas canvas(cropped(map, shown, 1.5), long_side);
+  canvas.line(path, path_colour, 2, campaign.arena->course.closed, true);
+  const sim::CarParameters car;
+  for (const maps::Pose& obstacle : lines.front().lap.obstacles) {
+    const auto corners = sim::corners({obstacle, car.length, car.width});
+    canvas.polygon({corners.begin(), corners.end()}, obstacle_fill, white);
+  }
+  std::vector<std::pair<std::string, Colour>> key;
+  std::string facts = "lap " + std::to_string(lap);
+  for (std::size_t i = lines.size(); i-- > 0;) {
+    const Colour colour = i == 0 ? blue : orange;
+    canvas.line(lines[i].driven.points, colour, 4.5, false);
+    for (const Contact& touch : lines[i].lap.touches) canvas.disc({touch.pose.x, touch.pose.y}, 11, colour);
+  }
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto row = std::find_if(report.rows.begin(), report.rows.end(),
+                                  [&](const ReportRow& r) { return r.experiment == pair[i]; });
+    key.emplace_back(row->name, i == 0 ? blue : orange);
+    char words[80];
+    std::snprintf(words, sizeof words, " \xC2\xB7 MS %.2f, %d contact%s", lines[i].lap.mean_sequence_cost,
+                  lines[i].lap.contacts, lines[i].lap.contacts == 1 ? "" : "s");
+    facts += words;
+  }
+  const bool tracking = scenario == "pt";
+  canvas.key(tracking ? "Path tracking" : "Among obstacles", facts, key);
+  std::string caption = tracking ? "The first lap of both, on the reference path (dashed). "
+                                 : "The same obstacles for both; discs mark where they are touched. ";
+  if (!tracking)
+    caption +=
+        "The lap is the first in which only the second of the two touches something, if there is one: it "
+        "shows how contacts come about, not how often.";
+  return save(canvas,
+              {"driven_" + scenario,
+               "",
+               tracking ? "Driven lines: path tracking" : "Driven lines: obstacles",
+               caption,
+               {},
+               {}},
+              folder);
+}
+
+std::vector<maps::Point> contact_points(const std::string& text) {
+  std::vector<maps::Point> points;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at < end) {
+    maps::Point point;
+    const auto x = std::from_chars(at, end, point.x);
+    if (x.ec != std::errc{} || x.ptr == end) break;
+    const auto y = std::from_chars(x.ptr + 1, end, point.y);
+    if (y.ec != std::errc{}) break;
+    points.push_back(point);
+    at = y.ptr < end ? y.ptr + 1 : end;
+  }
+  return points;
+}
+
+ReportFigure contact_map(const Report& report, const maps::OccupancyGrid& map,
+                         const std::filesystem::path& folder) {
+  const Campaign& campaign = report.evaluated.campaign;
+  const auto path = points_of(campaign.arena->path);
+  Canvas canvas(cropped(map, path, 2.5), long_side);
+  canvas.line(path, path_colour, 2, campaign.arena->course.closed, true);
+  std::vector<std::pair<std::string, Colour>> key;
+  const auto colour_of = [&](const std::string& method) {
+    auto found = std::find_if(key.begin(), key.end(), [&](const auto& k) { return k.first == method; });
+    if (found == key.end()) found = key.insert(key.end(), {method, palette[key.size() % palette.size()]});
+    return found->second;
+  };
+  // As in the driven lines.
+  const bool with_ours = std::any_of(campaign.experiments.begin(), campaign.experiments.end(),
+                                     [](const Experiment& e) { return e.method == "svg_mppi"; });
+  if (with_ours) colour_of("svg_mppi");
+  for (const Experiment& e : campaign.experiments) colour_of(e.method);
+  int count = 0;
+  for (const LapRow& row : report.evaluated.rows) {
+    Colour colour = colour_of(campaign.experiments[static_cast<std::size_t>(row.experiment)].method);
+    colour.opacity = 0.75;
+    for (const maps::Point& point : contact_points(row.contact_points)) {
+      canvas.disc(point, 8, colour);
+      ++count;
+    }
+  }
+  canvas.key(
+      "Where bodies are touched",
+      std::to_string(count) + " first touches in " + std::to_string(report.evaluated.rows.size()) + " laps",
+      key);
+  return save(canvas,
+              {"contacts",
+               "",
+               "Where contacts happen",
+               "The car's centre of gravity at every first touch of a body or wall, all laps of all rows. "
+               "Where many lie together the course leaves little room or the turn hides what comes.",
+               {},
+               {}},
+              folder);
+}
+
+}  // namespace
+
+std::vector<ReportFigure> report_pictures(const Report& report, const std::filesystem::path& folder) {
+  // The world of the published evaluation takes unknown ground for free; a picture should not.
+  const auto map = vehicle::load_course(report.evaluated.course_folder).map;
+  std::vector<ReportFigure> figures;
+  for (const char* scenario : {"pt", "oa"}) {
+    const auto pair = pair_of(report, scenario);
+    if (!pair.empty()) figures.push_back(driven_lines(report, map, scenario, pair, folder));
+  }
+  figures.push_back(contact_map(report, map, folder));
+  return figures;
+}
+
+}  // namespace slalom::tools

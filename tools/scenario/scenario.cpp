@@ -1,0 +1,182 @@
+#include "tools/scenario/scenario.hpp"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "slalom/core/error.hpp"
+#include "slalom/core/option_access.hpp"
+
+namespace slalom::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Json number_json(double value) {
+  if (std::isfinite(value)) return value;
+  return to_text(value);
+}
+
+Json value_json(const OptionValue& value) {
+  struct Convert {
+    Json operator()(bool v) const { return v; }
+    Json operator()(int v) const { return v; }
+    Json operator()(std::uint64_t v) const { return v; }
+    Json operator()(double v) const { return number_json(v); }
+    Json operator()(const std::vector<double>& v) const {
+      Json list = Json::array();
+      for (const double each : v) list.push_back(number_json(each));
+      return v.size() == 1 ? list[0] : list;
+    }
+    Json operator()(const std::string& v) const { return v; }
+  };
+  return std::visit(Convert{}, value);
+}
+
+/// "x,y,yaw" in m, m, rad.
+maps::Pose parse_pose(const std::string& text) {
+  std::array<double, 3> values{};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto [stopped, error] = std::from_chars(at, end, values[i]);
+    const bool separated = i + 1 < values.size() ? stopped < end && *stopped == ',' : stopped == end;
+    if (error != std::errc{} || !separated || !std::isfinite(values[i]))
+      throw IoError("--start", 0, "'" + text + "' must be x,y,yaw: three finite numbers, in m, m, rad");
+    at = stopped + 1;
+  }
+  return {values[0], values[1], values[2]};
+}
+
+/// Every --set: of the configuration, or of the world.
+void apply_settings(const std::vector<std::string>& assignments, const std::string& method,
+                    vehicle::Configuration& configuration, evaluation::LapSettings& lap) {
+  for (const std::string& assignment : assignments) {
+    const auto equals = assignment.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw IoError("--set", 0, "'" + assignment + "' must be key=value");
+    apply_setting(assignment.substr(0, equals), assignment.substr(equals + 1), method, configuration, lap);
+  }
+}
+
+}  // namespace
+
+void apply_setting(const std::string& key, const std::string& value, const std::string& method,
+                   vehicle::Configuration& configuration, evaluation::LapSettings& lap) {
+  try {
+    if (!evaluation::set_world_option(lap, key, value))
+      vehicle::set_option(configuration, key, value, method);
+  } catch (const std::invalid_argument& error) {
+    throw IoError("--set", 0, error.what());
+  }
+}
+
+fs::path program_folder() {
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  return failed ? fs::current_path() : program.parent_path();
+}
+
+void add_scenario_options(CLI::App& command, ScenarioArguments& a) {
+  command.add_option("--course", a.course, "A course by name, or its folder")->capture_default_str();
+  command.add_option("--config", a.config, "default, default_speed, published, hardware, or a file")
+      ->capture_default_str();
+  command
+      .add_option("--evaluation", a.evaluation,
+                  "true: right physics; published: as the paper's program counted")
+      ->capture_default_str();
+  command
+      .add_option(
+          "--set", a.set,
+          "section.option=value, or option=value for the method's own; may be repeated (slalom options "
+          "lists them)")
+      ->allow_extra_args(false);
+  command.add_option("--obstacles", a.obstacles, "Parked cars on the course")->capture_default_str();
+  command
+      .add_option("--opponents", a.opponents,
+                  "Cars that drive along the course line at half its speed, --evaluation true only")
+      ->capture_default_str();
+  command.add_option("--start", a.start, "x,y,yaw of the car's centre of gravity, m, m, rad [the course's]");
+  add_latency_option(command, a.latency_ms);
+  command.add_flag("--hardware", a.hardware,
+                   "As on a real car: noise, slip, a guessed pose, a servo unlike the model");
+  command.add_option("--threads", a.threads, "Threads of the solver; results do not depend on it")
+      ->capture_default_str();
+}
+
+void add_latency_option(CLI::App& command, double& latency_ms) {
+  command
+      .add_option("--latency-ms", latency_ms, "From a scan to its command's effect, --evaluation true only")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+}
+
+void add_method_option(CLI::App& command, std::string& method) {
+  std::string names;
+  for (const char* name : solver_names()) names += (names.empty() ? "" : ", ") + std::string(name);
+  command.add_option("--method", method, "One of " + names)->capture_default_str();
+}
+
+vehicle::Configuration load_configuration(const ScenarioArguments& arguments, const std::string& method) {
+  solver_options(method);  // refuses an unknown method
+  const auto roots = vehicle::configuration_roots(program_folder());
+  auto configuration =
+      vehicle::load_configuration(vehicle::find_configuration(arguments.config, roots), roots);
+  evaluation::LapSettings world;
+  apply_settings(arguments.set, method, configuration, world);
+  return configuration;
+}
+
+Scenario load_scenario(const ScenarioArguments& arguments, const std::string& method) {
+  Scenario scenario;
+  const auto evaluation = evaluation::evaluation_named(arguments.evaluation);
+  scenario.configuration = load_configuration(arguments, method);
+  const auto roots = vehicle::course_roots(program_folder());
+  scenario.folder = vehicle::find_course(arguments.course, roots);
+  scenario.arena = evaluation::load_arena(scenario.folder, evaluation, roots);
+  scenario.lap.obstacles = arguments.obstacles;
+  scenario.lap.opponents = arguments.opponents;
+  scenario.lap.latency = 1e-3 * arguments.latency_ms;
+  if (arguments.hardware) scenario.lap.hardware.emplace();
+  scenario.lap.threads = arguments.threads;
+  apply_settings(arguments.set, method, scenario.configuration, scenario.lap);
+  if (!arguments.start.empty()) scenario.lap.start = parse_pose(arguments.start);
+  return scenario;
+}
+
+Json options_json(const vehicle::Configuration& configuration, const std::string& method) {
+  Json options;
+  for (const auto& section : vehicle::list_sections(configuration)) {
+    if (section.name != "vehicle" && section.name != "planner" && section.name != method) continue;
+    for (const OptionEntry& entry : section.options) {
+      const std::string key = entry.declaration.name;
+      // A lap's seed and the program's threads take their place.
+      if (section.name == method && (key == "seed" || key == "threads")) continue;
+      options[section.name][key] = value_json(entry.value);
+    }
+  }
+  return options;
+}
+
+Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario, const std::string& method) {
+  const maps::Pose start = scenario.lap.start.value_or(scenario.arena->start);
+  Json settings{{"course", scenario.arena->course.name},
+                {"method", method},
+                {"config", arguments.config},
+                {"evaluation", arguments.evaluation},
+                {"obstacles", arguments.obstacles},
+                {"opponents", arguments.opponents},
+                {"start", {start.x, start.y, start.yaw}},
+                {"latency_ms", arguments.latency_ms},
+                {"options", options_json(scenario.configuration, method)}};
+  for (const OptionEntry& entry : list_options(scenario.lap))
+    settings["options"]["world"][entry.declaration.name] = value_json(entry.value);
+  if (arguments.hardware) settings["hardware"] = true;
+  return settings;
+}
+
+}  // namespace slalom::tools

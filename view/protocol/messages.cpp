@@ -1,0 +1,180 @@
+#include "view/protocol/messages.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "slalom/core/option_access.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
+#include "view/protocol/frame.hpp"
+
+namespace slalom::view {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// A lap's seed and the program's threads take their place.
+bool is_shown(const std::string& section, const std::string& option, const std::string& method) {
+  if (section == "vehicle" || section == "planner") return true;
+  return section == method && option != "seed" && option != "threads";
+}
+
+Json option_json(const OptionEntry& entry, const OptionEntry& loaded) {
+  const Declaration& d = entry.declaration;
+  Json json = {{"name", d.name},
+               {"symbol", d.symbol},
+               {"unit", d.unit},
+               {"help", d.help},
+               {"type", type_name(entry)},
+               {"value", to_text(entry.value)},
+               {"default", to_text(loaded.value)}};
+  if (std::isfinite(d.min)) json["min"] = d.min;
+  if (std::isfinite(d.max)) json["max"] = d.max;
+  if (!entry.choices.empty()) json["choices"] = entry.choices;
+  return json;
+}
+
+/// "section.option=value" of all that differs from the configuration that was loaded.
+std::vector<std::string> changed_options(const OptionsFacts& facts) {
+  std::vector<std::string> changed;
+  const auto now = vehicle::list_sections(facts.now), loaded = vehicle::list_sections(facts.loaded);
+  for (std::size_t i = 0; i < now.size(); ++i)
+    for (std::size_t k = 0; k < now[i].options.size(); ++k)
+      if (!(now[i].options[k] == loaded[i].options[k]))
+        changed.push_back(now[i].name + "." + now[i].options[k].declaration.name + "=" +
+                          to_text(now[i].options[k].value));
+  return changed;
+}
+
+std::string line_of(const OptionsFacts& facts, const std::vector<std::string>& changed) {
+  const ScenarioNames& names = facts.names;
+  std::string line = "slalom drive --course " + names.course + " --method " + names.method + " --config " +
+                     names.config + " --seed " + std::to_string(names.seed) + " --obstacles " +
+                     std::to_string(names.obstacles) +
+                     (names.opponents > 0 ? " --opponents " + std::to_string(names.opponents) : "") +
+                     facts.further_arguments;
+  for (const std::string& each : changed) line += " --set '" + each + "'";
+  return line;
+}
+
+std::string changed_yaml(const OptionsFacts& facts, const std::vector<std::string>& changed) {
+  std::string yaml = "base: " + facts.names.config + "\n", section;
+  for (const std::string& each : changed) {
+    const auto dot = each.find('.'), equals = each.find('=');
+    if (each.substr(0, dot) != section) {
+      section = each.substr(0, dot);
+      yaml += section + ":\n";
+    }
+    yaml += "  " + each.substr(dot + 1, equals - dot - 1) + ": " + each.substr(equals + 1) + "\n";
+  }
+  return yaml;
+}
+
+}  // namespace
+
+std::string command_line(const OptionsFacts& facts) {
+  return line_of(facts, changed_options(facts));
+}
+
+std::string hello_message(const evaluation::Arena& arena, const Choices& choices, double history,
+                          double control_period) {
+  const sim::WorldOptions world = arena.world_options();
+  Json names = Json::array(), statuses = Json::array();
+  for (const char* each : scalar_names()) names.push_back(each);
+  for (int i = 0; i <= static_cast<int>(vehicle::PlannerStatus::solver_degenerate); ++i)
+    statuses.push_back(vehicle::name(static_cast<vehicle::PlannerStatus>(i)));
+  const sim::CarParameters& car = world.car;
+  return text_of({{"type", "hello"},
+                  {"protocol", 1},
+                  {"scalars", names},
+                  {"statuses", statuses},
+                  {"courses", choices.courses},
+                  {"methods", choices.methods},
+                  {"configurations", choices.configurations},
+                  {"car",
+                   {{"length", car.length},
+                    {"width", car.width},
+                    {"front", car.front_length},
+                    {"rear", car.rear_length}}},
+                  {"lidar",
+                   {{"angle_min", world.lidar.angle_min()},
+                    {"angle_increment", world.lidar.angle_increment()},
+                    {"range_max", world.lidar.range_max}}},
+                  {"history_seconds", history},
+                  {"control_period", control_period}});
+}
+
+std::string state_message(const StateFacts& facts) {
+  Json laps = Json::array();
+  for (const LapNote& lap : facts.laps)
+    laps.push_back({{"lap", lap.lap},
+                    {"time", lap.time},
+                    {"contacts", lap.contacts},
+                    {"method", lap.method},
+                    {"ghost", lap.ghost}});
+  const ScenarioNames& names = facts.names;
+  Json state = {{"type", "state"},
+                {"course", names.course},
+                {"description", facts.arena.course.description},
+                {"length", facts.arena.course.length},
+                {"method", names.method},
+                {"config", names.config},
+                {"evaluation", evaluation::name(facts.arena.evaluation)},
+                {"seed", std::to_string(names.seed)},
+                {"obstacles", names.obstacles},
+                {"opponents", names.opponents},
+                {"paused", facts.paused},
+                {"real_time", facts.real_time},
+                {"rate", facts.rate},
+                {"tick", facts.tick},
+                {"newest", facts.newest},
+                {"oldest", facts.oldest},
+                {"time", facts.time},
+                {"control_period", facts.control_period},
+                {"laps", laps},
+                {"ghost", facts.ghost},
+                {"ghost_label", facts.ghost_label},
+                {"generation", facts.generation},
+                {"clients", facts.clients},
+                {"refused", facts.refused},
+                {"edited", facts.edited}};
+  if (facts.contact[0] >= 0)
+    state["contact"] = {{"experiment", facts.contact[0]},
+                        {"lap", facts.contact[1]},
+                        {"contact", facts.contact[2]},
+                        {"tick", facts.contact[3]}};
+  return text_of(state);
+}
+
+std::string options_message(const OptionsFacts& facts) {
+  Json sections = Json::array();
+  const auto now = vehicle::list_sections(facts.now), loaded = vehicle::list_sections(facts.loaded);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    Json options = Json::array();
+    for (std::size_t k = 0; k < now[i].options.size(); ++k) {
+      const OptionEntry& entry = now[i].options[k];
+      if (is_shown(now[i].name, entry.declaration.name, facts.names.method))
+        options.push_back(option_json(entry, loaded[i].options[k]));
+    }
+    if (options.empty()) continue;
+    const Json section = {{"name", now[i].name}, {"options", options}};
+    // The method's own options come first: they are what one wants to turn.
+    if (now[i].name == facts.names.method)
+      sections.insert(sections.begin(), section);
+    else
+      sections.push_back(section);
+  }
+  const auto changed = changed_options(facts);
+  return text_of({{"type", "options"},
+                  {"sections", sections},
+                  {"changed", changed},
+                  {"command_line", line_of(facts, changed)},
+                  {"yaml", changed_yaml(facts, changed)},
+                  {"undo", facts.undo},
+                  {"redo", facts.redo}});
+}
+
+}  // namespace slalom::view

@@ -1,0 +1,216 @@
+#include "view/session/session.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace slalom::view {
+namespace {
+
+constexpr std::size_t most_history_bytes = 400u << 20;
+constexpr auto least_frame_gap = std::chrono::milliseconds(12);  // no screen shows more
+constexpr auto state_gap = std::chrono::milliseconds(250);
+constexpr int most_catching_up = 4;  // ticks that a late clock may owe
+
+}  // namespace
+
+Session::Session(SessionOptions options, Server& server)
+    : options_(std::move(options)), server_(server), waiting_(options_.wait_for_client) {
+  load(options_.scenario);
+  if (!options_.against.empty()) start_ghost(options_.against, configuration_);
+}
+
+Session::~Session() = default;
+
+void Session::load(const ScenarioNames& names) {
+  install(options_.load(names), names);
+}
+
+void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
+  // All that may throw comes before anything is replaced.
+  const auto runner = std::make_shared<const evaluation::LapRunner>(loaded.arena, loaded.configuration,
+                                                                    names.method, loaded.lap);
+  Simulation simulation(runner, names.seed);
+  scenario_ = std::move(loaded);
+  configuration_ = scenario_.configuration;
+  undo_.clear();
+  redo_.clear();
+  names_ = names;
+  scene_ = std::make_shared<const std::string>(encode_scene(*scenario_.arena));
+  server_.broadcast({scene_, true});
+  end_ghost();
+  restart();
+  tell_options();
+}
+
+/// From the start, with the same seed; a ghost begins anew beside it.
+void Session::restart() {
+  simulation_.emplace(make_runner(configuration_, names_.method), names_.seed);
+  if (ghost_) {
+    const auto& runner = ghost_->ride().runner();
+    if (runner.control_period() == simulation_->ride().runner().control_period())
+      ghost_.emplace(make_runner(runner.configuration(), runner.method()), names_.seed);
+    else
+      end_ghost();
+  }
+  history_.clear();
+  history_bytes_ = 0;
+  laps_.clear();
+  viewed_ = stop_at_ = -1;
+  contact_.fill(-1);
+  ++generation_;
+  due_ = Clock::now();
+  state_changed_ = true;
+}
+
+std::shared_ptr<const evaluation::LapRunner> Session::make_runner(const vehicle::Configuration& configuration,
+                                                                  const std::string& method) const {
+  return std::make_shared<const evaluation::LapRunner>(scenario_.arena, configuration, method, scenario_.lap);
+}
+
+void Session::run(const std::atomic<bool>& stop) {
+  while (!stop) {
+    const auto wait = std::min<Clock::duration>(until_due(), std::chrono::milliseconds(50));
+    if (wait > Clock::duration::zero()) server_.wait(wait);
+    turn();
+  }
+}
+
+void Session::turn() {
+  for (const Received& received : server_.take()) obey(received);
+  if (until_due() <= Clock::duration::zero()) tick();
+  const auto now = Clock::now();
+  if (server_.clients() > 0 && (state_changed_ || now - last_state_ > 4 * state_gap)) {
+    last_state_ = now;
+    tell_state();
+  }
+}
+
+Session::Clock::duration Session::until_due() const {
+  if (waiting_ || paused_) return std::chrono::hours(1);
+  if (rate_ <= 0) return Clock::duration::zero();
+  return due_ - Clock::now();
+}
+
+void Session::tick() {
+  const auto now = Clock::now();
+  const auto period = std::chrono::duration<double>(simulation_->ride().runner().control_period());
+  if (rate_ > 0) {
+    const auto step = std::chrono::duration_cast<Clock::duration>(period / rate_);
+    due_ = std::max(due_ + step, now - most_catching_up * step);
+  }
+  if (ghost_) {
+    ghost_->tick(
+        [&](const evaluation::LapTick& step) {
+          ghost_plan_.clear();
+          for (const auto& state : step.output.predicted) ghost_plan_.push_back(state.pose);
+        },
+        real_time_);
+  }
+  Step made;
+  simulation_->tick(
+      [&](const evaluation::LapTick& step) {
+        const auto method =
+            std::find(options_.choices.methods.begin(), options_.choices.methods.end(), names_.method);
+        made.tick = step.step;
+        made.without_bodies =
+            encoder_.encode(step, {.deadline = period.count(),
+                                   .prediction_step = configuration_.vehicle.time_step,
+                                   .method = static_cast<int>(method - options_.choices.methods.begin())});
+        if (ghost_) made.without_bodies += encode_ghost(ghost_->ride().world(), ghost_plan_);
+        made.frame = std::make_shared<const std::string>(made.without_bodies + encode_bodies(step.world));
+      },
+      real_time_);
+  keep(std::move(made));
+  note_laps();
+  if (history_.back().tick == stop_at_) {
+    paused_ = true;
+    stop_at_ = -1;
+    state_changed_ = true;
+  }
+  if (Clock::now() - last_frame_ >= least_frame_gap || paused_) {
+    last_frame_ = Clock::now();
+    server_.publish(history_.back().frame);
+  }
+}
+
+void Session::note_laps() {
+  note_laps_of(*simulation_, names_.method, false);
+  if (ghost_) note_laps_of(*ghost_, ghost_label_, true);
+}
+
+void Session::note_laps_of(const Simulation& simulation, const std::string& method, bool ghost) {
+  const sim::LapTimer& timer = *simulation.ride().world().laps(0);
+  int done = 0, before = 0;
+  for (const LapNote& lap : laps_) {
+    if (lap.ghost != ghost) continue;
+    done = lap.lap;
+    before += lap.contacts;
+  }
+  if (timer.laps() <= done) return;
+  laps_.push_back({.tick = simulation.ticks(),
+                   .lap = timer.laps(),
+                   .time = timer.last_lap_time(),
+                   .contacts = simulation.ride().contacts() - before,
+                   .method = method,
+                   .ghost = ghost});
+  state_changed_ = true;
+}
+
+void Session::keep(Step step) {
+  history_bytes_ += 2 * step.without_bodies.size();
+  history_.push_back(std::move(step));
+  const auto most =
+      static_cast<std::size_t>(options_.history / simulation_->ride().runner().control_period());
+  while (history_.size() > 1 && (history_.size() > most || history_bytes_ > most_history_bytes)) {
+    history_bytes_ -= 2 * history_.front().without_bodies.size();
+    history_.pop_front();
+  }
+}
+
+void Session::forget_after(int tick) {
+  while (!history_.empty() && history_.back().tick > tick) {
+    history_bytes_ -= 2 * history_.back().without_bodies.size();
+    history_.pop_back();
+  }
+  while (!laps_.empty() && laps_.back().tick > tick + 1) laps_.pop_back();
+}
+
+/// If a past tick is shown, makes it the present.
+void Session::go_to_viewed() {
+  if (viewed_ < 0) return;
+  const int tick = viewed_;
+  viewed_ = -1;
+  simulation_->seek(tick + 1);
+  if (ghost_) ghost_->seek(tick + 1);
+  const auto& runner = simulation_->ride().runner();
+  if (names_.method != runner.method() ||
+      vehicle::to_yaml(configuration_) != vehicle::to_yaml(runner.configuration())) {
+    names_.method = runner.method();
+    configuration_ = runner.configuration();
+    tell_options();
+  }
+  forget_after(tick);
+  due_ = Clock::now();
+  state_changed_ = true;
+}
+
+void Session::show(int tick) {
+  if (history_.empty()) return;
+  tick = std::clamp(tick, history_.front().tick, history_.back().tick);
+  const auto& step = history_[static_cast<std::size_t>(tick - history_.front().tick)];
+  viewed_ = tick == history_.back().tick ? -1 : tick;
+  paused_ = true;
+  server_.publish(step.frame);
+  state_changed_ = true;
+}
+
+/// While nothing moves, what was edited is shown at once.
+void Session::show_edit() {
+  if (history_.empty()) return;
+  Step& last = history_.back();
+  last.frame =
+      std::make_shared<const std::string>(last.without_bodies + encode_bodies(simulation_->ride().world()));
+  if (paused_) server_.publish(last.frame);
+}
+
+}  // namespace slalom::view

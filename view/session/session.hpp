@@ -1,0 +1,146 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
+#include "view/protocol/frame.hpp"
+#include "view/protocol/messages.hpp"
+#include "view/server/server.hpp"
+#include "view/session/simulation.hpp"
+
+namespace slalom::view {
+
+/// A scenario, loaded.
+struct LoadedScenario {
+  std::shared_ptr<const evaluation::Arena> arena;
+  vehicle::Configuration configuration;
+  evaluation::LapSettings lap;
+};
+
+/// A lap of an evaluation, loaded.
+struct LoadedLap {
+  ScenarioNames names;
+  LoadedScenario scenario;
+};
+
+struct SessionOptions {
+  ScenarioNames scenario;
+  std::function<LoadedScenario(const ScenarioNames&)> load;  ///< throws what is to be told to the user
+  Choices choices;
+  std::string further_arguments;  ///< of the command line that drives the same lap, begins with a space
+  double history = 60;            ///< s that can be gone back
+  bool wait_for_client = true;    ///< the drive begins when the first page is opened
+  /// An evaluation to look into: what the page is told of it (JSON), and how one of its laps is loaded.
+  std::string evaluation{};
+  std::function<LoadedLap(int experiment, int lap)> load_lap{};
+  std::string against{};           ///< method of a ghost from the start; empty for none
+  bool record_times = false;       ///< recordings hold figures of the wall clock too
+  std::string program = "slalom";  ///< who writes recordings
+};
+
+/// Drives, tells the clients of a server about it, and obeys them. Everything happens in the thread that
+/// calls `run`; the server never waits for it nor it for the server.
+class Session {
+ public:
+  /// Throws what `load` throws.
+  Session(SessionOptions options, Server& server);
+  ~Session();
+
+  /// Until `stop` is set.
+  void run(const std::atomic<bool>& stop);
+
+  /// Obeys what has come and makes one tick if it is due; for tests.
+  void turn();
+
+  std::uint64_t refused() const noexcept { return refused_; }  ///< messages that were no commands
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Step {
+    int tick;
+    std::string without_bodies;
+    std::shared_ptr<const std::string> frame;
+  };
+
+  // Driving.
+  void load(const ScenarioNames& names);
+  void install(LoadedScenario loaded, const ScenarioNames& names);
+  void restart();
+  std::shared_ptr<const evaluation::LapRunner> make_runner(const vehicle::Configuration& configuration,
+                                                           const std::string& method) const;
+  void tick();
+  void note_laps();
+  void note_laps_of(const Simulation& simulation, const std::string& method, bool ghost);
+  void keep(Step step);
+  void go_to_viewed();
+  void forget_after(int tick);
+  void show(int tick);
+  void show_edit();
+  Clock::duration until_due() const;
+
+  // Obeying.
+  void obey(const Received& received);
+  void obey(std::uint64_t client, const nlohmann::json& command);
+  void edit(const Edit& edit);
+  void change(const vehicle::Configuration& configuration, const std::string& method, bool remember);
+  void start_ghost(const std::string& method, const vehicle::Configuration& configuration);
+  void end_ghost();
+  void fork(const nlohmann::json& command);
+  void obey_lap(const nlohmann::json& command);
+  int tick_of_contact(int contact);
+  bool obey_transport(const std::string& what, const nlohmann::json& command);
+  bool obey_edit(const std::string& what, const nlohmann::json& command);
+  bool obey_options(const std::string& what, const nlohmann::json& command);
+  void obey_scenario(const nlohmann::json& command);
+  void save(std::uint64_t client, const std::string& what);
+
+  // Telling.
+  void greet(std::uint64_t client);
+  void refuse(std::uint64_t client, const std::string& why);
+  void note(const std::string& what);
+  void tell_state();
+  void tell_options();
+  std::string hello() const;
+  std::string state() const;
+  OptionsFacts options_facts() const;
+  std::string options() const;
+  std::string command_line() const;
+
+  SessionOptions options_;
+  Server& server_;
+  ScenarioNames names_;
+  LoadedScenario scenario_;
+  vehicle::Configuration configuration_;
+  std::vector<vehicle::Configuration> undo_, redo_;
+  std::optional<Simulation> simulation_, ghost_;
+  std::string ghost_method_, ghost_label_;
+  std::vector<maps::Pose> ghost_plan_;
+  FrameEncoder encoder_;
+  std::deque<Step> history_;
+  std::size_t history_bytes_ = 0;
+  std::vector<LapNote> laps_;
+  std::shared_ptr<const std::string> scene_;
+  int viewed_ = -1;   ///< tick that is shown while it is not the newest
+  int stop_at_ = -1;  ///< tick at which to pause
+  std::array<int, 4> contact_{-1, -1, -1, -1};
+  bool waiting_ = true, paused_ = false, real_time_ = false, state_changed_ = true;
+  double rate_ = 1;  ///< of simulated to real time; 0: as fast as it goes
+  int generation_ = 0;
+  Clock::time_point due_ = Clock::now(), last_state_ = Clock::now(), last_frame_ = Clock::now();
+  std::uint64_t refused_ = 0;
+  std::atomic<bool> saving_{false};
+  std::jthread saver_;  ///< the last member: it ends before what it uses
+};
+
+}  // namespace slalom::view

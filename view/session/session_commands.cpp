@@ -1,0 +1,269 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "view/session/session.hpp"
+
+namespace slalom::view {
+namespace {
+
+using Json = nlohmann::json;
+
+/// What is wrong with a command's form, as against what cannot be done.
+struct Malformed : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+double number(const Json& command, const char* key) {
+  const auto found = command.find(key);
+  if (found == command.end() || !found->is_number() || !std::isfinite(found->get<double>()))
+    throw Malformed(std::string(key) + ": must be a finite number");
+  return found->get<double>();
+}
+double number(const Json& command, const char* key, double otherwise) {
+  return command.contains(key) ? number(command, key) : otherwise;
+}
+int integer(const Json& command, const char* key) {
+  const double value = number(command, key);
+  if (std::floor(value) != value || std::abs(value) > 1e9)
+    throw Malformed(std::string(key) + ": must be an integer");
+  return static_cast<int>(value);
+}
+std::string text(const Json& command, const char* key) {
+  const auto found = command.find(key);
+  if (found == command.end() || !found->is_string()) throw Malformed(std::string(key) + ": must be text");
+  return found->get<std::string>();
+}
+bool flag(const Json& command, const char* key) {
+  const auto found = command.find(key);
+  if (found == command.end() || !found->is_boolean())
+    throw Malformed(std::string(key) + ": must be true or false");
+  return found->get<bool>();
+}
+maps::Pose pose(const Json& command) {
+  return {number(command, "x"), number(command, "y"), number(command, "yaw", 0)};
+}
+std::uint64_t count(const std::string& digits) {
+  if (digits.empty() || digits.size() > 19 || digits.find_first_not_of("0123456789") != std::string::npos)
+    throw Malformed("seed: must be a whole number from 0");
+  return std::stoull(digits);
+}
+
+}  // namespace
+
+void Session::obey(const Received& received) {
+  if (received.kind == Received::Kind::joined) return greet(received.client);
+  if (received.kind == Received::Kind::left) {
+    state_changed_ = true;
+    return;
+  }
+  const Json command = Json::parse(received.text, nullptr, false);
+  if (!command.is_object()) {
+    ++refused_;
+    return refuse(received.client, "a command must be a JSON object");
+  }
+  try {
+    obey(received.client, command);
+  } catch (const Malformed& error) {
+    ++refused_;
+    refuse(received.client, error.what());
+  } catch (const std::exception& error) {
+    refuse(received.client, error.what());
+  }
+}
+
+void Session::obey(std::uint64_t client, const Json& command) {
+  const std::string what = text(command, "do");
+  state_changed_ = true;
+  if (what == "scenario")
+    obey_scenario(command);
+  else if (what == "lap")
+    obey_lap(command);
+  else if (what == "save")
+    save(client, text(command, "what"));
+  else if (!obey_transport(what, command) && !obey_edit(what, command) && !obey_options(what, command))
+    throw Malformed("do: '" + what.substr(0, 40) + "' is no command");
+}
+
+bool Session::obey_transport(const std::string& what, const Json& command) {
+  if (what == "pause") {
+    paused_ = true;
+  } else if (what == "play") {
+    go_to_viewed();
+    stop_at_ = -1;
+    paused_ = waiting_ = false;
+    due_ = Clock::now();
+  } else if (what == "step") {
+    go_to_viewed();
+    waiting_ = false;
+    paused_ = true;
+    const int many = command.contains("ticks") ? std::clamp(integer(command, "ticks"), 1, 400) : 1;
+    for (int i = 0; i < many; ++i) tick();
+  } else if (what == "seek") {
+    show(integer(command, "tick"));
+  } else if (what == "rate") {
+    const double rate = number(command, "rate");
+    if (rate < 0 || rate > 100) throw Malformed("rate: must be in [0, 100]; 0 is as fast as it goes");
+    rate_ = rate;
+    due_ = Clock::now();
+  } else if (what == "real_time") {
+    real_time_ = flag(command, "on");
+    if (real_time_) rate_ = 1;
+  } else if (what == "restart") {
+    restart();
+    paused_ = false;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool Session::obey_edit(const std::string& what, const Json& command) {
+  if (what == "add") {
+    const std::string kind = text(command, "kind");
+    AddBody body{.pose = pose(command)};
+    if (kind == "car")
+      body.kind = BodyKind::parked_car;
+    else if (kind == "box")
+      body.kind = BodyKind::box;
+    else if (kind != "disc")
+      throw Malformed("kind: must be car, box or disc");
+    body.length = number(command, "length", body.length);
+    body.width = number(command, "width", body.length);
+    if (!(body.length >= 0.02 && body.length <= 10 && body.width >= 0.02 && body.width <= 10))
+      throw Malformed("length and width: must be in [0.02, 10] m");
+    edit(body);
+  } else if (what == "move") {
+    edit(MoveBody{integer(command, "body"), pose(command)});
+  } else if (what == "remove") {
+    edit(RemoveBody{integer(command, "body")});
+  } else if (what == "place_car") {
+    edit(MoveCar{pose(command)});
+  } else if (what == "nudge") {
+    const sim::CarState& car = simulation_->ride().world().state(0);
+    const double aside = number(command, "left", 0), turn = number(command, "turn", 0);
+    if (std::abs(aside) > 2 || std::abs(turn) > 3.2) throw Malformed("nudge: at most 2 m and 3.2 rad");
+    edit(MoveCar{{car.x - aside * std::sin(car.yaw), car.y + aside * std::cos(car.yaw), car.yaw + turn}});
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void Session::edit(const Edit& edit) {
+  go_to_viewed();
+  simulation_->apply(edit);
+  if (ghost_ && !std::holds_alternative<MoveCar>(edit)) ghost_->apply(edit);
+  show_edit();
+}
+
+/// Another configuration or method drives from now on.
+void Session::change(const vehicle::Configuration& configuration, const std::string& method, bool remember) {
+  const auto runner =
+      make_runner(configuration, method);  // refuses what it does not like before anything changes
+  if (remember) {
+    undo_.push_back(configuration_);
+    if (undo_.size() > 200) undo_.erase(undo_.begin());
+    redo_.clear();
+  }
+  const bool other_clock = runner->control_period() != simulation_->ride().runner().control_period();
+  configuration_ = configuration;
+  names_.method = method;
+  if (other_clock)
+    restart();
+  else
+    simulation_->apply(ChangeDriver{runner});
+  tell_options();
+}
+
+void Session::end_ghost() {
+  ghost_.reset();
+  ghost_method_.clear();
+  ghost_label_.clear();
+}
+
+/// From now on, in a world of its own that has come the same way.
+void Session::start_ghost(const std::string& method, const vehicle::Configuration& configuration) {
+  if (method.empty()) return end_ghost();
+  const auto runner = make_runner(configuration, method);
+  Simulation ghost(*simulation_, simulation_->ticks());
+  if (method != names_.method || ghost.ticks() == 0) ghost.apply(ChangeDriver{runner});
+  ghost_.emplace(std::move(ghost));
+  ghost_method_ = ghost_label_ = method;
+}
+
+/// Another method, other options or both drive on from here; what drove goes on as a ghost.
+void Session::fork(const Json& command) {
+  const std::string method = text(command, "method"), before = names_.method;
+  vehicle::Configuration changed = configuration_;
+  const Json set = command.value("set", Json::array());
+  if (!set.is_array() || set.size() > 100) throw Malformed("set: must be a list of key=value");
+  for (const Json& each : set) {
+    const std::string assignment = each.is_string() ? each.get<std::string>() : "";
+    const auto equals = assignment.find('=');
+    if (equals == std::string::npos) throw Malformed("set: must be a list of key=value");
+    vehicle::set_option(changed, assignment.substr(0, equals), assignment.substr(equals + 1), method);
+  }
+  const auto runner = make_runner(changed, method);  // refuses before anything changes
+  if (runner->control_period() != simulation_->ride().runner().control_period())
+    throw std::invalid_argument("fork: the control period cannot change on the way");
+  go_to_viewed();
+  start_ghost(before, configuration_);
+  if (before == method) ghost_label_ = before + " as before";
+  change(changed, method, !set.empty());
+}
+
+bool Session::obey_options(const std::string& what, const Json& command) {
+  if (what == "set") {
+    vehicle::Configuration changed = configuration_;
+    vehicle::set_option(changed, text(command, "key"), text(command, "value"), names_.method);
+    go_to_viewed();
+    change(changed, names_.method, true);
+  } else if (what == "undo" || what == "redo") {
+    auto& from = what == "undo" ? undo_ : redo_;
+    auto& to = what == "undo" ? redo_ : undo_;
+    if (from.empty()) throw std::invalid_argument("there is nothing to " + what);
+    to.push_back(configuration_);
+    const vehicle::Configuration changed = from.back();
+    from.pop_back();
+    change(changed, names_.method, false);
+  } else if (what == "reset_options") {
+    change(scenario_.configuration, names_.method, true);
+  } else if (what == "method") {
+    go_to_viewed();
+    change(configuration_, text(command, "method"), false);
+  } else if (what == "fork") {
+    fork(command);
+  } else if (what == "ghost") {
+    go_to_viewed();
+    start_ghost(text(command, "method"), configuration_);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void Session::obey_scenario(const Json& command) {
+  ScenarioNames names = names_;
+  if (command.contains("course")) names.course = text(command, "course");
+  if (command.contains("method")) names.method = text(command, "method");
+  if (command.contains("config")) names.config = text(command, "config");
+  if (command.contains("seed")) names.seed = count(text(command, "seed"));
+  if (command.contains("obstacles")) names.obstacles = integer(command, "obstacles");
+  if (command.contains("opponents")) names.opponents = integer(command, "opponents");
+  if (names.opponents < 0 || names.opponents > 16) throw Malformed("opponents: must be in [0, 16]");
+  if (names.obstacles < 0 || names.obstacles > 60) throw Malformed("obstacles: must be in [0, 60]");
+  // A page may choose among what is known, not read any folder of this machine.
+  const auto known = [](const std::vector<std::string>& all, const std::string& name) {
+    return std::find(all.begin(), all.end(), name) != all.end();
+  };
+  if (names.course != options_.scenario.course && !known(options_.choices.courses, names.course))
+    throw std::invalid_argument("course: '" + names.course + "' is not known here");
+  if (names.config != options_.scenario.config && !known(options_.choices.configurations, names.config))
+    throw std::invalid_argument("config: '" + names.config + "' is not known here");
+  load(names);
+  paused_ = false;
+}
+
+}  // namespace slalom::view

@@ -1,0 +1,57 @@
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "view/session/session.hpp"
+
+namespace slalom::view {
+namespace {
+
+constexpr double before_contact = 2.0, after_contact = 0.25;  // s shown
+constexpr double slow = 0.25;                                 // of simulated to real time
+
+int integer(const nlohmann::json& command, const char* key) {
+  const auto found = command.find(key);
+  if (found == command.end() || !found->is_number_integer())
+    throw std::invalid_argument(std::string(key) + ": must be an integer");
+  return found->get<int>();
+}
+
+}  // namespace
+
+/// The tick in which a lap's contact happens. Drives the lap to find it.
+int Session::tick_of_contact(int contact) {
+  const evaluation::LapRunner& runner = simulation_->ride().runner();
+  const double period = runner.control_period();
+  const int most = static_cast<int>(runner.timeout() / period) + 1;
+  const auto touches = [&] { return simulation_->ride().touches(); };
+  while (std::ssize(touches()) <= contact && simulation_->ticks() < most) simulation_->tick({}, false);
+  if (std::ssize(touches()) <= contact)
+    throw std::runtime_error(
+        "the lap driven again has no such contact: another version drove the evaluation");
+  return static_cast<int>(touches()[static_cast<std::size_t>(contact)].time / period);
+}
+
+/// A lap of the evaluation: from its start, or the seconds before one of its contacts.
+void Session::obey_lap(const nlohmann::json& command) {
+  if (!options_.load_lap) throw std::invalid_argument("lap: no evaluation is open");
+  const int experiment = integer(command, "experiment"), lap = integer(command, "lap"),
+            contact = command.contains("contact") ? integer(command, "contact") : -1;
+  note("Driving lap " + std::to_string(lap) + " again \xE2\x80\xA6");
+  LoadedLap loaded = options_.load_lap(experiment, lap);
+  install(std::move(loaded.scenario), loaded.names);
+  waiting_ = real_time_ = paused_ = false;
+  rate_ = 1;
+  int hit = -1;
+  if (contact >= 0) {
+    hit = tick_of_contact(contact);
+    const double period = simulation_->ride().runner().control_period();
+    simulation_->seek(std::max(0, hit - static_cast<int>(before_contact / period)));
+    stop_at_ = hit + static_cast<int>(after_contact / period);
+    rate_ = slow;
+  }
+  contact_ = {experiment, lap, contact, hit};
+  due_ = Clock::now();
+}
+
+}  // namespace slalom::view

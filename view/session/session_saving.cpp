@@ -1,0 +1,91 @@
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "view/protocol/frame_writer.hpp"
+#include "view/recording/encodings.hpp"
+#include "view/recording/recorder.hpp"
+#include "view/recording/replay.hpp"
+#include "view/server/page_data.hpp"
+#include "view/session/session.hpp"
+
+namespace slalom::view {
+namespace {
+
+using Frames = std::vector<std::shared_ptr<const std::string>>;
+
+/// What a recording or replay begins with.
+struct Opening {
+  std::string hello, options, state;
+  std::shared_ptr<const std::string> course;
+};
+
+template <class To>
+void tell(To& to, const Opening& opening, const Frames& frames) {
+  to.add_text(opening.hello);
+  to.add_course(*opening.course);
+  to.add_text(opening.options);
+  to.add_text(opening.state);
+  for (const auto& frame : frames) to.add_frame(*frame);
+  to.finish();
+}
+
+std::string recording_of(const Opening& opening, const Frames& frames, RecorderOptions options) {
+  std::ostringstream stream;
+  Recorder recorder(stream, std::move(options));
+  tell(recorder, opening, frames);
+  return std::move(stream).str();
+}
+
+std::string replay_of(const Opening& opening, const Frames& frames) {
+  std::vector<std::string> segments;
+  ReplaySegments replay([&](std::string segment) { segments.push_back(std::move(segment)); });
+  tell(replay, opening, frames);
+  return replay_page(gunzip(page_gzip()), segments);
+}
+
+/// A file as a message: its name and what stands in it.
+std::string file_message(const std::string& name, const std::string& content) {
+  FrameWriter to;
+  to.begin(Block::file);
+  to.put(static_cast<std::uint32_t>(name.size()));
+  to.append(name);
+  to.pad();
+  to.append(content);
+  to.end();
+  return to.take();
+}
+
+}  // namespace
+
+/// Sends the last minute to a client as a file. It is made in a thread of its own: the drive goes on.
+void Session::save(std::uint64_t client, const std::string& what) {
+  if (what != "recording" && what != "replay")
+    throw std::invalid_argument("what: must be recording or replay");
+  if (history_.empty()) throw std::invalid_argument("there is nothing to save yet");
+  if (saving_.exchange(true)) throw std::invalid_argument("the last file is still being made");
+  Frames frames;
+  for (const Step& step : history_) frames.push_back(step.frame);
+  const sim::WorldOptions world = scenario_.arena->world_options();
+  RecorderOptions recorder{
+      .program = options_.program,
+      .settings = {{"settings", nlohmann::json{{"command_line", command_line()}}.dump()}},
+      .lidar_angle_min = world.lidar.angle_min(),
+      .lidar_angle_increment = world.lidar.angle_increment(),
+      .wall_clock = options_.record_times};
+  const std::string name = "slalom-" + scenario_.arena->course.name + "-" + names_.method + "-" +
+                           std::to_string(history_.back().tick) + (what == "replay" ? ".html" : ".mcap");
+  saver_ = std::jthread([this, client, what, name, frames = std::move(frames), recorder = std::move(recorder),
+                         opening = Opening{hello(), options(), state(), scene_}] {
+    try {
+      const std::string content =
+          what == "replay" ? replay_of(opening, frames) : recording_of(opening, frames, recorder);
+      server_.send(client, {std::make_shared<const std::string>(file_message(name, content)), true});
+    } catch (const std::exception& error) {
+      refuse(client, error.what());
+    }
+    saving_ = false;
+  });
+}
+
+}  // namespace slalom::view

@@ -1,0 +1,82 @@
+#include "view/session/simulation.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+namespace slalom::view {
+
+Simulation::Simulation(std::shared_ptr<const evaluation::LapRunner> runner, std::uint64_t seed)
+    : first_runner_(std::move(runner)), seed_(seed), ride_(first_runner_, seed) {}
+
+Simulation::Simulation(const Simulation& other, int ticks) : Simulation(other.first_runner_, other.seed_) {
+  repeat(other.log_, other.delays_, ticks);
+}
+
+void Simulation::tick(const evaluation::TickCallback& on_tick, bool real_time) {
+  const double delay = real_time ? last_update_ : 0;
+  if (delay > 0) {
+    delays_.resize(static_cast<std::size_t>(ticks()) + 1, 0.0f);
+    delays_.back() = static_cast<float>(delay);
+  }
+  // The delay is rounded to float for the log, and the ride shall be that of the log.
+  ride_.tick(
+      [&](const evaluation::LapTick& step) {
+        last_update_ = step.output.tick_time;
+        if (on_tick) on_tick(step);
+      },
+      static_cast<float>(delay));
+}
+
+void Simulation::apply(const Edit& edit) {
+  perform(edit);
+  log_.push_back({ticks(), edit});
+}
+
+void Simulation::seek(int ticks) {
+  const auto log = std::exchange(log_, {});
+  const auto delays = std::exchange(delays_, {});
+  ride_ = evaluation::Ride(first_runner_, seed_);
+  repeat(log, delays, ticks);
+}
+
+void Simulation::repeat(const std::vector<Logged>& log, const std::vector<float>& delays, int ticks) {
+  auto next = log.begin();
+  for (int i = 0; i < ticks; ++i) {
+    for (; next != log.end() && next->tick <= i; ++next) apply(next->edit);
+    const auto at = static_cast<std::size_t>(i);
+    ride_.tick({}, at < delays.size() ? delays[at] : 0.0f);
+  }
+  delays_.assign(delays.begin(), delays.begin() + std::min<std::ptrdiff_t>(ticks, std::ssize(delays)));
+}
+
+void Simulation::perform(const Edit& edit) {
+  sim::World& world = ride_.world();
+  struct Perform {
+    evaluation::Ride& ride;
+    sim::World& world;
+    void operator()(const AddBody& e) const {
+      if (world.bodies() >= 512) throw std::invalid_argument("bodies: at most 512 are kept");
+      if (e.kind == BodyKind::parked_car)
+        world.add_parked_car(e.pose);
+      else if (e.kind == BodyKind::disc)
+        world.add_disc({{e.pose.x, e.pose.y}, 0.5 * e.length});
+      else
+        world.add_box({e.pose, e.length, e.width});
+    }
+    void operator()(const MoveBody& e) const { world.move_body(e.body, e.pose); }
+    void operator()(const RemoveBody& e) const { world.remove_body(e.body); }
+    void operator()(const MoveCar& e) const {
+      sim::CarState state = world.state(0);
+      if (world.track().in_wall({e.pose.x, e.pose.y}))
+        throw std::invalid_argument("car: cannot be put into a wall");
+      state.x = e.pose.x;
+      state.y = e.pose.y;
+      state.yaw = e.pose.yaw;
+      world.set_state(0, state);
+    }
+    void operator()(const ChangeDriver& e) const { ride.change_driver(e.runner); }
+  };
+  std::visit(Perform{ride_, world}, edit);
+}
+
+}  // namespace slalom::view
