@@ -198,10 +198,10 @@ void LapRunner::control(Drive& drive, const TickCallback& on_tick, double furthe
     ++drive.solves;
     drive.effective += solve.effective_sample_size;
     double variance = 0;
-    for (std::size_t row = 0; row < solve.covariance.size(); row += width)
-      variance += static_cast<double>(solve.covariance[row]);
-    if (!solve.covariance.empty())
-      drive.variance += variance / static_cast<double>(solve.covariance.size() / width);
+    for (std::size_t row = 0; row < solve.variances.size(); row += width)
+      variance += static_cast<double>(solve.variances[row]);
+    if (!solve.variances.empty())
+      drive.variance += variance / static_cast<double>(solve.variances.size() / width);
     result.solve_ms.push_back(static_cast<float>(1e3 * solve.times.total));
   }
   if (on_tick)

@@ -79,18 +79,19 @@ double warm_start_shift(const BatchEvaluator& evaluator, const SolveRequest& req
   return std::min(request.elapsed / step, 1e6);
 }
 
-void report_samples(const SampleSet& set, const Census& census, const WeightSums<double>& sums,
+void report_samples(const SampleSet& set, const BatchStatistics& statistics, const WeightSums<double>& sums,
                     SolveResult& result) noexcept {
   result.samples = &set.values();
   result.costs = set.costs();
   result.collided = set.collided();
   result.weights = set.weights();
-  result.minimum_cost = static_cast<double>(census.minimum_cost);
+  result.minimum_cost = static_cast<double>(statistics.minimum_cost);
   result.expected_cost = sums.weight > 0 ? sums.cost / sums.weight : 0;
   result.effective_sample_size = sums.squared > 0 ? sums.weight * sums.weight / sums.squared : 0;
-  result.collided_share = census.evaluated > 0 ? static_cast<double>(census.collided) / census.evaluated : 0;
-  result.times.draw += census.draw_time;
-  result.times.evaluate += census.evaluate_time;
+  result.collided_share =
+      statistics.evaluated > 0 ? static_cast<double>(statistics.collided) / statistics.evaluated : 0;
+  result.times.draw += statistics.draw_time;
+  result.times.evaluate += statistics.evaluate_time;
 }
 
 }  // namespace slalom::detail

@@ -7,8 +7,8 @@
 #include "slalom/core/options.hpp"
 #include "slalom/core/thread_pool.hpp"
 #include "slalom/solvers/solver.hpp"
-#include "solvers/control_term.hpp"
-#include "solvers/sample_set.hpp"
+#include "solvers/methods/control_term.hpp"
+#include "solvers/sampling/sample_set.hpp"
 
 namespace slalom::detail {
 
@@ -73,7 +73,7 @@ void shift_sequence(const double* sequence, int steps, int inputs, double shift,
 double warm_start_shift(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept;
 
 /// Puts what the samples of `set` tell into a result.
-void report_samples(const SampleSet& set, const Census& census, const WeightSums<double>& sums,
+void report_samples(const SampleSet& set, const BatchStatistics& statistics, const WeightSums<double>& sums,
                     SolveResult& result) noexcept;
 
 }  // namespace slalom::detail

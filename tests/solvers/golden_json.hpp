@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "golden.hpp"
-#include "solvers/kernels.hpp"
+#include "solvers/kernels/kernels.hpp"
 
 namespace slalom::testing {
 

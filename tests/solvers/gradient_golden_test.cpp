@@ -1,7 +1,7 @@
-#include "solvers/control_term.hpp"
 #include "solvers/golden_json.hpp"
-#include "solvers/stein.hpp"
-#include "solvers/surrogate_gradient.hpp"
+#include "solvers/methods/control_term.hpp"
+#include "solvers/methods/stein.hpp"
+#include "solvers/methods/surrogate_gradient.hpp"
 
 namespace slalom::testing {
 namespace {

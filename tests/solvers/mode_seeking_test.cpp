@@ -42,7 +42,7 @@ Outcome outcome(Options options) {
     all.offset += std::abs(y) / seeds;
     double variance = 0;
     for (std::size_t k = 0; k < beside; ++k) {
-      variance += point.dt * point.dt * static_cast<double>(plan.stats.covariance[k]);
+      variance += point.dt * point.dt * static_cast<double>(plan.stats.variances[k]);
     }
     all.deviation += std::sqrt(variance) / seeds;
   }

@@ -1,7 +1,7 @@
-#include "solvers/control_term.hpp"
 #include "solvers/golden_json.hpp"
-#include "solvers/rejection.hpp"
-#include "solvers/reverse_weights.hpp"
+#include "solvers/methods/control_term.hpp"
+#include "solvers/methods/rejection.hpp"
+#include "solvers/methods/reverse_weights.hpp"
 
 namespace slalom::testing {
 namespace {

@@ -1,4 +1,4 @@
-#include "solvers/smoother.hpp"
+#include "solvers/sampling/smoother.hpp"
 
 #include <gtest/gtest.h>
 

@@ -363,7 +363,7 @@ TEST_P(Contract, SameBitsForAnyNumberOfThreads) {
       const auto& result = solver->solve(evaluator, {.elapsed = 0.025});
       seen.insert(seen.end(), result.inputs.begin(), result.inputs.end());
       seen.insert(seen.end(), result.weights.begin(), result.weights.end());
-      seen.insert(seen.end(), result.covariance.begin(), result.covariance.end());
+      seen.insert(seen.end(), result.variances.begin(), result.variances.end());
     }
     if (threads == 1) expected = seen;
     EXPECT_EQ(seen, expected) << threads << " threads";

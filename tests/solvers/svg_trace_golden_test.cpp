@@ -1,8 +1,8 @@
-#include "solvers/control_term.hpp"
-#include "solvers/gaussian_fit.hpp"
 #include "solvers/golden_json.hpp"
-#include "solvers/kernels_of.hpp"
-#include "solvers/surrogate_gradient.hpp"
+#include "solvers/kernels/kernels_of.hpp"
+#include "solvers/methods/control_term.hpp"
+#include "solvers/methods/gaussian_fit.hpp"
+#include "solvers/methods/surrogate_gradient.hpp"
 
 /// Whole solves of the published SVG-MPPI, stage by stage, each stage from what the trace says went into it.
 namespace slalom::testing {

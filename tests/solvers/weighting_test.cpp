@@ -1,4 +1,4 @@
-#include "solvers/weighting.hpp"
+#include "solvers/sampling/weighting.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ struct Drawn {
     const FunctionEvaluator evaluator(1, [cost](const SequenceBatch& batch, int k) {
       return std::pair<double, bool>(cost(static_cast<double>(batch.at(0, 0, k))), false);
     });
-    census = samples.draw_and_evaluate(evaluator, {7, 1}, {&mean, &deviation, &low, &high, 1000}, nullptr,
-                                       pool, Deadline());
+    statistics = samples.draw_and_evaluate(evaluator, {7, 1}, {&mean, &deviation, &low, &high, 1000}, nullptr,
+                                           pool, Deadline());
   }
   double effective() const {
     double sum = 0, squared = 0;
@@ -34,7 +34,7 @@ struct Drawn {
 
   ThreadPool pool;
   SampleSet samples;
-  Census census;
+  BatchStatistics statistics;
 };
 
 /// The q-exponential as its definition has it.
@@ -48,12 +48,13 @@ TEST(Weighting, TsallisWeightsAreQExponentials) {
   Drawn drawn([](double v) { return 10 + 2 * v * v; });
   for (const double q : {-20.0, -1.0, 0.0, 0.5, 0.99, 0.9999, 1.0, 1.0001, 1.5, 2.0, 3.0}) {
     Weighting weighting({1.7, q, 0});
-    const WeightSums<double> sums = weighting.weigh(drawn.samples, drawn.census.minimum_total, drawn.pool);
+    const WeightSums<double> sums =
+        weighting.weigh(drawn.samples, drawn.statistics.minimum_total, drawn.pool);
     double total = 0;
     for (std::size_t k = 0; k < 1000; ++k) {
-      const double x =
-          (static_cast<double>(drawn.census.minimum_total) - static_cast<double>(drawn.samples.costs()[k])) /
-          1.7;
+      const double x = (static_cast<double>(drawn.statistics.minimum_total) -
+                        static_cast<double>(drawn.samples.costs()[k])) /
+                       1.7;
       const double w = static_cast<double>(drawn.samples.weights()[k]);
       EXPECT_NEAR(w, q_exponential(x, q), 1e-5) << "q " << q << " x " << x;
       total += w;
@@ -81,7 +82,8 @@ TEST(Weighting, InfiniteCostsWeighNothing) {
   for (const double q : {0.0, 1.0, 2.0, 3.0}) {
     Drawn drawn([](double v) { return v > 0 ? std::numeric_limits<double>::infinity() : v * v; });
     Weighting weighting({1, q, 0});
-    const WeightSums<double> sums = weighting.weigh(drawn.samples, drawn.census.minimum_total, drawn.pool);
+    const WeightSums<double> sums =
+        weighting.weigh(drawn.samples, drawn.statistics.minimum_total, drawn.pool);
     EXPECT_TRUE(std::isfinite(sums.weight) && std::isfinite(sums.cost)) << q;
     for (std::size_t k = 0; k < 1000; ++k) {
       if (!std::isfinite(drawn.samples.costs()[k])) {

@@ -1,8 +1,8 @@
-#include "solvers/control_term.hpp"
-#include "solvers/gaussian_fit.hpp"
 #include "solvers/golden_json.hpp"
-#include "solvers/kernels_of.hpp"
-#include "solvers/mirror_descent.hpp"
+#include "solvers/kernels/kernels_of.hpp"
+#include "solvers/methods/control_term.hpp"
+#include "solvers/methods/gaussian_fit.hpp"
+#include "solvers/methods/mirror_descent.hpp"
 
 namespace slalom::testing {
 namespace {

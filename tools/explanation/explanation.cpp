@@ -109,7 +109,7 @@ void tell_outcome(const SolveResult& result, int steps, Explanation& e) {
   e.deviation = {0};
   std::vector<Input<double, 1>> inputs;
   for (std::size_t k = 0; k < static_cast<std::size_t>(steps); ++k) {
-    variance += e.point.dt * e.point.dt * static_cast<double>(result.covariance[k]);
+    variance += e.point.dt * e.point.dt * static_cast<double>(result.variances[k]);
     e.deviation.push_back(std::sqrt(variance));
     e.inputs.push_back(static_cast<double>(result.inputs[k]));
     inputs.push_back({{e.inputs.back()}});

@@ -87,7 +87,7 @@ void JsonRecording::add(const evaluation::LapTick& tick) {
   list("cost", std::initializer_list<double>{tick.cost.state, tick.cost.collision});
   if (output.solve) {
     list("nominal", output.solve->nominal);
-    list("covariance", output.solve->covariance);
+    list("covariance", output.solve->variances);
     line_ += ",\"effective_samples\":";
     number(output.solve->effective_sample_size);
     line_ += ",\"collided_share\":";

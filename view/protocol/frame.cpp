@@ -151,7 +151,7 @@ std::string FrameEncoder::encode(const LapTick& tick, const StepFacts& facts) {
   put_plan(to, tick);
   to.begin(Block::covariance);
   const auto width = static_cast<std::size_t>(tick.planner.solver().inputs());
-  for (std::size_t row = 0; row < solve->covariance.size(); row += width) to.put(solve->covariance[row]);
+  for (std::size_t row = 0; row < solve->variances.size(); row += width) to.put(solve->variances[row]);
   to.end();
   return to.take();
 }
@@ -263,7 +263,7 @@ void FrameEncoder::put_guides(FrameWriter& to, const LapTick& tick) {
 void FrameEncoder::put_plan(FrameWriter& to, const LapTick& tick) {
   const auto inputs = tick.output.inputs;
   const auto& plan = tick.output.predicted;
-  const auto variances = tick.output.solve->covariance;
+  const auto variances = tick.output.solve->variances;
   constexpr float nudge = 0.01f;  // rad, m/s^2
   const auto width = static_cast<std::size_t>(tick.output.inputs_per_step);
   std::vector<double> spread(plan.size(), 0.0);

@@ -227,7 +227,7 @@ void bind_plan(py::module_& module) {
           "nominal", [](const Plan& p) { return sequence(p, p.result().nominal); },
           "float32 [horizon, inputs]; svg_mppi: the best guide")
       .def_property_readonly(
-          "covariance", [](const Plan& p) { return sequence(p, p.result().covariance); },
+          "variances", [](const Plan& p) { return sequence(p, p.result().variances); },
           "float32 [horizon, inputs], variances of the distribution")
       .def_property_readonly("samples", samples, "float32 [samples, horizon, inputs] drawn last")
       .def_property_readonly(

@@ -8,12 +8,12 @@
 namespace slalom {
 
 /// With which densities samples are rejected.
-enum class RejectionForm {
+enum class RejectionModel {
   normal,     ///< a sample is kept with probability p / (p + p_rejected), normal densities at the sample
   published,  ///< product over steps of 1 / (p + p_rejected) where a "density" grows with the distance, and p
               ///< is taken at the rejected mean (published program)
 };
-inline const char* const* enum_names(RejectionForm) {
+inline const char* const* enum_names(RejectionModel) {
   static constexpr const char* const names[] = {"normal", "published", nullptr};
   return names;
 }
@@ -42,9 +42,9 @@ struct ReverseMppiOptions {
   double step = 0.2;            ///< eta of the mirror descent; published: 0.05
   double negative_ratio = 0.5;  ///< weight of the repulsion from bad samples; published: 1
   bool reject_samples = true;
-  double inflation = 2;                             ///< samples drawn for each one that is kept
-  RejectionForm rejection = RejectionForm::normal;  ///< published: published
-  Resampling resampling = Resampling::systematic;   ///< published: multinomial
+  double inflation = 2;                               ///< samples drawn for each one that is kept
+  RejectionModel rejection = RejectionModel::normal;  ///< published: published
+  Resampling resampling = Resampling::systematic;     ///< published: multinomial
   /// Measure second moments in units of the present variance, but use them as variances all the same.
   /// Published: true, so that every variance is drawn towards 1.
   bool dimensionless_variance = false;

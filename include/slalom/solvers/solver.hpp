@@ -35,10 +35,10 @@ struct SequenceList {
 /// The outcome of a solve. Its spans point into the solver and stay valid until the next solve or reset.
 struct SolveResult {
   Status status = Status::ok;
-  std::span<const float> inputs;      ///< the control sequence to apply, [step][input]
-  std::span<const float> nominal;     ///< the nominal sequence (svg_mppi: the best guide), [step][input]
-  std::span<const float> mean;        ///< mean of the resulting distribution, [step][input]
-  std::span<const float> covariance;  ///< its variances, [step][input]
+  std::span<const float> inputs;     ///< the control sequence to apply, [step][input]
+  std::span<const float> nominal;    ///< the nominal sequence (svg_mppi: the best guide), [step][input]
+  std::span<const float> mean;       ///< mean of the resulting distribution, [step][input]
+  std::span<const float> variances;  ///< its variances, [step][input]
 
   const SequenceBatch* samples = nullptr;  ///< what was drawn last
   std::span<const float> costs;            ///< of the samples

@@ -8,11 +8,11 @@
 namespace slalom {
 
 /// What the bandwidth of the kernel between particles is taken from.
-enum class BandwidthForm {
+enum class BandwidthModel {
   pair_distances,  ///< median squared distance between particles / log n (Liu and Wang 2016)
   squared_norms,   ///< median squared norm of the particles / log n (published program)
 };
-inline const char* const* enum_names(BandwidthForm) {
+inline const char* const* enum_names(BandwidthModel) {
   static constexpr const char* const names[] = {"pair_distances", "squared_norms", nullptr};
   return names;
 }
@@ -39,7 +39,7 @@ struct SvMpcOptions {
   bool gradient_control_term = false;
   bool best_particle =
       false;  ///< the solution is the particle of largest weight instead of the weighted mean
-  BandwidthForm bandwidth = BandwidthForm::pair_distances;  ///< published: squared_norms
+  BandwidthModel bandwidth = BandwidthModel::pair_distances;  ///< published: squared_norms
   /// Gradient of the log prior with the inverse of the inverse variance and the wrong sign. Published: true.
   bool inverted_prior = false;
   bool subtract_minimum = true;  ///< see svg_mppi; published: false

@@ -3,9 +3,9 @@
 #include <limits>
 
 #include "slalom/solvers/make_solver.hpp"
-#include "solvers/mirror_descent.hpp"
-#include "solvers/rejection.hpp"
-#include "solvers/reverse_weights.hpp"
+#include "solvers/methods/mirror_descent.hpp"
+#include "solvers/methods/rejection.hpp"
+#include "solvers/methods/reverse_weights.hpp"
 #include "solvers/solver_base.hpp"
 
 namespace slalom {
@@ -65,7 +65,7 @@ class ReverseMppiSolver final : public detail::SolverBase {
     result_ = {};
     result_.inputs = result_.mean = now_.mean;
     result_.nominal = zero_;
-    result_.covariance = now_.variance;
+    result_.variances = now_.variance;
   }
 
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
@@ -76,21 +76,21 @@ class ReverseMppiSolver final : public detail::SolverBase {
     copy(start_, now_);
     copy(start_rejected_, now_rejected_);
 
-    detail::Census census;
+    detail::BatchStatistics statistics;
     Status status = Status::deadline;
     int iteration = 0;
     for (; iteration < options_.iterations && !deadline.passed(); ++iteration) {
       draw(iteration);
-      census = evaluate(evaluator, deadline);
-      if (census.evaluated < samples_.samples()) break;
-      status = update(census) ? Status::ok : Status::degenerate;
+      statistics = evaluate(evaluator, deadline);
+      if (statistics.evaluated < samples_.samples()) break;
+      status = update(statistics) ? Status::ok : Status::degenerate;
       if (status != Status::ok) break;
     }
     if (status == Status::ok && iteration < options_.iterations) status = Status::deadline;
-    if (status == Status::ok && census.collided == samples_.samples()) status = Status::all_collided;
+    if (status == Status::ok && statistics.collided == samples_.samples()) status = Status::all_collided;
     result_.status = status;
     result_.iterations = iteration;
-    report(census);
+    report(statistics);
     store();
     next_solve();
     result_.times.total = detail::seconds(begin, detail::Clock::now());
@@ -127,8 +127,8 @@ class ReverseMppiSolver final : public detail::SolverBase {
       RandomStream random(key(2 * iteration + 1));
       picker_.pick(keep_.data(), samples_.samples(), options_.resampling == Resampling::systematic, random,
                    picked_.data());
-      detail::kernels().take(inflated_.row_view(), picked_.data(), {0, samples_.stride()},
-                             samples_.row_view());
+      detail::kernels().gather(inflated_.row_view(), picked_.data(), {0, samples_.stride()},
+                               samples_.row_view());
     }
     result_.times.draw += detail::seconds(begin, detail::Clock::now());
   }
@@ -137,7 +137,7 @@ class ReverseMppiSolver final : public detail::SolverBase {
   void keep_probabilities() noexcept {
     const detail::Range range{0, inflated_.stride()};
     float* logarithms = own_distance_.data();
-    if (options_.rejection == RejectionForm::published) {
+    if (options_.rejection == RejectionModel::published) {
       published_.set(now_.mean.data(), now_.variance.data(), now_rejected_.mean.data(),
                      now_rejected_.variance.data());
       detail::kernels().published_rejection(inflated_.row_view(), published_.rows(), range, logarithms);
@@ -171,26 +171,27 @@ class ReverseMppiSolver final : public detail::SolverBase {
     return logarithm;
   }
 
-  detail::Census evaluate(const BatchEvaluator& evaluator, const detail::Deadline& deadline) noexcept {
+  detail::BatchStatistics evaluate(const BatchEvaluator& evaluator,
+                                   const detail::Deadline& deadline) noexcept {
     detail::control_coefficients(options_.temperature, options_.control_cost_discount,
                                  options_.inverse_variance_offset, now_.mean.data(), zero_.data(),
                                  now_.variance.data(), rows(), linear_.data());
-    const detail::Census census = samples_.evaluate(evaluator, linear_.data(), pool(), deadline);
-    result_.times.evaluate += census.evaluate_time;
-    return census;
+    const detail::BatchStatistics statistics = samples_.evaluate(evaluator, linear_.data(), pool(), deadline);
+    result_.times.evaluate += statistics.evaluate_time;
+    return statistics;
   }
 
   /// Moves both distributions; false if no sample has a finite cost.
-  bool update(const detail::Census& census) noexcept {
+  bool update(const detail::BatchStatistics& statistics) noexcept {
     const auto begin = detail::Clock::now();
-    if (census.finite == 0) return false;
+    if (statistics.finite == 0) return false;
     const detail::Range range{0, samples_.stride()};
     const detail::ReverseSums sums = detail::reverse_weights(
         samples_.totals().data(), static_cast<float>(options_.temperature),
         static_cast<float>(options_.negative_ratio), static_cast<float>(options_.normaliser_offset), range,
         evaluated_.data(), rejected_.data());
     if (!(sums.evaluated > 0)) {  // all costs are equal: no sample is better than another
-      const float equal = 1.0f / static_cast<float>(census.finite);
+      const float equal = 1.0f / static_cast<float>(statistics.finite);
       for (std::size_t k = 0; k < evaluated_.size(); ++k)
         evaluated_[k] = k < samples_.costs().size() && std::isfinite(samples_.totals()[k]) ? equal : 0.0f;
     }
@@ -223,10 +224,10 @@ class ReverseMppiSolver final : public detail::SolverBase {
     }
   }
 
-  void report(const detail::Census& census) noexcept {
+  void report(const detail::BatchStatistics& statistics) noexcept {
     std::copy_n(evaluated_.begin(), samples_.weights().size(), samples_.weights().begin());
     const StageTimes times = result_.times;
-    detail::report_samples(samples_, census, samples_.sum_weights(), result_);
+    detail::report_samples(samples_, statistics, samples_.sum_weights(), result_);
     result_.times = times;
     result_.temperature = options_.temperature;
   }

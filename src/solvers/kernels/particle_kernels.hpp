@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/kernels_body.hpp"
+#include "solvers/kernels/weight_kernels.hpp"
 
 /// Bodies of the kernels that work on sets of particles, one particle a lane.
 namespace slalom::detail::body {
@@ -50,7 +50,8 @@ SLALOM_INLINE void particle_gradients(const ParticleGradients<RealOf<F>>& g, con
 /// samples from `zero_mean_from` on.
 template <class F>
 SLALOM_INLINE void place_round(const Rows<RealOf<F>>& samples, const Rows<RealOf<F>>& theta,
-                               const Placement<RealOf<F>>& to, int particle_stride, int count, Range range) {
+                               const SamplingDistribution<RealOf<F>>& to, int particle_stride, int count,
+                               Range range) {
   using L = Lanes<F>;
   for (int r = 0; r < samples.rows; ++r) {
     const F deviation(to.deviation[r]), low(to.low[r]), high(to.high[r]);

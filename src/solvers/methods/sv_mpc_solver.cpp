@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "slalom/solvers/make_solver.hpp"
+#include "solvers/methods/stein.hpp"
 #include "solvers/solver_base.hpp"
-#include "solvers/stein.hpp"
 
 namespace slalom {
 
@@ -59,7 +59,7 @@ class SvMpcSolver final : public detail::SolverBase {
     result_.inputs = solution_;
     result_.mean = mean_;
     result_.nominal = zero_;
-    result_.covariance = variance_;
+    result_.variances = variance_;
   }
 
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
@@ -74,28 +74,29 @@ class SvMpcSolver final : public detail::SolverBase {
     for (; iteration < options_.iterations && !moving.passed(); ++iteration) move(evaluator, iteration);
     result_.times.guide = detail::seconds(begin, detail::Clock::now());
 
-    const detail::Census census = particles_.evaluate(evaluator, control_.data(), pool(), deadline);
+    const detail::BatchStatistics statistics =
+        particles_.evaluate(evaluator, control_.data(), pool(), deadline);
     const auto evaluated = detail::Clock::now();
-    const bool usable = census.finite > 0 && finite_particles();
+    const bool usable = statistics.finite > 0 && finite_particles();
     detail::WeightSums<double> sums;
     result_.guides = {};
     if (usable) {
-      sums = particles_.weigh(census.minimum_total, static_cast<float>(options_.temperature), pool());
+      sums = particles_.weigh(statistics.minimum_total, static_cast<float>(options_.temperature), pool());
       particles_.scale_weights(1.0 / (sums.weight + options_.normaliser_offset));
-      take_solution();
+      update_solution();
     } else {
       std::fill(particles_.weights().begin(), particles_.weights().end(), 0.0f);
     }
-    detail::report_samples(particles_, census, sums, result_);
-    if (!usable && census.evaluated > 0) draw_particles();  // the old solution is repeated meanwhile
+    detail::report_samples(particles_, statistics, sums, result_);
+    if (!usable && statistics.evaluated > 0) draw_particles();  // the old solution is repeated meanwhile
     result_.temperature = options_.temperature;
     result_.iterations = iteration;
-    const bool late = iteration < options_.iterations || census.evaluated < particles_.samples();
-    const bool all_collided = census.collided == particles_.samples();
-    result_.status = !usable && census.evaluated > 0 ? Status::degenerate
-                     : late                          ? Status::deadline
-                     : all_collided                  ? Status::all_collided
-                                                     : Status::ok;
+    const bool late = iteration < options_.iterations || statistics.evaluated < particles_.samples();
+    const bool all_collided = statistics.collided == particles_.samples();
+    result_.status = !usable && statistics.evaluated > 0 ? Status::degenerate
+                     : late                              ? Status::deadline
+                     : all_collided                      ? Status::all_collided
+                                                         : Status::ok;
     result_.times.update = detail::seconds(evaluated, detail::Clock::now());
     result_.times.total = detail::seconds(begin, detail::Clock::now());
     return result_;
@@ -155,7 +156,7 @@ class SvMpcSolver final : public detail::SolverBase {
     pool().run(tiles(), [&](int t) { estimate_gradients(evaluator, iteration, range(t)); });
     const detail::Rows<float> x = particles_.row_view();
     const int count = particles_.samples();
-    const int values = options_.bandwidth == BandwidthForm::squared_norms
+    const int values = options_.bandwidth == BandwidthModel::squared_norms
                            ? detail::squared_norms(x, count, distances_.data())
                            : detail::pair_distances(x, count, distances_.data());
     const float h = count > 1 ? detail::bandwidth(distances_.data(), values, count) : 1.0f;
@@ -216,7 +217,7 @@ class SvMpcSolver final : public detail::SolverBase {
   }
 
   /// The solution, and the prior of the next solve.
-  void take_solution() noexcept {
+  void update_solution() noexcept {
     particles_.weighted_squares(mean_.data(), sums_.data(), pool());
     for (std::size_t r = 0; r < size(); ++r) {
       const double scale = options_.dimensionless_variance ? static_cast<double>(prior_inverse_[r]) : 1.0;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/kernels_of.hpp"
+#include "solvers/kernels/kernels_of.hpp"
 
 /// Stein variational gradient descent (Liu and Wang, NeurIPS 2016): particles x_i move along
 ///

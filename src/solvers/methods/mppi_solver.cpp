@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "slalom/solvers/make_solver.hpp"
-#include "solvers/path_integral.hpp"
+#include "solvers/methods/mppi_update.hpp"
 
 namespace slalom {
 
@@ -32,7 +32,7 @@ class MppiSolver final : public detail::SolverBase {
     result_ = {};
     result_.inputs = result_.mean = mean_;
     result_.nominal = nominal_;
-    result_.covariance = variance_;
+    result_.variances = variance_;
   }
 
   void prepare() noexcept override { update_.samples().prepare(key(0), pool()); }
@@ -56,7 +56,7 @@ class MppiSolver final : public detail::SolverBase {
 
  private:
   bool shift_;
-  detail::PathIntegral update_;
+  detail::MppiUpdate update_;
   std::vector<float> mean_, shifted_, nominal_, variance_;  ///< [row]
   SolveResult result_;
 };

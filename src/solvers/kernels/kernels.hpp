@@ -5,8 +5,8 @@
 #include "slalom/core/simd.hpp"
 
 /// The inner loops of the solvers over batches [row][sample], row = step * inputs + input. Each is one
-/// template over its scalar type (kernels_body.hpp): `double` for reference, and packs of float32, compiled
-/// once per instruction set behind the function pointers below.
+/// template over its scalar type (weight_kernels.hpp and others): `double` for reference, and packs of
+/// float32, compiled once per instruction set behind the function pointers below.
 namespace slalom::detail {
 
 /// Values [row][sample], rows `stride` apart.
@@ -21,7 +21,7 @@ struct Rows {
 
 /// Where standard normal values are moved to: clamp(mean + deviation z, low, high), entries [row].
 template <class Real>
-struct Placement {
+struct SamplingDistribution {
   const Real* mean = nullptr;
   const Real* deviation = nullptr;
   const Real* low = nullptr;
@@ -45,7 +45,7 @@ struct WeightSums {
 
 /// What the samples of a range came to.
 template <class Real>
-struct Tally {
+struct CostStatistics {
   Real least_cost = 0;   ///< infinite if none is finite
   Real least_total = 0;  ///< likewise
   int finite = 0;        ///< totals
@@ -80,7 +80,7 @@ struct RejectionRows {
 /// The float32 kernels of one instruction set.
 struct Kernels {
   /// Moves normal values to samples; `noise` and `samples` may be the same.
-  void (*place)(const Rows<float>& noise, const Rows<float>& samples, const Placement<float>& to,
+  void (*place)(const Rows<float>& noise, const Rows<float>& samples, const SamplingDistribution<float>& to,
                 Range range);
   /// totals[k] += sum over rows of coefficient[row] v[row][k].
   void (*add_linear)(const Rows<float>& v, const float* coefficient, Range range, float* totals);
@@ -89,7 +89,8 @@ struct Kernels {
                                float* totals);
   /// Costs become +infinity where they are not finite, and likewise the totals, costs[k] + sum over rows of
   /// linear[row] v[row][k]; `linear` may be null.
-  Tally<float> (*finish)(const Rows<float>& v, const float* linear, Range range, float* costs, float* totals);
+  CostStatistics<float> (*finish)(const Rows<float>& v, const float* linear, Range range, float* costs,
+                                  float* totals);
   /// Replaces what is not finite by +infinity.
   void (*make_finite)(Range range, float* costs);
   float (*minimum)(const float* costs, Range range);
@@ -119,8 +120,8 @@ struct Kernels {
                              const Rows<float>& theta, Range particles, float* exponents,
                              const Rows<float>& gradient);
   /// Normal values to `count` samples round each particle, in place.
-  void (*place_round)(const Rows<float>& samples, const Rows<float>& theta, const Placement<float>& to,
-                      int particle_stride, int count, Range particles);
+  void (*place_round)(const Rows<float>& samples, const Rows<float>& theta,
+                      const SamplingDistribution<float>& to, int particle_stride, int count, Range particles);
   /// SVGD's directions [row][particle] for the particles of a range.
   void (*stein_directions)(const Rows<float>& x, const Rows<float>& gradient, int count, float bandwidth,
                            Range particles, const Rows<float>& phi);
@@ -128,7 +129,7 @@ struct Kernels {
   void (*two_moments)(const Rows<float>& v, const float* first, const float* second, const float* centre,
                       Range range, float* sums);
   /// to[row][k] = from[row][indices[k]].
-  void (*take)(const Rows<float>& from, const int* indices, Range range, const Rows<float>& to);
+  void (*gather)(const Rows<float>& from, const int* indices, Range range, const Rows<float>& to);
   /// evaluated and rejected become the positive and the negative part of evaluated / falling - rejected /
   /// growing; their sums are `weight` and `squared`.
   WeightSums<float> (*split_weights)(float falling, float growing, Range range, float* evaluated,

@@ -5,7 +5,7 @@
 #include "slalom/core/options.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/core/sequence_batch.hpp"
-#include "solvers/kernels.hpp"
+#include "solvers/kernels/kernels.hpp"
 
 namespace slalom::detail {
 

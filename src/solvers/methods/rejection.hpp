@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "slalom/core/random.hpp"
-#include "solvers/kernels_of.hpp"
+#include "solvers/kernels/kernels_of.hpp"
 
 /// Which of many samples are kept when a second distribution says where bad ones come from (Kobayashi and
 /// Fukumoto 2022).

@@ -9,8 +9,8 @@
 #include "slalom/core/random.hpp"
 #include "slalom/core/sequence_batch.hpp"
 #include "slalom/core/thread_pool.hpp"
-#include "solvers/kernels.hpp"
-#include "solvers/noise_shape.hpp"
+#include "solvers/kernels/kernels.hpp"
+#include "solvers/sampling/noise_shape.hpp"
 
 namespace slalom::detail {
 
@@ -37,7 +37,7 @@ class Deadline {
 };
 
 /// What a batch of samples turned out to be.
-struct Census {
+struct BatchStatistics {
   float minimum_total = 0;  ///< least cost with control term; infinite if none is finite
   float minimum_cost = 0;   ///< least cost without
   int finite = 0;           ///< samples whose cost is finite
@@ -76,15 +76,16 @@ class SampleSet {
 
   /// Draws samples, evaluates them and adds sum of linear[row] v[row] to their costs. Tiles that begin after
   /// the deadline are left out.
-  Census draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key, const Placement<float>& to,
-                           const float* linear, ThreadPool& pool, const Deadline& deadline) noexcept;
+  BatchStatistics draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
+                                    const SamplingDistribution<float>& to, const float* linear,
+                                    ThreadPool& pool, const Deadline& deadline) noexcept;
 
   /// Draws samples alone.
-  void draw(RandomKey key, const Placement<float>& to, ThreadPool& pool) noexcept;
+  void draw(RandomKey key, const SamplingDistribution<float>& to, ThreadPool& pool) noexcept;
 
   /// Evaluates the values as they are.
-  Census evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
-                  const Deadline& deadline) noexcept;
+  BatchStatistics evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
+                           const Deadline& deadline) noexcept;
 
   /// Keeps sum of linear[row] v[row] of every sample for `mix_totals`.
   void keep_terms(const float* linear, ThreadPool& pool) noexcept;
@@ -117,13 +118,14 @@ class SampleSet {
   int tiles() const noexcept { return (values_.stride() + tile_ - 1) / tile_; }
   Range range(int tile) const noexcept;
   void fill_noise(const Sampler* sampler, SequenceBatch& to, Range range, RandomKey key) noexcept;
-  void place(const Sampler* sampler, RandomKey key, const Placement<float>& to, bool ready,
+  void place(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to, bool ready,
              ThreadPool& pool) noexcept;
-  Census evaluate_whole(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
-                        const Deadline& deadline) noexcept;
-  void finish_tile(int tile, const BatchEvaluator* evaluator, const float* linear, Census& census) noexcept;
-  void skip_tile(int tile, Census& census) noexcept;
-  Census combine() const noexcept;
+  BatchStatistics evaluate_whole(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
+                                 const Deadline& deadline) noexcept;
+  void finish_tile(int tile, const BatchEvaluator* evaluator, const float* linear,
+                   BatchStatistics& statistics) noexcept;
+  void skip_tile(int tile, BatchStatistics& statistics) noexcept;
+  BatchStatistics combine() const noexcept;
   void sum_rows(RowSums kernel, const float* centre, double* sums, ThreadPool& pool) noexcept;
 
   SequenceBatch values_;
@@ -134,7 +136,7 @@ class SampleSet {
   AlignedBuffer costs_, totals_, weights_, terms_;
   std::vector<std::uint8_t> collided_;
   int tile_;
-  std::vector<Census> census_;                  ///< [tile]
+  std::vector<BatchStatistics> statistics_;     ///< [tile]
   std::vector<WeightSums<float>> weight_sums_;  ///< [tile]
   std::vector<float> least_;                    ///< [tile]
   std::vector<float> row_sums_;                 ///< [tile][row]

@@ -1,8 +1,8 @@
 #include <algorithm>
 
 #include "slalom/solvers/make_solver.hpp"
-#include "solvers/guides.hpp"
-#include "solvers/path_integral.hpp"
+#include "solvers/methods/guides.hpp"
+#include "solvers/methods/mppi_update.hpp"
 
 namespace slalom {
 
@@ -41,7 +41,7 @@ class SvgMppiSolver final : public detail::SolverBase {
     result_ = {};
     result_.inputs = result_.mean = mean_;
     result_.nominal = nominal_;
-    result_.covariance = variance_;
+    result_.variances = variance_;
   }
 
   void prepare() noexcept override { update_.samples().prepare(key(samples), pool()); }
@@ -86,7 +86,7 @@ class SvgMppiSolver final : public detail::SolverBase {
 
   bool shift_, use_nominal_, adapt_covariance_;
   detail::Guides guides_;
-  detail::PathIntegral update_;
+  detail::MppiUpdate update_;
   std::vector<float> mean_, shifted_, nominal_, variance_, fixed_variance_;  ///< [row]
   SolveResult result_;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/kernels_body.hpp"
+#include "solvers/kernels/weight_kernels.hpp"
 
 /// Bodies of the kernels that shape noise: see noise_shape.hpp.
 namespace slalom::detail::body {

@@ -1,4 +1,4 @@
-#include "solvers/noise_shape.hpp"
+#include "solvers/sampling/noise_shape.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -45,7 +45,7 @@ class CemSolver final : public detail::SolverBase {
     result_.mean = mean_;
     result_.inputs = options_.send_best ? best_ : mean_;
     result_.nominal = zero_;
-    result_.covariance = variance_;
+    result_.variances = variance_;
   }
 
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
@@ -55,32 +55,33 @@ class CemSolver final : public detail::SolverBase {
     if (options_.shift_warm_start) shift(detail::warm_start_shift(evaluator, request));
     std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
 
-    detail::Census census;
+    detail::BatchStatistics statistics;
     Status status = Status::deadline;
     float best_cost = std::numeric_limits<float>::infinity();
     int iteration = 0;
     for (; iteration < options_.iterations && !deadline.passed(); ++iteration) {
       for (std::size_t r = 0; r < size(); ++r) deviation_[r] = std::sqrt(variance_[r]);
-      census = samples_.draw_and_evaluate(evaluator, key(iteration),
-                                          {mean_.data(), deviation_.data(), low().data(), high().data(),
-                                           zero_mean_from(samples_.samples(), options_.zero_mean_share)},
-                                          nullptr, pool(), deadline);
-      result_.times.draw += census.draw_time;
-      result_.times.evaluate += census.evaluate_time;
-      status = census.finite == 0 ? Status::degenerate : Status::ok;
-      if (status != Status::ok || census.evaluated == 0) break;
+      statistics = samples_.draw_and_evaluate(evaluator, key(iteration),
+                                              {mean_.data(), deviation_.data(), low().data(), high().data(),
+                                               zero_mean_from(samples_.samples(), options_.zero_mean_share)},
+                                              nullptr, pool(), deadline);
+      result_.times.draw += statistics.draw_time;
+      result_.times.evaluate += statistics.evaluate_time;
+      status = statistics.finite == 0 ? Status::degenerate : Status::ok;
+      if (status != Status::ok || statistics.evaluated == 0) break;
       refit(best_cost);
     }
-    if (status == Status::ok && (iteration < options_.iterations || census.evaluated < samples_.samples()))
+    if (status == Status::ok &&
+        (iteration < options_.iterations || statistics.evaluated < samples_.samples()))
       status = Status::deadline;
-    if (census.evaluated == 0) status = Status::deadline;
-    if (status == Status::ok && census.collided == samples_.samples()) status = Status::all_collided;
+    if (statistics.evaluated == 0) status = Status::deadline;
+    if (status == Status::ok && statistics.collided == samples_.samples()) status = Status::all_collided;
     if (!(best_cost < std::numeric_limits<float>::infinity()))
       std::copy(mean_.begin(), mean_.end(), best_.begin());
     result_.status = status;
     result_.iterations = iteration;
     const StageTimes times = result_.times;
-    detail::report_samples(samples_, census, samples_.sum_weights(), result_);
+    detail::report_samples(samples_, statistics, samples_.sum_weights(), result_);
     result_.times = times;
     next_solve();
     result_.times.total = detail::seconds(begin, detail::Clock::now());

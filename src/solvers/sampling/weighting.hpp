@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/sample_set.hpp"
+#include "solvers/sampling/sample_set.hpp"
 
 namespace slalom::detail {
 

@@ -1,4 +1,4 @@
-#include "solvers/path_integral.hpp"
+#include "solvers/methods/mppi_update.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 namespace slalom::detail {
 
-PathIntegral::PathIntegral(const Settings& settings, SampleSet samples, const Weighting& weighting,
-                           Smoother smoother)
+MppiUpdate::MppiUpdate(const Settings& settings, SampleSet samples, const Weighting& weighting,
+                       Smoother smoother)
     : settings_(settings),
       samples_(std::move(samples)),
       weighting_(weighting),
@@ -18,8 +18,8 @@ PathIntegral::PathIntegral(const Settings& settings, SampleSet samples, const We
       sums_(deviation_.size()) {}
 
 /// Coefficients of the control term. Coloured samples have the covariance D C D, D their deviations.
-void PathIntegral::set_control_term(double temperature, const float* mean, const float* nominal,
-                                    const float* variance) noexcept {
+void MppiUpdate::set_control_term(double temperature, const float* mean, const float* nominal,
+                                  const float* variance) noexcept {
   control_coefficients(temperature, settings_.discount, settings_.inverse_variance_offset, mean, nominal,
                        variance, samples_.rows(), linear_.data());
   if (!samples_.shape().coloured()) return;
@@ -38,27 +38,27 @@ void PathIntegral::set_control_term(double temperature, const float* mean, const
   }
 }
 
-Status PathIntegral::update(const BatchEvaluator& evaluator, RandomKey key, const float* nominal,
-                            const float* variance, const float* low, const float* high, ThreadPool& pool,
-                            const Deadline& deadline, float* mean, SolveResult& result) noexcept {
+Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const float* nominal,
+                          const float* variance, const float* low, const float* high, ThreadPool& pool,
+                          const Deadline& deadline, float* mean, SolveResult& result) noexcept {
   const std::size_t rows = deviation_.size();
   for (std::size_t r = 0; r < rows; ++r) deviation_[r] = std::sqrt(variance[r]);
   // Where the temperature is sought, the control term is kept apart, in units of it.
   const bool seeks = weighting_.seeks();
   set_control_term(seeks ? 1.0 : weighting_.temperature(), mean, nominal, variance);
   const int zero_mean_from = static_cast<int>((1.0 - settings_.zero_mean_share) * samples_.samples());
-  const Census census =
+  const BatchStatistics statistics =
       samples_.draw_and_evaluate(evaluator, key, {mean, deviation_.data(), low, high, zero_mean_from},
                                  seeks ? nullptr : linear_.data(), pool, deadline);
 
   const auto evaluated = Clock::now();
   WeightSums<double> sums;
-  if (census.finite > 0) {
+  if (statistics.finite > 0) {
     if (seeks) {
       samples_.keep_terms(linear_.data(), pool);
       sums = weighting_.seek(samples_, pool);
     } else {
-      sums = weighting_.weigh(samples_, census.minimum_total, pool);
+      sums = weighting_.weigh(samples_, statistics.minimum_total, pool);
     }
     samples_.scale_weights(1.0 / (sums.weight + settings_.normaliser_offset));
     samples_.weighted_sums(zero_.data(), sums_.data(), pool);
@@ -68,12 +68,12 @@ Status PathIntegral::update(const BatchEvaluator& evaluator, RandomKey key, cons
   } else {
     std::fill(samples_.weights().begin(), samples_.weights().end(), 0.0f);
   }
-  report_samples(samples_, census, sums, result);
+  report_samples(samples_, statistics, sums, result);
   result.temperature = weighting_.temperature();
   result.times.update += seconds(evaluated, Clock::now());
-  if (census.evaluated < samples_.samples()) return Status::deadline;
-  if (census.finite == 0) return Status::degenerate;
-  return census.collided == samples_.samples() ? Status::all_collided : Status::ok;
+  if (statistics.evaluated < samples_.samples()) return Status::deadline;
+  if (statistics.finite == 0) return Status::degenerate;
+  return statistics.collided == samples_.samples() ? Status::all_collided : Status::ok;
 }
 
 }  // namespace slalom::detail

@@ -1,4 +1,4 @@
-#include "solvers/weighting.hpp"
+#include "solvers/sampling/weighting.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "solvers/guides.hpp"
+#include "solvers/methods/guides.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "solvers/gaussian_fit.hpp"
-#include "solvers/surrogate_gradient.hpp"
+#include "solvers/methods/gaussian_fit.hpp"
+#include "solvers/methods/surrogate_gradient.hpp"
 
 namespace slalom::detail {
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "solvers/smoother.hpp"
+#include "solvers/sampling/smoother.hpp"
+#include "solvers/sampling/weighting.hpp"
 #include "solvers/solver_base.hpp"
-#include "solvers/weighting.hpp"
 
 namespace slalom::detail {
 
@@ -17,7 +17,7 @@ namespace slalom::detail {
 /// u is the last solution, n the nominal sequence, S the cost of a rollout; alpha = 0 in the papers. The
 /// parts it is composed of can be others: the noise (NoiseShape), the weights and lambda (Weighting); u may
 /// be smoothed (Smoother).
-class PathIntegral {
+class MppiUpdate {
  public:
   struct Settings {
     double discount = 0;                 ///< alpha
@@ -28,8 +28,8 @@ class PathIntegral {
 
   /// From the options of `mppi` or `svg_mppi`.
   template <class Options>
-  PathIntegral(const Options& o, int inputs)
-      : PathIntegral(
+  MppiUpdate(const Options& o, int inputs)
+      : MppiUpdate(
             {o.control_cost_discount, o.inverse_variance_offset, o.normaliser_offset, o.zero_mean_share},
             SampleSet(o.horizon, inputs, o.samples,
                       NoiseShape(o.noise_exponent, o.log_normal_spread, o.horizon, inputs, o.samples)),
@@ -48,7 +48,7 @@ class PathIntegral {
                 SolveResult& result) noexcept;
 
  private:
-  PathIntegral(const Settings& settings, SampleSet samples, const Weighting& weighting, Smoother smoother);
+  MppiUpdate(const Settings& settings, SampleSet samples, const Weighting& weighting, Smoother smoother);
 
   void set_control_term(double temperature, const float* mean, const float* nominal,
                         const float* variance) noexcept;

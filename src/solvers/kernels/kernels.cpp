@@ -1,9 +1,9 @@
-#include "solvers/kernels.hpp"
+#include "solvers/kernels/kernels.hpp"
 
 #include "slalom/core/dispatch.hpp"
-#include "solvers/kernels_body.hpp"
-#include "solvers/kernels_noise.hpp"
-#include "solvers/kernels_particles.hpp"
+#include "solvers/kernels/noise_kernels.hpp"
+#include "solvers/kernels/particle_kernels.hpp"
+#include "solvers/kernels/weight_kernels.hpp"
 
 namespace slalom::detail {
 
@@ -13,20 +13,20 @@ namespace {
 #define SLALOM_DEFINE_KERNELS(name, ATTRIBUTES, Target)                                                      \
   using Pack_##name = Pack<simd::Target>;                                                                    \
   ATTRIBUTES void place_##name(const Rows<float>& noise, const Rows<float>& samples,                         \
-                               const Placement<float>& to, Range range) {                                    \
+                               const SamplingDistribution<float>& to, Range range) {                         \
     body::place<Pack_##name>(noise, samples, to, range);                                                     \
   }                                                                                                          \
-  ATTRIBUTES Tally<float> finish_##name(const Rows<float>& v, const float* linear, Range range,              \
-                                        float* costs, float* totals) {                                       \
+  ATTRIBUTES CostStatistics<float> finish_##name(const Rows<float>& v, const float* linear, Range range,     \
+                                                 float* costs, float* totals) {                              \
     return body::finish<Pack_##name>(v, linear, range, costs, totals);                                       \
   }                                                                                                          \
   ATTRIBUTES void two_moments_##name(const Rows<float>& v, const float* first, const float* second,          \
                                      const float* centre, Range range, float* sums) {                        \
     body::two_moments<Pack_##name>(v, first, second, centre, range, sums);                                   \
   }                                                                                                          \
-  ATTRIBUTES void take_##name(const Rows<float>& from, const int* indices, Range range,                      \
-                              const Rows<float>& to) {                                                       \
-    body::take<Pack_##name>(from, indices, range, to);                                                       \
+  ATTRIBUTES void gather_##name(const Rows<float>& from, const int* indices, Range range,                    \
+                                const Rows<float>& to) {                                                     \
+    body::gather<Pack_##name>(from, indices, range, to);                                                     \
   }                                                                                                          \
   ATTRIBUTES WeightSums<float> split_weights_##name(float falling, float growing, Range range,               \
                                                     float* evaluated, float* rejected) {                     \
@@ -85,7 +85,7 @@ namespace {
     body::particle_gradients<Pack_##name>(how, samples, theta, particles, exponents, gradient);              \
   }                                                                                                          \
   ATTRIBUTES void place_round_##name(const Rows<float>& samples, const Rows<float>& theta,                   \
-                                     const Placement<float>& to, int particle_stride, int count,             \
+                                     const SamplingDistribution<float>& to, int particle_stride, int count,  \
                                      Range particles) {                                                      \
     body::place_round<Pack_##name>(samples, theta, to, particle_stride, count, particles);                   \
   }                                                                                                          \
@@ -118,7 +118,7 @@ namespace {
                                    place_round_##name,                                                       \
                                    stein_directions_##name,                                                  \
                                    two_moments_##name,                                                       \
-                                   take_##name,                                                              \
+                                   gather_##name,                                                            \
                                    split_weights_##name,                                                     \
                                    published_rejection_##name,                                               \
                                    rejection_logarithm_##name};

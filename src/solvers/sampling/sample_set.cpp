@@ -1,4 +1,4 @@
-#include "solvers/sample_set.hpp"
+#include "solvers/sampling/sample_set.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ SampleSet::SampleSet(int steps, int inputs, int samples, NoiseShape shape)
       terms_(static_cast<std::size_t>(padded(samples))),
       collided_(static_cast<std::size_t>(padded(samples))),
       tile_(tile_size(steps * inputs)),
-      census_(static_cast<std::size_t>(tiles())),
+      statistics_(static_cast<std::size_t>(tiles())),
       weight_sums_(static_cast<std::size_t>(tiles())),
       least_(static_cast<std::size_t>(tiles())),
       row_sums_(static_cast<std::size_t>(tiles()) * static_cast<std::size_t>(steps * inputs)),
@@ -76,7 +76,7 @@ void SampleSet::prepare(RandomKey key, ThreadPool& pool) noexcept {
 /// Brings the costs of a tile, evaluated here or before, in order: infinite where not finite and in the
 /// padding.
 void SampleSet::finish_tile(int tile, const BatchEvaluator* evaluator, const float* linear,
-                            Census& census) noexcept {
+                            BatchStatistics& statistics) noexcept {
   const Range r = range(tile);
   const int count = std::min(r.count, samples() - r.first);
   if (evaluator) evaluator->evaluate(values_, r.first, count, costs_.data(), collided_.data());
@@ -84,27 +84,28 @@ void SampleSet::finish_tile(int tile, const BatchEvaluator* evaluator, const flo
     costs_[static_cast<std::size_t>(i)] = infinite;
     collided_[static_cast<std::size_t>(i)] = 0;
   }
-  const Tally<float> tally = kernels().finish(row_view(), linear, r, costs_.data(), totals_.data());
-  census.minimum_cost = tally.least_cost;
-  census.minimum_total = tally.least_total;
-  census.finite = tally.finite;
-  census.evaluated = count;
+  const CostStatistics<float> found = kernels().finish(row_view(), linear, r, costs_.data(), totals_.data());
+  statistics.minimum_cost = found.least_cost;
+  statistics.minimum_total = found.least_total;
+  statistics.finite = found.finite;
+  statistics.evaluated = count;
   const std::uint8_t* hit = collided_.data() + r.first;
-  census.collided = static_cast<int>(std::count_if(hit, hit + count, [](std::uint8_t h) { return h != 0; }));
+  statistics.collided =
+      static_cast<int>(std::count_if(hit, hit + count, [](std::uint8_t h) { return h != 0; }));
 }
 
-void SampleSet::skip_tile(int tile, Census& census) noexcept {
+void SampleSet::skip_tile(int tile, BatchStatistics& statistics) noexcept {
   const Range r = range(tile);
   std::fill_n(costs_.data() + r.first, r.count, infinite);
   std::fill_n(totals_.data() + r.first, r.count, infinite);
   std::fill_n(collided_.data() + r.first, r.count, std::uint8_t{0});
-  census.minimum_cost = census.minimum_total = infinite;
+  statistics.minimum_cost = statistics.minimum_total = infinite;
 }
 
-Census SampleSet::combine() const noexcept {
-  Census all;
+BatchStatistics SampleSet::combine() const noexcept {
+  BatchStatistics all;
   all.minimum_cost = all.minimum_total = infinite;
-  for (const Census& c : census_) {
+  for (const BatchStatistics& c : statistics_) {
     all.minimum_total = std::min(all.minimum_total, c.minimum_total);
     all.minimum_cost = std::min(all.minimum_cost, c.minimum_cost);
     all.finite += c.finite;
@@ -116,9 +117,9 @@ Census SampleSet::combine() const noexcept {
   return all;
 }
 
-Census SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
-                                    const Placement<float>& to, const float* linear, ThreadPool& pool,
-                                    const Deadline& deadline) noexcept {
+BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
+                                             const SamplingDistribution<float>& to, const float* linear,
+                                             ThreadPool& pool, const Deadline& deadline) noexcept {
   const Sampler* const sampler = evaluator.sampler();
   const bool ready =
       !sampler && prepared_ && prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
@@ -128,9 +129,9 @@ Census SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey k
     return evaluate_whole(evaluator, linear, pool, deadline);
   }
   pool.run(tiles(), [&](int tile) {
-    Census census;
+    BatchStatistics statistics;
     if (deadline.passed()) {
-      skip_tile(tile, census);
+      skip_tile(tile, statistics);
     } else {
       const auto start = Clock::now();
       const Range r = range(tile);
@@ -138,18 +139,18 @@ Census SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey k
       SequenceBatch& from = ready ? noise_ : values_;
       kernels().place({from.row(0, 0), from.stride(), rows()}, row_view(), to, r);
       const auto drawn = Clock::now();
-      finish_tile(tile, &evaluator, linear, census);
-      census.draw_time = seconds(start, drawn);
-      census.evaluate_time = seconds(drawn, Clock::now());
+      finish_tile(tile, &evaluator, linear, statistics);
+      statistics.draw_time = seconds(start, drawn);
+      statistics.evaluate_time = seconds(drawn, Clock::now());
     }
-    census_[static_cast<std::size_t>(tile)] = census;
+    statistics_[static_cast<std::size_t>(tile)] = statistics;
   });
   return combine();
 }
 
 /// Draws, or takes the noise that is ready, and puts it in its place.
-void SampleSet::place(const Sampler* sampler, RandomKey key, const Placement<float>& to, bool ready,
-                      ThreadPool& pool) noexcept {
+void SampleSet::place(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to,
+                      bool ready, ThreadPool& pool) noexcept {
   pool.run(tiles(), [&](int tile) {
     const Range r = range(tile);
     if (!ready) fill_noise(sampler, values_, r, key);
@@ -158,42 +159,42 @@ void SampleSet::place(const Sampler* sampler, RandomKey key, const Placement<flo
   });
 }
 
-void SampleSet::draw(RandomKey key, const Placement<float>& to, ThreadPool& pool) noexcept {
+void SampleSet::draw(RandomKey key, const SamplingDistribution<float>& to, ThreadPool& pool) noexcept {
   place(nullptr, key, to, false, pool);
 }
 
-Census SampleSet::evaluate_whole(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
-                                 const Deadline& deadline) noexcept {
+BatchStatistics SampleSet::evaluate_whole(const BatchEvaluator& evaluator, const float* linear,
+                                          ThreadPool& pool, const Deadline& deadline) noexcept {
   const auto start = Clock::now();
   const bool late = deadline.passed();
   if (!late) evaluator.evaluate(values_, 0, samples(), costs_.data(), collided_.data());
   const double taken = seconds(start, Clock::now());
   pool.run(tiles(), [&](int tile) {
-    Census census;
+    BatchStatistics statistics;
     if (late) {
-      skip_tile(tile, census);
+      skip_tile(tile, statistics);
     } else {
-      finish_tile(tile, nullptr, linear, census);
+      finish_tile(tile, nullptr, linear, statistics);
     }
-    if (tile == 0) census.evaluate_time = taken;
-    census_[static_cast<std::size_t>(tile)] = census;
+    if (tile == 0) statistics.evaluate_time = taken;
+    statistics_[static_cast<std::size_t>(tile)] = statistics;
   });
   return combine();
 }
 
-Census SampleSet::evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
-                           const Deadline& deadline) noexcept {
+BatchStatistics SampleSet::evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
+                                    const Deadline& deadline) noexcept {
   if (evaluator.whole_batches()) return evaluate_whole(evaluator, linear, pool, deadline);
   pool.run(tiles(), [&](int tile) {
-    Census census;
+    BatchStatistics statistics;
     if (deadline.passed()) {
-      skip_tile(tile, census);
+      skip_tile(tile, statistics);
     } else {
       const auto start = Clock::now();
-      finish_tile(tile, &evaluator, linear, census);
-      census.evaluate_time = seconds(start, Clock::now());
+      finish_tile(tile, &evaluator, linear, statistics);
+      statistics.evaluate_time = seconds(start, Clock::now());
     }
-    census_[static_cast<std::size_t>(tile)] = census;
+    statistics_[static_cast<std::size_t>(tile)] = statistics;
   });
   return combine();
 }

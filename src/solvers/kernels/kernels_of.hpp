@@ -1,8 +1,8 @@
 #pragma once
 
-#include "solvers/kernels.hpp"
-#include "solvers/kernels_body.hpp"
-#include "solvers/kernels_particles.hpp"
+#include "solvers/kernels/kernels.hpp"
+#include "solvers/kernels/particle_kernels.hpp"
+#include "solvers/kernels/weight_kernels.hpp"
 
 namespace slalom::detail {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/kernels_of.hpp"
+#include "solvers/kernels/kernels_of.hpp"
 
 namespace slalom::detail {
 

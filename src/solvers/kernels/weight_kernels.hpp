@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "slalom/core/math.hpp"
-#include "solvers/kernels.hpp"
+#include "solvers/kernels/kernels.hpp"
 
 /// The kernels' bodies. `F` is `double` or a pack of float32.
 namespace slalom::detail::body {
@@ -49,7 +49,7 @@ using RealOf = typename Lanes<F>::Real;
 
 template <class F>
 SLALOM_INLINE void place(const Rows<RealOf<F>>& noise, const Rows<RealOf<F>>& samples,
-                         const Placement<RealOf<F>>& to, Range range) {
+                         const SamplingDistribution<RealOf<F>>& to, Range range) {
   using L = Lanes<F>;
   const int end = range.first + range.count;
   for (int r = 0; r < samples.rows; ++r) {
@@ -112,8 +112,8 @@ SLALOM_INLINE void make_finite(Range range, RealOf<F>* costs) {
 }
 
 template <class F>
-SLALOM_INLINE Tally<RealOf<F>> finish(const Rows<RealOf<F>>& v, const RealOf<F>* linear, Range range,
-                                      RealOf<F>* costs, RealOf<F>* totals) {
+SLALOM_INLINE CostStatistics<RealOf<F>> finish(const Rows<RealOf<F>>& v, const RealOf<F>* linear, Range range,
+                                               RealOf<F>* costs, RealOf<F>* totals) {
   using L = Lanes<F>;
   using Real = RealOf<F>;
   const F largest(std::numeric_limits<Real>::max()), infinite(std::numeric_limits<Real>::infinity());
@@ -249,8 +249,8 @@ SLALOM_INLINE void weighted_powers(const Rows<RealOf<F>>& v, const RealOf<F>* we
 }
 
 template <class F>
-SLALOM_INLINE void take(const Rows<RealOf<F>>& from, const int* indices, Range range,
-                        const Rows<RealOf<F>>& to) {
+SLALOM_INLINE void gather(const Rows<RealOf<F>>& from, const int* indices, Range range,
+                          const Rows<RealOf<F>>& to) {
   using Target = typename F::Target;
   for (int k = range.first; k < range.first + range.count; k += F::lanes) {
     simd::IntPack<Target> index;
