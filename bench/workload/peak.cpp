@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "slalom/core/dispatch.hpp"
 #include "slalom/core/math.hpp"
 
 namespace slalom::tools {
@@ -12,54 +13,41 @@ namespace {
 constexpr int chains = 10, rounds = 4000;
 
 /// Runs `rounds` rounds of a product and a sum on every chain and returns a value that depends on all.
-template <class Target>
-SLALOM_INLINE float run_chains() {
-  using F = Pack<Target>;
-  const F factor(0.999f), addend(0.001f);
-  F a0(1.0f), a1(1.1f), a2(1.2f), a3(1.3f), a4(1.4f), a5(1.5f), a6(1.6f), a7(1.7f), a8(1.8f), a9(1.9f);
-  for (int i = 0; i < rounds; ++i) {
-    a0 = a0 * factor + addend;
-    a1 = a1 * factor + addend;
-    a2 = a2 * factor + addend;
-    a3 = a3 * factor + addend;
-    a4 = a4 * factor + addend;
-    a5 = a5 * factor + addend;
-    a6 = a6 * factor + addend;
-    a7 = a7 * factor + addend;
-    a8 = a8 * factor + addend;
-    a9 = a9 * factor + addend;
+struct Chains {
+  template <class Target>
+  SLALOM_KERNEL static float run() {
+    using F = Pack<Target>;
+    const F factor(0.999f), addend(0.001f);
+    F a0(1.0f), a1(1.1f), a2(1.2f), a3(1.3f), a4(1.4f), a5(1.5f), a6(1.6f), a7(1.7f), a8(1.8f), a9(1.9f);
+    for (int i = 0; i < rounds; ++i) {
+      a0 = a0 * factor + addend;
+      a1 = a1 * factor + addend;
+      a2 = a2 * factor + addend;
+      a3 = a3 * factor + addend;
+      a4 = a4 * factor + addend;
+      a5 = a5 * factor + addend;
+      a6 = a6 * factor + addend;
+      a7 = a7 * factor + addend;
+      a8 = a8 * factor + addend;
+      a9 = a9 * factor + addend;
+    }
+    const F sum = ((a0 + a1) + (a2 + a3)) + ((a4 + a5) + (a6 + a7)) + (a8 + a9);
+    return sum.v[0];
   }
-  const F sum = ((a0 + a1) + (a2 + a3)) + ((a4 + a5) + (a6 + a7)) + (a8 + a9);
-  return sum.v[0];
-}
+};
 
-SLALOM_TARGET_GENERIC float chains_generic() {
-  return run_chains<simd::Generic>();
-}
-#if SLALOM_X86
-SLALOM_TARGET_SSE4 float chains_sse4() {
-  return run_chains<simd::Sse4>();
-}
-SLALOM_TARGET_AVX2 float chains_avx2() {
-  return run_chains<simd::Avx2>();
-}
-SLALOM_TARGET_AVX512 float chains_avx512() {
-  return run_chains<simd::Avx512>();
-}
-#endif
+struct Lanes {
+  template <class Target>
+  SLALOM_KERNEL static int run() {
+    return Target::lanes;
+  }
+};
 
 }  // namespace
 
 double measured_peak_gflops(simd::Target target) {
-  float (*run)() = chains_generic;
-  int lanes = simd::Generic::lanes;
-#if SLALOM_X86
-  if (target == simd::Target::sse4) run = chains_sse4, lanes = simd::Sse4::lanes;
-  if (target == simd::Target::avx2) run = chains_avx2, lanes = simd::Avx2::lanes;
-  if (target == simd::Target::avx512) run = chains_avx512, lanes = simd::Avx512::lanes;
-#else
-  static_cast<void>(target);
-#endif
+  const auto run = simd::kernel<Chains>(target);
+  const int lanes = simd::kernel<Lanes>(target)();
   double least = 1e30;
   volatile float sink = 0;
   for (int i = 0; i < 300; ++i) {

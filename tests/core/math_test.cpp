@@ -64,32 +64,24 @@ void check_functions() {
             3e-6);
 }
 
-TEST(PackMath, Generic) {
-  check_functions<Pack<simd::Generic>>();
+struct CheckFunctions {
+  template <class Target>
+  SLALOM_KERNEL static void run() {
+    check_functions<Pack<Target>>();
+  }
+};
+
+class PackMath : public testing::TestWithParam<simd::Target> {};
+
+TEST_P(PackMath, IsAccurateOnEveryInstructionSet) {
+  if (!simd::supported(GetParam())) GTEST_SKIP() << "this processor has no " << simd::name(GetParam());
+  simd::kernel<CheckFunctions>(GetParam())();
 }
-#if SLALOM_X86
-SLALOM_TARGET_SSE4 void check_sse4() {
-  check_functions<Pack<simd::Sse4>>();
-}
-SLALOM_TARGET_AVX2 void check_avx2() {
-  check_functions<Pack<simd::Avx2>>();
-}
-SLALOM_TARGET_AVX512 void check_avx512() {
-  check_functions<Pack<simd::Avx512>>();
-}
-TEST(PackMath, Sse4) {
-  if (!simd::supported(simd::Target::sse4)) GTEST_SKIP() << "this processor has no SSE4.2";
-  check_sse4();
-}
-TEST(PackMath, Avx2) {
-  if (!simd::supported(simd::Target::avx2)) GTEST_SKIP() << "this processor has no AVX2";
-  check_avx2();
-}
-TEST(PackMath, Avx512) {
-  if (!simd::supported(simd::Target::avx512)) GTEST_SKIP() << "this processor has no AVX-512";
-  check_avx512();
-}
-#endif
+
+INSTANTIATE_TEST_SUITE_P(Targets, PackMath,
+                         testing::Values(simd::Target::generic, simd::Target::sse4, simd::Target::avx2,
+                                         simd::Target::avx512),
+                         [](const auto& target) { return simd::name(target.param); });
 
 }  // namespace
 }  // namespace slalom

@@ -2,7 +2,35 @@
 
 #include "slalom/core/simd.hpp"
 
+/// The one mechanism by which batch loops run at the full width of the processor.
+///
+/// A kernel is a struct with one static function template over the instruction set (`simd::Generic`, `Sse4`,
+/// `Avx2`, `Avx512`), marked `SLALOM_KERNEL`:
+///
+///     struct Scale {
+///       template <class Target>
+///       SLALOM_KERNEL static void run(float factor, int count, float* values) {
+///         using F = Pack<Target>;
+///         for (int k = 0; k < count; k += F::lanes) (F::load(values + k) * F(factor)).store(values + k);
+///       }
+///     };
+///
+///     simd::dispatch<Scale>(2.0f, count, values);     // on the widest instruction set of the processor
+///     simd::kernel<Scale>(simd::Target::sse4)(...);   // on a given one: tests and benchmarks
+///
+/// `run` is instantiated for each instruction set and inlined, with all that it calls, into a function that
+/// carries the target attributes of that set. Rules for a kernel:
+///  - The signature does not depend on `Target`, and `run` is not overloaded.
+///  - Functions that `run` calls are templates over `Target` or over a pack, marked `SLALOM_INLINE`, or
+///    `SLALOM_INLINE_CALLS` where they call a function that is not ours (of a user's problem) or an operation
+///    of `simd::Operations`. clang inlines only what is so marked; g++ inlines everything.
+///  - Packs are passed by reference and returned by value; no pack is part of the signature of `run`.
+///  - A kernel whose results must have the same bits on every instruction set uses packs of
+///    `simd::Unfused<Target>`.
 namespace slalom::simd {
+
+/// On the function template `run` of a kernel.
+#define SLALOM_KERNEL SLALOM_INLINE_CALLS
 
 /// The name of an instruction set, as `SLALOM_TARGET` takes it: "generic" (on AArch64 "neon"), "sse4",
 /// "avx2", "avx512".
@@ -11,9 +39,78 @@ const char* name(Target target) noexcept;
 /// Whether this processor (and operating system) runs the instruction set.
 bool supported(Target target) noexcept;
 
-/// The instruction set that batch loops use: the widest supported one, or the one named by the environment
-/// variable `SLALOM_TARGET`, read once. Throws std::invalid_argument if that names none, or one this
-/// processor lacks.
+/// The instruction set that kernels use: the widest supported one, or the one named by the environment
+/// variable `SLALOM_TARGET`, read once. Throws std::invalid_argument if the variable names no instruction
+/// set, or one that this processor lacks.
 Target active_target();
+
+namespace detail {
+
+/// The functions of a kernel with the attributes of each instruction set.
+template <class Kernel, class Result, class... Arguments>
+struct KernelFunctions {
+  using Pointer = Result (*)(Arguments...);
+
+  SLALOM_TARGET_GENERIC static Result generic(Arguments... arguments) {
+    return Kernel::template run<Generic>(static_cast<Arguments&&>(arguments)...);
+  }
+#if SLALOM_X86
+  SLALOM_TARGET_SSE4 static Result sse4(Arguments... arguments) {
+    return Kernel::template run<Sse4>(static_cast<Arguments&&>(arguments)...);
+  }
+  SLALOM_TARGET_AVX2 static Result avx2(Arguments... arguments) {
+    return Kernel::template run<Avx2>(static_cast<Arguments&&>(arguments)...);
+  }
+  SLALOM_TARGET_AVX512 static Result avx512(Arguments... arguments) {
+    return Kernel::template run<Avx512>(static_cast<Arguments&&>(arguments)...);
+  }
+#endif
+};
+
+template <class Kernel, class Result, class... Arguments>
+KernelFunctions<Kernel, Result, Arguments...> functions_of(Result (*)(Arguments...));
+
+template <class Kernel>
+using FunctionsOf = decltype(functions_of<Kernel>(&Kernel::template run<Generic>));
+
+}  // namespace detail
+
+/// A pointer to a kernel's `run`.
+template <class Kernel>
+using KernelPointer = typename detail::FunctionsOf<Kernel>::Pointer;
+
+/// A kernel's function for an instruction set, which the processor has to support.
+template <class Kernel>
+KernelPointer<Kernel> kernel(Target target) noexcept {
+  using Functions = detail::FunctionsOf<Kernel>;
+#if SLALOM_X86
+  switch (target) {
+    case Target::avx512:
+      return Functions::avx512;
+    case Target::avx2:
+      return Functions::avx2;
+    case Target::sse4:
+      return Functions::sse4;
+    case Target::generic:
+      break;
+  }
+#else
+  static_cast<void>(target);
+#endif
+  return Functions::generic;
+}
+
+/// A kernel's function for `active_target()`, chosen at the first call. Throws as `active_target()` does.
+template <class Kernel>
+KernelPointer<Kernel> kernel() {
+  static const KernelPointer<Kernel> chosen = kernel<Kernel>(active_target());
+  return chosen;
+}
+
+/// Calls a kernel's function for `active_target()`.
+template <class Kernel, class... Arguments>
+decltype(auto) dispatch(Arguments&&... arguments) {
+  return kernel<Kernel>()(static_cast<Arguments&&>(arguments)...);
+}
 
 }  // namespace slalom::simd

@@ -24,7 +24,7 @@ class ProblemEvaluator final : public BatchEvaluator, private Sampler {
   using State = detail::StateOf<P, double>;
 
   explicit ProblemEvaluator(P problem, simd::Target target = simd::active_target())
-      : problem_(std::move(problem)), rollout_(detail::rollout_function<P>(target)) {}
+      : problem_(std::move(problem)), rollout_(simd::kernel<detail::RolloutKernel<P>>(target)) {}
 
   /// The problem, to change parameters between solves.
   P& problem() noexcept { return problem_; }
@@ -69,7 +69,7 @@ class ProblemEvaluator final : public BatchEvaluator, private Sampler {
   }
 
   P problem_;
-  detail::RolloutFunction<P> rollout_;
+  simd::KernelPointer<detail::RolloutKernel<P>> rollout_;
   float state_[detail::start_size<P>] = {};
 };
 

@@ -3,10 +3,11 @@
 #include <cstdint>
 #include <utility>
 
+#include "slalom/core/dispatch.hpp"
 #include "slalom/core/problem_parts.hpp"
 #include "slalom/core/sequence_batch.hpp"
 
-/// The rollout loop: one sample a lane, the state in registers, several packs interleaved so that their
+/// The rollout loop: one sample per lane, the state in registers, several packs interleaved so that their
 /// latencies hide behind each other.
 namespace slalom::detail {
 
@@ -26,21 +27,43 @@ struct NoInput {};
 template <class P, class F>
 using HeldInput = std::conditional_t<limits_rates<P>, InputOf<P, F>, NoInput>;
 
+/// A pack of rollouts on its way.
 template <class P, class F>
 struct Rollout {
   StateOf<P, F> x;
-  F total;
-  mask_t<F> hit;
+  F total;        ///< cost so far
+  mask_t<F> hit;  ///< whether a state collided so far
   [[no_unique_address]] HeldInput<P, F> previous;
+};
+
+/// What all rollouts of a batch have in common.
+template <class P, class F>
+struct RolloutStart {
+  StateOf<P, F> x;
+  SeenOf<P, F> seen;                               ///< looked up once, since all start from one state
+  [[no_unique_address]] HeldInput<P, F> previous;  ///< the inputs applied before
+  [[no_unique_address]] HeldInput<P, F> reach;     ///< how far an input may move in a step
 };
 
 /// How many values a rollout starts from: the state, then the inputs applied before where rates are limited.
 template <class P>
 inline constexpr int start_size = state_size<P> + (limits_rates<P> ? P::inputs : 0);
 
-template <class P>
-using RolloutFunction = void (*)(const P&, const float*, const SequenceBatch&, int, int, float*,
-                                 std::uint8_t*);
+/// How packs are interleaved: enough of them to hide latencies, few enough for the registers. With `ahead` 1,
+/// what a pack sees is looked up while the pack before it takes its step, since a processor does not see past
+/// one pack's step to the loads of the next. That costs registers, of which the narrow sets have few.
+template <class Target>
+struct Interleaving {
+  static constexpr int packs = 2, ahead = 0;
+};
+template <>
+struct Interleaving<simd::Avx2> {
+  static constexpr int packs = 4, ahead = 1;
+};
+template <>
+struct Interleaving<simd::Avx512> {
+  static constexpr int packs = 4, ahead = 1;
+};
 
 #if defined(__clang__)
 #define SLALOM_UNROLL _Pragma("clang loop unroll(full)")
@@ -48,102 +71,79 @@ using RolloutFunction = void (*)(const P&, const float*, const SequenceBatch&, i
 #define SLALOM_UNROLL _Pragma("GCC unroll 8")
 #endif
 
-/// The rollouts of `packs` packs of samples from `sample` on, all in flight at once: enough to hide
-/// latencies, few enough for the registers. All samples start from one state, so what is seen there is looked
-/// up once. With `ahead` 1 what a pack sees is looked up while the pack before it takes its step: a processor
-/// does not see past one pack's step to the loads of the next. That costs registers, of which the narrow sets
-/// have few.
-#define SLALOM_ROLL_OUT(Target, packs, ahead)                                                                \
-  Rollout<P, F> r[packs];                                                                                    \
-  SLALOM_UNROLL for (int j = 0; j < packs; ++j) {                                                            \
-    r[j].x = start;                                                                                          \
-    r[j].total = F(0.0f);                                                                                    \
-    r[j].hit = mask_t<F>(false);                                                                             \
-    if constexpr (limits_rates<P>) r[j].previous = before;                                                   \
-  }                                                                                                          \
-  SeenOf<P, F> seen = seen_first;                                                                            \
-  const float* row = batch.row(0, 0) + sample;                                                               \
-  for (int k = 0; k < steps; ++k, row += P::inputs * stride) {                                               \
-    SLALOM_UNROLL for (int j = 0; j < packs; ++j) {                                                          \
-      SeenOf<P, F> looked =                                                                                  \
-          k == 0 && j + ahead < packs ? seen_first : look_up<P, F>(problem, r[(j + ahead) % packs].x);       \
-      const SeenOf<P, F>& now = ahead ? seen : looked;                                                       \
-      InputOf<P, F> u;                                                                                       \
-      SLALOM_UNROLL for (int i = 0; i < P::inputs; ++i) u[i] = F::load(row + i * stride + j * F::lanes);     \
-      if constexpr (limits_rates<P>) hold_rate(u, r[j].previous, reach);                                     \
-      accumulate<F>(stage_cost<P, F>(problem, r[j].x, now, u, k), r[j].total, r[j].hit);                     \
-      r[j].x = step<P, F>(problem, r[j].x, now, u, k);                                                       \
-      if constexpr (ahead != 0) seen = looked;                                                               \
-    }                                                                                                        \
-  }                                                                                                          \
-  SLALOM_UNROLL for (int j = 0; j < packs; ++j) {                                                            \
-    SeenOf<P, F> looked = j + ahead < packs ? look_up<P, F>(problem, r[(j + ahead) % packs].x) : seen_first; \
-    const SeenOf<P, F>& now = ahead ? seen : looked;                                                         \
-    accumulate<F>(terminal_cost<P, F>(problem, r[j].x, now), r[j].total, r[j].hit);                          \
-    if constexpr (ahead != 0) seen = looked;                                                                 \
-    r[j].total.store(costs + sample + j * F::lanes);                                                         \
-    simd::Operations<simd::Target>::store_mask(r[j].hit.v, collided + sample + j * F::lanes);                \
+/// Start of the rollouts of a batch from `initial`, `start_size` values.
+template <class P, class F>
+SLALOM_INLINE_CALLS RolloutStart<P, F> rollout_start(const P& problem, const float* initial) {
+  RolloutStart<P, F> start;
+  start.x = broadcast_state<P, F>(initial, std::make_index_sequence<state_size<P>>{});
+  start.seen = look_up<P, F>(problem, start.x);
+  if constexpr (limits_rates<P>) {
+    for (int i = 0; i < P::inputs; ++i) {
+      start.reach[i] = F(static_cast<float>(input_step(problem, i)));
+      start.previous[i] = F(initial[state_size<P> + i]);
+    }
   }
-
-/// Defines the rollout loop `rollout_<name>` for one instruction set: `packs` packs at a time, and the rest
-/// one by one. Macros because clang inlines only the calls that stand in the body of a `flatten` function
-/// itself: so the problem's functions are called right here.
-#define SLALOM_DEFINE_ROLLOUT(name, ATTRIBUTES, Target, packs, ahead)                                      \
-  template <class P>                                                                                       \
-  ATTRIBUTES void rollout_##name(const P& problem, const float* initial_state, const SequenceBatch& batch, \
-                                 int first, int count, float* costs, std::uint8_t* collided) {             \
-    using F = Pack<simd::Target>;                                                                          \
-    static_assert(simd::padding % F::lanes == 0);                                                          \
-    const int steps = batch.steps();                                                                       \
-    const std::ptrdiff_t stride = batch.stride();                                                          \
-    const StateOf<P, F> start =                                                                            \
-        broadcast_state<P, F>(initial_state, std::make_index_sequence<state_size<P>>{});                   \
-    const SeenOf<P, F> seen_first = look_up<P, F>(problem, start);                                         \
-    HeldInput<P, F> reach, before;                                                                         \
-    if constexpr (limits_rates<P>) {                                                                       \
-      for (int i = 0; i < P::inputs; ++i) {                                                                \
-        reach[i] = F(static_cast<float>(input_step(problem, i)));                                          \
-        before[i] = F(initial_state[state_size<P> + i]);                                                   \
-      }                                                                                                    \
-    }                                                                                                      \
-    const int end = first + count;                                                                         \
-    int sample = first;                                                                                    \
-    for (; sample + (packs - 1) * F::lanes < end; sample += packs * F::lanes) {                            \
-      SLALOM_ROLL_OUT(Target, packs, ahead)                                                                \
-    }                                                                                                      \
-    for (; sample < end; sample += F::lanes) {                                                             \
-      SLALOM_ROLL_OUT(Target, 1, 0)                                                                        \
-    }                                                                                                      \
-  }
-
-SLALOM_DEFINE_ROLLOUT(generic, SLALOM_TARGET_GENERIC, Generic, 2, 0)
-#if SLALOM_X86
-SLALOM_DEFINE_ROLLOUT(sse4, SLALOM_TARGET_SSE4, Sse4, 2, 0)
-SLALOM_DEFINE_ROLLOUT(avx2, SLALOM_TARGET_AVX2, Avx2, 4, 1)
-SLALOM_DEFINE_ROLLOUT(avx512, SLALOM_TARGET_AVX512, Avx512, 4, 1)
-#endif
-
-#undef SLALOM_DEFINE_ROLLOUT
-#undef SLALOM_ROLL_OUT
-
-/// The rollout loop of a problem for an instruction set.
-template <class P>
-RolloutFunction<P> rollout_function(simd::Target target) {
-#if SLALOM_X86
-  switch (target) {
-    case simd::Target::avx512:
-      return rollout_avx512<P>;
-    case simd::Target::avx2:
-      return rollout_avx2<P>;
-    case simd::Target::sse4:
-      return rollout_sse4<P>;
-    case simd::Target::generic:
-      break;
-  }
-#else
-  static_cast<void>(target);
-#endif
-  return rollout_generic<P>;
+  return start;
 }
+
+/// The rollouts of `packs` packs of samples from `sample` on, all in flight at once.
+template <int packs, int ahead, class P, class F>
+SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& start,
+                                  const SequenceBatch& batch, int sample, float* costs,
+                                  std::uint8_t* collided) {
+  const int steps = batch.steps();
+  const std::ptrdiff_t stride = batch.stride();
+  Rollout<P, F> r[packs];
+  SLALOM_UNROLL for (int j = 0; j < packs; ++j) {
+    r[j].x = start.x;
+    r[j].total = F(0.0f);
+    r[j].hit = mask_t<F>(false);
+    if constexpr (limits_rates<P>) r[j].previous = start.previous;
+  }
+  SeenOf<P, F> seen = start.seen;
+  const float* row = batch.data() + sample;
+  for (int k = 0; k < steps; ++k, row += P::inputs * stride) {
+    SLALOM_UNROLL for (int j = 0; j < packs; ++j) {
+      SeenOf<P, F> looked =
+          k == 0 && j + ahead < packs ? start.seen : look_up<P, F>(problem, r[(j + ahead) % packs].x);
+      const SeenOf<P, F>& now = ahead ? seen : looked;
+      InputOf<P, F> u;
+      SLALOM_UNROLL for (int i = 0; i < P::inputs; ++i) u[i] = F::load(row + i * stride + j * F::lanes);
+      if constexpr (limits_rates<P>) hold_rate(u, r[j].previous, start.reach);
+      accumulate<F>(stage_cost<P, F>(problem, r[j].x, now, u, k), r[j].total, r[j].hit);
+      r[j].x = step<P, F>(problem, r[j].x, now, u, k);
+      if constexpr (ahead != 0) seen = looked;
+    }
+  }
+  SLALOM_UNROLL for (int j = 0; j < packs; ++j) {
+    SeenOf<P, F> looked = j + ahead < packs ? look_up<P, F>(problem, r[(j + ahead) % packs].x) : start.seen;
+    const SeenOf<P, F>& now = ahead ? seen : looked;
+    accumulate<F>(terminal_cost<P, F>(problem, r[j].x, now), r[j].total, r[j].hit);
+    if constexpr (ahead != 0) seen = looked;
+    r[j].total.store(costs + sample + j * F::lanes);
+    simd::Operations<typename F::Target>::store_mask(r[j].hit.v, collided + sample + j * F::lanes);
+  }
+}
+
+#undef SLALOM_UNROLL
+
+/// The kernel of a problem's rollouts: costs and collisions of the samples `first` ... `first + count - 1` of
+/// a batch. `initial` holds `start_size` values. Packs are taken several at a time, the rest one by one.
+template <class P>
+struct RolloutKernel {
+  template <class Target>
+  SLALOM_KERNEL static void run(const P& problem, const float* initial, const SequenceBatch& batch, int first,
+                                int count, float* costs, std::uint8_t* collided) {
+    using F = Pack<Target>;
+    constexpr int packs = Interleaving<Target>::packs, ahead = Interleaving<Target>::ahead;
+    static_assert(simd::padding % F::lanes == 0);
+    const RolloutStart<P, F> start = rollout_start<P, F>(problem, initial);
+    const int end = first + count;
+    int sample = first;
+    for (; sample + (packs - 1) * F::lanes < end; sample += packs * F::lanes)
+      roll_out<packs, ahead>(problem, start, batch, sample, costs, collided);
+    for (; sample < end; sample += F::lanes) roll_out<1, 0>(problem, start, batch, sample, costs, collided);
+  }
+};
 
 }  // namespace slalom::detail

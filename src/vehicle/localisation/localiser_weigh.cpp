@@ -7,24 +7,27 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-template <class Target>
-SLALOM_INLINE void by_field(const WeighInput& in) {
-  using F = Pack<Target>;
-  const ScanBeams& beams = *in.beams;
-  const F mean(1.0f / static_cast<float>(beams.hits));
-  for (int i = 0; i < in.particles.count; i += F::lanes) {
-    const F x = F::load(in.particles.x + i), y = F::load(in.particles.y + i);
-    F s, c;
-    sin_cos(F::load(in.particles.yaw + i), s, c);
-    F sum(0.0f);
-    for (int k = 0; k < beams.hits; ++k) {
-      const F end_x(beams.end_x[static_cast<std::size_t>(k)]),
-          end_y(beams.end_y[static_cast<std::size_t>(k)]);
-      sum = sum + look_up(in.field, x + end_x * c - end_y * s, y + end_x * s + end_y * c);
+/// Likelihoods from a field of distances.
+struct ByField {
+  template <class Target>
+  SLALOM_KERNEL static void run(const WeighInput& in) {
+    using F = Pack<Target>;
+    const ScanBeams& beams = *in.beams;
+    const F mean(1.0f / static_cast<float>(beams.hits));
+    for (int i = 0; i < in.particles.count; i += F::lanes) {
+      const F x = F::load(in.particles.x + i), y = F::load(in.particles.y + i);
+      F s, c;
+      sin_cos(F::load(in.particles.yaw + i), s, c);
+      F sum(0.0f);
+      for (int k = 0; k < beams.hits; ++k) {
+        const F end_x(beams.end_x[static_cast<std::size_t>(k)]),
+            end_y(beams.end_y[static_cast<std::size_t>(k)]);
+        sum = sum + look_up(in.field, x + end_x * c - end_y * s, y + end_x * s + end_y * c);
+      }
+      (sum * mean + look_up(in.place, x, y)).store(in.log_fit + i);
     }
-    (sum * mean + look_up(in.place, x, y)).store(in.log_fit + i);
   }
-}
+};
 
 /// What a table of ranges has at an angle between two of its own: the range interpolated and the difference
 /// of the two, m.
@@ -59,115 +62,64 @@ SLALOM_INLINE Pack<Target> from_cell_center(const GridAxis& axis, double resolut
   return (F(0.5f) - (cells - whole)) * F(static_cast<float>(resolution));
 }
 
-template <class Target>
-SLALOM_INLINE void by_ranges(const WeighInput& in) {
-  using F = Pack<Target>;
-  using I = typename simd::IntPack<Target>::Vector;
-  const ScanBeams& beams = *in.beams;
-  const F mean(1.0f / static_cast<float>(beams.count)), angles(static_cast<float>(in.angles));
-  const F laser_x(in.laser_x), laser_y(in.laser_y);
-  for (int i = 0; i < in.particles.count; i += F::lanes) {
-    const F x = F::load(in.particles.x + i), y = F::load(in.particles.y + i);
-    const F yaw = F::load(in.particles.yaw + i);
-    F s, c;
-    sin_cos(yaw, s, c);
-    const F from_x = x + laser_x * c - laser_y * s, from_y = y + laser_x * s + laser_y * c;
-    const F cell = look_up(in.rows, from_x, from_y);
-    const F off_x = from_cell_center(in.rows.rows_axis(), in.rows.resolution(), from_x);
-    const F off_y = from_cell_center(in.rows.columns_axis(), in.rows.resolution(), from_y);
-    const F off_forward = off_x * c + off_y * s, off_left = off_y * c - off_x * s;
-    const I row = __builtin_convertvector(cell.v, I) * in.angles;
-    const F turns = wrap_angle(yaw) * F(0.15915494309f);  // -1/2 .. 1/2
-    const F start = select(turns < F(0.0f), turns + F(1.0f), turns) * angles;
-    const auto expected_at = [&](int k) {
-      const F sum = start + F(beams.bin[static_cast<std::size_t>(k)]);
-      const F bin = select(sum >= angles, sum - angles, sum);
-      const I whole = __builtin_convertvector(min(bin, angles - F(1.0f)).v, I);
-      return expected_range<Target>(in, row + whole,
-                                    bin - F(__builtin_convertvector(whole, typename F::Vector)));
-    };
-    F total(0.0f);
-    for (int k = 0; k < beams.hits; ++k) {
-      const std::size_t beam = static_cast<std::size_t>(k);
-      const F range(beams.range[beam]), steepest(beams.steepest[beam]);
-      const auto [at_center, difference] = expected_at(k);
-      const F straight = select(difference * difference > steepest * steepest, F(0.0f), difference);
-      const F expected =
-          at_center - (off_forward * F(beams.forward_x[beam]) + off_left * F(beams.forward_y[beam])) +
-          straight * (off_forward * F(beams.sideways_x[beam]) + off_left * F(beams.sideways_y[beam]));
-      const F before(in.short_scale * __builtin_expf(-in.short_rate * beams.range[beam]));
-      const F off = range - expected;
-      const F p = F(in.hit) * exp(off * off * F(in.hit_scale)) + F(in.random) +
-                  select(range < expected, before, F(0.0f));
-      total = total + log(p);
+/// Likelihoods from a table of expected ranges.
+struct ByRanges {
+  template <class Target>
+  SLALOM_KERNEL static void run(const WeighInput& in) {
+    using F = Pack<Target>;
+    using I = typename simd::IntPack<Target>::Vector;
+    const ScanBeams& beams = *in.beams;
+    const F mean(1.0f / static_cast<float>(beams.count)), angles(static_cast<float>(in.angles));
+    const F laser_x(in.laser_x), laser_y(in.laser_y);
+    for (int i = 0; i < in.particles.count; i += F::lanes) {
+      const F x = F::load(in.particles.x + i), y = F::load(in.particles.y + i);
+      const F yaw = F::load(in.particles.yaw + i);
+      F s, c;
+      sin_cos(yaw, s, c);
+      const F from_x = x + laser_x * c - laser_y * s, from_y = y + laser_x * s + laser_y * c;
+      const F cell = look_up(in.rows, from_x, from_y);
+      const F off_x = from_cell_center(in.rows.rows_axis(), in.rows.resolution(), from_x);
+      const F off_y = from_cell_center(in.rows.columns_axis(), in.rows.resolution(), from_y);
+      const F off_forward = off_x * c + off_y * s, off_left = off_y * c - off_x * s;
+      const I row = __builtin_convertvector(cell.v, I) * in.angles;
+      const F turns = wrap_angle(yaw) * F(0.15915494309f);  // -1/2 .. 1/2
+      const F start = select(turns < F(0.0f), turns + F(1.0f), turns) * angles;
+      const auto expected_at = [&](int k) {
+        const F sum = start + F(beams.bin[static_cast<std::size_t>(k)]);
+        const F bin = select(sum >= angles, sum - angles, sum);
+        const I whole = __builtin_convertvector(min(bin, angles - F(1.0f)).v, I);
+        return expected_range<Target>(in, row + whole,
+                                      bin - F(__builtin_convertvector(whole, typename F::Vector)));
+      };
+      F total(0.0f);
+      for (int k = 0; k < beams.hits; ++k) {
+        const std::size_t beam = static_cast<std::size_t>(k);
+        const F range(beams.range[beam]), steepest(beams.steepest[beam]);
+        const auto [at_center, difference] = expected_at(k);
+        const F straight = select(difference * difference > steepest * steepest, F(0.0f), difference);
+        const F expected =
+            at_center - (off_forward * F(beams.forward_x[beam]) + off_left * F(beams.forward_y[beam])) +
+            straight * (off_forward * F(beams.sideways_x[beam]) + off_left * F(beams.sideways_y[beam]));
+        const F before(in.short_scale * __builtin_expf(-in.short_rate * beams.range[beam]));
+        const F off = range - expected;
+        const F p = F(in.hit) * exp(off * off * F(in.hit_scale)) + F(in.random) +
+                    select(range < expected, before, F(0.0f));
+        total = total + log(p);
+      }
+      for (int k = beams.hits; k < beams.count; ++k)
+        total = total + select(expected_at(k).range >= F(in.nothing_from), F(0.0f), F(in.lost));
+      (total * mean + look_up(in.place, x, y)).store(in.log_fit + i);
     }
-    for (int k = beams.hits; k < beams.count; ++k)
-      total = total + select(expected_at(k).range >= F(in.nothing_from), F(0.0f), F(in.lost));
-    (total * mean + look_up(in.place, x, y)).store(in.log_fit + i);
   }
-}
-
-using Weigh = void (*)(const WeighInput&);
-
-SLALOM_TARGET_GENERIC void by_field_generic(const WeighInput& in) {
-  by_field<simd::Generic>(in);
-}
-SLALOM_TARGET_GENERIC void by_ranges_generic(const WeighInput& in) {
-  by_ranges<simd::Generic>(in);
-}
-#if SLALOM_X86
-SLALOM_TARGET_SSE4 void by_field_sse4(const WeighInput& in) {
-  by_field<simd::Sse4>(in);
-}
-SLALOM_TARGET_SSE4 void by_ranges_sse4(const WeighInput& in) {
-  by_ranges<simd::Sse4>(in);
-}
-SLALOM_TARGET_AVX2 void by_field_avx2(const WeighInput& in) {
-  by_field<simd::Avx2>(in);
-}
-SLALOM_TARGET_AVX2 void by_ranges_avx2(const WeighInput& in) {
-  by_ranges<simd::Avx2>(in);
-}
-SLALOM_TARGET_AVX512 void by_field_avx512(const WeighInput& in) {
-  by_field<simd::Avx512>(in);
-}
-SLALOM_TARGET_AVX512 void by_ranges_avx512(const WeighInput& in) {
-  by_ranges<simd::Avx512>(in);
-}
-#endif
-
-struct Kernels {
-  Weigh by_field, by_ranges;
 };
-
-Kernels choose() {
-#if SLALOM_X86
-  switch (simd::active_target()) {
-    case simd::Target::avx512:
-      return {by_field_avx512, by_ranges_avx512};
-    case simd::Target::avx2:
-      return {by_field_avx2, by_ranges_avx2};
-    case simd::Target::sse4:
-      return {by_field_sse4, by_ranges_sse4};
-    case simd::Target::generic:
-      break;
-  }
-#endif
-  return {by_field_generic, by_ranges_generic};
-}
-
-const Kernels& kernels() {
-  static const Kernels chosen = choose();
-  return chosen;
-}
 
 }  // namespace
 
 void weigh_by_field(const WeighInput& input) noexcept {
-  kernels().by_field(input);
+  simd::dispatch<ByField>(input);
 }
 void weigh_by_ranges(const WeighInput& input) noexcept {
-  kernels().by_ranges(input);
+  simd::dispatch<ByRanges>(input);
 }
 
 }  // namespace slalom::vehicle::detail
