@@ -1,4 +1,4 @@
-"""Checks that the documentation is true: its links lead somewhere, its code compiles and runs, its commands exist.
+"""Checks the documentation: its links resolve, its code compiles and runs, its commands and their options exist.
 
 usage: check_docs.py links ROOT | cpp ROOT COMPILER... | python ROOT | shell ROOT PROGRAM | site FOLDER
 """
@@ -15,11 +15,12 @@ LINK = re.compile(r"(?<!\\)\[[^\]]*\]\(([^)\s]+)[^)]*\)")
 
 
 def pages(root):
-    return [root / "README.md", root / "CONTRIBUTING.md", *sorted((root / "docs").glob("*.md"))]
+    return [root / "README.md", root / "CONTRIBUTING.md", root / "CHANGELOG.md", root / "courses" / "README.md",
+            *sorted((root / "docs").rglob("*.md"))]
 
 
 def blocks(path, language):
-    """[(line, text)] of the fenced code of a language."""
+    """[(line, text)] of the fenced code blocks in a language."""
     found, start, kind, body = [], 0, None, []
     for number, line in enumerate(path.read_text().split("\n"), 1):
         if line.startswith("```"):
@@ -35,7 +36,7 @@ def blocks(path, language):
 
 
 def anchors(path):
-    """The anchors of a page's headings, as code hosts make them."""
+    """The anchors that code hosts generate for the headings of a page."""
     text = re.sub(r"^```.*?^```", "", path.read_text(), flags=re.S | re.M)
     headings = re.findall(r"^#+ (.*)$", text, re.M)
     return {re.sub(r"[^\w\- ]", "", h.lower()).strip().replace(" ", "-") for h in headings}
@@ -51,14 +52,14 @@ def check_links(root):
             file, _, anchor = target.partition("#")
             path = page.parent / file if file else page
             if not path.exists():
-                errors.append(f"{page}: {target}: there is no such file")
+                errors.append(f"{page}: {target}: no such file")
             elif anchor and path.suffix == ".md" and anchor not in anchors(path):
-                errors.append(f"{page}: {target}: there is no such heading")
+                errors.append(f"{page}: {target}: no such heading")
     return errors
 
 
 def translation_unit(text, name):
-    """Includes, what belongs to a namespace, and statements in a function, in their order."""
+    """The includes of a code block, and the rest: definitions in a namespace, statements in a function."""
     includes, outside, inside, end = [], [], [], None
     for line in text.split("\n"):
         if line.startswith("#"):
@@ -112,17 +113,17 @@ def check_python(root):
 
 
 def check_shell(root, program):
-    """Commands of the program have the options that are written, and what is called from the tree is there."""
+    """Commands of the program exist and have the options that the page gives them; scripts exist in the tree."""
     errors, help_of = [], {}
     for page in pages(root):
         for line, text in blocks(page, "sh"):
             if subprocess.run(["bash", "-n"], input=text, text=True, capture_output=True).returncode:
-                errors.append(f"{page}:{line}: bash cannot read it")
+                errors.append(f"{page}:{line}: bash cannot parse this block")
             for command in text.replace("\\\n", " ").split("\n"):
                 command = command.split(" #")[0]
                 for path in re.findall(r"(?<![\w/.])((?:script|examples|adapters)/[\w./-]+)", command):
                     if not (root / path).exists():
-                        errors.append(f"{page}:{line}: there is no {path}")
+                        errors.append(f"{page}:{line}: no such file: {path}")
                 match = re.search(r"(?:^|[\s/])slalom (\w+)(.*)", command)
                 if not match or program is None:
                     continue
@@ -130,15 +131,15 @@ def check_shell(root, program):
                 if word not in help_of:
                     help_of[word] = subprocess.run([program, word, "--help"], capture_output=True, text=True)
                 if help_of[word].returncode:
-                    errors.append(f"{page}:{line}: there is no `slalom {word}`")
+                    errors.append(f"{page}:{line}: no such command: `slalom {word}`")
                 for option in re.findall(r"(?<!\w)(--[a-z][a-z-]*)", rest):
                     if option not in help_of[word].stdout:
-                        errors.append(f"{page}:{line}: `slalom {word}` has no {option}")
+                        errors.append(f"{page}:{line}: `slalom {word}` has no option {option}")
     return errors
 
 
 def check_site(folder):
-    """Local links of the generated pages."""
+    """The local links of the generated pages."""
     errors, seen = [], 0
     files = {p.name for p in folder.iterdir()}
     ids = {}
@@ -152,12 +153,12 @@ def check_site(folder):
             file, _, anchor = urllib.parse.unquote(target).partition("#")
             file = file or page.name
             if file not in files and not (folder / file).exists():
-                errors.append(f"{page.name}: {target}: there is no such file")
+                errors.append(f"{page.name}: {target}: no such file")
             elif anchor and file.endswith(".html"):
                 if file not in ids:
                     ids[file] = set(re.findall(r'(?:id|name)="([^"]+)"', (folder / file).read_text(errors="replace")))
                 if anchor not in ids[file]:
-                    errors.append(f"{page.name}: {target}: there is no such anchor")
+                    errors.append(f"{page.name}: {target}: no such anchor")
     print(f"{seen} links on {len(list(folder.glob('*.html')))} pages")
     return sorted(set(errors))
 
@@ -174,7 +175,7 @@ def main(what, root, *rest):
         errors = check_shell(root, rest[0] if rest and os.path.exists(rest[0]) else None)
     else:
         errors = check_site(root)
-    print("\n".join(errors) if errors else f"{what}: nothing to complain about")
+    print("\n".join(errors) if errors else f"{what}: no errors")
     return bool(errors)
 
 
