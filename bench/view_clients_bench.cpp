@@ -30,7 +30,7 @@ view::SessionOptions scenario(const std::string& course) {
   options.scenario = {.course = course, .seed = 1, .obstacles = 5};
   options.load = [](const view::ScenarioNames& names) {
     return view::LoadedScenario{
-        evaluation::load_arena(names.course, evaluation::Evaluation::true_physics, {}),
+        evaluation::load_environment(names.course, evaluation::Protocol::true_physics, {}),
         vehicle::Configuration{},
         {.obstacles = names.obstacles}};
   };

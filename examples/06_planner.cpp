@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include <slalom/evaluation/arena.hpp>
+#include <slalom/evaluation/environment.hpp>
 #include <slalom/solvers/make_solver.hpp>
 #include <slalom/vehicle/planner/planner.hpp>
 
@@ -12,12 +12,12 @@
 using namespace slalom;
 
 /// Whether the car drives a lap within 20 s and touches nothing.
-bool drives_a_lap(const evaluation::Arena& arena, const SolverOptions& options) {
+bool drives_a_lap(const evaluation::Environment& environment, const SolverOptions& options) {
   const auto seed = std::visit([](const auto& o) { return o.seed; }, options);
-  vehicle::Planner planner({}, {}, arena.path, arena.course.closed, make_solver(options, 1));
-  sim::WorldOptions world_options = arena.world_options();
-  sim::World world(world_options, arena.track);
-  world.reset(seed, {&arena.start, 1});
+  vehicle::Planner planner({}, {}, environment.path, environment.course.closed, make_solver(options, 1));
+  sim::WorldOptions world_options = environment.world_options();
+  sim::World world(world_options, environment.track);
+  world.reset(seed, {&environment.start, 1});
 
   while (world.laps(0)->laps() < 1 && world.time() < 20) {
     const sim::Observation seen = world.observe(0);
@@ -33,29 +33,29 @@ bool drives_a_lap(const evaluation::Arena& arena, const SolverOptions& options) 
 }
 
 int main(int, char** argv) {
-  const auto arena = evaluation::load_arena(argv[1], evaluation::Evaluation::true_physics, {});
+  const auto environment = evaluation::load_environment(argv[1], evaluation::Protocol::true_physics, {});
   const int mppi = succeeded([&](auto seed) {
-    return drives_a_lap(*arena, MppiOptions{.horizon = 14,
-                                            .samples = 2000,
-                                            .temperature = 3,
-                                            .variance = 0.05,
-                                            .input_min = -0.4189,
-                                            .input_max = 0.4189,
-                                            .seed = seed});
+    return drives_a_lap(*environment, MppiOptions{.horizon = 14,
+                                                  .samples = 2000,
+                                                  .temperature = 3,
+                                                  .variance = 0.05,
+                                                  .input_min = -0.4189,
+                                                  .input_max = 0.4189,
+                                                  .seed = seed});
   });
   const int svg_mppi = succeeded([&](auto seed) {
-    return drives_a_lap(*arena, SvgMppiOptions{.horizon = 14,
-                                               .samples = 2000,
-                                               .temperature = 3,
-                                               .input_min = -0.4189,
-                                               .input_max = 0.4189,
-                                               .guide_step = 0.005,
-                                               .guide_variance = 0.01,
-                                               .gradient_variance = 0.01,
-                                               .gradient_temperature = 3,
-                                               .variance_min = 0.001,
-                                               .variance_max = 0.1,
-                                               .seed = seed});
+    return drives_a_lap(*environment, SvgMppiOptions{.horizon = 14,
+                                                     .samples = 2000,
+                                                     .temperature = 3,
+                                                     .input_min = -0.4189,
+                                                     .input_max = 0.4189,
+                                                     .guide_step = 0.005,
+                                                     .guide_variance = 0.01,
+                                                     .gradient_variance = 0.01,
+                                                     .gradient_temperature = 3,
+                                                     .variance_min = 0.001,
+                                                     .variance_max = 0.1,
+                                                     .seed = seed});
   });
   return report("a lap without contact", mppi, svg_mppi, 20);
 }

@@ -3,17 +3,17 @@
 #include <array>
 
 #include "bridge/convert.hpp"
-#include "slalom/evaluation/arena.hpp"
+#include "slalom/evaluation/environment.hpp"
 #include "slalom/sim/placement.hpp"
 #include "slalom/sim/wheel_odometry.hpp"
 
 namespace slalom_bridge {
 namespace {
 
-std::shared_ptr<const slalom::evaluation::Arena> arena_of(const std::string& course) {
+std::shared_ptr<const slalom::evaluation::Environment> arena_of(const std::string& course) {
   const auto roots = slalom::vehicle::course_roots(program_folder());
-  return slalom::evaluation::load_arena(slalom::vehicle::find_course(course, roots),
-                                        slalom::evaluation::Evaluation::true_physics, roots);
+  return slalom::evaluation::load_environment(slalom::vehicle::find_course(course, roots),
+                                              slalom::evaluation::Protocol::true_physics, roots);
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ Course load_course(const std::string& name) {
 }
 
 struct World::Hidden {
-  std::shared_ptr<const slalom::evaluation::Arena> arena;
+  std::shared_ptr<const slalom::evaluation::Environment> environment;
   slalom::sim::WorldOptions options;
   slalom::sim::World world;
   slalom::sim::WheelOdometry odometry;
@@ -63,21 +63,22 @@ struct World::Hidden {
 };
 
 World::World(const std::string& course, std::uint64_t seed, int obstacles) {
-  const auto arena = arena_of(course);
-  slalom::sim::WorldOptions options = arena->world_options();
+  const auto environment = arena_of(course);
+  slalom::sim::WorldOptions options = environment->world_options();
   options.lidar = slalom::sim::LidarOptions::hokuyo_utm_30lx();
   slalom::sim::WheelOdometryOptions wheels;
   wheels.seed = seed;
-  hidden_ = std::make_unique<Hidden>(Hidden{arena,
+  hidden_ = std::make_unique<Hidden>(Hidden{environment,
                                             options,
-                                            slalom::sim::World(options, arena->track),
+                                            slalom::sim::World(options, environment->track),
                                             slalom::sim::WheelOdometry(options.car, wheels),
                                             seed,
                                             {},
                                             {},
                                             {}});
-  for (const auto& placed : slalom::sim::place_apart(arena->course.obstacle_path, arena->obstacle_room,
-                                                     obstacles, seed, {arena->start.x, arena->start.y})) {
+  for (const auto& placed :
+       slalom::sim::place_apart(environment->course.obstacle_path, environment->obstacle_room, obstacles,
+                                seed, {environment->start.x, environment->start.y})) {
     hidden_->parked.push_back(placed.pose);
     hidden_->obstacles.push_back(plain(placed.pose));
   }
@@ -86,7 +87,7 @@ World::World(const std::string& course, std::uint64_t seed, int obstacles) {
 World::~World() = default;
 
 void World::reset() {
-  hidden_->world.reset(hidden_->seed, std::array{hidden_->arena->start}, hidden_->parked);
+  hidden_->world.reset(hidden_->seed, std::array{hidden_->environment->start}, hidden_->parked);
   hidden_->odometry.reset(hidden_->world.state(0));
   hidden_->reading.contacts = 0;
   hidden_->read();

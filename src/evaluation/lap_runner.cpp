@@ -6,9 +6,9 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "evaluation/lap_drive.hpp"
+#include "evaluation/lap_state.hpp"
 #include "slalom/core/option_access.hpp"
-#include "slalom/evaluation/passage.hpp"
+#include "slalom/evaluation/passability.hpp"
 #include "slalom/sim/placement.hpp"
 #include "slalom/sim/shapes.hpp"
 
@@ -40,19 +40,20 @@ std::uint64_t solver_seed(std::uint64_t lap_seed, std::string_view method) {
   return z ^ (z >> 31);
 }
 
-LapRunner::LapRunner(std::shared_ptr<const Arena> arena, const vehicle::Configuration& configuration,
-                     std::string method, const LapSettings& settings)
-    : arena_(std::move(arena)),
+LapRunner::LapRunner(std::shared_ptr<const Environment> environment,
+                     const vehicle::Configuration& configuration, std::string method,
+                     const LapSettings& settings)
+    : environment_(std::move(environment)),
       configuration_(configuration),
       method_(std::move(method)),
       settings_(settings) {
-  require(arena_ != nullptr, "arena: a lap needs one");
+  require(environment_ != nullptr, "environment: a lap needs one");
   require(settings.obstacles >= 0 && settings.obstacles <= 1000,
           "obstacles: " + std::to_string(settings.obstacles) + " must be in [0, 1000]");
   validate_options(settings, "world");
   require(settings.threads >= 1 && settings.threads <= 1024,
           "threads: " + std::to_string(settings.threads) + " must be in [1, 1024]");
-  const bool published = arena_->evaluation == Evaluation::published;
+  const bool published = environment_->protocol == Protocol::published;
   if (published) {
     const auto standard = list_options(LapSettings{}), chosen = list_options(settings);
     for (std::size_t i = 0; i < chosen.size(); ++i)
@@ -65,54 +66,54 @@ LapRunner::LapRunner(std::shared_ptr<const Arena> arena, const vehicle::Configur
     settings.hardware->wheels.validate();
     settings.hardware->localiser.validate();
   }
-  require(settings.opponents == 0 || arena_->course.closed,
+  require(settings.opponents == 0 || environment_->course.closed,
           "opponents: must be 0 on courses that are no loops");
-  path_ = arena_->path;
+  path_ = environment_->path;
   for (maps::ReferencePoint& point : path_) point.speed *= settings.speed_scale;
-  start_ = settings.start.value_or(arena_->start);
-  vehicle::check_start(arena_->course, start_);
+  start_ = settings.start.value_or(environment_->start);
+  vehicle::check_start(environment_->course, start_);
   make_planner();  // refuses what it does not like here and not in the first lap
 
   vehicle::Course capped;
-  capped.waypoints = arena_->course.waypoints;
-  capped.closed = arena_->course.closed;
+  capped.waypoints = environment_->course.waypoints;
+  capped.closed = environment_->course.closed;
   for (vehicle::Waypoint& point : capped.waypoints) point.speed *= settings.speed_scale;
   vehicle::cap_speed(capped, configuration_.planner.max_speed);
-  timeout_ = arena_->timeout > 0 ? arena_->timeout : timeout_laps * vehicle::profile_time(capped);
-  if (!arena_->course.closed && !published)
-    open_length_ = arena_->course.length - arena_->track->lap_path()->project({start_.x, start_.y}).arc -
-                   finish_tolerance;
+  timeout_ = environment_->timeout > 0 ? environment_->timeout : timeout_laps * vehicle::profile_time(capped);
+  if (!environment_->course.closed && !published)
+    open_length_ = environment_->course.length -
+                   environment_->track->lap_path()->project({start_.x, start_.y}).arc - finish_tolerance;
 }
 
 double LapRunner::control_period() const noexcept {
-  return arena_->evaluation == Evaluation::published ? published_control
-                                                     : configuration_.planner.control_period;
+  return environment_->protocol == Protocol::published ? published_control
+                                                       : configuration_.planner.control_period;
 }
 
 std::unique_ptr<vehicle::Planner> LapRunner::make_planner() const {
   return std::make_unique<vehicle::Planner>(configuration_.planner, configuration_.vehicle, path_,
-                                            arena_->course.closed,
+                                            environment_->course.closed,
                                             vehicle::make_solver(configuration_, method_, settings_.threads));
 }
 
 std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t lap_seed) const try {
   const std::uint64_t seed = settings_.layout.value_or(lap_seed);
-  const auto& path = arena_->course.obstacle_path;
-  const auto placed =
-      arena_->evaluation == Evaluation::published
-          ? sim::place_as_published(path, settings_.obstacles, seed)
-          : sim::place_apart(path, arena_->obstacle_room, settings_.obstacles, seed, {start_.x, start_.y});
+  const auto& path = environment_->course.obstacle_path;
+  const auto placed = environment_->protocol == Protocol::published
+                          ? sim::place_as_published(path, settings_.obstacles, seed)
+                          : sim::place_apart(path, environment_->obstacle_room, settings_.obstacles, seed,
+                                             {start_.x, start_.y});
   std::vector<maps::Pose> poses;
   for (const sim::Placement& each : placed) poses.push_back(each.pose);
   return poses;
 } catch (const std::runtime_error& error) {
-  throw std::runtime_error("course " + arena_->course.name + ": " + error.what() +
+  throw std::runtime_error("course " + environment_->course.name + ": " + error.what() +
                            "; beside each of them a passage must stay open, so the course may be too narrow");
 }
 
 /// Evenly round the course, where no obstacle stands.
 std::vector<maps::Pose> LapRunner::place_opponents(const std::vector<maps::Pose>& obstacles) const {
-  const sim::LapPath& path = *arena_->track->lap_path();
+  const sim::LapPath& path = *environment_->track->lap_path();
   const double begin = path.project({start_.x, start_.y}).arc, room = 1.0, step = 0.25;  // m
   std::vector<maps::Pose> poses;
   for (int i = 1; i <= settings_.opponents; ++i) {
@@ -130,13 +131,13 @@ std::vector<maps::Pose> LapRunner::place_opponents(const std::vector<maps::Pose>
     }
   }
   if (static_cast<int>(poses.size()) < settings_.opponents)
-    throw std::runtime_error("course " + arena_->course.name + ": no room for " +
+    throw std::runtime_error("course " + environment_->course.name + ": no room for " +
                              std::to_string(settings_.opponents) + " opponents");
   return poses;
 }
 
 bool LapRunner::at_finish(const sim::World& world) const noexcept {
-  if (arena_->evaluation == Evaluation::published) {
+  if (environment_->protocol == Protocol::published) {
     // The published count takes a car that leaves the zone and backs into it for one that has been round.
     const sim::StartZoneLaps& zone = world.start_zone_laps(0);
     return zone.laps() > 0 && zone.near_start() && progress(world) > 0.5;
@@ -146,14 +147,14 @@ bool LapRunner::at_finish(const sim::World& world) const noexcept {
 }
 
 double LapRunner::progress(const sim::World& world) const noexcept {
-  const double length = open_length_ > 0 ? open_length_ : arena_->track->lap_path()->length();
+  const double length = open_length_ > 0 ? open_length_ : environment_->track->lap_path()->length();
   return std::clamp(world.laps(0)->progress() / length, 0.0, 1.0);
 }
 
 /// One planner update: what is seen goes in, the command is sent on its way.
-void LapRunner::control(Drive& drive, const TickCallback& on_tick, double further_latency) const {
+void LapRunner::control(Drive& drive, const ControlStepCallback& on_step, double further_latency) const {
   const sim::Observation seen = drive.world.observe(0);
-  const bool published = arena_->evaluation == Evaluation::published;
+  const bool published = environment_->protocol == Protocol::published;
   maps::LaserScanView scan = seen.scan;
   if (published) {
     // The published simulator says that as many intervals as beams make up the field of view, in float32.
@@ -179,7 +180,7 @@ void LapRunner::control(Drive& drive, const TickCallback& on_tick, double furthe
   const SequenceCostMeter::Cost cost = drive.meter.planned(output);
   drive.cost_state += cost.state;
   drive.cost_collision += cost.collision;
-  if (settings_.further_costs) {
+  if (settings_.additional_costs) {
     drive.cost_published += drive.meter.published_model(output).total();
     drive.cost_driven += drive.meter.present().total();
   }
@@ -204,8 +205,8 @@ void LapRunner::control(Drive& drive, const TickCallback& on_tick, double furthe
       drive.variance += variance / static_cast<double>(solve.variances.size() / width);
     result.solve_ms.push_back(static_cast<float>(1e3 * solve.times.total));
   }
-  if (on_tick)
-    on_tick({result.steps, seen.time, progress(drive.world),
+  if (on_step)
+    on_step({result.steps, seen.time, progress(drive.world),
              published ? drive.log.published() : drive.log.bodies_touched(), seen, scan, odometry, output,
              *drive.planner, drive.world, cost});
   ++result.steps;
@@ -240,9 +241,9 @@ void LapRunner::advance(Drive& drive, bool past_finish) const {
     const sim::Observation seen = drive.world.observe(0);
     if (!seen.contact()) continue;
     const auto touch = [&](int body) {
-      const auto same = [&](const Contact& c) { return c.body == body; };
-      if (std::none_of(result.touches.begin(), result.touches.end(), same))
-        result.touches.push_back({seen.time, seen.pose, body});
+      const auto same = [&](const Collision& c) { return c.body == body; };
+      if (std::none_of(result.first_collisions.begin(), result.first_collisions.end(), same))
+        result.first_collisions.push_back({seen.time, seen.pose, body});
     };
     if (seen.wall) touch(-1);
     for (const int body : seen.touching) touch(body);
@@ -250,18 +251,18 @@ void LapRunner::advance(Drive& drive, bool past_finish) const {
   }
   const sim::Box body = drive.world.outline(0);
   for (const maps::Point& corner : sim::corners(body))
-    result.least_clearance = std::min(result.least_clearance, arena_->track->distance_to_wall(corner));
+    result.least_clearance = std::min(result.least_clearance, environment_->track->distance_to_wall(corner));
   for (std::size_t i = 1; i < drive.world.bodies(); ++i)
     result.least_clearance = std::min(result.least_clearance, sim::signed_gap(body, drive.world.outline(i)));
 }
 
 void LapRunner::finish(Drive& drive) const {
   LapResult& result = drive.result;
-  const bool published = arena_->evaluation == Evaluation::published;
+  const bool published = environment_->protocol == Protocol::published;
   result.finished = at_finish(drive.world);
   result.timeout = !result.finished && !result.cancelled;
-  result.contacts = published ? drive.log.published() : drive.log.bodies_touched();
-  result.bodies_touched = drive.log.bodies_touched();
+  result.collisions = published ? drive.log.published() : drive.log.bodies_touched();
+  result.collided_bodies = drive.log.bodies_touched();
   result.wall = drive.log.touched_wall();
   if (drive.hardware) result.localisation = drive.hardware->record();
   result.time = drive.world.time();
@@ -283,8 +284,8 @@ void LapRunner::finish(Drive& drive) const {
 }
 
 std::unique_ptr<LapRunner::Drive> LapRunner::begin(std::uint64_t seed) const {
-  sim::WorldOptions options = arena_->world_options();
-  if (arena_->evaluation == Evaluation::true_physics) {
+  sim::WorldOptions options = environment_->world_options();
+  if (environment_->protocol == Protocol::true_physics) {
     // A whole number of physics steps and one scan per command, whatever the control period is.
     const double period = configuration_.planner.control_period;
     options.time_step = period / std::max(1.0, std::ceil(period / options.time_step - 1e-9));
@@ -294,8 +295,8 @@ std::unique_ptr<LapRunner::Drive> LapRunner::begin(std::uint64_t seed) const {
     options.car.friction = settings_.friction;
     if (settings_.saturating_tyres) options.plant.dynamics.model = sim::Model::saturating;
   }
-  if (settings_.hardware) HardwareDrive::apply(*settings_.hardware, options);
-  auto drive = std::make_unique<Drive>(options, *arena_, path_, configuration_, make_planner());
+  if (settings_.hardware) HardwareModel::apply(*settings_.hardware, options);
+  auto drive = std::make_unique<Drive>(options, *environment_, path_, configuration_, make_planner());
   drive->planner->reset(solver_seed(seed, method_));
   drive->result.seed = seed;
   drive->result.obstacles = place_obstacles(seed);
@@ -314,23 +315,25 @@ std::unique_ptr<LapRunner::Drive> LapRunner::begin(std::uint64_t seed) const {
   drive->world.reset(seed, cars, drive->result.obstacles);
   std::vector<sim::Box> parked;
   for (std::size_t i = cars.size(); i < drive->world.bodies(); ++i) parked.push_back(drive->world.outline(i));
-  drive->result.impassable =
-      static_cast<int>(impassable(*arena_->track, parked, {.radius = 0.5 * options.car.width}).size());
+  drive->result.impassable = static_cast<int>(
+      impassable_obstacles(*environment_->track, parked, {.radius = 0.5 * options.car.width}).size());
   for (std::size_t i = 1; i < cars.size(); ++i) drive->world.set_scanning(i, false);
   if (settings_.hardware)
-    drive->hardware = std::make_unique<HardwareDrive>(*settings_.hardware, arena_->course.map, options.car,
-                                                      drive->world.state(0), solver_seed(seed, "hardware"));
+    drive->hardware =
+        std::make_unique<HardwareModel>(*settings_.hardware, environment_->course.map, options.car,
+                                        drive->world.state(0), solver_seed(seed, "hardware"));
   return drive;
 }
 
-LapResult LapRunner::run(std::uint64_t seed, const TickCallback& on_tick, const std::atomic<bool>* cancel) {
+LapResult LapRunner::run(std::uint64_t seed, const ControlStepCallback& on_step,
+                         const std::atomic<bool>* cancel) {
   const std::unique_ptr<Drive> drive = begin(seed);
   while (!at_finish(drive->world) && drive->world.time() <= timeout_) {
     if (cancel && cancel->load(std::memory_order_relaxed)) {
       drive->result.cancelled = true;
       break;
     }
-    control(*drive, on_tick);
+    control(*drive, on_step);
     advance(*drive);
   }
   finish(*drive);

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/campaign.hpp"
+#include "slalom/evaluation/evaluation.hpp"
 
 namespace slalom::evaluation {
 
@@ -119,8 +119,8 @@ void check_complete(const fs::path& table, const std::vector<LapRow>& sorted,
 
 }  // namespace
 
-LapStore::LapStore(const fs::path& folder, const Campaign& campaign, bool resume)
-    : folder_(folder), experiments_(campaign.experiments) {
+LapStore::LapStore(const fs::path& folder, const Evaluation& evaluation, bool resume)
+    : folder_(folder), experiments_(evaluation.experiments) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw IoError(folder.string(), 0, "cannot be made: " + error.message());
@@ -134,23 +134,23 @@ LapStore::LapStore(const fs::path& folder, const Campaign& campaign, bool resume
   if (has_laps && !fs::exists(settings))
     throw IoError(settings.string(), 0, "is missing, though there are laps");
   if (has_laps) {
-    const std::string there = check_settings(settings, campaign.settings);
-    const bool same = there.ends_with(campaign.build);
+    const std::string there = check_settings(settings, evaluation.settings);
+    const bool same = there.ends_with(evaluation.build);
     if (!fs::exists(table) && !same) {
-      check_build(campaign, there);
-      replace_file(settings,
-                   with_build(campaign.settings, (there.empty() ? "unknown" : there) + " " + campaign.build));
+      check_build(evaluation, there);
+      replace_file(settings, with_build(evaluation.settings,
+                                        (there.empty() ? "unknown" : there) + " " + evaluation.build));
     }
   } else {
-    replace_file(settings, with_build(campaign.settings, campaign.build));
+    replace_file(settings, with_build(evaluation.settings, evaluation.build));
   }
   if (fs::exists(table)) {
-    rows_ = read_rows(table, experiments_, false, campaign.seed0);
+    rows_ = read_rows(table, experiments_, false, evaluation.seed0);
     std::sort(rows_.begin(), rows_.end(), is_table_order);
     check_complete(table, rows_, experiments_);
     return;
   }
-  if (fs::exists(journal)) rows_ = read_rows(journal, experiments_, true, campaign.seed0);
+  if (fs::exists(journal)) rows_ = read_rows(journal, experiments_, true, evaluation.seed0);
   // Written anew, so that a line that was cut short is gone for good.
   std::string text = csv_header() + "\n";
   for (const LapRow& row : rows_) text += csv_line(row, experiments_) + "\n";
@@ -159,11 +159,11 @@ LapStore::LapStore(const fs::path& folder, const Campaign& campaign, bool resume
   if (journal_ < 0) throw_system(journal, "cannot be written");
 }
 
-void LapStore::check_build(const Campaign& campaign, const std::string& there) const {
-  if (campaign.any_build) return;
+void LapStore::check_build(const Evaluation& evaluation, const std::string& there) const {
+  if (evaluation.any_build) return;
   throw IoError((folder_ / settings_name).string(), 0,
                 "another build of the program drove the laps there (build " +
-                    (there.empty() ? "unknown" : there) + ", this is " + campaign.build +
+                    (there.empty() ? "unknown" : there) + ", this is " + evaluation.build +
                     "), and its laps may differ. Finish them with that build, take another folder, or say "
                     "--any-build to mix them");
 }

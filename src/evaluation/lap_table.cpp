@@ -21,7 +21,7 @@ template <class Row, class Visit>
 void visit_columns(Row& r, Visit&& visit) {
   visit("seed", r.seed);
   visit("success", r.success);
-  visit("collision", r.collision);
+  visit("collision", r.collisions);
   visit("timeout", r.timeout);
   visit("state_cost", r.state_cost);
   visit("collision_cost", r.collision_cost);
@@ -32,7 +32,7 @@ void visit_columns(Row& r, Visit&& visit) {
   visit("lap_time", r.lap_time);
   visit("finished", r.finished);
   visit("steps", r.steps);
-  visit("contacts", r.contacts);
+  visit("contacts", r.collided_bodies);
   visit("wall", r.wall);
   visit("impassable", r.impassable);
   visit("minimum_clearance", r.minimum_clearance);
@@ -125,8 +125,8 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
   r.lap = lap;
   r.seed = result.seed;
   r.finished = result.finished;
-  r.success = result.finished && result.contacts == 0;
-  r.collision = result.contacts;
+  r.success = result.finished && result.collisions == 0;
+  r.collisions = result.collisions;
   r.timeout = result.timeout;
   r.state_cost = result.state_cost;
   r.collision_cost = result.collision_cost;
@@ -147,7 +147,7 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
   }
   r.lap_time = result.time;
   r.steps = result.steps;
-  r.contacts = result.bodies_touched;
+  r.collided_bodies = result.collided_bodies;
   r.wall = result.wall;
   r.impassable = result.impassable;
   r.minimum_clearance = result.least_clearance;
@@ -161,7 +161,7 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
   r.blocked_steps = result.planner_status[static_cast<std::size_t>(vehicle::PlannerStatus::blocked)];
   r.degenerate_steps =
       result.planner_status[static_cast<std::size_t>(vehicle::PlannerStatus::solver_degenerate)];
-  for (const Contact& touch : result.touches) {
+  for (const Collision& touch : result.first_collisions) {
     char point[64];
     std::snprintf(point, sizeof point, "%s%.3f:%.3f", r.contact_points.empty() ? "" : " ", touch.pose.x,
                   touch.pose.y);

@@ -36,7 +36,7 @@ ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index
   for (const LapRow* row : rows) {
     r.finished += row->finished;
     r.timeouts += row->timeout;
-    r.collisions += row->collision;
+    r.collisions += row->collisions;
     r.impassable += row->impassable;
     successes += row->success;
     if (row->finished) lap_times.push_back(row->lap_time);
@@ -57,7 +57,7 @@ ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index
     const std::int64_t chances = static_cast<std::int64_t>(experiment.obstacles) * r.laps;
     r.collision_rate = static_cast<double>(r.collisions) / static_cast<double>(chances);
     r.collision_rate_ci = wilson_interval(r.collisions, chances);
-    const auto contacts = column(rows, [](const LapRow& row) { return row.collision; });
+    const auto contacts = column(rows, [](const LapRow& row) { return row.collisions; });
     const std::vector<double> obstacles(rows.size(), experiment.obstacles);
     r.collision_rate_bootstrap_ci = bootstrap_ratio(contacts, obstacles);
   }
@@ -74,7 +74,7 @@ PairedComparison compare(const std::vector<const LapRow*>& a, const std::vector<
     const auto other = by_lap.find(row->lap);
     if (other == by_lap.end()) continue;
     ms.push_back(row->mean_sequence_cost() - other->second->mean_sequence_cost());
-    collisions.push_back(row->collision - other->second->collision);
+    collisions.push_back(row->collisions - other->second->collisions);
     c.only_a_succeeds += row->success && !other->second->success;
     c.only_b_succeeds += !row->success && other->second->success;
   }

@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::shared_ptr<const Arena> wren(Evaluation evaluation = Evaluation::true_physics) {
-  return load_arena(fs::path(SLALOM_COURSES) / "wren", evaluation, {SLALOM_COURSES});
+std::shared_ptr<const Environment> wren(Protocol protocol = Protocol::true_physics) {
+  return load_environment(fs::path(SLALOM_COURSES) / "wren", evaluation, {SLALOM_COURSES});
 }
 
 vehicle::Configuration configuration(const std::string& name, int samples = 256) {
@@ -26,7 +26,7 @@ vehicle::Configuration configuration(const std::string& name, int samples = 256)
 /// Everything of a lap that may not depend on the clock of the wall.
 std::vector<std::uint64_t> bits(const LapResult& lap) {
   std::vector<std::uint64_t> all = {lap.seed, static_cast<std::uint64_t>(lap.steps),
-                                    static_cast<std::uint64_t>(lap.contacts), lap.finished};
+                                    static_cast<std::uint64_t>(lap.collisions), lap.finished};
   for (const double value : {lap.time, lap.state_cost, lap.collision_cost, lap.input_error, lap.mean_speed,
                              lap.mean_path_distance, lap.least_clearance, lap.mean_variance})
     all.push_back(std::bit_cast<std::uint64_t>(value));
@@ -38,7 +38,7 @@ TEST(LapRunner, FinishesALap) {
   const LapResult lap = runner.run(0);
   EXPECT_TRUE(lap.finished);
   EXPECT_FALSE(lap.timeout);
-  EXPECT_EQ(lap.contacts, 0);
+  EXPECT_EQ(lap.collisions, 0);
   EXPECT_GT(lap.least_clearance, 0.05);
   EXPECT_LT(lap.time, 0.5 * runner.timeout());
   EXPECT_NEAR(lap.time, lap.steps * 0.025, 0.05);
@@ -51,31 +51,31 @@ TEST(LapRunner, DrivesWithTheAccelerationAsAnInputByEveryMethod) {
   for (const char* method : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
     SCOPED_TRACE(method);
     const LapResult lap =
-        LapRunner(wren(), configuration("default_speed"), method, {.further_costs = true}).run(0);
+        LapRunner(wren(), configuration("default_speed"), method, {.additional_costs = true}).run(0);
     EXPECT_TRUE(std::isfinite(lap.mean_sequence_cost));
     EXPECT_TRUE(std::isfinite(lap.published_model_cost));
     if (method != std::string("svg_mppi")) continue;
     EXPECT_TRUE(lap.finished);
-    EXPECT_EQ(lap.contacts, 0);
+    EXPECT_EQ(lap.collisions, 0);
     EXPECT_LT(lap.time, 1.3 * LapRunner(wren(), configuration("default"), method, {}).run(0).time);
   }
 }
 
 TEST(LapRunner, RepeatsBitForBitInAnyOrderWithAnyThreads) {
-  const auto arena = wren();
+  const auto environment = wren();
   LapSettings settings{.obstacles = 3};
-  LapRunner one(arena, configuration("default"), "svg_mppi", settings);
+  LapRunner one(environment, configuration("default"), "svg_mppi", settings);
   const auto first = bits(one.run(8)), second = bits(one.run(16)), again = bits(one.run(8));
   EXPECT_EQ(first, again) << "a lap depends on the one before it";
   EXPECT_NE(first, second) << "the seed does nothing";
   settings.threads = 3;
-  LapRunner three(arena, configuration("default"), "svg_mppi", settings);
+  LapRunner three(environment, configuration("default"), "svg_mppi", settings);
   EXPECT_EQ(bits(three.run(8)), first);
 
   settings.threads = 1;
   std::vector<std::uint64_t> beside;
   std::thread other([&] {
-    LapRunner two(arena, configuration("default"), "svg_mppi", settings);
+    LapRunner two(environment, configuration("default"), "svg_mppi", settings);
     beside = bits(two.run(16));
   });
   EXPECT_EQ(bits(one.run(8)), first);
@@ -84,9 +84,9 @@ TEST(LapRunner, RepeatsBitForBitInAnyOrderWithAnyThreads) {
 }
 
 TEST(LapRunner, CostIsThePlannersOwnInThePublishedConfiguration) {
-  LapRunner runner(wren(Evaluation::published), configuration("published"), "svg_mppi", {.obstacles = 2});
+  LapRunner runner(wren(Protocol::published), configuration("published"), "svg_mppi", {.obstacles = 2});
   int ticks = 0;
-  const LapResult lap = runner.run(0, [&](const LapTick& tick) {
+  const LapResult lap = runner.run(0, [&](const ControlStep& tick) {
     ++ticks;
     ASSERT_EQ(tick.cost.state, tick.output.state_cost) << tick.step;
     ASSERT_EQ(tick.cost.collision, tick.output.collision_cost) << tick.step;
@@ -96,7 +96,7 @@ TEST(LapRunner, CostIsThePlannersOwnInThePublishedConfiguration) {
 }
 
 TEST(LapRunner, FurtherCostsAreOfTheSameKind) {
-  LapRunner runner(wren(), configuration("published"), "svg_mppi", {.further_costs = true});
+  LapRunner runner(wren(), configuration("published"), "svg_mppi", {.additional_costs = true});
   const LapResult lap = runner.run(0);
   EXPECT_NEAR(lap.published_model_cost, lap.mean_sequence_cost, 1e-9);
   EXPECT_GT(lap.driven_cost, 0);
@@ -105,9 +105,9 @@ TEST(LapRunner, FurtherCostsAreOfTheSameKind) {
 TEST(LapRunner, CanBeTimedOutAndCancelled) {
   auto slow = configuration("default", 64);
   vehicle::set_option(slow, "planner.max_speed", "0.02");
-  auto arena = std::make_shared<Arena>(*wren());
-  arena->timeout = 1;
-  const LapResult late = LapRunner(arena, slow, "mppi", {}).run(0);
+  auto environment = std::make_shared<Environment>(*wren());
+  environment->timeout = 1;
+  const LapResult late = LapRunner(environment, slow, "mppi", {}).run(0);
   EXPECT_FALSE(late.finished);
   EXPECT_TRUE(late.timeout);
   EXPECT_GE(late.time, 1);
@@ -116,18 +116,18 @@ TEST(LapRunner, CanBeTimedOutAndCancelled) {
   std::atomic<bool> cancel{false};
   const LapResult cut = LapRunner(wren(), slow, "mppi", {})
                             .run(
-                                0, [&](const LapTick& tick) { cancel = tick.step == 4; }, &cancel);
+                                0, [&](const ControlStep& tick) { cancel = tick.step == 4; }, &cancel);
   EXPECT_TRUE(cut.cancelled);
   EXPECT_FALSE(cut.timeout);
   EXPECT_EQ(cut.steps, 5);
 }
 
 TEST(LapRunner, LatencyDelaysCommands) {
-  const auto arena = wren();
+  const auto environment = wren();
   const auto first_motion = [&](double latency) {
     double start = -1;
-    LapRunner(arena, configuration("default", 64), "mppi", {.latency = latency})
-        .run(0, [&](const LapTick& tick) {
+    LapRunner(environment, configuration("default", 64), "mppi", {.latency = latency})
+        .run(0, [&](const ControlStep& tick) {
           if (start < 0 && tick.seen.speed > 0) start = tick.time;
         });
     return start;
@@ -136,10 +136,10 @@ TEST(LapRunner, LatencyDelaysCommands) {
 }
 
 TEST(LapRunner, HardwareLapsRepeatWithAnyThreadsAndHeedTheirConditions) {
-  const auto arena = wren();
+  const auto environment = wren();
   const auto lap = [&](const HardwareConditions& conditions, std::uint64_t seed, int threads) {
     const LapSettings settings{.threads = threads, .hardware = conditions};
-    return LapRunner(arena, configuration("default", 128), "svg_mppi", settings).run(seed);
+    return LapRunner(environment, configuration("default", 128), "svg_mppi", settings).run(seed);
   };
   const LapResult first = lap({}, 3, 1), threaded = lap({}, 3, 2), other = lap({}, 4, 1);
   EXPECT_TRUE(first.finished);
@@ -158,25 +158,26 @@ TEST(LapRunner, HardwareLapsRepeatWithAnyThreadsAndHeedTheirConditions) {
 }
 
 TEST(LapRunner, ACarThatCannotLocaliseStops) {
-  auto arena = std::make_shared<Arena>(*wren());
-  arena->timeout = 2;
+  auto environment = std::make_shared<Environment>(*wren());
+  environment->timeout = 2;
   HardwareConditions blind;
   blind.dropout = 1;
-  const LapResult lap = LapRunner(arena, configuration("default", 64), "mppi", {.hardware = blind}).run(1);
+  const LapResult lap =
+      LapRunner(environment, configuration("default", 64), "mppi", {.hardware = blind}).run(1);
   EXPECT_FALSE(lap.finished);
   EXPECT_GT(lap.localisation.blind, lap.steps / 2);
   EXPECT_LT(lap.mean_speed, 0.5);
-  EXPECT_EQ(lap.contacts, 0);
+  EXPECT_EQ(lap.collisions, 0);
 }
 
 TEST(LapRunner, TheWorldCanBeMadeHarder) {
-  const auto arena = wren();
+  const auto environment = wren();
   const auto lap = [&](const char* key, const char* value) {
     LapSettings settings;
     if (key) {
       EXPECT_TRUE(set_world_option(settings, key, value)) << key;
     }
-    return LapRunner(arena, configuration("default", 64), "mppi", settings).run(0);
+    return LapRunner(environment, configuration("default", 64), "mppi", settings).run(0);
   };
   const LapResult usual = lap(nullptr, nullptr);
   for (const auto& [key, value] :
@@ -194,16 +195,16 @@ TEST(LapRunner, TheWorldCanBeMadeHarder) {
   EXPECT_FALSE(set_world_option(settings, "vehicle.friction", "1"));
   EXPECT_THROW(set_world_option(settings, "world.fricton", "1"), std::invalid_argument);
   EXPECT_THROW(set_world_option(settings, "world.friction", "-1"), std::invalid_argument);
-  EXPECT_THROW(LapRunner(wren(Evaluation::published), configuration("default"), "mppi", {.friction = 0.7}),
+  EXPECT_THROW(LapRunner(wren(Protocol::published), configuration("default"), "mppi", {.friction = 0.7}),
                std::invalid_argument);
 }
 
 TEST(LapRunner, RefusesWhatCannotBeDriven) {
-  const auto arena = wren();
+  const auto environment = wren();
   const auto refusal = [&](const std::string& method, const LapSettings& settings,
                            vehicle::Configuration made) {
     try {
-      LapRunner(arena, made, method, settings);
+      LapRunner(environment, made, method, settings);
     } catch (const std::invalid_argument& error) {
       return std::string(error.what());
     }
@@ -225,7 +226,7 @@ TEST(LapRunner, RefusesWhatCannotBeDriven) {
   lost.localiser.beams = 0;
   says(refusal("mppi", {.hardware = lost}, usual), "beams");
   try {
-    LapRunner(wren(Evaluation::published), usual, "mppi", {.hardware = HardwareConditions{}});
+    LapRunner(wren(Protocol::published), usual, "mppi", {.hardware = HardwareConditions{}});
     ADD_FAILURE() << "the published evaluation knows no hardware";
   } catch (const std::invalid_argument& error) {
     says(error.what(), "hardware");

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/campaign.hpp"
+#include "slalom/evaluation/evaluation.hpp"
 
 namespace slalom::evaluation {
 namespace {
@@ -145,8 +145,8 @@ class LapStoreFolder : public ::testing::Test {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = fs::temp_directory_path() / (std::string("slalom_lap_store.") + test->name());
     fs::remove_all(folder_);
-    campaign_.experiments = {{"mppi", {}, "pt", 0, 2}};
-    campaign_.settings = "{}";
+    evaluation_.experiments = {{"mppi", {}, "pt", 0, 2}};
+    evaluation_.settings = "{}";
   }
   ~LapStoreFolder() override { fs::remove_all(folder_); }
 
@@ -156,18 +156,18 @@ class LapStoreFolder : public ::testing::Test {
     fs::remove_all(folder_);
     std::string text = csv_header() + "\n";
     {
-      LapStore store(folder_, campaign_, false);
+      LapStore store(folder_, evaluation_, false);
       for (int lap = 0; lap < 2; ++lap) {
         LapRow r = row(0, lap);
         r.seed = lap_seed(0, lap, 0);
         store.add(r);
-        text += csv_line(r, campaign_.experiments) + "\n";
+        text += csv_line(r, evaluation_.experiments) + "\n";
       }
       store.complete();
     }
     std::ofstream(folder_ / "laps.csv", std::ios::binary) << spoil(text);
     try {
-      LapStore(folder_, campaign_, true);
+      LapStore(folder_, evaluation_, true);
     } catch (const IoError& error) {
       return error.what();
     }
@@ -175,7 +175,7 @@ class LapStoreFolder : public ::testing::Test {
   }
 
   fs::path folder_;
-  Campaign campaign_;
+  Evaluation evaluation_;
 };
 
 TEST_F(LapStoreFolder, ResumesOnlyFromAWholeTableOfItsOwn) {
@@ -187,7 +187,7 @@ TEST_F(LapStoreFolder, ResumesOnlyFromAWholeTableOfItsOwn) {
             std::string::npos);
   EXPECT_NE(complaint_when_resumed(without_last).find("laps.csv: lap 1 of mppi, pt: is missing"),
             std::string::npos);
-  campaign_.seed0 = 5;
+  evaluation_.seed0 = 5;
   EXPECT_NE(complaint_when_resumed([](const std::string& text) { return text; }).find("laps.csv:2: seed: 0"),
             std::string::npos);
 }

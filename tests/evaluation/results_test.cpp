@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/published.hpp"
+#include "slalom/evaluation/lap_log.hpp"
 
 namespace slalom::evaluation {
 namespace {
@@ -21,7 +21,7 @@ LapRow row(int experiment, int lap, double state, double collision_cost, int con
   r.lap = lap;
   r.state_cost = state;
   r.collision_cost = collision_cost;
-  r.collision = contacts;
+  r.collisions = contacts;
   r.finished = finished;
   r.timeout = !finished;
   r.success = finished && contacts == 0;
@@ -118,7 +118,7 @@ TEST_F(Log, IsReadByItsColumnsNames) {
   EXPECT_EQ(log.laps, 2);
   EXPECT_EQ(log.successes, 1);
   EXPECT_EQ(log.timeouts, 1);
-  EXPECT_EQ(log.contacts, 2);
+  EXPECT_EQ(log.collisions, 2);
   EXPECT_EQ(log.ms, (std::vector<double>{2, 5}));
   EXPECT_DOUBLE_EQ(*log.solve_ms_mean, 11);
   EXPECT_DOUBLE_EQ(*log.solve_ms_max, 20);
@@ -144,15 +144,15 @@ TEST_F(Log, ComparesItselfWithOurs) {
   const LogComparison same = compare_with_log(ours, 5, log);
   EXPECT_DOUBLE_EQ(same.ms_ratio, 1);
   EXPECT_DOUBLE_EQ(same.ms_p, 1);
-  EXPECT_NEAR(*same.contacts_p, 1, 1e-9);
+  EXPECT_NEAR(*same.collision_p, 1, 1e-9);
   EXPECT_EQ(same.agreement(), Agreement::undecided) << "equal, but 4 laps say little";
   for (LapRow& lap : ours) {
     lap.state_cost = 100 + lap.lap;
-    lap.collision = 5;
+    lap.collisions = 5;
   }
   const LogComparison other = compare_with_log(ours, 5, log);
   EXPECT_EQ(other.ms_agreement(), Agreement::outside);
-  EXPECT_EQ(other.contacts_agreement(), Agreement::outside);
+  EXPECT_EQ(other.collision_agreement(), Agreement::outside);
   EXPECT_DOUBLE_EQ(*other.collision_rate, 8.0 / 20);
 }
 

@@ -91,7 +91,7 @@ TEST(ObjectiveTest, IsASumOfFigures) {
   LapRow row;
   row.state_cost = 0.5;
   row.collision_cost = 2;
-  row.collision = 3;
+  row.collisions = 3;
   row.success = false;
   row.lap_time = 17;
   EXPECT_EQ(Objective("ms").of(row), 2.5);

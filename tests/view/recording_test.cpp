@@ -7,36 +7,36 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "slalom/core/error.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/mcap_reader.hpp"
 #include "view/recording/recorder.hpp"
 #include "view/recording/replay.hpp"
-#include "slalom/core/error.hpp"
 
 namespace slalom::view {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::shared_ptr<const evaluation::Arena> arena() {
-  return evaluation::load_arena(SLALOM_COURSES "/wren", evaluation::Evaluation::true_physics, {});
+std::shared_ptr<const evaluation::Environment> environment() {
+  return evaluation::load_environment(SLALOM_COURSES "/wren", evaluation::Protocol::true_physics, {});
 }
 
 /// The first control steps of a drive, recorded.
 std::string record(bool wall_clock, int ticks = 12) {
-  const auto where = arena();
+  const auto where = environment();
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "64", "svg_mppi");
   const evaluation::LapRunner runner(where, configuration, "svg_mppi", {.obstacles = 2});
-  evaluation::Ride ride(std::make_shared<const evaluation::LapRunner>(runner), 5);
+  evaluation::ClosedLoop loop(std::make_shared<const evaluation::LapRunner>(runner), 5);
   std::ostringstream stream;
   Recorder recorder(stream, {.settings = {{"settings", "{}"}}, .wall_clock = wall_clock});
   recorder.add_text("{\"type\":\"hello\"}");
   recorder.add_course(encode_scene(*where));
   FrameEncoder encoder;
   for (int i = 0; i < ticks; ++i)
-    ride.tick([&](const evaluation::LapTick& tick) {
+    loop.tick([&](const evaluation::ControlStep& tick) {
       recorder.add_frame(encoder.encode(tick, {}) + encode_bodies(tick.world));
     });
   recorder.finish();

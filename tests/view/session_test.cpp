@@ -34,8 +34,8 @@ SessionOptions session_options() {
   options.scenario = {.course = "stag", .method = "svg_mppi", .config = "default", .seed = 4, .obstacles = 2};
   options.load = [](const ScenarioNames& names) {
     LoadedScenario loaded;
-    loaded.arena =
-        evaluation::load_arena(SLALOM_COURSES "/" + names.course, evaluation::Evaluation::true_physics, {});
+    loaded.environment = evaluation::load_environment(SLALOM_COURSES "/" + names.course,
+                                                      evaluation::Protocol::true_physics, {});
     loaded.configuration = small();
     loaded.lap.obstacles = names.obstacles;
     return loaded;
@@ -138,10 +138,10 @@ TEST_F(ViewSession, GreetsWithEverythingAPageNeeds) {
 TEST_F(ViewSession, DrivesTheLapOfTheCommandLine) {
   // The session first: its client does not stay for as long as a lap may take.
   const double x5 = scalar(step_to(5), "x"), x60 = scalar(step_to(60), "x");
-  evaluation::LapRunner runner(session_options().load(session_options().scenario).arena, small(), "svg_mppi",
-                               {.obstacles = 2});
+  evaluation::LapRunner runner(session_options().load(session_options().scenario).environment, small(),
+                               "svg_mppi", {.obstacles = 2});
   std::vector<double> x;
-  runner.run(4, [&](const evaluation::LapTick& tick) { x.push_back(tick.seen.pose.x); });
+  runner.run(4, [&](const evaluation::ControlStep& tick) { x.push_back(tick.seen.pose.x); });
   EXPECT_EQ(x5, x[5]);
   EXPECT_EQ(x60, x[60]);
 }

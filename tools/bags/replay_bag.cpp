@@ -51,16 +51,18 @@ Scenario scenario_of(const BagReplay& replay, const BagDrive& drive) {
     planner.laser_y = drive.laser->y;
     planner.laser_yaw = drive.laser->yaw;
   }
-  std::shared_ptr<Arena> arena;
+  std::shared_ptr<Environment> environment;
   if (replay.driver.course.empty()) {
-    arena = make_arena(course_of(replay, drive), Evaluation::true_physics);
+    environment = make_environment(course_of(replay, drive), Protocol::true_physics);
   } else {
     const auto roots = vehicle::course_roots(program_folder());
     scenario.folder = vehicle::find_course(replay.driver.course, roots);
-    arena = std::make_shared<Arena>(*load_arena(scenario.folder, Evaluation::true_physics, roots));
+    environment =
+        std::make_shared<Environment>(*load_environment(scenario.folder, Protocol::true_physics, roots));
   }
-  arena->lidar = lidar_of(drive, scenario.configuration.planner, arena->world_options().car.rear_length);
-  scenario.arena = arena;
+  environment->lidar =
+      lidar_of(drive, scenario.configuration.planner, environment->world_options().car.rear_length);
+  scenario.environment = environment;
   return scenario;
 }
 
@@ -83,26 +85,26 @@ class Follower {
  public:
   Follower(const BagReplay& replay, const BagDrive& drive, const Scenario& scenario)
       : drive_(drive),
-        arena_(*scenario.arena),
+        environment_(*scenario.environment),
         published_maps_(scenario.configuration.planner.published_maps),
-        planner_(scenario.configuration.planner, scenario.configuration.vehicle, arena_.path,
-                 arena_.course.closed,
+        planner_(scenario.configuration.planner, scenario.configuration.vehicle, environment_.path,
+                 environment_.course.closed,
                  vehicle::make_solver(scenario.configuration, replay.method, replay.driver.threads)),
-        meter_(arena_.path, scenario.configuration.vehicle),
-        world_(world_options(), arena_.track) {
+        meter_(environment_.path, scenario.configuration.vehicle),
+        world_(world_options(), environment_.track) {
     const maps::Pose start = pose(state(drive_.ticks.front()));
     world_.reset(0, {&start, 1});
     world_.set_scanning(0, false);
   }
 
-  LapResult run(const TickCallback& on_tick) {
+  LapResult run(const ControlStepCallback& on_step) {
     LapResult lap;
     for (const BagTick& tick : drive_.ticks) {
-      follow(tick, lap.steps, on_tick);
+      follow(tick, lap.steps, on_step);
       ++lap.steps;
     }
     lap.time = drive_.ticks.back().time;
-    lap.contacts = log_.bodies_touched();
+    lap.collisions = log_.bodies_touched();
     return lap;
   }
 
@@ -113,7 +115,7 @@ class Follower {
   static maps::Pose pose(const sim::CarState& state) { return {state.x, state.y, state.yaw}; }
 
   sim::WorldOptions world_options() const {
-    sim::WorldOptions options = arena_.world_options();
+    sim::WorldOptions options = environment_.world_options();
     const double ticks = static_cast<double>(drive_.ticks.size() - 1);
     // The world's clock ticks evenly; over the whole drive it agrees with the bag's.
     const double duration = drive_.ticks.back().time - drive_.ticks.front().time;
@@ -125,11 +127,11 @@ class Follower {
   /// Of the centre of gravity, as far as it was measured.
   sim::CarState state(const BagTick& tick) const {
     const maps::Pose& rear = tick.odometry.pose;
-    const maps::Point centre = maps::transform(rear, {arena_.world_options().car.rear_length, 0});
+    const maps::Point centre = maps::transform(rear, {environment_.world_options().car.rear_length, 0});
     return {.x = centre.x, .y = centre.y, .speed = tick.odometry.speed, .yaw = rear.yaw};
   }
 
-  void follow(const BagTick& tick, int step, const TickCallback& on_tick) {
+  void follow(const BagTick& tick, int step, const ControlStepCallback& on_step) {
     maps::LaserScanView scan = tick.shape;
     scan.ranges = tick.ranges;
     const vehicle::PlannerOutput& output = planner_.update({scan, tick.odometry});
@@ -146,13 +148,13 @@ class Follower {
     seen.time = seen.scan_time = tick.time;
     steer_.add(output.command.steer - tick.command.steer);
     speed_.add(output.command.speed - tick.command.speed);
-    on_tick({step, tick.time, world_.laps(0)->progress() / arena_.track->lap_path()->length(),
+    on_step({step, tick.time, world_.laps(0)->progress() / environment_.track->lap_path()->length(),
              log_.bodies_touched(), seen, scan, tick.odometry, output, planner_, world_,
              meter_.planned(output)});
   }
 
   const BagDrive& drive_;
-  const Arena& arena_;
+  const Environment& environment_;
   bool published_maps_;
   vehicle::Planner planner_;
   SequenceCostMeter meter_;
@@ -167,7 +169,7 @@ void record_bag(const BagReplay& replay) {
   const BagDrive drive = load_bag_drive(replay.file);
   const Scenario scenario = scenario_of(replay, drive);
   ScenarioArguments told = replay.driver;
-  told.course = scenario.arena->course.name;
+  told.course = scenario.environment->course.name;
   auto settings = settings_json(told, scenario, replay.method);
   settings["bag"] = replay.file;
   const auto recording =
@@ -178,7 +180,7 @@ void record_bag(const BagReplay& replay) {
                                      .settings = settings});
   Follower follower(replay, drive, scenario);
   recording->begin_lap(1, 0);
-  const LapResult lap = follower.run([&](const LapTick& tick) { recording->add(tick); });
+  const LapResult lap = follower.run([&](const ControlStep& tick) { recording->add(tick); });
   recording->end_lap(lap, 1);
   recording->close();
   std::printf("%zu scans over %.1f s, %d left out for want of a pose, a speed or a command\n",

@@ -46,7 +46,7 @@ struct Match {
   Side a, b;
   ExperimentResult result_a = {}, result_b = {};
   bool paired = false;  ///< lap k of both has the same seed: the same obstacles
-  double ms_p = 1, success_p = 1, contacts_p = 1;
+  double ms_p = 1, success_p = 1, collision_p = 1;
 };
 
 ExperimentResult result_of(const Side& side) {
@@ -78,7 +78,7 @@ Match match(const std::string& place, Side a, Side b, bool paired) {
     const PairedComparison c = compare_pairs(both, {m.a.experiment, second}).front();
     m.ms_p = c.ms_p;
     m.success_p = c.success_p;
-    m.contacts_p = c.collision_p;
+    m.collision_p = c.collision_p;
     return m;
   }
   const auto costs = [](const Side& side) {
@@ -94,8 +94,8 @@ Match match(const std::string& place, Side a, Side b, bool paired) {
   };
   m.ms_p = bootstrap_difference_p(costs(m.a), costs(m.b));
   m.success_p = fisher_p(successes(m.a), m.result_a.laps, successes(m.b), m.result_b.laps);
-  m.contacts_p = fisher_p(m.result_a.collisions, obstacles(m.a, m.result_a), m.result_b.collisions,
-                          obstacles(m.b, m.result_b));
+  m.collision_p = fisher_p(m.result_a.collisions, obstacles(m.a, m.result_a), m.result_b.collisions,
+                           obstacles(m.b, m.result_b));
   return m;
 }
 
@@ -166,7 +166,7 @@ void print(const std::vector<Match>& matches, std::FILE* out) {
     std::fprintf(out, "%-*s %-3s %5d %5d %20s %20s %-10s %8d %8d %-10s %8.1f %8.1f %-10s %s\n",
                  static_cast<int>(width), title(m).c_str(), m.a.experiment.scenario.c_str(), m.result_a.laps,
                  m.result_b.laps, ms(m.result_a).c_str(), ms(m.result_b).c_str(), p_text(m.ms_p).c_str(),
-                 m.result_a.collisions, m.result_b.collisions, p_text(m.contacts_p).c_str(),
+                 m.result_a.collisions, m.result_b.collisions, p_text(m.collision_p).c_str(),
                  100 * m.result_a.success_rate, 100 * m.result_b.success_rate, p_text(m.success_p).c_str(),
                  m.paired ? "paired" : "unpaired");
   }
@@ -223,7 +223,7 @@ Json json_of(const Match& m) {
   entry["first"] = side(m.result_a);
   entry["second"] = side(m.result_b);
   entry["ms_p"] = std::isfinite(m.ms_p) ? Json(m.ms_p) : Json(nullptr);
-  entry["contacts_p"] = m.contacts_p;
+  entry["collision_p"] = m.collision_p;
   entry["success_p"] = m.success_p;
   return entry;
 }

@@ -38,7 +38,7 @@ class DriveJob {
       : arguments_(arguments),
         words_(arguments.json == "-" ? stderr : stdout),
         scenario_(load_scenario(arguments.scenario, arguments.method)),
-        runner_(scenario_.arena, scenario_.configuration, arguments.method, scenario_.lap),
+        runner_(scenario_.environment, scenario_.configuration, arguments.method, scenario_.lap),
         settings_(settings_json(arguments.scenario, scenario_, arguments.method)) {
     settings_["seed"] = arguments.seed;
     settings_["laps"] = arguments.laps;
@@ -56,10 +56,10 @@ class DriveJob {
 
   /// The exit status.
   int run() {
-    for (const auto& note : scenario_.arena->course.notes)
-      std::fprintf(words_, "note: %s: %s\n", scenario_.arena->course.name.c_str(), note.c_str());
+    for (const auto& note : scenario_.environment->course.notes)
+      std::fprintf(words_, "note: %s: %s\n", scenario_.environment->course.name.c_str(), note.c_str());
     std::fprintf(words_, "%s on %s, configuration %s, evaluation %s, %d obstacles, seed %llu\n",
-                 arguments_.method.c_str(), scenario_.arena->course.name.c_str(),
+                 arguments_.method.c_str(), scenario_.environment->course.name.c_str(),
                  arguments_.scenario.config.c_str(), arguments_.scenario.evaluation.c_str(),
                  scenario_.lap.obstacles, static_cast<unsigned long long>(arguments_.seed));
     try {
@@ -81,14 +81,14 @@ class DriveJob {
     LapResult result;
     {
       ProgressLine progress(words_);
-      const auto on_tick = [&](const evaluation::LapTick& tick) {
+      const auto on_step = [&](const evaluation::ControlStep& tick) {
         progress.show(lap + 1, arguments_.laps, tick);
         if (recording_) recording_->add(tick);
         if (arguments_.plot.empty()) return;
         driven_.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
         driven_.speeds.push_back(tick.seen.speed);
       };
-      result = runner_.run(seed, on_tick, &interrupted);
+      result = runner_.run(seed, on_step, &interrupted);
     }
     if (result.steps == 0) return;
     laps_.push_back(std::move(result));
@@ -111,9 +111,10 @@ class DriveJob {
     std::fprintf(words_,
                  "lap %zu: %s, %.2f s, %d steps, %d contact%s, cost %.3f (state %.3f, collision %.3f), mean "
                  "%.2f m/s, solve %.2f ms (p99 %.2f)\n",
-                 laps_.size(), outcome(lap), lap.time, lap.steps, lap.contacts, lap.contacts == 1 ? "" : "s",
-                 lap.mean_sequence_cost, lap.state_cost, lap.collision_cost, lap.mean_speed,
-                 times.empty() ? 0.0 : percentile(times, 0.5), times.empty() ? 0.0 : percentile(times, 0.99));
+                 laps_.size(), outcome(lap), lap.time, lap.steps, lap.collisions,
+                 lap.collisions == 1 ? "" : "s", lap.mean_sequence_cost, lap.state_cost, lap.collision_cost,
+                 lap.mean_speed, times.empty() ? 0.0 : percentile(times, 0.5),
+                 times.empty() ? 0.0 : percentile(times, 0.99));
     std::fflush(words_);
   }
 
@@ -121,7 +122,7 @@ class DriveJob {
     int contacts = 0;
     double cost = 0;
     for (const auto& lap : laps_) {
-      contacts += lap.contacts;
+      contacts += lap.collisions;
       cost += lap.mean_sequence_cost;
     }
     const double chances = static_cast<double>(scenario_.lap.obstacles) * static_cast<double>(laps_.size());
@@ -167,17 +168,17 @@ class DriveJob {
         facts, sizeof facts,
         "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d contact%s \xC2\xB7 cost %.2f \xC2\xB7 %d "
         "obstacles, seed %llu",
-        outcome(lap), lap.time, lap.mean_speed, lap.contacts, lap.contacts == 1 ? "" : "s",
+        outcome(lap), lap.time, lap.mean_speed, lap.collisions, lap.collisions == 1 ? "" : "s",
         lap.mean_sequence_cost, scenario_.lap.obstacles, static_cast<unsigned long long>(lap.seed));
     // The world of the published evaluation takes unknown ground for free; a picture should not.
     const auto map = vehicle::load_course(scenario_.folder).map;
     draw_lap({.map = map,
-              .path = scenario_.arena->path,
-              .closed = scenario_.arena->course.closed,
+              .path = scenario_.environment->path,
+              .closed = scenario_.environment->course.closed,
               .driven = driven_,
               .lap = lap,
               .start = runner_.start(),
-              .title = arguments_.method + " on " + scenario_.arena->course.name,
+              .title = arguments_.method + " on " + scenario_.environment->course.name,
               .facts = facts},
              arguments_.plot);
   }

@@ -32,7 +32,7 @@ int run(const Arguments& arguments) {
   if (arguments.report) {
     Report report{"Methods compared", evaluated, {}, {}, {}};
     for (const auto& r : evaluated.results) {
-      const auto& e = evaluated.campaign.experiments[static_cast<std::size_t>(r.experiment)];
+      const auto& e = evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)];
       report.rows.push_back({"methods", e.label(), "", r.experiment});
     }
     write_report(report, arguments.evaluation.out);

@@ -56,7 +56,7 @@ Driver make_driver(const std::string& text, const Arguments& arguments) {
 
 /// All laps, in parallel; the results do not depend on how many at a time. False if told to end.
 bool drive(std::vector<Task>& tasks, const std::vector<Driver>& drivers,
-           const std::shared_ptr<const Arena>& arena, const Arguments& arguments) {
+           const std::shared_ptr<const Environment>& environment, const Arguments& arguments) {
   std::mutex mutex;
   std::size_t next = 0;
   std::exception_ptr failed;
@@ -77,7 +77,7 @@ bool drive(std::vector<Task>& tasks, const std::vector<Driver>& drivers,
         settings.hardware = HardwareConditions{};
         settings.obstacles = task->layout < 0 ? 0 : arguments.obstacles;
         if (task->layout >= 0) settings.layout = static_cast<std::uint64_t>(1000 + task->layout);
-        task->result = LapRunner(arena, driver.configuration, driver.method, settings)
+        task->result = LapRunner(environment, driver.configuration, driver.method, settings)
                            .run(task->seed, {}, &interrupt.raised());
         task->done = !task->result.cancelled;
       } catch (...) {
@@ -119,8 +119,8 @@ Json summarise(const std::vector<Task>& tasks, std::size_t driver, bool among_ob
     const LapResult& r = task.result;
     ++laps;
     finished += r.finished;
-    contacts += r.contacts;
-    touched += r.contacts > 0;
+    contacts += r.collisions;
+    touched += r.collisions > 0;
     blind += r.localisation.blind;
     steps += r.steps;
     costs.push_back(r.mean_sequence_cost);
@@ -180,8 +180,8 @@ int run(const Arguments& arguments) {
     drivers.push_back(make_driver(text, arguments));
   }
   const auto roots = vehicle::course_roots(program_folder());
-  const auto arena =
-      load_arena(vehicle::find_course(arguments.course, roots), Evaluation::true_physics, roots);
+  const auto environment =
+      load_environment(vehicle::find_course(arguments.course, roots), Protocol::true_physics, roots);
   std::vector<Task> tasks;
   for (std::size_t d = 0; d < drivers.size(); ++d) {
     for (int lap = 0; lap < arguments.tracking_laps; ++lap)
@@ -190,7 +190,7 @@ int run(const Arguments& arguments) {
       for (int lap = 0; lap < arguments.laps; ++lap)
         tasks.push_back({d, layout, static_cast<std::uint64_t>(100 + 10 * layout + lap), {}, false});
   }
-  const bool whole = drive(tasks, drivers, arena, arguments);
+  const bool whole = drive(tasks, drivers, environment, arguments);
   if (!whole)
     std::fprintf(stderr, "interrupted after %td of %zu laps\n",
                  std::count_if(tasks.begin(), tasks.end(), [](const Task& task) { return task.done; }),

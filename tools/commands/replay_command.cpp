@@ -76,12 +76,12 @@ void plot(const Arguments& arguments, const Scenario& scenario, const LapRunner&
   std::snprintf(
       facts, sizeof facts,
       "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d contacts \xC2\xB7 cost %.2f \xC2\xB7 seed %llu",
-      lap.finished ? "finished" : "timeout", lap.time, lap.mean_speed, lap.contacts, lap.mean_sequence_cost,
+      lap.finished ? "finished" : "timeout", lap.time, lap.mean_speed, lap.collisions, lap.mean_sequence_cost,
       static_cast<unsigned long long>(lap.seed));
   const auto map = vehicle::load_course(scenario.folder).map;
   draw_lap({.map = map,
-            .path = scenario.arena->path,
-            .closed = scenario.arena->course.closed,
+            .path = scenario.environment->path,
+            .closed = scenario.environment->course.closed,
             .driven = driven,
             .lap = lap,
             .start = runner.start(),
@@ -101,9 +101,9 @@ int replay_lap(const Arguments& arguments) {
         "--lap", 0,
         std::to_string(arguments.lap) + " must be in [0, " + std::to_string(experiment.laps - 1) + "]");
   Scenario scenario;
-  const Campaign campaign = rebuild_campaign(stored, arguments.course, scenario);
-  LapRunner runner = make_runner(campaign, index);
-  const std::uint64_t seed = lap_seed(campaign.seed0, arguments.lap, experiment.obstacles);
+  const Evaluation evaluation = rebuild_campaign(stored, arguments.course, scenario);
+  LapRunner runner = make_runner(evaluation, index);
+  const std::uint64_t seed = lap_seed(evaluation.seed0, arguments.lap, experiment.obstacles);
   std::unique_ptr<Recording> recording;
   if (!arguments.record.empty()) {
     const auto settings = nlohmann::ordered_json::parse(stored.settings);
@@ -117,21 +117,22 @@ int replay_lap(const Arguments& arguments) {
     recording->begin_lap(arguments.lap, seed);
   }
   DrivenLine driven;
-  const LapResult lap = runner.run(seed, [&](const LapTick& tick) {
+  const LapResult lap = runner.run(seed, [&](const ControlStep& tick) {
     if (recording) recording->add(tick);
     driven.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
     driven.speeds.push_back(tick.seen.speed);
   });
   std::printf("%s, %s, lap %d, seed %llu: %s, %.2f s, %d contacts, cost %.3f\n", experiment.label().c_str(),
               experiment.scenario.c_str(), arguments.lap, static_cast<unsigned long long>(seed),
-              lap.finished ? "finished" : "timeout", lap.time, lap.contacts, lap.mean_sequence_cost);
+              lap.finished ? "finished" : "timeout", lap.time, lap.collisions, lap.mean_sequence_cost);
   if (recording) {
     recording->end_lap(lap, arguments.lap);
     recording->close();
     std::printf("recording: %s\n", arguments.record.c_str());
   }
   if (!arguments.plot.empty()) {
-    plot(arguments, scenario, runner, driven, lap, experiment.label() + " on " + campaign.arena->course.name);
+    plot(arguments, scenario, runner, driven, lap,
+         experiment.label() + " on " + evaluation.environment->course.name);
     std::printf("picture: %s\n", arguments.plot.c_str());
   }
   const LapRow now = make_row(index, arguments.lap, lap, 0);

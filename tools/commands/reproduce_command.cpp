@@ -63,7 +63,7 @@ void print_section(const std::string& section, const Evaluated& evaluated,
       if (row.section != section) continue;
       for (const auto& r : evaluated.results) {
         const auto index = static_cast<std::size_t>(r.experiment);
-        const auto& e = evaluated.campaign.experiments[index];
+        const auto& e = evaluated.evaluation.experiments[index];
         if (e.scenario != scenario || !drives(e, row)) continue;
         const auto& theirs = references[index].published;
         std::fprintf(out, "%-32s %-2s %5d  %-26s %-26s %-22s %-22s %s\n", row.name.c_str(), scenario, r.laps,
@@ -83,7 +83,7 @@ void add_report_rows(const std::string& section, Report& report) {
   for (const PaperRow& row : paper_rows()) {
     if (row.section != section) continue;
     for (const auto& r : report.evaluated.results) {
-      const auto& e = report.evaluated.campaign.experiments[static_cast<std::size_t>(r.experiment)];
+      const auto& e = report.evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)];
       if (drives(e, row)) report.rows.push_back({section, row.name, row.note, r.experiment});
     }
   }

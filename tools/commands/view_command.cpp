@@ -41,7 +41,7 @@ view::SessionOptions session_options(const Arguments& arguments) {
     a.obstacles = names.obstacles;
     a.opponents = names.opponents;
     Scenario scenario = load_scenario(a, names.method);
-    return view::LoadedScenario{scenario.arena, scenario.configuration, scenario.lap};
+    return view::LoadedScenario{scenario.environment, scenario.configuration, scenario.lap};
   };
   options.choices = choices();
   options.against = arguments.against;

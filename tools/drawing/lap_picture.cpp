@@ -44,7 +44,7 @@ void draw_lap(const LapPicture& picture, const std::filesystem::path& file) {
   canvas.speed_line(picture.driven.points, speeds, slowest, fastest, 6, false);
 
   const auto touched = [&](std::size_t body) {
-    return std::any_of(picture.lap.touches.begin(), picture.lap.touches.end(),
+    return std::any_of(picture.lap.first_collisions.begin(), picture.lap.first_collisions.end(),
                        [&](const auto& touch) { return touch.body == static_cast<int>(body); });
   };
   const sim::CarParameters car;
@@ -54,7 +54,8 @@ void draw_lap(const LapPicture& picture, const std::filesystem::path& file) {
   }
   canvas.arrow(picture.start, 20, ink);
   const double cross = 0.010 * std::max(map.width, map.height) * map.resolution;
-  for (const auto& touch : picture.lap.touches) draw_cross(canvas, {touch.pose.x, touch.pose.y}, cross);
+  for (const auto& touch : picture.lap.first_collisions)
+    draw_cross(canvas, {touch.pose.x, touch.pose.y}, cross);
   canvas.legend(picture.title, picture.facts, slowest, fastest);
   canvas.save(file);
 }

@@ -36,8 +36,8 @@ Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
   }
   return {{"version", version()},
           {"instruction_set", simd::name(simd::active_target())},
-          {"course", scenario.arena->course.name},
-          {"course_hash", course_hash(*scenario.arena)},
+          {"course", scenario.environment->course.name},
+          {"course_hash", course_hash(*scenario.environment)},
           {"config", arguments.scenario.config},
           {"evaluation", arguments.scenario.evaluation},
           {"latency_ms", arguments.scenario.latency_ms},
@@ -76,18 +76,18 @@ Json machine_json() {
 
 }  // namespace
 
-std::string course_hash(const Arena& arena) {
+std::string course_hash(const Environment& environment) {
   std::uint64_t hash = 14695981039346656037ull;
   const auto mix = [&](const void* data, std::size_t size) {
     for (std::size_t i = 0; i < size; ++i)
       hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211ull;
   };
-  mix(arena.course.map.cells.data(), arena.course.map.cells.size());
-  for (const auto& point : arena.path) {
+  mix(environment.course.map.cells.data(), environment.course.map.cells.size());
+  for (const auto& point : environment.path) {
     const double values[] = {point.x, point.y, point.yaw, point.speed};
     mix(values, sizeof values);
   }
-  for (const auto& point : arena.course.obstacle_path) {
+  for (const auto& point : environment.course.obstacle_path) {
     const double values[] = {point.x, point.y};
     mix(values, sizeof values);
   }
@@ -121,7 +121,7 @@ void add_evaluation_options(CLI::App& command, EvaluationArguments& a) {
 Json Evaluated::summary() const {
   Json list = Json::array();
   for (const ExperimentResult& r : results) {
-    const Experiment& e = campaign.experiments[static_cast<std::size_t>(r.experiment)];
+    const Experiment& e = evaluation.experiments[static_cast<std::size_t>(r.experiment)];
     const auto rate = [](double v) { return v; };
     list.push_back(
         {{"method", e.method},
@@ -150,9 +150,9 @@ Json Evaluated::summary() const {
            {"max", r.solve_ms_max}}}});
   }
   Json pairs = Json::array();
-  for (const PairedComparison& c : compare_pairs(rows, campaign.experiments)) {
-    const Experiment &a = campaign.experiments[static_cast<std::size_t>(c.a)],
-                     &b = campaign.experiments[static_cast<std::size_t>(c.b)];
+  for (const PairedComparison& c : compare_pairs(rows, evaluation.experiments)) {
+    const Experiment &a = evaluation.experiments[static_cast<std::size_t>(c.a)],
+                     &b = evaluation.experiments[static_cast<std::size_t>(c.b)];
     pairs.push_back({{"scenario", a.scenario},
                      {"a", a.label()},
                      {"b", b.label()},
@@ -166,15 +166,15 @@ Json Evaluated::summary() const {
   }
   return {{"program", std::string("slalom ") + version()},
           {"build", build_identity()},
-          {"settings", Json::parse(campaign.settings)},
+          {"settings", Json::parse(evaluation.settings)},
           {"machine", machine_json()},
           {"results", list},
           {"comparisons", pairs}};
 }
 
-Campaign make_campaign(const EvaluationArguments& arguments, const Scenario& scenario,
-                       const std::vector<Experiment>& experiments) {
-  return {.arena = scenario.arena,
+Evaluation make_campaign(const EvaluationArguments& arguments, const Scenario& scenario,
+                         const std::vector<Experiment>& experiments) {
+  return {.environment = scenario.environment,
           .configuration = scenario.configuration,
           .experiments = experiments,
           .seed0 = arguments.seed0,
@@ -184,29 +184,29 @@ Campaign make_campaign(const EvaluationArguments& arguments, const Scenario& sce
           .any_build = arguments.any_build};
 }
 
-bool drive_campaign(const Campaign& campaign, const EvaluationArguments& arguments, const std::string& title,
-                    const std::atomic<bool>& cancel, std::vector<LapRow>& rows) {
+bool drive_campaign(const Evaluation& evaluation, const EvaluationArguments& arguments,
+                    const std::string& title, const std::atomic<bool>& cancel, std::vector<LapRow>& rows) {
   if (arguments.jobs < 0 || arguments.jobs > 1024)
     throw IoError("--jobs", 0, std::to_string(arguments.jobs) + " must be in [0, 1024]");
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int jobs = arguments.jobs > 0 ? arguments.jobs : rank_count() > 1 ? 1 : cores;
   // What cannot be driven must not leave a folder behind.
-  for (const Experiment& e : campaign.experiments) {
-    vehicle::Configuration trial = campaign.configuration;
+  for (const Experiment& e : evaluation.experiments) {
+    vehicle::Configuration trial = evaluation.configuration;
     LapSettings world;
     for (const auto& [key, value] : e.set) apply_setting(key, value, e.method, trial, world);
   }
-  for (int i = 0; i < static_cast<int>(campaign.experiments.size()); ++i) make_runner(campaign, i);
+  for (int i = 0; i < static_cast<int>(evaluation.experiments.size()); ++i) make_runner(evaluation, i);
   if (rank() > 0) {
-    drive_for_first_rank(campaign, jobs, cancel);
+    drive_for_first_rank(evaluation, jobs, cancel);
     return false;
   }
   require_object(std::filesystem::path(arguments.out) / "settings.json");
-  LapStore store(arguments.out, campaign, arguments.resume);
+  LapStore store(arguments.out, evaluation, arguments.resume);
   CampaignProgressBar bar(title);
-  CampaignWork work(
-      campaign, store, [&](const CampaignProgress& p) { bar.show(p); }, cancel);
-  drive_with_ranks(campaign, work, jobs, cancel);
+  EvaluationQueue work(
+      evaluation, store, [&](const EvaluationProgress& p) { bar.show(p); }, cancel);
+  drive_with_ranks(evaluation, work, jobs, cancel);
   if (!work.finish()) {
     std::fprintf(stderr, "interrupted after %zu laps; --resume goes on\n", store.rows().size());
     return false;
@@ -220,20 +220,20 @@ bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Expe
   if (experiments.empty()) throw IoError("--methods", 0, "names no method");
   const Scenario scenario = load_scenario(arguments.scenario, experiments.front().method);
   evaluated.course_folder = scenario.folder;
-  evaluated.campaign = make_campaign(arguments, scenario, experiments);
+  evaluated.evaluation = make_campaign(arguments, scenario, experiments);
   const InterruptFlag interrupt;
-  if (!drive_campaign(evaluated.campaign, arguments, "", interrupt.raised(), evaluated.rows)) return false;
-  evaluated.results = summarise(evaluated.rows, evaluated.campaign.experiments);
+  if (!drive_campaign(evaluated.evaluation, arguments, "", interrupt.raised(), evaluated.rows)) return false;
+  evaluated.results = summarise(evaluated.rows, evaluated.evaluation.experiments);
   return true;
 }
 
 void print_results(const Evaluated& evaluated, std::FILE* out) {
   std::size_t width = 6;
-  for (const Experiment& e : evaluated.campaign.experiments) width = std::max(width, e.label().size());
+  for (const Experiment& e : evaluated.evaluation.experiments) width = std::max(width, e.label().size());
   std::fprintf(out, "%-*s  %-3s %5s %9s %19s %9s %17s %8s %9s\n", static_cast<int>(width), "method", "",
                "laps", "MS", "95 %", "contacts", "collision rate", "success", "solve ms");
   for (const ExperimentResult& r : evaluated.results) {
-    const Experiment& e = evaluated.campaign.experiments[static_cast<std::size_t>(r.experiment)];
+    const Experiment& e = evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)];
     char rate[40] = "-";
     if (r.collision_rate) {
       std::snprintf(rate, sizeof rate, "%.1f (%.1f-%.1f) %%", 100 * *r.collision_rate,

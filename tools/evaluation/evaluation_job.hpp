@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/campaign.hpp"
+#include "slalom/evaluation/evaluation.hpp"
 #include "slalom/evaluation/results.hpp"
 #include "tools/scenario/scenario.hpp"
 
@@ -34,7 +34,7 @@ void require_driven(const std::string& key, const std::vector<std::string>& meth
 void refuse_twice(const std::string& key, const std::string& other, const std::vector<std::string>& methods);
 
 /// Of what of a course decides a lap (FNV-1a).
-std::string course_hash(const evaluation::Arena& arena);
+std::string course_hash(const evaluation::Environment& environment);
 
 /// The experiments of a comparison: every method in every scenario ("pt", "oa") with every combination of the
 /// values of `sweeps` ("key=v1,v2,..."). A sweep over an option of a method's own applies to that method
@@ -45,7 +45,7 @@ std::vector<evaluation::Experiment> make_experiments(const std::vector<std::stri
 
 /// An evaluation that has been driven.
 struct Evaluated {
-  evaluation::Campaign campaign;
+  evaluation::Evaluation evaluation;
   std::vector<evaluation::LapRow> rows;
   std::vector<evaluation::ExperimentResult> results;
   std::filesystem::path course_folder;
@@ -53,13 +53,13 @@ struct Evaluated {
 };
 
 /// All that is driven, with the settings that are kept beside the laps.
-evaluation::Campaign make_campaign(const EvaluationArguments& arguments, const Scenario& scenario,
-                                   const std::vector<evaluation::Experiment>& experiments);
+evaluation::Evaluation make_campaign(const EvaluationArguments& arguments, const Scenario& scenario,
+                                     const std::vector<evaluation::Experiment>& experiments);
 
 /// Drives what is still missing in `arguments.out`, with a progress line that begins with `title`. False if
 /// it was interrupted, which it says, and in every process under mpirun but the first, which has the rows.
 /// Throws IoError and what a lap throws.
-bool drive_campaign(const evaluation::Campaign& campaign, const EvaluationArguments& arguments,
+bool drive_campaign(const evaluation::Evaluation& evaluation, const EvaluationArguments& arguments,
                     const std::string& title, const std::atomic<bool>& cancel,
                     std::vector<evaluation::LapRow>& rows);
 

@@ -60,7 +60,7 @@ void send_text(const std::string& text, int to, Tag tag) {
 }
 
 /// The first process as the others see it.
-class FirstRank final : public LapExchange {
+class FirstRank final : public LapQueue {
  public:
   explicit FirstRank(const std::vector<Experiment>& experiments) : experiments_(experiments) {}
 
@@ -93,7 +93,7 @@ class FirstRank final : public LapExchange {
 };
 
 /// Answers the other processes until all have left.
-void serve(const Campaign& campaign, CampaignWork& work) {
+void serve(const Evaluation& evaluation, EvaluationQueue& work) {
   for (int present = rank_count() - 1; present > 0;) {
     MPI_Status status;
     int there = 0;
@@ -113,7 +113,7 @@ void serve(const Campaign& campaign, CampaignWork& work) {
       MPI_Send(sent, 2, MPI_INT, status.MPI_SOURCE, assignment, MPI_COMM_WORLD);
     } else if (status.MPI_TAG == row) {
       try {
-        work.keep(parse_line(text, campaign.experiments));
+        work.keep(parse_line(text, evaluation.experiments));
       } catch (...) {
         work.fail(std::current_exception());
       }
@@ -134,18 +134,18 @@ int rank() {
   return World::instance().rank;
 }
 
-void drive_with_ranks(const Campaign& campaign, CampaignWork& work, int jobs,
+void drive_with_ranks(const Evaluation& evaluation, EvaluationQueue& work, int jobs,
                       const std::atomic<bool>& cancel) {
-  if (rank_count() == 1) return drive_laps(campaign, work, jobs, cancel);
-  std::thread own([&] { drive_laps(campaign, work, jobs, cancel); });
-  serve(campaign, work);
+  if (rank_count() == 1) return drive_laps(evaluation, work, jobs, cancel);
+  std::thread own([&] { drive_laps(evaluation, work, jobs, cancel); });
+  serve(evaluation, work);
   own.join();
   MPI_Finalize();
 }
 
-void drive_for_first_rank(const Campaign& campaign, int jobs, const std::atomic<bool>& cancel) {
-  FirstRank first(campaign.experiments);
-  drive_laps(campaign, first, jobs, cancel);
+void drive_for_first_rank(const Evaluation& evaluation, int jobs, const std::atomic<bool>& cancel) {
+  FirstRank first(evaluation.experiments);
+  drive_laps(evaluation, first, jobs, cancel);
   send_text("", 0, leaving);
   MPI_Finalize();
 }
@@ -160,11 +160,11 @@ int rank_count() {
 int rank() {
   return 0;
 }
-void drive_with_ranks(const evaluation::Campaign& campaign, evaluation::CampaignWork& work, int jobs,
+void drive_with_ranks(const evaluation::Evaluation& evaluation, evaluation::EvaluationQueue& work, int jobs,
                       const std::atomic<bool>& cancel) {
-  drive_laps(campaign, work, jobs, cancel);
+  drive_laps(evaluation, work, jobs, cancel);
 }
-void drive_for_first_rank(const evaluation::Campaign&, int, const std::atomic<bool>&) {}
+void drive_for_first_rank(const evaluation::Evaluation&, int, const std::atomic<bool>&) {}
 
 #endif
 

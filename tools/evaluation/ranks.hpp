@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-#include "slalom/evaluation/campaign.hpp"
+#include "slalom/evaluation/evaluation.hpp"
 
 /// The processes that mpirun started, if it did: the first ("rank 0") has the folder, the progress and the
 /// summary, the others drive laps for it.
@@ -14,10 +14,11 @@ int rank();
 
 /// In the first process: drives laps on `jobs` threads of its own and hands laps to the other processes,
 /// until there are none left.
-void drive_with_ranks(const evaluation::Campaign& campaign, evaluation::CampaignWork& work, int jobs,
+void drive_with_ranks(const evaluation::Evaluation& evaluation, evaluation::EvaluationQueue& work, int jobs,
                       const std::atomic<bool>& cancel);
 
 /// In every other process: drives laps on `jobs` threads until the first has none left.
-void drive_for_first_rank(const evaluation::Campaign& campaign, int jobs, const std::atomic<bool>& cancel);
+void drive_for_first_rank(const evaluation::Evaluation& evaluation, int jobs,
+                          const std::atomic<bool>& cancel);
 
 }  // namespace slalom::tools

@@ -43,12 +43,12 @@ std::string judge(const LogComparison& c, double our_rate) {
     text = ratio_text(c.ms_ratio) + (outside ? " (" + p_text(c.ms_p) + ")"
                                              : format(" (95 %%: %.2f to ", c.ms_ratio_ci.low) +
                                                    format("%.2f times)", c.ms_ratio_ci.high));
-  if (c.contacts_p && c.contacts_agreement() == c.agreement()) {
+  if (c.collision_p && c.collision_agreement() == c.agreement()) {
     const double points = 100 * (our_rate - *c.collision_rate);
     text += text.empty() ? "" : ", ";
     text += format(points >= 0 ? "collision rate %.1f points higher" : "collision rate %.1f points lower",
                    std::abs(points));
-    text += outside ? " (" + p_text(*c.contacts_p) + ")"
+    text += outside ? " (" + p_text(*c.collision_p) + ")"
                     : format(" (95 %%: %.1f to ", 100 * c.rate_difference_ci->low) +
                           format("%.1f points)", 100 * c.rate_difference_ci->high);
   }
@@ -67,7 +67,7 @@ Json comparison_json(const LogComparison& c, const LapLog& log) {
   return {{"file", fs::path(log.file).filename().string()},
           {"laps", log.laps},
           {"timeouts", log.timeouts},
-          {"contacts", log.contacts},
+          {"contacts", log.collisions},
           {"ms_mean", c.ms_mean},
           {"ms_ci", interval(c.ms_ci)},
           {"ms_ratio", c.ms_ratio},
@@ -75,7 +75,7 @@ Json comparison_json(const LogComparison& c, const LapLog& log) {
           {"ms_p", number(c.ms_p)},
           {"collision_rate", number(c.collision_rate)},
           {"collision_rate_ci", interval(c.collision_rate_ci)},
-          {"contacts_p", number(c.contacts_p)},
+          {"collision_p", number(c.collision_p)},
           {"collision_rate_difference_ci", interval(c.rate_difference_ci)},
           {"success_rate", static_cast<double>(log.successes) / log.laps},
           {"solve_ms", {{"mean", number(log.solve_ms_mean)}, {"max", number(log.solve_ms_max)}}}};
@@ -243,7 +243,7 @@ std::vector<Reference> find_references(const LogFolders& folders, const std::vec
       continue;
     }
     int contacts = 0;
-    for (const LapRow& lap : ours) contacts += lap.collision;
+    for (const LapRow& lap : ours) contacts += lap.collisions;
     const double rate = e.obstacles > 0
                             ? static_cast<double>(contacts) / (e.obstacles * static_cast<double>(ours.size()))
                             : 0;

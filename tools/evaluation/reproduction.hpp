@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/published.hpp"
+#include "slalom/evaluation/lap_log.hpp"
 
 /// The simulation section of Honda et al. (ICRA 2024, section VI) as experiments, and what the authors
 /// logged.

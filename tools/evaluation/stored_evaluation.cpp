@@ -107,26 +107,26 @@ ScenarioArguments campaign_arguments(const StoredEvaluation& stored, const std::
   return arguments;
 }
 
-evaluation::Campaign rebuild_campaign(const StoredEvaluation& stored, const std::string& course,
-                                      Scenario& scenario) {
+evaluation::Evaluation rebuild_campaign(const StoredEvaluation& stored, const std::string& course,
+                                        Scenario& scenario) {
   const fs::path file = stored.folder / "settings.json";
-  evaluation::Campaign campaign;
+  evaluation::Evaluation evaluation;
   try {
     const auto settings = Json::parse(stored.settings);
     const ScenarioArguments arguments = campaign_arguments(stored, course);
     scenario = load_scenario(arguments, stored.experiments.front().method);
-    if (const std::string hash = settings.at("course_hash"); hash != course_hash(*scenario.arena))
+    if (const std::string hash = settings.at("course_hash"); hash != course_hash(*scenario.environment))
       throw IoError(scenario.folder.string(), 0, "is not the course of " + stored.folder.string());
-    campaign.arena = scenario.arena;
-    campaign.configuration = scenario.configuration;
-    campaign.experiments = stored.experiments;
-    campaign.seed0 = settings.at("seed0");
-    campaign.latency = scenario.lap.latency;
-    campaign.settings = stored.settings;
+    evaluation.environment = scenario.environment;
+    evaluation.configuration = scenario.configuration;
+    evaluation.experiments = stored.experiments;
+    evaluation.seed0 = settings.at("seed0");
+    evaluation.latency = scenario.lap.latency;
+    evaluation.settings = stored.settings;
   } catch (const nlohmann::json::exception& error) {
     throw IoError(file.string(), 0, std::string("makes no sense: ") + error.what());
   }
-  return campaign;
+  return evaluation;
 }
 
 }  // namespace slalom::tools

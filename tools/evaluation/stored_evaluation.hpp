@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/campaign.hpp"
+#include "slalom/evaluation/evaluation.hpp"
 #include "tools/scenario/scenario.hpp"
 
 /// An evaluation read back from its folder.
@@ -30,7 +30,7 @@ ScenarioArguments campaign_arguments(const StoredEvaluation& stored, const std::
 
 /// Makes the evaluation's laps drivable again: course, configuration with every option as it was. `course`
 /// takes the place of the course's name where that is not empty. Throws IoError if the course is another one.
-evaluation::Campaign rebuild_campaign(const StoredEvaluation& stored, const std::string& course,
-                                      Scenario& scenario);
+evaluation::Evaluation rebuild_campaign(const StoredEvaluation& stored, const std::string& course,
+                                        Scenario& scenario);
 
 }  // namespace slalom::tools

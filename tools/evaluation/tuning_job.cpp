@@ -82,8 +82,8 @@ TuningJob::TuningJob(TuningArguments arguments)
     scenario.course = name;
     courses_.push_back(load_scenario(scenario, arguments_.method));
     for (std::size_t i = 0; i + 1 < courses_.size(); ++i)
-      if (courses_[i].arena->course.name == courses_.back().arena->course.name)
-        throw IoError("--course", 0, "'" + courses_.back().arena->course.name + "' stands there twice");
+      if (courses_[i].environment->course.name == courses_.back().environment->course.name)
+        throw IoError("--course", 0, "'" + courses_.back().environment->course.name + "' stands there twice");
   }
   const auto key_of = [](const std::string& text) { return text.substr(0, text.find('=')); };
   for (std::size_t i = 0; i < arguments_.set.size(); ++i)
@@ -110,7 +110,7 @@ TuningJob::TuningJob(TuningArguments arguments)
 
 Json TuningJob::plan() const {
   Json courses = Json::array(), rungs = Json::array();
-  for (const Scenario& course : courses_) courses.push_back(course.arena->course.name);
+  for (const Scenario& course : courses_) courses.push_back(course.environment->course.name);
   for (const Rung& rung : rungs_) rungs.push_back({{"candidates", rung.candidates}, {"laps", rung.laps}});
   return {{"courses", courses},
           {"config", arguments_.evaluation.scenario.config},
@@ -157,21 +157,21 @@ bool TuningJob::drive(const std::string& step, const std::vector<Candidate>& can
   driven.values.resize(candidates.size());
   for (const Scenario& course : courses_) {
     EvaluationArguments arguments = arguments_.evaluation;
-    arguments.out += "/" + step + "/" + course.arena->course.name;
+    arguments.out += "/" + step + "/" + course.environment->course.name;
     arguments.resume = true;
     // Further than the laps before, in every scenario.
     arguments.seed0 +=
         static_cast<std::uint64_t>(first_lap) * static_cast<std::uint64_t>(arguments_.obstacles + 5);
-    const Campaign campaign = make_campaign(arguments, course, experiments);
+    const Evaluation evaluation = make_campaign(arguments, course, experiments);
     std::vector<LapRow> rows;
-    if (!drive_campaign(campaign, arguments, step + ", " + course.arena->course.name, cancel, rows))
+    if (!drive_campaign(evaluation, arguments, step + ", " + course.environment->course.name, cancel, rows))
       return false;
     for (const LapRow& row : rows)
       driven.values[static_cast<std::size_t>(row.experiment) / arguments_.scenarios.size()].push_back(
           objective_.of(row));
     for (const ExperimentResult& r : summarise(rows, experiments)) {
       const auto index = static_cast<std::size_t>(r.experiment);
-      driven.results.push_back({{"course", course.arena->course.name},
+      driven.results.push_back({{"course", course.environment->course.name},
                                 {"scenario", experiments[index].scenario},
                                 {"set", experiments[index].set_text()},
                                 {"laps", r.laps},

@@ -35,7 +35,7 @@ std::string evaluation_message(const StoredEvaluation& stored, const std::string
                     {"seed", std::to_string(row.seed)},
                     {"finished", row.finished},
                     {"time", row.lap_time},
-                    {"contacts", row.collision},
+                    {"contacts", row.collisions},
                     {"points", points(row.contact_points)}});
   return Json{{"type", "evaluation"},
               {"folder", stored.folder.filename().empty() ? stored.folder.parent_path().filename().string()
@@ -51,24 +51,25 @@ std::string evaluation_message(const StoredEvaluation& stored, const std::string
 void open_evaluation(const std::string& folder, view::SessionOptions& options) {
   const auto stored = std::make_shared<const StoredEvaluation>(load_evaluation(folder));
   Scenario scenario;
-  const auto campaign = std::make_shared<const evaluation::Campaign>(rebuild_campaign(*stored, "", scenario));
+  const auto evaluation =
+      std::make_shared<const evaluation::Evaluation>(rebuild_campaign(*stored, "", scenario));
   const ScenarioArguments arguments = campaign_arguments(*stored, "");
-  options.evaluation = evaluation_message(*stored, campaign->arena->course.name);
-  options.load_lap = [stored, campaign, arguments](int experiment, int lap) {
-    if (experiment < 0 || experiment >= std::ssize(campaign->experiments))
+  options.evaluation = evaluation_message(*stored, evaluation->environment->course.name);
+  options.load_lap = [stored, evaluation, arguments](int experiment, int lap) {
+    if (experiment < 0 || experiment >= std::ssize(evaluation->experiments))
       throw std::invalid_argument("experiment: there is none of this number");
-    const evaluation::Experiment& e = campaign->experiments[static_cast<std::size_t>(experiment)];
+    const evaluation::Experiment& e = evaluation->experiments[static_cast<std::size_t>(experiment)];
     if (lap < 0 || lap >= e.laps) throw std::invalid_argument("lap: there is none of this number");
-    const evaluation::LapRunner runner = make_runner(*campaign, experiment);
+    const evaluation::LapRunner runner = make_runner(*evaluation, experiment);
     view::LoadedLap loaded;
     loaded.names = {.course = arguments.course,
                     .method = e.method,
                     .config = arguments.config,
-                    .seed = evaluation::lap_seed(campaign->seed0, lap, e.obstacles),
+                    .seed = evaluation::lap_seed(evaluation->seed0, lap, e.obstacles),
                     .obstacles = e.obstacles};
-    loaded.scenario = {.arena = campaign->arena,
+    loaded.scenario = {.environment = evaluation->environment,
                        .configuration = runner.configuration(),
-                       .lap = {.obstacles = e.obstacles, .latency = campaign->latency}};
+                       .lap = {.obstacles = e.obstacles, .latency = evaluation->latency}};
     return loaded;
   };
   const view::LoadedLap first = options.load_lap(0, 0);

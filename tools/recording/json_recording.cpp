@@ -53,7 +53,7 @@ void JsonRecording::begin_lap(int lap, std::uint64_t seed) {
   write();
 }
 
-void JsonRecording::add(const evaluation::LapTick& tick) {
+void JsonRecording::add(const evaluation::ControlStep& tick) {
   const auto& seen = tick.seen;
   const auto& output = tick.output;
   const auto& odometry = tick.odometry;
@@ -93,7 +93,7 @@ void JsonRecording::add(const evaluation::LapTick& tick) {
     line_ += ",\"collided_share\":";
     number(output.solve->collided_share);
   }
-  line_.append(",\"contacts\":").append(std::to_string(tick.contacts)).append("}");
+  line_.append(",\"contacts\":").append(std::to_string(tick.collisions)).append("}");
   write();
 }
 

@@ -16,7 +16,7 @@ class JsonRecording : public Recording {
   JsonRecording(const std::string& file, const nlohmann::ordered_json& settings);
 
   void begin_lap(int number, std::uint64_t seed) override;
-  void add(const evaluation::LapTick& tick) override;
+  void add(const evaluation::ControlStep& tick) override;
   void end_lap(const evaluation::LapResult& lap, int number) override;
   void close() override;
 

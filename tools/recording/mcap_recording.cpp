@@ -10,7 +10,7 @@ namespace slalom::tools {
 namespace {
 
 view::RecorderOptions recorder_options(const RecordingFacts& facts) {
-  const sim::WorldOptions world = facts.scenario.arena->world_options();
+  const sim::WorldOptions world = facts.scenario.environment->world_options();
   return {.program = std::string("slalom ") + version(),
           .settings = {{"settings", facts.settings.dump()}},
           .lidar_angle_min = world.lidar.angle_min(),
@@ -23,10 +23,10 @@ view::RecorderOptions recorder_options(const RecordingFacts& facts) {
 McapRecording::McapRecording(const std::string& file, const RecordingFacts& facts)
     : file_(file),
       further_arguments_(further_arguments(facts.arguments)),
-      arena_(facts.scenario.arena),
+      environment_(facts.scenario.environment),
       configuration_(facts.scenario.configuration),
       choices_(choices()),
-      names_{.course = arena_->course.name,
+      names_{.course = environment_->course.name,
              .method = facts.method,
              .config = facts.arguments.config,
              .seed = facts.seed,
@@ -36,8 +36,8 @@ McapRecording::McapRecording(const std::string& file, const RecordingFacts& fact
       stream_(file, std::ios::binary),
       recorder_(stream_, recorder_options(facts)) {
   if (!stream_) throw IoError(file, 0, "cannot be written");
-  recorder_.add_text(view::hello_message(*arena_, choices_, 0, control_period_));
-  recorder_.add_course(view::encode_scene(*arena_));
+  recorder_.add_text(view::hello_message(*environment_, choices_, 0, control_period_));
+  recorder_.add_course(view::encode_scene(*environment_));
   recorder_.add_text(view::options_message({.names = names_,
                                             .now = configuration_,
                                             .loaded = configuration_,
@@ -46,7 +46,7 @@ McapRecording::McapRecording(const std::string& file, const RecordingFacts& fact
 
 void McapRecording::tell_state() {
   recorder_.add_text(view::state_message(
-      {.names = names_, .arena = *arena_, .laps = laps_, .control_period = control_period_}));
+      {.names = names_, .environment = *environment_, .laps = laps_, .control_period = control_period_}));
 }
 
 void McapRecording::begin_lap(int, std::uint64_t seed) {
@@ -55,7 +55,7 @@ void McapRecording::begin_lap(int, std::uint64_t seed) {
   tell_state();
 }
 
-void McapRecording::add(const evaluation::LapTick& tick) {
+void McapRecording::add(const evaluation::ControlStep& tick) {
   ++ticks_;
   recorder_.add_frame(encoder_.encode(tick, {.deadline = control_period_,
                                              .prediction_step = configuration_.vehicle.time_step,
@@ -66,7 +66,7 @@ void McapRecording::add(const evaluation::LapTick& tick) {
 void McapRecording::end_lap(const evaluation::LapResult& lap, int number) {
   if (!lap.finished) return;
   laps_.push_back(
-      {.tick = ticks_, .lap = number, .time = lap.time, .contacts = lap.contacts, .method = names_.method});
+      {.tick = ticks_, .lap = number, .time = lap.time, .contacts = lap.collisions, .method = names_.method});
   tell_state();
 }
 

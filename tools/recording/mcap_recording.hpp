@@ -18,7 +18,7 @@ class McapRecording : public Recording {
   McapRecording(const std::string& file, const RecordingFacts& facts);
 
   void begin_lap(int number, std::uint64_t seed) override;
-  void add(const evaluation::LapTick& tick) override;
+  void add(const evaluation::ControlStep& tick) override;
   void end_lap(const evaluation::LapResult& lap, int number) override;
   void close() override;
 
@@ -26,7 +26,7 @@ class McapRecording : public Recording {
   void tell_state();
 
   std::string file_, further_arguments_;
-  std::shared_ptr<const evaluation::Arena> arena_;
+  std::shared_ptr<const evaluation::Environment> environment_;
   vehicle::Configuration configuration_;
   view::Choices choices_;
   view::ScenarioNames names_;

@@ -15,7 +15,7 @@ class Recording {
  public:
   virtual ~Recording() = default;
   virtual void begin_lap(int number, std::uint64_t seed) = 0;
-  virtual void add(const evaluation::LapTick& tick) = 0;
+  virtual void add(const evaluation::ControlStep& tick) = 0;
   virtual void end_lap(const evaluation::LapResult& lap, int number) = 0;
   /// Throws IoError if anything could not be written.
   virtual void close() = 0;

@@ -25,7 +25,7 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
     if (lap.planner_status[i] > 0)
       status[vehicle::name(static_cast<vehicle::PlannerStatus>(i))] = lap.planner_status[i];
   Json touches = Json::array(), obstacles = Json::array();
-  for (const auto& touch : lap.touches)
+  for (const auto& touch : lap.first_collisions)
     touches.push_back({{"time_s", touch.time},
                        {"pose", pose_json(touch.pose)},
                        {"body", touch.body < 0 ? Json("wall") : Json(touch.body)}});
@@ -35,8 +35,8 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
           {"finished", lap.finished},
           {"timeout", lap.timeout},
           {"interrupted", lap.cancelled},
-          {"contacts", lap.contacts},
-          {"bodies_touched", lap.bodies_touched},
+          {"contacts", lap.collisions},
+          {"bodies_touched", lap.collided_bodies},
           {"wall_touched", lap.wall},
           {"time_s", lap.time},
           {"steps", lap.steps},

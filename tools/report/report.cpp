@@ -200,7 +200,7 @@ std::string tiles(const Report& report) {
 
 /// Every experiment against one, on the same seeds.
 std::string paired_table(const Report& report) {
-  const auto& experiments = report.evaluated.campaign.experiments;
+  const auto& experiments = report.evaluated.evaluation.experiments;
   const auto is_ours = [&](int i) {
     const auto& e = experiments[static_cast<std::size_t>(i)];
     return e.method == "svg_mppi" && e.set.empty();
@@ -234,7 +234,7 @@ std::string paired_table(const Report& report) {
 }
 
 std::string page(const Report& report, const std::vector<ReportFigure>& figures) {
-  const auto settings = nlohmann::ordered_json::parse(report.evaluated.campaign.settings);
+  const auto settings = nlohmann::ordered_json::parse(report.evaluated.evaluation.settings);
   const auto word = [&](const char* key) { return escaped(settings[key].get<std::string>()); };
   std::string html =
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "

@@ -41,11 +41,11 @@ struct Line {
   LapResult lap;
 };
 
-Line drive_again(const Campaign& campaign, int experiment, int lap) {
-  LapRunner runner = make_runner(campaign, experiment);
+Line drive_again(const Evaluation& evaluation, int experiment, int lap) {
+  LapRunner runner = make_runner(evaluation, experiment);
   Line line;
-  const int obstacles = campaign.experiments[static_cast<std::size_t>(experiment)].obstacles;
-  line.lap = runner.run(lap_seed(campaign.seed0, lap, obstacles), [&](const LapTick& tick) {
+  const int obstacles = evaluation.experiments[static_cast<std::size_t>(experiment)].obstacles;
+  line.lap = runner.run(lap_seed(evaluation.seed0, lap, obstacles), [&](const ControlStep& tick) {
     line.driven.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
   });
   return line;
@@ -59,7 +59,7 @@ std::vector<int> pair_of(const Report& report, const std::string& scenario) {
         std::find(all.begin(), all.end(), row.experiment) == all.end())
       all.push_back(row.experiment);
   }
-  const auto& experiments = report.evaluated.campaign.experiments;
+  const auto& experiments = report.evaluated.evaluation.experiments;
   const auto take = [&](auto&& fits) {
     const auto found = std::find_if(all.begin(), all.end(), [&](int i) {
       return chosen.size() < 2 && std::find(chosen.begin(), chosen.end(), i) == chosen.end() &&
@@ -82,7 +82,7 @@ int telling_lap(const Report& report, const std::vector<int>& pair) {
   std::map<int, std::array<int, 2>> contacts;
   for (const LapRow& row : report.evaluated.rows)
     for (std::size_t side = 0; side < pair.size(); ++side)
-      if (row.experiment == pair[side]) contacts[row.lap][side] = row.collision;
+      if (row.experiment == pair[side]) contacts[row.lap][side] = row.collisions;
   for (const auto& [lap, count] : contacts)
     if (count[0] == 0 && count[1] > 0) return lap;
   return 0;
@@ -96,16 +96,16 @@ std::vector<maps::Point> points_of(const std::vector<maps::ReferencePoint>& path
 
 ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, const std::string& scenario,
                           const std::vector<int>& pair, const std::filesystem::path& folder) {
-  const Campaign& campaign = report.evaluated.campaign;
+  const Evaluation& evaluation = report.evaluated.evaluation;
   const int lap = scenario == "pt" ? 0 : telling_lap(report, pair);
   std::vector<Line> lines;
-  for (const int experiment : pair) lines.push_back(drive_again(campaign, experiment, lap));
-  const auto path = points_of(campaign.arena->path);
+  for (const int experiment : pair) lines.push_back(drive_again(evaluation, experiment, lap));
+  const auto path = points_of(evaluation.environment->path);
   auto shown = path;
   for (const Line& line : lines)
     shown.insert(shown.end(), line.driven.points.begin(), line.driven.points.end());
   Canvas canvas(cropped(map, shown, 1.5), long_side);
-  canvas.line(path, path_colour, 2, campaign.arena->course.closed, true);
+  canvas.line(path, path_colour, 2, evaluation.environment->course.closed, true);
   const sim::CarParameters car;
   for (const maps::Pose& obstacle : lines.front().lap.obstacles) {
     const auto corners = sim::corners({obstacle, car.length, car.width});
@@ -116,7 +116,8 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
   for (std::size_t i = lines.size(); i-- > 0;) {
     const Colour colour = i == 0 ? blue : orange;
     canvas.line(lines[i].driven.points, colour, 4.5, false);
-    for (const Contact& touch : lines[i].lap.touches) canvas.disc({touch.pose.x, touch.pose.y}, 11, colour);
+    for (const Collision& touch : lines[i].lap.first_collisions)
+      canvas.disc({touch.pose.x, touch.pose.y}, 11, colour);
   }
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const auto row = std::find_if(report.rows.begin(), report.rows.end(),
@@ -124,7 +125,7 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
     key.emplace_back(row->name, i == 0 ? blue : orange);
     char words[80];
     std::snprintf(words, sizeof words, " \xC2\xB7 MS %.2f, %d contact%s", lines[i].lap.mean_sequence_cost,
-                  lines[i].lap.contacts, lines[i].lap.contacts == 1 ? "" : "s");
+                  lines[i].lap.collisions, lines[i].lap.collisions == 1 ? "" : "s");
     facts += words;
   }
   const bool tracking = scenario == "pt";
@@ -163,10 +164,10 @@ std::vector<maps::Point> contact_points(const std::string& text) {
 
 ReportFigure contact_map(const Report& report, const maps::OccupancyGrid& map,
                          const std::filesystem::path& folder) {
-  const Campaign& campaign = report.evaluated.campaign;
-  const auto path = points_of(campaign.arena->path);
+  const Evaluation& evaluation = report.evaluated.evaluation;
+  const auto path = points_of(evaluation.environment->path);
   Canvas canvas(cropped(map, path, 2.5), long_side);
-  canvas.line(path, path_colour, 2, campaign.arena->course.closed, true);
+  canvas.line(path, path_colour, 2, evaluation.environment->course.closed, true);
   std::vector<std::pair<std::string, Colour>> key;
   const auto colour_of = [&](const std::string& method) {
     auto found = std::find_if(key.begin(), key.end(), [&](const auto& k) { return k.first == method; });
@@ -174,13 +175,13 @@ ReportFigure contact_map(const Report& report, const maps::OccupancyGrid& map,
     return found->second;
   };
   // As in the driven lines.
-  const bool with_ours = std::any_of(campaign.experiments.begin(), campaign.experiments.end(),
+  const bool with_ours = std::any_of(evaluation.experiments.begin(), evaluation.experiments.end(),
                                      [](const Experiment& e) { return e.method == "svg_mppi"; });
   if (with_ours) colour_of("svg_mppi");
-  for (const Experiment& e : campaign.experiments) colour_of(e.method);
+  for (const Experiment& e : evaluation.experiments) colour_of(e.method);
   int count = 0;
   for (const LapRow& row : report.evaluated.rows) {
-    Colour colour = colour_of(campaign.experiments[static_cast<std::size_t>(row.experiment)].method);
+    Colour colour = colour_of(evaluation.experiments[static_cast<std::size_t>(row.experiment)].method);
     colour.opacity = 0.75;
     for (const maps::Point& point : contact_points(row.contact_points)) {
       canvas.disc(point, 8, colour);

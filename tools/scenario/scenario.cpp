@@ -133,11 +133,11 @@ vehicle::Configuration load_configuration(const ScenarioArguments& arguments, co
 
 Scenario load_scenario(const ScenarioArguments& arguments, const std::string& method) {
   Scenario scenario;
-  const auto evaluation = evaluation::evaluation_named(arguments.evaluation);
+  const auto evaluation = evaluation::protocol_named(arguments.evaluation);
   scenario.configuration = load_configuration(arguments, method);
   const auto roots = vehicle::course_roots(program_folder());
   scenario.folder = vehicle::find_course(arguments.course, roots);
-  scenario.arena = evaluation::load_arena(scenario.folder, evaluation, roots);
+  scenario.environment = evaluation::load_environment(scenario.folder, evaluation, roots);
   scenario.lap.obstacles = arguments.obstacles;
   scenario.lap.opponents = arguments.opponents;
   scenario.lap.latency = 1e-3 * arguments.latency_ms;
@@ -163,8 +163,8 @@ Json options_json(const vehicle::Configuration& configuration, const std::string
 }
 
 Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario, const std::string& method) {
-  const maps::Pose start = scenario.lap.start.value_or(scenario.arena->start);
-  Json settings{{"course", scenario.arena->course.name},
+  const maps::Pose start = scenario.lap.start.value_or(scenario.environment->start);
+  Json settings{{"course", scenario.environment->course.name},
                 {"method", method},
                 {"config", arguments.config},
                 {"evaluation", arguments.evaluation},

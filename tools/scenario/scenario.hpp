@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/arena.hpp"
+#include "slalom/evaluation/environment.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 
@@ -44,7 +44,7 @@ void add_method_option(CLI::App& command, std::string& method);
 
 struct Scenario {
   std::filesystem::path folder;  ///< of the course
-  std::shared_ptr<const evaluation::Arena> arena;
+  std::shared_ptr<const evaluation::Environment> environment;
   vehicle::Configuration configuration;
   evaluation::LapSettings lap;
 };

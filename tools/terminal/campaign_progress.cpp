@@ -31,7 +31,7 @@ CampaignProgressBar::~CampaignProgressBar() {
   if (terminal_ && tenth_ >= 0) std::fputs("\n", stderr);
 }
 
-void CampaignProgressBar::show(const evaluation::CampaignProgress& p) {
+void CampaignProgressBar::show(const evaluation::EvaluationProgress& p) {
   const int total = std::max(1, p.laps_total), tenth = p.laps_done * 10 / total;
   if (terminal_) {
     std::string bar(30, '.');

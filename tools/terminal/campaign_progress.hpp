@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "slalom/evaluation/campaign.hpp"
+#include "slalom/evaluation/evaluation.hpp"
 
 namespace slalom::tools {
 
@@ -16,7 +16,7 @@ class CampaignProgressBar {
   CampaignProgressBar(const CampaignProgressBar&) = delete;
   CampaignProgressBar& operator=(const CampaignProgressBar&) = delete;
 
-  void show(const evaluation::CampaignProgress& progress);
+  void show(const evaluation::EvaluationProgress& progress);
 
  private:
   std::string title_;

@@ -30,7 +30,7 @@ ProgressLine::~ProgressLine() {
   clear();
 }
 
-void ProgressLine::show(int lap, int laps, const evaluation::LapTick& tick) {
+void ProgressLine::show(int lap, int laps, const evaluation::ControlStep& tick) {
   if (!active_) return;
   const auto now = std::chrono::steady_clock::now();
   if (now < next_) return;
@@ -41,7 +41,7 @@ void ProgressLine::show(int lap, int laps, const evaluation::LapTick& tick) {
                 "lap %d/%d [%s] %5.1f s  %4.1f m/s  cost %8.3g  ESS %6.0f  solve %5.2f ms  contacts %d", lap,
                 laps, bar(tick.progress, 20).c_str(), tick.time, tick.seen.speed, tick.cost.total(),
                 solve ? solve->effective_sample_size : 0.0, solve ? 1e3 * solve->times.total : 0.0,
-                tick.contacts);
+                tick.collisions);
   text[std::min<std::size_t>(std::strlen(text), static_cast<std::size_t>(columns(stream_) - 1))] = '\0';
   std::fprintf(stream_, "\r\033[K%s", text);
   std::fflush(stream_);

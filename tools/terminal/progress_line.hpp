@@ -17,7 +17,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  void show(int lap, int laps, const evaluation::LapTick& tick);
+  void show(int lap, int laps, const evaluation::ControlStep& tick);
   /// Removes the line, so that something else can be said.
   void clear();
 

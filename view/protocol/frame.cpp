@@ -10,7 +10,7 @@
 namespace slalom::view {
 namespace {
 
-using evaluation::LapTick;
+using evaluation::ControlStep;
 using vehicle::PredictedState;
 
 constexpr const char* names[] = {"tick",
@@ -82,7 +82,7 @@ double clearance_of(const sim::World& world) {
   return least;
 }
 
-std::string FrameEncoder::encode(const LapTick& tick, const StepFacts& facts) {
+std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts) {
   const sim::World& world = tick.world;
   const sim::CarState& car = world.state(0);
   const vehicle::PlannerOutput& out = tick.output;
@@ -129,7 +129,7 @@ std::string FrameEncoder::encode(const LapTick& tick, const StepFacts& facts) {
       laps.lateral(),
       clearance_of(world),
       tick.seen.contact() ? 1.0 : 0.0,
-      static_cast<double>(tick.contacts),
+      static_cast<double>(tick.collisions),
       tick.cost.total(),
       facts.prediction_step,
       static_cast<double>(facts.method)};
@@ -169,7 +169,7 @@ void FrameEncoder::put_states(FrameWriter& to, const vehicle::Planner& planner,
   for (const PredictedState& state : predict(planner, inputs)) to.put_point({state.pose.x, state.pose.y});
 }
 
-void FrameEncoder::put_scan(FrameWriter& to, const LapTick& tick) const {
+void FrameEncoder::put_scan(FrameWriter& to, const ControlStep& tick) const {
   to.begin(Block::scan);
   to.put_pose(tick.seen.sensor);
   to.put(static_cast<std::uint32_t>(tick.scan.ranges.size()));
@@ -180,7 +180,7 @@ void FrameEncoder::put_scan(FrameWriter& to, const LapTick& tick) const {
   to.end();
 }
 
-void FrameEncoder::put_cost_map(FrameWriter& to, const LapTick& tick) const {
+void FrameEncoder::put_cost_map(FrameWriter& to, const ControlStep& tick) const {
   const maps::LocalCostMap& map = tick.planner.cost_map();
   const maps::GridGeometry& geometry = map.geometry();
   to.begin(Block::cost_map);
@@ -205,7 +205,7 @@ void FrameEncoder::put_cost_map(FrameWriter& to, const LapTick& tick) const {
   to.end();
 }
 
-void FrameEncoder::put_candidates(FrameWriter& to, const LapTick& tick) {
+void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
   const SolveResult& solve = *tick.output.solve;
   if (!solve.samples || solve.costs.empty()) return;
   const SequenceBatch& batch = *solve.samples;
@@ -239,7 +239,7 @@ void FrameEncoder::put_candidates(FrameWriter& to, const LapTick& tick) {
   to.end();
 }
 
-void FrameEncoder::put_guides(FrameWriter& to, const LapTick& tick) {
+void FrameEncoder::put_guides(FrameWriter& to, const ControlStep& tick) {
   const SolveResult& solve = *tick.output.solve;
   const SequenceList& guides = solve.guides;
   const int path = guides.sequences > 0 ? solve.guide_path.sequences / guides.sequences : 0;
@@ -260,7 +260,7 @@ void FrameEncoder::put_guides(FrameWriter& to, const LapTick& tick) {
 
 /// The plan with its lateral standard deviation: the solver's variances of the inputs, carried through the
 /// model to first order, by a difference quotient for each input.
-void FrameEncoder::put_plan(FrameWriter& to, const LapTick& tick) {
+void FrameEncoder::put_plan(FrameWriter& to, const ControlStep& tick) {
   const auto inputs = tick.output.inputs;
   const auto& plan = tick.output.predicted;
   const auto variances = tick.output.solve->variances;
@@ -330,8 +330,8 @@ std::string encode_ghost(const sim::World& world, std::span<const maps::Pose> pl
   return headless(to.take());
 }
 
-std::string encode_scene(const evaluation::Arena& arena) {
-  const maps::OccupancyGrid& grid = arena.course.map;
+std::string encode_scene(const evaluation::Environment& environment) {
+  const maps::OccupancyGrid& grid = environment.course.map;
   std::vector<std::uint32_t> runs;  // value in the upper 8 bits, length in the lower 24
   for (const maps::Occupancy cell : grid.cells) {
     const auto value = static_cast<std::uint32_t>(cell);
@@ -349,9 +349,9 @@ std::string encode_scene(const evaluation::Arena& arena) {
   for (const std::uint32_t run : runs) to.put(run);
   to.end();
   to.begin(Block::path);
-  to.put(static_cast<std::uint32_t>(arena.path.size()));
-  to.put(static_cast<std::uint32_t>(arena.course.closed));
-  for (const maps::ReferencePoint& point : arena.path)
+  to.put(static_cast<std::uint32_t>(environment.path.size()));
+  to.put(static_cast<std::uint32_t>(environment.course.closed));
+  for (const maps::ReferencePoint& point : environment.path)
     for (const double value : {point.x, point.y, point.speed}) to.put_f32(value);
   to.end();
   return to.take();

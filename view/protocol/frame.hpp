@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/ride.hpp"
+#include "slalom/evaluation/closed_loop.hpp"
 
 /// What is sent for a control step: everything that the page draws of it.
 namespace slalom::view {
@@ -13,7 +13,7 @@ namespace slalom::view {
 /// The names of the figures that each frame begins with, in their order.
 std::span<const char* const> scalar_names() noexcept;
 
-/// What was known of a control step besides what LapTick says.
+/// What was known of a control step besides what ControlStep says.
 struct StepFacts {
   double deadline = 0;         ///< s that an update may take before the next is due
   double prediction_step = 0;  ///< s, of the plan
@@ -28,17 +28,17 @@ class FrameEncoder {
   explicit FrameEncoder(int candidates = 160) : most_candidates_(candidates) {}
 
   /// A control step without its bodies.
-  std::string encode(const evaluation::LapTick& tick, const StepFacts& facts);
+  std::string encode(const evaluation::ControlStep& tick, const StepFacts& facts);
 
  private:
   using States = std::span<vehicle::PredictedState>;
   States predict(const vehicle::Planner& planner, std::span<const float> inputs);
   void put_states(class FrameWriter& to, const vehicle::Planner& planner, std::span<const float> inputs);
-  void put_scan(FrameWriter& to, const evaluation::LapTick& tick) const;
-  void put_cost_map(FrameWriter& to, const evaluation::LapTick& tick) const;
-  void put_candidates(FrameWriter& to, const evaluation::LapTick& tick);
-  void put_guides(FrameWriter& to, const evaluation::LapTick& tick);
-  void put_plan(FrameWriter& to, const evaluation::LapTick& tick);
+  void put_scan(FrameWriter& to, const evaluation::ControlStep& tick) const;
+  void put_cost_map(FrameWriter& to, const evaluation::ControlStep& tick) const;
+  void put_candidates(FrameWriter& to, const evaluation::ControlStep& tick);
+  void put_guides(FrameWriter& to, const evaluation::ControlStep& tick);
+  void put_plan(FrameWriter& to, const evaluation::ControlStep& tick);
 
   int most_candidates_;
   std::vector<vehicle::PredictedState> states_;
@@ -51,7 +51,7 @@ std::string encode_bodies(const sim::World& world);
 /// A second car on the same course, likewise.
 std::string encode_ghost(const sim::World& world, std::span<const maps::Pose> plan);
 /// The course's map and line as a message of its own.
-std::string encode_scene(const evaluation::Arena& arena);
+std::string encode_scene(const evaluation::Environment& environment);
 
 /// From the driven car's body to the nearest wall or other body, m; negative inside.
 double clearance_of(const sim::World& world);

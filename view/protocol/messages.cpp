@@ -79,9 +79,9 @@ std::string command_line(const OptionsFacts& facts) {
   return line_of(facts, changed_options(facts));
 }
 
-std::string hello_message(const evaluation::Arena& arena, const Choices& choices, double history,
+std::string hello_message(const evaluation::Environment& environment, const Choices& choices, double history,
                           double control_period) {
-  const sim::WorldOptions world = arena.world_options();
+  const sim::WorldOptions world = environment.world_options();
   Json names = Json::array(), statuses = Json::array();
   for (const char* each : scalar_names()) names.push_back(each);
   for (int i = 0; i <= static_cast<int>(vehicle::PlannerStatus::solver_degenerate); ++i)
@@ -118,11 +118,11 @@ std::string state_message(const StateFacts& facts) {
   const ScenarioNames& names = facts.names;
   Json state = {{"type", "state"},
                 {"course", names.course},
-                {"description", facts.arena.course.description},
-                {"length", facts.arena.course.length},
+                {"description", facts.environment.course.description},
+                {"length", facts.environment.course.length},
                 {"method", names.method},
                 {"config", names.config},
-                {"evaluation", evaluation::name(facts.arena.evaluation)},
+                {"evaluation", evaluation::name(facts.environment.protocol)},
                 {"seed", std::to_string(names.seed)},
                 {"obstacles", names.obstacles},
                 {"opponents", names.opponents},

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/arena.hpp"
+#include "slalom/evaluation/environment.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 
 /// The text messages that tell a page what is driven (docs/live-view.md, "Messages").
@@ -28,7 +28,7 @@ struct Choices {
 };
 
 /// Names and sizes that do not change while a page is open. `history`, `control_period`: s.
-std::string hello_message(const evaluation::Arena& arena, const Choices& choices, double history,
+std::string hello_message(const evaluation::Environment& environment, const Choices& choices, double history,
                           double control_period);
 
 struct OptionsFacts {
@@ -56,7 +56,7 @@ struct LapNote {
 
 struct StateFacts {
   const ScenarioNames& names;
-  const evaluation::Arena& arena;
+  const evaluation::Environment& environment;
   const std::vector<LapNote>& laps;
   double time = 0, control_period = 0;      ///< s
   int tick = -1, newest = -1, oldest = -1;  ///< shown, and those that can be gone to

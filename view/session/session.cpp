@@ -27,7 +27,7 @@ void Session::load(const ScenarioNames& names) {
 
 void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
   // All that may throw comes before anything is replaced.
-  const auto runner = std::make_shared<const evaluation::LapRunner>(loaded.arena, loaded.configuration,
+  const auto runner = std::make_shared<const evaluation::LapRunner>(loaded.environment, loaded.configuration,
                                                                     names.method, loaded.lap);
   Simulation simulation(runner, names.seed);
   scenario_ = std::move(loaded);
@@ -35,7 +35,7 @@ void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
   undo_.clear();
   redo_.clear();
   names_ = names;
-  scene_ = std::make_shared<const std::string>(encode_scene(*scenario_.arena));
+  scene_ = std::make_shared<const std::string>(encode_scene(*scenario_.environment));
   server_.broadcast({scene_, true});
   end_ghost();
   restart();
@@ -46,8 +46,8 @@ void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
 void Session::restart() {
   simulation_.emplace(make_runner(configuration_, names_.method), names_.seed);
   if (ghost_) {
-    const auto& runner = ghost_->ride().runner();
-    if (runner.control_period() == simulation_->ride().runner().control_period())
+    const auto& runner = ghost_->loop().runner();
+    if (runner.control_period() == simulation_->loop().runner().control_period())
       ghost_.emplace(make_runner(runner.configuration(), runner.method()), names_.seed);
     else
       end_ghost();
@@ -64,7 +64,8 @@ void Session::restart() {
 
 std::shared_ptr<const evaluation::LapRunner> Session::make_runner(const vehicle::Configuration& configuration,
                                                                   const std::string& method) const {
-  return std::make_shared<const evaluation::LapRunner>(scenario_.arena, configuration, method, scenario_.lap);
+  return std::make_shared<const evaluation::LapRunner>(scenario_.environment, configuration, method,
+                                                       scenario_.lap);
 }
 
 void Session::run(const std::atomic<bool>& stop) {
@@ -93,14 +94,14 @@ Session::Clock::duration Session::until_due() const {
 
 void Session::tick() {
   const auto now = Clock::now();
-  const auto period = std::chrono::duration<double>(simulation_->ride().runner().control_period());
+  const auto period = std::chrono::duration<double>(simulation_->loop().runner().control_period());
   if (rate_ > 0) {
     const auto step = std::chrono::duration_cast<Clock::duration>(period / rate_);
     due_ = std::max(due_ + step, now - most_catching_up * step);
   }
   if (ghost_) {
     ghost_->tick(
-        [&](const evaluation::LapTick& step) {
+        [&](const evaluation::ControlStep& step) {
           ghost_plan_.clear();
           for (const auto& state : step.output.predicted) ghost_plan_.push_back(state.pose);
         },
@@ -108,7 +109,7 @@ void Session::tick() {
   }
   Step made;
   simulation_->tick(
-      [&](const evaluation::LapTick& step) {
+      [&](const evaluation::ControlStep& step) {
         const auto method =
             std::find(options_.choices.methods.begin(), options_.choices.methods.end(), names_.method);
         made.tick = step.step;
@@ -116,7 +117,7 @@ void Session::tick() {
             encoder_.encode(step, {.deadline = period.count(),
                                    .prediction_step = configuration_.vehicle.time_step,
                                    .method = static_cast<int>(method - options_.choices.methods.begin())});
-        if (ghost_) made.without_bodies += encode_ghost(ghost_->ride().world(), ghost_plan_);
+        if (ghost_) made.without_bodies += encode_ghost(ghost_->loop().world(), ghost_plan_);
         made.frame = std::make_shared<const std::string>(made.without_bodies + encode_bodies(step.world));
       },
       real_time_);
@@ -139,7 +140,7 @@ void Session::note_laps() {
 }
 
 void Session::note_laps_of(const Simulation& simulation, const std::string& method, bool ghost) {
-  const sim::LapTimer& timer = *simulation.ride().world().laps(0);
+  const sim::LapTimer& timer = *simulation.loop().world().laps(0);
   int done = 0, before = 0;
   for (const LapNote& lap : laps_) {
     if (lap.ghost != ghost) continue;
@@ -150,7 +151,7 @@ void Session::note_laps_of(const Simulation& simulation, const std::string& meth
   laps_.push_back({.tick = simulation.ticks(),
                    .lap = timer.laps(),
                    .time = timer.last_lap_time(),
-                   .contacts = simulation.ride().contacts() - before,
+                   .contacts = simulation.loop().collisions() - before,
                    .method = method,
                    .ghost = ghost});
   state_changed_ = true;
@@ -160,7 +161,7 @@ void Session::keep(Step step) {
   history_bytes_ += 2 * step.without_bodies.size();
   history_.push_back(std::move(step));
   const auto most =
-      static_cast<std::size_t>(options_.history / simulation_->ride().runner().control_period());
+      static_cast<std::size_t>(options_.history / simulation_->loop().runner().control_period());
   while (history_.size() > 1 && (history_.size() > most || history_bytes_ > most_history_bytes)) {
     history_bytes_ -= 2 * history_.front().without_bodies.size();
     history_.pop_front();
@@ -182,7 +183,7 @@ void Session::go_to_viewed() {
   viewed_ = -1;
   simulation_->seek(tick + 1);
   if (ghost_) ghost_->seek(tick + 1);
-  const auto& runner = simulation_->ride().runner();
+  const auto& runner = simulation_->loop().runner();
   if (names_.method != runner.method() ||
       vehicle::to_yaml(configuration_) != vehicle::to_yaml(runner.configuration())) {
     names_.method = runner.method();
@@ -209,7 +210,7 @@ void Session::show_edit() {
   if (history_.empty()) return;
   Step& last = history_.back();
   last.frame =
-      std::make_shared<const std::string>(last.without_bodies + encode_bodies(simulation_->ride().world()));
+      std::make_shared<const std::string>(last.without_bodies + encode_bodies(simulation_->loop().world()));
   if (paused_) server_.publish(last.frame);
 }
 

@@ -23,7 +23,7 @@ namespace slalom::view {
 
 /// A scenario, loaded.
 struct LoadedScenario {
-  std::shared_ptr<const evaluation::Arena> arena;
+  std::shared_ptr<const evaluation::Environment> environment;
   vehicle::Configuration configuration;
   evaluation::LapSettings lap;
 };

@@ -141,7 +141,7 @@ bool Session::obey_edit(const std::string& what, const Json& command) {
   } else if (what == "place_car") {
     edit(MoveCar{pose(command)});
   } else if (what == "nudge") {
-    const sim::CarState& car = simulation_->ride().world().state(0);
+    const sim::CarState& car = simulation_->loop().world().state(0);
     const double aside = number(command, "left", 0), turn = number(command, "turn", 0);
     if (std::abs(aside) > 2 || std::abs(turn) > 3.2) throw Malformed("nudge: at most 2 m and 3.2 rad");
     edit(MoveCar{{car.x - aside * std::sin(car.yaw), car.y + aside * std::cos(car.yaw), car.yaw + turn}});
@@ -167,7 +167,7 @@ void Session::change(const vehicle::Configuration& configuration, const std::str
     if (undo_.size() > 200) undo_.erase(undo_.begin());
     redo_.clear();
   }
-  const bool other_clock = runner->control_period() != simulation_->ride().runner().control_period();
+  const bool other_clock = runner->control_period() != simulation_->loop().runner().control_period();
   configuration_ = configuration;
   names_.method = method;
   if (other_clock)
@@ -206,7 +206,7 @@ void Session::fork(const Json& command) {
     vehicle::set_option(changed, assignment.substr(0, equals), assignment.substr(equals + 1), method);
   }
   const auto runner = make_runner(changed, method);  // refuses before anything changes
-  if (runner->control_period() != simulation_->ride().runner().control_period())
+  if (runner->control_period() != simulation_->loop().runner().control_period())
     throw std::invalid_argument("fork: the control period cannot change on the way");
   go_to_viewed();
   start_ghost(before, configuration_);

@@ -21,10 +21,10 @@ int integer(const nlohmann::json& command, const char* key) {
 
 /// The tick in which a lap's contact happens. Drives the lap to find it.
 int Session::tick_of_contact(int contact) {
-  const evaluation::LapRunner& runner = simulation_->ride().runner();
+  const evaluation::LapRunner& runner = simulation_->loop().runner();
   const double period = runner.control_period();
   const int most = static_cast<int>(runner.timeout() / period) + 1;
-  const auto touches = [&] { return simulation_->ride().touches(); };
+  const auto touches = [&] { return simulation_->loop().first_collisions(); };
   while (std::ssize(touches()) <= contact && simulation_->ticks() < most) simulation_->tick({}, false);
   if (std::ssize(touches()) <= contact)
     throw std::runtime_error(
@@ -45,7 +45,7 @@ void Session::obey_lap(const nlohmann::json& command) {
   int hit = -1;
   if (contact >= 0) {
     hit = tick_of_contact(contact);
-    const double period = simulation_->ride().runner().control_period();
+    const double period = simulation_->loop().runner().control_period();
     simulation_->seek(std::max(0, hit - static_cast<int>(before_contact / period)));
     stop_at_ = hit + static_cast<int>(after_contact / period);
     rate_ = slow;

@@ -46,17 +46,17 @@ void Session::tell_options() {
 }
 
 std::string Session::hello() const {
-  return hello_message(*scenario_.arena, options_.choices, options_.history,
-                       simulation_->ride().runner().control_period());
+  return hello_message(*scenario_.environment, options_.choices, options_.history,
+                       simulation_->loop().runner().control_period());
 }
 
 std::string Session::state() const {
   const int newest = history_.empty() ? -1 : history_.back().tick;
   return state_message({.names = names_,
-                        .arena = *scenario_.arena,
+                        .environment = *scenario_.environment,
                         .laps = laps_,
-                        .time = simulation_->ride().world().time(),
-                        .control_period = simulation_->ride().runner().control_period(),
+                        .time = simulation_->loop().world().time(),
+                        .control_period = simulation_->loop().runner().control_period(),
                         .tick = viewed_ >= 0 ? viewed_ : newest,
                         .newest = newest,
                         .oldest = history_.empty() ? -1 : history_.front().tick,

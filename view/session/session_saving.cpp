@@ -66,14 +66,14 @@ void Session::save(std::uint64_t client, const std::string& what) {
   if (saving_.exchange(true)) throw std::invalid_argument("the last file is still being made");
   Frames frames;
   for (const Step& step : history_) frames.push_back(step.frame);
-  const sim::WorldOptions world = scenario_.arena->world_options();
+  const sim::WorldOptions world = scenario_.environment->world_options();
   RecorderOptions recorder{
       .program = options_.program,
       .settings = {{"settings", nlohmann::json{{"command_line", command_line()}}.dump()}},
       .lidar_angle_min = world.lidar.angle_min(),
       .lidar_angle_increment = world.lidar.angle_increment(),
       .wall_clock = options_.record_times};
-  const std::string name = "slalom-" + scenario_.arena->course.name + "-" + names_.method + "-" +
+  const std::string name = "slalom-" + scenario_.environment->course.name + "-" + names_.method + "-" +
                            std::to_string(history_.back().tick) + (what == "replay" ? ".html" : ".mcap");
   saver_ = std::jthread([this, client, what, name, frames = std::move(frames), recorder = std::move(recorder),
                          opening = Opening{hello(), options(), state(), scene_}] {

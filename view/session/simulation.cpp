@@ -6,23 +6,23 @@
 namespace slalom::view {
 
 Simulation::Simulation(std::shared_ptr<const evaluation::LapRunner> runner, std::uint64_t seed)
-    : first_runner_(std::move(runner)), seed_(seed), ride_(first_runner_, seed) {}
+    : first_runner_(std::move(runner)), seed_(seed), loop_(first_runner_, seed) {}
 
 Simulation::Simulation(const Simulation& other, int ticks) : Simulation(other.first_runner_, other.seed_) {
   repeat(other.log_, other.delays_, ticks);
 }
 
-void Simulation::tick(const evaluation::TickCallback& on_tick, bool real_time) {
+void Simulation::tick(const evaluation::ControlStepCallback& on_step, bool real_time) {
   const double delay = real_time ? last_update_ : 0;
   if (delay > 0) {
     delays_.resize(static_cast<std::size_t>(ticks()) + 1, 0.0f);
     delays_.back() = static_cast<float>(delay);
   }
-  // The delay is rounded to float for the log, and the ride shall be that of the log.
-  ride_.tick(
-      [&](const evaluation::LapTick& step) {
+  // The delay is rounded to float for the log, and the loop shall be that of the log.
+  loop_.tick(
+      [&](const evaluation::ControlStep& step) {
         last_update_ = step.output.tick_time;
-        if (on_tick) on_tick(step);
+        if (on_step) on_step(step);
       },
       static_cast<float>(delay));
 }
@@ -35,7 +35,7 @@ void Simulation::apply(const Edit& edit) {
 void Simulation::seek(int ticks) {
   const auto log = std::exchange(log_, {});
   const auto delays = std::exchange(delays_, {});
-  ride_ = evaluation::Ride(first_runner_, seed_);
+  loop_ = evaluation::ClosedLoop(first_runner_, seed_);
   repeat(log, delays, ticks);
 }
 
@@ -44,15 +44,15 @@ void Simulation::repeat(const std::vector<Logged>& log, const std::vector<float>
   for (int i = 0; i < ticks; ++i) {
     for (; next != log.end() && next->tick <= i; ++next) apply(next->edit);
     const auto at = static_cast<std::size_t>(i);
-    ride_.tick({}, at < delays.size() ? delays[at] : 0.0f);
+    loop_.tick({}, at < delays.size() ? delays[at] : 0.0f);
   }
   delays_.assign(delays.begin(), delays.begin() + std::min<std::ptrdiff_t>(ticks, std::ssize(delays)));
 }
 
 void Simulation::perform(const Edit& edit) {
-  sim::World& world = ride_.world();
+  sim::World& world = loop_.world();
   struct Perform {
-    evaluation::Ride& ride;
+    evaluation::ClosedLoop& loop;
     sim::World& world;
     void operator()(const AddBody& e) const {
       if (world.bodies() >= 512) throw std::invalid_argument("bodies: at most 512 are kept");
@@ -74,9 +74,9 @@ void Simulation::perform(const Edit& edit) {
       state.yaw = e.pose.yaw;
       world.set_state(0, state);
     }
-    void operator()(const ChangeDriver& e) const { ride.change_driver(e.runner); }
+    void operator()(const ChangeDriver& e) const { loop.change_controller(e.runner); }
   };
-  std::visit(Perform{ride_, world}, edit);
+  std::visit(Perform{loop_, world}, edit);
 }
 
 }  // namespace slalom::view

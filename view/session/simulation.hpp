@@ -5,14 +5,14 @@
 #include <variant>
 #include <vector>
 
-#include "slalom/evaluation/ride.hpp"
+#include "slalom/evaluation/closed_loop.hpp"
 
-/// A ride that remembers what was done to it, so that it can go back in time exactly.
+/// A loop that remembers what was done to it, so that it can go back in time exactly.
 namespace slalom::view {
 
 enum class BodyKind { parked_car = 1, box = 2, disc = 3 };
 
-/// What can be done to a ride between two ticks.
+/// What can be done to a loop between two ticks.
 struct AddBody {
   BodyKind kind = BodyKind::disc;
   maps::Pose pose;
@@ -33,26 +33,26 @@ struct ChangeDriver {
 };
 using Edit = std::variant<AddBody, MoveBody, RemoveBody, MoveCar, ChangeDriver>;
 
-/// A ride with the log of its edits. Going back drives the ride anew from its start with the same seed and
+/// A loop with the log of its edits. Going back drives the loop anew from its start with the same seed and
 /// edits: everything is deterministic, so this is exact, and no state of solvers needs to be copied.
 class Simulation {
  public:
   Simulation(std::shared_ptr<const evaluation::LapRunner> runner, std::uint64_t seed);
-  /// The same ride with the same edits up to `ticks`.
+  /// The same loop with the same edits up to `ticks`.
   Simulation(const Simulation& other, int ticks);
   Simulation(Simulation&&) = default;
   Simulation& operator=(Simulation&&) = default;
 
   /// With `real_time` the command takes effect by what the last update took longer, as on a car.
-  void tick(const evaluation::TickCallback& on_tick, bool real_time);
+  void tick(const evaluation::ControlStepCallback& on_step, bool real_time);
   /// Throws std::invalid_argument on what the world refuses; nothing has happened then.
   void apply(const Edit& edit);
   /// Goes to the state before tick `ticks`; what was done after it is forgotten.
   void seek(int ticks);
 
-  int ticks() const noexcept { return ride_.ticks(); }
+  int ticks() const noexcept { return loop_.ticks(); }
   bool edited() const noexcept { return !log_.empty(); }
-  const evaluation::Ride& ride() const noexcept { return ride_; }
+  const evaluation::ClosedLoop& loop() const noexcept { return loop_; }
   /// Who drove first.
   const std::shared_ptr<const evaluation::LapRunner>& first_runner() const noexcept { return first_runner_; }
 
@@ -66,7 +66,7 @@ class Simulation {
 
   std::shared_ptr<const evaluation::LapRunner> first_runner_;
   std::uint64_t seed_;
-  evaluation::Ride ride_;
+  evaluation::ClosedLoop loop_;
   std::vector<Logged> log_;
   std::vector<float> delays_;  ///< s, by tick; as long as the last one that is not 0 asks for
   double last_update_ = 0;     ///< s of wall clock

@@ -8,7 +8,7 @@ namespace slalom::python {
 
 namespace {
 
-using evaluation::Arena;
+using evaluation::Environment;
 
 using Roots = std::vector<std::filesystem::path>;
 
@@ -35,10 +35,10 @@ maps::Pose to_pose(const std::array<double, 3>& pose) {
   return {pose[0], pose[1], pose[2]};
 }
 
-std::shared_ptr<const Arena> load(const std::string& course, const std::string& evaluation) {
+std::shared_ptr<const Environment> load(const std::string& course, const std::string& evaluation) {
   const auto roots = course_roots();
-  return evaluation::load_arena(vehicle::find_course(course, roots), evaluation::evaluation_named(evaluation),
-                                roots);
+  return evaluation::load_environment(vehicle::find_course(course, roots),
+                                      evaluation::protocol_named(evaluation), roots);
 }
 
 /// `config`, a name or a file, or the classes' defaults where it is empty; then `{"section.option": value}`
@@ -92,21 +92,21 @@ py::dict observe(const py::object& self, std::size_t car) {
 }
 
 void bind_world(py::module_& module) {
-  py::class_<Arena, std::shared_ptr<Arena>>(module, "Course", "A course made ready to drive on.")
+  py::class_<Environment, std::shared_ptr<Environment>>(module, "Course", "A course made ready to drive on.")
       .def(py::init([](const std::string& course, const std::string& evaluation) {
-             return std::const_pointer_cast<Arena>(load(course, evaluation));
+             return std::const_pointer_cast<Environment>(load(course, evaluation));
            }),
            py::arg("course"), py::arg("evaluation") = "true",
            "`course`: a name or a folder. `evaluation`: 'true' or 'published'.")
       .def_property_readonly(
-          "name", [](const Arena& a) { return a.course.name; }, "of the course")
+          "name", [](const Environment& a) { return a.course.name; }, "of the course")
       .def_property_readonly(
-          "length", [](const Arena& a) { return a.course.length; }, "m")
+          "length", [](const Environment& a) { return a.course.length; }, "m")
       .def_property_readonly(
-          "start", [](const Arena& a) { return to_tuple(a.start); }, "x, y (m), yaw (rad)")
+          "start", [](const Environment& a) { return to_tuple(a.start); }, "x, y (m), yaw (rad)")
       .def_property_readonly(
           "waypoints",
-          [](const Arena& a) {
+          [](const Environment& a) {
             py::array_t<double> all({static_cast<py::ssize_t>(a.path.size()), py::ssize_t{4}});
             auto rows = all.mutable_unchecked<2>();
             for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
@@ -117,13 +117,13 @@ void bind_world(py::module_& module) {
           },
           "float64 [n, 4]: x, y (m), yaw (rad), speed (m/s)");
   py::class_<sim::World>(module, "World", "Cars with LiDAR on a course, simulated.")
-      .def(py::init([](const Arena& arena, double time_step, int beams, double noise) {
-             sim::WorldOptions options = arena.world_options();
+      .def(py::init([](const Environment& environment, double time_step, int beams, double noise) {
+             sim::WorldOptions options = environment.world_options();
              options.time_step = time_step;
              options.lidar.beams = beams;
              options.lidar.noise = noise;
              options.lidar.rate = 0;
-             return sim::World(options, arena.track);
+             return sim::World(options, environment.track);
            }),
            py::arg("course"), py::kw_only(), py::arg("time_step") = 0.005, py::arg("beams") = 1080,
            py::arg("noise") = 0.01)
@@ -167,7 +167,7 @@ py::dict lap_dict(const evaluation::LapResult& lap) {
   all["seed"] = lap.seed;
   all["finished"] = lap.finished;
   all["timeout"] = lap.timeout;
-  all["contacts"] = lap.contacts;
+  all["contacts"] = lap.collisions;
   all["time"] = lap.time;
   all["steps"] = lap.steps;
   all["state_cost"] = lap.state_cost;
@@ -181,11 +181,12 @@ py::dict lap_dict(const evaluation::LapResult& lap) {
 
 void bind_planner(py::module_& module) {
   py::class_<vehicle::Planner>(module, "Planner", "From LiDAR scan and odometry to steering and speed.")
-      .def(py::init([](const Arena& arena, const std::string& method, const py::dict& options,
+      .def(py::init([](const Environment& environment, const std::string& method, const py::dict& options,
                        const std::string& config) {
              const auto configuration = configure(method, config, options);
-             return vehicle::Planner(configuration.planner, configuration.vehicle, arena.path,
-                                     arena.course.closed, vehicle::make_solver(configuration, method, 1));
+             return vehicle::Planner(configuration.planner, configuration.vehicle, environment.path,
+                                     environment.course.closed,
+                                     vehicle::make_solver(configuration, method, 1));
            }),
            py::arg("course"), py::arg("method") = "svg_mppi", py::arg("options") = py::dict(), py::kw_only(),
            py::arg("config") = "",
@@ -230,11 +231,11 @@ void bind_planner(py::module_& module) {
            "Forgets everything and starts the random numbers anew.");
   module.def(
       "drive_lap",
-      [](const std::shared_ptr<Arena>& arena, const std::string& method, std::uint64_t seed, int obstacles,
-         const py::dict& options, const std::string& config) {
+      [](const std::shared_ptr<Environment>& environment, const std::string& method, std::uint64_t seed,
+         int obstacles, const py::dict& options, const std::string& config) {
         evaluation::LapSettings settings;
         settings.obstacles = obstacles;
-        evaluation::LapRunner runner(arena, configure(method, config, options), method, settings);
+        evaluation::LapRunner runner(environment, configure(method, config, options), method, settings);
         evaluation::LapResult lap;
         {
           const py::gil_scoped_release unlock;

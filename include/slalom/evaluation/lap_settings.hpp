@@ -13,11 +13,11 @@ namespace slalom::evaluation {
 /// What a lap is besides course, configuration and method.
 struct LapSettings {
   int obstacles = 0;                             ///< parked cars, 0 ... 1000
-  std::optional<maps::Pose> start{};             ///< of the centre of gravity; else the arena's
+  std::optional<maps::Pose> start{};             ///< of the centre of gravity; else the environment's
   int threads = 1;                               ///< of the solver; the result does not depend on it
   std::optional<HardwareConditions> hardware{};  ///< as on a real car, "true" evaluation only
   std::optional<std::uint64_t> layout{};         ///< the seed of the obstacles' places; else the lap's
-  bool further_costs = false;  ///< also `published_model_cost` and `driven_cost`, which take time
+  bool additional_costs = false;  ///< also `published_model_cost` and `driven_cost`, which take time
 
   // What makes a world harder than the usual one, "true" evaluation only. visit_options declares them, so
   // that evaluations can sweep them by name.

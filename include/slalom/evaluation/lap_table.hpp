@@ -35,14 +35,14 @@ struct LapRow {
   int lap = 0;
   std::uint64_t seed = 0;
   bool success = false;  ///< finished without contact
-  int collision = 0;     ///< contacts as the evaluation counts them
+  int collisions = 0;    ///< contacts as the evaluation counts them
   bool timeout = false;
   bool finished = false;
   double state_cost = 0, collision_cost = 0, input_error = 0;
   double mean_calculation_time = 0, max_calculation_time = 0, min_calculation_time = 0;  ///< ms
   double lap_time = 0;                                                                   ///< s
   int steps = 0;
-  int contacts = 0;  ///< different bodies touched, all walls as one
+  int collided_bodies = 0;  ///< different bodies touched, all walls as one
   bool wall = false;
   int impassable = 0;            ///< obstacles that no car of this width could have passed
   double minimum_clearance = 0;  ///< m

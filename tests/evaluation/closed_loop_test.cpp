@@ -1,5 +1,5 @@
-// A ride is the lap of the command line until somebody meddles, and the same meddling gives the same ride.
-#include "slalom/evaluation/ride.hpp"
+// A loop is the lap of the command line until somebody meddles, and the same meddling gives the same loop.
+#include "slalom/evaluation/closed_loop.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace slalom::evaluation {
 namespace {
 
 std::shared_ptr<const LapRunner> runner(const std::string& method, int obstacles = 2) {
-  static const auto arena = load_arena(SLALOM_COURSES "/stag", Evaluation::true_physics, {});
+  static const auto environment = load_environment(SLALOM_COURSES "/stag", Protocol::true_physics, {});
   vehicle::Configuration configuration;
   for (const char* each : {"svg_mppi", "mppi"}) {
     vehicle::set_option(configuration, "samples", "256", each);
@@ -20,64 +20,65 @@ std::shared_ptr<const LapRunner> runner(const std::string& method, int obstacles
   }
   LapSettings settings;
   settings.obstacles = obstacles;
-  return std::make_shared<const LapRunner>(arena, configuration, method, settings);
+  return std::make_shared<const LapRunner>(environment, configuration, method, settings);
 }
 
-TEST(Ride, FirstLapIsTheLapOfTheRunner) {
+TEST(ClosedLoop, FirstLapIsTheLapOfTheRunner) {
   auto alone = *runner("mppi");
   std::vector<double> steering, times;
-  alone.run(3, [&](const LapTick& tick) {
+  alone.run(3, [&](const ControlStep& tick) {
     steering.push_back(tick.output.command.steer);
     times.push_back(tick.time);
   });
-  Ride ride(runner("mppi"), 3);
+  ClosedLoop loop(runner("mppi"), 3);
   ASSERT_GT(steering.size(), 100u);
   for (std::size_t i = 0; i < steering.size(); ++i) {
-    ride.tick([&](const LapTick& tick) {
+    loop.tick([&](const ControlStep& tick) {
       ASSERT_EQ(tick.output.command.steer, steering[i]) << i;
       ASSERT_EQ(tick.time, times[i]) << i;
     });
   }
-  EXPECT_GE(ride.world().laps(0)->laps(), 1);
-  const double there = ride.world().state(0).x;
-  for (int i = 0; i < 20; ++i) ride.tick();
-  EXPECT_NE(ride.world().state(0).x, there) << "the car drives on";
+  EXPECT_GE(loop.world().laps(0)->laps(), 1);
+  const double there = loop.world().state(0).x;
+  for (int i = 0; i < 20; ++i) loop.tick();
+  EXPECT_NE(loop.world().state(0).x, there) << "the car drives on";
 }
 
-/// A ride with an obstacle, another method and a late command on the way.
+/// A loop with an obstacle, another method and a late command on the way.
 sim::CarState meddled() {
-  Ride ride(runner("mppi"), 5);
+  ClosedLoop loop(runner("mppi"), 5);
   for (int i = 0; i < 60; ++i) {
-    if (i == 20) ride.world().add_disc({{ride.world().state(0).x + 1, ride.world().state(0).y}, 0.1});
-    if (i == 40) ride.change_driver(runner("svg_mppi"));
-    ride.tick({}, i == 30 ? 0.02 : 0);
+    if (i == 20) loop.world().add_disc({{loop.world().state(0).x + 1, loop.world().state(0).y}, 0.1});
+    if (i == 40) loop.change_controller(runner("svg_mppi"));
+    loop.tick({}, i == 30 ? 0.02 : 0);
   }
-  EXPECT_EQ(ride.ticks(), 60);
-  return ride.world().state(0);
+  EXPECT_EQ(loop.ticks(), 60);
+  return loop.world().state(0);
 }
 
-TEST(Ride, SameMeddlingSameRide) {
+TEST(ClosedLoop, SameMeddlingSameRide) {
   const sim::CarState once = meddled();
   EXPECT_TRUE(once == meddled());
-  Ride untouched(runner("mppi"), 5);
+  ClosedLoop untouched(runner("mppi"), 5);
   for (int i = 0; i < 60; ++i) untouched.tick();
   EXPECT_FALSE(once == untouched.world().state(0));
 }
 
-TEST(Ride, ArenaAndPeriodStay) {
-  Ride ride(runner("mppi"), 1);
+TEST(ClosedLoop, ArenaAndPeriodStay) {
+  ClosedLoop loop(runner("mppi"), 1);
   vehicle::Configuration slower = runner("mppi")->configuration();
   slower.planner.control_period = 0.05;
-  const auto arena = load_arena(SLALOM_COURSES "/stag", Evaluation::true_physics, {});
-  EXPECT_THROW(ride.change_driver(std::make_shared<const LapRunner>(arena, slower, "mppi", LapSettings{})),
-               std::invalid_argument);
+  const auto environment = load_environment(SLALOM_COURSES "/stag", Protocol::true_physics, {});
+  EXPECT_THROW(
+      loop.change_controller(std::make_shared<const LapRunner>(environment, slower, "mppi", LapSettings{})),
+      std::invalid_argument);
 }
 
-TEST(Ride, PredictsWhatThePlanSays) {
-  Ride ride(runner("svg_mppi"), 2);
+TEST(ClosedLoop, PredictsWhatThePlanSays) {
+  ClosedLoop loop(runner("svg_mppi"), 2);
   int compared = 0;
   for (int i = 0; i < 30; ++i) {
-    ride.tick([&](const LapTick& tick) {
+    loop.tick([&](const ControlStep& tick) {
       if (!tick.output.solve) return;
       std::vector<vehicle::PredictedState> states(tick.output.inputs.size() + 1);
       const auto cost = tick.planner.predict(tick.output.inputs, states);

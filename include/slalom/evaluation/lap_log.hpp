@@ -17,7 +17,7 @@ namespace slalom::evaluation {
 struct LapLog {
   std::string file;
   int laps = 0, successes = 0, timeouts = 0;
-  std::int64_t contacts = 0;
+  std::int64_t collisions = 0;
   std::vector<double> ms;                             ///< a lap: state_cost + collision_cost
   std::optional<double> solve_ms_mean, solve_ms_max;  ///< where the log has `*_calculation_time`
 };
@@ -43,7 +43,7 @@ struct LogComparison {
   std::optional<double> collision_rate;        ///< theirs; none without obstacles
   std::optional<Interval> collision_rate_ci;   ///< theirs, Wilson
   std::optional<Interval> rate_difference_ci;  ///< ours - theirs, Newcombe
-  std::optional<double> contacts_p;            ///< Fisher's exact test
+  std::optional<double> collision_p;           ///< Fisher's exact test
 
   static constexpr int enough_laps = 10;
   /// "Inside" takes intervals that are no wider than this to each side: half of their MS, ten points of their
@@ -51,7 +51,7 @@ struct LogComparison {
   static constexpr double telling_ratio = 0.5, telling_rate = 0.1;  ///< of MS, of the rate
 
   Agreement ms_agreement() const;
-  Agreement contacts_agreement() const;  ///< inside without obstacles
+  Agreement collision_agreement() const;  ///< inside without obstacles
   Agreement agreement() const;
 };
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "evaluation/hardware_drive.hpp"
+#include "evaluation/hardware_model.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
 
@@ -13,14 +13,15 @@ namespace slalom::evaluation {
 
 /// A lap under way.
 struct LapRunner::Drive {
-  Drive(const sim::WorldOptions& options, const Arena& arena, const std::vector<maps::ReferencePoint>& path,
-        const vehicle::Configuration& configuration, std::unique_ptr<vehicle::Planner> driver)
-      : world(options, arena.track), planner(std::move(driver)), meter(path, configuration.vehicle) {}
+  Drive(const sim::WorldOptions& options, const Environment& environment,
+        const std::vector<maps::ReferencePoint>& path, const vehicle::Configuration& configuration,
+        std::unique_ptr<vehicle::Planner> driver)
+      : world(options, environment.track), planner(std::move(driver)), meter(path, configuration.vehicle) {}
 
   sim::World world;
   std::unique_ptr<vehicle::Planner> planner;
   SequenceCostMeter meter;
-  std::unique_ptr<HardwareDrive> hardware;  ///< none where everything is measured as it is
+  std::unique_ptr<HardwareModel> hardware;  ///< none where everything is measured as it is
   sim::ContactLog log;
   LapResult result;
   sim::Command acting;                                           ///< what the car does now

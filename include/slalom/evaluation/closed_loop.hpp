@@ -11,30 +11,30 @@ namespace slalom::evaluation {
 /// A drive that somebody else steps, looks into and meddles with. As long as nobody meddles, its first lap is
 /// that of LapRunner::run with the same seed, bit for bit; after the finish the car drives on. The same
 /// meddling at the same ticks gives the same drive.
-class Ride {
+class ClosedLoop {
  public:
   /// Throws as LapRunner::run does.
-  Ride(std::shared_ptr<const LapRunner> runner, std::uint64_t seed);
-  ~Ride();
-  Ride(Ride&&) noexcept;
-  Ride& operator=(Ride&&) noexcept;
+  ClosedLoop(std::shared_ptr<const LapRunner> runner, std::uint64_t seed);
+  ~ClosedLoop();
+  ClosedLoop(ClosedLoop&&) noexcept;
+  ClosedLoop& operator=(ClosedLoop&&) noexcept;
 
   /// One control period: a planner update, then the world until the next one. `further_latency` (s) is added
   /// to the settings' for this command alone.
-  void tick(const TickCallback& on_tick = {}, double further_latency = 0);
+  void tick(const ControlStepCallback& on_step = {}, double further_latency = 0);
 
-  /// From the next tick on another configuration or method drives, with a planner that begins anew. The arena
-  /// must be the same and the control period too; throws std::invalid_argument otherwise.
-  void change_driver(std::shared_ptr<const LapRunner> runner);
+  /// From the next tick on another configuration or method drives, with a planner that begins anew. The
+  /// environment must be the same and the control period too; throws std::invalid_argument otherwise.
+  void change_controller(std::shared_ptr<const LapRunner> runner);
 
   int ticks() const noexcept;
   sim::World& world() noexcept;
   const sim::World& world() const noexcept;
   const LapRunner& runner() const noexcept { return *runner_; }
   /// Contacts so far, by the evaluation's way of counting.
-  int contacts() const noexcept;
+  int collisions() const noexcept;
   /// The first touch of each body so far.
-  std::span<const Contact> touches() const noexcept;
+  std::span<const Collision> first_collisions() const noexcept;
 
  private:
   std::shared_ptr<const LapRunner> runner_;

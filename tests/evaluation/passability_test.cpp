@@ -1,5 +1,5 @@
 // Obstacles that close the road are told from those that leave a way.
-#include "slalom/evaluation/passage.hpp"
+#include "slalom/evaluation/passability.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "slalom/evaluation/arena.hpp"
+#include "slalom/evaluation/environment.hpp"
 
 namespace slalom::evaluation {
 namespace {
@@ -16,24 +16,24 @@ class Passage : public ::testing::Test {
  protected:
   /// A box across the course at an arc length (m): its middle so far to the left of the line, so wide.
   sim::Box across(double arc, double left, double width) const {
-    const maps::Pose on = arena_->track->lap_path()->at(arc);
+    const maps::Pose on = environment_->track->lap_path()->at(arc);
     return {{on.x - left * std::sin(on.yaw), on.y + left * std::cos(on.yaw), on.yaw}, 0.3, width};
   }
   std::vector<int> named(const std::vector<sim::Box>& boxes) const {
-    return impassable(*arena_->track, boxes);
+    return impassable_obstacles(*environment_->track, boxes);
   }
 
-  std::shared_ptr<const Arena> arena_ =
-      load_arena(std::filesystem::path(SLALOM_COURSES) / "wren", Evaluation::true_physics, {SLALOM_COURSES});
+  std::shared_ptr<const Environment> environment_ = load_environment(
+      std::filesystem::path(SLALOM_COURSES) / "wren", Protocol::true_physics, {SLALOM_COURSES});
 };
 
 TEST_F(Passage, ParkedCarsLeaveAWay) {
-  for (double arc = 0; arc < arena_->track->lap_path()->length(); arc += 2)
+  for (double arc = 0; arc < environment_->track->lap_path()->length(); arc += 2)
     EXPECT_TRUE(named({across(arc, 0, 0.31)}).empty()) << arc;
 }
 
 TEST_F(Passage, ABarrierClosesTheRoad) {
-  for (double arc = 0; arc < arena_->track->lap_path()->length(); arc += 2)
+  for (double arc = 0; arc < environment_->track->lap_path()->length(); arc += 2)
     EXPECT_EQ(named({across(arc, 0, 8)}), std::vector<int>{0}) << arc;
   EXPECT_EQ(named({across(2, 0, 0.31), across(12, 0, 8)}), std::vector<int>{1});
 }
@@ -50,9 +50,9 @@ TEST_F(Passage, TwoThatCloseItTogetherAreBothNamed) {
 
 TEST_F(Passage, AWayThatAnyDiscTakesIsNeverMissed) {
   // Gaps a hair wider than the disc, at any angle to the cells.
-  const double diameter = 2 * PassageRules{}.radius;
+  const double diameter = 2 * PassabilityOptions{}.radius;
   for (int k = 0; k < 24; ++k) {
-    const double arc = arena_->track->lap_path()->length() * k / 24, width = 4, gap = diameter + 0.002;
+    const double arc = environment_->track->lap_path()->length() * k / 24, width = 4, gap = diameter + 0.002;
     EXPECT_TRUE(
         named({across(arc, 0.5 * (gap + width), width), across(arc, -0.5 * (gap + width), width)}).empty())
         << arc;

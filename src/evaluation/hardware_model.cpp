@@ -1,4 +1,4 @@
-#include "evaluation/hardware_drive.hpp"
+#include "evaluation/hardware_model.hpp"
 
 #include <cmath>
 
@@ -16,7 +16,7 @@ vehicle::LocaliserOptions seeded(vehicle::LocaliserOptions options, std::uint64_
 
 }  // namespace
 
-HardwareDrive::HardwareDrive(const HardwareConditions& conditions, const maps::OccupancyGrid& map,
+HardwareModel::HardwareModel(const HardwareConditions& conditions, const maps::OccupancyGrid& map,
                              const sim::CarParameters& car, const sim::CarState& state, std::uint64_t seed)
     : conditions_(conditions),
       car_(car),
@@ -26,7 +26,7 @@ HardwareDrive::HardwareDrive(const HardwareConditions& conditions, const maps::O
   localiser_.start_at(sim::rear_axle(car, state));
 }
 
-void HardwareDrive::apply(const HardwareConditions& conditions, sim::WorldOptions& options) {
+void HardwareModel::apply(const HardwareConditions& conditions, sim::WorldOptions& options) {
   const double rate = options.lidar.rate;
   options.lidar = sim::LidarOptions::hokuyo_utm_30lx();
   options.lidar.rate = rate;
@@ -37,7 +37,7 @@ void HardwareDrive::apply(const HardwareConditions& conditions, sim::WorldOption
   options.car.acceleration_max = conditions.acceleration_max;
 }
 
-std::optional<vehicle::Odometry> HardwareDrive::sense(const sim::Observation& seen,
+std::optional<vehicle::Odometry> HardwareModel::sense(const sim::Observation& seen,
                                                       const sim::CarState& state) {
   const vehicle::LocaliserOutput& out = localiser_.update({seen.scan, wheels_.pose(), seen.time});
   record_.update_ms.push_back(static_cast<float>(1e3 * out.update_time));
@@ -52,7 +52,7 @@ std::optional<vehicle::Odometry> HardwareDrive::sense(const sim::Observation& se
   return vehicle::Odometry{out.pose, wheels_.speed()};
 }
 
-sim::Command HardwareDrive::servo(const sim::Command& command, double time_step) noexcept {
+sim::Command HardwareModel::servo(const sim::Command& command, double time_step) noexcept {
   const double target = conditions_.steering_gain * command.steering + conditions_.steering_offset;
   const double lag = conditions_.steering_time_constant;
   steer_ += (target - steer_) * (lag > 0 ? 1 - std::exp(-time_step / lag) : 1);

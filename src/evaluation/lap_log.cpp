@@ -1,4 +1,4 @@
-#include "slalom/evaluation/published.hpp"
+#include "slalom/evaluation/lap_log.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -92,7 +92,7 @@ LapLog read_lap_log(const std::filesystem::path& file) {
   while (table.next()) {
     ++log.laps;
     log.successes += table.count("success", 1);
-    log.contacts += table.count("collision", 100000);
+    log.collisions += table.count("collision", 100000);
     if (table.has("timeout")) log.timeouts += table.count("timeout", 1);
     log.ms.push_back(table.number("state_cost") + table.number("collision_cost"));
     if (!timed) continue;
@@ -114,15 +114,15 @@ Agreement LogComparison::ms_agreement() const {
   return telling ? Agreement::inside : Agreement::undecided;
 }
 
-Agreement LogComparison::contacts_agreement() const {
-  if (!contacts_p) return Agreement::inside;
-  if (*contacts_p < 0.05) return Agreement::outside;
+Agreement LogComparison::collision_agreement() const {
+  if (!collision_p) return Agreement::inside;
+  if (*collision_p < 0.05) return Agreement::outside;
   const bool telling = rate_difference_ci->high - rate_difference_ci->low <= 2 * telling_rate;
   return telling ? Agreement::inside : Agreement::undecided;
 }
 
 Agreement LogComparison::agreement() const {
-  const Agreement ms = ms_agreement(), contacts = contacts_agreement();
+  const Agreement ms = ms_agreement(), contacts = collision_agreement();
   for (const Agreement worst : {Agreement::outside, Agreement::undecided})
     if (ms == worst || contacts == worst) return worst;
   return Agreement::inside;
@@ -133,7 +133,7 @@ LogComparison compare_with_log(const std::vector<LapRow>& rows, int obstacles, c
   std::int64_t contacts = 0;
   for (const LapRow& row : rows) {
     ours.push_back(row.mean_sequence_cost());
-    contacts += row.collision;
+    contacts += row.collisions;
   }
   LogComparison c;
   c.ms_mean = mean(log.ms);
@@ -150,10 +150,10 @@ LogComparison compare_with_log(const std::vector<LapRow>& rows, int obstacles, c
     const std::int64_t our_chances =
                            static_cast<std::int64_t>(obstacles) * static_cast<std::int64_t>(rows.size()),
                        chances = static_cast<std::int64_t>(obstacles) * log.laps;
-    c.collision_rate = static_cast<double>(log.contacts) / static_cast<double>(chances);
-    c.collision_rate_ci = wilson_interval(log.contacts, chances);
-    c.rate_difference_ci = rate_difference_interval(contacts, our_chances, log.contacts, chances);
-    c.contacts_p = fisher_p(contacts, our_chances, log.contacts, chances);
+    c.collision_rate = static_cast<double>(log.collisions) / static_cast<double>(chances);
+    c.collision_rate_ci = wilson_interval(log.collisions, chances);
+    c.rate_difference_ci = rate_difference_interval(contacts, our_chances, log.collisions, chances);
+    c.collision_p = fisher_p(contacts, our_chances, log.collisions, chances);
   }
   return c;
 }

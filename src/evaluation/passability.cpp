@@ -1,4 +1,4 @@
-#include "slalom/evaluation/passage.hpp"
+#include "slalom/evaluation/passability.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 class Window {
  public:
   Window(const sim::Track& track, std::span<const sim::Box> bodies, const maps::Point& middle,
-         const PassageRules& rules)
+         const PassabilityOptions& rules)
       : track_(track), bodies_(bodies), radius_(rules.radius), reach_(rules.window), middle_(middle) {
     resolution_ = track.grid().resolution;
     half_ = static_cast<int>(std::ceil(rules.window / resolution_));
@@ -85,8 +85,8 @@ class Window {
 
 }  // namespace
 
-std::vector<int> impassable(const sim::Track& track, std::span<const sim::Box> bodies,
-                            const PassageRules& rules) {
+std::vector<int> impassable_obstacles(const sim::Track& track, std::span<const sim::Box> bodies,
+                                      const PassabilityOptions& rules) {
   std::vector<int> closed;
   const sim::LapPath* path = track.lap_path();
   if (!path) return closed;

@@ -15,17 +15,17 @@
 namespace slalom::evaluation {
 
 /// The rules of the world, of its clock and of counting.
-enum class Evaluation {
+enum class Protocol {
   true_physics,  ///< named "true": right physics, a command every control period, contacts = bodies touched
   published,     ///< as the published evaluation: f1tenth_gym, one step of 0.01 s per command, its counting
 };
-const char* name(Evaluation evaluation);
+const char* name(Protocol protocol);
 /// Throws std::invalid_argument unless `text` is "true" or "published".
-Evaluation evaluation_named(std::string_view text);
+Protocol protocol_named(std::string_view text);
 
 /// A course made ready to drive on. Heavy to make, immutable, shared by any number of laps and threads.
-struct Arena {
-  Evaluation evaluation = Evaluation::true_physics;
+struct Environment {
+  Protocol protocol = Protocol::true_physics;
   vehicle::Course course;
   std::shared_ptr<const sim::Track> track;
   std::vector<maps::ReferencePoint> path;  ///< the course's waypoints
@@ -40,11 +40,11 @@ struct Arena {
 };
 
 /// Makes a course ready. Throws std::invalid_argument on a path or map that cannot be driven on.
-std::shared_ptr<Arena> make_arena(vehicle::Course course, Evaluation evaluation);
+std::shared_ptr<Environment> make_environment(vehicle::Course course, Protocol protocol);
 
 /// Loads the course in `folder`. `course_roots` are where the table of known courses lies: the published
 /// evaluation takes start and timeout from it. Throws IoError, std::invalid_argument.
-std::shared_ptr<const Arena> load_arena(const std::filesystem::path& folder, Evaluation evaluation,
-                                        const std::vector<std::filesystem::path>& course_roots);
+std::shared_ptr<const Environment> load_environment(const std::filesystem::path& folder, Protocol protocol,
+                                                    const std::vector<std::filesystem::path>& course_roots);
 
 }  // namespace slalom::evaluation

@@ -17,25 +17,25 @@ namespace slalom::evaluation {
 
 /// An evaluation: experiments over the same course, configuration and seeds, so that lap k of one experiment
 /// is driven among the same obstacles as lap k of another with as many.
-struct Campaign {
-  std::shared_ptr<const Arena> arena;
+struct Evaluation {
+  std::shared_ptr<const Environment> environment;
   vehicle::Configuration configuration;
   std::vector<Experiment> experiments;
   std::uint64_t seed0 = 0;
-  double latency = 0;         ///< s
-  bool further_costs = true;  ///< also the published model's and the driven cost
-  std::string settings;       ///< all that determines the results, as JSON text; two evaluations with other
-                              ///< settings do not mix
-  std::string build;          ///< names the program that drives: laps of other builds may differ
-  bool any_build = false;     ///< mix them all the same
+  double latency = 0;            ///< s
+  bool additional_costs = true;  ///< also the published model's and the driven cost
+  std::string settings;    ///< all that determines the results, as JSON text; two evaluations with other
+                           ///< settings do not mix
+  std::string build;       ///< names the program that drives: laps of other builds may differ
+  bool any_build = false;  ///< mix them all the same
 };
 
-/// Drives the laps of one of the campaign's experiments: run(lap_seed(campaign.seed0, lap, obstacles)) is its
-/// lap `lap`, bit for bit. Throws std::invalid_argument.
-LapRunner make_runner(const Campaign& campaign, int experiment);
+/// Drives the laps of one of the evaluation's experiments: run(lap_seed(evaluation.seed0, lap, obstacles)) is
+/// its lap `lap`, bit for bit. Throws std::invalid_argument.
+LapRunner make_runner(const Evaluation& evaluation, int experiment);
 
 /// How far an evaluation is.
-struct CampaignProgress {
+struct EvaluationProgress {
   int laps_done = 0;
   int laps_total = 0;
   int laps_resumed = 0;     ///< of those done, found from an earlier run
@@ -50,9 +50,9 @@ struct LapTask {
 };
 
 /// Where laps to be driven come from and where driven ones go. Called from several threads at a time.
-class LapExchange {
+class LapQueue {
  public:
-  virtual ~LapExchange() = default;
+  virtual ~LapQueue() = default;
   virtual std::optional<LapTask> next() = 0;  ///< none: there is nothing left to do
   virtual void keep(const LapRow& row) = 0;
   virtual void fail(std::exception_ptr error) = 0;  ///< a lap could not be driven
@@ -60,18 +60,18 @@ class LapExchange {
 
 /// Drives laps on `jobs` threads until `exchange` has none left or `cancel` is set. The laps do not depend on
 /// who drives which.
-void drive_laps(const Campaign& campaign, LapExchange& exchange, int jobs, const std::atomic<bool>& cancel);
+void drive_laps(const Evaluation& evaluation, LapQueue& exchange, int jobs, const std::atomic<bool>& cancel);
 
 /// Where the laps of an evaluation are kept: `settings.json`, `laps.csv` when complete, and until then a
 /// journal to which each lap is appended when it ends. A run may be killed at any moment; with `resume` it
 /// goes on, and no finished lap is driven twice.
 class LapStore {
  public:
-  /// Opens `folder` for the campaign. Throws IoError if it cannot be written, if it holds results and
+  /// Opens `folder` for the evaluation. Throws IoError if it cannot be written, if it holds results and
   /// `resume` is not said, if it holds an evaluation with other settings (naming what differs), if its laps
   /// are corrupt or not of its seeds, if a laps.csv misses some, and if laps are missing and another build of
   /// the program drove those that are there.
-  LapStore(const std::filesystem::path& folder, const Campaign& campaign, bool resume);
+  LapStore(const std::filesystem::path& folder, const Evaluation& evaluation, bool resume);
   ~LapStore();
   LapStore(const LapStore&) = delete;
   LapStore& operator=(const LapStore&) = delete;
@@ -83,7 +83,7 @@ class LapStore {
   void complete();
 
  private:
-  void check_build(const Campaign& campaign, const std::string& there) const;
+  void check_build(const Evaluation& evaluation, const std::string& there) const;
 
   std::filesystem::path folder_;
   const std::vector<Experiment>& experiments_;
@@ -92,10 +92,11 @@ class LapStore {
 };
 
 /// The laps that a store does not have yet, handed out in order, and what became of them.
-class CampaignWork final : public LapExchange {
+class EvaluationQueue final : public LapQueue {
  public:
-  CampaignWork(const Campaign& campaign, LapStore& store,
-               std::function<void(const CampaignProgress&)> on_progress, const std::atomic<bool>& cancel);
+  EvaluationQueue(const Evaluation& evaluation, LapStore& store,
+                  std::function<void(const EvaluationProgress&)> on_progress,
+                  const std::atomic<bool>& cancel);
 
   std::optional<LapTask> next() override;
   void keep(const LapRow& row) override;
@@ -107,21 +108,21 @@ class CampaignWork final : public LapExchange {
 
  private:
   LapStore& store_;
-  std::function<void(const CampaignProgress&)> on_progress_;
+  std::function<void(const EvaluationProgress&)> on_progress_;
   const std::atomic<bool>& cancel_;
   std::vector<LapTask> tasks_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::mutex mutex_;
   std::size_t next_ = 0;
-  CampaignProgress progress_;
+  EvaluationProgress progress_;
   std::exception_ptr error_;
 };
 
 /// Drives every lap that the store does not have yet, on `jobs` threads, and completes the store. The laps do
 /// not depend on the number of jobs nor on interruptions. Returns false if `cancel` ended it early. Throws
 /// what a lap throws.
-bool run_campaign(const Campaign& campaign, LapStore& store, int jobs,
-                  const std::function<void(const CampaignProgress&)>& on_progress,
-                  const std::atomic<bool>& cancel);
+bool run_evaluation(const Evaluation& evaluation, LapStore& store, int jobs,
+                    const std::function<void(const EvaluationProgress&)>& on_progress,
+                    const std::atomic<bool>& cancel);
 
 }  // namespace slalom::evaluation

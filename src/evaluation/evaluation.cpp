@@ -1,4 +1,4 @@
-#include "slalom/evaluation/campaign.hpp"
+#include "slalom/evaluation/evaluation.hpp"
 
 #include <set>
 #include <thread>
@@ -14,30 +14,30 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-std::vector<LapTask> open_tasks(const Campaign& campaign, const LapStore& store) {
+std::vector<LapTask> open_tasks(const Evaluation& evaluation, const LapStore& store) {
   std::set<std::pair<int, int>> done;
   for (const LapRow& row : store.rows()) done.insert({row.experiment, row.lap});
   std::vector<LapTask> tasks;
-  for (int e = 0; e < static_cast<int>(campaign.experiments.size()); ++e) {
-    for (int lap = 0; lap < campaign.experiments[static_cast<std::size_t>(e)].laps; ++lap) {
+  for (int e = 0; e < static_cast<int>(evaluation.experiments.size()); ++e) {
+    for (int lap = 0; lap < evaluation.experiments[static_cast<std::size_t>(e)].laps; ++lap) {
       if (!done.contains({e, lap})) tasks.push_back({e, lap});
     }
   }
   return tasks;
 }
 
-void drive_one_by_one(const Campaign& campaign, LapExchange& exchange,
+void drive_one_by_one(const Evaluation& evaluation, LapQueue& exchange,
                       const std::atomic<bool>& cancel) noexcept {
   try {
     std::optional<LapRunner> runner;
     int runs = -1;
     while (const auto task = exchange.next()) {
-      const Experiment& experiment = campaign.experiments.at(static_cast<std::size_t>(task->experiment));
-      if (task->experiment != runs) runner.emplace(make_runner(campaign, task->experiment));
+      const Experiment& experiment = evaluation.experiments.at(static_cast<std::size_t>(task->experiment));
+      if (task->experiment != runs) runner.emplace(make_runner(evaluation, task->experiment));
       runs = task->experiment;
       const auto begin = Clock::now();
       const LapResult result =
-          runner->run(lap_seed(campaign.seed0, task->lap, experiment.obstacles), {}, &cancel);
+          runner->run(lap_seed(evaluation.seed0, task->lap, experiment.obstacles), {}, &cancel);
       if (result.cancelled) return;
       exchange.keep(make_row(task->experiment, task->lap, result, seconds_since(begin)));
     }
@@ -48,31 +48,31 @@ void drive_one_by_one(const Campaign& campaign, LapExchange& exchange,
 
 }  // namespace
 
-void drive_laps(const Campaign& campaign, LapExchange& exchange, int jobs, const std::atomic<bool>& cancel) {
+void drive_laps(const Evaluation& evaluation, LapQueue& exchange, int jobs, const std::atomic<bool>& cancel) {
   std::vector<std::thread> others;
-  for (int i = 1; i < jobs; ++i) others.emplace_back([&] { drive_one_by_one(campaign, exchange, cancel); });
-  drive_one_by_one(campaign, exchange, cancel);
+  for (int i = 1; i < jobs; ++i) others.emplace_back([&] { drive_one_by_one(evaluation, exchange, cancel); });
+  drive_one_by_one(evaluation, exchange, cancel);
   for (auto& other : others) other.join();
 }
 
-CampaignWork::CampaignWork(const Campaign& campaign, LapStore& store,
-                           std::function<void(const CampaignProgress&)> on_progress,
-                           const std::atomic<bool>& cancel)
+EvaluationQueue::EvaluationQueue(const Evaluation& evaluation, LapStore& store,
+                                 std::function<void(const EvaluationProgress&)> on_progress,
+                                 const std::atomic<bool>& cancel)
     : store_(store),
       on_progress_(std::move(on_progress)),
       cancel_(cancel),
-      tasks_(open_tasks(campaign, store)) {
+      tasks_(open_tasks(evaluation, store)) {
   progress_.laps_resumed = progress_.laps_done = static_cast<int>(store.rows().size());
   progress_.laps_total = progress_.laps_done + static_cast<int>(tasks_.size());
 }
 
-std::optional<LapTask> CampaignWork::next() {
+std::optional<LapTask> EvaluationQueue::next() {
   const std::lock_guard lock(mutex_);
   if (error_ || cancel_.load() || next_ == tasks_.size()) return std::nullopt;
   return tasks_[next_++];
 }
 
-void CampaignWork::keep(const LapRow& row) {
+void EvaluationQueue::keep(const LapRow& row) {
   const std::lock_guard lock(mutex_);
   store_.add(row);
   ++progress_.laps_done;
@@ -82,12 +82,12 @@ void CampaignWork::keep(const LapRow& row) {
   if (on_progress_) on_progress_(progress_);
 }
 
-void CampaignWork::fail(std::exception_ptr error) {
+void EvaluationQueue::fail(std::exception_ptr error) {
   const std::lock_guard lock(mutex_);
   if (!error_) error_ = error;
 }
 
-bool CampaignWork::finish() {
+bool EvaluationQueue::finish() {
   const std::lock_guard lock(mutex_);
   if (error_) std::rethrow_exception(error_);
   if (progress_.laps_done != progress_.laps_total) return false;
@@ -95,26 +95,26 @@ bool CampaignWork::finish() {
   return true;
 }
 
-LapRunner make_runner(const Campaign& campaign, int index) {
-  const Experiment& experiment = campaign.experiments.at(static_cast<std::size_t>(index));
-  vehicle::Configuration configuration = campaign.configuration;
+LapRunner make_runner(const Evaluation& evaluation, int index) {
+  const Experiment& experiment = evaluation.experiments.at(static_cast<std::size_t>(index));
+  vehicle::Configuration configuration = evaluation.configuration;
   LapSettings settings;
   settings.obstacles = experiment.obstacles;
-  settings.latency = campaign.latency;
-  settings.further_costs = campaign.further_costs;
+  settings.latency = evaluation.latency;
+  settings.additional_costs = evaluation.additional_costs;
   for (const auto& [key, value] : experiment.set)
     if (!set_world_option(settings, key, value))
       vehicle::set_option(configuration, key, value, experiment.method);
-  return LapRunner(campaign.arena, configuration, experiment.method, settings);
+  return LapRunner(evaluation.environment, configuration, experiment.method, settings);
 }
 
-bool run_campaign(const Campaign& campaign, LapStore& store, int jobs,
-                  const std::function<void(const CampaignProgress&)>& on_progress,
-                  const std::atomic<bool>& cancel) {
+bool run_evaluation(const Evaluation& evaluation, LapStore& store, int jobs,
+                    const std::function<void(const EvaluationProgress&)>& on_progress,
+                    const std::atomic<bool>& cancel) {
   // Unknown methods and options are found before the first lap.
-  for (int i = 0; i < static_cast<int>(campaign.experiments.size()); ++i) make_runner(campaign, i);
-  CampaignWork work(campaign, store, on_progress, cancel);
-  drive_laps(campaign, work, jobs, cancel);
+  for (int i = 0; i < static_cast<int>(evaluation.experiments.size()); ++i) make_runner(evaluation, i);
+  EvaluationQueue work(evaluation, store, on_progress, cancel);
+  drive_laps(evaluation, work, jobs, cancel);
   return work.finish();
 }
 

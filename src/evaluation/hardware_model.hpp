@@ -10,10 +10,10 @@
 namespace slalom::evaluation {
 
 /// A lap's car between the simulated one and the planner: what it measures, what its servo does.
-class HardwareDrive {
+class HardwareModel {
  public:
   /// `start` of the rear axle.
-  HardwareDrive(const HardwareConditions& conditions, const maps::OccupancyGrid& map,
+  HardwareModel(const HardwareConditions& conditions, const maps::OccupancyGrid& map,
                 const sim::CarParameters& car, const sim::CarState& state, std::uint64_t seed);
 
   /// The world's options under these conditions; the scan's rate stays.

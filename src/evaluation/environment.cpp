@@ -1,4 +1,4 @@
-#include "slalom/evaluation/arena.hpp"
+#include "slalom/evaluation/environment.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,19 +37,19 @@ std::vector<double> room_beside(const sim::Track& track, const std::vector<maps:
 
 }  // namespace
 
-const char* name(Evaluation evaluation) {
-  return evaluation == Evaluation::published ? "published" : "true";
+const char* name(Protocol protocol) {
+  return protocol == Protocol::published ? "published" : "true";
 }
 
-Evaluation evaluation_named(std::string_view text) {
-  if (text == "true") return Evaluation::true_physics;
-  if (text == "published") return Evaluation::published;
+Protocol protocol_named(std::string_view text) {
+  if (text == "true") return Protocol::true_physics;
+  if (text == "published") return Protocol::published;
   throw std::invalid_argument("evaluation: '" + std::string(text) + "' must be true or published");
 }
 
-sim::WorldOptions Arena::world_options() const {
+sim::WorldOptions Environment::world_options() const {
   sim::WorldOptions options;
-  if (evaluation == Evaluation::published) {
+  if (protocol == Protocol::published) {
     options = sim::WorldOptions::gym_compatible();
   } else {
     options.time_step = 0.005;
@@ -61,39 +61,39 @@ sim::WorldOptions Arena::world_options() const {
   return options;
 }
 
-std::shared_ptr<Arena> make_arena(vehicle::Course course, Evaluation evaluation) {
-  auto arena = std::make_shared<Arena>();
-  arena->evaluation = evaluation;
-  arena->course = std::move(course);
+std::shared_ptr<Environment> make_environment(vehicle::Course course, Protocol protocol) {
+  auto environment = std::make_shared<Environment>();
+  environment->protocol = protocol;
+  environment->course = std::move(course);
   std::vector<maps::Point> points;
-  for (const vehicle::Waypoint& point : arena->course.waypoints) {
+  for (const vehicle::Waypoint& point : environment->course.waypoints) {
     points.push_back({point.x, point.y});
-    arena->path.push_back({point.x, point.y, point.yaw, point.speed});
+    environment->path.push_back({point.x, point.y, point.yaw, point.speed});
   }
-  maps::check_reference_path(arena->path);
-  arena->track = std::make_shared<const sim::Track>(
-      arena->course.map, sim::LapPath(points),
-      sim::TrackOptions{.unknown_is_wall = false, .outside_is_wall = evaluation != Evaluation::published});
-  arena->obstacle_room = room_beside(*arena->track, arena->course.obstacle_path);
-  arena->start = arena->course.start;
-  arena->timeout = arena->course.timeout.value_or(0);
-  return arena;
+  maps::check_reference_path(environment->path);
+  environment->track = std::make_shared<const sim::Track>(
+      environment->course.map, sim::LapPath(points),
+      sim::TrackOptions{.unknown_is_wall = false, .outside_is_wall = protocol != Protocol::published});
+  environment->obstacle_room = room_beside(*environment->track, environment->course.obstacle_path);
+  environment->start = environment->course.start;
+  environment->timeout = environment->course.timeout.value_or(0);
+  return environment;
 }
 
-std::shared_ptr<const Arena> load_arena(const std::filesystem::path& folder, Evaluation evaluation,
-                                        const std::vector<std::filesystem::path>& course_roots) {
-  const bool published = evaluation == Evaluation::published;
+std::shared_ptr<const Environment> load_environment(const std::filesystem::path& folder, Protocol protocol,
+                                                    const std::vector<std::filesystem::path>& course_roots) {
+  const bool published = protocol == Protocol::published;
   maps::MapReading reading;
   if (published) reading.rule = maps::MapRule::grey_threshold;
-  auto arena = make_arena(vehicle::load_course(folder, reading), evaluation);
+  auto environment = make_environment(vehicle::load_course(folder, reading), protocol);
   if (published) {
     const std::string folder_name = std::filesystem::weakly_canonical(folder).filename().string();
     if (const auto known = vehicle::known_course(folder_name, course_roots)) {
-      arena->start = known->start;
-      arena->timeout = known->timeout;
+      environment->start = known->start;
+      environment->timeout = known->timeout;
     }
   }
-  return arena;
+  return environment;
 }
 
 }  // namespace slalom::evaluation
