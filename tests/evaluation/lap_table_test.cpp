@@ -10,6 +10,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/evaluation.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace slalom::evaluation {
 namespace {
@@ -38,15 +39,9 @@ LapRow row(int experiment, int lap) {
   return r;
 }
 
-class LapTable : public ::testing::Test {
+class LapTable : public testing::TemporaryFolder {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    file_ = fs::temp_directory_path() / (std::string("slalom_lap_table.") + test->name() + ".csv");
-  }
-  void TearDown() override { fs::remove(file_); }
-
-  void write(const std::string& text) const { std::ofstream(file_, std::ios::binary) << text; }
+  void write(const std::string& text) const { TemporaryFolder::write("laps.csv", text); }
   std::string complaint(const std::string& text, bool forgive_last = false,
                         std::optional<std::uint64_t> seed0 = {}) const {
     write(text);
@@ -58,7 +53,7 @@ class LapTable : public ::testing::Test {
     return {};
   }
 
-  fs::path file_;
+  const fs::path file_ = folder_ / "laps.csv";
   std::string head_ = csv_header() + "\n", first_ = csv_line(row(0, 2), experiments) + "\n",
               second_ = csv_line(row(1, 0), experiments) + "\n";
 };
@@ -139,16 +134,12 @@ TEST_F(LapTable, NamesAMissingHeader) {
   EXPECT_EQ(complaint("", true), "") << "a journal that was killed at once";
 }
 
-class LapStoreFolder : public ::testing::Test {
+class LapStoreFolder : public testing::TemporaryFolder {
  protected:
   LapStoreFolder() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("slalom_lap_store.") + test->name());
-    fs::remove_all(folder_);
     evaluation_.experiments = {{"mppi", {}, "pt", 0, 2}};
     evaluation_.settings = "{}";
   }
-  ~LapStoreFolder() override { fs::remove_all(folder_); }
 
   /// Completes an evaluation, puts what `spoil` makes of its laps.csv in its place, and resumes.
   template <class Spoil>
@@ -174,7 +165,6 @@ class LapStoreFolder : public ::testing::Test {
     return {};
   }
 
-  fs::path folder_;
   Evaluation evaluation_;
 };
 

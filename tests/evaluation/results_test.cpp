@@ -2,18 +2,13 @@
 #include "slalom/evaluation/results.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
 
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/lap_log.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace slalom::evaluation {
 namespace {
-
-namespace fs = std::filesystem;
 
 LapRow row(int experiment, int lap, double state, double collision_cost, int contacts, bool finished) {
   LapRow r;
@@ -90,16 +85,9 @@ TEST(Fisher, KnownValues) {
 }
 
 /// A log of laps in a file that goes with the test.
-class Log : public ::testing::Test {
+class Log : public testing::TemporaryFolder {
  protected:
-  Log()
-      : file_(fs::temp_directory_path() /
-              ("slalom_results_test." + std::to_string(::getpid()) + ".log.csv")) {}
-  void TearDown() override { fs::remove(file_); }
-  LapLog read(const std::string& text) const {
-    std::ofstream(file_) << text;
-    return read_lap_log(file_);
-  }
+  LapLog read(const std::string& text) const { return read_lap_log(write("log.csv", text)); }
   std::string complaint(const std::string& text) const {
     try {
       read(text);
@@ -108,7 +96,6 @@ class Log : public ::testing::Test {
     }
     return {};
   }
-  fs::path file_;
 };
 
 TEST_F(Log, IsReadByItsColumnsNames) {

@@ -1,29 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <vector>
 
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"
-
-namespace {
-std::atomic<int> allocations{0};
-}
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept {
-  std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
+#include "support/allocations.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -36,7 +18,7 @@ TEST(MapsLoop, UpdatesAllocateNothing) {
   const std::vector<float> ranges(1080, 2.0F);
   const OccupancyGrid obstacles{20, 20, 0.1, {}, std::vector<Occupancy>(400, Occupancy::occupied)};
   const Point points[] = {{1, 1}, {2, 0}};
-  const int before = allocations;
+  const long before = testing::allocations();
   ASSERT_GT(before, 0) << "nothing is counted";
   for (int i = 0; i < 5; ++i) {
     field.update({5, 0.1 * i});
@@ -44,7 +26,7 @@ TEST(MapsLoop, UpdatesAllocateNothing) {
     map.add_points(points);
     map.add_grid(obstacles, {0.1 * i, 0, 0.2});
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(testing::allocations(), before);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "maps/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 #include "slalom/core/error.hpp"
 
 namespace slalom::maps {

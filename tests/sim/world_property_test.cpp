@@ -5,7 +5,7 @@
 #include <cstring>
 #include <thread>
 
-#include "sim/count_allocations.hpp"
+#include "support/allocations.hpp"
 #include "sim/rooms.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
 #include "slalom/sim/recording.hpp"

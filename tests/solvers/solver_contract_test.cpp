@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "slalom/solvers/make_solver.hpp"
-#include "solvers/count_allocations.hpp"
+#include "support/allocations.hpp"
 #include "solvers/problems.hpp"
 #include "solvers/published_options.hpp"
 

@@ -5,7 +5,7 @@
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "tools/bag_writer.hpp"
-#include "tools/scratch_folder.hpp"
+#include "tools/program_test.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -25,7 +25,7 @@ std::vector<json> lines_of(const fs::path& file) {
   return lines;
 }
 
-class HardwareCommand : public testing::ScratchFolder {
+class HardwareCommand : public testing::ProgramTest {
  protected:
   /// Two short laps; what does not depend on the clock of the wall.
   json results(const std::string& arguments) const {
@@ -69,7 +69,7 @@ TEST_F(HardwareCommand, RefusesBadArguments) {
   expect_refused("hardware --jobs 0", {"--jobs"});
 }
 
-class IdentifyCommand : public testing::ScratchFolder {
+class IdentifyCommand : public testing::ProgramTest {
  protected:
   json identified(const std::string& recording) const {
     const auto run = program("identify " + recording + " --wheelbase 0.3302 --json found.json");
@@ -176,7 +176,7 @@ Wire laser_message() {
 class Bags : public IdentifyCommand {
  protected:
   void SetUp() override {
-    ScratchFolder::SetUp();
+    ProgramTest::SetUp();
     ASSERT_EQ(
         program("drive --course wren --method mppi --set samples=256 --hardware --record lap.jsonl").status,
         0);

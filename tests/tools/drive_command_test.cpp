@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "slalom/maps/ros_map.hpp"
-#include "tools/scratch_folder.hpp"
+#include "tools/program_test.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -15,7 +15,7 @@ using nlohmann::json;
 using testing::content;
 using testing::run_program;
 
-class DriveCommand : public testing::ScratchFolder {
+class DriveCommand : public testing::ProgramTest {
  protected:
   /// Drives on the smallest course with few samples, unless the arguments say otherwise.
   testing::Run drive(const std::string& arguments) const {
@@ -222,11 +222,11 @@ TEST(OptionsCommand, ListsDeclarations) {
 }
 
 TEST(OptionsCommand, WritesAFileThatIsReadBack) {
-  const fs::path file = fs::temp_directory_path() / "slalom_options_command.yaml";
+  const testing::ScopedFolder folder;
+  const fs::path file = folder.path() / "published.yaml";
   ASSERT_EQ(run_program("options --config published --yaml > " + file.string()).status, 0);
   EXPECT_EQ(run_program("options --config published --yaml").output,
             run_program("options --config " + file.string() + " --yaml").output);
-  fs::remove(file);
 }
 
 }  // namespace

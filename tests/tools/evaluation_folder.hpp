@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/scratch_folder.hpp"
+#include "tools/program_test.hpp"
 
 /// Tests that run evaluations in a folder of their own.
 namespace slalom::testing {
@@ -51,7 +51,7 @@ inline std::size_t count_lines(const fs::path& file) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-class EvaluationFolder : public ScratchFolder {
+class EvaluationFolder : public ProgramTest {
  protected:
   testing::Run run(const std::string& arguments) const { return program(arguments); }
 

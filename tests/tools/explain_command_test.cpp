@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "support/temporary_folder.hpp"
 #include "tools/program.hpp"
 
 namespace slalom::tools {
@@ -15,8 +16,8 @@ using nlohmann::json;
 using testing::run_program;
 
 TEST(ExplainCommand, ShowsEveryMethodInPictureAndFigures) {
-  const fs::path folder = fs::temp_directory_path() / "slalom_explain_command";
-  fs::create_directories(folder);
+  const testing::ScopedFolder scoped;
+  const fs::path& folder = scoped.path();
   const auto run =
       run_program("explain --method all --seed 3 --plot all.png --json all.json", folder.string());
   ASSERT_EQ(run.status, 0) << run.output;
@@ -42,7 +43,6 @@ TEST(ExplainCommand, ShowsEveryMethodInPictureAndFigures) {
   std::string signature(8, '\0');
   picture.read(signature.data(), 8);
   EXPECT_EQ(signature, "\x89PNG\r\n\x1a\n");
-  fs::remove_all(folder);
 }
 
 TEST(ExplainCommand, SetsOptionsOfMethodsAndProblem) {

@@ -8,7 +8,7 @@
 
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/vehicle/course/course.hpp"
-#include "tools/scratch_folder.hpp"
+#include "tools/program_test.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using testing::content;
 using testing::run_program;
 
-class TrackCommand : public testing::ScratchFolder {
+class TrackCommand : public testing::ProgramTest {
  protected:
   testing::Run track(const std::string& arguments) const { return program("track " + arguments); }
 };

@@ -3,30 +3,16 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "slalom/core/error.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace slalom::vehicle {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ConfigurationFile : public ::testing::Test {
+class ConfigurationFile : public testing::TemporaryFolder {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("slalom_configuration.") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
   /// The message, without the folder, with which a file of this text is refused.
   std::string refusal(const std::string& text) const {
     try {
@@ -37,8 +23,6 @@ class ConfigurationFile : public ::testing::Test {
     }
     return "accepted";
   }
-
-  fs::path folder_;
 };
 
 TEST_F(ConfigurationFile, SetsWhatItSaysAndKeepsTheRest) {

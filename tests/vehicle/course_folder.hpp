@@ -1,12 +1,11 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "slalom/maps/ros_map.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace slalom::testing {
 
@@ -15,12 +14,6 @@ namespace slalom::testing {
 class CourseFolder {
  public:
   CourseFolder() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string(test->test_suite_name()) + "." + test->name();
-    for (char& c : name)
-      if (c == '/') c = '_';
-    path_ = std::filesystem::temp_directory_path() / ("slalom_" + name) / "ring";
-    std::filesystem::remove_all(path_.parent_path());
     std::filesystem::create_directories(path_);
     maps::OccupancyGrid grid{100, 100, 0.1, {-5, -5, 0}, {}};
     grid.cells.assign(10000, maps::Occupancy::free);
@@ -29,9 +22,6 @@ class CourseFolder {
     maps::save_ros_map(grid, path_ / "map.yaml");
     write("raceline.csv", raceline);
   }
-  ~CourseFolder() { std::filesystem::remove_all(path_.parent_path()); }
-  CourseFolder(const CourseFolder&) = delete;
-  CourseFolder& operator=(const CourseFolder&) = delete;
 
   void write(const std::string& file, const std::string& text) const { std::ofstream(path_ / file) << text; }
   void remove(const std::string& file) const { std::filesystem::remove(path_ / file); }
@@ -46,7 +36,8 @@ class CourseFolder {
       "6; 0; -2; 9; 0; 4; 0\n";
 
  private:
-  std::filesystem::path path_;
+  ScopedFolder parent_;
+  std::filesystem::path path_ = parent_.path() / "ring";
 };
 
 }  // namespace slalom::testing

@@ -1,26 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+#include "support/allocations.hpp"
 #include "vehicle/localiser_drive.hpp"
-
-namespace {
-std::atomic<int> allocations{0};
-}
-
-__attribute__((noinline)) void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
-}
-__attribute__((noinline)) void operator delete(void* p) noexcept {
-  std::free(p);
-}
-__attribute__((noinline)) void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
 
 namespace slalom::vehicle {
 namespace {
@@ -33,10 +14,10 @@ TEST(Localiser, AllocatesNothingAfterConstruction) {
     if (i == 10) localiser.start_at(drive.truth());
     if (i == 20) drive.kidnap(place.at(0.7));
     const LocaliserInput input = drive.input();
-    const int before = allocations;
+    const long before = testing::allocations();
     ASSERT_GT(before, 0) << "nothing is counted";
     localiser.update(input);
-    EXPECT_EQ(allocations, before);
+    EXPECT_EQ(testing::allocations(), before);
   }
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "slalom/solvers/make_solver.hpp"
-#include "solvers/count_allocations.hpp"
+#include "support/allocations.hpp"
 #include "vehicle/planner/back_up.hpp"
 
 namespace slalom::vehicle {

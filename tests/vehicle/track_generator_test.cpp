@@ -9,6 +9,7 @@
 
 #include "slalom/maps/distance_field.hpp"
 #include "slalom/vehicle/course/course.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -137,8 +138,8 @@ TEST_P(TrackProperty, EveryWaypointIsFreeWithTheMarginAndTheMapIsSealed) {
 
 TEST_P(TrackProperty, LoadsBackAsACourse) {
   const Track track = generate_track(options(3));
-  const auto folder =
-      std::filesystem::temp_directory_path() / (std::string("slalom_track_") + GetParam().name);
+  const testing::ScopedFolder scoped;
+  const auto folder = scoped.path() / "track";
   save_track(track, folder, {"some \"name\"", "a description", "slalom track"});
   const Course course = load_course(folder);
   EXPECT_EQ(course.name, "some \"name\"");
@@ -152,7 +153,6 @@ TEST_P(TrackProperty, LoadsBackAsACourse) {
   EXPECT_NEAR(course.start.x, 0, 1e-4);
   for (std::size_t i = 0; i < course.waypoints.size(); ++i)
     ASSERT_NEAR(maps::wrap_angle(course.waypoints[i].yaw - track.raceline[i].yaw), 0, 0.1) << "row " << i;
-  std::filesystem::remove_all(folder);
 }
 
 INSTANTIATE_TEST_SUITE_P(Tracks, TrackProperty,

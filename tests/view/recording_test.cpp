@@ -2,12 +2,11 @@
 // what was recorded. That other programs read them is checked in view/page/test/mcap.mjs.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "slalom/core/error.hpp"
+#include "support/temporary_folder.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/mcap_reader.hpp"
@@ -43,20 +42,9 @@ std::string record(bool wall_clock, int ticks = 12) {
   return std::move(stream).str();
 }
 
-class Recordings : public ::testing::Test {
+class Recordings : public testing::TemporaryFolder {
  protected:
-  std::string file(const std::string& bytes) {
-    const auto path = fs::temp_directory_path() /
-                      (std::string("slalom_recording.") +
-                       ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".mcap");
-    std::ofstream(path, std::ios::binary) << bytes;
-    path_ = path;
-    return path.string();
-  }
-  void TearDown() override {
-    if (!path_.empty()) fs::remove(path_);
-  }
-  fs::path path_;
+  std::string file(const std::string& bytes) const { return write("lap.mcap", bytes).string(); }
 };
 
 std::string refusal(const std::string& name) {
