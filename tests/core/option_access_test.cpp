@@ -61,7 +61,7 @@ TEST(OptionAccess, SetsEveryType) {
   EXPECT_EQ(o.spread.values(), std::vector<double>{0.25});
 }
 
-TEST(OptionAccess, RefusesWithValueAndRule) {
+TEST(OptionAccess, ErrorsNameValueAndRule) {
   EXPECT_EQ(refusal("loud", "yes"), "'yes' must be true or false");
   EXPECT_EQ(refusal("count", "2.5"), "'2.5' must be an integer");
   EXPECT_EQ(refusal("count", "11"), "'11' must be in [1, 10]");
@@ -100,7 +100,7 @@ TEST(OptionAccess, ListsValuesThatReadBack) {
   EXPECT_EQ(to_text(entries[4].value), "[0.1, 0.2]");
 }
 
-TEST(OptionAccess, SuggestsWhatWasMeant) {
+TEST(OptionAccess, SuggestsSimilarNames) {
   const std::vector<std::string> names = {"samples", "temperature", "variance"};
   EXPECT_EQ(nearest_name("sampels", names), "samples");
   EXPECT_EQ(nearest_name("temprature", names), "temperature");

@@ -78,14 +78,14 @@ struct Rollouts {
   }
 };
 
-class PartsOn : public ::testing::TestWithParam<simd::Target> {
+class ProblemPartsOnInstructionSet : public ::testing::TestWithParam<simd::Target> {
  protected:
   void SetUp() override {
     if (!simd::supported(GetParam())) GTEST_SKIP() << "this processor has no " << simd::name(GetParam());
   }
 };
 
-TEST_P(PartsOn, TermsSumToTheSameCost) {
+TEST_P(ProblemPartsOnInstructionSet, TermsSumToTheSameCost) {
   Rollouts plain, named;
   ProblemEvaluator<Plain> one({}, GetParam());
   ProblemEvaluator<Named> other({}, GetParam());
@@ -103,7 +103,7 @@ TEST_P(PartsOn, TermsSumToTheSameCost) {
   EXPECT_LT(collisions, 120);
 }
 
-TEST_P(PartsOn, RatesAreHeldInRolloutsAsInThePlan) {
+TEST_P(ProblemPartsOnInstructionSet, RateLimitsHoldInRolloutsAsInThePlan) {
   Rollouts rollouts;
   ProblemEvaluator<Slow> evaluator({}, GetParam());
   const Input<double, 2> before{{0.5, -0.25}};
@@ -120,7 +120,7 @@ TEST_P(PartsOn, RatesAreHeldInRolloutsAsInThePlan) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, PartsOn,
+INSTANTIATE_TEST_SUITE_P(Targets, ProblemPartsOnInstructionSet,
                          ::testing::Values(simd::Target::generic, simd::Target::sse4, simd::Target::avx2,
                                            simd::Target::avx512),
                          [](const auto& target) { return simd::name(target.param); });
@@ -135,7 +135,7 @@ TEST(ProblemParts, RatesAreHeldFromWhatWasAppliedBefore) {
   EXPECT_DOUBLE_EQ(u[2][1], -0.05);
 }
 
-TEST(ProblemParts, CostsAreToldByName) {
+TEST(ProblemParts, CostTermsAreNamed) {
   const Input<double, 2> u[2] = {{{1, 2}}, {{0, 0}}};
   CostTermsOf<Plain> plain;
   CostTermsOf<Named> named;
@@ -159,7 +159,7 @@ TEST(ProblemParts, CostsAreToldByName) {
   EXPECT_NEAR(all[0].value, 0.25 + 0.36 + 10 * 0.73 * 0.73, 1e-12);
 }
 
-TEST(ProblemParts, WhatIsNotSaidTakesNoRoom) {
+TEST(ProblemParts, OmittedPartsTakeNoMemory) {
   EXPECT_EQ(sizeof(detail::Rollout<Plain, float>), 3 * sizeof(float) + sizeof(float));
   EXPECT_EQ(detail::start_size<Plain>, 2);
   EXPECT_EQ(detail::start_size<Slow>, 4);

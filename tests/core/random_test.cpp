@@ -110,7 +110,7 @@ TEST(FillNormal, RowsSamplesAndStreamsAreNotCorrelated) {
 }
 
 /// The two values of a pair come from the same 32 bits: nothing of that may be seen between them.
-TEST(FillNormal, PairsFillThePlaneEvenly) {
+TEST(FillNormal, PairsAreUniformInAngle) {
   const int rows = 8, samples = 1 << 18, parts = 64;
   SequenceBatch batch(rows, 1, samples);
   fill_normal(batch, 0, samples, {17, 1});
@@ -138,7 +138,7 @@ TEST(FillNormal, PairsFillThePlaneEvenly) {
   EXPECT_LT(chi_squared(octants), 36);  // 7 degrees of freedom: the 1 - 1e-5 quantile is 35.3
 }
 
-TEST(RandomStream, UniformFillsItsRangeEvenly) {
+TEST(RandomStream, UniformIsUniform) {
   RandomStream stream({42, 0});
   std::vector<int> bins(64);
   const int n = 1 << 16;

@@ -24,7 +24,7 @@ TEST(ThreadPool, RunsEveryTaskOnceEachTime) {
   }
 }
 
-TEST(ThreadPool, WorkersThatHaveGoneToSleepWakeAgain) {
+TEST(ThreadPool, SleepingWorkersWake) {
   ThreadPool pool(3);
   for (int round = 0; round < 20; ++round) {
     std::atomic<int> sum{0};
@@ -66,7 +66,7 @@ TEST(ThreadPool, AThreadSleepsAtMostOnceARound) {
   EXPECT_GE(most, 2 * rounds) << "nobody slept: nothing was measured";
 }
 
-TEST(ThreadPool, RefusesAbsurdSizes) {
+TEST(ThreadPool, RejectsInvalidSizes) {
   EXPECT_THROW(ThreadPool(0), std::invalid_argument);
   EXPECT_THROW(ThreadPool(-3), std::invalid_argument);
 }

@@ -23,7 +23,7 @@ std::shared_ptr<const LapRunner> runner(const std::string& method, int obstacles
   return std::make_shared<const LapRunner>(environment, configuration, method, settings);
 }
 
-TEST(ClosedLoop, FirstLapIsTheLapOfTheRunner) {
+TEST(ClosedLoop, FirstLapEqualsTheLapOfTheRunner) {
   auto alone = *runner("mppi");
   std::vector<double> steering, times;
   alone.run(3, [&](const ControlStep& tick) {
@@ -56,7 +56,7 @@ sim::CarState meddled() {
   return loop.world().state(0);
 }
 
-TEST(ClosedLoop, SameMeddlingSameRide) {
+TEST(ClosedLoop, SameInterventionsGiveTheSameDrive) {
   const sim::CarState once = meddled();
   EXPECT_TRUE(once == meddled());
   ClosedLoop untouched(runner("mppi"), 5);
@@ -64,7 +64,7 @@ TEST(ClosedLoop, SameMeddlingSameRide) {
   EXPECT_FALSE(once == untouched.world().state(0));
 }
 
-TEST(ClosedLoop, ArenaAndPeriodStay) {
+TEST(ClosedLoop, RejectsAnotherEnvironmentOrPeriod) {
   ClosedLoop loop(runner("mppi"), 1);
   vehicle::Configuration slower = runner("mppi")->configuration();
   slower.planner.control_period = 0.05;
@@ -74,7 +74,7 @@ TEST(ClosedLoop, ArenaAndPeriodStay) {
       std::invalid_argument);
 }
 
-TEST(ClosedLoop, PredictsWhatThePlanSays) {
+TEST(ClosedLoop, PredictionFollowsThePlan) {
   ClosedLoop loop(runner("svg_mppi"), 2);
   int compared = 0;
   for (int i = 0; i < 30; ++i) {

@@ -83,7 +83,7 @@ TEST(LapRunner, RepeatsBitForBitInAnyOrderWithAnyThreads) {
   EXPECT_EQ(beside, second);
 }
 
-TEST(LapRunner, CostIsThePlannersOwnInThePublishedConfiguration) {
+TEST(LapRunner, CostEqualsThePlannersInThePublishedConfiguration) {
   LapRunner runner(wren(Protocol::published), configuration("published"), "svg_mppi", {.obstacles = 2});
   int ticks = 0;
   const LapResult lap = runner.run(0, [&](const ControlStep& tick) {
@@ -95,7 +95,7 @@ TEST(LapRunner, CostIsThePlannersOwnInThePublishedConfiguration) {
   EXPECT_GT(ticks, 100);
 }
 
-TEST(LapRunner, FurtherCostsAreOfTheSameKind) {
+TEST(LapRunner, AdditionalCostsAreComparable) {
   LapRunner runner(wren(), configuration("published"), "svg_mppi", {.additional_costs = true});
   const LapResult lap = runner.run(0);
   EXPECT_NEAR(lap.published_model_cost, lap.mean_sequence_cost, 1e-9);
@@ -135,7 +135,7 @@ TEST(LapRunner, LatencyDelaysCommands) {
   EXPECT_NEAR(first_motion(0.1) - first_motion(0), 0.1, 1e-6);
 }
 
-TEST(LapRunner, HardwareLapsRepeatWithAnyThreadsAndHeedTheirConditions) {
+TEST(LapRunner, HardwareLapsRepeatWithAnyThreadsAndApplyTheirConditions) {
   const auto environment = wren();
   const auto lap = [&](const HardwareConditions& conditions, std::uint64_t seed, int threads) {
     const LapSettings settings{.threads = threads, .hardware = conditions};
@@ -199,7 +199,7 @@ TEST(LapRunner, TheWorldCanBeMadeHarder) {
                std::invalid_argument);
 }
 
-TEST(LapRunner, RefusesWhatCannotBeDriven) {
+TEST(LapRunner, RejectsInvalidSettings) {
   const auto environment = wren();
   const auto refusal = [&](const std::string& method, const LapSettings& settings,
                            vehicle::Configuration made) {
@@ -245,7 +245,7 @@ TEST(LapSeeds, AreThoseOfTheProtocol) {
   EXPECT_NE(solver_seed(0, "mppi"), solver_seed(1, "mppi"));
 }
 
-TEST(PublishedProblem, IsThatOfTheConfiguration) {
+TEST(PublishedProblem, EqualsTheConfiguration) {
   const auto file = configuration("published").vehicle;
   const auto a = list_options(file), b = list_options(published_problem());
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].value, b[i].value) << a[i].declaration.name;

@@ -27,7 +27,7 @@ LapRow row(int experiment, int lap) {
   r.lap = lap;
   r.seed = 18446744073709551615ull;
   r.success = true;
-  r.collision = 3;
+  r.collisions = 3;
   r.finished = true;
   r.state_cost = 0.1 + 0.2;
   r.collision_cost = 1e-300;
@@ -81,7 +81,7 @@ TEST_F(LapTable, BeginsWithTheColumnsOfThePublishedLogs) {
             0u);
 }
 
-TEST_F(LapTable, ForgivesALineCutShortOnlyAtTheEndOfAJournal) {
+TEST_F(LapTable, AcceptsATruncatedLineOnlyAtTheEndOfAJournal) {
   const std::string cut = second_.substr(0, second_.size() / 2);
   write(head_ + first_ + cut);
   EXPECT_EQ(read_rows(file_, experiments, true).size(), 1u);
@@ -89,7 +89,7 @@ TEST_F(LapTable, ForgivesALineCutShortOnlyAtTheEndOfAJournal) {
   EXPECT_NE(complaint(head_ + cut + "\n" + first_, true).find(":2: has "), std::string::npos);
 }
 
-TEST_F(LapTable, NamesLineAndColumnOfWhatMakesNoSense) {
+TEST_F(LapTable, NamesLineAndColumnOfAnInvalidValue) {
   EXPECT_NE(complaint("lap,seed\n" + first_).find(":1: column method: is missing"), std::string::npos);
   EXPECT_NE(complaint(head_ + first_ + first_).find(":3: lap: stands here twice"), std::string::npos);
   std::string other = first_;
@@ -103,7 +103,7 @@ TEST_F(LapTable, NamesLineAndColumnOfWhatMakesNoSense) {
   EXPECT_NE(complaint(head_ + word).find("seed: 'twelve' must be a number"), std::string::npos);
 }
 
-TEST_F(LapTable, RefusesNumbersThatAreNone) {
+TEST_F(LapTable, RejectsNonFiniteNumbers) {
   LapRow spoiled = row(0, 2);
   for (const double number : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     spoiled.state_cost = number;
@@ -116,7 +116,7 @@ TEST_F(LapTable, RefusesNumbersThatAreNone) {
   EXPECT_EQ(complaint(head_ + csv_line(spoiled, experiments) + "\n"), "") << "where there is no wall";
 }
 
-TEST_F(LapTable, RefusesASeedThatIsNotTheLaps) {
+TEST_F(LapTable, RejectsTheSeedOfAnotherLap) {
   LapRow plain = row(0, 2), among_obstacles = row(1, 1);
   plain.seed = 7 + 2 * 5;
   among_obstacles.seed = 7 + 1 * 10;
@@ -134,9 +134,9 @@ TEST_F(LapTable, NamesAMissingHeader) {
   EXPECT_EQ(complaint("", true), "") << "a journal that was killed at once";
 }
 
-class LapStoreFolder : public testing::TemporaryFolder {
+class LapStoreResume : public testing::TemporaryFolder {
  protected:
-  LapStoreFolder() {
+  LapStoreResume() {
     evaluation_.experiments = {{"mppi", {}, "pt", 0, 2}};
     evaluation_.settings = "{}";
   }
@@ -168,7 +168,7 @@ class LapStoreFolder : public testing::TemporaryFolder {
   Evaluation evaluation_;
 };
 
-TEST_F(LapStoreFolder, ResumesOnlyFromAWholeTableOfItsOwn) {
+TEST_F(LapStoreResume, ResumesOnlyFromAWholeTableOfItsOwn) {
   const auto without_last = [](const std::string& text) {
     return text.substr(0, text.rfind('\n', text.size() - 2) + 1);
   };

@@ -12,7 +12,7 @@
 namespace slalom::evaluation {
 namespace {
 
-class Passage : public ::testing::Test {
+class Passability : public ::testing::Test {
  protected:
   /// A box across the course at an arc length (m): its middle so far to the left of the line, so wide.
   sim::Box across(double arc, double left, double width) const {
@@ -27,18 +27,18 @@ class Passage : public ::testing::Test {
       std::filesystem::path(SLALOM_COURSES) / "wren", Protocol::true_physics, {SLALOM_COURSES});
 };
 
-TEST_F(Passage, ParkedCarsLeaveAWay) {
+TEST_F(Passability, ParkedCarsCanBePassed) {
   for (double arc = 0; arc < environment_->track->lap_path()->length(); arc += 2)
     EXPECT_TRUE(named({across(arc, 0, 0.31)}).empty()) << arc;
 }
 
-TEST_F(Passage, ABarrierClosesTheRoad) {
+TEST_F(Passability, ABarrierClosesTheRoad) {
   for (double arc = 0; arc < environment_->track->lap_path()->length(); arc += 2)
     EXPECT_EQ(named({across(arc, 0, 8)}), std::vector<int>{0}) << arc;
   EXPECT_EQ(named({across(2, 0, 0.31), across(12, 0, 8)}), std::vector<int>{1});
 }
 
-TEST_F(Passage, TwoThatCloseItTogetherAreBothNamed) {
+TEST_F(Passability, ReportsBothObstaclesThatBlockTheRoadTogether) {
   // A wall on each side of the line with a gap between them, in metres.
   const auto with_gap = [&](double gap) {
     const double width = 4;
@@ -48,7 +48,7 @@ TEST_F(Passage, TwoThatCloseItTogetherAreBothNamed) {
   EXPECT_EQ(with_gap(0.1), (std::vector<int>{0, 1}));
 }
 
-TEST_F(Passage, AWayThatAnyDiscTakesIsNeverMissed) {
+TEST_F(Passability, NeverReportsAPassableObstacle) {
   // Gaps a hair wider than the disc, at any angle to the cells.
   const double diameter = 2 * PassabilityOptions{}.radius;
   for (int k = 0; k < 24; ++k) {

@@ -85,7 +85,7 @@ TEST(Fisher, KnownValues) {
 }
 
 /// A log of laps in a file that goes with the test.
-class Log : public testing::TemporaryFolder {
+class LapLogFile : public testing::TemporaryFolder {
  protected:
   LapLog read(const std::string& text) const { return read_lap_log(write("log.csv", text)); }
   std::string complaint(const std::string& text) const {
@@ -98,7 +98,7 @@ class Log : public testing::TemporaryFolder {
   }
 };
 
-TEST_F(Log, IsReadByItsColumnsNames) {
+TEST_F(LapLogFile, IsReadByColumnName) {
   const LapLog log = read(
       "seed,success,collision,timeout,state_cost,collision_cost,mean_calculation_time,max_calculation_time\n"
       "0,1,0,0,0.5,1.5,10,20\r\n10,0,2,1,1,4,12,18\n");
@@ -112,7 +112,7 @@ TEST_F(Log, IsReadByItsColumnsNames) {
   EXPECT_FALSE(read("collision_cost,state_cost,success,collision\n0,1,1,0\n").solve_ms_mean);
 }
 
-TEST_F(Log, NamesWhatIsWrong) {
+TEST_F(LapLogFile, ErrorsNameLineAndColumn) {
   EXPECT_NE(complaint("success,collision,state_cost\n").find("collision_cost: this column is missing"),
             std::string::npos);
   const std::string head = "success,collision,state_cost,collision_cost\n";
@@ -123,7 +123,7 @@ TEST_F(Log, NamesWhatIsWrong) {
   EXPECT_NE(complaint(head + "2,0,1,0\n").find(":2: success"), std::string::npos);
 }
 
-TEST_F(Log, ComparesItselfWithOurs) {
+TEST_F(LapLogFile, IsComparedWithLaps) {
   const LapLog log =
       read("success,collision,state_cost,collision_cost\n1,0,1,2\n1,0,1,4\n0,6,2,20\n1,2,0.5,0\n");
   std::vector<LapRow> ours = laps();
@@ -143,7 +143,7 @@ TEST_F(Log, ComparesItselfWithOurs) {
   EXPECT_DOUBLE_EQ(*other.collision_rate, 8.0 / 20);
 }
 
-TEST_F(Log, FarOffIsOutsideNearWithFewLapsUndecidedWithManyInside) {
+TEST_F(LapLogFile, AgreementDependsOnDifferenceAndNumberOfLaps) {
   std::string text = "success,collision,state_cost,collision_cost\n";
   for (int lap = 0; lap < 30; ++lap) text += "1,0," + std::to_string(2.5 + 0.03 * lap) + ",0\n";
   const LapLog log = read(text);

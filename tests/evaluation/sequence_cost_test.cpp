@@ -60,7 +60,7 @@ TEST(SequenceCost, IsTheSameWhateverStepAndHorizon) {
   EXPECT_NEAR(cost(Straight(0.02, 10), true).total(), usual, 0.01) << "by the published model";
 }
 
-TEST(SequenceCost, WithoutASequenceIsThePresentStates) {
+TEST(SequenceCost, WithoutASequenceEqualsTheCostOfThePresentState) {
   Straight none(0.05, 14);
   none.output.predicted = {};
   none.output.inputs = {};

@@ -23,7 +23,7 @@ TEST(Wilson, KnownValues) {
   EXPECT_DOUBLE_EQ(wilson_interval(0, 0).high, 1);
 }
 
-TEST(Bootstrap, IntervalOfAMeanCoversItAsOftenAsItSays) {
+TEST(Bootstrap, IntervalOfAMeanHasItsNominalCoverage) {
   RandomStream random({5, 0});
   int covered = 0;
   for (int trial = 0; trial < 300; ++trial) {
@@ -36,14 +36,14 @@ TEST(Bootstrap, IntervalOfAMeanCoversItAsOftenAsItSays) {
   EXPECT_LT(covered, 300 * 0.99);
 }
 
-TEST(Bootstrap, RepeatsExactlyAndHandlesNothing) {
+TEST(Bootstrap, IsDeterministicAndAcceptsNoValues) {
   const std::vector<double> values{1, 2, 5, 9};
   EXPECT_EQ(bootstrap_mean(values).low, bootstrap_mean(values).low);
   EXPECT_TRUE(std::isnan(bootstrap_mean({}).low));
   EXPECT_TRUE(std::isnan(bootstrap_ratio(values, std::vector<double>{0, 0, 0, 0}).low));
 }
 
-TEST(Bootstrap, DifferenceIsFoundWhereItIs) {
+TEST(Bootstrap, DetectsADifference) {
   RandomStream random({6, 0});
   std::vector<double> a(40), b(40), c(40);
   for (std::size_t i = 0; i < 40; ++i) {
@@ -76,7 +76,7 @@ TEST(Wilcoxon, ExactAndApproximate) {
   EXPECT_NEAR(wilcoxon_p(tied), 0.069, 0.01);
 }
 
-TEST(Permutation, CountsTheArrangementsAsExtreme) {
+TEST(PermutationTest, CountsArrangementsAtLeastAsExtreme) {
   // Of the 20 ways to choose 3 of 6 two are as extreme as 1, 2, 3 beside 4, 5, 6.
   const std::vector<double> low{1, 2, 3}, high{4, 5, 6};
   EXPECT_NEAR(permutation_difference_p(low, high), 0.1, 0.01);
@@ -86,14 +86,14 @@ TEST(Permutation, CountsTheArrangementsAsExtreme) {
   EXPECT_TRUE(std::isnan(permutation_difference_p({}, low)));
 }
 
-TEST(Bootstrap, OfADifference) {
+TEST(Bootstrap, IntervalOfADifferenceContainsIt) {
   const std::vector<double> a{3, 5}, b{1, 1};
   const Interval interval = bootstrap_difference(a, b);
   EXPECT_DOUBLE_EQ(interval.low, 2);
   EXPECT_DOUBLE_EQ(interval.high, 4);
 }
 
-TEST(Newcombe, TheExampleOfHisPaper) {
+TEST(RateDifferenceInterval, MatchesTheExampleOfNewcombe) {
   // Table II, column (a): 56/70 - 48/80, method 10.
   const Interval interval = rate_difference_interval(56, 70, 48, 80);
   EXPECT_NEAR(interval.low, 0.0524, 5e-5);

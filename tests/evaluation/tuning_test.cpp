@@ -24,7 +24,7 @@ TEST(SearchDimension, RangesEndWhereTheySay) {
   EXPECT_EQ(logarithmic.place("7"), 1) << "the nearest place";
 }
 
-TEST(SearchDimension, WholeNumbersComeUpEquallyOften) {
+TEST(SearchDimension, WholeNumbersAreEquallyLikely) {
   const auto whole = parse_dimension("guides=1:4", configuration, "svg_mppi");
   std::map<std::string, int> counts;
   for (int i = 0; i < 400; ++i) ++counts[whole.value((i + 0.5) / 400)];
@@ -41,14 +41,14 @@ TEST(SearchDimension, Choices) {
   EXPECT_EQ(choice.value(choice.place("discs")), "discs");
 }
 
-TEST(SearchDimension, RefusesNonsense) {
+TEST(SearchDimension, RejectsInvalidText) {
   for (const char* text : {"", "variance", "=1:2", "variance=2:1", "variance=1:1", "variance=0:1:log",
                            "variance=1:2:3", "variance=a:b", "variance=0.1", "guides=1.5:3", "samples=-4:3",
                            "nothing=1:2", "vehicle.body=box,cube"})
     EXPECT_THROW(parse_dimension(text, configuration, "svg_mppi"), std::invalid_argument) << text;
 }
 
-TEST(Design, FillsTheBoxEvenly) {
+TEST(SearchDesign, FillsTheBoxEvenly) {
   const std::vector<SearchDimension> dimensions{
       parse_dimension("mppi.variance=0.001:0.1:log", configuration, "mppi"),
       parse_dimension("mppi.temperature=1:9", configuration, "mppi")};
@@ -70,7 +70,7 @@ TEST(Design, FillsTheBoxEvenly) {
   }
 }
 
-TEST(Halving, HalfOfThemGoOnWithTwiceTheLaps) {
+TEST(SuccessiveHalving, HalvesTheCandidatesAndDoublesTheLaps) {
   const auto rungs = halving(9, 3);
   ASSERT_EQ(rungs.size(), 4u);
   const int candidates[] = {9, 5, 3, 2}, laps[] = {3, 6, 12, 24};
@@ -87,7 +87,7 @@ TEST(Halving, HalfOfThemGoOnWithTwiceTheLaps) {
   }
 }
 
-TEST(ObjectiveTest, IsASumOfFigures) {
+TEST(TuningObjective, IsASumOfFigures) {
   LapRow row;
   row.state_cost = 0.5;
   row.collision_cost = 2;

@@ -10,7 +10,7 @@
 namespace slalom::maps {
 namespace {
 
-TEST(MapsLoop, UpdatesAllocateNothing) {
+TEST(MapUpdates, AllocateNothing) {
   std::vector<ReferencePoint> path;
   for (int i = 0; i < 300; ++i) path.push_back({5 * std::cos(0.02 * i), 5 * std::sin(0.02 * i), 0, 1});
   ReferenceField field(path);

@@ -10,7 +10,7 @@
 namespace slalom::maps {
 namespace {
 
-TEST(ClearanceMap, IsTheDistanceToTheNearestPointUpToTheReach) {
+TEST(ClearanceMap, HoldsTheDistanceToTheNearestPointUpToItsReach) {
   ClearanceMap map({.reach = 0.6});
   std::mt19937 random(3);
   std::uniform_real_distribution<double> along(-2.4, 8.4), across(-5.4, 5.4);
@@ -30,7 +30,7 @@ TEST(ClearanceMap, IsTheDistanceToTheNearestPointUpToTheReach) {
   EXPECT_GT(near, 200);
 }
 
-TEST(ClearanceMap, OutsideIsNegativeAndWhatIsNotFiniteIsIgnored) {
+TEST(ClearanceMap, IsNegativeOutsideAndIgnoresNonFinitePoints) {
   ClearanceMap map;
   EXPECT_EQ(map.at(8.01, 0), -1);
   EXPECT_EQ(map.at(0, -5.01), -1);
@@ -44,7 +44,7 @@ TEST(ClearanceMap, OutsideIsNegativeAndWhatIsNotFiniteIsIgnored) {
   EXPECT_EQ(map.at(1, 0), 0.5F);
 }
 
-TEST(ClearanceMap, RefusesBadOptions) {
+TEST(ClearanceMap, RejectsInvalidOptions) {
   EXPECT_THROW(ClearanceMap({.resolution = 0}), std::invalid_argument);
   EXPECT_THROW(ClearanceMap({.reach = -1}), std::invalid_argument);
 }

@@ -62,7 +62,7 @@ TEST(DistanceField, IsInfiniteWithoutObstacles) {
   for (const double d : distance_transform(grid, true).distance) EXPECT_EQ(d, 0);
 }
 
-TEST(DistanceField, RefusesAGridWhoseSizesDisagree) {
+TEST(DistanceField, RejectsAGridWithInconsistentSizes) {
   EXPECT_THROW(distance_transform(OccupancyGrid{}, false), std::invalid_argument);
   EXPECT_THROW(distance_transform(OccupancyGrid{2, 2, 0.1, {}, std::vector<Occupancy>(3)}, false),
                std::invalid_argument);

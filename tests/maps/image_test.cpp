@@ -5,8 +5,8 @@
 
 #include <stdexcept>
 
-#include "support/temporary_folder.hpp"
 #include "slalom/core/error.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -49,7 +49,7 @@ TEST_F(Image, ColoursAreAveraged) {
   EXPECT_TRUE(image.opacity.empty());
 }
 
-TEST_F(Image, TransparencyIsKeptApart) {
+TEST_F(Image, IgnoresTransparency) {
   const GreyImage colour = load_image(write_png(PNG_COLOR_TYPE_RGB_ALPHA, 8, {0, 0, 0, 255, 90, 90, 90, 7}));
   EXPECT_EQ(colour.grey, (Bytes{0, 90}));
   EXPECT_EQ(colour.opacity, (Bytes{255, 7}));
@@ -70,7 +70,7 @@ TEST_F(Image, Palettes) {
   EXPECT_EQ(image.opacity, (Bytes{0, 255}));
 }
 
-TEST_F(Image, WhatCannotBeSavedIsRefused) {
+TEST_F(Image, RejectsImagesThatCannotBeSaved) {
   EXPECT_THROW(save_png({2, 2, Bytes(3), {}}, folder_ / "image.png"), std::invalid_argument);
   EXPECT_THROW(save_png({0, 0, {}, {}}, folder_ / "image.png"), IoError);
   EXPECT_THROW(save_png({1, 1, Bytes(1), {}}, folder_ / "absent" / "image.png"), IoError);

@@ -22,7 +22,7 @@ int occupied_cells(const LocalCostMap& map) {
   return count;
 }
 
-TEST(LocalCostMap, MarksEveryPositionWhereTheBodyTouchesAPoint) {
+TEST(LocalCostMap, MarksEveryPositionWhereTheBodyCoversAPoint) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> in_x(-1.9, 7.9), in_y(-4.9, 4.9), unit(0, 1);
   const LocalCostMapOptions options{.margin = 0.02};
@@ -100,7 +100,7 @@ TEST(LocalCostMap, BadReadingsAreDroppedAndCounted) {
   EXPECT_EQ(map.at(2.2, 0), 100);
 }
 
-TEST(LocalCostMap, WhatTheBodyLeansAgainstStaysInSight) {
+TEST(LocalCostMap, KeepsObstaclesThatTouchTheBody) {
   const std::vector<float> ranges{0.17F, 0.1F};  // 2.5 cm within the front of the body, and 9.5 cm
   const LaserScanView scan{ranges, 0, 1e-3, 0.05, 30};
   LocalCostMap map, published(LocalCostMapOptions::published());
@@ -108,7 +108,7 @@ TEST(LocalCostMap, WhatTheBodyLeansAgainstStaysInSight) {
   EXPECT_EQ(published.update(scan).on_body, 2);
 }
 
-TEST(LocalCostMap, UnusableScansAreRefused) {
+TEST(LocalCostMap, RejectsUnusableScans) {
   LocalCostMap map({.max_beams = 4});
   const std::vector<float> five(5, 2.0F), four(4, 2.0F);
   ASSERT_TRUE(map.update({four, 0, 0.1, 0, 30}).accepted);
@@ -179,7 +179,7 @@ TEST(LocalCostMap, TheViewLooksUpTheSameCells) {
   }
 }
 
-TEST(LocalCostMap, AbsurdOptionsAreRefused) {
+TEST(LocalCostMap, RejectsInvalidOptions) {
   const auto refused = [](auto change) {
     LocalCostMapOptions options;
     change(options);

@@ -98,7 +98,7 @@ TEST(ReferenceField, AShortPathAppearsOnce) {
   expect_nearest(field, path);
 }
 
-TEST(ReferenceField, AReachMakesTheCellsWithinIt) {
+TEST(ReferenceField, UpdatesTheCellsWithinReach) {
   const auto path = circle(600, 5);
   ReferenceField field(path);
   ASSERT_TRUE(field.update({5.1, 0}));
@@ -106,7 +106,7 @@ TEST(ReferenceField, AReachMakesTheCellsWithinIt) {
   expect_nearest(field, path, 30);
 }
 
-TEST(ReferenceField, ABoxOfCellsIsThatOfTheWholeMap) {
+TEST(ReferenceField, APartialUpdateEqualsTheWholeMap) {
   const auto path = circle(600, 5);
   ReferenceField whole(path), part(path);
   for (const auto& [low, high] : {std::pair(Point{-0.31, 4.2}, Point{1.7, 5.13}),
@@ -185,7 +185,7 @@ void expect_bad_paths_refused() {
   EXPECT_THROW(Field{path}, std::invalid_argument);
 }
 
-TEST(ReferenceField, BadPathsAndOptionsAreRefused) {
+TEST(ReferenceField, RejectsInvalidPathsAndOptions) {
   expect_bad_paths_refused<ReferenceField>();
   const auto path = circle(10, 1);
   const auto refused = [&](auto change) {
@@ -202,7 +202,7 @@ TEST(ReferenceField, BadPathsAndOptionsAreRefused) {
   refused([](auto& o) { o.outside.distance = NAN; });
 }
 
-TEST(CourseField, IsTheDistanceToTheSegments) {
+TEST(CourseReferenceField, IsTheDistanceToTheSegments) {
   // A square of four points: far between them, the nearest point lies inside a segment.
   const std::vector<ReferencePoint> path{{0, 0, 0, 1}, {4, 0, 0, 3}, {4, 4, 0, 1}, {0, 4, 0, 1}};
   const CourseField field(path, {.resolution = 0.1, .corridor = 1.5});
@@ -227,7 +227,7 @@ TEST(CourseField, IsTheDistanceToTheSegments) {
   EXPECT_EQ(field.at(100, 2).distance, 20);
 }
 
-TEST(CourseField, AnOpenPathHasEnds) {
+TEST(CourseReferenceField, AnOpenPathHasEnds) {
   const std::vector<ReferencePoint> path{{0, 0, 0, 1}, {2, 0, 0, 1}, {4, 0, 0, 2}};
   const CourseField field(path, {.closed = false});
   EXPECT_NEAR(field.at(-3.05, 0.05).distance, 3.05, 0.01);
@@ -236,7 +236,7 @@ TEST(CourseField, AnOpenPathHasEnds) {
   EXPECT_NEAR(field.at(6.95, 0.05).yaw, 0, 1e-6);
 }
 
-TEST(CourseField, FollowsACircleWithinACellsWidth) {
+TEST(CourseReferenceField, FollowsACircleWithinACellsWidth) {
   const auto path = circle(500, 6);
   const CourseField field(path);
   for (double t = 0; t < 6.28; t += 0.01) {
@@ -249,7 +249,7 @@ TEST(CourseField, FollowsACircleWithinACellsWidth) {
   }
 }
 
-TEST(CourseField, BadPathsAndOptionsAreRefused) {
+TEST(CourseReferenceField, RejectsInvalidPathsAndOptions) {
   expect_bad_paths_refused<CourseField>();
   const auto path = circle(10, 1);
   EXPECT_THROW(CourseField(path, {.resolution = 0}), std::invalid_argument);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(Script, HoldsEachCommandUntilTheNext) {
+TEST(CommandScript, HoldsEachCommandUntilTheNext) {
   const Script script({{0.5, {0.1, 2}}, {1.0, {-0.1, 3}}});
   EXPECT_EQ(script.command(0.2).drive, 0);
   EXPECT_EQ(script.command(0.5).drive, 2);
@@ -26,7 +26,7 @@ TEST(Script, HoldsEachCommandUntilTheNext) {
   EXPECT_THROW(Script(std::vector<Script::Line>{{0, {nan, 0}}}), std::invalid_argument);
 }
 
-TEST(PurePursuit, StaysNearThePathAndFindsBack) {
+TEST(PurePursuit, StaysNearThePathAndReturnsToIt) {
   std::vector<PathPoint> path;
   for (const maps::Point& p : testing::circle(5.5)) path.push_back({p, 2});
   const PurePursuit driver(path);
@@ -42,13 +42,13 @@ TEST(PurePursuit, StaysNearThePathAndFindsBack) {
   EXPECT_EQ(world.laps(0)->laps(), 1);
 }
 
-TEST(PurePursuit, RefusesBadInput) {
+TEST(PurePursuit, RejectsInvalidInput) {
   EXPECT_THROW(PurePursuit({{{0, 0}, 1}, {{1, 0}, 1}}), std::invalid_argument);
   EXPECT_THROW(PurePursuit({{{0, 0}, 1}, {{1, nan}, 1}, {{1, 1}, 1}}), std::invalid_argument);
   EXPECT_THROW(PurePursuit({{{0, 0}, 1}, {{1, 0}, 1}, {{1, 1}, 1}}, {.lookahead = 0}), std::invalid_argument);
 }
 
-TEST(Placement, ApartCarsDoNotOverlapAndLeaveTheStart) {
+TEST(ObstaclePlacement, ApartCarsDoNotOverlapAndLeaveTheStart) {
   const auto path = testing::circle(5.5);
   const auto track = testing::ring_track();
   std::vector<double> room;

@@ -270,7 +270,7 @@ TEST(ScanProperty, OpenBorderReturnsNothing) {
   EXPECT_EQ(ranges[540], 0);
 }
 
-TEST(NoiseProperty, IsNormalIndependentAndRepeats) {
+TEST(RangeNoise, IsNormalIndependentAndRepeats) {
   NormalNoise a, b, again;
   a.reset(5, 0);
   b.reset(5, 1);
@@ -300,7 +300,7 @@ TEST(NoiseProperty, IsNormalIndependentAndRepeats) {
   EXPECT_NEAR(lagged / total, 0, 5 * deviation);
 }
 
-TEST(NoiseProperty, DropsTheAskedShareAndKeepsLimits) {
+TEST(RangeNoise, DropsTheGivenShareAndKeepsLimits) {
   NormalNoise noise;
   noise.reset(1, 0);
   int lost = 0;

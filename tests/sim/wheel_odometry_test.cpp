@@ -49,7 +49,7 @@ TEST(WheelOdometry, IsTrueWithoutErrors) {
   }
 }
 
-TEST(WheelOdometry, ErrsAsItsOptionsSay) {
+TEST(WheelOdometry, HasTheErrorsOfItsOptions) {
   WheelOdometryOptions options = faultless;
   options.speed_gain_error = 0.1;
   const Driven fast = drive(options, 0);
@@ -63,7 +63,7 @@ TEST(WheelOdometry, ErrsAsItsOptionsSay) {
   EXPECT_NEAR(drive(options, 0).odometry.yaw, 0.4, 1e-6);
 }
 
-TEST(WheelOdometry, RefusesBadOptionsAndIgnoresBadStates) {
+TEST(WheelOdometry, RejectsInvalidOptionsAndIgnoresInvalidStates) {
   EXPECT_THROW(WheelOdometry({}, {.speed_noise = -1}), std::invalid_argument);
   WheelOdometry odometry;
   odometry.reset({.speed = 1});

@@ -5,11 +5,11 @@
 #include <cstring>
 #include <thread>
 
-#include "support/allocations.hpp"
 #include "sim/rooms.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
 #include "slalom/sim/recording.hpp"
 #include "slalom/sim/world.hpp"
+#include "support/allocations.hpp"
 
 namespace slalom::sim {
 namespace {
@@ -83,7 +83,7 @@ TEST(WorldProperty, CarsHaveNoiseOfTheirOwn) {
   EXPECT_NE(noise[0], noise[1]);
 }
 
-TEST(WorldProperty, ACopyGoesTheSameWay) {
+TEST(WorldProperty, ACopyMovesIdentically) {
   World world({}, testing::ring_track());
   world.reset(3, two_cars, parked);
   for (int k = 0; k < 200; ++k) world.step(wander(k));
@@ -93,7 +93,7 @@ TEST(WorldProperty, ACopyGoesTheSameWay) {
   EXPECT_TRUE(same_bits(world, copy));
 }
 
-TEST(WorldProperty, AnotherThreadGoesTheSameWay) {
+TEST(WorldProperty, AnotherThreadMovesIdentically) {
   const auto track = testing::ring_track();
   const auto run = [&] {
     World world({}, track);
@@ -129,7 +129,7 @@ TEST(WorldProperty, ReplayEqualsRecordingBitForBit) {
   EXPECT_THROW(Recording::from_text("something else"), std::invalid_argument);
 }
 
-TEST(WorldProperty, MirroredDrivingGivesTheMirroredWay) {
+TEST(WorldProperty, MirroredInputsGiveMirroredMotion) {
   for (const Model model : {Model::kinematic, Model::single_track, Model::saturating}) {
     PlantOptions options;
     options.dynamics.model = model;
@@ -148,7 +148,7 @@ TEST(WorldProperty, MirroredDrivingGivesTheMirroredWay) {
   }
 }
 
-TEST(WorldProperty, TheWayDoesNotDependOnWhereOneStarts) {
+TEST(WorldProperty, MotionDoesNotDependOnTheStartPose) {
   for (const Model model : {Model::kinematic, Model::single_track, Model::saturating}) {
     PlantOptions options;
     options.dynamics.model = model;
@@ -195,7 +195,7 @@ TEST(WorldProperty, ACoastingCarGainsNoEnergy) {
   }
 }
 
-TEST(WorldProperty, ReverseStaysTame) {
+TEST(WorldProperty, ReversingIsStable) {
   for (const Model model : {Model::kinematic, Model::single_track, Model::saturating}) {
     PlantOptions options;
     options.dynamics.model = model;

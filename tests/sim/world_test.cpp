@@ -76,7 +76,7 @@ TEST(World, FollowsStatesThatAreKnown) {
   EXPECT_THROW(world.follow({}), std::invalid_argument);
 }
 
-TEST(World, PuttingACarElsewhereIsNoProgress) {
+TEST(World, MovingACarIsNoProgress) {
   World world({}, testing::ring_track());
   world.reset(1, start);
   world.set_state(0, {.x = 4.5, .y = 10, .yaw = -1.5707963});
@@ -120,7 +120,7 @@ TEST(World, SlidesAlongWalls) {
   EXPECT_GT(world.state(0).x, 5);
 }
 
-TEST(World, TellsWhichBodiesAreTouched) {
+TEST(World, ReportsWhichBodiesCollide) {
   WorldOptions options;
   options.wall_response = options.body_response = ContactResponse::count_only;
   World world(options, std::make_shared<const Track>(testing::room(400, 100)));
@@ -160,7 +160,7 @@ TEST(World, SeesBodiesWhereTheyAre) {
   EXPECT_NEAR(world.observe(1).scan.ranges[ahead], 19.95 - 12 - options.lidar.mount.x, 1e-3);
 }
 
-TEST(World, BodiesCanBeTakenAway) {
+TEST(World, BodiesCanBeRemoved) {
   WorldOptions options;
   options.lidar.noise = 0;
   World world(options, std::make_shared<const Track>(testing::room(400, 100)));
@@ -219,7 +219,7 @@ TEST(World, CoastsWithoutACommand) {
   }
 }
 
-TEST(World, RefusesBadStarts) {
+TEST(World, RejectsInvalidStarts) {
   World world({}, testing::ring_track());
   EXPECT_THROW(world.reset(1, std::array{maps::Pose{10, 10, 0}}), std::invalid_argument);
   EXPECT_THROW(world.reset(1, std::array{maps::Pose{16.9, 10, 0}}), std::invalid_argument);
@@ -236,7 +236,7 @@ TEST(World, RefusesBadStarts) {
   EXPECT_THROW(world.move_body(1, {}), std::invalid_argument);
 }
 
-TEST(World, RefusesBadOptions) {
+TEST(World, RejectsInvalidOptions) {
   const auto track = testing::ring_track();
   const auto refuses = [&](auto change) {
     WorldOptions options;
@@ -262,7 +262,7 @@ TEST(World, RefusesBadOptions) {
   refuses([](WorldOptions& o) { o.body_response = ContactResponse::gym_zero; });
 }
 
-TEST(Track, RefusesBadMaps) {
+TEST(Track, RejectsInvalidMaps) {
   const auto refuses = [](auto change) {
     maps::OccupancyGrid grid = testing::room(10, 10);
     change(grid);

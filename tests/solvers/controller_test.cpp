@@ -56,7 +56,7 @@ TEST(Controller, TakesParametersThatChangeBetweenSolves) {
   EXPECT_DOUBLE_EQ(plan.states[1].position, 0.7);
 }
 
-TEST(Controller, RefusesASolverForOtherInputs) {
+TEST(Controller, RejectsASolverForAnotherNumberOfInputs) {
   EXPECT_THROW(Controller(DoubleIntegrator{}, make_solver(MppiOptions{}, 2)), std::invalid_argument);
   EXPECT_THROW(Controller(DoubleIntegrator{}, nullptr), std::invalid_argument);
   EXPECT_THROW(Mppi(DoubleIntegrator{}, {.input_min = {-1, -2}}), std::invalid_argument);
@@ -84,7 +84,7 @@ class WholeBatches final : public BatchEvaluator {
   const BatchEvaluator& other_;
 };
 
-TEST(WholeBatches, GiveTheSameBitsAsSlices) {
+TEST(BatchEvaluation, WholeBatchesGiveTheSameBitsAsSlices) {
   ProblemEvaluator problem(DoubleIntegrator{});
   problem.set_state({0.5, 0.2});
   const WholeBatches whole(problem);

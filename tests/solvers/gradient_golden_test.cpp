@@ -38,7 +38,7 @@ void compare_svg_gradient(const std::filesystem::path& folder) {
   EXPECT_GT(comparison.cases(), 0);
 }
 
-TEST(Golden, SvgGradient) {
+TEST(SolverGolden, SvgGradient) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/svg_grad");
   compare_svg_gradient<double>(folder);
   compare_svg_gradient<float>(folder);
@@ -81,7 +81,7 @@ void compare_svmpc_gradient(const std::filesystem::path& folder) {
   EXPECT_GT(comparison.cases(), 0);
 }
 
-TEST(Golden, SvMpcGradient) {
+TEST(SolverGolden, SvMpcGradient) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/svmpc_grad");
   compare_svmpc_gradient<double>(folder);
   compare_svmpc_gradient<float>(folder);
@@ -127,7 +127,7 @@ void compare_phi(const std::filesystem::path& folder) {
   EXPECT_GT(comparison.cases(), 0);
 }
 
-TEST(Golden, SvMpcPhi) {
+TEST(SolverGolden, SvMpcPhi) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/svmpc_phi");
   compare_phi<double>(folder);
   compare_phi<float>(folder);

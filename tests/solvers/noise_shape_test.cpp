@@ -163,7 +163,7 @@ TEST(NoiseShape, EveryInstructionSetAgrees) {
   }
 }
 
-TEST(NoiseShape, RefusesToColourWhatIsTooLong) {
+TEST(NoiseShape, RejectsSequencesThatAreTooLong) {
   EXPECT_THROW(NoiseShape(1, 0, 3000, 1, 1), std::invalid_argument);
   EXPECT_NO_THROW(NoiseShape(0, 0, 3000, 1, 1));
 }

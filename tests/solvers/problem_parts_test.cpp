@@ -39,17 +39,17 @@ void expect_within(P problem, Options options, double low, double high) {
   EXPECT_GT(largest, high - 0.2);
 }
 
-TEST(Bounds, AProblemsHoldForEveryMethod) {
+TEST(InputBounds, OfTheProblemHoldForEveryMethod) {
   for (const char* name : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"})
     std::visit([](auto options) { expect_within(Bounded{}, options, -0.25, 0.75); }, solver_options(name));
 }
 
-TEST(Bounds, TheNarrowerOfProblemAndOptionsCounts) {
+TEST(InputBounds, TheNarrowerOfProblemAndOptionsApplies) {
   expect_within(Bounded{}, MppiOptions{.input_min = -2, .input_max = 0.5}, -0.25, 0.5);
   expect_within(Bounded{}, MppiOptions{.input_min = {-0.125}, .input_max = 3}, -0.125, 0.75);
 }
 
-TEST(Bounds, ThatExcludeEachOtherAreRefused) {
+TEST(InputBounds, DisjointBoundsAreRejected) {
   EXPECT_THROW(Mppi(Bounded{}, {.input_min = 1, .input_max = 2}), std::invalid_argument);
   EXPECT_THROW(Mppi(Bounded{}, {.input_min = {-1, -1}}), std::invalid_argument);
 }
@@ -58,7 +58,7 @@ struct Slow : DoubleIntegrator {
   double input_rate_max = 2;  // a step of 0.1 s: 0.2
 };
 
-TEST(Rates, OfAPlanAreKeptFromSolveToSolve) {
+TEST(RateLimits, HoldFromSolveToSolve) {
   SvgMppi controller{Slow{}, {.horizon = 12, .samples = 256, .input_min = -3, .input_max = 3}};
   DoubleIntegrator::State<double> x = far_left;
   double before = 0;
@@ -80,7 +80,7 @@ TEST(Rates, OfAPlanAreKeptFromSolveToSolve) {
   EXPECT_LT(before, -0.1);  // from 3, by 0.2 a tick at most: 15 ticks would end at 0 and a rounding
 }
 
-TEST(Rates, CountFromTheInputThatIsBeingApplied) {
+TEST(RateLimits, StartFromTheAppliedInput) {
   Mppi controller{Slow{}, {.horizon = 8, .variance = 4, .input_min = -3, .input_max = 3}};
   const auto first = controller.solve(far_left);
   const double third = first.inputs[2][0];
@@ -118,12 +118,12 @@ void expect_blocks(Options options) {
   for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(plan.inputs[k][0], again.inputs[k][0]);
 }
 
-TEST(Sampler, OfAProblemIsUsed) {
+TEST(ProblemSampler, OfAProblemIsUsed) {
   expect_blocks(MppiOptions{});
   expect_blocks(CemOptions{.iterations = 1});
 }
 
-TEST(CostTerms, OfAPlanSumToItsCost) {
+TEST(CostTerms, SumToTheCostOfThePlan) {
   Mppi controller{DoubleIntegrator{}, {.horizon = 6}};
   EXPECT_STREQ(controller.solve({0.5, std::nan("")}).cost_terms[0].name, "stage");
   const auto plan = controller.solve({0.5, 0.1});

@@ -84,7 +84,7 @@ void compare_reverse(const std::filesystem::path& folder) {
   EXPECT_GT(comparison.cases(), 0);
 }
 
-TEST(Golden, ReverseWeights) {
+TEST(SolverGolden, ReverseWeights) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/reverse_weights");
   compare_reverse<double>(folder);
   compare_reverse<float>(folder);
@@ -128,7 +128,7 @@ void compare_rejection(const std::filesystem::path& folder) {
   EXPECT_GT(comparison.cases(), 0);
 }
 
-TEST(Golden, RejectionProbability) {
+TEST(SolverGolden, RejectionProbability) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/rejection_prob");
   compare_rejection<double>(folder);
   compare_rejection<float>(folder);

@@ -56,7 +56,7 @@ TEST(Smoother, PolynomialsOfItsDegreeStayAsTheyAre) {
   for (std::size_t r = 0; r < u.size(); ++r) EXPECT_NEAR(smooth[r], u[r], 2e-6) << r;
 }
 
-TEST(Smoother, TakesNoiseAway) {
+TEST(Smoother, ReducesNoise) {
   const int steps = 200;
   Smoother smoother(steps, 1, 5, 2);
   std::vector<float> u;

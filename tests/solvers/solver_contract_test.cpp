@@ -5,9 +5,9 @@
 #include <thread>
 
 #include "slalom/solvers/make_solver.hpp"
-#include "support/allocations.hpp"
 #include "solvers/problems.hpp"
 #include "solvers/published_options.hpp"
+#include "support/allocations.hpp"
 
 namespace slalom {
 namespace {
@@ -56,7 +56,7 @@ std::vector<OptionSet> option_sets() {
   return sets;
 }
 
-class Contract : public ::testing::TestWithParam<OptionSet> {
+class SolverContract : public ::testing::TestWithParam<OptionSet> {
  protected:
   /// A solver with changes made to the options by `change`, which takes any method's options.
   template <class Change>
@@ -92,7 +92,7 @@ auto simple(int inputs, Cost cost) {
   });
 }
 
-TEST_P(Contract, FindsTheOptimumOfALinearQuadraticProblem) {
+TEST_P(SolverContract, FindsTheOptimumOfALinearQuadraticProblem) {
   const auto solver = make(1, [](auto& o) {
     o.horizon = 15;
     o.input_min = -4;
@@ -129,7 +129,7 @@ TEST_P(Contract, FindsTheOptimumOfALinearQuadraticProblem) {
   EXPECT_LT(excess, tolerance) << "optimal " << optimal;
 }
 
-TEST_P(Contract, KeepsBoundsThatExcludeZero) {
+TEST_P(SolverContract, KeepsBoundsThatExcludeZero) {
   const auto solver = make(2, [](auto& o) {
     small(o);
     o.input_min = {0.5, -3.0};
@@ -147,7 +147,7 @@ TEST_P(Contract, KeepsBoundsThatExcludeZero) {
   }
 }
 
-TEST_P(Contract, EverySampleIsWithinBounds) {
+TEST_P(SolverContract, EverySampleIsWithinBounds) {
   if (GetParam().name == "sv_mpc_published") GTEST_SKIP() << "the published particles leave the bounds";
   const auto solver = make(1, small);
   const auto evaluator = simple(1, [](float a, float b, int) { return a + b; });
@@ -161,7 +161,7 @@ TEST_P(Contract, EverySampleIsWithinBounds) {
   }
 }
 
-TEST_P(Contract, ManyInputsEachOfItsOwnScale) {
+TEST_P(SolverContract, HandlesManyInputsOfDifferentScale) {
   const int inputs = 7;
   std::vector<double> low, high, variance;
   for (int i = 0; i < inputs; ++i) {
@@ -190,7 +190,7 @@ TEST_P(Contract, ManyInputsEachOfItsOwnScale) {
   }
 }
 
-TEST_P(Contract, ZeroNoiseKeepsTheSolution) {
+TEST_P(SolverContract, ZeroNoiseKeepsTheSolution) {
   const auto solver = make(1, [](auto& o) {
     small(o);
     o.variance = 0;
@@ -207,7 +207,7 @@ TEST_P(Contract, ZeroNoiseKeepsTheSolution) {
   }
 }
 
-TEST_P(Contract, WeightsFallWithCostByTheTemperature) {
+TEST_P(SolverContract, WeightsFallWithCostByTheTemperature) {
   const std::string method = solver_name(GetParam().options);
   if (method == "cem" || method == "reverse_mppi" || GetParam().name.find("tsallis") != std::string::npos ||
       GetParam().name.ends_with("all_parts")) {
@@ -240,7 +240,7 @@ TEST_P(Contract, WeightsFallWithCostByTheTemperature) {
   }
 }
 
-TEST_P(Contract, ControlTermDrawsTowardsTheNominal) {
+TEST_P(SolverContract, ControlTermDrawsTowardsTheNominal) {
   const std::string method = solver_name(GetParam().options);
   if (method != "mppi" && method != "svg_mppi") GTEST_SKIP() << "has other terms that move the mean";
   // All costs are equal, so the control term alone decides: the mean moves from where it is towards the
@@ -276,7 +276,7 @@ TEST_P(Contract, ControlTermDrawsTowardsTheNominal) {
   EXPECT_LT(norm(solver->solve(indifferent, {}).inputs), 0.8 * before);
 }
 
-TEST_P(Contract, AllCollidingIsSaidAndStillAnswered) {
+TEST_P(SolverContract, ReportsThatAllSamplesCollideAndStillReturnsAPlan) {
   const auto solver = make(1, small);
   const auto evaluator = FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
     return std::pair(1000.0 + static_cast<double>(batch.at(0, 0, k)), true);
@@ -289,7 +289,7 @@ TEST_P(Contract, AllCollidingIsSaidAndStillAnswered) {
   }
 }
 
-TEST_P(Contract, CostsThatAreNotFiniteGiveAStatusAndAFallback) {
+TEST_P(SolverContract, CostsThatAreNotFiniteGiveAStatusAndAFallback) {
   for (const double bad : {infinite, -infinite, std::nan("")}) {
     const auto solver = make(1, small);
     const auto good = simple(1, [](float a, float b, int) { return a * a + b; });
@@ -306,7 +306,7 @@ TEST_P(Contract, CostsThatAreNotFiniteGiveAStatusAndAFallback) {
   }
 }
 
-TEST_P(Contract, SamplesOfNonFiniteCostCountNothing) {
+TEST_P(SolverContract, SamplesOfNonFiniteCostHaveNoWeight) {
   for (const double bad : {infinite, -infinite, std::nan("")}) {
     const auto solver = make(1, small);
     const auto evaluator = simple(1, [bad](float a, float b, int k) { return k % 2 ? bad : a * a + b; });
@@ -321,7 +321,7 @@ TEST_P(Contract, SamplesOfNonFiniteCostCountNothing) {
   }
 }
 
-TEST_P(Contract, EnormousCostsAndEqualCosts) {
+TEST_P(SolverContract, AcceptsEnormousAndEqualCosts) {
   for (const double cost : {1e38, -1e38, 0.0, 1e9}) {
     const auto solver = make(1, small);
     const auto evaluator = simple(1, [cost](float, float, int) { return cost; });
@@ -329,7 +329,7 @@ TEST_P(Contract, EnormousCostsAndEqualCosts) {
   }
 }
 
-TEST_P(Contract, OneSampleAndOneStep) {
+TEST_P(SolverContract, WorksWithOneSampleAndOneStep) {
   const auto evaluator = simple(1, [](float a, float b, int) { return a + b; });
   const auto one_sample = make(1, [](auto& o) {
     small(o);
@@ -346,7 +346,7 @@ TEST_P(Contract, OneSampleAndOneStep) {
   }
 }
 
-TEST_P(Contract, SameBitsForAnyNumberOfThreads) {
+TEST_P(SolverContract, SameBitsForAnyNumberOfThreads) {
   std::vector<float> expected;
   for (const int threads : {1, 2, 7, 16}) {
     const auto solver = make(1, [threads](auto& o) {
@@ -370,7 +370,7 @@ TEST_P(Contract, SameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST_P(Contract, ResetRepeatsAndSeedsDiffer) {
+TEST_P(SolverContract, ResetRepeatsAndSeedsDiffer) {
   const auto solver = make(1, small);
   ProblemEvaluator evaluator(DoubleIntegrator{});
   evaluator.set_state({0.4, 0});
@@ -388,7 +388,7 @@ TEST_P(Contract, ResetRepeatsAndSeedsDiffer) {
   EXPECT_NE(first, other);
 }
 
-TEST_P(Contract, PreparedNoiseChangesNothing) {
+TEST_P(SolverContract, PreparedNoiseChangesNothing) {
   const auto plain = make(1, small), prepared = make(1, small);
   ProblemEvaluator evaluator(DoubleIntegrator{});
   evaluator.set_state({0.4, 0});
@@ -399,7 +399,7 @@ TEST_P(Contract, PreparedNoiseChangesNothing) {
   }
 }
 
-TEST_P(Contract, SolvingAllocatesNothing) {
+TEST_P(SolverContract, SolvingAllocatesNothing) {
   for (const int threads : {1, 3}) {
     const auto solver = make(2, [threads](auto& o) {
       small(o);
@@ -418,7 +418,7 @@ TEST_P(Contract, SolvingAllocatesNothing) {
   }
 }
 
-TEST_P(Contract, DeadlineReturnsTheBestSoFar) {
+TEST_P(SolverContract, DeadlineReturnsTheBestSoFar) {
   const auto solver = make(1, [](auto& o) {
     o.horizon = 10;
     o.input_min = -2;
@@ -443,7 +443,7 @@ TEST_P(Contract, DeadlineReturnsTheBestSoFar) {
   EXPECT_EQ(solver->solve(quick, {.deadline = 60}).status, Status::ok);
 }
 
-TEST_P(Contract, WarmStartFollowsTheClock) {
+TEST_P(SolverContract, WarmStartFollowsTheClock) {
   const auto solver = make(1, [](auto& o) {
     small(o);
     if constexpr (requires { o.control_cost_discount; }) o.control_cost_discount = 1;
@@ -474,7 +474,7 @@ TEST_P(Contract, WarmStartFollowsTheClock) {
   EXPECT_NEAR(shifted[9], before[9], 1e-6f);
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, Contract, ::testing::ValuesIn(option_sets()),
+INSTANTIATE_TEST_SUITE_P(Solvers, SolverContract, ::testing::ValuesIn(option_sets()),
                          [](const auto& set) { return set.param.name; });
 
 }  // namespace

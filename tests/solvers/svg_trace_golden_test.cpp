@@ -131,7 +131,7 @@ void compare_update(const Json& solve, const std::filesystem::path& csv, const s
   }
 }
 
-TEST(Golden, SvgTrace) {
+TEST(SolverGolden, SvgTrace) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/svg_trace");
   Comparison exact("svg_trace (double)", 1e-9), shipped("svg_trace (float32)", 1e-4),
       fits("svg_trace fits, clamped (double)", 1e-4);

@@ -78,7 +78,7 @@ TEST(Weighting, TsallisWeightsByHand) {
   }
 }
 
-TEST(Weighting, InfiniteCostsWeighNothing) {
+TEST(Weighting, InfiniteCostsHaveNoWeight) {
   for (const double q : {0.0, 1.0, 2.0, 3.0}) {
     Drawn drawn([](double v) { return v > 0 ? std::numeric_limits<double>::infinity() : v * v; });
     Weighting weighting({1, q, 0});
@@ -93,7 +93,7 @@ TEST(Weighting, InfiniteCostsWeighNothing) {
   }
 }
 
-TEST(Weighting, FindsTheTemperatureOfAnEffectiveSampleSize) {
+TEST(Weighting, FindsTheTemperatureForAnEffectiveSampleSize) {
   for (const double scale : {1e-3, 1.0, 1e5}) {
     for (const double q : {1.0, 0.5, 1.3}) {
       for (const double share : {0.01, 0.1, 0.5}) {
@@ -140,7 +140,7 @@ TEST(Weighting, ControlTermIsInUnitsOfTheTemperature) {
   }
 }
 
-TEST(Weighting, KeepsTheTemperatureWhereNoneWouldDo) {
+TEST(Weighting, KeepsTheTemperatureWhereNoneFits) {
   Drawn equal([](double) { return 5.0; });
   const float none[1] = {0};
   equal.samples.keep_terms(none, equal.pool);

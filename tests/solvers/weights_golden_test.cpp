@@ -39,7 +39,7 @@ void compare_softmax(const std::filesystem::path& folder) {
   EXPECT_GT(comparison.cases(), 0);
 }
 
-TEST(Golden, Softmax) {
+TEST(SolverGolden, Softmax) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/softmax");
   compare_softmax<double>(folder);
   compare_softmax<float>(folder);
@@ -63,13 +63,13 @@ void compare_control_term(const std::filesystem::path& folder) {
   EXPECT_GT(comparison.cases(), 0);
 }
 
-TEST(Golden, ControlTerm) {
+TEST(SolverGolden, ControlTerm) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/control_term");
   compare_control_term<double>(folder);
   compare_control_term<float>(folder);
 }
 
-TEST(Golden, GaussianFitting) {
+TEST(SolverGolden, GaussianFitting) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/gaussian_fitting");
   Comparison comparison("gaussian_fitting, clamped (double)", 1e-4);
   int undetermined = 0;
@@ -113,7 +113,7 @@ void compare_mirror_descent(const std::filesystem::path& folder) {
   EXPECT_GT(comparison.cases(), 0);
 }
 
-TEST(Golden, MirrorDescent) {
+TEST(SolverGolden, MirrorDescent) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/md_update");
   compare_mirror_descent<double>(folder);
   compare_mirror_descent<float>(folder);

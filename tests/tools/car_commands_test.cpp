@@ -42,7 +42,7 @@ class HardwareCommand : public testing::ProgramTest {
   }
 };
 
-TEST_F(HardwareCommand, RepeatsWithAnyJobsAndHeedsItsSettings) {
+TEST_F(HardwareCommand, RepeatsWithAnyNumberOfJobsAndAppliesItsSettings) {
   const json one = results("--jobs 1");
   EXPECT_EQ(results("--jobs 2"), one);
   ASSERT_EQ(one["results"].size(), 2u);
@@ -58,7 +58,7 @@ TEST_F(HardwareCommand, RepeatsWithAnyJobsAndHeedsItsSettings) {
   EXPECT_NE(results("--set planner.max_speed=1")["results"], one["results"]);
 }
 
-TEST_F(HardwareCommand, RefusesBadArguments) {
+TEST_F(HardwareCommand, RejectsInvalidArguments) {
   expect_refused("hardware --course nowhere", {"nowhere", "known: "});
   expect_refused("hardware --drivers magic@default", {"magic", "svg_mppi"});
   expect_refused("hardware --drivers mppi@nothing", {"nothing", "known: "});
@@ -101,7 +101,7 @@ TEST_F(IdentifyCommand, FindsTheServoOfASimulatedCar) {
   EXPECT_NEAR(ratio, 0.95 / 0.3302, 0.15);
 }
 
-TEST_F(IdentifyCommand, RefusesBadInput) {
+TEST_F(IdentifyCommand, RejectsInvalidInput) {
   expect_refused("identify nothing.jsonl", {"nothing.jsonl", "cannot be read"});
   std::ofstream(folder_ / "text.jsonl") << "hello\n";
   expect_refused("identify text.jsonl", {"text.jsonl:1", "is no record"});
@@ -173,7 +173,7 @@ Wire laser_message() {
 }
 
 /// A drive in the simulator, as a recording and as the bag that a car would have made of it.
-class Bags : public IdentifyCommand {
+class BagReplay : public IdentifyCommand {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
@@ -208,14 +208,14 @@ class Bags : public IdentifyCommand {
   }
 };
 
-TEST_F(Bags, AreIdentifiedAsTheRecordingIs) {
+TEST_F(BagReplay, IdentifiesTheSameModelAsTheRecording) {
   const json a = identified("lap.jsonl"), b = identified("lap.bag");
   EXPECT_EQ(a["samples"], b["samples"]);
   for (const char* key : {"steering_gain", "steering_offset", "delay", "time_constant"})
     EXPECT_NEAR(a[key]["value"], b[key]["value"], 1e-3) << key;
 }
 
-TEST_F(Bags, ShowWhatThePlannerMakesOfThem) {
+TEST_F(BagReplay, RunsThePlannerOnTheBag) {
   const auto run = program("replay lap.bag --method mppi --set samples=256 --record again.jsonl");
   ASSERT_EQ(run.status, 0) << run.output;
   const auto first = lines_of(folder_ / "lap.jsonl"), again = lines_of(folder_ / "again.jsonl");
@@ -239,14 +239,14 @@ TEST_F(Bags, ShowWhatThePlannerMakesOfThem) {
   EXPECT_EQ(program("replay lap.mcap --html again.html").status, 0);
 }
 
-TEST_F(Bags, MayLackTheCourseIfItIsNamed) {
+TEST_F(BagReplay, AcceptsBagsWithoutACourseIfOneIsNamed) {
   write("bare.bag", bag(false).bytes());
   expect_refused("replay bare.bag --record x.jsonl", {"bare.bag", "/map", "--course"});
   const auto run = program("replay bare.bag --course wren --set samples=64 --record x.jsonl");
   EXPECT_EQ(run.status, 0) << run.output;
 }
 
-TEST_F(Bags, ThatAreNoneOrSpoiledAreRefused) {
+TEST_F(BagReplay, RejectsCorruptBags) {
   const std::string good = content(folder_ / "lap.bag");
   expect_refused("replay nothing.bag", {"nothing.bag", "cannot be read"});
   write("text.bag", "no bag at all");

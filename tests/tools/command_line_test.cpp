@@ -31,7 +31,7 @@ class CommandLine : public testing::EvaluationFolder {
   }
 };
 
-TEST_F(CommandLine, AnUnknownInstructionSetEndsNoCommandByAnAbort) {
+TEST_F(CommandLine, AnUnknownInstructionSetDoesNotAbort) {
   for (const std::string arguments :
        {"drive --course wren", "explain", "view --port 0", "bench", "hardware", "options"}) {
     const testing::Run run = timed(arguments, "SLALOM_TARGET=foo");
@@ -52,7 +52,7 @@ TEST_F(CommandLine, AFullStandardOutputIsAnError) {
   }
 }
 
-TEST_F(CommandLine, WhatCannotBeWrittenIsFoundOutBeforeTheWork) {
+TEST_F(CommandLine, ChecksItsOutputFilesFirst) {
   std::ofstream(folder_ / "kept.json") << "kept";
   std::ofstream(folder_ / "lap.jsonl") << "{}\n";
   for (const std::string arguments :
@@ -66,7 +66,7 @@ TEST_F(CommandLine, WhatCannotBeWrittenIsFoundOutBeforeTheWork) {
   EXPECT_FALSE(fs::exists(folder_ / "e"));
 }
 
-TEST_F(CommandLine, OneFileHoldsOneThing) {
+TEST_F(CommandLine, RejectsOneFileForTwoOutputs) {
   std::ofstream(folder_ / "in.jsonl") << "{}\n";
   refuses("drive --course wren --json same.out --record same.out", {"--json", "--record", "same.out"}, 2);
   refuses("drive --course wren --json a.png --plot ./a.png", {"--json", "--plot", "a.png"}, 2);
@@ -79,7 +79,7 @@ TEST_F(CommandLine, OneFileHoldsOneThing) {
   EXPECT_EQ(timed("explain --method mppi --solves 1 --json /dev/null --plot /dev/null").status, 0);
 }
 
-TEST_F(CommandLine, EmptyNegativeAndUndefinedValuesAreRefused) {
+TEST_F(CommandLine, RejectsEmptyNegativeAndUndefinedValues) {
   for (const std::string arguments :
        {"drive --json ''", "drive --plot ''", "drive --record ''", "drive --start ''", "view --token ''",
         "track --out ''", "eval --methods '' --out e", "compare '' ''"})
@@ -95,7 +95,7 @@ TEST_F(CommandLine, EmptyNegativeAndUndefinedValuesAreRefused) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(CommandLine, OptionsThatCannotBothBeHeededAreRefused) {
+TEST_F(CommandLine, RejectsContradictoryOptions) {
   refuses("options --json - --yaml", {"--json", "--yaml"}, 2);
   refuses("options --yaml --method mppi", {"--method", "--yaml"}, 2);
   refuses("drive --record-times", {"--record-times", "--record"}, 2);
@@ -106,7 +106,7 @@ TEST_F(CommandLine, OptionsThatCannotBothBeHeededAreRefused) {
   refuses("hardware --tracking-laps 0 --layouts 0", {"--tracking-laps, --layouts"});
 }
 
-TEST_F(CommandLine, OptionsOfAMethodThatIsNotDrivenAreRefused) {
+TEST_F(CommandLine, RejectsOptionsOfAMethodThatIsNotUsed) {
   const std::string eval = "eval --course " + wren + " --methods mppi --out e ",
                     tune = "tune --course " + wren + " --method svg_mppi --out e ";
   refuses(eval + "--set svg_mppi.samples=256,512", {"--set", "svg_mppi.samples", "no method that is driven"});
@@ -118,7 +118,7 @@ TEST_F(CommandLine, OptionsOfAMethodThatIsNotDrivenAreRefused) {
   EXPECT_FALSE(fs::exists(folder_ / "e"));
 }
 
-TEST_F(CommandLine, ReproduceTakesACourseAndLogsAtTheirWord) {
+TEST_F(CommandLine, ReproduceRequiresTheCourseAndTheLogsThatAreNamed) {
   refuses("reproduce --course nowhere/berlin --out r", {"nowhere/berlin"});
   const std::string command = "reproduce --course " + wren + " --out /proc/none --published logs";
   refuses(command, {"--published", "logs is no folder"});
@@ -128,7 +128,7 @@ TEST_F(CommandLine, ReproduceTakesACourseAndLogsAtTheirWord) {
   refuses(command, {"slalom: /proc/none"});
 }
 
-TEST_F(CommandLine, ReplayPassesOverNoOption) {
+TEST_F(CommandLine, ReplayIgnoresNoOption) {
   fs::create_directories(folder_ / "ev");
   refuses("replay ev --lap 0", {"ev/settings.json"});
   ASSERT_EQ(timed(evaluation("ev")).status, 0);
@@ -148,7 +148,7 @@ TEST_F(CommandLine, ReplayPassesOverNoOption) {
   EXPECT_FALSE(fs::exists(folder_ / "x.html"));
 }
 
-TEST_F(CommandLine, EvaluationsThatHoldNothingAreNamed) {
+TEST_F(CommandLine, NamesEmptyEvaluations) {
   ASSERT_EQ(timed(evaluation("ev")).status, 0);
   fs::copy(folder_ / "ev", folder_ / "none");
   const std::string table = content(folder_ / "ev/laps.csv");
@@ -160,7 +160,7 @@ TEST_F(CommandLine, EvaluationsThatHoldNothingAreNamed) {
   refuses("replay ev --lap 0", {"ev/settings.json: is no JSON object"});
 }
 
-TEST_F(CommandLine, IdentifySaysWhatItReads) {
+TEST_F(CommandLine, IdentifyPrintsItsInputs) {
   ASSERT_EQ(timed("drive --course wren --method mppi --set samples=64 --record a.mcap --record-times").status,
             0);
   refuses("identify a.mcap", {"a.mcap", "JSON lines are needed"});
@@ -189,7 +189,7 @@ TEST_F(CommandLine, ATokenMustFitIntoAnAddress) {
   refuses("view --port 0 --token 'a b/&?#'", {"--token", "'a b/&?#' must have only letters, digits"});
 }
 
-TEST_F(CommandLine, TooLittleMemoryIsSaid) {
+TEST_F(CommandLine, ReportsThatMemoryRanOut) {
 #if !SLALOM_TESTS_MEMORY
   GTEST_SKIP() << "sanitizers take more address space than the limit leaves";
 #endif

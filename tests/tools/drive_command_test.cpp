@@ -31,7 +31,7 @@ class DriveCommand : public testing::ProgramTest {
   }
 };
 
-TEST_F(DriveCommand, FinishesLapsAndTellsInJson) {
+TEST_F(DriveCommand, FinishesLapsAndWritesJson) {
   const auto run = drive("--obstacles 2 --laps 2 --seed 3 --json out.json");
   EXPECT_EQ(run.status, 0) << run.output;
   const json d = result("out.json");
@@ -71,7 +71,7 @@ TEST_F(DriveCommand, GivesTheSameBytesForTheSameSeedAndAnyThreads) {
   EXPECT_NE(cleaned("--seed 1").first, first.first);
 }
 
-TEST_F(DriveCommand, JsonOnStandardOutputStandsAlone) {
+TEST_F(DriveCommand, WritesOnlyJsonToStandardOutput) {
   const auto run = drive("--json - 2>/dev/null");
   EXPECT_EQ(run.status, 0);
   EXPECT_EQ(json::parse(run.output)["laps"].size(), 1u);
@@ -96,7 +96,7 @@ TEST_F(DriveCommand, RecordsEveryStepAndDraws) {
   EXPECT_EQ(content(folder_ / "out.png").substr(1, 3), "PNG");
 }
 
-TEST_F(DriveCommand, FailsWhereALapIsNotFinishedAndTellsAllTheSame) {
+TEST_F(DriveCommand, FailsWhereALapIsNotFinishedButWritesResults) {
   std::ofstream(folder_ / "slow.yaml") << "base: default\nvehicle:\n  max_speed: 0.02\n";
   const fs::path course = spoiled();
   std::ofstream(course / "course.yaml") << "timeout: 0.5\n";
@@ -129,7 +129,7 @@ TEST_F(DriveCommand, DrivesThePublishedEvaluation) {
   EXPECT_NEAR(time, 0.01 * (steps + 1), 1e-9);
 }
 
-TEST_F(DriveCommand, RefusesBadArguments) {
+TEST_F(DriveCommand, RejectsInvalidArguments) {
   expect_refused("drive --course nowhere", {"nowhere", "known: "});
   expect_refused("drive --config nothing", {"nothing", "known: ", "published"});
   expect_refused("drive --method magic", {"magic", "svg_mppi"});
@@ -154,7 +154,7 @@ TEST_F(DriveCommand, RefusesBadArguments) {
   expect_refused("drive --record /proc/none/x", {"/proc/none/x", "cannot be written"});
 }
 
-TEST_F(DriveCommand, RefusesAStartInAWall) {
+TEST_F(DriveCommand, RejectsAStartInAWall) {
   const auto map = maps::load_ros_map(fs::path(SLALOM_COURSES) / "wren" / "map.yaml");
   for (int row = 0; row < map.height; ++row)
     for (int column = 0; column < map.width; ++column) {
@@ -168,7 +168,7 @@ TEST_F(DriveCommand, RefusesAStartInAWall) {
   FAIL() << "the map has no wall";
 }
 
-TEST_F(DriveCommand, RefusesSpoiledCourses) {
+TEST_F(DriveCommand, RejectsCorruptCourses) {
   fs::path course = spoiled();
   fs::remove(course / "map.yaml");
   expect_refused("drive --course spoiled", {"holds no map"});

@@ -24,7 +24,7 @@ class EvalCommand : public testing::EvaluationFolder {
   }
 };
 
-TEST_F(EvalCommand, KilledTenTimesAndResumedItIsAnUndisturbedRun) {
+TEST_F(EvalCommand, KilledTenTimesAndResumedEqualsAnUninterruptedRun) {
   ASSERT_EQ(run(small() + "--jobs 1 --out whole").status, 0);
   const std::string whole = repeatable(folder_ / "whole/laps.csv");
   EXPECT_EQ(std::count(whole.begin(), whole.end(), '\n'), 1 + 2 * 3);
@@ -48,7 +48,7 @@ TEST_F(EvalCommand, KilledTenTimesAndResumedItIsAnUndisturbedRun) {
   EXPECT_EQ(repeatable(folder_ / "torn/laps.csv"), whole);
 }
 
-TEST_F(EvalCommand, AHalfWrittenJournalIsMendedACorruptOneRefused) {
+TEST_F(EvalCommand, RepairsATruncatedJournalAndRejectsACorruptOne) {
   ASSERT_EQ(run(small(1) + "--out whole").status, 0);
   const std::string table = content(folder_ / "whole/laps.csv");
   fs::create_directories(folder_ / "half");
@@ -69,7 +69,7 @@ TEST_F(EvalCommand, AHalfWrittenJournalIsMendedACorruptOneRefused) {
   EXPECT_TRUE(contains(corrupt.output, "laps.journal.csv:3: has 5 columns")) << corrupt.output;
 }
 
-TEST_F(EvalCommand, ThreeProcessesGiveTheTableOfOne) {
+TEST_F(EvalCommand, ThreeProcessesWriteTheTableOfOne) {
   if (testing::run_shell("command -v mpirun").status != 0 || !SLALOM_TESTS_MPI)
     GTEST_SKIP() << "no mpirun here, or built without MPI";
   ASSERT_EQ(run(small() + "--jobs 1 --out one").status, 0);
@@ -88,7 +88,7 @@ TEST_F(EvalCommand, ThreeProcessesGiveTheTableOfOne) {
   EXPECT_EQ(again.output.find("say --resume", first + 1), std::string::npos) << "said once, not three times";
 }
 
-TEST_F(EvalCommand, AFullDiskIsNamedAndNothingIsLost) {
+TEST_F(EvalCommand, AFullDiskIsReportedAndNoLapIsLost) {
   fs::create_directories(folder_ / "full");
   fs::create_symlink("/dev/full", folder_ / "full/settings.json.new");
   const ProgramRun full = run(small(1) + "--out full");
@@ -135,7 +135,7 @@ TEST_F(EvalCommand, ACorruptTableOrAnUnknownColumnIsNamed) {
   EXPECT_TRUE(contains(complaint(table), "settings.json: is not JSON"));
 }
 
-TEST_F(EvalCommand, LapsOfAnotherBuildAreNotMixedInUnasked) {
+TEST_F(EvalCommand, RejectsLapsOfAnotherBuild) {
   ASSERT_EQ(run(small(1) + "--out one").status, 0);
   auto settings = nlohmann::ordered_json::parse(content(folder_ / "one/settings.json"));
   ASSERT_FALSE(settings.at("build").get<std::string>().empty());
@@ -161,7 +161,7 @@ TEST_F(EvalCommand, LapsOfAnotherBuildAreNotMixedInUnasked) {
   EXPECT_EQ(builds.rfind("0123456789ab ", 0), 0u) << builds;
 }
 
-TEST_F(EvalCommand, OtherSettingsAreNotMixedIn) {
+TEST_F(EvalCommand, RejectsLapsOfOtherSettings) {
   ASSERT_EQ(run(small(1) + "--out one").status, 0);
   const ProgramRun again = run(small(1) + "--out one");
   EXPECT_EQ(again.status, 1);
@@ -172,7 +172,7 @@ TEST_F(EvalCommand, OtherSettingsAreNotMixedIn) {
   EXPECT_TRUE(contains(other.output, "evaluation: \"true\" there, \"published\" here")) << other.output;
 }
 
-TEST_F(EvalCommand, WhatIsWrongIsNamedBeforeTheFirstLap) {
+TEST_F(EvalCommand, ReportsInvalidArgumentsBeforeTheFirstLap) {
   const auto complaint = [&](const std::string& arguments) {
     const ProgramRun r = run(arguments);
     EXPECT_NE(r.status, 0) << arguments;
@@ -193,7 +193,7 @@ TEST_F(EvalCommand, WhatIsWrongIsNamedBeforeTheFirstLap) {
   EXPECT_FALSE(fs::exists(folder_ / "x/laps.csv"));
 }
 
-TEST_F(EvalCommand, TheSummaryHoldsWhatItShould) {
+TEST_F(EvalCommand, WritesASummary) {
   const ProgramRun r = run(small(1) + "--out one --report --json -");
   ASSERT_EQ(r.status, 0) << r.output;
   const auto summary = nlohmann::json::parse(content(folder_ / "one/summary.json"));
@@ -212,7 +212,7 @@ TEST_F(EvalCommand, TheSummaryHoldsWhatItShould) {
   EXPECT_TRUE(fs::exists(folder_ / "one/figures/driven_oa.png"));
 }
 
-TEST_F(EvalCommand, ALapIsReplayedToTheLastBitAndTwoRunsAreCompared) {
+TEST_F(EvalCommand, ReplaysALapBitForBitAndComparesTwoRuns) {
   ASSERT_EQ(run(small(2) + "--out one").status, 0);
   const ProgramRun lap = run("replay one --method svg_mppi --lap 1 --course " SLALOM_COURSES
                              "/wren --plot lap.png --record lap.jsonl");
@@ -255,7 +255,7 @@ TEST_F(EvalCommand, ALapIsReplayedToTheLastBitAndTwoRunsAreCompared) {
   EXPECT_TRUE(contains(run("compare a c").output, "nor a folder of such"));
 }
 
-TEST_F(EvalCommand, ReproduceWithoutBerlinSaysWhatIsMissing) {
+TEST_F(EvalCommand, ReproduceWithoutBerlinNamesWhatIsMissing) {
   const ProgramRun r =
       run("reproduce --course " SLALOM_COURSES
           "/wren --out r --sections baseline --laps-pt 1 --laps-oa 1 --set "

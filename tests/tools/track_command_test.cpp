@@ -48,7 +48,7 @@ TEST_F(TrackCommand, MakesTheShippedCoursesAgain) {
   }
 }
 
-TEST_F(TrackCommand, ShippedCoursesAreSound) {
+TEST_F(TrackCommand, ShippedCoursesAreValid) {
   for (const auto& name : vehicle::course_names({SLALOM_COURSES})) {
     const vehicle::Course course = vehicle::load_course(fs::path(SLALOM_COURSES) / name);
     EXPECT_EQ(course.name, name);
@@ -76,7 +76,7 @@ TEST_F(TrackCommand, WritesEveryFileAndASummary) {
   EXPECT_NEAR(summary["profile_lap_s"].get<double>(), vehicle::profile_time(course), 0.1);
 }
 
-TEST_F(TrackCommand, RecordsWordsThatAShellWouldSplit) {
+TEST_F(TrackCommand, QuotesRecordedArguments) {
   const auto run = track(
       "--length 40 --no-picture --out 'my course' --name \"the driver's\" --description 'a b' --json s.json");
   ASSERT_EQ(run.status, 0) << run.output;
@@ -87,13 +87,13 @@ TEST_F(TrackCommand, RecordsWordsThatAShellWouldSplit) {
   EXPECT_EQ(vehicle::load_course(folder_ / "my course").name, "the driver's");
 }
 
-TEST_F(TrackCommand, JsonOnStandardOutputStandsAlone) {
+TEST_F(TrackCommand, WritesOnlyJsonToStandardOutput) {
   const auto run = track("--length 40 --no-picture --out x --json - 2>/dev/null");
   ASSERT_EQ(run.status, 0);
   EXPECT_EQ(nlohmann::json::parse(run.output)["folder"], "x");
 }
 
-TEST_F(TrackCommand, RefusesBadOptions) {
+TEST_F(TrackCommand, RejectsInvalidOptions) {
   struct Bad {
     const char *arguments, *says;
     int status;

@@ -69,7 +69,7 @@ TEST_F(TuneCommand, FindsBetterOptionsAndShowsItOnOtherSeeds) {
   EXPECT_EQ(driven.status, 0) << "the result is a configuration: " << driven.output;
 }
 
-TEST_F(TuneCommand, KilledAndResumedItFindsTheSame) {
+TEST_F(TuneCommand, ResumedAfterAKillItFindsTheSame) {
   ASSERT_EQ(run(small() + "--out whole").status, 0);
   int killed = 0;
   for (const int milliseconds : {150, 300, 500, 800}) {
@@ -82,7 +82,7 @@ TEST_F(TuneCommand, KilledAndResumedItFindsTheSame) {
             repeatable(folder_ / "whole/held-out/wren/laps.csv"));
 }
 
-TEST_F(TuneCommand, WhatMakesNoSenseIsNamed) {
+TEST_F(TuneCommand, RejectsInvalidArguments) {
   const std::string course = "tune --course " SLALOM_COURSES "/wren --out x ";
   EXPECT_TRUE(contains(complaint(course + "--set samples=12"), "nothing to search"));
   EXPECT_TRUE(contains(complaint(course + "--set sampels=10:20"), "did you mean svg_mppi.samples"));

@@ -27,7 +27,7 @@ TEST(CommandHistory, WheelsBeginToTurnAfterTheDelay) {
   EXPECT_NEAR(history.steer(), 0.4 * (1 - std::exp(-0.35)), 1e-12);
 }
 
-TEST(CommandHistory, LeadsTheCarAheadByTheDelay) {
+TEST(CommandHistory, PredictsTheStateAfterTheDelay) {
   CommandHistory history(period, 0.06, lag, wheelbase);
   for (int i = 0; i < 4; ++i) history.send(0.2);
   const CarStart ahead = history.lead_ahead({{1, 2, 0.5}, 3, history.steer()});

@@ -47,7 +47,7 @@ TEST_F(ConfigurationFile, StartsFromAnother) {
             0u);
 }
 
-TEST_F(ConfigurationFile, RefusesWithFileLineKeyValueAndRule) {
+TEST_F(ConfigurationFile, ErrorsNameFileLineKeyValueAndRule) {
   EXPECT_EQ(refusal("vehicle:\n  time_stap: 0.05\n"),
             "x.yaml:2: key vehicle.time_stap: is no option of vehicle; did you mean vehicle.time_step?");
   EXPECT_EQ(refusal("vehicle:\n  time_step: fast\n"),
@@ -74,7 +74,7 @@ TEST_F(ConfigurationFile, RefusesWithFileLineKeyValueAndRule) {
             "x.yaml:1: key vehicle.dead_time: '.nan' must be a number");
 }
 
-TEST_F(ConfigurationFile, RefusesWhatOneOfTwoWouldWinWithoutAWord) {
+TEST_F(ConfigurationFile, RejectsDuplicateKeys) {
   EXPECT_EQ(
       refusal("vehicle:\n  max_speed: 6\nplanner:\n  max_speed: 3\n"),
       "x.yaml:4: key planner.max_speed: is another name of vehicle.max_speed, which line 2 says already");
@@ -91,7 +91,7 @@ TEST_F(ConfigurationFile, RefusesWhatOneOfTwoWouldWinWithoutAWord) {
   EXPECT_EQ(refusal("---\nvehicle: {dead_time: 0}\n...\n"), "accepted") << "marks of one document";
 }
 
-TEST_F(ConfigurationFile, NamesTheLineOfWhatAMethodWouldRefuse) {
+TEST_F(ConfigurationFile, NamesTheLineOfAValueThatAMethodRejects) {
   EXPECT_EQ(refusal("mppi:\n  input_min: 1\n  input_max: -1\n"),
             "x.yaml:3: key mppi.input_min: '1' must be at most mppi.input_max, '-1'");
   EXPECT_EQ(
@@ -164,7 +164,7 @@ TEST(ConfigurationKey, IsSetFromText) {
   EXPECT_EQ(to_yaml(c), before) << "what is refused changes nothing";
 }
 
-TEST(ConfigurationKey, IsNamedWhereAMethodRefusesIt) {
+TEST(ConfigurationKey, IsNamedWhereAMethodRejectsIt) {
   Configuration c;
   set_option(c, "mppi.input_min", "1");
   set_option(c, "mppi.input_max", "-1");

@@ -124,9 +124,9 @@ const std::vector<Spoiled>& cases() {
   return all;
 }
 
-class SpoiledCourse : public ::testing::TestWithParam<std::size_t> {};
+class CorruptCourse : public ::testing::TestWithParam<std::size_t> {};
 
-TEST_P(SpoiledCourse, IsRefusedWithAClearMessage) {
+TEST_P(CorruptCourse, IsRejectedWithAClearMessage) {
   const CourseFolder folder;
   ASSERT_NO_THROW(load_course(folder.path())) << "sound before it is spoiled";
   const Spoiled& spoiled = cases()[GetParam()];
@@ -141,10 +141,10 @@ TEST_P(SpoiledCourse, IsRefusedWithAClearMessage) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(BadInput, SpoiledCourse, ::testing::Range<std::size_t>(0, cases().size()),
+INSTANTIATE_TEST_SUITE_P(BadInput, CorruptCourse, ::testing::Range<std::size_t>(0, cases().size()),
                          [](const auto& test) { return std::string(cases()[test.param].name); });
 
-TEST(KnownCourse, RefusesASpoiledTable) {
+TEST(KnownCourse, RejectsACorruptTable) {
   const CourseFolder folder;
   folder.write("known.yaml", "berlin: {start: {x: 0, y: 0, yaw: 0}, timeout: -1}\n");
   EXPECT_THROW(known_course("berlin", {folder.path()}), IoError);

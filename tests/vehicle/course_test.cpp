@@ -44,7 +44,7 @@ TEST(Course, ReadsTheOptimisedLineForm) {
   EXPECT_DOUBLE_EQ(course.waypoints[1].speed, 2.5);
 }
 
-TEST(Course, LeavesOtherFilesAsideWithANote) {
+TEST(Course, NotesFilesThatItIgnores) {
   const CourseFolder folder;
   folder.write("centre.csv", "# x_m, y_m, w_tr_right_m, w_tr_left_m\n0, 0, 1, 1\n");
   folder.write("planner.yaml", "samples: 5\n");
@@ -71,7 +71,7 @@ TEST(Course, TakesObstaclePathStartAndTimeoutFromItsFiles) {
   EXPECT_NEAR(course.length, 6 * std::sqrt(2.0), 1e-12);
 }
 
-TEST(Course, FarEndsMakeAnOpenCourse) {
+TEST(Course, IsOpenWhereItsEndsAreFarApart) {
   const CourseFolder folder;
   folder.write("raceline.csv", "0;0;0;0;0;1;0\n1;1;0;0;0;1;0\n2;2;0;0;0;1;0\n3;3;0;0;0;1;0\n4;4;0;0;0;1;0\n");
   const Course course = load_course(folder.path());
@@ -96,7 +96,7 @@ TEST(Course, IsCompletedFromItsPoints) {
   EXPECT_THROW(complete_course(course), std::invalid_argument);
 }
 
-TEST(Course, CapsSpeedsAndTellsTheProfilesTime) {
+TEST(Course, CapsSpeedsAndReturnsTheTimeOfTheProfile) {
   const CourseFolder folder;
   Course course = load_course(folder.path());
   const double step = 2 * std::sqrt(2.0);
@@ -108,7 +108,7 @@ TEST(Course, CapsSpeedsAndTellsTheProfilesTime) {
   EXPECT_THROW(cap_speed(course, std::nan("")), std::invalid_argument);
 }
 
-TEST(Course, RefusesAStartInAWallOffTheMapOrNotFinite) {
+TEST(Course, RejectsAStartInAWallOffTheMapOrNotFinite) {
   const CourseFolder folder;
   const Course course = load_course(folder.path());
   EXPECT_NO_THROW(check_start(course, {0, 0, 1}));
@@ -135,7 +135,7 @@ TEST(CourseSearch, FindsFoldersAndNames) {
   EXPECT_THROW(find_course("", {root}), IoError);
 }
 
-TEST(CourseSearch, LooksWhereAProgramLives) {
+TEST(CourseSearch, LooksBesideTheProgram) {
   const CourseFolder folder;
   const auto tree = folder.path().parent_path();
   for (const char* made : {"courses", "build/release/bin", "usr/bin", "usr/share/slalom/courses", "mine"})
@@ -164,9 +164,9 @@ struct OutsideCourse {
   double length, top_speed;
 };
 
-class OutsideCourseTest : public ::testing::TestWithParam<OutsideCourse> {};
+class ExternalCourse : public ::testing::TestWithParam<OutsideCourse> {};
 
-TEST_P(OutsideCourseTest, Loads) {
+TEST_P(ExternalCourse, Loads) {
   const char* root = std::getenv("SLALOM_DATA_DIR");
   if (!root || !std::filesystem::exists(std::filesystem::path(root) / GetParam().name))
     GTEST_SKIP() << "set SLALOM_DATA_DIR to a folder that has " << GetParam().name;
@@ -180,7 +180,7 @@ TEST_P(OutsideCourseTest, Loads) {
   EXPECT_NO_THROW(check_start(course, course.start, 0.0));
 }
 
-INSTANTIATE_TEST_SUITE_P(Courses, OutsideCourseTest,
+INSTANTIATE_TEST_SUITE_P(Courses, ExternalCourse,
                          ::testing::Values(OutsideCourse{"berlin", 1362, 59.80, 6.082},
                                            OutsideCourse{"oschersleben", 1252, 250.28, 8.0},
                                            OutsideCourse{"spielberg", 1228, 338.05, 20.0}),

@@ -57,7 +57,7 @@ TEST(Identification, FindsAllWithoutNoise) {
   EXPECT_GT(found.explained, 0.999);
 }
 
-TEST(Identification, FindsTheSteeringOfANoisyDriveByAKnownWheelbase) {
+TEST(Identification, EstimatesTheSteeringOfANoisyDriveForAKnownWheelbase) {
   const Truth car;
   const Identification found = identify(drive(car, 0.004), {.wheelbase = car.wheelbase});
   EXPECT_NEAR(found.steering_gain.value, car.gain, 0.02);
@@ -81,11 +81,11 @@ TEST(Identification, DeviationsCoverTheErrors) {
   EXPECT_GT(found.wheelbase.deviation, 5e-4) << "noise must show";
 }
 
-TEST(Identification, SpeedIsComparedWithTheWay) {
+TEST(Identification, ComparesSpeedWithDistance) {
   EXPECT_NEAR(identify(drive({}, 0, 1.04), {.wheelbase = 0.324}).speed_scale, 1.04, 0.005);
 }
 
-TEST(Identification, GapsAndLapsBeginPiecesOfTheirOwn) {
+TEST(Identification, SplitsAtGapsAndLaps) {
   const Truth car;
   auto samples = drive(car, 0);
   const auto again = samples;
@@ -97,7 +97,7 @@ TEST(Identification, GapsAndLapsBeginPiecesOfTheirOwn) {
   EXPECT_NEAR(found.time_constant.value, car.lag, 0.002);
 }
 
-TEST(Identification, RefusesTooLittle) {
+TEST(Identification, RejectsTooLittleData) {
   auto samples = drive({}, 0);
   for (auto& s : samples) s.steer_command = 0.1;
   EXPECT_THROW(identify(samples), std::invalid_argument);

@@ -19,9 +19,9 @@ const Place& wren() {
   return place;
 }
 
-class BadInput : public testing::Test {
+class InvalidLocaliserInput : public testing::Test {
  protected:
-  BadInput() {
+  InvalidLocaliserInput() {
     localiser.start_at(drive.truth());
     for (int i = 0; i < 20; ++i) next();
     EXPECT_EQ(localiser.output().status, LocaliserStatus::ok);
@@ -40,7 +40,7 @@ class BadInput : public testing::Test {
   Drive drive{wren(), wren().at(0.2), 3};
 };
 
-TEST_F(BadInput, ScansWithoutReadingsMoveByOdometry) {
+TEST_F(InvalidLocaliserInput, FollowsOdometryWithoutReadings) {
   const std::vector<float> nan(1081, std::numeric_limits<float>::quiet_NaN());
   const std::vector<float> far(1081, 30.0F);
   for (int i = 0; i < 10; ++i) {
@@ -54,7 +54,7 @@ TEST_F(BadInput, ScansWithoutReadingsMoveByOdometry) {
   expect_recovery();
 }
 
-TEST_F(BadInput, MalformedScansAreRefused) {
+TEST_F(InvalidLocaliserInput, RejectsMalformedScans) {
   drive.step();
   LocaliserInput input = drive.input();
   input.scan.angle_increment = NAN;
@@ -65,7 +65,7 @@ TEST_F(BadInput, MalformedScansAreRefused) {
   EXPECT_EQ(strict.update(drive.input()).status, LocaliserStatus::bad_scan);
 }
 
-TEST_F(BadInput, SomeNanReadingsDoNoHarm) {
+TEST_F(InvalidLocaliserInput, ToleratesSomeNanReadings) {
   for (int i = 0; i < 40; ++i) {
     drive.step();
     for (std::size_t k = 0; k < drive.ranges().size(); k += 2) drive.ranges()[k] = NAN;
@@ -76,7 +76,7 @@ TEST_F(BadInput, SomeNanReadingsDoNoHarm) {
   expect_recovery();
 }
 
-TEST_F(BadInput, OdometryThatIsNotFiniteChangesNothing) {
+TEST_F(InvalidLocaliserInput, IgnoresNonFiniteOdometry) {
   const maps::Pose before = localiser.output().pose;
   LocaliserInput input = drive.input();
   input.odometry.x = NAN;
@@ -89,7 +89,7 @@ TEST_F(BadInput, OdometryThatIsNotFiniteChangesNothing) {
   expect_recovery();
 }
 
-TEST_F(BadInput, OdometryJumpsAreBridged) {
+TEST_F(InvalidLocaliserInput, BridgesOdometryJumps) {
   drive.step();
   LocaliserInput input = drive.input();
   input.odometry.x += 5;
@@ -100,7 +100,7 @@ TEST_F(BadInput, OdometryJumpsAreBridged) {
   expect_recovery();
 }
 
-TEST_F(BadInput, OldScansAreIgnoredUntilTheClockIsSetBack) {
+TEST_F(InvalidLocaliserInput, IgnoresOldScansUntilTheClockIsReset) {
   LocaliserInput input = drive.input();
   input.stamp -= 0.1;
   EXPECT_EQ(localiser.update(input).status, LocaliserStatus::stale);
@@ -110,7 +110,7 @@ TEST_F(BadInput, OldScansAreIgnoredUntilTheClockIsSetBack) {
   EXPECT_EQ(localiser.update(input).status, LocaliserStatus::ok);
 }
 
-TEST_F(BadInput, StartsAtFinitePosesOnly) {
+TEST_F(InvalidLocaliserInput, AcceptsOnlyFiniteStartPoses) {
   EXPECT_FALSE(localiser.start_at({NAN, 0, 0}));
   expect_recovery();
 }

@@ -68,7 +68,7 @@ TEST(LocaliserTracking, TheLikelihoodFieldTracksToo) {
   }
 }
 
-TEST(LocaliserTracking, ParkedCarsThatTheMapDoesNotKnowDoNoHarm) {
+TEST(LocaliserTracking, ToleratesParkedCarsThatAreNotInTheMap) {
   const Place place("wren");
   Localiser localiser(place.course.map);
   Drive drive(place, place.at(0.05), 1);
@@ -115,7 +115,7 @@ TEST(LocaliserRecovery, FindsAKidnappedCarInAtLeast95Of100Tries) {
   EXPECT_GE(found, 95);
 }
 
-TEST(LocaliserRecovery, FindsTheCarFromNoIdeaAtAll) {
+TEST(LocaliserRecovery, LocalisesGloballyWithoutAnInitialPose) {
   int found = 0, tries = 0;
   for (const char* name : courses) {
     const Place place(name);

@@ -42,7 +42,7 @@ std::string refusal(Call call) {
   return "";
 }
 
-TEST(LocaliserConstruction, RefusesBadOptionsByName) {
+TEST(LocaliserConstruction, RejectsInvalidOptionsByName) {
   const auto with = [](LocaliserOptions o) { return refusal([&] { Localiser(room(), o); }); };
   EXPECT_EQ(with({}), "");
   EXPECT_NE(with({.beams = 4}).find("localiser.beams"), std::string::npos);
@@ -51,7 +51,7 @@ TEST(LocaliserConstruction, RefusesBadOptionsByName) {
   EXPECT_NE(with({.slow_rate = 0.5}).find("slow_rate"), std::string::npos);
 }
 
-TEST(LocaliserConstruction, RefusesBadMaps) {
+TEST(LocaliserConstruction, RejectsInvalidMaps) {
   const auto with = [](const maps::OccupancyGrid& map) { return refusal([&] { Localiser{map}; }); };
   maps::OccupancyGrid map = room();
   std::fill(map.cells.begin(), map.cells.end(), maps::Occupancy::occupied);
@@ -69,7 +69,7 @@ TEST(LocaliserConstruction, RefusesBadMaps) {
   EXPECT_NE(with(map).find("origin"), std::string::npos);
 }
 
-TEST(Localiser, FindsACarThatStandsInATurnedMap) {
+TEST(Localiser, FindsAStandingCarInARotatedMap) {
   const maps::OccupancyGrid map = room();
   const sim::Track track(map);
   const sim::Lidar lidar({.beams = 361, .field_of_view = 4.7, .range_max = 20, .mount = {0.275, 0, 0}});
@@ -122,7 +122,7 @@ TEST(Localiser, GivesTheSameBitsForTheSameSeed) {
   EXPECT_NE(once, run(6));
 }
 
-TEST(Localiser, ResetBeginsLikeANewOne) {
+TEST(Localiser, ResetEqualsConstruction) {
   Localiser used(room(), {.seed = 1}), fresh(room(), {.seed = 9});
   Drive drive(wren(), wren().at(0.2), 3);
   for (int i = 0; i < 5; ++i, drive.step()) used.update(drive.input());

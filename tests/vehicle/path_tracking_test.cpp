@@ -160,7 +160,7 @@ TEST(PathTracking, DiscsTurnWithTheCar) {
   EXPECT_FALSE(car.stage_cost(away, car.look_up(away), u).collided);
 }
 
-TEST(PathTracking, NearnessCostsBeforeContact) {
+TEST(PathTracking, SmallClearanceCostsBeforeACollision) {
   PathTrackingOptions options;
   options.body = BodyForm::discs;
   options.soft_cost = 8;

@@ -123,7 +123,7 @@ TEST(Planner, ObstaclesFromOutsideCountAsTheScansDo) {
   EXPECT_LT(out->command.speed, 3);
 }
 
-TEST(Planner, BrakesWhereNoPlanIsFree) {
+TEST(Planner, BrakesWhereEveryPlanCollides) {
   Planner planner = make_planner();
   Corridor corridor{.wall = 1.5};
   double speed = 3;
@@ -178,7 +178,7 @@ TEST(Planner, WithTheAccelerationAsAnInputItIsFastWhereItCanAndSlowsDownInTime) 
   EXPECT_FALSE(blocked) << "a plan that slows down is free all the time";
 }
 
-TEST(Planner, GoesBackFromWhatItStandsAgainst) {
+TEST(Planner, ReversesFromAnObstacleThatItTouches) {
   for (const bool back_up : {true, false}) {
     PlannerOptions options = careful();
     options.back_up = back_up;
@@ -192,7 +192,7 @@ TEST(Planner, GoesBackFromWhatItStandsAgainst) {
   }
 }
 
-TEST(BackUp, WaitsGoesBackAndStopsWhenTheWayIsFree) {
+TEST(PlannerReversing, WaitsThenReversesUntilTheWayIsFree) {
   detail::BackUp back_up;
   const double period = 0.025;
   for (int i = 0; i < 40; ++i) EXPECT_FALSE(back_up.update(true, 0, period));
@@ -210,7 +210,7 @@ TEST(BackUp, WaitsGoesBackAndStopsWhenTheWayIsFree) {
 }
 
 /// What no plan can be made from: a status, and a car that stops with its wheels held.
-TEST(Planner, BadInputStopsTheCarAndGoodInputStartsItAgain) {
+TEST(Planner, InvalidInputStopsTheCarAndValidInputRestartsIt) {
   Corridor corridor;
   const Odometry good{{5, 0, 0}, 3};
   const std::vector<float> nothing(271, std::numeric_limits<float>::infinity()),
@@ -291,7 +291,7 @@ TEST(Planner, AnUpdateAllocatesNothing) {
   EXPECT_EQ(testing::allocations(), before);
 }
 
-TEST(Planner, RefusesWhatItCannotDriveWith) {
+TEST(Planner, RejectsInvalidArguments) {
   EXPECT_THROW(Planner(careful(), small_car(), lane(), false, nullptr), std::invalid_argument);
   EXPECT_THROW(Planner(careful(), small_car(), lane(), false, make_solver(SvgMppiOptions{}, 2)),
                std::invalid_argument);

@@ -7,7 +7,7 @@
 namespace slalom::vehicle {
 namespace {
 
-TEST(PublishedConfiguration, IsWhatTheGoldenTestsCompare) {
+TEST(PublishedConfiguration, EqualsTheOptionsOfTheGoldenTests) {
   const Configuration file = load_configuration(SLALOM_CONFIGS "/published.yaml");
   int compared = 0;
   for (const SolverOptions& method : file.methods) {

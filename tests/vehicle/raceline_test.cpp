@@ -41,7 +41,7 @@ TEST(Raceline, RunsAlongTheInnerBoundOfACircle) {
     EXPECT_NEAR(offset, 0.7, 1e-9);
 }
 
-TEST(Raceline, StaysWithoutRoom) {
+TEST(Raceline, IsUnchangedWithoutFreeWidth) {
   for (const double offset : minimum_curvature_offsets(ellipse(64, 8, 5), 0.0)) EXPECT_EQ(offset, 0.0);
 }
 
@@ -62,7 +62,7 @@ TEST(Raceline, IsOptimalWithinItsBounds) {
   }
 }
 
-TEST(Raceline, RefusesTooFewPointsAndBadBounds) {
+TEST(Raceline, RejectsTooFewPointsAndInvalidBounds) {
   EXPECT_THROW(minimum_curvature_offsets(ellipse(7, 5, 5), 0.5), std::invalid_argument);
   EXPECT_THROW(minimum_curvature_offsets(ellipse(20, 5, 5), -0.1), std::invalid_argument);
   EXPECT_THROW(minimum_curvature_offsets(ellipse(20, 5, 5), std::nan("")), std::invalid_argument);

@@ -31,7 +31,7 @@ TEST(SpeedProfile, LeavesASlowPointAtTheLimitsOfMotorAndBrakes) {
   for (int k = 0; k < 60; ++k) EXPECT_NEAR(v[119 - k] * v[119 - k], 1 + 2 * 3 * 0.1 * k, 1e-9);
 }
 
-TEST(SpeedProfile, RefusesLimitsThatAreNotPositive) {
+TEST(SpeedProfile, RejectsLimitsThatAreNotPositive) {
   const std::vector<double> curvature(10, 0.1);
   EXPECT_THROW(speed_profile(curvature, 0.1, {0, 4, 2, 3}), std::invalid_argument);
   EXPECT_THROW(speed_profile(curvature, 0.1, {5, -4, 2, 3}), std::invalid_argument);

@@ -71,7 +71,7 @@ TEST_P(TrackProperty, CentreLineIsClosedSmoothAndAsLongAsAsked) {
   }
 }
 
-TEST_P(TrackProperty, NeitherLineNorWallsMeet) {
+TEST_P(TrackProperty, NeitherLineNorWallsIntersect) {
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     const TrackOptions asked = options(seed);
     const auto line = generate_track(asked).centre_line;
@@ -179,7 +179,7 @@ TEST(TrackGenerator, RepeatsForASeedAndDiffersBetweenSeeds) {
   EXPECT_NE(first.map.cells, other.map.cells);
 }
 
-TEST(TrackGenerator, RefusesAbsurdOptionsByName) {
+TEST(TrackGenerator, RejectsInvalidOptionsByName) {
   const auto refused = [](const char* key, auto&& change) {
     TrackOptions options;
     change(options);

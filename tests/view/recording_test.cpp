@@ -42,7 +42,7 @@ std::string record(bool wall_clock, int ticks = 12) {
   return std::move(stream).str();
 }
 
-class Recordings : public testing::TemporaryFolder {
+class McapRecording : public testing::TemporaryFolder {
  protected:
   std::string file(const std::string& bytes) const { return write("lap.mcap", bytes).string(); }
 };
@@ -56,14 +56,14 @@ std::string refusal(const std::string& name) {
   return "";
 }
 
-TEST_F(Recordings, TheSameDriveGivesTheSameBytes) {
+TEST_F(McapRecording, TheSameDriveGivesTheSameBytes) {
   const std::string first = record(false);
   EXPECT_EQ(first, record(false));
   EXPECT_EQ(first.find("/wall_clock"), std::string::npos);
   EXPECT_NE(record(true).find("/wall_clock"), std::string::npos);
 }
 
-TEST_F(Recordings, AReplayHoldsEveryFrameInOrder) {
+TEST_F(McapRecording, AReplayHoldsEveryFrameInOrder) {
   const auto segments = load_replay(file(record(false, 12)));
   ASSERT_EQ(segments.size(), 1u);
   const std::string all = gunzip(segments[0]);
@@ -87,7 +87,7 @@ TEST_F(Recordings, AReplayHoldsEveryFrameInOrder) {
   EXPECT_EQ(frames, 12);
 }
 
-TEST_F(Recordings, WhatIsNoRecordingOrIsDamagedIsRefusedByName) {
+TEST_F(McapRecording, RejectsOtherAndDamagedFiles) {
   const std::string good = record(false, 3);
   EXPECT_NE(
       refusal(file("no recording at all, but long enough to have a head and a foot")).find("no recording"),
@@ -103,7 +103,7 @@ TEST_F(Recordings, WhatIsNoRecordingOrIsDamagedIsRefusedByName) {
   EXPECT_NE(refusal("/no/such/file.mcap").find("cannot be read"), std::string::npos);
 }
 
-TEST(Encodings, GoThereAndBack) {
+TEST(FrameEncoding, RoundTrips) {
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("a"), "YQ==");
   EXPECT_EQ(base64("ab"), "YWI=");
@@ -116,7 +116,7 @@ TEST(Encodings, GoThereAndBack) {
   EXPECT_THROW(gunzip("nothing"), std::invalid_argument);
 }
 
-TEST(ReplayPage, PutsTheReplayIntoThePage) {
+TEST(ReplayPage, EmbedsTheReplay) {
   const std::string page = replay_page("<body><script>\"</body>\"</script></body></html>", {"abc", "d"});
   EXPECT_EQ(page,
             "<body><script>\"</body>\"</script><script type=\"application/x-slalom-replay\">YWJj</script>\n"

@@ -37,7 +37,7 @@ TEST(ViewServer, ServesItsPageAndNothingElse) {
   EXPECT_EQ(status(post.get("/")), "405");
 }
 
-TEST(ViewServer, OnlyPagesOfItsOwnMayConnect) {
+TEST(ViewServer, AcceptsOnlyItsOwnPages) {
   Server server({}, page);
   EXPECT_EQ(status(WebClient(server.port()).get("/ws", true)), "101");
   EXPECT_EQ(status(WebClient(server.port()).get("/ws", true, "localhost:1", "http://localhost:1")), "101");
@@ -59,7 +59,7 @@ TEST(ViewServer, AsksForItsToken) {
   EXPECT_EQ(server.counters().refused_token, 3u);
 }
 
-TEST(ViewServer, RefusesAddressesAndPorts) {
+TEST(ViewServer, RejectsInvalidAddressesAndPorts) {
   EXPECT_THROW(Server({.host = "not an address"}, page), std::invalid_argument);
   Server server({}, page);
   EXPECT_THROW(Server({.port = server.port()}, page), std::runtime_error);
@@ -67,7 +67,7 @@ TEST(ViewServer, RefusesAddressesAndPorts) {
   EXPECT_FALSE(is_loopback("0.0.0.0"));
 }
 
-TEST(ViewServer, MessagesGoBothWays) {
+TEST(ViewServer, SendsAndReceivesMessages) {
   Server server({}, page);
   WebClient client(server.port());
   client.get("/ws", true);
@@ -88,7 +88,7 @@ TEST(ViewServer, MessagesGoBothWays) {
   EXPECT_EQ(got[0].text, "hello");
 }
 
-TEST(ViewServer, ServesOnAfterTenThousandMessagesOfNonsense) {
+TEST(ViewServer, SurvivesTenThousandInvalidMessages) {
   Server server({.max_message = 1000, .messages_per_second = 100, .burst = 100}, page);
   // Each client says 400 times what is no command and ends with what is no message.
   for (int client = 0; client < 25; ++client) {
@@ -117,7 +117,7 @@ TEST(ViewServer, ServesOnAfterTenThousandMessagesOfNonsense) {
   server.publish(std::make_shared<const std::string>("alive"));
 }
 
-TEST(ViewServer, AClientThatNeverReadsLosesFramesAndNobodyWaits) {
+TEST(ViewServer, AClientThatNeverReadsLosesFramesAndDelaysNobody) {
   Server server({}, page);
   WebClient asleep(server.port(), 4096), awake(server.port());
   asleep.get("/ws", true);
@@ -134,7 +134,7 @@ TEST(ViewServer, AClientThatNeverReadsLosesFramesAndNobodyWaits) {
   EXPECT_EQ(server.clients(), 2);
 }
 
-TEST(ViewServer, TurnsAwayMoreClientsThanItTakes) {
+TEST(ViewServer, RejectsClientsAboveItsLimit) {
   Server server({.max_clients = 2}, page);
   WebClient a(server.port()), b(server.port());
   a.get("/ws", true);

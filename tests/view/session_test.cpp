@@ -116,7 +116,7 @@ class ViewSession : public ::testing::Test {
   Session session_{session_options(), server_};
 };
 
-TEST_F(ViewSession, GreetsWithEverythingAPageNeeds) {
+TEST_F(ViewSession, FirstMessagesHoldWhatThePageNeeds) {
   const json hello = next("hello");
   EXPECT_EQ(hello["protocol"], 1);
   EXPECT_EQ(hello["scalars"].size(), scalar_names().size());
@@ -146,7 +146,7 @@ TEST_F(ViewSession, DrivesTheLapOfTheCommandLine) {
   EXPECT_EQ(x60, x[60]);
 }
 
-TEST_F(ViewSession, GoesBackExactly) {
+TEST_F(ViewSession, RestoresAnEarlierStateExactly) {
   step_to(20);
   tell({{"do", "add"}, {"kind", "disc"}, {"x", 0}, {"y", 0}, {"length", 0.2}});
   const std::string before = step_to(60);
@@ -187,7 +187,7 @@ TEST_F(ViewSession, SetsUndoesAndForks) {
   EXPECT_NE(next("error")["message"].get<std::string>().find("must be in"), std::string::npos);
 }
 
-TEST_F(ViewSession, ShowsWaysOfTwoInputsStateByState) {
+TEST_F(ViewSession, ShowsTheStatesOfTrajectoriesWithTwoInputs) {
   tell({{"do", "set"}, {"key", "vehicle.speed"}, {"value", "input"}});
   const std::string shown = step_to(3);
   const FrameReader reader(shown);
@@ -202,7 +202,7 @@ TEST_F(ViewSession, ShowsWaysOfTwoInputsStateByState) {
   EXPECT_EQ(guides.get<std::uint16_t>(), 15);
 }
 
-TEST_F(ViewSession, RefusesWhatIsNoCommandAndGoesOn) {
+TEST_F(ViewSession, RejectsUnknownCommandsAndContinues) {
   const char* const bad[] = {"",
                              "{",
                              "[1,2]",
@@ -220,7 +220,7 @@ TEST_F(ViewSession, RefusesWhatIsNoCommandAndGoesOn) {
       << "text that is not UTF-8 ends the connection instead";
 }
 
-TEST_F(ViewSession, ReadsNoCourseThatIsNotOnItsList) {
+TEST_F(ViewSession, LoadsOnlyListedCourses) {
   tell({{"do", "scenario"}, {"course", "/etc"}});
   EXPECT_NE(next("error")["message"].get<std::string>().find("not known"), std::string::npos);
   tell({{"do", "scenario"}, {"course", "eel"}, {"obstacles", 0}, {"seed", "9"}});
