@@ -20,7 +20,7 @@ if(SLALOM_BUILD_SOLVERS)
   install(FILES include/slalom/slalom.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slalom)
 endif()
 
-# A static library's dependencies are its user's to link; a shared one brings its own.
+# Users of a static library must link its dependencies; a shared library links them itself.
 set(SLALOM_LINKS_MAPS OFF)
 if(SLALOM_BUILD_MAPS AND NOT BUILD_SHARED_LIBS)
   set(SLALOM_LINKS_MAPS ON)
@@ -30,7 +30,7 @@ write_basic_package_version_file(slalom-config-version.cmake COMPATIBILITY SameM
 install(FILES ${PROJECT_BINARY_DIR}/slalom-config.cmake ${PROJECT_BINARY_DIR}/slalom-config-version.cmake
   DESTINATION ${package_folder})
 
-# pkg-config: the layers, uppermost first as the linker wants them.
+# pkg-config: the layers, uppermost first, in the order that the linker needs.
 set(SLALOM_PC_LIBRARIES "")
 foreach(layer IN LISTS layers)
   string(PREPEND SLALOM_PC_LIBRARIES "-l${layer} ")

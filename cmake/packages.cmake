@@ -19,7 +19,7 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME slalom-tools)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-slalom)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "slalom-tools")  # its courses
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "slalom-tools")  # has the courses
 if(SLALOM_BUILD_TOOLS)
   list(APPEND CPACK_COMPONENTS_ALL tools)
 endif()

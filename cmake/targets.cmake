@@ -1,5 +1,5 @@
 # slalom_add_layer(<name> SOURCES ... [DEPENDS <layers>] [LINK <private libraries>])
-# One layer of the house: the library slalom_<name>, known as slalom::<name> in the build and the install tree.
+# A layer: the library slalom_<name>, which is slalom::<name> in the build tree and in the install tree.
 function(slalom_add_layer name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS;LINK")
   add_library(slalom_${name} ${arg_SOURCES})
@@ -20,8 +20,8 @@ function(slalom_add_layer name)
   set_property(GLOBAL APPEND PROPERTY SLALOM_LAYERS slalom_${name})
 endfunction()
 
-# Flags of our own targets only; none is exported. Wide packs cross function borders by reference, so the
-# compiler's note about their calling convention (-Wpsabi) says nothing of use.
+# Flags of the targets of this project; none is exported. Functions take wide packs by reference, so the warning about
+# their calling convention (-Wpsabi) does not apply.
 function(slalom_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-psabi)
   if(SLALOM_WARNINGS_AS_ERRORS)

@@ -1,11 +1,11 @@
-# Cross build for AArch64 with Debian's compiler; tests run under qemu's user-mode emulation. The packages that the
-# tests need are found beside this file.
+# Cross-compiles for AArch64 with the compiler of Debian; tests run under the user-mode emulation of qemu. The packages
+# that the tests need are beside this file.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
-# The compiler's own libraries, and those that script/checks/aarch64 unpacks.
+# The libraries of the compiler, and those that script/checks/aarch64 unpacks.
 set(aarch64_packages ${CMAKE_CURRENT_LIST_DIR}/../../build/aarch64-packages)
 set(CMAKE_FIND_ROOT_PATH /usr/aarch64-linux-gnu ${aarch64_packages})
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
