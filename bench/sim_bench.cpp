@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/scan.hpp"
+#include "sim/lidar/scan.hpp"
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/sim/placement.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
@@ -59,7 +59,7 @@ struct Drive {
 
   Drive(int cars, int parked_cars, bool all_scan) {
     // Contacts are counted and change nothing, so that every car goes on driving.
-    options.body_response = ContactResponse::count_only;
+    options.body_response = CollisionResponse::count_only;
     for (int i = 0; i < cars; ++i) starts.push_back(course().pose(static_cast<std::size_t>(40 * i)));
     for (int i = 0; i < parked_cars; ++i) {
       const maps::Pose pose = course().pose(static_cast<std::size_t>(150 + 80 * i));

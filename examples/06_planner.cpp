@@ -23,10 +23,10 @@ bool drives_a_lap(const evaluation::Environment& environment, const SolverOption
     const sim::Observation seen = world.observe(0);
     const maps::Point axle = maps::transform(seen.pose, {-world_options.car.rear_length, 0});
     const auto& output = planner.update({seen.scan, {{axle.x, axle.y, seen.pose.yaw}, seen.speed}});
-    const sim::Command command{output.command.steer, output.command.speed};
+    const Command command{output.command.steer, output.command.speed};
     for (int k = 0; k < 5; ++k) {  // 25 ms
       world.step({&command, 1});
-      if (world.observe(0).contact()) return false;
+      if (world.observe(0).collides()) return false;
     }
   }
   return world.laps(0)->laps() == 1;

@@ -116,7 +116,7 @@ int main(int count, char** arguments) try {
   const maps::Point second = ahead(2, 0.1);
   world.reset(1, std::array{start, maps::Pose{second.x, second.y, start.yaw + 0.4}});
   world.add_disc({ahead(1.2, -0.5), 0.12});
-  world.step(std::array{sim::Command{0, 0}, sim::Command{0, 0}});
+  world.step(std::array{slalom::Command{0, 0}, slalom::Command{0, 0}});
   draw(arguments[1], world);
 
   const sim::Observation seen = world.observe(0);

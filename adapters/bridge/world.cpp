@@ -57,8 +57,8 @@ struct World::Hidden {
     reading.speed = odometry.speed();
     reading.yaw_rate = odometry.yaw_rate();
     reading.laps = world.laps(0) ? world.laps(0)->laps() : 0;
-    reading.contacts += seen.contact() && !touching;
-    touching = seen.contact();
+    reading.contacts += seen.collides() && !touching;
+    touching = seen.collides();
   }
 };
 
@@ -95,7 +95,7 @@ void World::reset() {
 
 void World::step(double steer, double speed) {
   for (int i = 0; i < 5; ++i) {
-    hidden_->world.step(std::array{slalom::sim::Command{steer, speed}});
+    hidden_->world.step(std::array{slalom::Command{steer, speed}});
     hidden_->odometry.update(hidden_->world.state(0), hidden_->options.time_step);
   }
   hidden_->read();

@@ -39,7 +39,7 @@ const sim::World& ClosedLoop::world() const noexcept {
 }
 int ClosedLoop::collisions() const noexcept {
   return runner_->environment_->protocol == Protocol::published ? drive_->log.published()
-                                                                : drive_->log.bodies_touched();
+                                                                : drive_->log.collisions();
 }
 
 std::span<const Collision> ClosedLoop::first_collisions() const noexcept {

@@ -55,7 +55,7 @@ sim::WorldOptions Environment::world_options() const {
     options.time_step = 0.005;
     options.lidar.rate = 40;  // Hz, a scan for every command
     // A car that touches something goes on if it can, so that one contact does not hide the next.
-    options.wall_response = options.body_response = sim::ContactResponse::slide;
+    options.wall_response = options.body_response = sim::CollisionResponse::slide;
   }
   if (lidar) options.lidar = *lidar;
   return options;

@@ -52,11 +52,11 @@ std::optional<vehicle::Odometry> HardwareModel::sense(const sim::Observation& se
   return vehicle::Odometry{out.pose, wheels_.speed()};
 }
 
-sim::Command HardwareModel::servo(const sim::Command& command, double time_step) noexcept {
-  const double target = conditions_.steering_gain * command.steering + conditions_.steering_offset;
+Command HardwareModel::servo(const Command& command, double time_step) noexcept {
+  const double target = conditions_.steering_gain * command.steer + conditions_.steering_offset;
   const double lag = conditions_.steering_time_constant;
   steer_ += (target - steer_) * (lag > 0 ? 1 - std::exp(-time_step / lag) : 1);
-  return {steer_, command.drive};
+  return {steer_, command.speed};
 }
 
 }  // namespace slalom::evaluation

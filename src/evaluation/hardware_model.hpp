@@ -22,7 +22,7 @@ class HardwareModel {
   /// The pose and speed that the planner is told; none while the car does not know where it is.
   std::optional<vehicle::Odometry> sense(const sim::Observation& seen, const sim::CarState& state);
   /// What the servo makes of a command within a step of `time_step` (s).
-  sim::Command servo(const sim::Command& command, double time_step) noexcept;
+  Command servo(const Command& command, double time_step) noexcept;
   /// To be called after each step of `time_step` (s).
   void moved(const sim::CarState& state, double time_step) noexcept { wheels_.update(state, time_step); }
 

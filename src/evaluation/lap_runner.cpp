@@ -207,13 +207,13 @@ void LapRunner::control(Drive& drive, const ControlStepCallback& on_step, double
   }
   if (on_step)
     on_step({result.steps, seen.time, progress(drive.world),
-             published ? drive.log.published() : drive.log.bodies_touched(), seen, scan, odometry, output,
+             published ? drive.log.published() : drive.log.collisions(), seen, scan, odometry, output,
              *drive.planner, drive.world, cost});
   ++result.steps;
 
-  sim::Command command{output.command.steer, output.command.speed};
+  Command command{output.command.steer, output.command.speed};
   // The published program's messages carry float32.
-  if (published) command = {static_cast<float>(command.steering), static_cast<float>(command.drive)};
+  if (published) command = {static_cast<float>(command.steer), static_cast<float>(command.speed)};
   const double time_step = drive.world.options().time_step;
   const auto delay = std::llround(settings_.latency / time_step) +
                      static_cast<long long>(std::ceil(further_latency / time_step - 1e-9));
@@ -231,7 +231,7 @@ void LapRunner::advance(Drive& drive, bool past_finish) const {
       drive.under_way.erase(drive.under_way.begin());
     }
     drive.commands[0] = drive.hardware ? drive.hardware->servo(drive.acting, time_step) : drive.acting;
-    drive.commands[0].steering *= settings_.steering_gain;
+    drive.commands[0].steer *= settings_.steering_gain;
     for (std::size_t i = 1; i < drive.commands.size(); ++i) {
       const sim::CarState& opponent = drive.world.state(i);
       drive.commands[i] = drive.opponents->command({opponent.x, opponent.y, opponent.yaw});
@@ -239,14 +239,14 @@ void LapRunner::advance(Drive& drive, bool past_finish) const {
     drive.world.step(drive.commands);
     if (drive.hardware) drive.hardware->moved(drive.world.state(0), time_step);
     const sim::Observation seen = drive.world.observe(0);
-    if (!seen.contact()) continue;
+    if (!seen.collides()) continue;
     const auto touch = [&](int body) {
       const auto same = [&](const Collision& c) { return c.body == body; };
       if (std::none_of(result.first_collisions.begin(), result.first_collisions.end(), same))
         result.first_collisions.push_back({seen.time, seen.pose, body});
     };
     if (seen.wall) touch(-1);
-    for (const int body : seen.touching) touch(body);
+    for (const int body : seen.colliding) touch(body);
     drive.log.update(drive.world, 0);
   }
   const sim::Box body = drive.world.outline(0);
@@ -261,9 +261,9 @@ void LapRunner::finish(Drive& drive) const {
   const bool published = environment_->protocol == Protocol::published;
   result.finished = at_finish(drive.world);
   result.timeout = !result.finished && !result.cancelled;
-  result.collisions = published ? drive.log.published() : drive.log.bodies_touched();
-  result.collided_bodies = drive.log.bodies_touched();
-  result.wall = drive.log.touched_wall();
+  result.collisions = published ? drive.log.published() : drive.log.collisions();
+  result.collided_bodies = drive.log.collisions();
+  result.wall = drive.log.hit_wall();
   if (drive.hardware) result.localisation = drive.hardware->record();
   result.time = drive.world.time();
   if (result.finished && !published && open_length_ <= 0) result.time = drive.world.laps(0)->last_lap_time();

@@ -7,6 +7,7 @@
 
 #include "evaluation/hardware_model.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/sim/collision_log.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
 
 namespace slalom::evaluation {
@@ -22,12 +23,12 @@ struct LapRunner::Drive {
   std::unique_ptr<vehicle::Planner> planner;
   SequenceCostMeter meter;
   std::unique_ptr<HardwareModel> hardware;  ///< none where everything is measured as it is
-  sim::ContactLog log;
+  sim::CollisionLog log;
   LapResult result;
-  sim::Command acting;                                           ///< what the car does now
-  std::optional<sim::PurePursuit> opponents;                     ///< drives them all
-  std::vector<sim::Command> commands{1};                         ///< of all cars
-  std::vector<std::pair<std::int64_t, sim::Command>> under_way;  ///< by the step in which they arrive
+  Command acting;                                           ///< what the car does now
+  std::optional<sim::PurePursuit> opponents;                ///< drives them all
+  std::vector<Command> commands{1};                         ///< of all cars
+  std::vector<std::pair<std::int64_t, Command>> under_way;  ///< by the step in which they arrive
   double cost_state = 0, cost_collision = 0, cost_published = 0, cost_driven = 0;
   double input_error = 0, speed = 0, distance = 0, variance = 0, effective = 0;
   int solves = 0;

@@ -17,10 +17,10 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(CommandScript, HoldsEachCommandUntilTheNext) {
   const Script script({{0.5, {0.1, 2}}, {1.0, {-0.1, 3}}});
-  EXPECT_EQ(script.command(0.2).drive, 0);
-  EXPECT_EQ(script.command(0.5).drive, 2);
-  EXPECT_EQ(script.command(0.99).steering, 0.1);
-  EXPECT_EQ(script.command(7).drive, 3);
+  EXPECT_EQ(script.command(0.2).speed, 0);
+  EXPECT_EQ(script.command(0.5).speed, 2);
+  EXPECT_EQ(script.command(0.99).steer, 0.1);
+  EXPECT_EQ(script.command(7).speed, 3);
   EXPECT_THROW(Script(std::vector<Script::Line>{{1, {}}, {1, {}}}), std::invalid_argument);
   EXPECT_THROW(Script(std::vector<Script::Line>{{nan, {}}}), std::invalid_argument);
   EXPECT_THROW(Script(std::vector<Script::Line>{{0, {nan, 0}}}), std::invalid_argument);
@@ -34,7 +34,7 @@ TEST(PurePursuit, StaysNearThePathAndReturnsToIt) {
   world.reset(1, std::array{maps::Pose{16.2, 10, 1.2}});
   for (int k = 0; k < 2500; ++k) {
     world.step(std::array{driver.command(world.observe(0).pose)});
-    ASSERT_FALSE(world.observe(0).contact());
+    ASSERT_FALSE(world.observe(0).collides());
     if (k > 500) {
       ASSERT_LT(std::abs(world.laps(0)->lateral()), 0.15);
     }
@@ -60,7 +60,7 @@ TEST(ObstaclePlacement, ApartCarsDoNotOverlapAndLeaveTheStart) {
     ASSERT_EQ(cars.size(), 5u);
     for (std::size_t i = 0; i < cars.size(); ++i) {
       const Box box{cars[i].pose, rules.length, rules.width};
-      EXPECT_FALSE(track->touches_wall(box));
+      EXPECT_FALSE(track->collides_with_wall(box));
       EXPECT_GT(std::hypot(cars[i].pose.x - start.x, cars[i].pose.y - start.y), rules.keep_clear);
       for (std::size_t j = 0; j < i; ++j)
         EXPECT_GT(signed_gap(box, Box{cars[j].pose, rules.length, rules.width}), rules.gap * 0.5);

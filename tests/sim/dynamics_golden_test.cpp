@@ -12,9 +12,8 @@ namespace {
 using slalom::testing::Comparison;
 using slalom::testing::GoldenTable;
 
-const DynamicsOptions gym_dynamics{
-    .substeps = 1, .gym_low_speed = true, .gym_steer_overshoot = true, .gym_reverse = true};
-const ActuationOptions gym_actuation{.gym_steering = true, .gym_gains = true};
+const DynamicsOptions gym_dynamics{.substeps = 1, .gym = GymDynamics::published()};
+const ActuationOptions gym_actuation{.gym = GymActuation::published()};
 
 CarState state_of(const GoldenTable& table, std::size_t row) {
   CarState s{table.real(row, "x"), table.real(row, "y"), table.real(row, "delta"), table.real(row, "v"),
@@ -117,7 +116,7 @@ TEST(GymDynamics, Trajectories) {
     valid_steps[sensitivity.text(row, "case") + sensitivity.text(row, "integrator")] =
         sensitivity.integer(row, "valid_steps");
   Comparison compared("trajectories");
-  PlantOptions options{.dynamics = gym_dynamics, .actuation = gym_actuation, .gym_yaw = true};
+  PlantOptions options{.dynamics = gym_dynamics, .actuation = gym_actuation, .gym = GymPlant::published()};
   Plant plant(CarParameters{}, options, 0.01);
   int valid = 0;
   for (std::size_t row = 0; row < table.rows(); ++row) {

@@ -22,7 +22,7 @@ inline sim::Track gym_track(const std::filesystem::path& folder, const std::stri
 inline sim::LidarOptions gym_lidar() {
   sim::LidarOptions options;
   options.mount = {};
-  options.gym_ranges = options.gym_directions = options.gym_noise = options.gym_window = true;
+  options.gym = sim::GymLidar::published();
   return options;
 }
 

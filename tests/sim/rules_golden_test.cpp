@@ -170,8 +170,8 @@ TEST(GymRules, PurePursuit) {
     compared.absolute(target.nearest.distance, table.real(row, "nearest_dist"));
     compared.absolute(target.nearest.along, table.real(row, "nearest_t"));
     compared.absolute(target.along, table.real(row, "target_t"));
-    compared.absolute(command.drive, table.real(row, "speed"));
-    compared.absolute(command.steering, table.real(row, "steer"));
+    compared.absolute(command.speed, table.real(row, "speed"));
+    compared.absolute(command.steer, table.real(row, "steer"));
     EXPECT_LE(compared.worst(), 1e-9) << "case " << table.text(row, "case");
   }
   EXPECT_GT(compared.cases(), 0);

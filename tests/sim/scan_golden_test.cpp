@@ -2,7 +2,7 @@
 
 #include "golden.hpp"
 #include "sim/golden_table.hpp"
-#include "sim/gym_scan.hpp"
+#include "sim/gym/gym_scan.hpp"
 #include "sim/gym_world.hpp"
 #include "slalom/sim/lidar.hpp"
 

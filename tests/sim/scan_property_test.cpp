@@ -6,8 +6,8 @@
 #include <cstring>
 #include <random>
 
+#include "sim/lidar/scan.hpp"
 #include "sim/rooms.hpp"
-#include "sim/scan.hpp"
 #include "slalom/sim/lidar.hpp"
 #include "slalom/sim/noise.hpp"
 #include "slalom/sim/shapes.hpp"
@@ -190,7 +190,7 @@ TEST(ScanProperty, TheGymWalkIsTheSameToTheBitOnEveryInstructionSet) {
 
 TEST(ScanProperty, TheGymWindowReachesToTheNearestBeamOfEveryCorner) {
   LidarOptions options;
-  options.gym_window = true;
+  options.gym.window = true;
   const Lidar lidar(options);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> any(-3, 3);

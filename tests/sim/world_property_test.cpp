@@ -31,7 +31,7 @@ bool same_bits(const World& a, const World& b) {
     if (std::memcmp(x.scan.ranges.data(), y.scan.ranges.data(), x.scan.ranges.size_bytes()) != 0)
       return false;
     if (x.wall != y.wall ||
-        !std::equal(x.touching.begin(), x.touching.end(), y.touching.begin(), y.touching.end()))
+        !std::equal(x.colliding.begin(), x.colliding.end(), y.colliding.begin(), y.colliding.end()))
       return false;
   }
   return true;
@@ -40,7 +40,7 @@ bool same_bits(const World& a, const World& b) {
 TEST(WorldProperty, StepsDoNotAllocate) {
   for (const bool gym : {false, true}) {
     WorldOptions options = gym ? WorldOptions::gym_compatible() : WorldOptions{};
-    if (!gym) options.wall_response = options.body_response = ContactResponse::slide;
+    if (!gym) options.wall_response = options.body_response = CollisionResponse::slide;
     World world(options, testing::ring_track());
     world.reset(3, two_cars, parked);
     world.step(wander(0));
@@ -48,7 +48,7 @@ TEST(WorldProperty, StepsDoNotAllocate) {
     bool touched = false;
     for (int k = 1; k < 1500; ++k) {
       world.step(wander(k));
-      touched = touched || world.observe(0).contact() || world.observe(1).contact();
+      touched = touched || world.observe(0).collides() || world.observe(1).collides();
     }
     EXPECT_EQ(testing::allocations(), before);
     EXPECT_TRUE(touched);

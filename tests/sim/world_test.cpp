@@ -1,4 +1,5 @@
 #include "slalom/sim/world.hpp"
+#include "slalom/sim/collision_log.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,13 +27,13 @@ TEST(World, DrivesLapsWithTimes) {
   World world({}, testing::ring_track());
   world.reset(1, start);
   const PurePursuit driver = ring_driver(3);
-  ContactLog contacts;
+  CollisionLog contacts;
   while (world.laps(0)->laps() < 2 && world.time() < 60) {
     world.step(std::array{driver.command(world.observe(0).pose)});
     contacts.update(world, 0);
   }
   EXPECT_EQ(world.laps(0)->laps(), 2);
-  EXPECT_EQ(contacts.bodies_touched(), 0);
+  EXPECT_EQ(contacts.collisions(), 0);
   // 34.6 m at 3 m/s.
   EXPECT_NEAR(world.laps(0)->last_lap_time(), 2 * 3.141592653589793 * 5.5 / 3, 0.6);
   const auto splits = world.laps(0)->splits();
@@ -89,32 +90,32 @@ TEST(World, MovingACarIsNoProgress) {
 TEST(World, StopsAtWallsAndReversesAway) {
   World world({}, testing::ring_track());
   world.reset(1, std::array{maps::Pose{15.5, 10, 0}});
-  ContactLog contacts;
+  CollisionLog contacts;
   for (int i = 0; i < 300; ++i) {
     world.step(std::array{Command{0, 4}});
     contacts.update(world, 0);
-    ASSERT_FALSE(world.track().touches_wall(world.outline(0)));
+    ASSERT_FALSE(world.track().collides_with_wall(world.outline(0)));
   }
-  EXPECT_TRUE(contacts.touched_wall());
-  EXPECT_EQ(contacts.bodies_touched(), 1);
+  EXPECT_TRUE(contacts.hit_wall());
+  EXPECT_EQ(contacts.collisions(), 1);
   EXPECT_EQ(contacts.published(), 1);
   // The nose stands at the wall, 7 m from the middle of the ring.
   EXPECT_NEAR(world.state(0).x + 0.29, 17, 0.1);
   for (int i = 0; i < 100; ++i) world.step(std::array{Command{0, -1}});
-  EXPECT_FALSE(world.observe(0).contact());
+  EXPECT_FALSE(world.observe(0).collides());
   EXPECT_LT(world.state(0).x, 16.4);
 }
 
 TEST(World, SlidesAlongWalls) {
   WorldOptions options;
-  options.wall_response = ContactResponse::slide;
+  options.wall_response = CollisionResponse::slide;
   World world(options, std::make_shared<const Track>(testing::room(400, 100)));
   world.reset(1, std::array{maps::Pose{2, 4, 0.5}});
   bool touched = false;
   for (int i = 0; i < 400; ++i) {
     world.step(std::array{Command{0, 3}});
     touched = touched || world.observe(0).wall;
-    ASSERT_FALSE(world.track().touches_wall(world.outline(0)));
+    ASSERT_FALSE(world.track().collides_with_wall(world.outline(0)));
   }
   EXPECT_TRUE(touched);
   EXPECT_GT(world.state(0).x, 5);
@@ -122,21 +123,21 @@ TEST(World, SlidesAlongWalls) {
 
 TEST(World, ReportsWhichBodiesCollide) {
   WorldOptions options;
-  options.wall_response = options.body_response = ContactResponse::count_only;
+  options.wall_response = options.body_response = CollisionResponse::count_only;
   World world(options, std::make_shared<const Track>(testing::room(400, 100)));
   const std::array parked{maps::Pose{4, 2.5, 1.2}, maps::Pose{8, 2.6, 0}, maps::Pose{8.3, 2.6, 0}};
   world.reset(1, std::array{maps::Pose{1, 2.5, 0}}, parked);
   const int disc = world.add_disc({{11, 2.5}, 0.2});
   const int box = world.add_box({{13, 2.7, 0.3}, 0.4, 0.4});
-  ContactLog contacts;
+  CollisionLog contacts;
   while (world.time() < 5) {
     world.step(std::array{Command{0, 5}});
     contacts.update(world, 0);
   }
   EXPECT_EQ(std::vector<int>(contacts.bodies().begin(), contacts.bodies().end()),
             (std::vector{1, 2, 3, disc, box}));
-  EXPECT_TRUE(contacts.touched_wall());
-  EXPECT_EQ(contacts.bodies_touched(), 6);
+  EXPECT_TRUE(contacts.hit_wall());
+  EXPECT_EQ(contacts.collisions(), 6);
   // Bodies 2 and 3 overlap and are flagged for ever, with and without the others: {2,3}, +1, +disc, +box.
   EXPECT_EQ(contacts.published(), 4);
 }
@@ -259,7 +260,7 @@ TEST(World, RejectsInvalidOptions) {
   refuses([](WorldOptions& o) { o.car.friction = nan; });
   refuses([](WorldOptions& o) { o.sectors = 0; });
   refuses([](WorldOptions& o) { o.plant.steering_dead_time = -0.1; });
-  refuses([](WorldOptions& o) { o.body_response = ContactResponse::gym_zero; });
+  refuses([](WorldOptions& o) { o.body_response = CollisionResponse::gym_zero; });
 }
 
 TEST(Track, RejectsInvalidMaps) {

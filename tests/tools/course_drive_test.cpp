@@ -53,7 +53,7 @@ Lap drive(const vehicle::Course& course) {
       lap.finished = true;
       return lap;
     }
-    const sim::Command command = pursuit.command({state.x, state.y, state.yaw});
+    const Command command = pursuit.command({state.x, state.y, state.yaw});
     for (int k = 0; k < static_cast<int>(std::lround(control_period / time_step)); ++k) plant.step(command);
   }
   return lap;

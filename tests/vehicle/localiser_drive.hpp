@@ -53,15 +53,15 @@ class Drive {
     sim::WorldOptions o;
     o.time_step = time_step;
     o.lidar = {.beams = 1081, .field_of_view = 4.71238898, .noise = 0.02, .rate = 40, .dropout = 0.01};
-    o.wall_response = sim::ContactResponse::count_only;
-    o.body_response = sim::ContactResponse::count_only;
+    o.wall_response = sim::CollisionResponse::count_only;
+    o.body_response = sim::CollisionResponse::count_only;
     return o;
   }
 
   /// One control period.
   void step() {
     const auto& s = world_.state(0);
-    const sim::Command command = pursuit_.command({s.x, s.y, s.yaw});
+    const Command command = pursuit_.command({s.x, s.y, s.yaw});
     for (int k = 0; k < static_cast<int>(std::lround(period / time_step)); ++k) {
       world_.step(std::array{command});
       odometry_.update(world_.state(0), time_step);

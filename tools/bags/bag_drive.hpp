@@ -16,7 +16,7 @@ struct BagTick {
   maps::LaserScanView shape;  ///< of the scan, without its ranges
   std::vector<float> ranges;
   vehicle::Odometry odometry;  ///< pose as localised, map frame; speed as the wheels say
-  vehicle::Command command;
+  slalom::Command command;
 };
 
 /// A drive of a car, from a bag that adapters/ros1/launch/record.launch has recorded.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
+#include "slalom/sim/collision_log.hpp"
 #include "tools/bags/bag_drive.hpp"
 #include "tools/recording/recording.hpp"
 
@@ -104,7 +105,7 @@ class Follower {
       ++lap.steps;
     }
     lap.time = drive_.ticks.back().time;
-    lap.collisions = log_.bodies_touched();
+    lap.collisions = log_.collisions();
     return lap;
   }
 
@@ -120,7 +121,7 @@ class Follower {
     // The world's clock ticks evenly; over the whole drive it agrees with the bag's.
     const double duration = drive_.ticks.back().time - drive_.ticks.front().time;
     options.time_step = std::clamp(ticks > 0 ? duration / ticks : 0.025, 1e-3, 0.1);
-    options.gym_start_anywhere = true;  // a pose that was guessed may lie in a wall
+    options.start_anywhere = true;  // a pose that was guessed may lie in a wall
     return options;
   }
 
@@ -149,8 +150,7 @@ class Follower {
     steer_.add(output.command.steer - tick.command.steer);
     speed_.add(output.command.speed - tick.command.speed);
     on_step({step, tick.time, world_.laps(0)->progress() / environment_.track->lap_path()->length(),
-             log_.bodies_touched(), seen, scan, tick.odometry, output, planner_, world_,
-             meter_.planned(output)});
+             log_.collisions(), seen, scan, tick.odometry, output, planner_, world_, meter_.planned(output)});
   }
 
   const BagDrive& drive_;
@@ -159,7 +159,7 @@ class Follower {
   vehicle::Planner planner_;
   SequenceCostMeter meter_;
   sim::World world_;
-  sim::ContactLog log_;
+  sim::CollisionLog log_;
   Difference steer_, speed_;
 };
 

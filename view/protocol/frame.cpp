@@ -128,7 +128,7 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
       laps.progress() / world.track().lap_path()->length() - laps.laps(),
       laps.lateral(),
       clearance_of(world),
-      tick.seen.contact() ? 1.0 : 0.0,
+      tick.seen.collides() ? 1.0 : 0.0,
       static_cast<double>(tick.collisions),
       tick.cost.total(),
       facts.prediction_step,
@@ -301,9 +301,9 @@ std::string encode_bodies(const sim::World& world) {
     const sim::Box box = world.outline(i);
     const bool is_car = box.length == world.options().car.length && box.width == world.options().car.width;
     const int kind = i == 0 ? 0 : i < world.cars() ? 4 : world.disc(i) ? 3 : is_car ? 1 : 2;
-    const bool touched = i == 0 ? seen.contact()
-                                : std::find(seen.touching.begin(), seen.touching.end(),
-                                            static_cast<int>(i)) != seen.touching.end();
+    const bool touched = i == 0 ? seen.collides()
+                                : std::find(seen.colliding.begin(), seen.colliding.end(),
+                                            static_cast<int>(i)) != seen.colliding.end();
     to.put(static_cast<std::uint16_t>(i));
     to.put(static_cast<std::uint8_t>(kind));
     to.put(static_cast<std::uint8_t>(touched));

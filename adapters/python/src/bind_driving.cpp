@@ -81,7 +81,7 @@ py::dict observe(const py::object& self, std::size_t car) {
   all["angle_increment"] = seen.scan.angle_increment;
   all["range_min"] = seen.scan.range_min;
   all["range_max"] = seen.scan.range_max;
-  all["contact"] = seen.contact();
+  all["contact"] = seen.collides();
   all["wall"] = seen.wall;
   if (const auto* laps = world.laps(car)) {
     all["laps"] = laps->laps();
@@ -141,7 +141,7 @@ void bind_world(py::module_& module) {
       .def(
           "step",
           [](sim::World& self, const std::vector<std::array<double, 2>>& commands, int steps) {
-            std::vector<sim::Command> all;
+            std::vector<slalom::Command> all;
             for (const auto& c : commands) all.push_back({c[0], c[1]});
             sim::StepStatus status = sim::StepStatus::ok;
             {

@@ -1,18 +1,15 @@
 #pragma once
 
 #include "slalom/sim/car.hpp"
+#include "slalom/sim/gym.hpp"
 
 namespace slalom::sim {
 
 /// The low-level control between a command and the model's input.
 struct ActuationOptions {
   double speed_gain = 4.755;  ///< 1/s, acceleration per error of speed; braking takes brake_gain
-  double brake_gain = 19.02;  ///< 1/s
-  /// f1tenth_gym: the steering moves at full rate or not at all, so that it chatters about its target.
-  bool gym_steering = false;
-  /// f1tenth_gym: gains follow from the limits of speed and are a fifth of the others at standstill and in
-  /// reverse.
-  bool gym_gains = false;
+  double brake_gain = 19.02;
+  GymActuation gym{};  ///< reproduction of f1tenth_gym
 
   /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
   void validate() const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slalom/sim/car.hpp"
+#include "slalom/sim/gym.hpp"
 
 namespace slalom::sim {
 
@@ -25,13 +26,7 @@ struct DynamicsOptions {
   Integrator integrator = Integrator::runge_kutta_4;
   /// Equal parts into which a time step is cut; 0 takes as many as keep the tyres' fastest mode stable.
   int substeps = 0;
-  /// f1tenth_gym: below 0.5 m/s the car moves along its axis, the slip stays frozen and the yaw rate is
-  /// integrated beside the yaw that is really driven.
-  bool gym_low_speed = false;
-  /// f1tenth_gym: the last move towards the steering's limit may pass it by steer_rate_max * time step.
-  bool gym_steer_overshoot = false;
-  /// f1tenth_gym: in reverse the tyres push the wrong way, and yaw rate and slip grow without bound.
-  bool gym_reverse = false;
+  GymDynamics gym{};  ///< reproduction of f1tenth_gym
 };
 
 /// Speed (m/s) below which single_track and saturating fall back to the kinematic model.

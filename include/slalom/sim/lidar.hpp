@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "slalom/maps/pose.hpp"
+#include "slalom/sim/gym.hpp"
 #include "slalom/sim/shapes.hpp"
 #include "slalom/sim/track.hpp"
 
@@ -23,17 +24,7 @@ struct LidarOptions {
   maps::Pose mount{0.10355, 0, 0};  ///< of the sensor on the car, from the centre of gravity
   double dropout = 0;               ///< share of beams that come back without a return: range_max
 
-  /// f1tenth_gym: a beam walks from cell to cell by the cells' distances to the nearest wall, centre to
-  /// centre, until it is in a wall cell, so that ranges are up to a cell off; outside the map it reads the
-  /// last cell's distance.
-  bool gym_ranges = false;
-  /// f1tenth_gym: directions are taken from a table of 2000 (step 2 pi / 1999), up to 0.003 rad off.
-  bool gym_directions = false;
-  /// f1tenth_gym: noise is numpy's default_rng(12345), begun anew at each reset, the same for every car; it
-  /// is added after the cut at range_max and before other cars are seen, which stay without noise.
-  bool gym_noise = false;
-  /// f1tenth_gym: a car is looked for only in the beams between those nearest to its corners.
-  bool gym_window = false;
+  GymLidar gym{};  ///< reproduction of f1tenth_gym
 
   /// The Hokuyo UTM-30LX by its data sheet: 1081 beams over 270 degrees at 40 Hz, 30 m, 10 mm of noise (to 10
   /// m).

@@ -2,19 +2,16 @@
 
 #include <vector>
 
+#include "slalom/maps/command.hpp"
 #include "slalom/sim/actuation.hpp"
 #include "slalom/sim/car.hpp"
 #include "slalom/sim/dynamics.hpp"
 
 namespace slalom::sim {
 
-/// What a driver asks of a car over one time step.
-struct Command {
-  double steering = 0;  ///< rad, or rad/s with SteeringInput::rate
-  double drive = 0;     ///< m/s, or m/s^2 with SpeedInput::acceleration
-};
-
+/// What `Command::steer` means to a car: an angle, rad, or the rate of the angle, rad/s.
 enum class SteeringInput { angle, rate };
+/// What `Command::speed` means to a car: a speed, m/s, or an acceleration, m/s^2.
 enum class SpeedInput { speed, acceleration };
 
 /// What a car does in a step for which no usable command has come.
@@ -32,9 +29,7 @@ struct PlantOptions {
   double steering_dead_time =
       0.02;  ///< s, from a steering command to its effect; rounded to whole time steps
   Coast coast = Coast::roll;
-  /// f1tenth_gym: the yaw is brought to [0, 2 pi] by at most one turn per step; elsewhere it lies in [-pi,
-  /// pi].
-  bool gym_yaw = false;
+  GymPlant gym{};  ///< reproduction of f1tenth_gym
 };
 
 /// One car without a world round it: model, low-level control and steering dead time.

@@ -37,7 +37,7 @@ class Track {
 
   /// Whether a body touches a wall: an overlap of the rectangle with an obstacle cell, as a square, or with
   /// the outside.
-  bool touches_wall(const Box& box) const noexcept;
+  bool collides_with_wall(const Box& box) const noexcept;
 
   /// The distance (m) from a point to the nearest wall, as far as the field tells: within a cell of the
   /// truth; 0 in a wall, infinite where there is none.

@@ -31,11 +31,11 @@
 /// track; so thousands run in parallel threads, each thread with worlds of its own.
 namespace slalom::sim {
 
-/// What becomes of a car that touches something.
-enum class ContactResponse {
-  stop,        ///< it is put back to where it was before the step, at rest
-  slide,       ///< it is put back so too and loses the speed into the obstacle, and keeps that along it
-  count_only,  ///< nothing: it drives through
+/// What a collision does to a driven car.
+enum class CollisionResponse {
+  stop,        ///< it returns to where it was before the step, at rest
+  slide,       ///< it loses the speed into the obstacle and keeps the speed along it
+  count_only,  ///< nothing: it drives through, and the collision is counted
   gym_zero,  ///< f1tenth_gym at walls: speed, yaw, yaw rate and slip become 0, so that the car turns to +x at
              ///< once
 };
@@ -45,16 +45,12 @@ struct WorldOptions {
   CarParameters car;
   PlantOptions plant;
   LidarOptions lidar;
-  ContactResponse wall_response = ContactResponse::stop;
-  ContactResponse body_response = ContactResponse::stop;  ///< at cars, discs and boxes; not gym_zero
-  int sectors = 3;                                        ///< parts of a lap with a split time
+  CollisionResponse wall_response = CollisionResponse::stop;
+  CollisionResponse body_response = CollisionResponse::stop;  ///< at cars, discs and boxes; not gym_zero
+  int sectors = 3;                                            ///< parts of a lap with a split time
 
-  /// f1tenth_gym: walls are hit by TimeToCollision instead of by the car's outline.
-  bool gym_wall_contact = false;
-  /// f1tenth_gym: reset makes one step with zero commands.
-  bool gym_reset_step = false;
-  /// f1tenth_gym: cars may start in walls and in each other.
-  bool gym_start_anywhere = false;
+  GymWorld gym{};               ///< reproduction of f1tenth_gym
+  bool start_anywhere = false;  ///< cars may start in walls and in each other, as those of f1tenth_gym may
 
   /// All gym switches together: the world of f1tenth_gym. Load its map with MapRule::grey_threshold and give
   /// the track TrackOptions::outside_is_wall = false.
@@ -76,10 +72,10 @@ struct Observation {
   double scan_time = 0;      ///< s since the reset, when `scan` was taken
   maps::LaserScanView scan;  ///< in the frame of `sensor`; where nothing was hit a range is range_max
   std::span<const double> gym_ranges;  ///< the ranges in float64, with LidarOptions::gym_ranges only
-  bool wall = false;                   ///< touches a wall in this step
-  std::span<const int> touching;       ///< bodies touched in this step, ascending
+  bool wall = false;                   ///< collides with a wall in this step
+  std::span<const int> colliding;      ///< bodies that it collides with in this step, ascending
 
-  bool contact() const { return wall || !touching.empty(); }
+  bool collides() const { return wall || !colliding.empty(); }  ///< with a wall or a body
 };
 
 enum class StepStatus {
@@ -133,10 +129,10 @@ class World {
   /// Laps as f1tenth_gym counts them.
   const StartZoneLaps& start_zone_laps(std::size_t car) const noexcept { return cars_[car].zone; }
 
-  /// Per body, whether it touches another body in this step, and for driven cars also a wall: f1tenth_gym's
-  /// collision flags. Parked bodies that overlap each other stay flagged.
+  /// Per body, whether it collides with another body in this step, and for driven cars also with a wall:
+  /// f1tenth_gym's collision flags. Parked bodies that overlap each other stay flagged.
   std::span<const std::uint8_t> flags() const noexcept { return flags_; }
-  /// Per body, the last of the bodies it touches, -1 if none: f1tenth_gym's collision_idx.
+  /// Per body, the last of the bodies it collides with, -1 if none: f1tenth_gym's collision_idx.
   int last_partner(std::size_t body) const noexcept { return partners_[body]; }
 
   double time() const noexcept { return time_; }  ///< s since the reset
@@ -162,7 +158,7 @@ class World {
     NumpyRandom gym_noise{12345};
     std::vector<float> ranges;       ///< padded
     std::vector<double> gym_ranges;  ///< with LidarOptions::gym_ranges only
-    std::vector<int> touching;
+    std::vector<int> colliding;
     maps::Pose sensor;
     double scan_time = 0;
     bool wall = false;
@@ -177,9 +173,9 @@ class World {
 
   int add(const Fixed& body);
   void check_start(std::size_t car) const;
-  bool touch(const Box& car, const Fixed& body) const noexcept;
+  bool collides(const Box& car, const Fixed& body) const noexcept;
   void find_fixed_partners() noexcept;
-  void find_contacts() noexcept;
+  void find_collisions() noexcept;
   void respond(std::size_t car) noexcept;
   bool is_free(std::size_t car, const maps::Pose& pose) const noexcept;
   void slide(std::size_t car, const CarState& tried, CarState& state) const noexcept;
@@ -187,7 +183,7 @@ class World {
   void cast_bodies(std::size_t car) noexcept;
   void add_noise(Car& car) noexcept;
   void publish(Car& car) noexcept;
-  void gym_scan_and_contacts() noexcept;
+  void gym_scan_and_collisions() noexcept;
   void scan_all() noexcept;
   void count_laps() noexcept;
   bool scan_is_due() const noexcept;
@@ -204,31 +200,6 @@ class World {
   double time_ = 0;
   std::int64_t steps_ = 0;
   std::int64_t scan_every_ = 1;
-};
-
-/// Counts the contacts of a car over a lap in both ways of counting.
-class ContactLog {
- public:
-  void reset() noexcept;
-
-  /// To be called after each step.
-  void update(const World& world, std::size_t car);
-
-  /// Different bodies touched, all walls together as one.
-  int bodies_touched() const noexcept { return static_cast<int>(bodies_.size()) + wall_; }
-  bool touched_wall() const noexcept { return wall_; }
-  std::span<const int> bodies() const noexcept { return bodies_; }  ///< ascending
-  int contact_steps() const noexcept { return contact_steps_; }
-  /// As the published evaluation counts: different patterns of the parked cars' collision flags seen while
-  /// the car was in contact; a wall alone is the pattern of no flag, two cars at once are a pattern of their
-  /// own.
-  int published() const noexcept { return static_cast<int>(patterns_.size()); }
-
- private:
-  std::vector<int> bodies_;
-  std::vector<std::vector<std::uint8_t>> patterns_;
-  bool wall_ = false;
-  int contact_steps_ = 0;
 };
 
 }  // namespace slalom::sim

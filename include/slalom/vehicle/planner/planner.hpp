@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "slalom/maps/command.hpp"
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/pose.hpp"
@@ -105,12 +106,6 @@ void visit_options(Options& o, Visit&& visit) {
 struct Odometry {
   maps::Pose pose;
   double speed = 0;
-};
-
-/// What the car is told.
-struct Command {
-  double steer = 0;  ///< rad
-  double speed = 0;  ///< m/s
 };
 
 /// Why a command is what it is.

@@ -1,4 +1,4 @@
-#include "sim/scan_kernel.hpp"
+#include "sim/lidar/scan_kernel.hpp"
 
 namespace slalom::sim::detail {
 

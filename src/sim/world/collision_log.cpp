@@ -1,22 +1,22 @@
-#include <algorithm>
+#include "slalom/sim/collision_log.hpp"
 
-#include "slalom/sim/world.hpp"
+#include <algorithm>
 
 namespace slalom::sim {
 
-void ContactLog::reset() noexcept {
+void CollisionLog::reset() noexcept {
   bodies_.clear();
   patterns_.clear();
   wall_ = false;
-  contact_steps_ = 0;
+  collision_steps_ = 0;
 }
 
-void ContactLog::update(const World& world, std::size_t car) {
+void CollisionLog::update(const World& world, std::size_t car) {
   const Observation seen = world.observe(car);
-  if (!seen.contact()) return;
-  ++contact_steps_;
+  if (!seen.collides()) return;
+  ++collision_steps_;
   wall_ = wall_ || seen.wall;
-  for (const int body : seen.touching) {
+  for (const int body : seen.colliding) {
     const auto at = std::lower_bound(bodies_.begin(), bodies_.end(), body);
     if (at == bodies_.end() || *at != body) bodies_.insert(at, body);
   }

@@ -9,8 +9,8 @@ namespace slalom::sim {
 Script::Script(std::vector<Line> lines) : lines_(std::move(lines)) {
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     detail::require_finite("script time", lines_[i].from);
-    detail::require_finite("script steering", lines_[i].command.steering);
-    detail::require_finite("script drive", lines_[i].command.drive);
+    detail::require_finite("script: steer", lines_[i].command.steer);
+    detail::require_finite("script: speed", lines_[i].command.speed);
     if (i > 0 && !(lines_[i].from > lines_[i - 1].from))
       detail::refuse("script time", std::to_string(lines_[i].from), "after that of the line before");
   }

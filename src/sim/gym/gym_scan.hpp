@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "sim/scan.hpp"
+#include "sim/lidar/scan.hpp"
 #include "slalom/sim/lidar.hpp"
 
 namespace slalom::sim::detail {

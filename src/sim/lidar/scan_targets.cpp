@@ -1,7 +1,7 @@
 #include <array>
 #include <cstddef>
 
-#include "sim/scan.hpp"
+#include "sim/lidar/scan.hpp"
 #include "slalom/core/dispatch.hpp"
 
 namespace slalom::sim::detail {

@@ -102,7 +102,7 @@ double Track::distance_to_wall(const maps::Point& point) const noexcept {
   return nearest;
 }
 
-bool Track::touches_wall(const Box& box) const noexcept {
+bool Track::collides_with_wall(const Box& box) const noexcept {
   const maps::Point middle = to_cells({box.pose.x, box.pose.y});
   const double l = box.length / 2 / grid_.resolution, w = box.width / 2 / grid_.resolution;
   const bool inside = middle.x >= 0 && middle.y >= 0 && middle.x < grid_.width && middle.y < grid_.height;

@@ -92,8 +92,8 @@ std::string Recording::to_text() const {
   poses("parked", parked);
   for (std::size_t i = 0; i < commands.size(); ++i) {
     if (i % cars.size() == 0) text += "step";
-    write(text, commands[i].steering);
-    write(text, commands[i].drive);
+    write(text, commands[i].steer);
+    write(text, commands[i].speed);
     if ((i + 1) % cars.size() == 0) text += '\n';
   }
   return text;

@@ -34,14 +34,15 @@ const WorldOptions& validated(const WorldOptions& options) {
 WorldOptions WorldOptions::gym_compatible() {
   WorldOptions o;
   o.plant.dynamics.substeps = 1;
-  o.plant.dynamics.gym_low_speed = o.plant.dynamics.gym_steer_overshoot = o.plant.dynamics.gym_reverse = true;
-  o.plant.actuation.gym_steering = o.plant.actuation.gym_gains = true;
-  o.plant.gym_yaw = true;
+  o.plant.dynamics.gym = GymDynamics::published();
+  o.plant.actuation.gym = GymActuation::published();
+  o.plant.gym = GymPlant::published();
   o.lidar.mount = {};
-  o.lidar.gym_ranges = o.lidar.gym_directions = o.lidar.gym_noise = o.lidar.gym_window = true;
-  o.wall_response = ContactResponse::gym_zero;
-  o.body_response = ContactResponse::count_only;
-  o.gym_wall_contact = o.gym_reset_step = o.gym_start_anywhere = true;
+  o.lidar.gym = GymLidar::published();
+  o.wall_response = CollisionResponse::gym_zero;
+  o.body_response = CollisionResponse::count_only;
+  o.start_anywhere = true;
+  o.gym = GymWorld::published();
   return o;
 }
 
@@ -51,10 +52,10 @@ void WorldOptions::validate() const {
   plant.actuation.validate();
   lidar.validate();
   detail::require_range("sectors", sectors, 1, 1000);
-  if (body_response == ContactResponse::gym_zero)
+  if (body_response == CollisionResponse::gym_zero)
     throw std::invalid_argument("body_response = gym_zero: must be stop, slide or count_only");
-  if (gym_wall_contact && lidar.rate > 0 && std::lround(1 / (lidar.rate * time_step)) > 1)
-    throw std::invalid_argument("gym_wall_contact: needs a scan in every step, so rate must be 0");
+  if (gym.wall_collision && lidar.rate > 0 && std::lround(1 / (lidar.rate * time_step)) > 1)
+    throw std::invalid_argument("gym.wall_collision: needs a scan in every step, so rate must be 0");
 }
 
 World::World(const WorldOptions& options, std::shared_ptr<const Track> track)
@@ -96,22 +97,22 @@ void World::reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::spa
     car.noise.reset(seed, i);
     car.gym_noise = NumpyRandom(12345);
     car.ranges.assign(lidar_.padded_beams(), static_cast<float>(options_.lidar.range_max));
-    if (options_.lidar.gym_ranges) car.gym_ranges.assign(beams, options_.lidar.range_max);
-    car.touching.clear();
+    if (options_.lidar.gym.ranges) car.gym_ranges.assign(beams, options_.lidar.range_max);
+    car.colliding.clear();
     car.wall = false;
     boxes_[i].pose = cars[i];
   }
   flags_.assign(bodies(), 0);
   partners_.assign(bodies(), -1);
-  for (Car& car : cars_) car.touching.reserve(bodies());
+  for (Car& car : cars_) car.colliding.reserve(bodies());
   find_fixed_partners();
-  if (!options_.gym_start_anywhere)
+  if (!options_.start_anywhere)
     for (std::size_t i = 0; i < cars_.size(); ++i) check_start(i);
-  if (options_.gym_reset_step) {
+  if (options_.gym.reset_step) {
     const std::vector<Command> zero(cars.size());
     step(zero);
   } else {
-    find_contacts();
+    find_collisions();
     scan_all();
   }
 }
@@ -122,11 +123,11 @@ void World::check_start(std::size_t car) const {
     throw std::invalid_argument("start of car " + std::to_string(car) + " at (" + std::to_string(p.x) + ", " +
                                 std::to_string(p.y) + ", " + std::to_string(p.yaw) + "): lies in " + where);
   };
-  if (track_->touches_wall(boxes_[car])) refuse("a wall");
+  if (track_->collides_with_wall(boxes_[car])) refuse("a wall");
   for (std::size_t other = 0; other < cars_.size(); ++other)
     if (other != car && signed_gap(boxes_[car], boxes_[other]) <= 0) refuse("car " + std::to_string(other));
   for (std::size_t i = 0; i < fixed_.size(); ++i)
-    if (touch(boxes_[car], fixed_[i])) refuse("body " + std::to_string(cars_.size() + i));
+    if (collides(boxes_[car], fixed_[i])) refuse("body " + std::to_string(cars_.size() + i));
 }
 
 int World::add(const Fixed& body) {
@@ -136,7 +137,7 @@ int World::add(const Fixed& body) {
   fixed_.push_back(body);
   flags_.push_back(0);
   partners_.push_back(-1);
-  for (Car& car : cars_) car.touching.reserve(bodies());
+  for (Car& car : cars_) car.colliding.reserve(bodies());
   find_fixed_partners();
   return static_cast<int>(bodies()) - 1;
 }
@@ -168,8 +169,8 @@ void World::remove_body(int body) {
   partners_.erase(partners_.begin() + body);
   for (int& partner : partners_) partner = partner == body ? -1 : partner > body ? partner - 1 : partner;
   for (Car& car : cars_) {
-    std::erase(car.touching, body);
-    for (int& touched : car.touching) touched -= touched > body;
+    std::erase(car.colliding, body);
+    for (int& touched : car.colliding) touched -= touched > body;
   }
   find_fixed_partners();
 }
@@ -204,7 +205,7 @@ Observation World::observe(std::size_t index) const noexcept {
                    .range_max = options_.lidar.range_max},
           .gym_ranges = car.gym_ranges,
           .wall = car.wall,
-          .touching = car.touching};
+          .colliding = car.colliding};
 }
 
 Box World::outline(std::size_t body) const noexcept {
@@ -226,7 +227,7 @@ StepStatus World::step(std::span<const Command> commands) noexcept {
     if (i >= commands.size()) {
       car.plant.coast();
     } else {
-      if (!std::isfinite(commands[i].steering) || !std::isfinite(commands[i].drive))
+      if (!std::isfinite(commands[i].steer) || !std::isfinite(commands[i].speed))
         status = StepStatus::non_finite_command;
       car.plant.step(commands[i]);
     }
@@ -235,12 +236,12 @@ StepStatus World::step(std::span<const Command> commands) noexcept {
   ++steps_;
   // Summed, not multiplied, as f1tenth_gym does: its lap times are sums.
   time_ += options_.time_step;
-  if (options_.gym_wall_contact)
-    gym_scan_and_contacts();
+  if (options_.gym.wall_collision)
+    gym_scan_and_collisions();
   else {
-    find_contacts();
+    find_collisions();
     for (std::size_t i = 0; i < cars_.size(); ++i)
-      if (cars_[i].wall || !cars_[i].touching.empty()) respond(i);
+      if (cars_[i].wall || !cars_[i].colliding.empty()) respond(i);
     if (scan_is_due()) scan_all();
   }
   count_laps();
@@ -267,7 +268,7 @@ void World::follow(std::span<const CarState> states) {
   }
   ++steps_;
   time_ += options_.time_step;
-  find_contacts();
+  find_collisions();
   if (scan_is_due()) scan_all();
   count_laps();
 }

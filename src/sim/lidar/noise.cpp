@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/scan.hpp"
+#include "sim/lidar/scan.hpp"
 
 namespace slalom::sim {
 namespace {

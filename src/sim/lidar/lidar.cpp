@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/gym_scan.hpp"
+#include "sim/gym/gym_scan.hpp"
+#include "sim/lidar/scan.hpp"
 #include "sim/require.hpp"
-#include "sim/scan.hpp"
 
 namespace slalom::sim {
 namespace {
@@ -100,7 +100,7 @@ void Lidar::scan(const Track& track, const maps::Pose& sensor, std::span<float> 
               track.options().outside_is_wall ? 0.0f : static_cast<float>(options_.range_max));
     return;
   }
-  if (options_.gym_directions) return gym_directions_scan(track, sensor, ranges);
+  if (options_.gym.directions) return gym_directions_scan(track, sensor, ranges);
   task.cosines = cosines_.data();
   task.sines = sines_.data();
   task.cone_cosines = cone_cosines_.data();

@@ -25,8 +25,8 @@ Plant::Plant(const CarParameters& car, const PlantOptions& options, double time_
   detail::require_range("time_step", time_step, 1e-5, 0.1);
   detail::require_range("steering_dead_time", options.steering_dead_time, 0, 1);
   detail::require_range("substeps", options.dynamics.substeps, 0, 1000);
-  if (options.actuation.gym_gains)
-    detail::require_range("speed_min with gym_gains", car.speed_min, -1000, -1e-3);
+  if (options.actuation.gym.gains)
+    detail::require_range("speed_min with gym.gains", car.speed_min, -1000, -1e-3);
   on_the_way_.assign(static_cast<std::size_t>(std::lround(options.steering_dead_time / time_step)), 0.0);
   options_.dynamics.substeps = substeps(car, options.dynamics, time_step);
 }
@@ -49,18 +49,18 @@ double Plant::delayed(double steering) noexcept {
 
 void Plant::move(const DriveInput& input) noexcept {
   state_ = advance(car_, options_.dynamics, state_, input, time_step_);
-  state_.yaw = wrap(state_.yaw, options_.gym_yaw);
+  state_.yaw = wrap(state_.yaw, options_.gym.yaw);
 }
 
 void Plant::step(const Command& command) noexcept {
-  if (!std::isfinite(command.steering) || !std::isfinite(command.drive)) return coast();
+  if (!std::isfinite(command.steer) || !std::isfinite(command.speed)) return coast();
   last_ = command;
-  applied_ = delayed(command.steering);
-  DriveInput input{applied_, command.drive};
+  applied_ = delayed(command.steer);
+  DriveInput input{applied_, command.speed};
   if (options_.steering_input == SteeringInput::angle)
     input.steer_rate = steer_rate_towards(car_, options_.actuation, state_.steer, applied_, time_step_);
   if (options_.speed_input == SpeedInput::speed)
-    input.acceleration = acceleration_towards(car_, options_.actuation, state_.speed, command.drive);
+    input.acceleration = acceleration_towards(car_, options_.actuation, state_.speed, command.speed);
   move(input);
 }
 

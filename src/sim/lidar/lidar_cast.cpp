@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/scan.hpp"
+#include "sim/lidar/scan.hpp"
 #include "slalom/sim/lidar.hpp"
 
 namespace slalom::sim {
@@ -60,7 +60,7 @@ Lidar::Window Lidar::gym_window(const maps::Pose& sensor, const Box& box) const 
 void Lidar::cast(const maps::Pose& sensor, const Box& box, std::span<float> ranges) const noexcept {
   const double radius = std::sqrt(box.length * box.length + box.width * box.width) / 2;
   const Window beams =
-      options_.gym_window ? gym_window(sensor, box) : window(sensor, {box.pose.x, box.pose.y}, radius);
+      options_.gym.window ? gym_window(sensor, box) : window(sensor, {box.pose.x, box.pose.y}, radius);
   if (beams.first > beams.last) return;
   const maps::Point at = maps::inverse_transform(box.pose, {sensor.x, sensor.y});
   const double yaw = sensor.yaw - box.pose.yaw;
@@ -98,7 +98,7 @@ void Lidar::cast(const maps::Pose& sensor, const Disc& disc, std::span<float> ra
 void Lidar::gym_cast(const maps::Pose& sensor, const Box& box, std::span<double> ranges) const noexcept {
   const double radius = std::sqrt(box.length * box.length + box.width * box.width) / 2;
   const Window beams =
-      options_.gym_window ? gym_window(sensor, box) : window(sensor, {box.pose.x, box.pose.y}, radius);
+      options_.gym.window ? gym_window(sensor, box) : window(sensor, {box.pose.x, box.pose.y}, radius);
   for (int i = beams.first; i <= beams.last; ++i) {
     const auto beam = static_cast<std::size_t>(i);
     const double angle = sensor.yaw + angles_[beam];

@@ -17,7 +17,7 @@ bool far_apart(const Box& a, const Box& b) {
 
 }  // namespace
 
-bool World::touch(const Box& car, const Fixed& body) const noexcept {
+bool World::collides(const Box& car, const Fixed& body) const noexcept {
   if (far_apart(car, body.box)) return false;
   if (body.disc_radius > 0)
     return signed_gap(car, Disc{{body.box.pose.x, body.box.pose.y}, body.disc_radius}) <= 0;
@@ -31,62 +31,63 @@ void World::find_fixed_partners() noexcept {
       // Two discs are told apart here by their squares; it is only about what is placed into something else.
       const bool touches = fixed_[j].disc_radius > 0 && fixed_[i].disc_radius > 0
                                ? signed_gap(fixed_[i].box, fixed_[j].box) <= 0
-                           : fixed_[i].disc_radius > 0 ? touch(fixed_[j].box, fixed_[i])
-                                                       : touch(fixed_[i].box, fixed_[j]);
+                           : fixed_[i].disc_radius > 0 ? collides(fixed_[j].box, fixed_[i])
+                                                       : collides(fixed_[i].box, fixed_[j]);
       if (!touches) continue;
       fixed_[i].last_partner = std::max(fixed_[i].last_partner, static_cast<int>(cars_.size() + j));
       fixed_[j].last_partner = std::max(fixed_[j].last_partner, static_cast<int>(cars_.size() + i));
     }
 }
 
-void World::find_contacts() noexcept {
+void World::find_collisions() noexcept {
   std::fill(partners_.begin(), partners_.end(), -1);
-  for (Car& car : cars_) car.touching.clear();
+  for (Car& car : cars_) car.colliding.clear();
   const std::size_t driven = cars_.size();
   for (std::size_t i = 0; i < fixed_.size(); ++i) partners_[driven + i] = fixed_[i].last_partner;
   for (std::size_t i = 0; i < driven; ++i) {
     for (std::size_t j = i + 1; j < driven; ++j)
       if (!far_apart(boxes_[i], boxes_[j]) && signed_gap(boxes_[i], boxes_[j]) <= 0) {
-        cars_[i].touching.push_back(static_cast<int>(j));
-        cars_[j].touching.push_back(static_cast<int>(i));
+        cars_[i].colliding.push_back(static_cast<int>(j));
+        cars_[j].colliding.push_back(static_cast<int>(i));
       }
     for (std::size_t j = 0; j < fixed_.size(); ++j)
-      if (touch(boxes_[i], fixed_[j])) {
-        cars_[i].touching.push_back(static_cast<int>(driven + j));
+      if (collides(boxes_[i], fixed_[j])) {
+        cars_[i].colliding.push_back(static_cast<int>(driven + j));
         int& partner = partners_[driven + j];
         partner = std::max(partner, static_cast<int>(i));
       }
   }
   for (std::size_t i = 0; i < driven; ++i) {
-    if (!cars_[i].touching.empty()) partners_[i] = cars_[i].touching.back();
-    if (!options_.gym_wall_contact) cars_[i].wall = track_->touches_wall(boxes_[i]);
+    if (!cars_[i].colliding.empty()) partners_[i] = cars_[i].colliding.back();
+    if (!options_.gym.wall_collision) cars_[i].wall = track_->collides_with_wall(boxes_[i]);
   }
   for (std::size_t i = 0; i < bodies(); ++i) flags_[i] = partners_[i] >= 0 || (i < driven && cars_[i].wall);
 }
 
 void World::respond(std::size_t index) noexcept {
   Car& car = cars_[index];
-  const bool at_bodies = !car.touching.empty() && options_.body_response != ContactResponse::count_only;
-  const bool at_wall = car.wall && options_.wall_response != ContactResponse::count_only;
+  const bool at_bodies = !car.colliding.empty() && options_.body_response != CollisionResponse::count_only;
+  const bool at_wall = car.wall && options_.wall_response != CollisionResponse::count_only;
   if (!at_bodies && !at_wall) return;
   const CarState tried = car.plant.state();
-  const ContactResponse response = at_wall ? options_.wall_response : options_.body_response;
-  CarState state = response == ContactResponse::gym_zero ? tried : car.before;
+  const CollisionResponse response = at_wall ? options_.wall_response : options_.body_response;
+  CarState state = response == CollisionResponse::gym_zero ? tried : car.before;
   state.steer = tried.steer;
   state.speed = state.yaw_rate = state.slip = 0;
-  if (response == ContactResponse::gym_zero) state.yaw = 0;
-  if (response == ContactResponse::slide) slide(index, tried, state);
+  if (response == CollisionResponse::gym_zero) state.yaw = 0;
+  if (response == CollisionResponse::slide) slide(index, tried, state);
   car.plant.set_state(state);
   boxes_[index].pose = {state.x, state.y, state.yaw};
 }
 
 bool World::is_free(std::size_t car, const maps::Pose& pose) const noexcept {
   const Box box{pose, options_.car.length, options_.car.width};
-  if (options_.wall_response != ContactResponse::count_only && track_->touches_wall(box)) return false;
-  if (options_.body_response == ContactResponse::count_only) return true;
+  if (options_.wall_response != CollisionResponse::count_only && track_->collides_with_wall(box))
+    return false;
+  if (options_.body_response == CollisionResponse::count_only) return true;
   for (std::size_t i = 0; i < cars_.size(); ++i)
     if (i != car && !far_apart(box, boxes_[i]) && signed_gap(box, boxes_[i]) <= 0) return false;
-  return std::none_of(fixed_.begin(), fixed_.end(), [&](const Fixed& body) { return touch(box, body); });
+  return std::none_of(fixed_.begin(), fixed_.end(), [&](const Fixed& body) { return collides(box, body); });
 }
 
 void World::slide(std::size_t car, const CarState& tried, CarState& state) const noexcept {

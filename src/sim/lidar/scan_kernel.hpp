@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "sim/lanes.hpp"
-#include "sim/scan.hpp"
+#include "sim/lidar/lanes.hpp"
+#include "sim/lidar/scan.hpp"
 
 /// The loops of a scan over packs of beams, written once and compiled in a file per instruction set.
 namespace slalom::sim::detail {

@@ -14,7 +14,7 @@ void ActuationOptions::validate() const {
 
 double steer_rate_towards(const CarParameters& car, const ActuationOptions& options, double steer,
                           double target, double time_step) noexcept {
-  if (options.gym_steering) {
+  if (options.gym.steering) {
     const double difference = target - steer;
     if (std::abs(difference) <= 1e-4) return 0;
     return difference > 0 ? car.steer_rate_max : -car.steer_rate_max;
@@ -26,7 +26,7 @@ double steer_rate_towards(const CarParameters& car, const ActuationOptions& opti
 double acceleration_towards(const CarParameters& car, const ActuationOptions& options, double speed,
                             double target) noexcept {
   const double difference = target - speed;
-  if (options.gym_gains) {
+  if (options.gym.gains) {
     const double factor = speed > 0 ? 10.0 : 2.0;
     const double range = difference > 0 ? car.speed_max : -car.speed_min;
     return factor * car.acceleration_max / range * difference;

@@ -1,4 +1,4 @@
-#include "sim/gym_scan.hpp"
+#include "sim/gym/gym_scan.hpp"
 
 #include <algorithm>
 #include <array>
@@ -100,7 +100,7 @@ void gym_scan(const Track& track, const maps::Pose& sensor, const LidarOptions& 
     for (std::size_t i = 0; i < here; ++i) {
       const double angle = sensor.yaw + angles[first + i];
       const maps::Point to =
-          options.gym_directions ? directions.next() : maps::Point{std::cos(angle), std::sin(angle)};
+          options.gym.directions ? directions.next() : maps::Point{std::cos(angle), std::sin(angle)};
       cosines[i] = to.x;
       sines[i] = to.y;
     }

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slalom/sim/world.hpp"
+
+namespace slalom::sim {
+
+/// Counts the collisions of a car, for instance over a lap.
+class CollisionLog {
+ public:
+  /// Forgets all collisions.
+  void reset() noexcept;
+
+  /// To be called after each step of the world.
+  void update(const World& world, std::size_t car);
+
+  /// Number of collisions: different bodies that the car collided with, all walls together as one.
+  int collisions() const noexcept { return static_cast<int>(bodies_.size()) + wall_; }
+  bool hit_wall() const noexcept { return wall_; }                   ///< whether it collided with a wall
+  std::span<const int> bodies() const noexcept { return bodies_; }   ///< that it collided with, ascending
+  int collision_steps() const noexcept { return collision_steps_; }  ///< steps with any collision
+  /// Number of collisions as the published evaluation (K. Honda et al., proj-svg_mppi) counts them: different
+  /// patterns of the parked cars' collision flags seen while the car collided; a wall alone is the pattern of
+  /// no flag, two cars at once are a pattern of their own.
+  int published() const noexcept { return static_cast<int>(patterns_.size()); }
+
+ private:
+  std::vector<int> bodies_;
+  std::vector<std::vector<std::uint8_t>> patterns_;
+  bool wall_ = false;
+  int collision_steps_ = 0;
+};
+
+}  // namespace slalom::sim

@@ -1,0 +1,67 @@
+#pragma once
+
+/// What exists only to reproduce f1tenth_gym, the simulator of the paper's experiments: switches for its
+/// deviations from the physics and geometry that this simulator computes. Each options struct of the layer
+/// that has such switches holds them in a member `gym`; all are off by default. `published()` turns on all
+/// that f1tenth_gym does, and `WorldOptions::gym_compatible()` sets them together.
+namespace slalom::sim {
+
+/// Deviations of the equations of motion.
+struct GymDynamics {
+  /// Below 0.5 m/s the car moves along its axis, the slip stays frozen and the yaw rate is integrated beside
+  /// the yaw that is really driven.
+  bool low_speed = false;
+  /// The last move towards the steering's limit may pass it by steer_rate_max * time step.
+  bool steer_overshoot = false;
+  /// In reverse the tyres push the wrong way, and yaw rate and slip grow without bound.
+  bool reverse = false;
+
+  static constexpr GymDynamics published() { return {true, true, true}; }  ///< all on
+};
+
+/// Deviations of the low-level control.
+struct GymActuation {
+  /// The steering moves at full rate or not at all, so that it chatters about its target.
+  bool steering = false;
+  /// Gains follow from the limits of speed and are a fifth of the others at standstill and in reverse.
+  bool gains = false;
+
+  static constexpr GymActuation published() { return {true, true}; }  ///< all on
+};
+
+/// Deviations of the car as a whole.
+struct GymPlant {
+  /// The yaw is brought to [0, 2 pi] by at most one turn per step; elsewhere it lies in [-pi, pi].
+  bool yaw = false;
+
+  static constexpr GymPlant published() { return {true}; }  ///< on
+};
+
+/// Deviations of the laser scanner.
+struct GymLidar {
+  /// A beam walks from cell to cell by the cells' distances to the nearest wall, centre to centre, until it
+  /// is in a wall cell, so that ranges are up to a cell off; outside the map it reads the last cell's
+  /// distance.
+  bool ranges = false;
+  /// Directions are taken from a table of 2000 (step 2 pi / 1999), up to 0.003 rad off.
+  bool directions = false;
+  /// Noise is numpy's default_rng(12345), begun anew at each reset, the same for every car; it is added after
+  /// the cut at range_max and before other cars are seen, which stay without noise.
+  bool noise = false;
+  /// A car is looked for only in the beams between those nearest to its corners.
+  bool window = false;
+
+  static constexpr GymLidar published() { return {true, true, true, true}; }  ///< all on
+};
+
+/// Deviations of the world.
+struct GymWorld {
+  /// Walls are hit by TimeToCollision instead of by the car's outline.
+  bool wall_collision = false;
+  /// reset() makes one step with zero commands.
+  bool reset_step = false;
+
+  static constexpr GymWorld published() { return {true, true}; }  ///< all on
+};
+
+}  // namespace slalom::sim
