@@ -8,10 +8,14 @@ namespace slalom {
 ///     T travelled = x.speed * T(time_step_);   // time_step_ is a Coefficient; T float, double or a pack
 class Coefficient {
  public:
+  /// Rounds `value` once.
   constexpr Coefficient(double value = 0) noexcept : exact_(value), rounded_(static_cast<float>(value)) {}
 
+  /// The exact value.
   constexpr explicit operator double() const noexcept { return exact_; }
+  /// The rounded value.
   constexpr explicit operator float() const noexcept { return rounded_; }
+  /// The rounded value.
   constexpr float rounded() const noexcept { return rounded_; }
 
  private:

@@ -8,7 +8,7 @@ namespace slalom {
 
 /// Metres along one axis of a map to cells, the ring included: cell = position * scale + offset, truncated.
 struct GridAxis {
-  double scale = 0, offset = 0;
+  double scale = 0, offset = 0;  ///< cell = scale times coordinate + offset
 };
 
 /// Nearest-cell look-ups in a map of `Layers` float32 values a cell (1, or 4: then one 128-bit load fetches a
@@ -43,11 +43,17 @@ class GridView {
         offset_x_(rows_axis_.offset),
         offset_y_(columns_axis_.offset) {}
 
+  /// The cell of row 0 and column 0.
   const float* cells() const noexcept { return cells_; }
+  /// Cells along x.
   int rows() const noexcept { return rows_; }
+  /// Cells along y.
   int columns() const noexcept { return columns_; }
+  /// Edge of a cell, m.
   double resolution() const noexcept { return resolution_; }
+  /// Centre of the grid, m.
   double center_x() const noexcept { return center_x_; }
+  /// Centre of the grid, m.
   double center_y() const noexcept { return center_y_; }
   const GridAxis& rows_axis() const noexcept { return rows_axis_; }        ///< x to rows
   const GridAxis& columns_axis() const noexcept { return columns_axis_; }  ///< y to columns
@@ -64,6 +70,7 @@ class GridView {
     const int row = axis_index(x, center_x_, rows_), column = axis_index(y, center_y_, columns_);
     return row == 0 || column == 0 ? 0 : (static_cast<std::ptrdiff_t>(row) << stride_log2_) + column;
   }
+  /// Cell indices of positions, one for each lane.
   template <class Target>
   SLALOM_INLINE simd::IntPack<Target> index(const Pack<Target>& x, const Pack<Target>& y) const {
     using F = Pack<Target>;
@@ -118,7 +125,7 @@ class GridView {
 /// What a look-up of a four-layer cell returns.
 template <class T>
 struct CellValues {
-  T a, b, c, d;
+  T a, b, c, d;  ///< one value for each layer
 };
 
 /// The cell at (x, y); m.
@@ -127,10 +134,12 @@ CellValues<T> look_up(const GridView<4>& grid, T x, T y) {
   const float* cell = grid.cells() + 4 * grid.index(x, y);
   return {static_cast<T>(cell[0]), static_cast<T>(cell[1]), static_cast<T>(cell[2]), static_cast<T>(cell[3])};
 }
+/// The value of the cell at a position.
 template <Scalar T>
 T look_up(const GridView<1>& grid, T x, T y) {
   return static_cast<T>(grid.cells()[grid.index(x, y)]);
 }
+/// Values of the cells at positions, one for each lane.
 template <class Target>
 SLALOM_INLINE_CALLS CellValues<Pack<Target>> look_up(const GridView<4>& grid, const Pack<Target>& x,
                                                      const Pack<Target>& y) {
@@ -148,6 +157,7 @@ SLALOM_INLINE_CALLS Pack<Target> look_up_cell(const GridView<1>& grid, const Pac
   simd::Operations<Target>::gather(grid.cells(), index.v, r.v);
   return r;
 }
+/// Values of the cells at positions, one for each lane.
 template <class Target>
 SLALOM_INLINE_CALLS Pack<Target> look_up(const GridView<1>& grid, const Pack<Target>& x,
                                          const Pack<Target>& y) {

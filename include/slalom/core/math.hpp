@@ -19,54 +19,65 @@ using simd::Pack;
 /// The truth value that goes with a scalar type: `bool`, or one per lane.
 template <class T>
 struct MaskOf {
-  using type = bool;
+  using type = bool;  ///< mask of scalars
 };
+/// The type of comparisons of packs.
 template <class Target>
 struct MaskOf<Pack<Target>> {
-  using type = simd::Mask<Target>;
+  using type = simd::Mask<Target>;  ///< mask of packs
 };
+/// Type of comparisons of T: `bool`, or a mask with one lane for each value.
 template <class T>
 using mask_t = typename MaskOf<T>::type;
 
 /// True for the types a rollout runs on.
 template <class T>
 inline constexpr bool is_pack = false;
+/// True for packs.
 template <class Target>
 inline constexpr bool is_pack<Pack<Target>> = true;
 
 // --- scalars
 // -------------------------------------------------------------------------------------------------------
 template <class T>
-concept Scalar = std::is_same_v<T, float> || std::is_same_v<T, double>;
+concept Scalar = std::is_same_v<T, float> || std::is_same_v<T, double>;  ///< `float` and `double`
 
+/// Sine of an angle, rad.
 template <Scalar T>
 T sin(T x) {
   return std::sin(x);
 }
+/// Cosine of an angle, rad.
 template <Scalar T>
 T cos(T x) {
   return std::cos(x);
 }
+/// Tangent of an angle, rad.
 template <Scalar T>
 T tan(T x) {
   return std::tan(x);
 }
+/// E^x.
 template <Scalar T>
 T exp(T x) {
   return std::exp(x);
 }
+/// Natural logarithm.
 template <Scalar T>
 T log(T x) {
   return std::log(x);
 }
+/// Arc tangent, rad.
 template <Scalar T>
 T atan(T x) {
   return std::atan(x);
 }
+/// Square root.
 template <Scalar T>
 T sqrt(T x) {
   return std::sqrt(x);
 }
+/// Absolute value.
 template <Scalar T>
 T abs(T x) {
   return std::abs(x);
@@ -76,14 +87,17 @@ template <Scalar T>
 T round(T x) {
   return std::nearbyint(x);
 }
+/// 1 / sqrt(x).
 template <Scalar T>
 T reciprocal_sqrt(T x) {
   return T(1) / std::sqrt(x);
 }
+/// The smaller value.
 template <Scalar T>
 T min(T a, std::type_identity_t<T> b) {
   return a < b ? a : b;
 }
+/// The larger value.
 template <Scalar T>
 T max(T a, std::type_identity_t<T> b) {
   return a > b ? a : b;
@@ -93,12 +107,14 @@ template <Scalar T>
 T select(bool condition, T a, std::type_identity_t<T> b) {
   return condition ? a : b;
 }
+/// Sine and cosine of an angle, rad.
 template <Scalar T>
 void sin_cos(T x, T& s, T& c) {
   s = std::sin(x);
   c = std::cos(x);
 }
 
+/// Sine and cosine of an angle within half a turn, rad.
 template <Scalar T>
 void sin_cos_half_turn(T x, T& s, T& c) {
   sin_cos(x, s, c);
@@ -106,18 +122,21 @@ void sin_cos_half_turn(T x, T& s, T& c) {
 
 // --- packs
 // ---------------------------------------------------------------------------------------------------------
+/// The smaller value in each lane.
 template <class Target>
 SLALOM_INLINE_CALLS Pack<Target> min(const Pack<Target>& a, const std::type_identity_t<Pack<Target>>& b) {
   Pack<Target> r;
   simd::Operations<Target>::min(a.v, b.v, r.v);
   return r;
 }
+/// The larger value in each lane.
 template <class Target>
 SLALOM_INLINE_CALLS Pack<Target> max(const Pack<Target>& a, const std::type_identity_t<Pack<Target>>& b) {
   Pack<Target> r;
   simd::Operations<Target>::max(a.v, b.v, r.v);
   return r;
 }
+/// `a` in lanes where the condition is true, else `b`.
 template <class Target>
 SLALOM_INLINE_CALLS Pack<Target> select(const simd::Mask<Target>& condition, const Pack<Target>& a,
                                         const std::type_identity_t<Pack<Target>>& b) {
@@ -125,6 +144,7 @@ SLALOM_INLINE_CALLS Pack<Target> select(const simd::Mask<Target>& condition, con
   simd::Operations<Target>::select(condition.v, a.v, b.v, r.v);
   return r;
 }
+/// Square root, lane by lane.
 template <class Target>
 SLALOM_INLINE_CALLS Pack<Target> sqrt(const Pack<Target>& x) {
   Pack<Target> r;
@@ -138,12 +158,14 @@ SLALOM_INLINE_CALLS Pack<Target> reciprocal_sqrt(const Pack<Target>& x) {
   simd::Operations<Target>::reciprocal_sqrt(x.v, r.v);
   return r;
 }
+/// Nearest integer in each lane.
 template <class Target>
 SLALOM_INLINE_CALLS Pack<Target> round(const Pack<Target>& x) {
   Pack<Target> r;
   simd::Operations<Target>::round(x.v, r.v);
   return r;
 }
+/// Absolute value, lane by lane.
 template <class Target>
 SLALOM_INLINE Pack<Target> abs(const Pack<Target>& x) {
   using I = typename simd::IntPack<Target>::Vector;
@@ -199,18 +221,21 @@ SLALOM_INLINE void sin_cos(const Pack<Target>& x, Pack<Target>& s, Pack<Target>&
   s = F(reinterpret_cast<V>(reinterpret_cast<I>(s.v) ^ sign));
   c = F(reinterpret_cast<V>(reinterpret_cast<I>(c.v) ^ sign));
 }
+/// Sine, lane by lane.
 template <class Target>
 SLALOM_INLINE Pack<Target> sin(const Pack<Target>& x) {
   Pack<Target> s, c;
   sin_cos(x, s, c);
   return s;
 }
+/// Cosine, lane by lane.
 template <class Target>
 SLALOM_INLINE Pack<Target> cos(const Pack<Target>& x) {
   Pack<Target> s, c;
   sin_cos(x, s, c);
   return c;
 }
+/// Tangent, lane by lane.
 template <class Target>
 SLALOM_INLINE Pack<Target> tan(const Pack<Target>& x) {
   Pack<Target> s, c;
@@ -269,6 +294,7 @@ SLALOM_INLINE Pack<Target> log(const Pack<Target>& x) {
   return select(x >= F(__builtin_inff()), x, below);
 }
 
+/// Arc tangent, lane by lane.
 template <class Target>
 SLALOM_INLINE Pack<Target> atan(const Pack<Target>& x) {
   using F = Pack<Target>;
@@ -288,6 +314,7 @@ SLALOM_INLINE Pack<Target> atan(const Pack<Target>& x) {
 
 // --- for either
 // ----------------------------------------------------------------------------------------------------
+/// `x`, limited to the bounds.
 template <class T>
 SLALOM_INLINE T clamp(const T& x, const std::type_identity_t<T>& low, const std::type_identity_t<T>& high) {
   return min(max(x, low), high);
@@ -304,6 +331,7 @@ SLALOM_INLINE T wrap_angle(const T& angle) {
   }
 }
 
+/// X squared.
 template <class T>
 SLALOM_INLINE T square(const T& x) {
   return x * x;

@@ -18,10 +18,11 @@ using OptionValue = std::variant<bool, int, std::uint64_t, double, std::vector<d
 
 /// An option of some options aggregate: what is declared of it, its type, its value.
 struct OptionEntry {
-  Declaration declaration;
-  OptionValue value;
+  Declaration declaration;           ///< the declaration of the option
+  OptionValue value;                 ///< the value of the option
   std::vector<std::string> choices;  ///< of an enumeration: the enumerators' names
 
+  /// Whether the values are equal.
   bool operator==(const OptionEntry& other) const { return value == other.value; }
 };
 

@@ -27,32 +27,39 @@ namespace slalom {
 
 /// What is said of an option besides its type and default.
 struct Declaration {
-  const char* name = "";
+  const char* name = "";    ///< name in configurations
   const char* symbol = "";  ///< the paper's
-  const char* unit = "";
-  const char* help = "";
+  const char* unit = "";    ///< unit of the values; "input" is the unit of an input
+  const char* help = "";    ///< effect, in one line
   double min = -std::numeric_limits<double>::infinity();  ///< inclusive, per entry
   double max = std::numeric_limits<double>::infinity();   ///< inclusive, per entry
 };
 
+/// Whether `Options` is `Of`, const or not.
 template <class Options, class Of>
 concept is_options_of = std::is_same_v<std::remove_const_t<Options>, Of>;
 
 /// One value per input, or one for all inputs.
 class PerInput {
  public:
+  /// One value for all inputs.
   PerInput(double value) : values_{value} {}
+  /// One value for each input.
   PerInput(std::initializer_list<double> values) : values_(values) {}
+  /// One value for each input.
   PerInput(std::vector<double> values) : values_(std::move(values)) {}
 
+  /// The values as given.
   const std::vector<double>& values() const noexcept { return values_; }
   /// The value of one input.
   double operator[](int input) const {
     return values_.size() == 1 ? values_[0] : values_.at(static_cast<std::size_t>(input));
   }
+  /// Whether there is one value, or one for each of `inputs`.
   bool fits(int inputs) const noexcept {
     return values_.size() == 1 || static_cast<int>(values_.size()) == inputs;
   }
+  /// Whether the values are equal.
   bool operator==(const PerInput&) const = default;
 
  private:

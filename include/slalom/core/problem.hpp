@@ -37,24 +37,30 @@ namespace slalom {
 /// The `M` inputs of one step.
 template <class T, int M>
 struct Input {
+  /// One value for each input.
   T value[M];
 
+  /// The value of an input.
   T& operator[](int i) { return value[i]; }
+  /// The value of an input.
   const T& operator[](int i) const { return value[i]; }
+  /// Number of inputs.
   static constexpr int size() { return M; }
 };
 
 /// A cost that also says whether its state collides.
 template <class T>
 struct Cost {
-  T value;
-  mask_t<T> collided;
+  T value;             ///< the cost
+  mask_t<T> collided;  ///< whether the state collides
 };
 
 /// A cost in terms, which the problem names in `cost_names`; their sum counts. `{{a, b}}` or `{{a, b}, hit}`.
 template <class T, int N>
 struct CostTerms {
+  /// The cost terms, in the order of their names.
   T value[N];
+  /// Whether the state collides.
   mask_t<T> collided = mask_t<T>(false);
 };
 

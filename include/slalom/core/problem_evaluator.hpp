@@ -21,13 +21,15 @@ inline constexpr bool samples_itself = requires(const P& p, SequenceBatch& noise
 template <Problem P>
 class ProblemEvaluator final : public BatchEvaluator, private Sampler {
  public:
-  using State = detail::StateOf<P, double>;
+  using State = detail::StateOf<P, double>;  ///< the problem's state in double
 
+  /// Uses the widest instruction set of the processor, or `target` if given.
   explicit ProblemEvaluator(P problem, simd::Target target = simd::active_target())
       : problem_(std::move(problem)), rollout_(simd::kernel<detail::RolloutKernel<P>>(target)) {}
 
   /// The problem, to change parameters between solves.
   P& problem() noexcept { return problem_; }
+  /// The problem.
   const P& problem() const noexcept { return problem_; }
 
   /// Where the next rollouts start.

@@ -11,7 +11,7 @@ namespace slalom {
 /// Names one stream of random numbers: the same key gives the same numbers, whoever draws them, in whatever
 /// order and on however many threads.
 struct RandomKey {
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;    ///< seed of the random numbers
   std::uint64_t stream = 0;  ///< for instance a count of solves and stages
 };
 
@@ -60,11 +60,14 @@ inline std::array<Word, 4> threefry(Word x0, Word x1, Word x2, Word x3,
 /// UniformRandomBitGenerator.
 class RandomStream {
  public:
-  using result_type = std::uint32_t;
+  using result_type = std::uint32_t;  ///< type of the numbers
 
+  /// Starts at the first number of `key`.
   explicit RandomStream(RandomKey key) noexcept : key_(key) {}
 
+  /// Smallest value.
   static constexpr result_type min() { return 0; }
+  /// The largest value.
   static constexpr result_type max() { return 0xffffffffu; }
 
   /// 32 random bits.
@@ -77,6 +80,7 @@ class RandomStream {
     const std::uint64_t high = (*this)() >> 5, low = (*this)() >> 6;
     return static_cast<double>(high * 67108864u + low) * 0x1p-53;
   }
+  /// Uniform in [low, high).
   double uniform(double low, double high) noexcept { return low + (high - low) * uniform(); }
   /// Standard normal (Box & Muller 1958).
   double normal() noexcept {

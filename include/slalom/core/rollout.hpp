@@ -66,8 +66,10 @@ struct Interleaving<simd::Avx512> {
 };
 
 #if defined(__clang__)
+/// Unrolls the next loop.
 #define SLALOM_UNROLL _Pragma("clang loop unroll(full)")
 #else
+/// Unrolls the next loop.
 #define SLALOM_UNROLL _Pragma("GCC unroll 8")
 #endif
 

@@ -20,7 +20,9 @@ class AlignedBuffer {
   float* data() noexcept { return data_.get(); }              ///< the first value
   const float* data() const noexcept { return data_.get(); }  ///< the first value
   std::ptrdiff_t size() const noexcept { return size_; }      ///< number of values
+  /// Value at an index.
   float& operator[](std::ptrdiff_t i) noexcept { return data_[i]; }
+  /// Value at an index.
   float operator[](std::ptrdiff_t i) const noexcept { return data_[i]; }
 
  private:
@@ -52,18 +54,22 @@ class SequenceBatch {
 
   /// The values of a row, one per sample, without padding.
   std::span<float> operator[](int row) noexcept { return {data(row), count()}; }
+  /// The values of a row, one per sample, without padding.
   std::span<const float> operator[](int row) const noexcept { return {data(row), count()}; }
 
   /// The first of the `stride()` values of a row, for code that works on whole packs.
   float* data(int row = 0) noexcept { return values_.data() + offset(row); }
+  /// The first of the `stride()` values of a row, for code that works on whole packs.
   const float* data(int row = 0) const noexcept { return values_.data() + offset(row); }
 
   /// The first of the `stride()` values of a step and input.
   float* row(int step, int input) noexcept { return data(step * inputs_ + input); }
+  /// The first of the `stride()` values of a step and input.
   const float* row(int step, int input) const noexcept { return data(step * inputs_ + input); }
 
   /// One value.
   float& at(int step, int input, int sample) noexcept { return row(step, input)[sample]; }
+  /// One value.
   float at(int step, int input, int sample) const noexcept { return row(step, input)[sample]; }
 
   /// Copies the control sequence of a sample to `to`, [row], `rows()` values.

@@ -27,21 +27,30 @@
 #endif
 
 #if SLALOM_X86
+/// Instruction sets of SSE4 code.
 #define SLALOM_ISA_SSE4 __attribute__((target("sse4.2")))
+/// Instruction sets of AVX2 code.
 #define SLALOM_ISA_AVX2 __attribute__((target("avx2,fma,bmi,bmi2")))
+/// Instruction sets of AVX-512 code.
 #define SLALOM_ISA_AVX512 \
   __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,avx512cd,avx2,fma,bmi,bmi2")))
 #else
+/// Instruction sets of SSE4 code.
 #define SLALOM_ISA_SSE4
+/// Instruction sets of AVX2 code.
 #define SLALOM_ISA_AVX2
+/// Instruction sets of AVX-512 code.
 #define SLALOM_ISA_AVX512
 #endif
 
 /// Marks a function as the entry of a batch loop for one instruction set: everything it calls is inlined into
 /// it.
 #define SLALOM_TARGET_GENERIC __attribute__((flatten))
+/// Attributes of a function that uses SSE4.
 #define SLALOM_TARGET_SSE4 SLALOM_ISA_SSE4 __attribute__((flatten))
+/// Attributes of a function that uses AVX2.
 #define SLALOM_TARGET_AVX2 SLALOM_ISA_AVX2 __attribute__((flatten))
+/// Attributes of a function that uses AVX-512.
 #define SLALOM_TARGET_AVX512 SLALOM_ISA_AVX512 __attribute__((flatten))
 
 /// On the small functions that make up a batch loop. g++ follows `flatten` all the way down, but only over
@@ -50,9 +59,11 @@
 /// (`SLALOM_INLINE_CALLS`) where a function of another's making, or one of an instruction set, is called.
 #if defined(__clang__)
 #define SLALOM_INLINE __attribute__((always_inline)) inline
+/// Like SLALOM_INLINE, and inlines all calls in the function.
 #define SLALOM_INLINE_CALLS __attribute__((always_inline, flatten)) inline
 #else
 #define SLALOM_INLINE inline
+/// Like SLALOM_INLINE, and inlines all calls in the function.
 #define SLALOM_INLINE_CALLS inline
 #endif
 
@@ -60,6 +71,7 @@
 /// Lets clang fuse a product and a sum that stand in different inline functions (g++ does by default).
 #define SLALOM_FUSE _Pragma("clang fp contract(fast)")
 #else
+/// Allows fused multiply-add.
 #define SLALOM_FUSE
 #endif
 
@@ -71,20 +83,23 @@ enum class Target : std::uint8_t { generic, sse4, avx2, avx512 };
 /// Tags of the instruction sets: `lanes` float32 values a pack, and whether it multiplies and adds with one
 /// rounding. `Generic` uses what the build's baseline has (SSE2 on x86-64, NEON on AArch64).
 struct Generic {
-  static constexpr int lanes = 4;
-  static constexpr bool fused = SLALOM_X86 == 0;
+  static constexpr int lanes = 4;                 ///< number of float32 values
+  static constexpr bool fused = SLALOM_X86 == 0;  ///< whether it has fused multiply-add
 };
+/// SSE 4.2.
 struct Sse4 {
-  static constexpr int lanes = 4;
-  static constexpr bool fused = false;
+  static constexpr int lanes = 4;       ///< number of float32 values
+  static constexpr bool fused = false;  ///< whether it has fused multiply-add
 };
+/// AVX2 with FMA.
 struct Avx2 {
-  static constexpr int lanes = 8;
-  static constexpr bool fused = true;
+  static constexpr int lanes = 8;      ///< number of float32 values
+  static constexpr bool fused = true;  ///< whether it has fused multiply-add
 };
+/// AVX-512 F, DQ, BW and VL.
 struct Avx512 {
-  static constexpr int lanes = 16;
-  static constexpr bool fused = true;
+  static constexpr int lanes = 16;     ///< number of float32 values
+  static constexpr bool fused = true;  ///< whether it has fused multiply-add
 };
 
 /// Batches are padded to a multiple of this many samples, the lanes of the widest pack, whatever the
@@ -128,44 +143,58 @@ struct Broadcast<Avx512> {
 /// One truth value per lane.
 template <class T>
 struct Mask {
-  using Vector = typename detail::VectorTypes<T::lanes>::Int;
-  Vector v;  ///< all bits set where true
+  using Vector = typename detail::VectorTypes<T::lanes>::Int;  ///< vector type of the compiler
+  Vector v;                                                    ///< all bits set where true
 
   Mask() = default;
+  /// From lanes with all bits 1 or all bits 0.
   SLALOM_INLINE Mask(const Vector& vector) : v(vector) {}
+  /// Copies.
   SLALOM_INLINE Mask(const Mask& other) : v(other.v) {}
+  /// Copies.
   SLALOM_INLINE Mask& operator=(const Mask& other) {
     v = other.v;
     return *this;
   }
+  /// The same value in all lanes.
   SLALOM_INLINE explicit Mask(bool value) { v = Vector{} - static_cast<int>(value); }
 
+  /// Applies to each lane.
   SLALOM_INLINE friend Mask operator&(const Mask& a, const Mask& b) { return Mask(a.v & b.v); }
+  /// Applies to each lane.
   SLALOM_INLINE friend Mask operator|(const Mask& a, const Mask& b) { return Mask(a.v | b.v); }
+  /// Applies to each lane.
   SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(~a.v); }
   bool operator[](int lane) const { return v[lane] != 0; }  ///< of a lane
 };
 /// AVX-512 compares into registers of a bit a lane, and selects by them.
 template <>
 struct Mask<Avx512> {
-  using Vector = std::uint16_t;
-  Vector v;  ///< a bit a lane
+  using Vector = std::uint16_t;  ///< one bit for each lane
+  Vector v;                      ///< a bit a lane
 
   Mask() = default;
+  /// From lanes with all bits 1 or all bits 0.
   SLALOM_INLINE Mask(const Vector& bits) : v(bits) {}
+  /// Copies.
   SLALOM_INLINE Mask(const Mask& other) : v(other.v) {}
+  /// Copies.
   SLALOM_INLINE Mask& operator=(const Mask& other) {
     v = other.v;
     return *this;
   }
+  /// The same value in all lanes.
   SLALOM_INLINE explicit Mask(bool value) : v(static_cast<Vector>(-static_cast<int>(value))) {}
 
+  /// Applies to each lane.
   SLALOM_INLINE friend Mask operator&(const Mask& a, const Mask& b) {
     return Mask(static_cast<Vector>(a.v & b.v));
   }
+  /// Applies to each lane.
   SLALOM_INLINE friend Mask operator|(const Mask& a, const Mask& b) {
     return Mask(static_cast<Vector>(a.v | b.v));
   }
+  /// Applies to each lane.
   SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(static_cast<Vector>(~a.v)); }
   bool operator[](int lane) const { return ((v >> lane) & 1) != 0; }  ///< of a lane
 };
@@ -173,13 +202,17 @@ struct Mask<Avx512> {
 /// A pack of 32-bit integers.
 template <class T>
 struct IntPack {
-  using Vector = typename detail::VectorTypes<T::lanes>::Int;
-  Vector v;
+  using Vector = typename detail::VectorTypes<T::lanes>::Int;  ///< vector type of the compiler
+  Vector v;                                                    ///< the lanes
 
   IntPack() = default;
+  /// The same value in all lanes.
   SLALOM_INLINE explicit IntPack(int value) { v = Vector{} + value; }
+  /// From a vector.
   SLALOM_INLINE IntPack(const Vector& vector) : v(vector) {}
+  /// Copies.
   SLALOM_INLINE IntPack(const IntPack& other) : v(other.v) {}
+  /// Copies.
   SLALOM_INLINE IntPack& operator=(const IntPack& other) {
     v = other.v;
     return *this;
@@ -193,52 +226,74 @@ struct Operations;
 /// A pack of float32 values: arithmetic like a float's, lane by lane.
 template <class T>
 struct Pack {
-  using Target = T;
-  using Vector = typename detail::VectorTypes<T::lanes>::Float;
-  static constexpr int lanes = T::lanes;
-  Vector v;
+  using Target = T;                                              ///< the instruction set
+  using Vector = typename detail::VectorTypes<T::lanes>::Float;  ///< vector type of the compiler
+  static constexpr int lanes = T::lanes;                         ///< number of float32 values
+  Vector v;                                                      ///< the lanes
 
   Pack() = default;
+  /// The same value in all lanes.
   SLALOM_INLINE_CALLS Pack(float value) { detail::Broadcast<T>::of(value, v); }
+  /// The same value in all lanes, rounded to float32.
   SLALOM_INLINE Pack(double value) : Pack(static_cast<float>(value)) {}
+  /// The same value in all lanes.
   SLALOM_INLINE Pack(int value) : Pack(static_cast<float>(value)) {}
+  /// The same value in all lanes, already rounded.
   SLALOM_INLINE Pack(const Coefficient& value) : Pack(value.rounded()) {}
+  /// From a vector.
   SLALOM_INLINE Pack(const Vector& vector) : v(vector) {}
+  /// Copies.
   SLALOM_INLINE Pack(const Pack& other) : v(other.v) {}
+  /// Copies.
   SLALOM_INLINE Pack& operator=(const Pack& other) {
     v = other.v;
     return *this;
   }
 
+  /// Reads one value for each lane.
   SLALOM_INLINE static Pack load(const float* from) {
     Pack p;
     std::memcpy(&p.v, from, sizeof p.v);
     return p;
   }
+  /// Writes the lanes.
   SLALOM_INLINE void store(float* to) const { std::memcpy(to, &v, sizeof v); }
   float operator[](int lane) const { return v[lane]; }  ///< of a lane
 
+  /// Applies to each lane.
   SLALOM_INLINE friend Pack operator+(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v + b.v); }
+  /// Applies to each lane.
   SLALOM_INLINE friend Pack operator-(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v - b.v); }
+  /// Applies to each lane.
   SLALOM_INLINE friend Pack operator*(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v * b.v); }
+  /// Applies to each lane.
   SLALOM_INLINE friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.v / b.v); }
+  /// Applies to each lane.
   SLALOM_INLINE friend Pack operator-(const Pack& a) { return Pack(-a.v); }
+  /// Applies to each lane.
   SLALOM_INLINE Pack& operator+=(const Pack& b) { return *this = *this + b; }
+  /// Applies to each lane.
   SLALOM_INLINE Pack& operator-=(const Pack& b) { return *this = *this - b; }
+  /// Applies to each lane.
   SLALOM_INLINE Pack& operator*=(const Pack& b) { return *this = *this * b; }
+  /// Applies to each lane.
   SLALOM_INLINE Pack& operator/=(const Pack& b) { return *this = *this / b; }
 
+  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator<(const Pack& a, const Pack& b) {
     Mask<T> r;
     Operations<T>::less(a.v, b.v, r.v);
     return r;
   }
+  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator<=(const Pack& a, const Pack& b) {
     Mask<T> r;
     Operations<T>::less_or_equal(a.v, b.v, r.v);
     return r;
   }
+  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator>(const Pack& a, const Pack& b) { return b < a; }
+  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator>=(const Pack& a, const Pack& b) { return b <= a; }
 };
 

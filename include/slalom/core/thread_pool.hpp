@@ -18,6 +18,7 @@ class ThreadPool {
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
+  /// That work on a call, the caller among them.
   int threads() const noexcept { return threads_; }
 
   /// Calls `task(i)` for every i in [0, count) and returns when all have ended. No allocation; tasks may not

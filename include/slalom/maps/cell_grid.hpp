@@ -25,12 +25,14 @@ struct GridGeometry {
 
   /// x (m) of the centres of a row's cells, y (m) of a column's.
   double cell_x(int row) const { return center_x + 0.5 * length_x() - 0.5 * resolution - resolution * row; }
+  /// Centre of a column, m.
   double cell_y(int column) const {
     return center_y + 0.5 * length_y() - 0.5 * resolution - resolution * column;
   }
 
   /// The row of the cells at x (m), the column of those at y (m); -1 outside the map and for NaN.
   int row(double x) const { return index(x, center_x, rows); }
+  /// Column of a coordinate (m); may lie outside the grid.
   int column(double y) const { return index(y, center_y, columns); }
 
  private:
@@ -49,6 +51,7 @@ struct GridGeometry {
 template <int Layers>
 class CellGrid {
  public:
+  /// Cells and border ring with all values 0.
   CellGrid(int rows, int columns)
       : rows_(rows),
         stride_log2_(std::bit_width(static_cast<unsigned>(columns + 1))),
@@ -57,10 +60,12 @@ class CellGrid {
 
   /// The values of a cell; row -1 .. rows, column -1 .. columns.
   float* at(int row, int column) { return cells_.get() + offset(row, column); }
+  /// The layers of a cell.
   const float* at(int row, int column) const { return cells_.get() + offset(row, column); }
 
   /// The ring's first cell; one row has 2^stride_log2() cells.
   const float* data() const { return cells_.get(); }
+  /// Base-2 logarithm of the number of cells from one row to the next.
   int stride_log2() const { return stride_log2_; }
 
   /// For the look-ups of rollouts; valid while this lives and the geometry is that of the cells.

@@ -55,12 +55,15 @@ class ClearanceMap {
   void clear() noexcept;
   /// Adds obstacle points in the robot's frame, m; those off the map by more than the reach do not matter.
   void add(std::span<const ScanPoint> points) noexcept;
+  /// Adds obstacles, body frame.
   void add(std::span<const Point> points) noexcept;
 
   /// The distance at a position in the robot's frame, m; -1 off the map.
   float at(double x, double y) const noexcept;
 
+  /// Position and size of the cells.
   const GridGeometry& geometry() const noexcept { return geometry_; }
+  /// View for look-ups.
   GridView<1> view() const noexcept { return cells_.view(geometry_); }
 
  private:

@@ -52,8 +52,11 @@ class CourseField {
   /// The cell at a position, m.
   ReferenceCell at(double x, double y) const noexcept;
 
+  /// The options given at construction.
   const CourseFieldOptions& options() const noexcept { return options_; }
+  /// Position and size of the cells.
   const GridGeometry& geometry() const noexcept { return geometry_; }
+  /// The cells.
   const CellGrid<4>& cells() const noexcept { return cells_; }
 
   /// The cells {distance, yaw, speed, 0}, in the map frame, for the look-ups of rollouts.

@@ -10,12 +10,13 @@ namespace slalom::maps {
 /// metres; 0 on obstacles. What lies outside the grid is no obstacle. Without any obstacle every distance is
 /// infinite.
 struct DistanceField {
-  int width = 0;
-  int height = 0;
+  int width = 0;                 ///< cells
+  int height = 0;                ///< cells
   double resolution = 0;         ///< m per cell
   Pose origin;                   ///< as in OccupancyGrid
   std::vector<double> distance;  ///< height x width, row 0 at the bottom, m
 
+  /// Distance from a cell to the nearest occupied cell, m.
   double at(int column, int row) const { return distance[static_cast<std::size_t>(row) * width + column]; }
 };
 

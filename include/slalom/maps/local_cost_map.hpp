@@ -13,10 +13,10 @@ namespace slalom::maps {
 
 /// How far the car's body reaches from its reference point (the rear axle): metres, all >= 0.
 struct Footprint {
-  double front = 0.47;
-  double rear = 0.14;
-  double left = 0.15;
-  double right = 0.15;
+  double front = 0.47;  ///< m, ahead of the origin
+  double rear = 0.14;   ///< m, behind it
+  double left = 0.15;   ///< m, to its left
+  double right = 0.15;  ///< m, to its right
 };
 
 /// Options of LocalCostMap.
@@ -136,18 +136,18 @@ void visit_options(Options& options, Visit&& visit) {
 
 /// A point in the robot's frame: m.
 struct ScanPoint {
-  float x;
-  float y;
+  float x;  ///< m
+  float y;  ///< m
 };
 
 /// What became of a scan.
 struct ScanReport {
   bool accepted =
-      false;  ///< false: empty, too many beams, or a geometry that is not finite; nothing was added
-  int beams = 0;
+      false;        ///< false: empty, too many beams, or a geometry that is not finite; nothing was added
+  int beams = 0;    ///< number of beams of the scan
   int invalid = 0;  ///< NaN, below range_min (so negative), or range_max and more (so infinite)
   int on_body = 0;  ///< dropped because they lie within the footprint
-  int used = 0;
+  int used = 0;     ///< number of beams that gave a point
 };
 
 /// A map of the free ground around the car, in the car's own frame (x ahead, y to the left), made from one
@@ -168,7 +168,9 @@ class LocalCostMap {
   /// Adds what a scan, points in the robot's frame (m) or the occupied cells of a grid say; the grid's origin
   /// and the robot's pose are given in the same frame. Points that are not finite are ignored.
   ScanReport add_scan(const LaserScanView& scan) noexcept;
+  /// Adds obstacles, body frame.
   void add_points(std::span<const Point> points) noexcept;
+  /// Adds the occupied cells of a map, seen from `robot`.
   void add_grid(const OccupancyGrid& obstacles, const Pose& robot) noexcept;
 
   /// The value at a position in the robot's frame, m.
@@ -177,8 +179,11 @@ class LocalCostMap {
     return row < 0 || column < 0 ? *cells_.data() : *cells_.at(row, column);
   }
 
+  /// The options given at construction.
   const LocalCostMapOptions& options() const noexcept { return options_; }
+  /// Position and size of the cells.
   const GridGeometry& geometry() const noexcept { return geometry_; }
+  /// The cells.
   const CellGrid<1>& cells() const noexcept { return cells_; }
 
   /// The cells, in the robot's frame, for the look-ups of rollouts.

@@ -6,15 +6,15 @@ namespace slalom::maps {
 
 /// A point of the plane: metres.
 struct Point {
-  double x = 0;
-  double y = 0;
+  double x = 0;  ///< m
+  double y = 0;  ///< m
 };
 
 /// A pose in the plane: position in metres, yaw in radians, counter-clockwise, 0 along +x.
 struct Pose {
-  double x = 0;
-  double y = 0;
-  double yaw = 0;
+  double x = 0;    ///< m
+  double y = 0;    ///< m
+  double yaw = 0;  ///< rad
 };
 
 /// A point given in the frame of `frame`, in the frame in which `frame` is given.

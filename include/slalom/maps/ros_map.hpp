@@ -21,8 +21,8 @@ enum class MapRule {
 
 /// Options of load_ros_map.
 struct MapReading {
-  MapRule rule = MapRule::map_server;
-  int grey_threshold = 128;       ///< largest grey of an obstacle, 0..255; rule grey_threshold only
+  MapRule rule = MapRule::map_server;  ///< conversion of grey values to occupancy
+  int grey_threshold = 128;            ///< largest grey of an obstacle, 0..255; rule grey_threshold only
   std::string image_extension{};  ///< if set (".png"), the image is the yaml file's name with this extension
                                   ///< instead of the file the key `image` names; f1tenth_gym looks for it so
 };

@@ -10,7 +10,8 @@ namespace slalom::problems {
 /// An arm of seven joints that reaches past a ball: over it, under it, or drawn in behind it. Its joints turn
 /// about z, y, z, y, z, y, z in turn; with all angles 0 it stands upright. Inputs are the joints' rates.
 struct Arm {
-  static constexpr int joints = 7;
+  static constexpr int joints = 7;  ///< number
+  /// State of the dynamics.
   template <class T>
   struct State {
     T angle[joints];  // rad
@@ -18,18 +19,18 @@ struct Arm {
   /// Where the parts of an arm are, m.
   template <class T>
   struct Point {
-    T x, y, z;
+    T x, y, z;  ///< m
   };
   /// Elbow, wrist and hand.
   template <class T>
   struct Posture {
-    Point<T> elbow, wrist, hand;
+    Point<T> elbow, wrist, hand;  ///< m, from the base of the arm
   };
-  static constexpr int inputs = joints;  // rad/s
-  static constexpr std::array cost_names{"reach", "effort", "contact"};
-  double dt = 0.05;                                           // s
-  double input_min = -1.5, input_max = 1.5;                   // rad/s
-  double input_rate_max = 10;                                 // rad/s^2
+  static constexpr int inputs = joints;                                  // rad/s
+  static constexpr std::array cost_names{"reach", "effort", "contact"};  ///< names of the cost terms
+  double dt = 0.05;                                                      // s
+  double input_min = -1.5, input_max = 1.5;                              // rad/s
+  double input_rate_max = 10;                                            // rad/s^2
   double base = 0.33, upper = 0.32, fore = 0.38, hand = 0.2;  // m, lengths from the ground to the hand
   double goal_x = 0.38, goal_y = -0.48, goal_z = 0.34;        // m, for the hand
   double ball_x = 0.5, ball_y = 0, ball_z = 0.45, ball_radius = 0.15;  // m
@@ -38,12 +39,14 @@ struct Arm {
   /// A posture from which the ball is in the way.
   static constexpr std::array<double, joints> start{0.9, 0.5, 0, 1.3, 0, 0.9, 0};
 
+  /// State after one step.
   template <class T>
   State<T> step(const State<T>& x, const Input<T, joints>& u) const {
     State<T> next;
     for (int i = 0; i < joints; ++i) next.angle[i] = x.angle[i] + T(dt) * u[i];
     return next;
   }
+  /// Named cost terms of a step.
   template <class T>
   CostTerms<T, 3> stage_cost(const State<T>& x, const Input<T, joints>& u) const {
     const Posture<T> arm = posture(x);
@@ -52,6 +55,7 @@ struct Arm {
     for (int i = 0; i < joints; ++i) effort = effort + u[i] * u[i];
     return {{T(dt * 40) * distance(arm), T(dt * 0.05) * effort, select(hit, T(100), T(0))}, hit};
   }
+  /// Named cost terms of the last state.
   template <class T>
   CostTerms<T, 3> terminal_cost(const State<T>& x) const {
     const Posture<T> arm = posture(x);

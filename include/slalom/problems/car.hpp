@@ -10,6 +10,7 @@ namespace slalom::problems {
 /// A car that steers and accelerates (kinematic bicycle about its rear axle) on a straight road with two cars
 /// parked in the middle: pass them on either side and stop at a line.
 struct Car {
+  /// State of the dynamics.
   template <class T>
   struct State {
     T x, y, yaw, speed;  // m, m, rad, m/s
@@ -22,6 +23,7 @@ struct Car {
   double half_road = 4;                                         // m
   std::array<double, 2> parked_x{25, 50}, parked_y{0.2, -0.3};  // m, each 4.5 m long and 2 m wide
 
+  /// State after one step.
   template <class T>
   State<T> step(const State<T>& x, const Input<T, 2>& u) const {
     T s, c;
@@ -30,6 +32,7 @@ struct Car {
     return {x.x + T(dt) * speed * c, x.y + T(dt) * speed * s, x.yaw + T(dt / wheelbase) * speed * tan(u[0]),
             speed};
   }
+  /// Cost of a step.
   template <class T>
   Cost<T> stage_cost(const State<T>& x, const Input<T, 2>& u) const {
     const auto hit = hits(x);
@@ -38,6 +41,7 @@ struct Car {
                    T(10) * u[0] * u[0] + T(0.05) * u[1] * u[1];
     return {T(dt) * cost + select(hit, T(100), T(0)), hit};
   }
+  /// Cost of the last state.
   template <class T>
   T terminal_cost(const State<T>&) const {
     return T(0);

@@ -8,6 +8,7 @@ namespace slalom::problems {
 /// A pole on a cart that is pushed: hanging, it has to be swung up within the track. The cart weighs 1 kg,
 /// the pole 0.2 kg with its centre at 0.5 m from the hinge; the angle is measured from upright.
 struct CartPole {
+  /// State of the dynamics.
   template <class T>
   struct State {
     T position, speed, angle, rate;  // m, m/s, rad, rad/s
@@ -16,6 +17,7 @@ struct CartPole {
   double dt = 0.02;                 // s
   double track = 2;                 // m, to either side
 
+  /// State after one step.
   template <class T>
   State<T> step(const State<T>& x, const Input<T, 1>& u) const {
     T s, c;
@@ -26,6 +28,7 @@ struct CartPole {
     const T rate = x.rate + T(dt) * turn;
     return {x.position + T(dt) * speed, speed, x.angle + T(dt) * rate, rate};
   }
+  /// Cost of a step.
   template <class T>
   Cost<T> stage_cost(const State<T>& x, const Input<T, 1>& u) const {
     const auto off_track = abs(x.position) > T(track);
@@ -33,6 +36,7 @@ struct CartPole {
                    T(0.1) * x.rate * x.rate + T(0.001) * u[0] * u[0];
     return {T(dt) * cost + select(off_track, T(100), T(0)), off_track};
   }
+  /// Cost of the last state.
   template <class T>
   T terminal_cost(const State<T>& x) const {
     return T(10) * (T(1) - cos(x.angle)) + x.position * x.position + T(0.1) * x.rate * x.rate;

@@ -7,12 +7,14 @@
 
 namespace slalom::problems {
 
+/// A disc obstacle.
 struct Disc {
   double x, y, radius;  // m
 };
 
 /// A robot with two driven wheels on its way to a goal among discs that it must not touch.
 struct DifferentialDrive {
+  /// State of the dynamics.
   template <class T>
   struct State {
     T x, y, yaw;  // m, m, rad
@@ -23,18 +25,21 @@ struct DifferentialDrive {
   std::array<Disc, 3> discs{
       {{2.5, 0.0, 0.9}, {5.2, 1.0, 0.7}, {5.2, -1.0, 0.7}}};  // with the robot's radius added
 
+  /// State after one step.
   template <class T>
   State<T> step(const State<T>& x, const Input<T, 2>& u) const {
     T s, c;
     sin_cos(x.yaw, s, c);
     return {x.x + T(dt) * u[0] * c, x.y + T(dt) * u[0] * s, x.yaw + T(dt) * u[1]};
   }
+  /// Cost of a step.
   template <class T>
   Cost<T> stage_cost(const State<T>& x, const Input<T, 2>& u) const {
     Cost<T> cost = place_cost(x);
     cost.value += T(0.1) * u[1] * u[1];
     return cost;
   }
+  /// Cost of the last state.
   template <class T>
   Cost<T> terminal_cost(const State<T>& x) const {
     Cost<T> cost = place_cost(x);
@@ -42,10 +47,12 @@ struct DifferentialDrive {
     return cost;
   }
 
+  /// To the goal, m.
   template <class T>
   T distance(const State<T>& x) const {
     return sqrt(square(x.x - T(goal_x)) + square(x.y - T(goal_y)));
   }
+  /// Cost and collision of a position.
   template <class T>
   Cost<T> place_cost(const State<T>& x) const {
     mask_t<T> inside(false);

@@ -10,6 +10,7 @@ namespace slalom::problems {
 /// with two modes; its lateral position is linear in the inputs, so a Gaussian over inputs is one over
 /// places.
 struct PassingPoint {
+  /// State of the dynamics.
   template <class T>
   struct State {
     T x, y;  // m; the way is y = 0
@@ -23,21 +24,25 @@ struct PassingPoint {
   double way_weight = 0.5;          // 1/m^2
   double input_weight = 0.05;       // s^2/m^2
 
+  /// State after one step.
   template <class T>
   State<T> step(const State<T>& x, const Input<T, 1>& u) const {
     return {x.x + T(dt * speed), x.y + T(dt) * u[0]};
   }
+  /// Cost of a step.
   template <class T>
   Cost<T> stage_cost(const State<T>& x, const Input<T, 1>& u) const {
     Cost<T> cost = place_cost(x);
     cost.value += T(input_weight) * u[0] * u[0];
     return cost;
   }
+  /// Cost of the last state.
   template <class T>
   Cost<T> terminal_cost(const State<T>& x) const {
     return place_cost(x);
   }
 
+  /// Cost and collision of a position.
   template <class T>
   Cost<T> place_cost(const State<T>& x) const {
     const auto inside = square(x.x - T(disc_x)) + square(x.y - T(disc_y)) < T(disc_radius * disc_radius);

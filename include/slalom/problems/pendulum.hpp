@@ -7,6 +7,7 @@ namespace slalom::problems {
 
 /// A pendulum that is turned by a motor too weak to lift it; the angle is measured from upright.
 struct Pendulum {
+  /// State of the dynamics.
   template <class T>
   struct State {
     T angle, rate;  // rad, rad/s
@@ -17,12 +18,14 @@ struct Pendulum {
   double length = 1;                // m
   double gravity = 9.81;            // m/s^2
 
+  /// State after one step.
   template <class T>
   State<T> step(const State<T>& x, const Input<T, 1>& u) const {
     const T rate =
         x.rate + T(dt) * (T(gravity / length) * sin(x.angle) + T(1 / (mass * length * length)) * u[0]);
     return {x.angle + T(dt) * rate, rate};
   }
+  /// Cost of a step.
   template <class T>
   T stage_cost(const State<T>& x, const Input<T, 1>& u) const {
     return T(dt) * (T(10) * (T(1) - cos(x.angle)) + T(0.1) * x.rate * x.rate + T(0.01) * u[0] * u[0]);

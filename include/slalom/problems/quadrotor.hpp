@@ -7,6 +7,7 @@ namespace slalom::problems {
 
 /// A quadrotor in the vertical plane, and a wall across its way with two gaps.
 struct Quadrotor {
+  /// State of the dynamics.
   template <class T>
   struct State {
     T x, z, tilt, speed_x, speed_z, rate;  // m, m, rad, m/s, m/s, rad/s
@@ -17,6 +18,7 @@ struct Quadrotor {
   double wall_from = 2.8, wall_to = 3.2;     // m, along x
   double gap_centre = 1.0, gap_width = 1.0;  // m: gaps at z = +gap_centre and z = -gap_centre
 
+  /// State after one step.
   template <class T>
   State<T> step(const State<T>& x, const Input<T, 2>& u) const {
     T s, c;
@@ -27,25 +29,30 @@ struct Quadrotor {
     const T rate = x.rate + T(dt) * u[1];
     return {x.x + T(dt) * speed_x, x.z + T(dt) * speed_z, x.tilt + T(dt) * rate, speed_x, speed_z, rate};
   }
+  /// Cost of a step.
   template <class T>
   Cost<T> stage_cost(const State<T>& x, const Input<T, 2>& u) const {
     const mask_t<T> hit = hits_wall(x);
     const T effort = T(0.01) * (u[0] * u[0] + u[1] * u[1]);
     return {T(dt) * (distance(x) + T(0.2) * square_speed(x) + effort) + select(hit, T(100), T(0)), hit};
   }
+  /// Cost of the last state.
   template <class T>
   T terminal_cost(const State<T>& x) const {
     return T(3) * distance(x) + T(0.3) * square_speed(x);
   }
 
+  /// To the goal, m.
   template <class T>
   T distance(const State<T>& x) const {
     return sqrt(square(x.x - T(goal_x)) + square(x.z - T(goal_z)));
   }
+  /// Sum of squared speeds and rates.
   template <class T>
   T square_speed(const State<T>& x) const {
     return x.speed_x * x.speed_x + x.speed_z * x.speed_z + x.tilt * x.tilt + T(0.2) * x.rate * x.rate;
   }
+  /// Whether it is in the wall, outside the gaps.
   template <class T>
   mask_t<T> hits_wall(const State<T>& x) const {
     const mask_t<T> in_wall = (x.x > T(wall_from)) & (x.x < T(wall_to));

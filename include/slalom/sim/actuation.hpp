@@ -8,8 +8,8 @@ namespace slalom::sim {
 /// The low-level control between a command and the model's input.
 struct ActuationOptions {
   double speed_gain = 4.755;  ///< 1/s, acceleration per error of speed; braking takes brake_gain
-  double brake_gain = 19.02;
-  GymActuation gym{};  ///< reproduction of f1tenth_gym
+  double brake_gain = 19.02;  ///< 1/s, the same when braking
+  GymActuation gym{};         ///< reproduction of f1tenth_gym
 
   /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
   void validate() const;

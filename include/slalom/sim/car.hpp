@@ -22,6 +22,7 @@ struct CarParameters {
   double length = 0.58;            ///< m, of the body, whose middle is the centre of gravity
   double width = 0.31;             ///< m
 
+  /// Distance of the axles, m.
   double wheelbase() const { return front_length + rear_length; }
 
   /// The full-scale car of the CommonRoad vehicle models (parameter set 1, a Ford Escort).
@@ -41,6 +42,7 @@ struct CarState {
   double yaw_rate = 0;  ///< rad/s
   double slip = 0;      ///< beta, rad, from the body's axis to the direction of travel
 
+  /// Whether all values are equal.
   bool operator==(const CarState&) const = default;
 };
 

@@ -19,11 +19,13 @@ namespace slalom::sim {
 ///   What drives or brakes takes its share of mu F_z from what is left sideways (friction ellipse).
 enum class Model { kinematic, single_track, saturating };
 
+/// Integration method of a step.
 enum class Integrator { runge_kutta_4, euler };
 
+/// Options of the car dynamics.
 struct DynamicsOptions {
-  Model model = Model::single_track;
-  Integrator integrator = Integrator::runge_kutta_4;
+  Model model = Model::single_track;                  ///< equations of motion
+  Integrator integrator = Integrator::runge_kutta_4;  ///< integration method
   /// Equal parts into which a time step is cut; 0 takes as many as keep the tyres' fastest mode stable.
   int substeps = 0;
   GymDynamics gym{};  ///< reproduction of f1tenth_gym

@@ -16,14 +16,17 @@ class LapPath {
   explicit LapPath(std::vector<maps::Point> points);
 
   double length() const noexcept { return start_.back(); }  ///< m, once round
+  /// Number of points of the path.
   std::size_t size() const noexcept { return points_.size(); }
+  /// Points of the path, m, map frame.
   const std::vector<maps::Point>& points() const noexcept { return points_; }
 
+  /// A position on the path.
   struct Place {
-    std::size_t segment = 0;
-    double arc = 0;       ///< m from the first point, in [0, length)
-    double lateral = 0;   ///< m, to the left positive
-    double distance = 0;  ///< m
+    std::size_t segment = 0;  ///< index of the point before the position
+    double arc = 0;           ///< m from the first point, in [0, length)
+    double lateral = 0;       ///< m, to the left positive
+    double distance = 0;      ///< m
   };
 
   /// The nearest place of the whole path.
@@ -49,6 +52,7 @@ class LapTimer {
   /// `sectors` >= 1 equal parts of the path get split times. Throws std::invalid_argument otherwise.
   explicit LapTimer(const LapPath& path, int sectors = 3);
 
+  /// Starts at a position and time (s).
   void reset(const LapPath& path, const maps::Point& position, double time) noexcept;
 
   /// To be called after each step, with the position and the time (s) reached.
@@ -90,12 +94,16 @@ class StartZoneLaps {
   /// `own` is the car's start, `heading` (rad) the first car's yaw there.
   void reset(const maps::Point& own, double heading) noexcept;
 
+  /// Updates with the position of the car; `time` in s.
   void update(const maps::Point& position, double time) noexcept;
 
+  /// Whether the car is in the start zone.
   bool near_start() const noexcept { return near_; }
   int toggles() const noexcept { return toggles_; }  ///< ways in and out
+  /// Number of finished laps.
   int laps() const noexcept { return toggles_ / 2; }
   double time() const noexcept { return time_; }  ///< s
+  /// Whether two laps are finished.
   bool finished() const noexcept { return toggles_ >= 4; }
 
  private:

@@ -14,6 +14,7 @@ namespace detail {
 struct Kernels;
 }
 
+/// Options of a LiDAR scanner on a car.
 struct LidarOptions {
   int beams = 1080;  ///< 1 to 100000
   double field_of_view =
@@ -61,11 +62,14 @@ class Lidar {
   /// Shortens ranges to a body where it is nearer. Only beams that can hit it are looked at. padded_beams()
   /// values.
   void cast(const maps::Pose& sensor, const Box& box, std::span<float> ranges) const noexcept;
+  /// Shortens ranges (m) to a disc where it is nearer.
   void cast(const maps::Pose& sensor, const Disc& disc, std::span<float> ranges) const noexcept;
 
   /// The same with LidarOptions::gym_ranges, in float64; one value per beam.
   void gym_scan(const Track& track, const maps::Pose& sensor, std::span<double> ranges) const noexcept;
+  /// Like `cast`, as in f1tenth_gym.
   void gym_cast(const maps::Pose& sensor, const Box& box, std::span<double> ranges) const noexcept;
+  /// Like `cast`, as in f1tenth_gym.
   void gym_cast(const maps::Pose& sensor, const Disc& disc, std::span<double> ranges) const noexcept;
 
  private:

@@ -14,6 +14,7 @@ namespace slalom::sim {
 /// the ziggurat of Marsaglia & Tsang (2000) with 256 layers.
 class NumpyRandom {
  public:
+  /// Same numbers as `numpy.random.default_rng(seed)`.
   explicit NumpyRandom(std::uint64_t seed) noexcept;
 
   /// The next 64 bits of the stream.

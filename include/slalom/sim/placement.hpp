@@ -10,7 +10,7 @@ namespace slalom::sim {
 
 /// A car's place and the waypoint near which it was put.
 struct Placement {
-  maps::Pose pose;
+  maps::Pose pose;           ///< m, m, rad, in the map frame
   std::size_t waypoint = 0;  ///< row of the path
 };
 

@@ -21,15 +21,16 @@ enum class Coast {
   repeat,  ///< the last command still holds (of a fresh car: stand still)
 };
 
+/// Options of a car with its actuators.
 struct PlantOptions {
-  DynamicsOptions dynamics;
-  ActuationOptions actuation;
-  SteeringInput steering_input = SteeringInput::angle;
-  SpeedInput speed_input = SpeedInput::speed;
+  DynamicsOptions dynamics;    ///< car dynamics
+  ActuationOptions actuation;  ///< conversion of commands to steering and acceleration
+  SteeringInput steering_input = SteeringInput::angle;  ///< meaning of the steering command
+  SpeedInput speed_input = SpeedInput::speed;           ///< meaning of the speed command
   double steering_dead_time =
-      0.02;  ///< s, from a steering command to its effect; rounded to whole time steps
-  Coast coast = Coast::roll;
-  GymPlant gym{};  ///< reproduction of f1tenth_gym
+      0.02;                   ///< s, from a steering command to its effect; rounded to whole time steps
+  Coast coast = Coast::roll;  ///< behaviour without a command
+  GymPlant gym{};             ///< reproduction of f1tenth_gym
 };
 
 /// One car without a world round it: model, low-level control and steering dead time.
@@ -47,6 +48,7 @@ class Plant {
   /// Moves by one time step without a command.
   void coast() noexcept;
 
+  /// Current state.
   const CarState& state() const noexcept { return state_; }
 
   /// Changes the state, as a contact does; commands under way stay under way.
@@ -55,6 +57,7 @@ class Plant {
   /// The steering (as commanded) that took effect in the last step.
   double steering_applied() const noexcept { return applied_; }
 
+  /// Parameters of the car.
   const CarParameters& car() const noexcept { return car_; }
 
  private:

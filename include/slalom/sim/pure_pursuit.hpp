@@ -12,10 +12,11 @@ namespace slalom::sim {
 
 /// A point of a closed path to follow and the speed wanted there.
 struct PathPoint {
-  maps::Point point;
-  double speed = 0;  ///< m/s
+  maps::Point point;  ///< m, map frame
+  double speed = 0;   ///< m/s
 };
 
+/// Options of lookahead and speed.
 struct PurePursuitOptions {
   double lookahead = 1.0;     ///< m, distance of the point that is aimed at
   double wheelbase = 0.3302;  ///< m
@@ -40,22 +41,26 @@ class PurePursuit {
   /// range.
   PurePursuit(std::vector<PathPoint> path, const PurePursuitOptions& options = {});
 
+  /// The nearest position on the path.
   struct Nearest {
     std::size_t segment = 0;  ///< from this row to the next
     double along = 0;         ///< in [0, 1] of the segment
     double distance = 0;      ///< m
   };
+  /// The point to steer for.
   struct Target {
     /// How it was found.
     enum class Mode { lookahead, reacquire, lost };
     Mode mode = Mode::lost;  ///< how it was found
     int row = -2;            ///< start of the segment found (-1 the last row); -2 if lost
     double along = -1;       ///< in [0, 1] of that segment; -1 where it was not searched
-    Nearest nearest;
-    PathPoint aim;  ///< where and how fast
+    Nearest nearest;         ///< position of the car on the path
+    PathPoint aim;           ///< where and how fast
   };
 
+  /// The nearest position on the path.
   Nearest nearest(const maps::Point& position) const noexcept;
+  /// The point to steer for from a position.
   Target target(const maps::Point& position) const noexcept;
 
   /// Steering and speed for a car at `pose`.

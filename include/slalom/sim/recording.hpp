@@ -13,10 +13,10 @@ namespace slalom::sim {
 /// A run as what went into it: start and commands. Replayed in a world of the same options and track it gives
 /// the same states, scans and contacts bit for bit.
 struct Recording {
-  std::uint64_t seed = 0;
-  std::vector<maps::Pose> cars{};
-  std::vector<maps::Pose> parked{};
-  std::vector<Command> commands{};  ///< steps x cars
+  std::uint64_t seed = 0;            ///< seed of the random numbers
+  std::vector<maps::Pose> cars{};    ///< start poses of the cars
+  std::vector<maps::Pose> parked{};  ///< poses of the parked cars
+  std::vector<Command> commands{};   ///< steps x cars
 
   /// Resets the world to the recording's start and forgets recorded commands.
   void begin(World& world);

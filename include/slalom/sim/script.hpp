@@ -9,9 +9,10 @@ namespace slalom::sim {
 /// A driver that does what it was told beforehand, whatever happens: commands by time.
 class Script {
  public:
+  /// A command and its duration.
   struct Line {
     double from = 0;  ///< s, this command holds from here to the next line
-    Command command;
+    Command command;  ///< the command
   };
 
   /// Throws std::invalid_argument on times or commands that are not finite, or times that do not rise.

@@ -14,14 +14,17 @@ namespace slalom::sim {
 /// than the test looks. Contacts proper come from Track::collides_with_wall.
 class TimeToCollision {
  public:
+  /// Computed for a scanner on a car.
   TimeToCollision(const LidarOptions& lidar, const CarParameters& car);
 
   /// The first beam that says so, -1 if none does.
   int first_hit(std::span<const double> ranges, double speed) const noexcept;
+  /// The first beam with a time to collision below the limit, or -1.
   int first_hit(std::span<const float> ranges, double speed) const noexcept;
 
   /// The way (m) from the centre of gravity to the car's outline, one per beam.
   std::span<const double> sides() const noexcept { return sides_; }
+  /// Cosines of the beam angles.
   std::span<const double> cosines() const noexcept { return cosines_; }
 
  private:

@@ -11,6 +11,7 @@
 
 namespace slalom::sim {
 
+/// Options of the conversion from map to walls.
 struct TrackOptions {
   bool unknown_is_wall = false;  ///< cells of which nothing is known stop cars and beams
   bool outside_is_wall = true;   ///< so does the border of the map; else a beam that leaves it never returns
@@ -25,11 +26,16 @@ class Track {
   explicit Track(maps::OccupancyGrid grid, std::optional<LapPath> lap_path = {},
                  const TrackOptions& options = {});
 
+  /// The map.
   const maps::OccupancyGrid& grid() const noexcept { return grid_; }
+  /// Distance to the nearest wall, m.
   const maps::DistanceField& distance() const noexcept { return distance_; }
+  /// Path for counting laps, or null.
   const LapPath* lap_path() const noexcept { return lap_path_ ? &*lap_path_ : nullptr; }
+  /// The options given at construction.
   const TrackOptions& options() const noexcept { return options_; }
 
+  /// Whether a cell is a wall.
   bool is_wall(int column, int row) const noexcept { return clearance_at(column, row) < 0; }
 
   /// Whether a point of the map frame lies in a wall.
@@ -50,9 +56,10 @@ class Track {
   /// (1/64 cell) from any point of this cell there is no wall in any direction; negative in walls, `exit` on
   /// the ring where the outside is no wall.
   const std::vector<std::int16_t>& clearance() const noexcept { return clearance_; }
+  /// Number of cells from one row of clearances to the next.
   int clearance_stride() const noexcept { return grid_.width + 2; }
-  static constexpr int clearance_scale = 64;
-  static constexpr std::int16_t wall = -1, exit = -2;
+  static constexpr int clearance_scale = 64;           ///< scale of clearances: cells times this
+  static constexpr std::int16_t wall = -1, exit = -2;  ///< clearance of walls and of cells outside the map
 
  private:
   std::int16_t clearance_at(int column, int row) const noexcept {

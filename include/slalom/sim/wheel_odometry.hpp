@@ -13,7 +13,7 @@ namespace slalom::sim {
 /// and knows what steering was asked for. All errors 0 and `yaw_from_gyro` gives dead reckoning that stays
 /// true.
 struct WheelOdometryOptions {
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;               ///< seed of the random numbers
   double speed_gain_error = 0.03;       ///< share by which the wheel is thought larger than it is
   double slip_per_acceleration = 0.01;  ///< s^2/m: wheels turn faster by this share per m/s^2 of drive
   double speed_noise = 0.03;            ///< m/s, standard deviation of each reading

@@ -40,12 +40,13 @@ enum class CollisionResponse {
              ///< once
 };
 
+/// Options of cars, scanners and collisions.
 struct WorldOptions {
-  double time_step = 0.01;  ///< s
-  CarParameters car;
-  PlantOptions plant;
-  LidarOptions lidar;
-  CollisionResponse wall_response = CollisionResponse::stop;
+  double time_step = 0.01;                                    ///< s
+  CarParameters car;                                          ///< parameters of all cars
+  PlantOptions plant;                                         ///< dynamics and actuators of all cars
+  LidarOptions lidar;                                         ///< scanner of all cars
+  CollisionResponse wall_response = CollisionResponse::stop;  ///< effect of a wall collision
   CollisionResponse body_response = CollisionResponse::stop;  ///< at cars, discs and boxes; not gym_zero
   int sectors = 3;                                            ///< parts of a lap with a split time
 
@@ -78,6 +79,7 @@ struct Observation {
   bool collides() const { return wall || !colliding.empty(); }  ///< with a wall or a body
 };
 
+/// Result of a step.
 enum class StepStatus {
   ok,
   missing_command,     ///< fewer commands than cars; the others coasted
@@ -98,7 +100,9 @@ class World {
   /// Places something that does not move; the number of the body. Throws std::invalid_argument on sizes that
   /// are not positive and poses that are not finite. It may be placed onto a car.
   int add_parked_car(const maps::Pose& pose);
+  /// Adds a fixed body and returns its index.
   int add_box(const Box& box);
+  /// Adds a fixed body and returns its index.
   int add_disc(const Disc& disc);
   /// Moves a parked car, box or disc. Throws std::invalid_argument on a body that does not exist or that
   /// drives.
@@ -120,7 +124,9 @@ class World {
   /// Whether a car scans; all driven ones do unless told otherwise.
   void set_scanning(std::size_t car, bool scans);
 
+  /// Scan and state of a car.
   Observation observe(std::size_t car) const noexcept;
+  /// State of a car.
   const CarState& state(std::size_t car) const noexcept { return cars_[car].plant.state(); }
   /// Laps by arc length; nullptr where the track has no lap path.
   const LapTimer* laps(std::size_t car) const noexcept {
@@ -136,15 +142,21 @@ class World {
   int last_partner(std::size_t body) const noexcept { return partners_[body]; }
 
   double time() const noexcept { return time_; }  ///< s since the reset
+  /// Number of steps since the reset.
   std::int64_t steps() const noexcept { return steps_; }
+  /// Number of cars that drive.
   std::size_t cars() const noexcept { return cars_.size(); }
+  /// Number of bodies: cars first, then fixed bodies.
   std::size_t bodies() const noexcept { return cars_.size() + fixed_.size(); }
   /// The outline of a body; a disc as the square about it.
   Box outline(std::size_t body) const noexcept;
   /// The disc that a body is, if it is one.
   std::optional<Disc> disc(std::size_t body) const noexcept;
+  /// The options given at construction.
   const WorldOptions& options() const noexcept { return options_; }
+  /// The track.
   const Track& track() const noexcept { return *track_; }
+  /// The scanner of all cars.
   const Lidar& lidar() const noexcept { return lidar_; }
 
  private:
