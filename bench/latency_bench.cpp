@@ -82,7 +82,8 @@ void watch_clock(double duration, Run& run) {
 
 Run solve_often(long solves, int threads, double period) {
   const ReferenceWorkload workload;
-  const auto evaluator = workload.evaluator(reference_problem(false), simd::active_target());
+  const auto model = workload.model(reference_problem(false), simd::active_target());
+  const BatchEvaluator* const evaluator = &model->evaluator();
   const auto solver = make_solver(reference_options(threads), 1);
   Run run;
   run.times.reserve(static_cast<std::size_t>(solves));

@@ -52,7 +52,8 @@ BENCHMARK(yardstick);
 template <bool two_trajectories>
 void rollouts(benchmark::State& state, simd::Target target) {
   if (!simd::supported(target)) return state.SkipWithError("this processor lacks the instruction set");
-  const auto evaluator = workload().evaluator(reference_problem(two_trajectories), target);
+  const auto model = workload().model(reference_problem(two_trajectories), target);
+  const BatchEvaluator* const evaluator = &model->evaluator();
   AlignedBuffer costs(static_cast<std::size_t>(sequences().stride()));
   std::vector<std::uint8_t> collided(costs.size());
   for (auto _ : state) evaluator->evaluate(sequences(), 0, samples, costs.data(), collided.data());

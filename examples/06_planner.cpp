@@ -14,7 +14,7 @@ using namespace slalom;
 /// Whether the car drives a lap within 20 s and touches nothing.
 bool drives_a_lap(const evaluation::Environment& environment, const SolverOptions& options) {
   const auto seed = std::visit([](const auto& o) { return o.seed; }, options);
-  vehicle::Planner planner({}, {}, environment.path, environment.course.closed, make_solver(options, 1));
+  vehicle::Planner planner({}, vehicle::make_vehicle_model({}), environment.path, make_solver(options, 1));
   sim::WorldOptions world_options = environment.world_options();
   sim::World world(world_options, environment.track);
   world.reset(seed, {&environment.start, 1});

@@ -20,8 +20,9 @@ struct Planner::Hidden {
   std::unique_ptr<slalom::vehicle::Planner> make(
       const slalom::vehicle::Configuration& with,
       const std::vector<slalom::maps::ReferencePoint>& along) const {
-    return std::make_unique<slalom::vehicle::Planner>(with.planner, with.vehicle, along, closed,
-                                                      slalom::vehicle::make_solver(with, method, 1));
+    return std::make_unique<slalom::vehicle::Planner>(with.planner,
+                                                      slalom::vehicle::make_vehicle_model(with.vehicle),
+                                                      along, slalom::vehicle::make_solver(with, method, 1));
   }
 };
 
@@ -93,7 +94,7 @@ Command Planner::update(const Scan& scan, const Pose& at, double speed) {
   }
   command.steer = out.command.steer;
   command.speed = out.command.speed;
-  command.ok = out.status == PlannerStatus::ok || out.status == PlannerStatus::unverified ||
+  command.ok = out.status == PlannerStatus::ok || out.status == PlannerStatus::fallback_plan ||
                out.status == PlannerStatus::solver_degenerate;
   return command;
 }

@@ -49,9 +49,10 @@ class Stick {
 
 }  // namespace
 
-RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::PathTrackingOptions& problem,
+RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
                               int samples, int steps, simd::Target target, double seconds) {
-  const auto evaluator = workload.evaluator(problem, target);
+  const auto model = workload.model(problem, target);
+  const BatchEvaluator* const evaluator = &model->evaluator();
   const SequenceBatch batch = workload.sequences(samples, steps);
   AlignedBuffer costs(static_cast<std::size_t>(batch.stride()));
   std::vector<std::uint8_t> collided(costs.size());
@@ -69,9 +70,10 @@ RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::
   return {stick.statistics(), time_statistics(times)};
 }
 
-SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::PathTrackingOptions& problem,
+SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
                          const SolverOptions& options, double seconds) {
-  const auto evaluator = workload.evaluator(problem, simd::active_target());
+  const auto model = workload.model(problem, simd::active_target());
+  const BatchEvaluator* const evaluator = &model->evaluator();
   const auto solver = make_solver(options, 1);
   Stick stick(workload);
   std::vector<double> fresh, prepared, draw, evaluate, guide, update;
@@ -104,7 +106,7 @@ SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::PathT
 
 TickSpeed measure_tick(const vehicle::Configuration& configuration, double seconds) {
   const auto course = reference_course();
-  vehicle::Planner planner(configuration.planner, configuration.vehicle, course, true,
+  vehicle::Planner planner(configuration.planner, vehicle::make_vehicle_model(configuration.vehicle), course,
                            make_solver(configuration, "svg_mppi", 1));
   constexpr int places = 16;
   std::vector<maps::Pose> poses;

@@ -16,7 +16,7 @@ struct RolloutSpeed {
   TimeStatistics rollout;    ///< ns a step
 };
 /// Rollouts and the yardstick by turns, so that both meet the same clock.
-RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::PathTrackingOptions& problem,
+RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
                               int samples, int steps, simd::Target target, double seconds);
 
 struct SolveSpeed {
@@ -27,7 +27,7 @@ struct SolveSpeed {
   StageTimes stages;         ///< s, medians
   double degenerate_share;   ///< of the solves: the published sv_mpc drives its particles apart
 };
-SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::PathTrackingOptions& problem,
+SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
                          const SolverOptions& options, double seconds);
 
 struct TickSpeed {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "slalom/core/problem_evaluator.hpp"
 #include "slalom/core/random.hpp"
+#include "slalom/vehicle/published/options.hpp"
 
 namespace slalom::tools {
 
@@ -69,19 +69,10 @@ ReferenceScan reference_scan(const maps::Pose& robot) {
   return scan;
 }
 
-vehicle::PathTrackingOptions reference_problem(bool two_trajectories) {
-  vehicle::PathTrackingOptions o;
-  o.front_length = 0.189;
-  o.rear_length = 0.135;
-  o.bicycle = vehicle::BicycleForm::published;
-  o.outside_terminal_cost = 10;
-  o.body = vehicle::BodyForm::box;
-  o.limit_acceleration = false;
-  o.exact_lag = false;
-  o.hold_first_input = true;
-  o.straight_local_rollout = two_trajectories;
-  o.linear_sign_error = true;
-  return o;
+vehicle::VehicleOptions reference_problem(bool two_trajectories) {
+  vehicle::VehicleOptions options = vehicle::published::vehicle_options();
+  options.own_of<vehicle::published::ModelOptions>().straight_local_rollout = two_trajectories;
+  return options;
 }
 
 ReferenceWorkload::ReferenceWorkload()
@@ -97,32 +88,12 @@ ReferenceWorkload::ReferenceWorkload()
   cost_map_.update(reference_scan(robot_).view());
 }
 
-namespace {
-
-template <bool two_trajectories>
-std::unique_ptr<BatchEvaluator> make_evaluator(const ReferenceWorkload& w,
-                                               const vehicle::PathTrackingOptions& options,
-                                               simd::Target target) {
-  using Problem = vehicle::PathTracking<two_trajectories>;
-  Problem problem(options);
-  problem.set_maps(w.field().view(), w.cost_map().view(), w.robot().x, w.robot().y, w.robot().yaw);
-  auto made = std::make_unique<ProblemEvaluator<Problem>>(problem, target);
-  typename ProblemEvaluator<Problem>::State s{};  // in the robot's frame the car stands at the origin
-  s.x = w.start().x;
-  s.y = w.start().y;
-  s.yaw = w.start().yaw;
-  s.speed = w.start().speed;
-  s.steer = w.start().steer;
-  made->set_state(s);
+std::unique_ptr<vehicle::VehicleModel> ReferenceWorkload::model(const vehicle::VehicleOptions& options,
+                                                                simd::Target target) const {
+  auto made = vehicle::make_vehicle_model(options, target);
+  made->set_maps({field_.view(), cost_map_.view(), robot_});
+  made->set_start({{start_.x, start_.y, start_.yaw}, start_.speed, start_.steer}, options.reference_speed);
   return made;
-}
-
-}  // namespace
-
-std::unique_ptr<BatchEvaluator> ReferenceWorkload::evaluator(const vehicle::PathTrackingOptions& problem,
-                                                             simd::Target target) const {
-  return problem.straight_local_rollout ? make_evaluator<true>(*this, problem, target)
-                                        : make_evaluator<false>(*this, problem, target);
 }
 
 SequenceBatch ReferenceWorkload::sequences(int samples, int steps_wanted) const {

@@ -9,7 +9,7 @@
 #include "slalom/core/simd.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"
-#include "slalom/vehicle/model/path_tracking.hpp"
+#include "slalom/vehicle/model/vehicle_model.hpp"
 
 /// The workload `reference` that speed is measured on: the vehicle problem with the published parameters and
 /// 14 inputs (15 states), on a course with two parked cars, the same in every run.
@@ -27,7 +27,7 @@ struct ReferenceScan {
 ReferenceScan reference_scan(const maps::Pose& robot);
 
 /// The published vehicle problem; `two_trajectories` as the published program has it.
-vehicle::PathTrackingOptions reference_problem(bool two_trajectories);
+vehicle::VehicleOptions reference_problem(bool two_trajectories);
 
 /// Maps, start and control sequences in place.
 class ReferenceWorkload {
@@ -46,9 +46,9 @@ class ReferenceWorkload {
 
   Yardstick yardstick() const { return {reference_problem(false), field_, cost_map_, robot_}; }
 
-  /// The vehicle problem with the maps and the start in place, for one instruction set.
-  std::unique_ptr<BatchEvaluator> evaluator(const vehicle::PathTrackingOptions& problem,
-                                            simd::Target target) const;
+  /// The vehicle model with the maps and the start in place, for one instruction set.
+  std::unique_ptr<vehicle::VehicleModel> model(const vehicle::VehicleOptions& options,
+                                               simd::Target target) const;
 
  private:
   maps::Pose robot_;

@@ -46,15 +46,15 @@ double Yardstick::state_cost(double x, double y, double yaw, double outside) con
   if (off_map_.at(x, y) > 0) error = reference_yaw;
   double obstacle = obstacle_.at(cos_ * dx + sin_ * dy, cos_ * dy - sin_ * dx);
   if (obstacle < 0) obstacle = outside;
-  return options_.distance_weight * distance * distance + options_.yaw_weight * error * error +
-         options_.collision_weight * obstacle;
+  return options_.cost.distance_weight * distance * distance + options_.cost.yaw_weight * error * error +
+         options_.cost.collision_weight * obstacle;
 }
 
 double Yardstick::rollout(const CarStart& start, const SequenceBatch& batch, int sample) const {
   const double lf = options_.front_length, lr = options_.rear_length, dt = options_.time_step;
   double x = start.x, y = start.y, yaw = start.yaw, speed = start.speed, steer = start.steer, cost = 0;
   for (int k = 0; k < batch.steps(); ++k) {
-    cost += state_cost(x, y, yaw, options_.outside_cost);
+    cost += state_cost(x, y, yaw, options_.cost.outside_cost);
     const double next_speed = speed_.at(x, y);
     const double command = static_cast<double>(batch.at(k <= held_steps_ ? 0 : k, 0, sample));
     const double b = std::atan(lf / (lf + lr) * std::tan(steer));
@@ -65,7 +65,7 @@ double Yardstick::rollout(const CarStart& start, const SequenceBatch& batch, int
     steer += (command - steer) / options_.steer_time_constant * dt;
     speed = next_speed;
   }
-  return cost + state_cost(x, y, yaw, options_.outside_terminal_cost);
+  return cost + state_cost(x, y, yaw, options_.cost.outside_terminal_cost);
 }
 
 void Yardstick::evaluate(const CarStart& start, const SequenceBatch& batch, int count, double* costs) const {

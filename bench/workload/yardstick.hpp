@@ -5,7 +5,7 @@
 #include "slalom/core/sequence_batch.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"
-#include "slalom/vehicle/model/path_tracking.hpp"
+#include "slalom/vehicle/model/path_tracking_options.hpp"
 
 namespace slalom::tools {
 

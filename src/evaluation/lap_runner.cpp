@@ -91,8 +91,8 @@ double LapRunner::control_period() const noexcept {
 }
 
 std::unique_ptr<vehicle::Planner> LapRunner::make_planner() const {
-  return std::make_unique<vehicle::Planner>(configuration_.planner, configuration_.vehicle, path_,
-                                            environment_->course.closed,
+  return std::make_unique<vehicle::Planner>(configuration_.planner,
+                                            vehicle::make_vehicle_model(configuration_.vehicle), path_,
                                             vehicle::make_solver(configuration_, method_, settings_.threads));
 }
 
@@ -176,7 +176,7 @@ void LapRunner::control(Drive& drive, const ControlStepCallback& on_step, double
 
   // With the published maps planner and meter make the same cost map.
   drive.meter.observe(scan, odometry.pose,
-                      configuration_.planner.published_maps ? &drive.planner->cost_map() : nullptr);
+                      configuration_.planner.published.maps ? &drive.planner->cost_map() : nullptr);
   const SequenceCostMeter::Cost cost = drive.meter.planned(output);
   drive.cost_state += cost.state;
   drive.cost_collision += cost.collision;

@@ -7,16 +7,16 @@
 
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"
-#include "vehicle/planner/car_rollout.hpp"
+#include "slalom/vehicle/published/options.hpp"
 
 namespace slalom::evaluation {
 
 namespace {
 
-using vehicle::PathTrackingOptions;
 using vehicle::PredictedState;
-using vehicle::detail::CarRollout;
-using Problem = vehicle::PathTracking<true>;
+using vehicle::VehicleModel;
+using vehicle::VehicleOptions;
+using Problem = vehicle::published::TwoTrajectories;
 using Ruler = std::array<PredictedState, SequenceCostMeter::states>;
 
 constexpr int steps = SequenceCostMeter::states - 1;
@@ -48,27 +48,12 @@ Ruler resampled(std::span<const PredictedState> predicted, double spacing) {
 
 }  // namespace
 
-PathTrackingOptions published_problem() {
-  PathTrackingOptions options;
-  options.front_length = 0.189;
-  options.rear_length = 0.135;
-  options.bicycle = vehicle::BicycleForm::published;
-  options.outside_terminal_cost = 10;
-  options.body = vehicle::BodyForm::box;
-  options.limit_acceleration = false;
-  options.exact_lag = false;
-  options.hold_first_input = true;
-  options.straight_local_rollout = true;
-  options.linear_sign_error = true;
-  return options;
-}
-
 struct SequenceCostMeter::Implementation {
-  PathTrackingOptions model;
-  Problem ruler{published_problem()};
+  VehicleOptions model;
+  Problem ruler{vehicle::published::vehicle_options(), vehicle::published::ModelOptions::published()};
   maps::LocalCostMap cost_map{cost_map_options()};
   maps::ReferenceField field;
-  std::unique_ptr<CarRollout> own, published;
+  std::unique_ptr<VehicleModel> own, published;
   std::vector<PredictedState> states;
   std::vector<float> inputs;
   maps::Pose robot;
@@ -76,32 +61,20 @@ struct SequenceCostMeter::Implementation {
   maps::Point low, high;  ///< m, the part of the field that is made, map frame
   bool everywhere = false;
 
-  Implementation(std::span<const maps::ReferencePoint> path, const PathTrackingOptions& m)
+  Implementation(std::span<const maps::ReferencePoint> path, const VehicleOptions& m)
       : model(m),
         field(path, maps::ReferenceFieldOptions::published()),
-        own(CarRollout::make(m)),
-        published(CarRollout::make(published_problem())),
+        own(make_vehicle_model(m)),
+        published(make_vehicle_model(vehicle::published::vehicle_options())),
         states(std::max<std::size_t>(
                    static_cast<std::size_t>(std::ceil(steps * time_step / m.time_step - 1e-9)), steps) +
                1),
         inputs((states.size() - 1) * static_cast<std::size_t>(own->inputs())) {}
 
-  Problem::State<double> state_of(const PredictedState& p) const {
-    Problem::State<double> s{};
-    s.x = p.pose.x;
-    s.y = p.pose.y;
-    s.yaw = p.pose.yaw;
-    s.local_x = p.local.x;
-    s.local_y = p.local.y;
-    s.local_yaw = p.local.yaw;
-    return s;
-  }
-
-  Cost cost_of(const Problem::State<double>& s, bool last) const {
+  Cost cost_of(const PredictedState& predicted, bool last) const {
+    const auto s = Problem::standing_at(predicted);
     const auto seen = ruler.look_up(s);
-    const auto& options = ruler.options();
-    const double collision =
-        ruler.collision_cost(seen, last ? options.outside_terminal_cost : options.outside_cost);
+    const double collision = ruler.collision_part(seen, last);
     const auto both = last ? ruler.terminal_cost(s, seen) : ruler.stage_cost(s, seen, Input<double, 1>{});
     return {both.value - collision, collision};
   }
@@ -134,7 +107,7 @@ struct SequenceCostMeter::Implementation {
     make_field(sequence, 0.2);
     Cost sum;
     for (int k = 0; k <= steps; ++k) {
-      const Cost cost = cost_of(state_of(sequence[static_cast<std::size_t>(k)]), k == steps);
+      const Cost cost = cost_of(sequence[static_cast<std::size_t>(k)], k == steps);
       sum.state += cost.state;
       sum.collision += cost.collision;
     }
@@ -154,7 +127,7 @@ struct SequenceCostMeter::Implementation {
     return {inputs.data(), count * taken};
   }
 
-  Ruler predict(CarRollout& rollout, const vehicle::PlannerOutput& output, std::span<const float> sequence,
+  Ruler predict(VehicleModel& rollout, const vehicle::PlannerOutput& output, std::span<const float> sequence,
                 double spacing) {
     const PredictedState& first = output.predicted.front();
     const std::size_t count = sequence.size() / static_cast<std::size_t>(rollout.inputs());
@@ -163,7 +136,7 @@ struct SequenceCostMeter::Implementation {
     // not, once more with the whole field.
     make_field(output.predicted, 0.5);
     while (true) {
-      rollout.set_maps(field.view(), obstacles, robot);
+      rollout.set_maps({field.view(), obstacles, robot});
       rollout.set_start({first.pose, first.speed, first.steer}, field.at(first.pose.x, first.pose.y).speed);
       rollout.predict(sequence, reached);
       if (covers(reached)) return resampled(reached, spacing);
@@ -172,8 +145,7 @@ struct SequenceCostMeter::Implementation {
   }
 };
 
-SequenceCostMeter::SequenceCostMeter(std::span<const maps::ReferencePoint> path,
-                                     const PathTrackingOptions& model)
+SequenceCostMeter::SequenceCostMeter(std::span<const maps::ReferencePoint> path, const VehicleOptions& model)
     : implementation_(std::make_unique<Implementation>(path, model)) {}
 SequenceCostMeter::~SequenceCostMeter() = default;
 SequenceCostMeter::SequenceCostMeter(SequenceCostMeter&&) noexcept = default;
@@ -190,7 +162,7 @@ void SequenceCostMeter::observe(const maps::LaserScanView& scan, const maps::Pos
   m.high = {robot.x + about_the_car, robot.y + about_the_car};
   m.everywhere = false;
   m.field.update({robot.x, robot.y}, m.low, m.high);
-  m.ruler.set_maps(m.field.view(), m.obstacles, robot.x, robot.y, robot.yaw);
+  m.ruler.set_maps({m.field.view(), m.obstacles, robot});
 }
 
 SequenceCostMeter::Cost SequenceCostMeter::planned(const vehicle::PlannerOutput& output) noexcept {
@@ -215,7 +187,7 @@ SequenceCostMeter::Cost SequenceCostMeter::present() const noexcept {
   const Implementation& m = *implementation_;
   PredictedState here;
   here.pose = m.robot;
-  const Cost cost = m.cost_of(m.state_of(here), false);
+  const Cost cost = m.cost_of(here, false);
   return {states * cost.state, states * cost.collision};
 }
 

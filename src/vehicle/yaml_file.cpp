@@ -9,27 +9,27 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-/// yaml-cpp lets one of two equal keys win without a word.
-void refuse_repeated_keys(const std::filesystem::path& file, const YAML::Node& map,
-                          const std::string& prefix) {
+/// yaml-cpp accepts duplicate keys and keeps one of them.
+void check_repeated_keys(const std::filesystem::path& file, const YAML::Node& map,
+                         const std::string& prefix) {
   if (!map.IsMap()) return;
   std::set<std::string> seen;
   for (const auto& entry : map) {
     if (!entry.first.IsScalar()) continue;
     const std::string key = prefix + entry.first.Scalar();
     if (!seen.insert(key).second)
-      throw IoError(file.string(), entry.first.Mark().line + 1, "key " + key + ": is said twice");
-    refuse_repeated_keys(file, entry.second, key + ".");
+      throw IoError(file.string(), entry.first.Mark().line + 1, "key " + key + ": duplicate key");
+    check_repeated_keys(file, entry.second, key + ".");
   }
 }
 
-/// What yaml-cpp does not say of a tab that indents.
+/// yaml-cpp does not mention that a tab must not indent.
 std::string tab_hint(const std::filesystem::path& file, int line) {
   std::ifstream stream(file);
   std::string text;
   for (int number = 0; number < line && std::getline(stream, text);) ++number;
   const bool indents = text.substr(0, text.find_first_not_of(" \t")).find('\t') != std::string::npos;
-  return indents ? "; the line begins with a tab, and YAML is indented with spaces" : "";
+  return indents ? "; the line begins with a tab, but YAML must be indented with spaces" : "";
 }
 
 }  // namespace
@@ -46,13 +46,14 @@ YAML::Node load_yaml(const std::filesystem::path& file) {
   }
   if (documents.empty()) return {};
   if (documents.size() > 1)
-    throw IoError(file.string(), documents[1].Mark().line + 1, "a second YAML document: must be only one");
-  refuse_repeated_keys(file, documents[0], "");
+    throw IoError(file.string(), documents[1].Mark().line + 1,
+                  "must have only one YAML document, this is a second one");
+  check_repeated_keys(file, documents[0], "");
   return documents[0];
 }
 
-void refuse(const std::filesystem::path& file, const YAML::Node& at, const std::string& key,
-            const std::string& rule) {
+void throw_at(const std::filesystem::path& file, const YAML::Node& at, const std::string& key,
+              const std::string& rule) {
   const std::string value = at.IsScalar() && !at.Scalar().empty() ? "'" + at.Scalar() + "' " : "";
   throw IoError(file.string(), at.Mark().line + 1, "key " + key + ": " + value + rule);
 }

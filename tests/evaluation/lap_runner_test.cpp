@@ -245,11 +245,5 @@ TEST(LapSeeds, AreThoseOfTheProtocol) {
   EXPECT_NE(solver_seed(0, "mppi"), solver_seed(1, "mppi"));
 }
 
-TEST(PublishedProblem, EqualsTheConfiguration) {
-  const auto file = configuration("published").vehicle;
-  const auto a = list_options(file), b = list_options(published_problem());
-  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].value, b[i].value) << a[i].declaration.name;
-}
-
 }  // namespace
 }  // namespace slalom::evaluation

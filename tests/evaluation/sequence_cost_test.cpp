@@ -21,7 +21,7 @@ struct Straight {
   std::vector<vehicle::PredictedState> states;
   std::vector<float> inputs;
   vehicle::PlannerOutput output;
-  vehicle::PathTrackingOptions model;
+  vehicle::VehicleOptions model;
 
   Straight(double time_step, int horizon) : inputs(static_cast<std::size_t>(horizon)) {
     model.time_step = time_step;

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "slalom/vehicle/model/kinematic.hpp"
+#include "slalom/vehicle/published/path_tracking.hpp"
+
 namespace slalom::vehicle {
 namespace {
 
@@ -23,17 +26,18 @@ struct Maps {
   }
   template <class Problem>
   void give_to(Problem& problem, double x = 0, double y = 0, double yaw = 0) const {
-    problem.set_maps(GridView<4>(reference.data(), 8, 8, 4, 1, 0, 0),
-                     GridView<1>(obstacles.data(), 8, 8, 4, 1, 0, 0), x, y, yaw);
+    problem.set_maps({GridView<4>(reference.data(), 8, 8, 4, 1, 0, 0),
+                      GridView<1>(obstacles.data(), 8, 8, 4, 1, 0, 0),
+                      {x, y, yaw}});
   }
 };
 
-using Car = PathTracking<false>;
+using Car = PathTracking<Kinematic>;
 
 TEST(PathTracking, RearAxleDrivesTheCircleOfItsSteeringAngle) {
   PathTrackingOptions options;
   options.time_step = 0.001;
-  options.speed = SpeedForm::constant;
+  options.speed = SpeedModel::constant;
   Car car(options);
   const Maps maps;
   maps.give_to(car);
@@ -46,31 +50,29 @@ TEST(PathTracking, RearAxleDrivesTheCircleOfItsSteeringAngle) {
   EXPECT_NEAR(s.y, radius * (1 - std::cos(turn)), 1e-3);
 }
 
-TEST(PathTracking, PublishedYawGainIsTooHighBy42Percent) {
-  PathTrackingOptions published;
-  published.bicycle = BicycleForm::published;
-  published.front_length = 0.189;
-  published.rear_length = 0.135;
+TEST(PublishedVehicle, YawGainIsTooHighBy42Percent) {
   const Maps maps;
-  const auto yaw_gain = [&](const PathTrackingOptions& options) {
-    Car car(options);
+  const auto yaw_gain = [&](auto car) {
     maps.give_to(car);
-    const Car::State<double> s{0, 0, 0, 1, 1e-4, 0};
+    const typename decltype(car)::template State<double> s{0, 0, 0, 1, 1e-4, 0};
     return (car.step(s, car.look_up(s), Input<double, 1>{{0}}, 0).yaw - s.yaw) /
-           (options.time_step * s.speed * s.steer);
+           (car.options().time_step * s.speed * s.steer);
   };
-  EXPECT_NEAR(yaw_gain(published), 4.32, 0.005);
-  EXPECT_NEAR(yaw_gain({}), 3.03, 0.005);
+  PathTrackingOptions lengths;
+  lengths.front_length = 0.189;
+  lengths.rear_length = 0.135;
+  EXPECT_NEAR(yaw_gain(published::OneTrajectory(lengths, published::ModelOptions::published())), 4.32, 0.005);
+  EXPECT_NEAR(yaw_gain(Car(PathTrackingOptions{})), 3.03, 0.005);
 }
 
 TEST(PathTracking, CostIsThatOfDistanceYawAndCollision) {
   PathTrackingOptions options;
-  options.distance_weight = 3;
-  options.yaw_weight = 0.5;
-  options.collision_weight = 2;
-  options.outside_cost = 70;
-  options.outside_terminal_cost = 11;
-  options.body = BodyForm::box;
+  options.cost.distance_weight = 3;
+  options.cost.yaw_weight = 0.5;
+  options.cost.collision_weight = 2;
+  options.cost.outside_cost = 70;
+  options.cost.outside_terminal_cost = 11;
+  options.body.model = BodyModel::box;
   Car car(options);
   const Maps maps;
   maps.give_to(car);
@@ -102,12 +104,11 @@ TEST(PathTracking, SpeedFollowsTheReferenceWithinItsLimits) {
 
 TEST(PathTracking, AccelerationAsAnInputStaysWithinTheCarsLimitsAndThePathsSpeed) {
   PathTrackingOptions options;
-  options.speed = SpeedForm::input;
   options.max_acceleration = 4;
   options.max_deceleration = 2;
-  options.speed_weight = 0.5;
-  options.body = BodyForm::box;
-  PathTracking<false, 2> car(options);
+  options.cost.speed_weight = 0.5;
+  options.body.model = BodyModel::box;
+  PathTracking<KinematicAcceleration> car(options);
   const Maps maps;  // 3 m/s, 2 m off the path
   maps.give_to(car);
   const auto at = [](double speed) { return decltype(car)::State<double>{0, 0, 0, speed, 0, 0}; };
@@ -133,7 +134,7 @@ TEST(PathTracking, LocalPositionIsThatInTheRobotsFrame) {
   Maps maps;
   maps.obstacles[static_cast<std::size_t>(3 * 16 + 4)] = 100;  // x in (1, 2], y in (0, 1], robot frame
   PathTrackingOptions options;
-  options.body = BodyForm::box;
+  options.body.model = BodyModel::box;
   Car car(options);
   maps.give_to(car, 10, -5, std::acos(-1.0) / 2);  // the robot looks along +y of the map
   const Car::State<double> hit{10 - 0.5, -5 + 1.5, 0, 1, 0, 0}, free{10 + 0.5, -5 + 1.5, 0, 1, 0, 0};
@@ -147,9 +148,9 @@ TEST(PathTracking, DiscsTurnWithTheCar) {
   for (float& cell : maps.obstacles) cell = cell < 0 ? -1.0f : 2.0f;
   maps.obstacles[static_cast<std::size_t>(3 * 16 + 4)] = 0;
   PathTrackingOptions options;
-  options.body = BodyForm::discs;
-  options.body_front = 1.2;
-  options.body_rear = 0;
+  options.body.model = BodyModel::discs;
+  options.body.front = 1.2;
+  options.body.rear = 0;
   Car car(options);
   maps.give_to(car);
   const Car::State<double> towards{0.5, 0.5, 0, 1, 0, 0}, away{0.5, 0.5, std::acos(-1.0), 1, 0, 0};
@@ -162,9 +163,9 @@ TEST(PathTracking, DiscsTurnWithTheCar) {
 
 TEST(PathTracking, SmallClearanceCostsBeforeACollision) {
   PathTrackingOptions options;
-  options.body = BodyForm::discs;
-  options.soft_cost = 8;
-  const double radius = std::hypot((options.body_front + options.body_rear) / 6, options.body_width / 2);
+  options.body.model = BodyModel::discs;
+  options.body.soft_cost = 8;
+  const double radius = std::hypot((options.body.front + options.body.rear) / 6, options.body.width / 2);
   const auto value_at = [&](double clearance) {
     Maps maps;
     for (float& cell : maps.obstacles) cell = cell < 0 ? -1.0f : static_cast<float>(clearance);
@@ -172,9 +173,9 @@ TEST(PathTracking, SmallClearanceCostsBeforeACollision) {
     maps.give_to(car);
     return car.look_up(Car::State<double>{0, 0, 0, 1, 0, 0}).obstacle;
   };
-  EXPECT_EQ(value_at(radius + options.body_margin - 0.01), 100);
-  EXPECT_NEAR(value_at(radius + options.body_margin + 0.5 * options.soft_margin), 8 * 0.25, 1e-4);
-  EXPECT_EQ(value_at(radius + options.body_margin + options.soft_margin + 0.01), 0);
+  EXPECT_EQ(value_at(radius + options.body.margin - 0.01), 100);
+  EXPECT_NEAR(value_at(radius + options.body.margin + 0.5 * options.body.soft_margin), 8 * 0.25, 1e-4);
+  EXPECT_EQ(value_at(radius + options.body.margin + options.body.soft_margin + 0.01), 0);
 }
 
 }  // namespace

@@ -30,10 +30,10 @@ PlannerOptions careful() {
   return options;
 }
 
-PathTrackingOptions small_car() {
-  PathTrackingOptions options;
-  options.body = BodyForm::box;
-  options.outside_cost = options.outside_terminal_cost = 0;
+VehicleOptions small_car() {
+  VehicleOptions options;
+  options.body.model = BodyModel::box;
+  options.cost.outside_cost = options.cost.outside_terminal_cost = 0;
   return options;
 }
 
@@ -54,7 +54,7 @@ SvgMppiOptions few_samples() {
 
 Planner make_planner(const PlannerOptions& options = careful(),
                      const SvgMppiOptions& method = few_samples()) {
-  return {options, small_car(), lane(), false, make_solver(method, 1)};
+  return {options, make_vehicle_model(small_car()), lane(), make_solver(method, 1)};
 }
 
 /// What a laser 0.275 m ahead of the rear axle sees of a corridor of half width 1.5 m round the lane and of a
@@ -137,8 +137,8 @@ TEST(Planner, BrakesWhereEveryPlanCollides) {
 }
 
 TEST(Planner, WithTheAccelerationAsAnInputItIsFastWhereItCanAndSlowsDownInTime) {
-  PathTrackingOptions car = small_car();
-  car.speed = SpeedForm::input;
+  VehicleOptions car = small_car();
+  car.model = vehicle_model("kinematic_acceleration");
   car.max_acceleration = car.max_deceleration = 6;
   SvgMppiOptions method;
   method.horizon = 20;
@@ -153,7 +153,7 @@ TEST(Planner, WithTheAccelerationAsAnInputItIsFastWhereItCanAndSlowsDownInTime) 
   method.seed = 7;
   // The car goes straight on at the speed it is told; a wall across the lane stands ahead.
   const auto drive = [&](double wall) {
-    Planner planner(careful(), car, lane(), false, make_solver(method, 2));
+    Planner planner(careful(), make_vehicle_model(car), lane(), make_solver(method, 2));
     planner.reset(7);
     double x = 5, speed = 3;
     bool blocked = false;
@@ -292,22 +292,28 @@ TEST(Planner, AnUpdateAllocatesNothing) {
 }
 
 TEST(Planner, RejectsInvalidArguments) {
-  EXPECT_THROW(Planner(careful(), small_car(), lane(), false, nullptr), std::invalid_argument);
-  EXPECT_THROW(Planner(careful(), small_car(), lane(), false, make_solver(SvgMppiOptions{}, 2)),
-               std::invalid_argument);
-  PathTrackingOptions two = small_car();
-  two.speed = SpeedForm::input;
-  EXPECT_THROW(Planner(careful(), two, lane(), false, make_solver(SvgMppiOptions{}, 1)),
-               std::invalid_argument);
-  two.straight_local_rollout = true;
-  EXPECT_THROW(Planner(careful(), two, lane(), false, make_solver(SvgMppiOptions{}, 2)),
-               std::invalid_argument);
+  const auto refusal = [](const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
+                          const std::vector<maps::ReferencePoint>& path,
+                          std::unique_ptr<Solver> solver) -> std::string {
+    try {
+      Planner(options, std::move(model), path, std::move(solver));
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const auto car = [] { return make_vehicle_model(small_car()); };
+  const auto solver = [](int inputs) { return make_solver(SvgMppiOptions{}, inputs); };
+  EXPECT_EQ(refusal(careful(), car(), lane(), nullptr), "planner: solver must not be null");
+  EXPECT_EQ(refusal(careful(), nullptr, lane(), solver(1)), "planner: model must not be null");
+  EXPECT_EQ(refusal(careful(), car(), lane(), solver(2)),
+            "planner: solver has 2 inputs per step, must have 1, as the vehicle model");
   PlannerOptions slow = careful();
   slow.latency = 0.9;
-  EXPECT_THROW(Planner(slow, small_car(), lane(), false, make_solver(SvgMppiOptions{}, 1)),
-               std::invalid_argument);
-  EXPECT_THROW(Planner(careful(), small_car(), {}, false, make_solver(SvgMppiOptions{}, 1)),
-               std::invalid_argument);
+  EXPECT_EQ(refusal(slow, car(), lane(), solver(1)),
+            "planner.latency: together with vehicle.dead_time must be at most 32 control periods");
+  EXPECT_NE(refusal(careful(), car(), {}, solver(1)), "accepted");
+  EXPECT_EQ(refusal(careful(), car(), lane(), solver(1)), "accepted");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "slalom/vehicle/configuration/configuration.hpp"
+#include "slalom/vehicle/published/options.hpp"
 #include "solvers/published_options.hpp"
 
 namespace slalom::vehicle {
@@ -25,6 +26,19 @@ TEST(PublishedConfiguration, EqualsTheOptionsOfTheGoldenTests) {
   }
   std::printf("[ options  ] %d options of %zu methods compared\n", compared, file.methods.size());
   EXPECT_EQ(file.methods.size(), solver_names().size());
+}
+
+template <class Options>
+void expect_equal(const Options& file, const Options& ours) {
+  const auto a = list_options(file), b = list_options(ours);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].value, b[i].value) << a[i].declaration.name;
+}
+
+TEST(PublishedConfiguration, HasThePublishedVehicleAndPlanner) {
+  const Configuration file = load_configuration(SLALOM_CONFIGS "/published.yaml");
+  expect_equal(file.vehicle, published::vehicle_options());
+  expect_equal(file.planner, published::planner_options());
 }
 
 }  // namespace

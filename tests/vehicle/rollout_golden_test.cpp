@@ -12,7 +12,8 @@
 #include "golden.hpp"
 #include "maps/grid_map_csv.hpp"
 #include "slalom/core/problem_evaluator.hpp"
-#include "slalom/vehicle/model/path_tracking.hpp"
+#include "slalom/vehicle/published/options.hpp"
+#include "slalom/vehicle/published/path_tracking.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -68,35 +69,28 @@ std::vector<Case> load_cases(const std::filesystem::path& folder) {
   return cases;
 }
 
-PathTrackingOptions options_of(const nlohmann::json& set) {
-  PathTrackingOptions o;
+VehicleOptions options_of(const nlohmann::json& set) {
+  VehicleOptions o = published::vehicle_options();
   o.time_step = set.at("prediction_interval");
   o.front_length = set.at("lf");
   o.rear_length = set.at("lr");
   o.steer_time_constant = set.at("steer_1st_delay");
   o.dead_time = set.at("steer_delay");
-  o.bicycle = BicycleForm::published;
   const std::string mode = set.at("speed_prediction_mode");
-  o.speed = mode == "reference"  ? SpeedForm::reference
-            : mode == "constant" ? SpeedForm::constant
-                                 : SpeedForm::linear;
-  o.distance_weight = set.at("q_dist");
-  o.yaw_weight = set.at("q_angle");
-  o.terminal_distance_weight = set.at("q_terminal_dist");
-  o.terminal_yaw_weight = set.at("q_terminal_angle");
-  o.collision_weight = set.at("collision_weight");
+  o.speed = mode == "reference"  ? SpeedModel::reference
+            : mode == "constant" ? SpeedModel::constant
+                                 : SpeedModel::linear;
+  o.cost.distance_weight = set.at("q_dist");
+  o.cost.yaw_weight = set.at("q_angle");
+  o.cost.terminal_distance_weight = set.at("q_terminal_dist");
+  o.cost.terminal_yaw_weight = set.at("q_terminal_angle");
+  o.cost.collision_weight = set.at("collision_weight");
   o.max_acceleration = set.at("max_accel");
   o.max_deceleration = -set.at("min_accel").get<double>();
   o.reference_speed = set.at("reference_speed");
   o.localisation_less = set.at("localize_less");
-  o.outside_cost = o.localisation_less ? 10 : 100;
-  o.outside_terminal_cost = 10;
-  o.body = BodyForm::box;
-  o.limit_acceleration = false;
-  o.exact_lag = false;
-  o.hold_first_input = true;
-  o.straight_local_rollout = !o.localisation_less;
-  o.linear_sign_error = true;
+  o.cost.outside_cost = o.localisation_less ? 10 : 100;
+  o.own_of<published::ModelOptions>().straight_local_rollout = !o.localisation_less;
   return o;
 }
 
@@ -118,35 +112,40 @@ struct Cells {
   bool operator==(const Cells&) const = default;
 };
 
-template <bool separate>
+template <class Problem>
+constexpr bool two_trajectories = std::is_same_v<Problem, published::TwoTrajectories>;
+
+template <class Problem>
 struct Checked {
-  PathTracking<separate> problem;
+  Problem problem;
   GridView<4> reference;
   GridView<1> obstacles;
 
-  Checked(const PathTrackingOptions& options, const MapPair& maps)
-      : problem(options), reference(maps.reference.view()), obstacles(maps.obstacles.view()) {
+  Checked(const VehicleOptions& options, const MapPair& pair)
+      : problem(options, options.own_of<published::ModelOptions>()),
+        reference(pair.reference.view()),
+        obstacles(pair.obstacles.view()) {
     // Without localisation the state itself is in the robot's frame.
     const bool local = options.localisation_less;
-    problem.set_maps(reference, obstacles, local ? 0 : maps.x, local ? 0 : maps.y, local ? 0 : maps.yaw);
+    problem.set_maps({reference, obstacles, local ? maps::Pose{} : maps::Pose{pair.x, pair.y, pair.yaw}});
   }
 
   template <class T>
-  typename PathTracking<separate>::template State<T> start(const Case& c) const {
-    typename PathTracking<separate>::template State<T> s{};
+  typename Problem::template State<T> start(const Case& c) const {
+    typename Problem::template State<T> s{};
     s.x = T(c.start[0]);
     s.y = T(c.start[1]);
     s.yaw = T(c.start[2]);
     s.speed = T(c.start[3]);
     s.steer = T(c.start[4]);
     s.held = T(0);
-    if constexpr (separate) s.local_x = s.local_y = s.local_yaw = s.local_steer = T(0);
+    if constexpr (two_trajectories<Problem>) s.local_x = s.local_y = s.local_yaw = s.local_steer = T(0);
     return s;
   }
 };
 
-template <bool separate>
-void check_in_double(const Checked<separate>& checked, const Case& c, double& worst_state,
+template <class Problem>
+void check_in_double(const Checked<Problem>& checked, const Case& c, double& worst_state,
                      double& worst_cost) {
   const auto& problem = checked.problem;
   auto s = checked.template start<double>(c);
@@ -161,7 +160,7 @@ void check_in_double(const Checked<separate>& checked, const Case& c, double& wo
     note(worst_state, std::remainder(s.yaw - golden[2], 2 * std::acos(-1.0)), 0);
     note(worst_state, s.speed, golden[3]);
     note(worst_state, s.steer, golden[4]);
-    if constexpr (separate) {
+    if constexpr (two_trajectories<Problem>) {
       note(worst_state, s.local_x, golden[5]);
       note(worst_state, s.local_y, golden[6]);
       note(worst_state, std::remainder(s.local_yaw - golden[7], 2 * std::acos(-1.0)), 0);
@@ -170,8 +169,7 @@ void check_in_double(const Checked<separate>& checked, const Case& c, double& wo
     const auto seen = problem.look_up(s);
     const Input<double, 1> u{{k < 14 ? c.inputs[k] : 0}};
     const auto cost = k < 14 ? problem.stage_cost(s, seen, u) : problem.terminal_cost(s, seen);
-    const double hit = problem.collision_cost(
-        seen, k < 14 ? problem.options().outside_cost : problem.options().outside_terminal_cost);
+    const double hit = problem.collision_part(seen, k == 14);
     collision += hit;
     state += cost.value - hit;
     if (k < 14) s = problem.step(s, seen, u, static_cast<int>(k));
@@ -181,13 +179,13 @@ void check_in_double(const Checked<separate>& checked, const Case& c, double& wo
   note(worst_cost, state + collision, c.sample_cost);
 }
 
-template <class F, bool separate>
-SLALOM_INLINE_CALLS void visited_cells(const Checked<separate>& checked, const Case& c,
+template <class F, class Problem>
+SLALOM_INLINE_CALLS void visited_cells(const Checked<Problem>& checked, const Case& c,
                                        std::vector<Cells>& visited) {
   auto s = checked.template start<F>(c);
   for (int k = 0; k < 15; ++k) {
     F local_x = s.x, local_y = s.y;
-    if constexpr (separate) {
+    if constexpr (two_trajectories<Problem>) {
       local_x = s.local_x;
       local_y = s.local_y;
     }
@@ -200,37 +198,37 @@ SLALOM_INLINE_CALLS void visited_cells(const Checked<separate>& checked, const C
   }
 }
 
-template <bool separate>
-using Visit = void (*)(const Checked<separate>&, const Case&, std::vector<Cells>&);
-template <bool separate>
-SLALOM_TARGET_GENERIC void visit_generic(const Checked<separate>& p, const Case& c, std::vector<Cells>& v) {
+template <class Problem>
+using Visit = void (*)(const Checked<Problem>&, const Case&, std::vector<Cells>&);
+template <class Problem>
+SLALOM_TARGET_GENERIC void visit_generic(const Checked<Problem>& p, const Case& c, std::vector<Cells>& v) {
   visited_cells<Pack<simd::Generic>>(p, c, v);
 }
 #if SLALOM_X86
-template <bool separate>
-SLALOM_TARGET_SSE4 void visit_sse4(const Checked<separate>& p, const Case& c, std::vector<Cells>& v) {
+template <class Problem>
+SLALOM_TARGET_SSE4 void visit_sse4(const Checked<Problem>& p, const Case& c, std::vector<Cells>& v) {
   visited_cells<Pack<simd::Sse4>>(p, c, v);
 }
-template <bool separate>
-SLALOM_TARGET_AVX2 void visit_avx2(const Checked<separate>& p, const Case& c, std::vector<Cells>& v) {
+template <class Problem>
+SLALOM_TARGET_AVX2 void visit_avx2(const Checked<Problem>& p, const Case& c, std::vector<Cells>& v) {
   visited_cells<Pack<simd::Avx2>>(p, c, v);
 }
-template <bool separate>
-SLALOM_TARGET_AVX512 void visit_avx512(const Checked<separate>& p, const Case& c, std::vector<Cells>& v) {
+template <class Problem>
+SLALOM_TARGET_AVX512 void visit_avx512(const Checked<Problem>& p, const Case& c, std::vector<Cells>& v) {
   visited_cells<Pack<simd::Avx512>>(p, c, v);
 }
 #endif
 
-template <bool separate>
-Visit<separate> visit_on(simd::Target target) {
+template <class Problem>
+Visit<Problem> visit_on(simd::Target target) {
 #if SLALOM_X86
-  if (target == simd::Target::avx512) return visit_avx512<separate>;
-  if (target == simd::Target::avx2) return visit_avx2<separate>;
-  if (target == simd::Target::sse4) return visit_sse4<separate>;
+  if (target == simd::Target::avx512) return visit_avx512<Problem>;
+  if (target == simd::Target::avx2) return visit_avx2<Problem>;
+  if (target == simd::Target::sse4) return visit_sse4<Problem>;
 #else
   static_cast<void>(target);
 #endif
-  return visit_generic<separate>;
+  return visit_generic<Problem>;
 }
 
 /// Whether a position lies within 1e-4 m of an edge between two cells of a grid, along either axis.
@@ -248,10 +246,10 @@ struct FloatTally {
   double worst = 0;
 };
 
-template <bool separate>
-void check_in_float(const Checked<separate>& checked, const Case& c, simd::Target target, FloatTally& tally) {
+template <class Problem>
+void check_in_float(const Checked<Problem>& checked, const Case& c, simd::Target target, FloatTally& tally) {
   std::vector<Cells> visited;
-  visit_on<separate>(target)(checked, c, visited);
+  visit_on<Problem>(target)(checked, c, visited);
   bool differs = false;
   for (std::size_t k = 0; k < 15; ++k) {
     const auto& golden = c.states[k];
@@ -274,7 +272,7 @@ void check_in_float(const Checked<separate>& checked, const Case& c, simd::Targe
     return;
   }
   ++tally.same_cells;
-  ProblemEvaluator<PathTracking<separate>> evaluator(checked.problem, target);
+  ProblemEvaluator<Problem> evaluator(checked.problem, target);
   evaluator.set_state(checked.template start<double>(c));
   SequenceBatch batch(14, 1, 1);
   for (int t = 0; t < 14; ++t) batch.at(t, 0, 0) = static_cast<float>(c.inputs[static_cast<std::size_t>(t)]);
@@ -298,7 +296,7 @@ int for_each_case(const std::filesystem::path& folder, const std::filesystem::pa
       ADD_FAILURE() << "case " << c.id << ": there is no map " << c.map;
       continue;
     }
-    const PathTrackingOptions options = options_of(sets.at(std::to_string(c.parameters)));
+    const VehicleOptions options = options_of(sets.at(std::to_string(c.parameters)));
     // The linear form's target is the reference speed at the start; without localisation there is none.
     const auto run = [&](auto checked) {
       double target = options.reference_speed;
@@ -306,10 +304,10 @@ int for_each_case(const std::filesystem::path& folder, const std::filesystem::pa
       checked.problem.set_target_speed(target);
       check(checked, c);
     };
-    if (options.straight_local_rollout) {
-      run(Checked<true>(options, map->second));
+    if (options.own_of<published::ModelOptions>().straight_local_rollout) {
+      run(Checked<published::TwoTrajectories>(options, map->second));
     } else {
-      run(Checked<false>(options, map->second));
+      run(Checked<published::OneTrajectory>(options, map->second));
     }
     ++compared;
   }

@@ -188,7 +188,7 @@ TEST_F(ViewSession, SetsUndoesAndForks) {
 }
 
 TEST_F(ViewSession, ShowsTheStatesOfTrajectoriesWithTwoInputs) {
-  tell({{"do", "set"}, {"key", "vehicle.speed"}, {"value", "input"}});
+  tell({{"do", "set"}, {"key", "vehicle.model"}, {"value", "kinematic_acceleration"}});
   const std::string shown = step_to(3);
   const FrameReader reader(shown);
   EXPECT_EQ(PayloadReader(reader.block(Block::plan)).get<std::uint32_t>(), 15u);

@@ -87,9 +87,9 @@ class Follower {
   Follower(const BagReplay& replay, const BagDrive& drive, const Scenario& scenario)
       : drive_(drive),
         environment_(*scenario.environment),
-        published_maps_(scenario.configuration.planner.published_maps),
-        planner_(scenario.configuration.planner, scenario.configuration.vehicle, environment_.path,
-                 environment_.course.closed,
+        published_maps_(scenario.configuration.planner.published.maps),
+        planner_(scenario.configuration.planner, vehicle::make_vehicle_model(scenario.configuration.vehicle),
+                 environment_.path,
                  vehicle::make_solver(scenario.configuration, replay.method, replay.driver.threads)),
         meter_(environment_.path, scenario.configuration.vehicle),
         world_(world_options(), environment_.track) {

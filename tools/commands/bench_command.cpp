@@ -41,11 +41,11 @@ vehicle::Configuration configuration_of(const Arguments& arguments) {
   scenario.config = arguments.config.empty() ? "published" : arguments.config;
   scenario.set = arguments.set;
   vehicle::Configuration made = load_configuration(scenario, "svg_mppi");
-  if (arguments.config.empty()) made.vehicle.straight_local_rollout = false;
+  if (arguments.config.empty())
+    made.vehicle.own_of<vehicle::published::ModelOptions>().straight_local_rollout = false;
   if (input_count(made.vehicle) != 1) {
     throw std::invalid_argument(
-        "key vehicle.speed: 'input' must not be set here: what is measured has the steering "
-        "as its only input");
+        "key vehicle.model: must have the steering as its only input for this measurement");
   }
   return made;
 }

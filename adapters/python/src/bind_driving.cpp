@@ -184,8 +184,8 @@ void bind_planner(py::module_& module) {
       .def(py::init([](const Environment& environment, const std::string& method, const py::dict& options,
                        const std::string& config) {
              const auto configuration = configure(method, config, options);
-             return vehicle::Planner(configuration.planner, configuration.vehicle, environment.path,
-                                     environment.course.closed,
+             return vehicle::Planner(configuration.planner,
+                                     vehicle::make_vehicle_model(configuration.vehicle), environment.path,
                                      vehicle::make_solver(configuration, method, 1));
            }),
            py::arg("course"), py::arg("method") = "svg_mppi", py::arg("options") = py::dict(), py::kw_only(),

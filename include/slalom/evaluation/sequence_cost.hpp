@@ -10,9 +10,6 @@
 
 namespace slalom::evaluation {
 
-/// The published vehicle problem: model, weights and costs of the published program.
-vehicle::PathTrackingOptions published_problem();
-
 /// The state cost of a control sequence (MS, "mean sequence cost", Honda et al., ICRA 2024, section VI) by
 /// one ruler for every method and configuration: the published cost map and reference field, the published
 /// weights, 15 states 0.05 s apart. For the published configuration it equals the planner's own costs.
@@ -28,7 +25,7 @@ class SequenceCostMeter {
   };
 
   /// `model` is that of the planner. Throws std::invalid_argument on a bad path.
-  SequenceCostMeter(std::span<const maps::ReferencePoint> path, const vehicle::PathTrackingOptions& model);
+  SequenceCostMeter(std::span<const maps::ReferencePoint> path, const vehicle::VehicleOptions& model);
   ~SequenceCostMeter();
   SequenceCostMeter(SequenceCostMeter&&) noexcept;
   SequenceCostMeter& operator=(SequenceCostMeter&&) noexcept;

@@ -5,7 +5,7 @@
 namespace slalom::vehicle {
 namespace {
 
-/// `vehicle.max_speed` is what people look for: the cap belongs to the car, though the planner applies it.
+/// `vehicle.max_speed` is an alias: the limit is one of the car, though the planner applies it.
 std::string resolved(std::string_view key, std::string_view default_section) {
   if (key == "vehicle.max_speed") return "planner.max_speed";
   if (key.find('.') == std::string_view::npos && !default_section.empty())
@@ -13,7 +13,7 @@ std::string resolved(std::string_view key, std::string_view default_section) {
   return std::string(key);
 }
 
-[[noreturn]] void refuse_key(const Configuration& configuration, std::string_view key) {
+[[noreturn]] void throw_unknown_key(const Configuration& configuration, std::string_view key) {
   std::string sections;
   std::vector<std::string> keys = {"vehicle.max_speed"};
   bool section_known = false;
@@ -23,28 +23,37 @@ std::string resolved(std::string_view key, std::string_view default_section) {
     section_known = section_known || each.name == section;
     for (const OptionEntry& entry : each.options) keys.push_back(each.name + "." + entry.declaration.name);
   }
-  std::string message = "key " + std::string(key) + ": ";
+  std::string message = "key " + std::string(key) + ": unknown option";
   if (section_known)
-    message += "is no option of " + std::string(section);
+    message += " of section " + std::string(section);
   else
-    message += "is none of the options, which are section.option with the sections " + sections;
+    message += "; must be section.option, where section is one of " + sections;
   if (const std::string near = nearest_name(key, keys); !near.empty())
     message += "; did you mean " + near + "?";
   throw std::invalid_argument(message);
 }
 
-/// A list of the wrong length would only be found when a solver is made, far from where it was said.
+/// Values that another key has since the versions before.
+void check_moved_value(std::string_view key, std::string_view text) {
+  if (key == "vehicle.speed" && text == "input")
+    throw std::invalid_argument(
+        "'input' is no longer a speed model; set vehicle.model: kinematic_acceleration");
+}
+
+/// A list of the wrong length would only be found when a solver is made, far from the line that sets it.
 template <class Options>
-void check_count(const Options& options, std::string_view name, std::string_view text, int inputs) {
+void check_count(const Options& options, std::string_view name, std::string_view text,
+                 const VehicleOptions& vehicle) {
+  const int inputs = input_count(vehicle);
   for (const OptionEntry& entry : list_options(options)) {
     const auto* values = std::get_if<std::vector<double>>(&entry.value);
     if (name != entry.declaration.name || !values) continue;
     if (values->size() == 1 || static_cast<int>(values->size()) == inputs) continue;
-    const char* const rule = inputs == 1 ? "it takes one, for the steering is the only input as long as "
-                                           "vehicle.speed is not 'input'"
-                                         : "it takes one, or two: for steering and acceleration";
-    throw std::invalid_argument("'" + std::string(text) + "' has " + std::to_string(values->size()) +
-                                " values; " + rule);
+    throw std::invalid_argument(
+        "'" + std::string(text) + "' has " + std::to_string(values->size()) + " values, must have 1" +
+        (inputs > 1 ? " or " + std::to_string(inputs) : std::string()) + ": the input" +
+        (inputs > 1 ? "s" : "") + " of vehicle.model '" +
+        enum_names(vehicle.model)[static_cast<int>(vehicle.model)] + "': " + input_names(vehicle));
   }
 }
 
@@ -67,7 +76,7 @@ std::unique_ptr<Solver> make_solver(const Configuration& configuration, std::str
   } catch (const std::invalid_argument& error) {
     const std::string section = std::string(method) + ".", message = error.what();
     if (message.rfind(section, 0) == 0) throw;
-    throw std::invalid_argument(section + message);  // rules between options do not know the section
+    throw std::invalid_argument(section + message);  // a rule between options has no section
   }
 }
 
@@ -80,15 +89,16 @@ void set_option(Configuration& configuration, std::string_view key, std::string_
     visit_sections(configuration, [&](std::string_view section, auto& options) {
       if (dot == std::string::npos || section != std::string_view(full).substr(0, dot)) return;
       const std::string_view name = std::string_view(full).substr(dot + 1);
+      check_moved_value(full, text);
       auto changed = options;
       found = slalom::set_option(changed, name, text);
-      check_count(changed, name, text, input_count(configuration.vehicle));
+      check_count(changed, name, text, configuration.vehicle);
       options = std::move(changed);
     });
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("key " + std::string(key) + ": " + error.what());
   }
-  if (!found) refuse_key(configuration, full);
+  if (!found) throw_unknown_key(configuration, full);
 }
 
 std::vector<Section> list_sections(const Configuration& configuration) {

@@ -13,10 +13,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* folder_name = "configs";
-constexpr const char* marker = "published.yaml";  // tells a folder of ours from another of that name
+constexpr const char* marker = "published.yaml";  // every `configs` of this project has it
 constexpr int deepest_base = 8;
 
-using Lines = std::map<std::string, int>;  ///< where a file says which key
+using Lines = std::map<std::string, int>;  ///< of each key that a file sets
 
 int line_of(const YAML::Node& node) {
   return node.Mark().line + 1;
@@ -25,10 +25,10 @@ int line_of(const YAML::Node& node) {
 /// An option's value as text: a scalar, or a list of scalars as "[a, b]".
 std::string text_of(const fs::path& file, const std::string& key, const YAML::Node& value) {
   if (value.IsScalar()) return value.Scalar();
-  if (!value.IsSequence()) detail::refuse(file, value, key, "must have a value, or a list of values");
+  if (!value.IsSequence()) detail::throw_at(file, value, key, "must have a value, or a list of values");
   std::string text;
   for (const YAML::Node& each : value) {
-    if (!each.IsScalar()) detail::refuse(file, each, key, "must be a list of plain values");
+    if (!each.IsScalar()) detail::throw_at(file, each, key, "must be a list of plain values");
     text += (text.empty() ? "[" : ", ") + each.Scalar();
   }
   return text.empty() ? "[]" : text + "]";
@@ -43,11 +43,11 @@ bool is_choice(const Configuration& configuration, const std::string& key) {
 
 void read_option(Configuration& configuration, const fs::path& file, const std::string& key,
                  const YAML::Node& at, const YAML::Node& value) {
-  // yaml-cpp puts a value that is not there where the next thing begins.
-  if (value.IsNull()) throw IoError(file.string(), line_of(at), "key " + key + ": has no value");
+  // yaml-cpp gives an absent value the position of the next token.
+  if (value.IsNull()) throw IoError(file.string(), line_of(at), "key " + key + ": must have a value");
   const std::string text = text_of(file, key, value);
   if (value.IsScalar() && value.Tag() == "!" && !is_choice(configuration, key))
-    detail::refuse(file, value, key, "must stand without quotes");
+    detail::throw_at(file, value, key, "must not be quoted");
   try {
     set_option(configuration, key, text);
   } catch (const std::invalid_argument& error) {
@@ -58,10 +58,10 @@ void read_option(Configuration& configuration, const fs::path& file, const std::
 void read_section(Configuration& configuration, const fs::path& file, const std::string& section,
                   const YAML::Node& options, Lines& lines) {
   if (options.IsNull()) return;
-  if (!options.IsMap()) detail::refuse(file, options, section, "must be a map of options to values");
+  if (!options.IsMap()) detail::throw_at(file, options, section, "must be a map of options to values");
   for (const auto& entry : options) {
     if (!entry.first.IsScalar())
-      detail::refuse(file, entry.first, section, "has a key that is no plain word");
+      detail::throw_at(file, entry.first, section, "must have plain words as keys");
     const std::string key = section + "." + entry.first.Scalar();
     read_option(configuration, file, key, entry.first, entry.second);
     lines[key] = line_of(entry.first);
@@ -76,29 +76,30 @@ void check_section(const Configuration& configuration, const fs::path& file, con
   for (const auto& each : names) all += (all.empty() ? "" : ", ") + each;
   const std::string near = nearest_name(name.Scalar(), names);
   throw IoError(file.string(), line_of(name),
-                "key " + name.Scalar() + ": is none of the sections " + all +
+                "key " + name.Scalar() + ": unknown section; must be one of " + all +
                     (near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
-/// Rules between the keys of a file, which hold whatever their order.
+/// Rules between the keys of a file, in whatever order they are.
 void check_together(const Configuration& configuration, const fs::path& file, Lines& lines) {
   const std::string speed = "planner.max_speed", same = "vehicle.max_speed";
   if (lines.count(speed) && lines.count(same)) {
     const bool ordered = lines[same] < lines[speed];
     const std::string &first = ordered ? same : speed, &second = ordered ? speed : same;
     throw IoError(file.string(), lines[second],
-                  "key " + second + ": is another name of " + first + ", which line " +
-                      std::to_string(lines[first]) + " says already");
+                  "key " + second + ": duplicate key; it is an alias of " + first + ", which line " +
+                      std::to_string(lines[first]) + " sets");
   }
   const int inputs = input_count(configuration.vehicle);
   for (const Section& section : list_sections(configuration)) {
     for (const OptionEntry& entry : section.options) {
       const auto* values = std::get_if<std::vector<double>>(&entry.value);
       if (!values || static_cast<int>(values->size()) <= inputs) continue;
-      // Only possible with a base of two inputs.
-      throw IoError(file.string(), lines["vehicle.speed"],
-                    "key vehicle.speed: the steering is the only input then, but " + section.name + "." +
-                        entry.declaration.name + " has two values in the base");
+      // Only possible where the base has a model of more inputs.
+      throw IoError(file.string(), lines["vehicle.model"],
+                    "key vehicle.model: the model has only the input " + input_names(configuration.vehicle) +
+                        ", but " + section.name + "." + entry.declaration.name + " has " +
+                        std::to_string(values->size()) + " values in the base");
     }
   }
   for (const SolverOptions& method : configuration.methods)
@@ -136,18 +137,19 @@ Configuration load_deep(const fs::path& file, const std::vector<fs::path>& roots
   if (root.IsNull()) return configuration;
   if (!root.IsMap()) throw IoError(file.string(), line_of(root), "must be a map of sections");
   if (const YAML::Node base = root["base"]) {
-    if (!base.IsScalar()) detail::refuse(file, base, "base", "must be the name or file of a configuration");
+    if (!base.IsScalar()) detail::throw_at(file, base, "base", "must be the name or file of a configuration");
     if (depth == deepest_base)
-      detail::refuse(file, base, "base", "leads round in circles, or deeper than 8 files");
+      detail::throw_at(file, base, "base", "must not form a cycle or a chain of more than 8 files");
     configuration = load_deep(find_base(file, base, roots), roots, depth + 1);
   }
   Lines lines;
-  // The vehicle goes first: how many inputs it has decides what is right in the methods' sections.
+  // The vehicle comes first, since its number of inputs decides which values are valid for the methods.
   for (const bool vehicles : {true, false}) {
     for (const auto& entry : root) {
       const bool plain = entry.first.IsScalar();
       if ((plain && entry.first.Scalar() == "vehicle") != vehicles) continue;
-      if (!plain) throw IoError(file.string(), line_of(entry.first), "a section's name must be a plain word");
+      if (!plain)
+        throw IoError(file.string(), line_of(entry.first), "the name of a section must be a plain word");
       if (entry.first.Scalar() == "base") continue;
       check_section(configuration, file, entry.first);
       read_section(configuration, file, entry.first.Scalar(), entry.second, lines);
@@ -180,7 +182,7 @@ std::vector<fs::path> configuration_roots(const fs::path& program_folder) {
 
 fs::path find_configuration(const std::string& name_or_file, const std::vector<fs::path>& roots) {
   if (name_or_file.empty())
-    throw IoError("config", 0, "the name is empty; give a file or the name of a configuration");
+    throw IoError("config", 0, "must be a file or the name of a configuration, is empty");
   if (fs::is_regular_file(name_or_file)) return name_or_file;
   std::set<std::string> known;
   std::string searched, names;
@@ -194,7 +196,7 @@ fs::path find_configuration(const std::string& name_or_file, const std::vector<f
   for (const auto& name : known) names += (names.empty() ? "" : ", ") + name;
   throw IoError(
       name_or_file, 0,
-      "is neither a file nor a configuration known by name (known: " + (names.empty() ? "none" : names) +
+      "is neither a file nor the name of a configuration (known: " + (names.empty() ? "none" : names) +
           "; searched: " + (searched.empty() ? "nowhere" : searched) + ")");
 }
 

@@ -14,38 +14,38 @@ class Value {
   Value(const std::filesystem::path& file, std::string key, YAML::Node node)
       : file_(file), key_(std::move(key)), node_(std::move(node)) {}
 
-  [[noreturn]] void refuse(const std::string& rule) const { detail::refuse(file_, node_, key_, rule); }
+  [[noreturn]] void reject(const std::string& rule) const { detail::throw_at(file_, node_, key_, rule); }
 
   double number() const {
     double value = 0;
     if (!node_.IsScalar() || !YAML::convert<double>::decode(node_, value) || !std::isfinite(value))
-      refuse("must be a finite number");
+      reject("must be a finite number");
     return value;
   }
 
   double positive() const {
     const double value = number();
-    if (!(value > 0)) refuse("must be above 0");
+    if (!(value > 0)) reject("must be above 0");
     return value;
   }
 
   std::string text() const {
-    if (!node_.IsScalar()) refuse("must be a text");
+    if (!node_.IsScalar()) reject("must be a text");
     return node_.Scalar();
   }
 
   bool flag() const {
     bool value = false;
-    if (!node_.IsScalar() || !YAML::convert<bool>::decode(node_, value)) refuse("must be true or false");
+    if (!node_.IsScalar() || !YAML::convert<bool>::decode(node_, value)) reject("must be true or false");
     return value;
   }
 
   maps::Pose pose() const {
-    if (!node_.IsMap()) refuse("must be {x, y, yaw} in m, m, rad");
+    if (!node_.IsMap()) reject("must be {x, y, yaw} in m, m, rad");
     for (const auto& entry : node_) {
       const std::string name = entry.first.Scalar();
       if (name != "x" && name != "y" && name != "yaw")
-        Value(file_, key_ + "." + name, entry.first).refuse("is not a key; a pose has x, y and yaw");
+        Value(file_, key_ + "." + name, entry.first).reject("is not a key; a pose has x, y and yaw");
     }
     return {member("x").number(), member("y").number(), member("yaw").number()};
   }
@@ -104,7 +104,7 @@ std::optional<KnownCourse> read_known_course(const std::filesystem::path& file, 
   const YAML::Node node = root[name];
   if (!node) return std::nullopt;
   const Value entry(file, name, node);
-  if (!node.IsMap()) entry.refuse("must be {start, timeout}");
+  if (!node.IsMap()) entry.reject("must be {start, timeout}");
   return KnownCourse{entry.member("start").pose(), entry.member("timeout").positive()};
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -25,10 +24,6 @@ constexpr double clock_set_back = 1.0;
 constexpr double jump_slack = 0.1;
 /// How long (s) the last known motion is taken to go on where odometry has jumped.
 constexpr double longest_guess = 0.2;
-
-/// Where the expected range changes by more than this many times the way across the beam, it is taken for the
-/// edge of something and not for a wall that is grazed; ranges (m) below the other one count as it.
-constexpr double steepest_wall = 8, shortest_lever = 0.05;
 
 /// Another place (m, rad) is none if it is so near, and the particles are put about it so closely.
 constexpr double near_place = 0.5, near_yaw = 0.3;
@@ -79,22 +74,6 @@ const LocaliserOptions& checked(const LocaliserOptions& options) {
 
 }  // namespace
 
-void LocaliserOptions::validate() const {
-  validate_options(*this, "localiser");
-  if (most_particles < least_particles) {
-    throw std::invalid_argument("localiser.most_particles: " + std::to_string(most_particles) +
-                                " is below least_particles, " + std::to_string(least_particles));
-  }
-  if (least_beams > beams) {
-    throw std::invalid_argument("localiser.least_beams: " + std::to_string(least_beams) +
-                                " is above beams, " + std::to_string(beams));
-  }
-  if (!(slow_rate < fast_rate)) {
-    throw std::invalid_argument("localiser.slow_rate: " + std::to_string(slow_rate) +
-                                " is not below fast_rate, " + std::to_string(fast_rate));
-  }
-}
-
 struct Localiser::Implementation {
   Implementation(const maps::OccupancyGrid& map, const LocaliserOptions& o)
       : options(checked(o)),
@@ -132,7 +111,6 @@ struct Localiser::Implementation {
   }
 
   LocaliserStatus move(const LocaliserInput& input) noexcept;
-  bool choose_beams(const maps::LaserScanView& scan) noexcept;
   void use_scan() noexcept;
   void estimate() noexcept;
   void look_elsewhere() noexcept;
@@ -193,62 +171,6 @@ LocaliserStatus Localiser::Implementation::move(const LocaliserInput& input) noe
   odometry = input.odometry;
   stamp = input.stamp;
   return status;
-}
-
-/// Chooses readings evenly over the scan: of every part of it the first usable one. False if the scan is of
-/// no use.
-bool Localiser::Implementation::choose_beams(const maps::LaserScanView& scan) noexcept {
-  beams.hits = beams.count = 0;
-  const std::size_t readings = scan.ranges.size();
-  if (readings == 0 || !std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) ||
-      !std::isfinite(scan.range_min) || std::isnan(scan.range_max)) {
-    return false;
-  }
-  if (options.scan_readings > 0 && readings != static_cast<std::size_t>(options.scan_readings)) return false;
-  const std::size_t parts = std::min(readings, static_cast<std::size_t>(options.beams));
-  const double bins_per_turn = options.table_angles / (2 * std::numbers::pi);
-  const auto add = [&](std::size_t at, double range, std::size_t reading) {
-    const double bearing =
-        options.laser_yaw + scan.angle_min + static_cast<double>(reading) * scan.angle_increment;
-    beams.end_x[at] = static_cast<float>(options.laser_x + range * std::cos(bearing));
-    beams.end_y[at] = static_cast<float>(options.laser_y + range * std::sin(bearing));
-    beams.range[at] = static_cast<float>(range);
-    const double bin = maps::wrap_angle(bearing) * bins_per_turn;
-    const double across = bins_per_turn / std::max(range, shortest_lever);
-    beams.forward_x[at] = static_cast<float>(std::cos(bearing));
-    beams.forward_y[at] = static_cast<float>(std::sin(bearing));
-    beams.sideways_x[at] = static_cast<float>(-across * std::sin(bearing));
-    beams.sideways_y[at] = static_cast<float>(across * std::cos(bearing));
-    beams.steepest[at] = static_cast<float>(steepest_wall / across);
-    beams.bin[at] = std::min(static_cast<float>(bin < 0 ? bin + options.table_angles : bin),
-                             static_cast<float>(options.table_angles - 1e-3));
-  };
-  const double least = std::max(scan.range_min, 0.0), most = std::min(options.range_cap, scan.range_max);
-  std::size_t lost = parts;  // those without return gather at the back
-  for (std::size_t part = 0; part < parts; ++part) {
-    const std::size_t begin = part * readings / parts, end = (part + 1) * readings / parts;
-    std::size_t missed = end;
-    for (std::size_t i = begin + (end - begin) / 2, looked = 0; looked < end - begin; ++looked) {
-      const double range = static_cast<double>(scan.ranges[i]);
-      if (range > least && range < most) {
-        add(static_cast<std::size_t>(beams.hits++), range, i);
-        missed = end;
-        break;
-      }
-      if (range >= most && missed == end) missed = i;
-      if (++i == end) i = begin;
-    }
-    if (missed != end) add(--lost, options.range_cap, missed);
-  }
-  beams.count = beams.hits;
-  for (; lost < parts; ++lost, ++beams.count) {
-    const std::size_t to = static_cast<std::size_t>(beams.count);
-    beams.end_x[to] = beams.end_x[lost];
-    beams.end_y[to] = beams.end_y[lost];
-    beams.range[to] = beams.range[lost];
-    beams.bin[to] = beams.bin[lost];
-  }
-  return beams.hits >= options.least_beams;
 }
 
 void Localiser::Implementation::estimate() noexcept {
@@ -356,7 +278,7 @@ const LocaliserOutput& Localiser::update(const LocaliserInput& input) noexcept {
   if (self.has_odometry && input.stamp <= self.stamp && input.stamp > self.stamp - clock_set_back)
     return finish(LocaliserStatus::stale);
   const LocaliserStatus moved = self.move(input);
-  if (!self.choose_beams(input.scan)) return finish(LocaliserStatus::bad_scan);
+  if (!detail::choose_beams(input.scan, self.options, self.beams)) return finish(LocaliserStatus::bad_scan);
   out.beams = self.beams.hits;
   self.use_scan();
   if (moved != LocaliserStatus::ok) return finish(moved);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "slalom/maps/cell_grid.hpp"
+#include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/vehicle/localisation/localiser_options.hpp"
 
@@ -34,6 +35,11 @@ struct ScanBeams {
   int hits = 0;                               ///< the first so many came back
   int count = 0;                              ///< all, those without return last
 };
+
+/// Chooses readings evenly over the scan: of every part of it the first usable one. False where the scan has
+/// an invalid geometry or fewer than `least_beams` usable readings.
+bool choose_beams(const maps::LaserScanView& scan, const LocaliserOptions& options,
+                  ScanBeams& beams) noexcept;
 
 /// Particles in the frame of the grid (metres from the corner of cell (0, 0)), structure of arrays, padded to
 /// whole packs.

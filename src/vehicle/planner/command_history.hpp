@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "vehicle/planner/car_rollout.hpp"
+#include "slalom/vehicle/model/vehicle_problem.hpp"
 
 namespace slalom::vehicle::detail {
 
@@ -34,7 +34,7 @@ class CommandHistory {
   }
 
   /// The car from now on until the next command takes effect, at constant speed.
-  CarStart lead_ahead(CarStart car) const noexcept {
+  VehicleStart lead_ahead(VehicleStart car) const noexcept {
     for_each_acting(-delay_, 0, 0, [&](double command, double duration) {
       const int pieces = static_cast<int>(std::ceil(duration / 0.01 - 1e-9));
       for (int i = 0; i < pieces; ++i) {

@@ -8,7 +8,6 @@
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/reference_field.hpp"
 #include "vehicle/planner/back_up.hpp"
-#include "vehicle/planner/car_rollout.hpp"
 #include "vehicle/planner/command_history.hpp"
 
 namespace slalom::vehicle {
@@ -16,34 +15,32 @@ namespace slalom::vehicle {
 namespace {
 
 using detail::BackUp;
-using detail::CarRollout;
-using detail::CarStart;
 using detail::CommandHistory;
 
-maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options,
-                                           const PathTrackingOptions& problem) {
+maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const VehicleTraits& traits) {
   maps::LocalCostMapOptions made;
-  if (options.published_maps) {
+  if (options.published.maps) {
     made = maps::LocalCostMapOptions::published();
   } else {
-    made.footprint = {problem.body_front, problem.body_rear, problem.body_width / 2, problem.body_width / 2};
-    made.margin = problem.body_margin;
-    made.soft_margin = problem.soft_margin;
-    made.soft = problem.soft_cost;
+    const BodyOptions& body = traits.body;
+    made.footprint = {body.front, body.rear, body.width / 2, body.width / 2};
+    made.margin = body.margin;
+    made.soft_margin = body.soft_margin;
+    made.soft = body.soft_cost;
   }
   made.laser = {options.laser_x, options.laser_y, options.laser_yaw};
   made.outside = -1;  // so that the problem can tell "off the map" from "occupied"
   return made;
 }
 
-maps::ClearanceMapOptions clearance_options(const PathTrackingOptions& problem) {
+maps::ClearanceMapOptions clearance_options(const VehicleTraits& traits) {
   maps::ClearanceMapOptions made;
-  made.reach = PathTracking<false>::clearance_reach(problem);
+  if (traits.obstacle_map == ObstacleMap::clearance) made.reach = traits.clearance_reach;
   return made;
 }
 
 maps::ReferenceFieldOptions field_options(const PlannerOptions& options) {
-  return options.published_maps ? maps::ReferenceFieldOptions::published() : maps::ReferenceFieldOptions{};
+  return options.published.maps ? maps::ReferenceFieldOptions::published() : maps::ReferenceFieldOptions{};
 }
 
 std::vector<maps::ReferencePoint> capped(std::span<const maps::ReferencePoint> path, double max_speed) {
@@ -57,37 +54,37 @@ bool finite(const Odometry& o) {
          std::isfinite(o.speed);
 }
 
-/// Commands are remembered only where the dead time is compensated; the published observer knows neither.
-double delay_of(const PlannerOptions& options, const PathTrackingOptions& problem) {
-  return options.latency + (problem.hold_first_input ? 0 : problem.dead_time);
+/// How long a command is on its way, s.
+double delay_of(const PlannerOptions& options, const VehicleTraits& traits) {
+  return options.latency + traits.dead_time;
 }
 
 }  // namespace
 
 struct Planner::Implementation {
   PlannerOptions options;
-  PathTrackingOptions problem;
+  std::unique_ptr<VehicleModel> model;
+  VehicleTraits traits;
   std::unique_ptr<Solver> solver;
   maps::LocalCostMap cost_map;
   maps::ClearanceMap clearance_map;
   maps::ReferenceField field;
-  std::unique_ptr<CarRollout> rollout;
   CommandHistory history;
   BackUp back_up;
   std::vector<PredictedState> states, candidate_states;
   std::vector<float> candidate;
   PlannerOutput output;
 
-  Implementation(const PlannerOptions& o, const PathTrackingOptions& p,
+  Implementation(const PlannerOptions& o, std::unique_ptr<VehicleModel> m,
                  std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> s)
       : options(o),
-        problem(p),
+        model(std::move(m)),
+        traits(model->traits()),
         solver(std::move(s)),
-        cost_map(cost_map_options(o, p)),
-        clearance_map(clearance_options(p)),
+        cost_map(cost_map_options(o, traits)),
+        clearance_map(clearance_options(traits)),
         field(capped(path, o.max_speed), field_options(o)),
-        rollout(CarRollout::make(p)),
-        history(o.control_period, delay_of(o, p), o.observer_time_constant, p.front_length + p.rear_length),
+        history(o.control_period, delay_of(o, traits), o.observer_time_constant, traits.wheelbase),
         states(static_cast<std::size_t>(solver->horizon()) + 1),
         candidate_states(states.size()),
         candidate(static_cast<std::size_t>(solver->horizon()) * static_cast<std::size_t>(solver->inputs())) {}
@@ -103,32 +100,31 @@ struct Planner::Implementation {
   }
 
   void plan(const Odometry& odometry) noexcept {
-    const CarStart now{odometry.pose, odometry.speed, history.steer()};
-    const CarStart start = history.lead_ahead(now);
-    // Without a limit to its acceleration a rollout is at once as fast as the reference.
-    const bool jumps = !problem.limit_acceleration;
+    const VehicleStart now{odometry.pose, odometry.speed, history.steer()};
+    const VehicleStart start = history.lead_ahead(now);
+    const bool jumps = traits.unlimited_acceleration;
     const double furthest =
-        std::max(std::abs(odometry.speed), 1.0) + (jumps ? 0 : problem.max_acceleration * horizon_time());
+        std::max(std::abs(odometry.speed), 1.0) + (jumps ? 0 : traits.max_acceleration * horizon_time());
     field.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? horizon_time() : 0);
     const maps::ReferenceCell here = field.at(start.pose.x, start.pose.y);
-    if (!problem.localisation_less && options.stop_when_blocked &&
+    if (traits.follows_path && options.stop_when_blocked &&
         here.distance >= field.options().outside.distance) {
       return stop(PlannerStatus::off_course);
     }
-    const bool discs = problem.body == BodyForm::discs;
-    rollout->set_maps(field.view(), discs ? clearance_map.view() : cost_map.view(), odometry.pose);
-    rollout->set_start(start, problem.localisation_less ? problem.reference_speed : here.speed);
+    const bool clearance = traits.obstacle_map == ObstacleMap::clearance;
+    model->set_maps({field.view(), clearance ? clearance_map.view() : cost_map.view(), odometry.pose});
+    model->set_start(start, traits.follows_path ? here.speed : traits.reference_speed);
     SolveRequest request{.elapsed = options.control_period};
     if (options.deadline > 0) request.deadline = options.deadline;
-    const SolveResult& result = solver->solve(rollout->evaluator(), request);
+    const SolveResult& result = solver->solve(model->evaluator(), request);
     output.solve = &result;
     output.status =
         result.status == Status::degenerate ? PlannerStatus::solver_degenerate : PlannerStatus::ok;
-    PredictedCost cost = rollout->predict(result.inputs, states);
+    PredictedCost cost = model->predict(result.inputs, states);
     std::span<const float> sent = result.inputs;
     if (options.verify_plan && cost.collided) cost = find_free_sequence(result, cost, sent);
     output.inputs = sent;
-    output.inputs_per_step = rollout->inputs();
+    output.inputs_per_step = model->inputs();
     output.predicted = states;
     output.state_cost = cost.state;
     output.collision_cost = cost.collision;
@@ -143,26 +139,26 @@ struct Planner::Implementation {
   /// nowhere it goes back.
   void slow_down(const PredictedCost& cost, double speed) noexcept {
     constexpr double creep = 0.5;  // m/s
-    const bool too_near = rollout->start_collides();
+    const bool too_near = model->start_collides();
     if (options.back_up && back_up.update(!cost.collided && !too_near, speed, options.control_period)) {
       output.command = {0, -BackUp::speed};
     } else if (too_near && speed < 2 * creep) {
       output.command.speed = std::min(output.command.speed, creep);
     } else if (cost.collided && !too_near) {
-      output.command.speed = std::max(0.0, speed - 2 * problem.max_deceleration * options.control_period);
+      output.command.speed = std::max(0.0, speed - 2 * traits.max_deceleration * options.control_period);
     }
     if (cost.collided) output.status = PlannerStatus::blocked;
   }
 
-  double horizon_time() const noexcept { return problem.time_step * solver->horizon(); }
+  double horizon_time() const noexcept { return traits.time_step * solver->horizon(); }
 
   /// The speed to ask for where the path's is `here`.
   double command_speed(double here) const noexcept {
-    if (problem.localisation_less) return std::min(problem.reference_speed, options.max_speed);
-    const bool planned = input_count(problem) == 2;  // the plan has speeds of its own
+    if (!traits.follows_path) return std::min(traits.reference_speed, options.max_speed);
+    const bool planned = traits.plans_speed;
     if (options.speed_lookahead <= 0 && !planned) return here;
     const double last = static_cast<double>(states.size() - 1),
-                 step = std::clamp(options.speed_lookahead / problem.time_step, planned ? 1.0 : 0.0, last);
+                 step = std::clamp(options.speed_lookahead / traits.time_step, planned ? 1.0 : 0.0, last);
     const PredictedState& ahead = states[static_cast<std::size_t>(step + 0.5)];
     if (planned) return ahead.speed;
     const maps::ReferenceCell cell = field.at(ahead.pose.x, ahead.pose.y);
@@ -175,7 +171,7 @@ struct Planner::Implementation {
     PredictedCost best = of_plan;
     const auto consider = [&](std::span<const float> inputs) {
       if (inputs.size() != candidate.size()) return;
-      const PredictedCost cost = rollout->predict(inputs, candidate_states);
+      const PredictedCost cost = model->predict(inputs, candidate_states);
       const bool better = best.collided != cost.collided
                               ? best.collided
                               : cost.state + cost.collision < best.state + best.collision;
@@ -183,7 +179,7 @@ struct Planner::Implementation {
       best = cost;
       sent = inputs;
       states.swap(candidate_states);
-      if (!cost.collided) output.status = PlannerStatus::unverified;
+      if (!cost.collided) output.status = PlannerStatus::fallback_plan;
     };
     consider(result.nominal);
     for (int g = 0; g < result.guides.sequences; ++g) {
@@ -207,25 +203,21 @@ struct Planner::Implementation {
   }
 };
 
-Planner::Planner(const PlannerOptions& options, const PathTrackingOptions& problem,
-                 std::span<const maps::ReferencePoint> path, bool, std::unique_ptr<Solver> solver) {
+Planner::Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
+                 std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver) {
   validate_options(options, "planner");
-  validate_options(problem, "vehicle");
-  if (delay_of(options, problem) > 32 * options.control_period) {
-    throw std::invalid_argument("planner.latency: with vehicle.dead_time it is more than 32 control periods");
-  }
-  if (input_count(problem) == 2 && (problem.straight_local_rollout || problem.localisation_less)) {
+  if (!model) throw std::invalid_argument("planner: model must not be null");
+  if (!solver) throw std::invalid_argument("planner: solver must not be null");
+  if (delay_of(options, model->traits()) > 32 * options.control_period) {
     throw std::invalid_argument(
-        "vehicle.speed: 'input' goes neither with vehicle.straight_local_rollout nor with "
-        "vehicle.localisation_less");
+        "planner.latency: together with vehicle.dead_time must be at most 32 control periods");
   }
-  if (!solver || solver->inputs() != input_count(problem)) {
-    throw std::invalid_argument("planner: needs a solver of " +
-                                std::string(input_count(problem) == 2
-                                                ? "two inputs, steering and acceleration"
-                                                : "one input, the steering"));
+  if (solver->inputs() != model->inputs()) {
+    throw std::invalid_argument("planner: solver has " + std::to_string(solver->inputs()) +
+                                " inputs per step, must have " + std::to_string(model->inputs()) +
+                                ", as the vehicle model");
   }
-  implementation_ = std::make_unique<Implementation>(options, problem, path, std::move(solver));
+  implementation_ = std::make_unique<Implementation>(options, std::move(model), path, std::move(solver));
 }
 
 Planner::~Planner() = default;
@@ -238,7 +230,7 @@ const PlannerOutput& Planner::update(const PlannerInput& input) noexcept {
   PlannerOutput& out = p.output;
   out.scan = p.cost_map.update(input.scan);
   p.cost_map.add_points(input.obstacles);
-  if (p.problem.body == BodyForm::discs) {
+  if (p.traits.obstacle_map == ObstacleMap::clearance) {
     p.clearance_map.clear();
     p.clearance_map.add(p.cost_map.points());
     p.clearance_map.add(input.obstacles);
@@ -268,7 +260,7 @@ void Planner::reset(std::uint64_t seed) noexcept {
 
 PredictedCost Planner::predict(std::span<const float> inputs,
                                std::span<PredictedState> states) const noexcept {
-  return implementation_->rollout->predict(inputs, states);
+  return implementation_->model->predict(inputs, states);
 }
 
 const Solver& Planner::solver() const noexcept {

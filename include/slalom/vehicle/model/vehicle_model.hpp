@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "slalom/core/batch_evaluator.hpp"
+#include "slalom/core/dispatch.hpp"
+#include "slalom/vehicle/model/vehicle_options.hpp"
+#include "slalom/vehicle/model/vehicle_problem.hpp"
+
+namespace slalom::vehicle {
+
+/// The cost of a predicted sequence, by term.
+struct PredictedCost {
+  double state = 0;       ///< of distance, yaw and speed, without collisions
+  double distance = 0;    ///< the part of `state` that the distance to the path makes
+  double collision = 0;   ///< of collisions and nearness to obstacles
+  bool collided = false;  ///< a state after the first free one collides, or none is free
+};
+
+/// A vehicle problem whose type is not known: what the planner drives with.
+class VehicleModel {
+ public:
+  virtual ~VehicleModel() = default;
+
+  virtual int inputs() const noexcept = 0;  ///< per step; the first is the steering
+  virtual VehicleTraits traits() const noexcept = 0;
+  virtual void set_maps(const VehicleMaps& maps) noexcept = 0;
+  /// Where rollouts start; `reference_speed` (m/s) is that of the path there.
+  virtual void set_start(const VehicleStart& start, double reference_speed) noexcept = 0;
+  /// Rollouts from the start over the maps.
+  virtual const BatchEvaluator& evaluator() const noexcept = 0;
+  /// Whether the start itself collides.
+  virtual bool start_collides() const noexcept = 0;
+  /// The states (one more than steps) of one control sequence, [step][input], and its cost. A car that
+  /// collides at the start must be able to leave, so the states before the first free one do not count as a
+  /// collision.
+  virtual PredictedCost predict(std::span<const float> inputs,
+                                std::span<PredictedState> states) const noexcept = 0;
+};
+
+/// The model that `options` name, with their values; rollouts use instruction set `target`. Throws
+/// std::invalid_argument on an option out of range and on an option of another model that is set.
+std::unique_ptr<VehicleModel> make_vehicle_model(const VehicleOptions& options,
+                                                 simd::Target target = simd::active_target());
+
+}  // namespace slalom::vehicle

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <concepts>
+
+#include "slalom/core/grid_view.hpp"
+#include "slalom/core/problem.hpp"
+#include "slalom/maps/pose.hpp"
+#include "slalom/vehicle/model/path_tracking_options.hpp"
+
+/// What the planner asks of a vehicle problem, so that it can drive any of them.
+namespace slalom::vehicle {
+
+/// Where a rollout starts: what odometry and steering observer say. A model with further states (yaw rate,
+/// slip) derives them from these.
+struct VehicleStart {
+  maps::Pose pose;   ///< of the rear axle, map frame
+  double speed = 0;  ///< m/s
+  double steer = 0;  ///< rad, of the wheels
+};
+
+/// A predicted state.
+struct PredictedState {
+  maps::Pose pose;   ///< of the rear axle, map frame
+  double speed = 0;  ///< m/s
+  double steer = 0;  ///< rad, of the wheels
+  maps::Pose local;  ///< where the body is looked up, in the frame of the robot at the time of the scan
+};
+
+/// The maps that rollouts look up; they must outlive their use.
+struct VehicleMaps {
+  GridView<4> reference;  ///< {distance to the path in m, yaw in rad, speed in m/s, 1 off the map}, map frame
+  GridView<1> obstacles;  ///< as VehicleTraits::obstacle_map says, robot's frame; its ring is negative
+  maps::Pose robot;       ///< the robot's frame, in the map frame
+};
+
+/// What the map of obstacles holds.
+enum class ObstacleMap {
+  inflated,  ///< cost map: 100 where the body of now, in its heading of now, would collide
+  clearance  ///< distance to the nearest obstacle, m, up to `clearance_reach`
+};
+
+/// What the planner needs to know of a model besides its rollouts.
+struct VehicleTraits {
+  double time_step = 0;         ///< s, of the prediction, > 0
+  double wheelbase = 0;         ///< m, > 0
+  double dead_time = 0;         ///< s, of the steering, which the planner compensates; 0 if the model does
+  double max_acceleration = 0;  ///< m/s^2, of the predicted speed
+  double max_deceleration = 0;  ///< m/s^2, with which the car brakes
+  bool unlimited_acceleration = false;  ///< the predicted speed may be at once that of the reference field
+  bool plans_speed = false;             ///< the speed to command is that of the plan, not that of the path
+  bool follows_path = true;             ///< false: drives by the obstacles alone, at `reference_speed`
+  double reference_speed = 0;           ///< m/s, without a path
+  ObstacleMap obstacle_map = ObstacleMap::inflated;
+  double clearance_reach = 0;  ///< m
+  BodyOptions body;            ///< by which obstacles are inflated
+};
+
+/// The traits of models that take these options as they are.
+VehicleTraits traits_of(const PathTrackingOptions& options, bool plans_speed);
+
+/// A vehicle problem: a Problem whose input 0 is the steering angle, rad (a further one may be the
+/// acceleration, m/s^2), whose costs are `Cost<T>` with the collision, and which has besides
+///  - `set_maps(const VehicleMaps&)`: the maps for the next rollouts;
+///  - `start(const VehicleStart&, double reference_speed)`: the state in which they start; the reference
+///  speed
+///    (m/s) is that of the path there;
+///  - `predicted(state)`: the pose, speed and steering angle of a state;
+///  - `collision_part(seen, last)`, `distance_part(seen, last)`: the parts of a state's cost that collisions
+///    and the distance to the path make, of what `look_up` returned and for the last state of a sequence;
+///  - `traits()`.
+/// The layout of the state is the problem's own.
+template <class P>
+concept VehicleProblem = Problem<P> && requires(P& p, const P& c, const slalom::detail::StateOf<P, double>& x,
+                                                const VehicleMaps& maps, const VehicleStart& start) {
+  p.set_maps(maps);
+  { p.start(start, 1.0) } -> std::same_as<slalom::detail::StateOf<P, double>>;
+  { c.predicted(x) } -> std::same_as<PredictedState>;
+  { c.collision_part(slalom::detail::look_up<P, double>(c, x), true) } -> std::convertible_to<double>;
+  { c.distance_part(slalom::detail::look_up<P, double>(c, x), true) } -> std::convertible_to<double>;
+  { c.traits() } -> std::same_as<VehicleTraits>;
+};
+
+}  // namespace slalom::vehicle

@@ -1,0 +1,92 @@
+#pragma once
+
+#include "slalom/core/options.hpp"
+#include "slalom/vehicle/published/planner_options.hpp"
+
+namespace slalom::vehicle {
+
+/// Options of the planner, besides those of the solver and of the vehicle model.
+struct PlannerOptions {
+  double control_period = 0.025;        ///< s, from one update to the next
+  double latency = 0;                   ///< s, from the scan to the moment when a command reaches the car
+  double observer_time_constant = 0.1;  ///< s, of the lag in the steering observer
+  double max_speed = 100;               ///< m/s, upper bound of the path's speeds
+  double steer_limit = 0.4189;          ///< rad, bound of the steering commands, to either side
+  double laser_x = 0.275;               ///< m, of the laser ahead of the rear axle
+  double laser_y = 0;                   ///< m, to the left
+  double laser_yaw = 0;                 ///< rad
+  double speed_lookahead = 0;           ///< s, the commanded speed is that of the path this far ahead, or of
+                                        ///< the plan where the acceleration is an input
+  double deadline = 0;                  ///< s, time limit of a solve; 0: none
+  bool stop_when_blocked = true;        ///< brake when every plan collides
+  bool verify_plan = true;  ///< if the solution collides, send the cheapest of nominal sequence, guides and
+                            ///< best sample that does not
+  bool back_up = true;  ///< with `stop_when_blocked` and `verify_plan`: where the car stands and every plan
+                        ///< collides, it reverses a little and tries again
+  published::PlannerOptions published;  ///< to reproduce the published program
+};
+
+/// Declares every option by name, unit, help and range.
+template <class Options, class Visit>
+requires is_options_of<Options, PlannerOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.control_period, Declaration{.name = "control_period",
+                                      .unit = "s",
+                                      .help = "from one update to the next",
+                                      .min = 1e-3,
+                                      .max = 1});
+  visit(o.latency, Declaration{.name = "latency",
+                               .unit = "s",
+                               .help = "from the scan to the moment when the command reaches the car",
+                               .min = 0,
+                               .max = 1});
+  visit(o.observer_time_constant, Declaration{.name = "observer_time_constant",
+                                              .unit = "s",
+                                              .help = "time constant of the lag in the steering observer",
+                                              .min = 1e-3,
+                                              .max = 10});
+  visit(o.max_speed, Declaration{.name = "max_speed",
+                                 .unit = "m/s",
+                                 .help = "upper bound of the path's speeds",
+                                 .min = 0.01,
+                                 .max = 100});
+  visit(o.steer_limit, Declaration{.name = "steer_limit",
+                                   .unit = "rad",
+                                   .help = "bound of the steering commands, to either side",
+                                   .min = 0.01,
+                                   .max = 1.5});
+  visit(o.laser_x, Declaration{.name = "laser_x",
+                               .unit = "m",
+                               .help = "position of the laser ahead of the rear axle",
+                               .min = -10,
+                               .max = 10});
+  visit(o.laser_y, Declaration{.name = "laser_y",
+                               .unit = "m",
+                               .help = "position of the laser to the left of the rear axle",
+                               .min = -10,
+                               .max = 10});
+  visit(
+      o.laser_yaw,
+      Declaration{.name = "laser_yaw", .unit = "rad", .help = "direction of the laser", .min = -7, .max = 7});
+  visit(o.speed_lookahead,
+        Declaration{.name = "speed_lookahead",
+                    .unit = "s",
+                    .help = "the commanded speed is that of the path this far ahead, or of "
+                            "the plan where the acceleration is an input",
+                    .min = 0,
+                    .max = 2});
+  visit(o.deadline,
+        Declaration{
+            .name = "deadline", .unit = "s", .help = "time limit of a solve; 0: none", .min = 0, .max = 1});
+  visit(o.stop_when_blocked,
+        Declaration{.name = "stop_when_blocked", .help = "brake when every plan collides"});
+  visit(o.verify_plan, Declaration{.name = "verify_plan",
+                                   .help = "if the solution collides, send another sequence that does not"});
+  visit(o.back_up, Declaration{.name = "back_up",
+                               .help = "reverse a little where the car stands and every plan collides"});
+  visit(o.published.maps,
+        Declaration{.name = "published_maps",
+                    .help = "cost map and reference field as the published program makes them"});
+}
+
+}  // namespace slalom::vehicle

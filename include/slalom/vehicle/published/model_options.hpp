@@ -1,0 +1,60 @@
+#pragma once
+
+#include "slalom/core/options.hpp"
+
+/// The vehicle problem of the program that the authors of Honda et al. (ICRA 2024) published, with what in it
+/// departs from the paper or from the car. It exists to reproduce their results.
+namespace slalom::vehicle::published {
+
+/// Reference point and yaw gain of the bicycle.
+enum class BicycleModel {
+  rear_axle,  ///< that of KinematicBicycle
+  published,  ///< tan(b) = l_f / (l_f + l_r) tan(steer), x' = v cos(yaw + b), yaw' = v sin(b) / l_r. About
+              ///< the centre of gravity, tan(b) has l_r in its numerator (Rajamani, "Vehicle Dynamics and
+              ///< Control", 2nd ed., section 2.2): the yaw gain of this form is too high
+};
+/// The names of the enumerators, in order.
+inline const char* const* enum_names(BicycleModel) {
+  static constexpr const char* const names[] = {"rear_axle", "published", nullptr};
+  return names;
+}
+
+/// Options of `vehicle.model: published` besides those of every model. The defaults are the correct forms.
+struct ModelOptions {
+  BicycleModel bicycle = BicycleModel::rear_axle;
+  bool exact_lag = true;  ///< published: false, the lag of the steering by explicit Euler
+  /// Published: true. Collisions are looked up along a second rollout in the robot's frame that starts with
+  /// the wheels straight, whatever their angle.
+  bool straight_local_rollout = false;
+  /// Published: true. With SpeedModel::linear a car that is too fast accelerates.
+  bool linear_sign_error = false;
+
+  bool operator==(const ModelOptions&) const = default;
+
+  /// The values of the published program.
+  static ModelOptions published() {
+    return {.bicycle = BicycleModel::published,
+            .exact_lag = false,
+            .straight_local_rollout = true,
+            .linear_sign_error = true};
+  }
+};
+
+template <class Options, class Visit>
+requires is_options_of<Options, ModelOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.bicycle, Declaration{.name = "bicycle",
+                               .help = "model `published`: reference point and yaw gain of the bicycle"});
+  visit(o.exact_lag,
+        Declaration{.name = "exact_lag",
+                    .help = "model `published`: steering lag discretised exactly, not by explicit Euler"});
+  visit(o.straight_local_rollout,
+        Declaration{.name = "straight_local_rollout",
+                    .help = "model `published`: collisions along a second rollout that starts with straight "
+                            "wheels"});
+  visit(o.linear_sign_error,
+        Declaration{.name = "linear_sign_error",
+                    .help = "model `published`: with `speed: linear` a car that is too fast accelerates"});
+}
+
+}  // namespace slalom::vehicle::published

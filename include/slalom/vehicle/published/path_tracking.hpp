@@ -1,0 +1,177 @@
+#pragma once
+
+#include <array>
+
+#include "slalom/vehicle/model/actuation.hpp"
+#include "slalom/vehicle/model/obstacle_cost.hpp"
+#include "slalom/vehicle/model/tracking_cost.hpp"
+#include "slalom/vehicle/model/vehicle_problem.hpp"
+#include "slalom/vehicle/published/model_options.hpp"
+
+namespace slalom::vehicle::published {
+
+/// The bicycle of the published program: one step of its pose and steering.
+class Bicycle {
+ public:
+  Bicycle(const PathTrackingOptions& options, const ModelOptions& own);
+
+  /// The pose and wheels' angle after `travelled` (m) with this command (rad).
+  template <class T>
+  SLALOM_INLINE void move(const T& x, const T& y, const T& yaw, const T& steer, const T& command,
+                          const T& travelled, T& next_x, T& next_y, T& next_yaw, T& next_steer) const {
+    T sin_steer, cos_steer, sin_yaw, cos_yaw;
+    sin_cos_half_turn(slip_from_command_ ? command : steer, sin_steer, cos_steer);
+    sin_cos(yaw, sin_yaw, cos_yaw);
+    if (model_ == BicycleModel::published) {
+      // sin and cos of b = atan(ratio tan(steer)), without the inverse function.
+      const T opposite = T(slip_ratio_) * sin_steer;
+      const T scale = travelled * reciprocal_sqrt(cos_steer * cos_steer + opposite * opposite);
+      const T along = scale * cos_steer, across = scale * opposite;
+      next_x = x + (along * cos_yaw - across * sin_yaw);
+      next_y = y + (along * sin_yaw + across * cos_yaw);
+      next_yaw = yaw + across * T(inverse_length_);
+    } else {
+      next_yaw = yaw + travelled * T(inverse_length_) * sin_steer / cos_steer;
+      next_x = x + travelled * cos_yaw;
+      next_y = y + travelled * sin_yaw;
+    }
+    next_steer = steering_.turned(steer, command);
+  }
+
+  const SteeringActuator& steering() const { return steering_; }
+
+ private:
+  BicycleModel model_;
+  bool slip_from_command_;  ///< without localisation the slip angle comes from the command, not the wheels
+  SteeringActuator steering_;
+  Coefficient slip_ratio_;
+  Coefficient inverse_length_;  ///< 1/m
+};
+
+/// The published vehicle problem with one trajectory: collisions are looked up where the car is.
+class OneTrajectory {
+ public:
+  template <class T>
+  struct State {
+    T x, y, yaw;  ///< m, m, rad, map frame
+    T speed;      ///< m/s
+    T steer;      ///< rad, of the wheels
+    T held;       ///< rad, the sequence's first input where it is held
+  };
+  static constexpr int inputs = 1;  ///< steering, rad, of a magnitude below pi / 2
+
+  /// Options must be valid (see validate_options).
+  OneTrajectory(const PathTrackingOptions& options, const ModelOptions& own);
+
+  const PathTrackingOptions& options() const { return options_; }
+  double time_step() const { return options_.time_step; }  ///< s
+  VehicleTraits traits() const { return traits_of(options_, false); }
+
+  void set_maps(const VehicleMaps& maps) noexcept {
+    cost_.set_reference(maps.reference);
+    obstacles_.set_map(maps.obstacles, maps.robot);
+  }
+  /// The target of SpeedModel::linear, m/s.
+  void set_target_speed(double speed) { speed_.set_target(speed); }
+
+  State<double> start(const VehicleStart& start, double reference_speed) noexcept;
+  PredictedState predicted(const State<double>& s) const noexcept;
+
+  template <class T>
+  Surroundings<T> look_up(const State<T>& s) const {
+    const T obstacle = obstacles_.in_map_frame(s.x, s.y, s.yaw);
+    return cost_.look_up(s.x, s.y, s.speed, obstacle);
+  }
+  template <class T>
+  State<T> step(const State<T>& s, const Surroundings<T>& seen, const Input<T, 1>& u, int k) const {
+    State<T> next;
+    T command, travelled;
+    begin_step(s, seen, u, k, next, command, travelled);
+    bicycle_.move(s.x, s.y, s.yaw, s.steer, command, travelled, next.x, next.y, next.yaw, next.steer);
+    return next;
+  }
+  template <class S, class T>
+  Cost<T> stage_cost(const S& s, const Surroundings<T>& seen, const Input<T, 1>&) const {
+    return cost_.stage(s.yaw, seen);
+  }
+  template <class S, class T>
+  Cost<T> terminal_cost(const S& s, const Surroundings<T>& seen) const {
+    return cost_.terminal(s.yaw, seen);
+  }
+  double collision_part(const Surroundings<double>& seen, bool last) const {
+    return cost_.collision_part(seen, last);
+  }
+  double distance_part(const Surroundings<double>& seen, bool last) const {
+    return cost_.distance_part(seen, last);
+  }
+
+ protected:
+  /// What a step does besides moving: the command that acts, rad, and the way it is held for, m.
+  template <class S, class T>
+  SLALOM_INLINE void begin_step(const S& s, const Surroundings<T>& seen, const Input<T, 1>& u, int k, S& next,
+                                T& command, T& travelled) const {
+    const SteeringActuator& steering = bicycle_.steering();
+    command = steering.acting(s.held, u[0], k);
+    next.held = steering.held(s.held, u[0], k);
+    next.speed = speed_.following(s.speed, seen.speed);
+    travelled = s.speed * T(time_step_);
+  }
+
+  PathTrackingOptions options_;
+  Bicycle bicycle_;
+  SpeedPrediction speed_;
+  TrackingCost cost_;
+  ObstacleCost obstacles_;
+  Coefficient time_step_;
+};
+
+/// The published vehicle problem as published: collisions are looked up along a second trajectory in the
+/// robot's frame, which starts at its origin with straight wheels.
+class TwoTrajectories : public OneTrajectory {
+ public:
+  template <class T>
+  struct State {
+    T x, y, yaw, speed, steer, held;             ///< as OneTrajectory has it
+    T local_x, local_y, local_yaw, local_steer;  ///< m, m, rad, rad, robot's frame
+  };
+
+  using OneTrajectory::OneTrajectory;
+
+  State<double> start(const VehicleStart& start, double reference_speed) noexcept;
+  PredictedState predicted(const State<double>& s) const noexcept;
+  /// The state of which `predicted` gives the pose and the local pose, standing, with straight wheels.
+  static State<double> standing_at(const PredictedState& predicted) noexcept;
+
+  template <class T>
+  Surroundings<T> look_up(const State<T>& s) const {
+    const T obstacle = obstacles_.in_robot_frame(s.local_x, s.local_y, s.local_yaw);
+    return cost_.look_up(s.x, s.y, s.speed, obstacle);
+  }
+  template <class T>
+  State<T> step(const State<T>& s, const Surroundings<T>& seen, const Input<T, 1>& u, int k) const {
+    State<T> next;
+    T command, travelled;
+    begin_step(s, seen, u, k, next, command, travelled);
+    bicycle_.move(s.x, s.y, s.yaw, s.steer, command, travelled, next.x, next.y, next.yaw, next.steer);
+    bicycle_.move(s.local_x, s.local_y, s.local_yaw, s.local_steer, command, travelled, next.local_x,
+                  next.local_y, next.local_yaw, next.local_steer);
+    return next;
+  }
+};
+
+/// The published vehicle problem as a vehicle model: one of the two, as `straight_local_rollout` says.
+struct Model {
+  static constexpr const char* name = "published";
+  static constexpr const char* help = "the vehicle problem of the published program";
+  static constexpr int inputs = OneTrajectory::inputs;
+  static constexpr std::array input_names{"steering"};
+  using Options = ModelOptions;
+
+  /// Calls `use` with the problem of these options and returns what it returns.
+  template <class Use>
+  static auto with_problem(const PathTrackingOptions& options, const Options& own, Use&& use) {
+    return own.straight_local_rollout ? use(TwoTrajectories(options, own)) : use(OneTrajectory(options, own));
+  }
+};
+
+}  // namespace slalom::vehicle::published
