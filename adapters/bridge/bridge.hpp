@@ -76,7 +76,7 @@ class Planner {
 
   std::vector<Option> options() const;  ///< of vehicle, planner and the method
   void change(const Changes& changes);
-  void use_path(const std::vector<Waypoint>& path, bool closed);
+  void use_path(const std::vector<Waypoint>& path);
   bool has_path() const;
   double control_period() const;  ///< s
   Pose laser() const;             ///< from the rear axle, as the options have it

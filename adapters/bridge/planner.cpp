@@ -13,7 +13,6 @@ struct Planner::Hidden {
   std::string method;
   slalom::vehicle::Configuration settings;
   std::vector<slalom::maps::ReferencePoint> path;
-  bool closed = true;
   std::unique_ptr<slalom::vehicle::Planner> planner;
   std::vector<Pose> predicted;
 
@@ -57,10 +56,9 @@ void Planner::change(const Changes& changes) {
   hidden_->settings = changed;
 }
 
-void Planner::use_path(const std::vector<Waypoint>& path, bool closed) {
+void Planner::use_path(const std::vector<Waypoint>& path) {
   std::vector<slalom::maps::ReferencePoint> points;
   for (const Waypoint& w : path) points.push_back({w.x, w.y, w.yaw, w.speed});
-  hidden_->closed = closed;
   hidden_->planner = hidden_->make(hidden_->settings, points);
   hidden_->path = points;
 }

@@ -30,7 +30,7 @@ TEST(CommandHistory, WheelsBeginToTurnAfterTheDelay) {
 TEST(CommandHistory, PredictsTheStateAfterTheDelay) {
   CommandHistory history(period, 0.06, lag, wheelbase);
   for (int i = 0; i < 4; ++i) history.send(0.2);
-  const CarStart ahead = history.lead_ahead({{1, 2, 0.5}, 3, history.steer()});
+  const VehicleStart ahead = history.lead_ahead({{1, 2, 0.5}, 3, history.steer()});
   EXPECT_NEAR(std::hypot(ahead.pose.x - 1, ahead.pose.y - 2), 3 * 0.06, 1e-3);
   // By then all that was sent from the first command on has acted: 4 periods.
   EXPECT_NEAR(ahead.steer, 0.2 * (1 - std::exp(-4 * period / lag)), 1e-12);

@@ -172,7 +172,7 @@ TEST(VehicleModels, RejectUnknownNamesAndOptionsOfOtherModels) {
   EXPECT_NE(message([&] { make_vehicle_model(options); }).find("vehicle.time_step"), std::string::npos);
 }
 
-/// A point that moves along the path at 1 m/s whatever it is told: the planner knows nothing of its type.
+/// A point that moves along x at 1 m/s, whatever its inputs, without maps.
 struct Trolley {
   template <class T>
   struct State {
@@ -181,28 +181,29 @@ struct Trolley {
   static constexpr int inputs = 1;
   double dt = 0.1;
   template <class T>
-  int look_up(const State<T>&) const {
-    return 0;
-  }
-  template <class T>
-  State<T> step(const State<T>& s, int, const Input<T, 1>&) const {
+  State<T> step(const State<T>& s, const Input<T, 1>&) const {
     return {s.x + T(dt)};
   }
   template <class T>
-  Cost<T> stage_cost(const State<T>&, int, const Input<T, 1>& u) const {
+  Cost<T> stage_cost(const State<T>&, const Input<T, 1>& u) const {
     return {u[0] * u[0], mask_t<T>(false)};
   }
   template <class T>
-  Cost<T> terminal_cost(const State<T>&, int) const {
+  Cost<T> terminal_cost(const State<T>&) const {
     return {T(0), mask_t<T>(false)};
   }
   void set_maps(const VehicleMaps&) {}
   State<double> start(const VehicleStart& start, double) { return {start.pose.x}; }
   PredictedState predicted(const State<double>& s) const { return {{s.x, 0, 0}, 1, 0, {}}; }
-  double collision_part(int, bool) const { return 0; }
-  double distance_part(int, bool) const { return 0; }
+  double collision_part(NoLookUp, bool) const { return 0; }
+  double distance_part(NoLookUp, bool) const { return 0; }
   VehicleTraits traits() const {
-    return {.time_step = dt, .wheelbase = 1, .max_deceleration = 1, .plans_speed = true};
+    VehicleTraits traits;
+    traits.time_step = dt;
+    traits.wheelbase = 1;
+    traits.max_deceleration = 1;
+    traits.plans_speed = true;
+    return traits;
   }
 };
 static_assert(VehicleProblem<Trolley>);

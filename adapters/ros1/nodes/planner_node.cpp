@@ -150,7 +150,7 @@ class PlannerNode {
   }
 
   void use_path(const std::vector<slalom_bridge::Waypoint>& path, bool closed) {
-    planner_.use_path(path, closed);
+    planner_.use_path(path);
     nav_msgs::Path m;
     m.header.frame_id = map_;
     m.header.stamp = ros::Time::now();

@@ -59,7 +59,7 @@ class Driver {
       : node_("slalom_driver", a.domain), planner_(a.configuration, a.method) {
     const auto course = slalom_bridge::load_course(a.course);
     planner_.change(a.set);
-    planner_.use_path(course.waypoints, course.closed);
+    planner_.use_path(course.waypoints);
     start_ = course.start;
     if (!a.map_from_topic) use_map(course.map);
     drive_out_ =

@@ -9,17 +9,17 @@ namespace slalom::vehicle::detail {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double turning_radius = 0.9;  // m, with room to spare above a 1/10 car's 0.74 at full lock
+constexpr double turning_radius = 0.9;  // m, more than the 0.74 m of a 1/10 car at full lock
 constexpr double step = 0.1;            // m, of the finished centre line
 constexpr int most_draws = 6000;
 
-/// How a character draws its polygons.
+/// The parameters of the polygons of a character.
 struct Style {
   double corner_spacing;               ///< m of centre line per corner
-  double depth;                        ///< how far corners are drawn inwards, as a share of the radius
+  double depth;                        ///< how far corners move inwards, as a fraction of the radius
   double stretch;                      ///< largest ratio of the sides
-  double swirl;                        ///< largest turn of the rim against the middle, rad
-  double small_radius, large_radius;   ///< m, drawn for corners
+  double swirl;                        ///< largest rotation of the rim against the centre, rad
+  double small_radius, large_radius;   ///< m, range of the radii of corners
   double smoothing;                    ///< m, standard deviation along the path
   double least_winding, most_winding;  ///< integral of |curvature| in multiples of 2 pi, at 60 m of length
 };
@@ -55,8 +55,8 @@ class Draw {
   std::uint64_t state_;
 };
 
-/// Corners round a circle, drawn inwards by turns, then stretched and swirled; unit size. `calm` in [0, 1]
-/// pulls the draw towards a plain round.
+/// Corners on a circle, every other one moved inwards, then stretched and twisted; unit size. `calm` in
+/// [0, 1] moves the result towards a circle.
 Curve draw_polygon(Draw& draw, const Style& style, double length, double calm) {
   const double wanted = length / style.corner_spacing * draw.uniform(0.8, 1.2) * (1 - 0.5 * calm);
   const int corners = std::clamp(static_cast<int>(std::lround(wanted)), 4, 60);
@@ -74,8 +74,8 @@ Curve draw_polygon(Draw& draw, const Style& style, double length, double calm) {
   return polygon;
 }
 
-/// Appends the arc that rounds the corner at `b` with the radius asked, or the largest that half the sides
-/// allow. Returns the radius; 0 if the corner is too sharp to round.
+/// Appends the arc that rounds the corner at `b` with the given radius, or the largest one that half of the
+/// sides allow. Returns the radius; 0 if the corner is too sharp to round.
 double round_corner(Curve& path, maps::Point a, maps::Point b, maps::Point c, double radius) {
   const maps::Point in = b - a, out = c - b;
   const double in_length = std::hypot(in.x, in.y), out_length = std::hypot(out.x, out.y);
@@ -100,7 +100,7 @@ double round_corner(Curve& path, maps::Point a, maps::Point b, maps::Point c, do
   return fitted;
 }
 
-/// Points at close equal steps along straight lines: what a rounded polygon is.
+/// Points at small equal steps along straight lines: a rounded polygon.
 Curve evenly(const Curve& path, int count) {
   const double spacing = detail::length(path) / count;
   Curve result;
@@ -114,7 +114,7 @@ Curve evenly(const Curve& path, int count) {
   return result;
 }
 
-/// The polygon scaled, rounded and smoothed to the length asked; empty if a corner cannot be rounded.
+/// The polygon scaled, rounded and smoothed to the given length; empty if a corner cannot be rounded.
 Curve rounded(const Curve& polygon, const std::vector<double>& radii, const TrackOptions& options,
               double smoothing) {
   double scale = options.length / detail::length(polygon);
@@ -152,7 +152,8 @@ bool acceptable(const Curve& curve, const TrackOptions& options, double least_wi
   return least_gap(curve, pi * radius) >= options.width + 2 * options.wall;
 }
 
-/// Turns the curve about the origin so that it is as low as possible in y: maps and pictures waste least.
+/// Turns the curve about the origin so that it is as small as possible in y, so that maps and pictures have
+/// the least empty area.
 void lay_flat(Curve& curve) {
   double best_height = 0, best_angle = 0;
   for (int k = 0; k < 60; ++k) {
@@ -184,7 +185,7 @@ Curve make_centre_line(const TrackOptions& options) {
   const double small = std::max(style.small_radius, 1.1 * least_radius(options));
   const double large = std::max(style.large_radius, 1.5 * small);
   for (int i = 0; i < most_draws; ++i) {
-    // Draws that keep failing (short or wide tracks) become calmer; the last are nearly round.
+    // After failed candidates (short or wide tracks) the next ones are closer to a circle.
     const double calm = std::max(0.0, 2.0 * i / most_draws - 1);
     const Curve polygon = draw_polygon(draw, style, options.length, calm);
     std::vector<double> radii;

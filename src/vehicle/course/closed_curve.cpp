@@ -7,7 +7,7 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-/// Catmull and Rom's cubic between b and c at t in [0, 1].
+/// The Catmull-Rom cubic between b and c at t in [0, 1].
 maps::Point cubic(maps::Point a, maps::Point b, maps::Point c, maps::Point d, double t) {
   const maps::Point linear = c - a;
   const maps::Point square = 2 * a - 5 * b + 4 * c - d;
@@ -49,7 +49,8 @@ double length(const Curve& curve) {
 }
 
 Curve resampled(const Curve& curve, int count) {
-  // Equal chords of the old points are not quite equal chords of the new: the second pass evens them out.
+  // Equal chords between the old points are only nearly equal between the new ones; the second pass corrects
+  // that.
   return resampled_once(resampled_once(curve, count), count);
 }
 

@@ -6,7 +6,7 @@
 
 namespace slalom::vehicle::detail {
 
-/// Closed polygons that stand for smooth closed curves. The last point leads on to the first, which is not
+/// Closed polygons that represent smooth closed curves. The first point follows the last one and is not
 /// repeated.
 using Curve = std::vector<maps::Point>;
 
@@ -29,7 +29,7 @@ inline double cross(maps::Point a, maps::Point b) {
 /// The length, m.
 double length(const Curve& curve);
 
-/// `count` points at equal steps along the curve, by cubics through its points (Catmull and Rom).
+/// `count` points at equal steps along the curve, by Catmull-Rom cubics through its points.
 Curve resampled(const Curve& curve, int count);
 
 /// The signed curvature (1/m) at every point: of the circle through it and the points `reach` rows before and

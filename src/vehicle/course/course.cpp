@@ -40,11 +40,11 @@ std::string names_of(const std::vector<fs::path>& files) {
   return names;
 }
 
-/// The one file meant out of those that qualify.
+/// The only candidate, or an error.
 const fs::path& only_one(const fs::path& folder, const std::vector<fs::path>& candidates,
-                         const std::string& what, const std::string& left_aside) {
+                         const std::string& what, const std::string& ignored) {
   if (candidates.empty())
-    throw IoError(folder.string(), 0, "holds no " + what + "; a course needs one" + left_aside);
+    throw IoError(folder.string(), 0, "holds no " + what + "; a course needs one" + ignored);
   if (candidates.size() > 1)
     throw IoError(
         folder.string(), 0,
@@ -54,22 +54,22 @@ const fs::path& only_one(const fs::path& folder, const std::vector<fs::path>& ca
 
 fs::path find_map(const fs::path& folder, std::vector<std::string>& notes) {
   std::vector<fs::path> candidates;
-  std::string left_aside;
+  std::string ignored;
   for (const auto& file : files_with(folder, {".yaml", ".yml"})) {
     if (file.filename() == course_file) continue;
     if (detail::may_be_map(file)) {
       candidates.push_back(file);
     } else {
       notes.push_back(file.filename().string() + " is left aside: it names no map image");
-      left_aside += "; " + notes.back();
+      ignored += "; " + notes.back();
     }
   }
-  return only_one(folder, candidates, "map (a .yaml file with the key image)", left_aside);
+  return only_one(folder, candidates, "map (a .yaml file with the key image)", ignored);
 }
 
 fs::path find_waypoints(const fs::path& folder, detail::CsvForm& form, std::vector<std::string>& notes) {
   std::vector<fs::path> candidates;
-  std::string left_aside;
+  std::string ignored;
   for (const auto& file : files_with(folder, {".csv"})) {
     if (file.filename() == obstacle_file) continue;
     if (const auto candidate_form = detail::csv_form(file); candidate_form != detail::CsvForm::other) {
@@ -77,17 +77,17 @@ fs::path find_waypoints(const fs::path& folder, detail::CsvForm& form, std::vect
       form = candidate_form;
     } else {
       notes.push_back(file.filename().string() + " is left aside: it is in neither form of a waypoint file");
-      left_aside += "; " + notes.back();
+      ignored += "; " + notes.back();
     }
   }
   return only_one(folder, candidates,
                   "waypoint file (a .csv with the header opt_x,opt_y,...,ref_v or rows "
                   "s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2)",
-                  left_aside);
+                  ignored);
 }
 
-/// Drops a last row that repeats the first, then requires three points of which no two neighbours are the
-/// same.
+/// Drops a last row that repeats the first, then requires at least three points, of which successive ones
+/// differ.
 void check_points(std::vector<Waypoint>& points, std::vector<int>& lines, const fs::path& file) {
   if (points.size() > 1 && distance(points.front(), points.back()) == 0) {
     points.pop_back();
@@ -111,7 +111,7 @@ bool on_map(const maps::OccupancyGrid& map, const maps::Point& cell) {
   return cell.x >= 0 && cell.y >= 0 && cell.x < map.width && cell.y < map.height;
 }
 
-/// A waypoint may stand in a wall, which real lines graze, but beside the map nothing is known.
+/// A waypoint may be in a wall, since recorded lines touch walls, but must not be off the map.
 void check_on_map(const Course& course, const std::vector<int>& lines, const fs::path& file) {
   for (std::size_t i = 0; i < course.waypoints.size(); ++i) {
     const Waypoint& point = course.waypoints[i];
@@ -152,7 +152,7 @@ void complete_course(Course& course, std::optional<bool> closed) {
                                 " waypoints; at least 3 are needed");
   const double longest = complete(course.waypoints);
   const Waypoint &first = course.waypoints.front(), &last = course.waypoints.back();
-  // A lap's ends seldom meet exactly: files leave out one step or a little more.
+  // The ends of a lap seldom meet exactly: files omit one step or a little more.
   course.closed = closed.value_or(distance(last, first) <= 3 * longest);
   course.length = last.arc_length + (course.closed ? distance(last, first) : 0);
   course.start = {first.x, first.y, first.yaw};
@@ -161,7 +161,7 @@ void complete_course(Course& course, std::optional<bool> closed) {
 }
 
 Course load_course(const fs::path& folder, const maps::MapReading& reading) {
-  if (!fs::is_directory(folder)) throw IoError(folder.string(), 0, "is no folder; a course is one");
+  if (!fs::is_directory(folder)) throw IoError(folder.string(), 0, "is not a directory");
   Course course;
   course.name = fs::weakly_canonical(folder).filename().string();
   course.map = maps::load_ros_map(find_map(folder, course.notes), reading);
@@ -217,7 +217,7 @@ void check_start(const Course& course, const maps::Pose& start, double clearance
       const double apart = std::hypot(x + 0.5 - column, y + 0.5 - row) * map.resolution;
       if ((apart <= clearance || (dx == 0 && dy == 0)) && map.contains(x, y) &&
           map.at(x, y) == maps::Occupancy::occupied)
-        refuse("must not be in a wall or nearer to one than " + std::to_string(clearance) + " m");
+        refuse("must have a distance to every wall of at least " + std::to_string(clearance) + " m");
     }
 }
 

@@ -57,7 +57,7 @@ std::string without_blanks(std::string_view text) {
   return result;
 }
 
-/// One table of numbers: which file and line it is at, and how its columns are called.
+/// The present row of a table of numbers, with file, line and column names for messages.
 struct Row {
   const std::filesystem::path& file;
   const Line& line;
@@ -77,7 +77,7 @@ struct Row {
   }
 };
 
-/// Where a waypoint's x, y and speed are.
+/// The columns of a waypoint's x, y and speed.
 struct Columns {
   char separator = ',';
   std::size_t count = 0, x = 0, y = 1, speed = 0;
@@ -169,7 +169,7 @@ std::vector<maps::Point> read_points(const std::filesystem::path& file) {
     const Row row{file, line, cells};
     points.push_back({row.number(0, "0 (x)"), row.number(1, "1 (y)")});
   }
-  if (points.empty()) throw IoError(file.string(), 0, "no points; at least one is needed to place obstacles");
+  if (points.empty()) throw IoError(file.string(), 0, "must have at least one point");
   return points;
 }
 

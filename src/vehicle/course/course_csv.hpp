@@ -8,13 +8,13 @@
 
 namespace slalom::vehicle::detail {
 
-/// The two forms of a waypoint CSV, and everything else.
+/// The two formats of a waypoint CSV, or neither.
 enum class CsvForm { optimised_line, raceline, other };
 
-/// Tells the form of a CSV by its first lines. Throws IoError if it cannot be read.
+/// Detects the format of a CSV from its first lines. Throws IoError if it cannot be read.
 CsvForm csv_form(const std::filesystem::path& file);
 
-/// Position and speed of every row; yaw and arc length are left 0. Throws IoError for cells that are no
+/// Position and speed of every row; yaw and arc length are left 0. Throws IoError for cells that are not
 /// finite numbers, wrong column counts, negative speeds and speeds that are all 0. `lines` gets the line
 /// number of every row.
 std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm form,

@@ -20,8 +20,8 @@ std::vector<fs::path> course_roots(const fs::path& program_folder) {
     candidates.emplace_back(chosen);
   const fs::path program = fs::weakly_canonical(program_folder);
   fs::path above = program;
-  // build/<preset>/bin is three folders below the source tree; a build folder of one's own may be nearer or
-  // farther.
+  // build/<preset>/bin is three folders below the source tree; other build folders may be
+  // higher or lower.
   for (int level = 0; level < 5 && above.has_parent_path(); ++level, above = above.parent_path())
     if (fs::exists(above / "courses" / known_file)) candidates.push_back(above / "courses");
   candidates.push_back(program.parent_path() / "share" / "slalom" / "courses");
@@ -45,7 +45,7 @@ std::vector<std::string> course_names(const std::vector<fs::path>& roots) {
 
 fs::path find_course(const std::string& name_or_folder, const std::vector<fs::path>& roots) {
   if (name_or_folder.empty())
-    throw IoError("course", 0, "the name is empty; give a folder or the name of a course");
+    throw IoError("course", 0, "must be a folder or the name of a course, is empty");
   if (fs::is_directory(name_or_folder)) return name_or_folder;
   for (const auto& root : roots)
     if (fs::is_directory(root / name_or_folder)) return root / name_or_folder;
@@ -53,7 +53,7 @@ fs::path find_course(const std::string& name_or_folder, const std::vector<fs::pa
   for (const auto& name : course_names(roots)) known += (known.empty() ? "" : ", ") + name;
   for (const auto& root : roots) searched += (searched.empty() ? "" : ", ") + root.string();
   throw IoError(name_or_folder, 0,
-                "is neither a folder nor a course known by name (known: " + (known.empty() ? "none" : known) +
+                "is neither a folder nor the name of a course (known: " + (known.empty() ? "none" : known) +
                     "; searched: " + (searched.empty() ? "nowhere" : searched) + ")");
 }
 

@@ -8,7 +8,7 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-/// One value of a file: knows how to complain about itself.
+/// One value of a file, with its position for messages.
 class Value {
  public:
   Value(const std::filesystem::path& file, std::string key, YAML::Node node)
@@ -45,7 +45,7 @@ class Value {
     for (const auto& entry : node_) {
       const std::string name = entry.first.Scalar();
       if (name != "x" && name != "y" && name != "yaw")
-        Value(file_, key_ + "." + name, entry.first).reject("is not a key; a pose has x, y and yaw");
+        Value(file_, key_ + "." + name, entry.first).reject("unknown key; must be x, y or yaw");
     }
     return {member("x").number(), member("y").number(), member("yaw").number()};
   }
@@ -73,7 +73,7 @@ CourseFile read_course_file(const std::filesystem::path& file) {
   if (!root.IsMap()) throw IoError(file.string(), root.Mark().line + 1, "must be a map of keys to values");
   for (const auto& entry : root) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
-    // yaml-cpp puts a value that is not there where the next thing begins.
+    // yaml-cpp gives an absent value the position of the next token.
     if (entry.second.IsNull())
       throw IoError(file.string(), entry.first.Mark().line + 1, "key " + key + ": has no value");
     const Value value(file, key, entry.second);

@@ -9,7 +9,7 @@
 
 namespace slalom::vehicle::detail {
 
-/// What course.yaml may say; nothing is required.
+/// The content of course.yaml; every key is optional.
 struct CourseFile {
   std::optional<std::string> name, description;
   std::optional<maps::Pose> start;
@@ -18,14 +18,14 @@ struct CourseFile {
   int start_line = 0;  ///< the line of `start`
 };
 
-/// Reads course.yaml. Throws IoError for what is unknown, of the wrong type or out of range.
+/// Reads course.yaml. Throws IoError for unknown keys and for values of the wrong type or out of range.
 CourseFile read_course_file(const std::filesystem::path& file);
 
 /// Reads the entry `name` of a table of known courses, if it is there.
 std::optional<KnownCourse> read_known_course(const std::filesystem::path& file, const std::string& name);
 
-/// Whether a yaml file can be a map: it has the key `image`, or it cannot be understood at all, so that
-/// whoever loads it as a map says what is wrong with it.
+/// Whether a yaml file can be a map: it has the key `image`, or it is not valid YAML, so that
+/// loading it as a map reports the error.
 bool may_be_map(const std::filesystem::path& file);
 
 }  // namespace slalom::vehicle::detail

@@ -21,7 +21,7 @@ constexpr double tolerance = 1e-6;  // m per sweep
 constexpr int most_sweeps = 20000;
 constexpr std::size_t fewest_points = 24;  // of the coarsest level
 
-/// One level of the quadratic program; keeps the second differences up to date while single offsets move.
+/// One level of the quadratic program. Updates the second differences when an offset changes.
 class Level {
  public:
   Level(const Curve& points, const Curve& normals, std::vector<double>& offsets)

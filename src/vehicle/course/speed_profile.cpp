@@ -14,7 +14,7 @@ void require_positive(const char* key, double value) {
                                 " must be finite and above 0");
 }
 
-/// The share of the tyres' force that turning at `speed` leaves for accelerating, 0..1.
+/// The share of the tyres' force that is left for accelerating when turning at `speed`, 0..1.
 double share_left(double speed, double curvature, double lateral_acceleration) {
   const double used = speed * speed * curvature / lateral_acceleration;
   return std::sqrt(std::max(0.0, 1 - used * used));
@@ -40,7 +40,7 @@ std::vector<double> speed_profile(const std::vector<double>& curvature, double s
     const double a = strength * share_left(speed[from], curvature[from], limits.lateral_acceleration);
     speed[to] = std::min(speed[to], std::sqrt(speed[from] * speed[from] + 2 * a * step));
   };
-  // The slowest point of a closed path is never slowed further, so one round from it is exact.
+  // The slowest point of a closed path keeps its speed, so one pass from it is exact.
   for (std::size_t k = 0; k < n; ++k) pass((slowest + k) % n, (slowest + k + 1) % n, limits.acceleration);
   for (std::size_t k = n; k > 0; --k) pass((slowest + k) % n, (slowest + k - 1) % n, limits.braking);
   return speed;

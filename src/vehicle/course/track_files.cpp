@@ -59,7 +59,7 @@ std::string course_text(const Track& track, const TrackLabel& label) {
 void save_track(const Track& track, const fs::path& folder, const TrackLabel& label) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder)) throw IoError(folder.string(), 0, "the folder cannot be made");
+  if (error || !fs::is_directory(folder)) throw IoError(folder.string(), 0, "cannot create the folder");
   maps::save_ros_map(track.map, folder / "map.yaml");
   write(folder / "raceline.csv", raceline_text(track));
   std::string obstacles;

@@ -20,7 +20,7 @@ using detail::operator*;
 
 constexpr double program_step = 0.25;   // m between the points of the raceline's quadratic program
 constexpr double raceline_step = 0.11;  // m
-constexpr int curvature_reach = 3;      // rows, takes the noise out of second differences
+constexpr int curvature_reach = 3;      // rows, reduces the noise of second differences
 
 void require(bool holds, const char* key, double value, const char* rule) {
   if (!holds)
@@ -37,8 +37,8 @@ Curve make_raceline(const Curve& centre_line, const TrackOptions& options) {
   return detail::resampled(line, static_cast<int>(std::floor(detail::length(line) / raceline_step)));
 }
 
-/// Brings the row in the middle of the longest run at (nearly) the highest speed to the front: a start with a
-/// clear view.
+/// Rotates the rows so that the first one is in the middle of the longest section at (nearly) the highest
+/// speed: a start with a free view.
 std::size_t start_row(const std::vector<double>& speed) {
   const std::size_t n = speed.size();
   const double fast = 0.97 * *std::max_element(speed.begin(), speed.end());
@@ -80,8 +80,8 @@ std::vector<RacelinePoint> with_profile(Curve& line, const SpeedLimits& limits, 
   return raceline;
 }
 
-/// Where cars are parked: on the raceline, but so far to one side that there is room to pass on the other. A
-/// parked car stands with any heading up to 0.1 m off this path and reaches 0.33 m from its middle.
+/// Where cars are parked: along the raceline, moved to one side so that there is room to pass on the other. A
+/// parked car has any heading, is up to 0.1 m off this path, and reaches 0.33 m from its centre.
 std::vector<maps::Point> make_obstacle_path(const Curve& centre_line, const Curve& line,
                                             const TrackOptions& options) {
   constexpr double reach = 0.43, room = 1.0, off_wall = 0.25, switch_over = 0.1;  // m

@@ -7,7 +7,7 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-constexpr double border = 0.3;  // m of unknown round the walls
+constexpr double border = 0.3;  // m of unknown cells around the walls
 
 double squared_distance(maps::Point p, maps::Point a, maps::Point b) {
   const maps::Point along = b - a;

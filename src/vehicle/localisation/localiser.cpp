@@ -18,18 +18,18 @@ using detail::Particles;
 using detail::ScanBeams;
 using detail::SensorTables;
 
-/// A stamp so far (s) before the last one is not late: the clock has been set back.
+/// A stamp that is this much (s) before the last one means that the clock was set back.
 constexpr double clock_set_back = 1.0;
-/// What odometry may move or turn at once in addition to its limits: m, rad.
+/// Tolerance of the limits for a motion of the odometry: m, rad.
 constexpr double jump_slack = 0.1;
-/// How long (s) the last known motion is taken to go on where odometry has jumped.
+/// After a jump of the odometry the last motion is continued for at most this time, s.
 constexpr double longest_guess = 0.2;
 
-/// Another place (m, rad) is none if it is so near, and the particles are put about it so closely.
+/// A hypothesis within this distance (m, rad) is the same place.
 constexpr double near_place = 0.5, near_yaw = 0.3;
-/// A place that has long fitted well is given up for a clearly better one only, since opposite directions of
-/// a corridor look alike: the margin grows by itself for every `trust_unit` (s) and doubt wears it off by
-/// updates.
+/// The longer a place has fitted well, the larger the margin by which another one must fit better, since the
+/// two directions of a corridor look alike: the margin grows by `rival_margin` per `trust_unit` (s), and each
+/// doubtful update reduces it by a factor.
 constexpr double trust_unit = 0.3, most_trust = 5, doubt_keeps = 0.93, least_trust = 0.3;
 constexpr double relocated_deviation = 0.15, relocated_yaw_deviation = 0.08;
 
@@ -131,8 +131,8 @@ struct Localiser::Implementation {
   maps::Pose step;                     ///< m and rad in the car's frame, since the last update
   double elapsed = 0;                  ///< s, since the last update
   double fit = 0, slow = 0, fast = 0;  ///< of the estimate: now, and averaged
-  double trust = 0;                    ///< s, for which the place has not been doubtful, as it were
-  bool settled = false;                ///< the place was given, or was kept to the end of a search
+  double trust = 0;                    ///< s without doubt about the place, reduced by doubt
+  bool settled = false;                ///< the place was given, or a search ended with it
   double search_until = -1;            ///< s, stamp
   double place_log_fit = 0;  ///< of the particles' place, averaged as those of the search's hypotheses are
 };

@@ -8,8 +8,8 @@
 
 namespace slalom::vehicle::detail {
 
-/// Sums of weight over the occupied bins of (x, y, yaw), in a hash table of fixed size that is cleared in no
-/// time.
+/// Sums of weight over the occupied bins of (x, y, yaw), in a hash table of fixed size that is cleared in
+/// constant time.
 class PoseBins {
  public:
   /// Room for `most` occupied bins.

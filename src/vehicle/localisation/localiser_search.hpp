@@ -6,28 +6,28 @@
 
 namespace slalom::vehicle::detail {
 
-/// Other places where the car may be. Each hypothesis is followed for itself, by the best of a few disturbed
-/// copies, and hypotheses compete by their fit over some time only: within one set of particles the first
-/// place that fits well would soon drive out all others (the reason for clusters in Milstein, Sanchez &
+/// Hypotheses of other places where the car may be. Each one is tracked separately, by the best of a few
+/// disturbed copies, and they compete by their fit over some time: within one set of particles the first
+/// place that fits well would soon displace all others (the reason for clusters in Milstein, Sanchez &
 /// Williamson, "Robust global localization using clustered particle filtering", AAAI 2002). In every update
-/// poses from all of the free space are weighed, and the best become hypotheses.
+/// poses from all of the free space are weighted, and the best become hypotheses.
 class Search {
  public:
   Search(const maps::OccupancyGrid& map, const LocaliserOptions& options);
 
   struct Hypothesis {
     maps::Pose pose;     ///< grid's frame
-    double log_fit = 0;  ///< mean over beams, averaged over time once it is grown up
+    double log_fit = 0;  ///< mean over beams, averaged over time once it is mature
     int age = 0;         ///< updates
   };
 
   void clear() noexcept { count_ = 0; }
 
-  /// Moves, weighs and chooses anew. `memory` in [0, 1) is what is kept of the averaged fit.
+  /// Moves, weights and selects. `memory` in [0, 1) is the share of the averaged fit that is kept.
   void update(const maps::Pose& step, const SensorTables& sensor, const ScanBeams& beams, double memory,
               RandomKey key) noexcept;
 
-  /// The best grown-up hypothesis; nullptr if there is none.
+  /// The best mature hypothesis; null if none is.
   const Hypothesis* best() const noexcept;
 
   /// The mean over beams of the log of the fit at one pose.
@@ -48,7 +48,7 @@ class Search {
   AlignedBuffer log_fit_;
   std::vector<Hypothesis> hypotheses_;
   std::vector<int> newcomers_;
-  int count_ = 0;  ///< hypotheses that there are
+  int count_ = 0;  ///< number of hypotheses
 };
 
 }  // namespace slalom::vehicle::detail

@@ -26,14 +26,14 @@ struct ScanBeams {
   std::vector<float> end_x, end_y;  ///< m
   std::vector<float> range;         ///< m; range_cap where nothing was hit
   std::vector<float> bin;           ///< bearing in angles of the range table, in [0, table_angles)
-  // What the expected range changes by where the laser is moved by d (m, in this frame): by -(forward . d),
-  // and by (sideways . d) times the difference (m) between two successive ranges of the table, which is told
-  // from a corner by being at most `steepest`.
+  // The change of the expected range when the laser moves by d (m, in this frame): -(forward . d), and
+  // (sideways . d) times the difference (m) between two successive ranges of the table. A difference above
+  // `steepest` is a corner and does not count.
   std::vector<float> forward_x, forward_y;    ///< the beam's direction
   std::vector<float> sideways_x, sideways_y;  ///< 1/m, across the beam
   std::vector<float> steepest;                ///< m
-  int hits = 0;                               ///< the first so many came back
-  int count = 0;                              ///< all, those without return last
+  int hits = 0;                               ///< number of beams with a return, which come first
+  int count = 0;                              ///< number of all beams
 };
 
 /// Chooses readings evenly over the scan: of every part of it the first usable one. False where the scan has
@@ -50,11 +50,11 @@ struct ParticlePoses {
   int count = 0;
 };
 
-/// Expected ranges from the centres of free cells in equal steps of angle; the way from there to the laser is
-/// made up for as if the wall that a beam meets were straight (dr = -d_forward + d_sideways r'(angle) / r),
-/// without which walls that a beam grazes would seem to lie half a metre off. A cell of the grid below holds
-/// the number of its row of ranges; row 0 stands for "in a wall" and is all 0. An entry holds two successive
-/// ranges as 16-bit parts of `range_unit`, so that one look-up serves an interpolation.
+/// Expected ranges from the centres of free cells in equal steps of angle; the distance from there to the
+/// laser is corrected for a straight wall (dr = -d_forward + d_sideways r'(angle) / r). Without it, walls at
+/// a small angle to the beam would appear half a metre off. A cell of the grid below holds the number of its
+/// row of ranges; row 0 stands for "in a wall" and is all 0. An entry holds two successive ranges as 16-bit
+/// parts of `range_unit`, so that one look-up serves an interpolation.
 struct RangeTable {
   maps::CellGrid<1> rows{1, 1};
   maps::GridGeometry geometry;
@@ -63,17 +63,18 @@ struct RangeTable {
   float range_unit = 0;  ///< m
 };
 
-/// What the map says of a scan.
+/// The likelihood of a scan on the map.
 class SensorTables {
  public:
   /// `map` has been checked. Throws std::invalid_argument where the range table would be too large.
   SensorTables(const maps::OccupancyGrid& map, const LocaliserOptions& options);
 
   /// The mean over beams of the logarithm of each beam's probability over the highest possible one, for each
-  /// particle; the padding's values mean nothing. Needs beams.count >= 1, of the likelihood field hits >= 1.
+  /// particle; the values of the padding are undefined. Needs beams.count >= 1, of the likelihood field hits
+  /// >= 1.
   void weigh(const ParticlePoses& particles, const ScanBeams& beams, float* log_fit) const noexcept;
 
-  /// As `weigh`, by the likelihood field whatever the options say: it changes more smoothly with the pose.
+  /// As `weigh`, always by the likelihood field, which is smoother in the pose.
   void weigh_by_field(const ParticlePoses& particles, const ScanBeams& beams, float* log_fit) const noexcept;
 
   /// How well a pose explains the beams that came back.

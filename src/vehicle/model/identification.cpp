@@ -18,18 +18,18 @@ using Parameters = std::array<double, parameters>;
 using Normal = std::array<std::array<double, parameters>, parameters>;
 
 constexpr double longest_gap = 0.2;  // s
-constexpr double settling = 0.5;     // s at the beginning of a piece, in which the wheels' angle is not known
+constexpr double settling = 0.5;  // s at the beginning of a segment, in which the wheels' angle is not known
 constexpr double longest_delay = 0.3;  // s
 constexpr int least_samples = 200;
 constexpr double steps[parameters] = {1e-4, 1e-5, 1e-4, 1e-4, 1e-4, 1e-5};  // of the differences
 
-/// One turn from a sample to the next.
+/// The change of yaw from a sample to the next.
 struct Turn {
   double begin = 0, end = 0;  ///< s
   double turned = 0;          ///< rad
   double speed = 0;           ///< m/s
   std::size_t sample = 0;
-  bool first = false;  ///< of a piece
+  bool first = false;  ///< of a segment
   bool counts = false;
 };
 
@@ -55,7 +55,7 @@ std::vector<Turn> turns_of(std::span<const DrivenSample> samples, double least_s
   return turns;
 }
 
-/// The turns that the parameters predict minus those seen, one per turn that counts.
+/// The predicted changes of yaw minus the measured ones, one per change that is used.
 class Model {
  public:
   Model(std::span<const DrivenSample> samples, const std::vector<Turn>& turns)
@@ -113,7 +113,7 @@ Parameters within_bounds(Parameters p) {
   return p;
 }
 
-/// Solves a x = b for the parameters that are sought; nothing if it cannot be.
+/// Solves a x = b for the free parameters; empty if a is singular.
 std::optional<Parameters> solve(Normal a, Parameters b, const std::array<bool, parameters>& sought) {
   for (int i = 0; i < parameters; ++i) {
     if (sought[static_cast<std::size_t>(i)]) continue;
@@ -234,7 +234,7 @@ void require_enough(std::span<const DrivenSample> samples, const std::vector<Tur
 
 double speed_scale(std::span<const DrivenSample> samples, const std::vector<Turn>& turns) {
   double by_pose = 0, by_speed = 0;
-  // Over a second at a time: noise of single poses would lengthen the way.
+  // Over one second at a time, since the noise of single poses lengthens the distance.
   for (std::size_t i = 0; i < turns.size();) {
     double way = 0;
     std::size_t j = i;

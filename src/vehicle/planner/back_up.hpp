@@ -5,17 +5,17 @@
 
 namespace slalom::vehicle::detail {
 
-/// Backing out of a dead end. A car that stands before something it cannot steer round, since every plan from
-/// there collides, gains the room to do so by going back straight a little, the way it came. If it soon
-/// stands again it goes back further.
+/// Reversing out of a dead end. A car that stands in front of an obstacle that it cannot steer around, since
+/// every plan collides, reverses straight for a short time to gain room. If it soon stands again, it reverses
+/// for longer.
 class BackUp {
  public:
   static constexpr double speed = 0.5;  ///< m/s
 
   void reset() noexcept { *this = {}; }
 
-  /// A control period passes: is a plan `free`, and at what speed (m/s) does the car move? Returns whether it
-  /// is to go back now.
+  /// Advances by one control period (s), with whether a plan is `free` and the speed of the car (m/s).
+  /// Returns whether to reverse now.
   bool update(bool free, double speed_now, double period) noexcept {
     if (back_for_ > 0) {
       back_for_ += period;
@@ -35,16 +35,16 @@ class BackUp {
   }
 
  private:
-  static constexpr double standing = 0.1;  ///< m/s, slower is standing
-  static constexpr double patience = 0.3;  ///< s of standing before it goes back
-  static constexpr double shortest = 0.6;  ///< s of going back at least, at first
-  static constexpr double longest = 2.0;   ///< s of going back at most, at first
-  static constexpr double furthest = 4.0;  ///< s of going back, ever
-  static constexpr double relief = 3.0;    ///< s of driving after which it has come out
+  static constexpr double standing = 0.1;  ///< m/s, a slower car stands
+  static constexpr double patience = 0.3;  ///< s of standing before it reverses
+  static constexpr double shortest = 0.6;  ///< s of reversing at least, at first
+  static constexpr double longest = 2.0;   ///< s of reversing at most, at first
+  static constexpr double furthest = 4.0;  ///< s of reversing, upper bound
+  static constexpr double relief = 3.0;    ///< s of driving after which the dead end is left
 
-  double least_ = shortest, most_ = longest;   ///< s of going back
+  double least_ = shortest, most_ = longest;   ///< s of reversing
   double standing_for_ = 0, driving_for_ = 0;  ///< s
-  double back_for_ = 0;                        ///< s; 0 while it does not go back
+  double back_for_ = 0;                        ///< s; 0 unless it reverses
 };
 
 }  // namespace slalom::vehicle::detail

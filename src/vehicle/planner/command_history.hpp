@@ -8,9 +8,9 @@
 
 namespace slalom::vehicle::detail {
 
-/// The steering commands under way: sent one a control period, each acting on the steering a delay later.
-/// From them it knows how the car will move until a new command can take effect, and what the wheels' angle,
-/// which nobody measures, has become.
+/// The steering commands that were sent, one per control period, each of which acts on the steering after a
+/// delay. They predict the car until a new command can take effect, and the wheels' angle, which is not
+/// measured.
 class CommandHistory {
  public:
   /// `delay` (s) at most 32 `period`s (s); `time_constant` (s) of the steering's lag; `wheelbase` m.
@@ -25,7 +25,7 @@ class CommandHistory {
   /// The wheels' angle now, rad.
   double steer() const noexcept { return steer_; }
 
-  /// A command is sent now; a period passes.
+  /// Records a command that is sent now, and advances by one period.
   void send(double steer) noexcept {
     for (std::size_t i = sent_.size() - 1; i > 0; --i) sent_[i] = sent_[i - 1];
     sent_[0] = steer;
@@ -33,7 +33,7 @@ class CommandHistory {
                     [&](double command, double duration) { turn_wheels(steer_, command, duration); });
   }
 
-  /// The car from now on until the next command takes effect, at constant speed.
+  /// The predicted state when the next command takes effect, at constant speed.
   VehicleStart lead_ahead(VehicleStart car) const noexcept {
     for_each_acting(-delay_, 0, 0, [&](double command, double duration) {
       const int pieces = static_cast<int>(std::ceil(duration / 0.01 - 1e-9));

@@ -54,7 +54,7 @@ bool finite(const Odometry& o) {
          std::isfinite(o.speed);
 }
 
-/// How long a command is on its way, s.
+/// From sending a command to its first effect, s.
 double delay_of(const PlannerOptions& options, const VehicleTraits& traits) {
   return options.latency + traits.dead_time;
 }
@@ -89,7 +89,7 @@ struct Planner::Implementation {
         candidate_states(states.size()),
         candidate(static_cast<std::size_t>(solver->horizon()) * static_cast<std::size_t>(solver->inputs())) {}
 
-  /// No plan can be made: the wheels stay as they are, the car stops.
+  /// Without a plan: keeps the wheels' angle and stops.
   void stop(PlannerStatus status) noexcept {
     output.status = status;
     output.command = {history.steer(), 0};
@@ -134,9 +134,8 @@ struct Planner::Implementation {
     if (options.verify_plan && options.stop_when_blocked) slow_down(cost, odometry.speed);
   }
 
-  /// Brakes where no plan is free. A car that is too near to something already is past braking: while it
-  /// moves it follows the best plan, once it stands it creeps along it to come free, and if that leads
-  /// nowhere it goes back.
+  /// Brakes where every plan collides. Where the start itself collides, braking does not help: the car
+  /// follows the best plan, slowly once it is slow, and if it stays where it is it reverses.
   void slow_down(const PredictedCost& cost, double speed) noexcept {
     constexpr double creep = 0.5;  // m/s
     const bool too_near = model->start_collides();
@@ -152,7 +151,7 @@ struct Planner::Implementation {
 
   double horizon_time() const noexcept { return traits.time_step * solver->horizon(); }
 
-  /// The speed to ask for where the path's is `here`.
+  /// The speed to command where that of the path is `here`.
   double command_speed(double here) const noexcept {
     if (!traits.follows_path) return std::min(traits.reference_speed, options.max_speed);
     const bool planned = traits.plans_speed;
@@ -165,7 +164,8 @@ struct Planner::Implementation {
     return cell.distance < field.options().outside.distance ? cell.speed : here;
   }
 
-  /// The plan collides: tries the nominal, the guides and the best sample that does not; keeps the cheapest.
+  /// If the solution collides: the cheapest of the nominal sequence, the guides and the best sample without
+  /// collision.
   PredictedCost find_free_sequence(const SolveResult& result, const PredictedCost& of_plan,
                                    std::span<const float>& sent) noexcept {
     PredictedCost best = of_plan;

@@ -11,7 +11,7 @@
 
 namespace slalom::vehicle {
 
-/// A point of the reference path with the speed to have there.
+/// A point of the reference path and the speed there.
 struct Waypoint {
   double x = 0;           ///< m, map frame
   double y = 0;           ///< m, map frame
@@ -20,15 +20,15 @@ struct Waypoint {
   double arc_length = 0;  ///< m along the rows, 0 at the first
 };
 
-/// What a car needs to know of a place to drive: a map, a path with a speed profile, a start.
+/// A place to drive: a map, a path with a speed profile, and a start.
 ///
 /// A course is a folder with one ROS map (a yaml file and the image it names) and one waypoint CSV in one of
-/// two forms:
+/// two formats:
 ///  - a header `opt_x,opt_y,...,ref_v` and comma-separated rows; the columns opt_x, opt_y and ref_v are read;
 ///  - leading lines that begin with `#`, then rows `s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2`, of
 ///  which
 ///    x, y and vx are read.
-/// The yaw is taken from the points: files differ in the axis from which they measure it, geometry does not.
+/// The yaw is computed from the points, since files differ in the axis from which they measure it.
 /// `opp_ref_path.csv`, if present, has no header; its columns 0 and 1 are the points where obstacles may
 /// stand. `course.yaml`, if present, may give `name`, `description`, `command`, `start` {x, y, yaw},
 /// `timeout` (s), `closed`.
@@ -39,48 +39,49 @@ struct Course {
   std::vector<Waypoint>
       waypoints;  ///< at least 3, successive ones differ; the first is not repeated at the end
   std::vector<maps::Point>
-      obstacle_path;               ///< where obstacles are placed; the waypoints if the folder says nothing
-  maps::Pose start;                ///< the first waypoint along the path, or what course.yaml says
+      obstacle_path;  ///< where obstacles are placed; the waypoints if the folder has no such file
+  maps::Pose
+      start;  ///< of the centre of gravity: the first waypoint, along the path, or the one of course.yaml
   std::optional<double> timeout;   ///< s per lap, if course.yaml gives one
-  bool closed = true;              ///< the last waypoint leads on to the first
+  bool closed = true;              ///< the path continues from the last waypoint to the first
   double length = 0;               ///< m along the waypoints, with the closing stretch if closed
-  std::vector<std::string> notes;  ///< what was left aside and why, one sentence each
+  std::vector<std::string> notes;  ///< what was ignored and why, one sentence each
 };
 
-/// Loads and checks the course in `folder`; `reading` says how its map is read. Throws IoError naming file,
-/// line, column or key, value and rule.
+/// Loads and checks the course in `folder`; `reading` has the options for its map. Throws IoError naming
+/// file, line, column or key, value and rule.
 Course load_course(const std::filesystem::path& folder, const maps::MapReading& reading = {});
 
-/// Fills what follows from the waypoints' points: their yaw and arc length, the course's length, its start,
-/// whether it is closed where `closed` does not say so, and its obstacle path if there is none. Throws
-/// std::invalid_argument on fewer than 3 points.
+/// Computes from the waypoints' points their yaw and arc length, the course's length, its start, whether it
+/// is closed unless `closed` has a value, and its obstacle path if it has none. Throws std::invalid_argument
+/// on fewer than 3 points.
 void complete_course(Course& course, std::optional<bool> closed = {});
 
 /// Lowers every waypoint's speed to at most `max_speed` (m/s, > 0, else std::invalid_argument).
 void cap_speed(Course& course, double max_speed);
 
-/// The time to drive once along the waypoints at their own speeds, s. A stretch is driven at the mean of its
-/// ends' speeds, but at 0.1 m/s at least.
+/// The time to drive once along the waypoints at their speeds, s. A segment is driven at the mean of the
+/// speeds at its ends, but at 0.1 m/s at least.
 double profile_time(const Course& course);
 
 /// Throws std::invalid_argument unless `start` is finite, on the map, and at least `clearance` (m) from every
 /// occupied cell.
 void check_start(const Course& course, const maps::Pose& start, double clearance = 0.15);
 
-/// The folders in which courses are looked for by name: SLALOM_COURSES_DIR if set, then, seen from the folder
-/// of the running program, the source tree it was built in and the install's share/slalom/courses. Only those
-/// that exist.
+/// The folders in which courses are searched by name: SLALOM_COURSES_DIR if set, then, relative to the folder
+/// of the running program, the `courses` of the source tree it was built in and the install's
+/// share/slalom/courses. Only those that exist.
 std::vector<std::filesystem::path> course_roots(const std::filesystem::path& program_folder);
 
 /// The folder of a course: `name_or_folder` itself if it is a folder, else the first `root/name_or_folder`
-/// that is one. Throws IoError that names the places searched and the courses known.
+/// that is one. Throws IoError that names the folders searched and the courses found.
 std::filesystem::path find_course(const std::string& name_or_folder,
                                   const std::vector<std::filesystem::path>& roots);
 
-/// The names of the courses in `roots`, sorted, each once.
+/// The names of the courses in `roots`, sorted, without duplicates.
 std::vector<std::string> course_names(const std::vector<std::filesystem::path>& roots);
 
-/// What the published evaluation prescribes for a course that is not ours.
+/// Start and timeout that the evaluation of the paper prescribes for one of its courses.
 struct KnownCourse {
   maps::Pose start;
   double timeout = 0;  ///< s per lap

@@ -11,11 +11,12 @@
 
 namespace slalom::vehicle {
 
-/// What a track is like: how many corners, how deep and how tight.
+/// The style of a generated track: how many corners, how deep and how tight.
 enum class TrackCharacter { balanced, fast, twisty, narrow };
 
-/// The name of a character, and back (std::invalid_argument for an unknown one).
+/// The name of a character.
 const char* name(TrackCharacter character) noexcept;
+/// The character of this name. Throws std::invalid_argument that lists the names.
 TrackCharacter track_character(const std::string& name);
 
 /// Options of a generated track. Ranges are checked by validate().
@@ -23,59 +24,61 @@ struct TrackOptions {
   std::uint64_t seed = 0;
   double length = 60.0;  ///< of the centre line, m, 20..1000, and at least 16 (width / 2 + wall)
   double width = 2.2;    ///< from wall to wall, m, 1.2..10
-  TrackCharacter character = TrackCharacter::balanced;
-  double wall = 0.2;          ///< thickness of the walls, m, 0.1..1
-  double resolution = 0.05;   ///< of the map, m, 0.02..0.1
+  TrackCharacter character = TrackCharacter::balanced;  ///< style of its corners
+  double wall = 0.2;                                    ///< thickness of the walls, m, 0.1..1
+  double resolution = 0.05;                             ///< of the map, m, 0.02..0.1
   double wall_margin = 0.45;  ///< the raceline keeps this far from the walls, m, 0.3.. width / 2 - 0.1
-  SpeedLimits limits;
+  SpeedLimits limits;         ///< for the speed profile
 };
 
 /// Throws std::invalid_argument that names the option, its value and the rule.
 void validate(const TrackOptions& options);
 
-/// The top speed (m/s) and the width (m) that suit a character: the defaults of `slalom track`.
+/// The top speed (m/s) that suits a character: the default of `slalom track`.
 double usual_top_speed(TrackCharacter character) noexcept;
+/// The width (m) that suits a character: the default of `slalom track`.
 double usual_width(TrackCharacter character) noexcept;
 
 /// A point of the raceline.
 struct RacelinePoint {
   double arc_length = 0;    ///< m from the start
-  double x = 0, y = 0;      ///< m
+  double x = 0, y = 0;      ///< m, map frame
   double yaw = 0;           ///< rad
   double curvature = 0;     ///< 1/m, > 0 to the left
   double speed = 0;         ///< m/s
   double acceleration = 0;  ///< m/s^2, along the path
 };
 
-/// A closed track: the start is the first point of the raceline, at the origin of the map frame.
+/// A generated track, which is closed. It starts at the first point of the raceline, the origin of the map
+/// frame.
 struct Track {
-  TrackOptions options;
+  TrackOptions options;                    ///< from which it was generated
   std::vector<maps::Point> centre_line;    ///< equal steps of about 0.1 m
   std::vector<RacelinePoint> raceline;     ///< equal steps of about 0.11 m
-  std::vector<maps::Point> obstacle_path;  ///< where a parked car leaves room to pass on one side
-  maps::OccupancyGrid map;                 ///< free between the walls, occupied in them, unknown beyond
+  std::vector<maps::Point> obstacle_path;  ///< where a parked car leaves room to pass it on one side
+  maps::OccupancyGrid map;                 ///< free between the walls, occupied inside them, unknown beyond
   double lap_time = 0;                     ///< s, at the raceline's speeds
 };
 
 /// Makes a track; the same options give the same track.
 ///
-/// The centre line is a closed polygon with rounded corners, smoothed along its length. A draw is kept if its
-/// radius is nowhere below max(width / 2 + wall, width / 2 - wall_margin + 0.9 m), parts that are not
-/// neighbours are at least width + 2 wall apart (so that walls never meet: below half a turn the bound on the
-/// curvature sees to it, by Schur's comparison theorem, beyond it every pair of points is checked), and it
-/// winds as much as its character asks. Walls follow at half the width. Throws std::invalid_argument for bad
-/// options, or where no track of the length and width is found.
+/// The centre line is a closed polygon with rounded corners, smoothed along its length. A candidate is
+/// accepted if its radius is nowhere below max(width / 2 + wall, width / 2 - wall_margin + 0.9 m), if parts
+/// that are not neighbours are at least width + 2 wall apart, and if it has the curvature that its character
+/// demands. Walls never meet: for parts less than half a turn apart the bound on the curvature guarantees it
+/// (Schur's comparison theorem), for others every pair of points is checked. Walls follow at half the width.
+/// Throws std::invalid_argument for bad options, or where no track of the length and width is found.
 Track generate_track(const TrackOptions& options);
 
-/// What save_track writes beside the geometry.
+/// What save_track writes in addition to the geometry.
 struct TrackLabel {
   std::string name;
   std::string description;
-  std::string command;  ///< that makes the same track again
+  std::string command;  ///< that generates the same track
 };
 
 /// Writes a course folder: map.yaml, map.png, raceline.csv (`# s_m; x_m; ...`), opp_ref_path.csv,
-/// course.yaml. Makes the folder if need be. Throws IoError.
+/// course.yaml. Creates the folder if it does not exist. Throws IoError.
 void save_track(const Track& track, const std::filesystem::path& folder, const TrackLabel& label);
 
 }  // namespace slalom::vehicle

@@ -7,7 +7,7 @@
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/localisation/localiser_options.hpp"
 
-/// Where the car is on a known map, from LiDAR and odometry: Monte Carlo localisation.
+/// The pose of the car on a known map, from LiDAR and odometry: Monte Carlo localisation.
 ///
 ///     Localiser localiser(course.map, {.seed = 1});
 ///     localiser.start_at(course.start);                 // or start_everywhere()
@@ -16,30 +16,32 @@
 ///       if (seen.status == LocaliserStatus::ok) use(seen.pose);
 ///     }
 ///
-/// A pose is guessed by particles that move as the odometry says, with noise, and are drawn anew in
-/// proportion to how well the scan fits the map from them: Thrun, Burgard & Fox, "Probabilistic Robotics"
-/// (2005), Table 8.2. Their number follows the spread of the guess: D. Fox, "Adapting the Sample Size in
-/// Particle Filters Through KLD-Sampling", IJRR 22(12), 2003, eq. 7. That the guess is wrong is told, as in
-/// augmented MCL (Table 8.3), by a short-term average of the fit that falls below the long-term one; poses
-/// from all of the free space then compete with it until the best place is clear.
+/// Particles move with the odometry and its noise, and are resampled in proportion to the likelihood of the
+/// scan at their poses: Thrun, Burgard & Fox, "Probabilistic Robotics" (2005), Table 8.2. Their number adapts
+/// to the spread of the distribution: D. Fox, "Adapting the Sample Size in Particle Filters Through
+/// KLD-Sampling", IJRR 22(12), 2003, eq. 7. A wrong estimate is detected as in augmented MCL (Table 8.3), by
+/// a short-term average of the fit below the long-term one. Hypotheses from all of the free space then
+/// compete with the estimate until one of them is clearly the best.
 ///
-/// Departures: the poses from elsewhere do not join the particles, where the first place that fits well would
-/// drive out the right one, but are followed for themselves, and the particles are put to such a place once
-/// it has fitted better for some time. The random numbers for drawing anew are a shifted radical inverse
-/// sequence, so that every length of it is nearly stratified. The fit that is averaged is that of the
-/// estimate by the likelihood field, the mean over beams, so that neither their number nor a parked car that
-/// the map does not know gives an alarm; its long-term average counts as at least `least_fit`, so that a
-/// global start is a search too. A rear axle in a wall counts as improbable.
+/// Departures: the hypotheses do not join the particles, where the first one that fits well would displace
+/// the right one. They are tracked separately, and the particles move to one of them after it has fitted
+/// better for some time. Resampling uses a shifted radical inverse sequence, so that any number of draws is
+/// nearly stratified. The averaged fit is that of the estimate by the likelihood field, the mean over beams,
+/// so that neither the number of beams nor a parked car that is not on the map triggers a search. The
+/// long-term average is at least `least_fit`, so that a global start begins with a search. A rear axle in a
+/// wall counts as improbable.
 namespace slalom::vehicle {
 
+/// How reliable the estimate is.
 enum class LocaliserStatus {
   ok,
-  uncertain,      ///< the particles are in several places, or the scan does not fit: do not drive fast by it
-  bad_scan,       ///< empty, of the wrong form or with too few readings: moved by odometry alone
-  bad_odometry,   ///< pose or stamp not finite: nothing was done
-  odometry_jump,  ///< moved further than the car can: taken to have gone on as before, scan used
-  stale,          ///< not later than the last update: nothing was done
+  uncertain,      ///< the particles are in several places, or the scan does not fit: do not rely on it
+  bad_scan,       ///< empty, of invalid geometry or with too few readings: moved by odometry alone
+  bad_odometry,   ///< pose or stamp not finite: ignored
+  odometry_jump,  ///< moved further than the car can: the last motion is continued, the scan is used
+  stale,          ///< not later than the last update: ignored
 };
+/// The name of a status, as results have it.
 constexpr const char* name(LocaliserStatus status) noexcept {
   switch (status) {
     case LocaliserStatus::ok:
@@ -58,65 +60,67 @@ constexpr const char* name(LocaliserStatus status) noexcept {
   return "unknown";
 }
 
+/// The input of an update.
 struct LocaliserInput {
   maps::LaserScanView scan;
-  maps::Pose odometry;  ///< of the rear axle when the scan was taken, in a frame of its own that may drift
+  maps::Pose odometry;  ///< of the rear axle at the time of the scan, in a frame that may drift
   double stamp = 0;     ///< s, of the scan
 };
 
-/// A guess and what is known of its quality.
+/// The estimate and its quality.
 struct LocaliserOutput {
-  LocaliserStatus status = LocaliserStatus::uncertain;
-  maps::Pose pose;               ///< of the rear axle, map frame
+  LocaliserStatus status = LocaliserStatus::uncertain;  ///< how reliable the estimate is
+  maps::Pose pose;                                      ///< of the rear axle, map frame
   double covariance[3][3] = {};  ///< of x, y (m, map frame) and yaw (rad) of the particles near the estimate
   double fit = 0;                ///< share of beams that the map explains at the estimate, 0 .. 1
   double share = 0;              ///< of the weight near the estimate, 0 .. 1
   double health = 0;             ///< fit times share
-  double effective_samples = 0;  ///< 1 / sum of squared weights, before drawing anew
+  double effective_samples = 0;  ///< 1 / sum of squared weights, before resampling
   double update_time = 0;        ///< s of wall clock
   int particles = 0;             ///< that weighed this scan
   int beams = 0;                 ///< used of this scan
-  bool resampled = false;        ///< particles were drawn anew after it
-  bool searching = false;        ///< other places are being looked for
-  bool relocated = false;        ///< the particles were put to another place, which fits better
+  bool resampled = false;        ///< the particles were resampled after this scan
+  bool searching = false;        ///< hypotheses in other places are tracked
+  bool relocated = false;        ///< the particles moved to another place, which fits better
 };
 
-/// A guessed pose (map frame) and its weight; the weights sum to 1.
+/// A particle; the weights of all sum to 1.
 struct Particle {
-  maps::Pose pose;
-  double weight = 0;
+  maps::Pose pose;    ///< of the rear axle, map frame
+  double weight = 0;  ///< 0 .. 1
 };
 
-/// After construction nothing allocates or throws. The same seed and inputs give the same bits on one machine
-/// and instruction set.
+/// Monte Carlo localisation. After construction nothing allocates or throws. The same seed and inputs give
+/// the same bits on one machine and instruction set.
 class Localiser {
  public:
-  /// `map` is copied into the tables that are needed. Throws std::invalid_argument on options out of range
-  /// and on a map without free or without occupied cells, with sizes that disagree or an origin or resolution
-  /// that is not finite and positive. Starts everywhere.
+  /// Copies what it needs of `map` into tables, and starts everywhere. Throws std::invalid_argument on
+  /// options out of range and on a map without free or without occupied cells, with sizes that disagree or an
+  /// origin or resolution that is not finite and positive.
   explicit Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options = {});
   ~Localiser();
   Localiser(Localiser&&) noexcept;
   Localiser& operator=(Localiser&&) noexcept;
 
-  /// Puts all particles about a pose of the rear axle (map frame); false, with nothing done, if not finite.
+  /// Draws all particles around a pose of the rear axle (map frame); false, without effect, if not finite.
   bool start_at(const maps::Pose& pose) noexcept;
-  /// Spreads the particles over all of the free space.
+  /// Draws the particles from all of the free space.
   void start_everywhere() noexcept;
-  /// Begins anew with another seed, everywhere.
+  /// Starts everywhere, with another seed.
   void reset(std::uint64_t seed) noexcept;
 
+  /// Updates the estimate with a scan and the odometry at its time.
   const LocaliserOutput& update(const LocaliserInput& input) noexcept;
-  const LocaliserOutput& output() const noexcept;
+  const LocaliserOutput& output() const noexcept;  ///< of the last update
 
-  /// The estimate carried on to a later odometry (same frame as the updates'): for a control loop that is
+  /// The estimate moved by the odometry since the last update (in the same frame), for a control loop that is
   /// faster than the scans.
   maps::Pose carried_to(const maps::Pose& odometry) const noexcept;
-  /// The pose of the odometry's frame in the map frame, as a tf tree wants it.
+  /// The pose of the odometry's frame in the map frame, as in a tf tree.
   maps::Pose odometry_frame() const noexcept;
 
-  int particle_count() const noexcept;
-  Particle particle(int index) const noexcept;
+  int particle_count() const noexcept;          ///< of the present particles
+  Particle particle(int index) const noexcept;  ///< 0 <= index < particle_count()
   const LocaliserOptions& options() const noexcept;
 
  private:

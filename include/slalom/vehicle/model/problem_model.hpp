@@ -32,7 +32,9 @@ class ProblemModel final : public VehicleModel {
 
   bool start_collides() const noexcept override {
     const P& problem = evaluator_.problem();
-    return problem.stage_cost(start_, problem.look_up(start_), Input<double, P::inputs>{}).collided;
+    const auto seen = slalom::detail::look_up<P, double>(problem, start_);
+    return slalom::detail::stage_cost<P, double>(problem, start_, seen, Input<double, P::inputs>{}, 0)
+        .collided;
   }
 
   PredictedCost predict(std::span<const float> inputs,
@@ -44,19 +46,21 @@ class ProblemModel final : public VehicleModel {
     const std::size_t steps = inputs.size() / P::inputs;
     for (std::size_t k = 0; k <= steps; ++k) {
       states[k] = problem.predicted(s);
-      const auto seen = problem.look_up(s);
+      const auto seen = slalom::detail::look_up<P, double>(problem, s);
       const bool last = k == steps;
       Input<double, P::inputs> u{};
       for (std::size_t i = 0; !last && i < P::inputs; ++i)
         u.value[i] = static_cast<double>(inputs[k * P::inputs + i]);
-      const Cost<double> cost = last ? problem.terminal_cost(s, seen) : problem.stage_cost(s, seen, u);
+      const int step = static_cast<int>(k);
+      const Cost<double> cost = last ? slalom::detail::terminal_cost<P, double>(problem, s, seen)
+                                     : slalom::detail::stage_cost<P, double>(problem, s, seen, u, step);
       const double collision = problem.collision_part(seen, last);
       total.state += cost.value - collision;
       total.distance += problem.distance_part(seen, last);
       total.collision += collision;
       total.collided |= cost.collided && was_free;
       was_free |= !cost.collided;
-      if (!last) s = problem.step(s, seen, u, static_cast<int>(k));
+      if (!last) s = slalom::detail::step<P, double>(problem, s, seen, u, step);
     }
     total.collided |= !was_free;
     return total;
