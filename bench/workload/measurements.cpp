@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "slalom/core/dispatch.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
 
 namespace slalom::tools {
 
