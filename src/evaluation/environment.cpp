@@ -5,23 +5,25 @@
 #include <stdexcept>
 #include <string>
 
+#include "evaluation/lap_rules.hpp"
+
 namespace slalom::evaluation {
 namespace {
 
-/// How far a wall is from a point in a direction, m, up to `most`.
-double open_way(const sim::Track& track, const maps::Point& from, double cosine, double sine, double most) {
+/// m, the distance from a point to the next wall in a direction, at most `most`.
+double distance_to_wall(const sim::Track& track, const maps::Point& from, double cosine, double sine,
+                        double most) {
   const double least_step = 0.5 * track.grid().resolution;
-  double way = 0;
-  while (way < most) {
-    const maps::Point at{from.x + way * cosine, from.y + way * sine};
-    if (track.in_wall(at)) return way;
-    way += std::max(track.distance_to_wall(at) - track.grid().resolution, least_step);
+  double distance = 0;
+  while (distance < most) {
+    const maps::Point at{from.x + distance * cosine, from.y + distance * sine};
+    if (track.in_wall(at)) return distance;
+    distance += std::max(track.distance_to_wall(at) - track.grid().resolution, least_step);
   }
   return most;
 }
 
-/// For each point of a path, the distance to the wall on its wider side: a car parked there can be passed
-/// there.
+/// m, for each point of a path: the distance to the wall on its wider side, where a parked car can be passed.
 std::vector<double> room_beside(const sim::Track& track, const std::vector<maps::Point>& path) {
   constexpr double most = 10;  // m
   std::vector<double> room;
@@ -30,7 +32,8 @@ std::vector<double> room_beside(const sim::Track& track, const std::vector<maps:
     const maps::Point &before = path[(i + count - 1) % count], &after = path[(i + 1) % count];
     const double yaw = std::atan2(after.y - before.y, after.x - before.x), c = std::cos(yaw),
                  s = std::sin(yaw);
-    room.push_back(std::max(open_way(track, path[i], -s, c, most), open_way(track, path[i], s, -c, most)));
+    room.push_back(std::max(distance_to_wall(track, path[i], -s, c, most),
+                            distance_to_wall(track, path[i], s, -c, most)));
   }
   return room;
 }
@@ -44,19 +47,11 @@ const char* name(Protocol protocol) {
 Protocol protocol_named(std::string_view text) {
   if (text == "true") return Protocol::true_physics;
   if (text == "published") return Protocol::published;
-  throw std::invalid_argument("evaluation: '" + std::string(text) + "' must be true or published");
+  throw std::invalid_argument("evaluation: '" + std::string(text) + "' must be 'true' or 'published'");
 }
 
 sim::WorldOptions Environment::world_options() const {
-  sim::WorldOptions options;
-  if (protocol == Protocol::published) {
-    options = sim::WorldOptions::gym_compatible();
-  } else {
-    options.time_step = 0.005;
-    options.lidar.rate = 40;  // Hz, a scan for every command
-    // A car that touches something goes on if it can, so that one contact does not hide the next.
-    options.wall_response = options.body_response = sim::CollisionResponse::slide;
-  }
+  sim::WorldOptions options = rules_of(protocol).world_options();
   if (lidar) options.lidar = *lidar;
   return options;
 }
@@ -73,7 +68,7 @@ std::shared_ptr<Environment> make_environment(vehicle::Course course, Protocol p
   maps::check_reference_path(environment->path);
   environment->track = std::make_shared<const sim::Track>(
       environment->course.map, sim::LapPath(points),
-      sim::TrackOptions{.unknown_is_wall = false, .outside_is_wall = protocol != Protocol::published});
+      sim::TrackOptions{.unknown_is_wall = false, .outside_is_wall = rules_of(protocol).outside_is_wall()});
   environment->obstacle_room = room_beside(*environment->track, environment->course.obstacle_path);
   environment->start = environment->course.start;
   environment->timeout = environment->course.timeout.value_or(0);
@@ -82,17 +77,9 @@ std::shared_ptr<Environment> make_environment(vehicle::Course course, Protocol p
 
 std::shared_ptr<const Environment> load_environment(const std::filesystem::path& folder, Protocol protocol,
                                                     const std::vector<std::filesystem::path>& course_roots) {
-  const bool published = protocol == Protocol::published;
-  maps::MapReading reading;
-  if (published) reading.rule = maps::MapRule::grey_threshold;
-  auto environment = make_environment(vehicle::load_course(folder, reading), protocol);
-  if (published) {
-    const std::string folder_name = std::filesystem::weakly_canonical(folder).filename().string();
-    if (const auto known = vehicle::known_course(folder_name, course_roots)) {
-      environment->start = known->start;
-      environment->timeout = known->timeout;
-    }
-  }
+  const LapRules& rules = rules_of(protocol);
+  auto environment = make_environment(vehicle::load_course(folder, rules.map_reading()), protocol);
+  rules.complete(*environment, folder, course_roots);
   return environment;
 }
 

@@ -26,33 +26,33 @@ std::vector<LapTask> open_tasks(const Evaluation& evaluation, const LapStore& st
   return tasks;
 }
 
-void drive_one_by_one(const Evaluation& evaluation, LapQueue& exchange,
-                      const std::atomic<bool>& cancel) noexcept {
+void drive_until_empty(const Evaluation& evaluation, LapQueue& queue,
+                       const std::atomic<bool>& cancel) noexcept {
   try {
     std::optional<LapRunner> runner;
-    int runs = -1;
-    while (const auto task = exchange.next()) {
+    int current = -1;
+    while (const auto task = queue.next()) {
       const Experiment& experiment = evaluation.experiments.at(static_cast<std::size_t>(task->experiment));
-      if (task->experiment != runs) runner.emplace(make_runner(evaluation, task->experiment));
-      runs = task->experiment;
+      if (task->experiment != current) runner.emplace(make_runner(evaluation, task->experiment));
+      current = task->experiment;
       const auto begin = Clock::now();
       const LapResult result =
           runner->run(lap_seed(evaluation.seed0, task->lap, experiment.obstacles), {}, &cancel);
       if (result.cancelled) return;
-      exchange.keep(make_row(task->experiment, task->lap, result, seconds_since(begin)));
+      queue.keep(make_row(task->experiment, task->lap, result, seconds_since(begin)));
     }
   } catch (...) {
-    exchange.fail(std::current_exception());
+    queue.fail(std::current_exception());
   }
 }
 
 }  // namespace
 
-void drive_laps(const Evaluation& evaluation, LapQueue& exchange, int jobs, const std::atomic<bool>& cancel) {
-  std::vector<std::thread> others;
-  for (int i = 1; i < jobs; ++i) others.emplace_back([&] { drive_one_by_one(evaluation, exchange, cancel); });
-  drive_one_by_one(evaluation, exchange, cancel);
-  for (auto& other : others) other.join();
+void drive_laps(const Evaluation& evaluation, LapQueue& queue, int jobs, const std::atomic<bool>& cancel) {
+  std::vector<std::thread> threads;
+  for (int i = 1; i < jobs; ++i) threads.emplace_back([&] { drive_until_empty(evaluation, queue, cancel); });
+  drive_until_empty(evaluation, queue, cancel);
+  for (auto& thread : threads) thread.join();
 }
 
 EvaluationQueue::EvaluationQueue(const Evaluation& evaluation, LapStore& store,
@@ -111,11 +111,11 @@ LapRunner make_runner(const Evaluation& evaluation, int index) {
 bool run_evaluation(const Evaluation& evaluation, LapStore& store, int jobs,
                     const std::function<void(const EvaluationProgress&)>& on_progress,
                     const std::atomic<bool>& cancel) {
-  // Unknown methods and options are found before the first lap.
+  // Reports unknown methods and options before the first lap.
   for (int i = 0; i < static_cast<int>(evaluation.experiments.size()); ++i) make_runner(evaluation, i);
-  EvaluationQueue work(evaluation, store, on_progress, cancel);
-  drive_laps(evaluation, work, jobs, cancel);
-  return work.finish();
+  EvaluationQueue queue(evaluation, store, on_progress, cancel);
+  drive_laps(evaluation, queue, jobs, cancel);
+  return queue.finish();
 }
 
 }  // namespace slalom::evaluation

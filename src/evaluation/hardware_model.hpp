@@ -9,23 +9,24 @@
 
 namespace slalom::evaluation {
 
-/// A lap's car between the simulated one and the planner: what it measures, what its servo does.
+/// Sensors and servo of a car between simulation and planner: measured scan, localised pose, servo angle.
 class HardwareModel {
  public:
-  /// `start` of the rear axle.
+  /// Starts with the car in `state`, and the localiser at its true pose. `seed` is that of all random errors.
   HardwareModel(const HardwareConditions& conditions, const maps::OccupancyGrid& map,
                 const sim::CarParameters& car, const sim::CarState& state, std::uint64_t seed);
 
-  /// The world's options under these conditions; the scan's rate stays.
+  /// Applies the conditions to the options of a world. The scan rate is kept.
   static void apply(const HardwareConditions& conditions, sim::WorldOptions& options);
 
-  /// The pose and speed that the planner is told; none while the car does not know where it is.
+  /// The pose and speed that the planner gets; none while the car is not localised.
   std::optional<vehicle::Odometry> sense(const sim::Observation& seen, const sim::CarState& state);
-  /// What the servo makes of a command within a step of `time_step` (s).
+  /// The command after the servo, in a step of `time_step` (s).
   Command servo(const Command& command, double time_step) noexcept;
-  /// To be called after each step of `time_step` (s).
+  /// Updates the wheel odometry; to be called after each step of `time_step` (s).
   void moved(const sim::CarState& state, double time_step) noexcept { wheels_.update(state, time_step); }
 
+  /// Errors of the localisation so far.
   const LocalisationRecord& record() const noexcept { return record_; }
 
  private:
@@ -35,7 +36,7 @@ class HardwareModel {
   vehicle::Localiser localiser_;
   LocalisationRecord record_;
   double steer_ = 0;     ///< rad, of the servo
-  double known_at_ = 0;  ///< s, when the pose was last good
+  double known_at_ = 0;  ///< s, when the pose was last localised
 };
 
 }  // namespace slalom::evaluation

@@ -35,7 +35,7 @@ class NumberTable {
     for (std::size_t i = 0; i < names.size(); ++i) columns_[names[i]] = i;
     for (const char* needed : {"success", "collision", "state_cost", "collision_cost"}) {
       if (!columns_.contains(needed))
-        throw IoError(file_, 1, std::string(needed) + ": this column is missing");
+        throw IoError(file_, 1, "column " + std::string(needed) + " is missing");
     }
   }
 
@@ -46,9 +46,9 @@ class NumberTable {
       cells_ = split_line(line);
       if (cells_.size() == 1 && cells_[0].empty()) continue;
       if (cells_.size() == columns_.size()) return true;
-      throw IoError(
-          file_, number_,
-          "has " + std::to_string(cells_.size()) + " columns, its header " + std::to_string(columns_.size()));
+      throw IoError(file_, number_,
+                    "has " + std::to_string(cells_.size()) + " columns, but the header has " +
+                        std::to_string(columns_.size()));
     }
     return false;
   }
@@ -99,7 +99,7 @@ LapLog read_lap_log(const std::filesystem::path& file) {
     solve_sum += table.number("mean_calculation_time");
     solve_max = std::max(solve_max, table.number("max_calculation_time"));
   }
-  if (log.laps == 0) throw IoError(log.file, 0, "holds no lap");
+  if (log.laps == 0) throw IoError(log.file, 0, "contains no lap");
   if (timed) {
     log.solve_ms_mean = solve_sum / log.laps;
     log.solve_ms_max = solve_max;
@@ -109,16 +109,16 @@ LapLog read_lap_log(const std::filesystem::path& file) {
 
 Agreement LogComparison::ms_agreement() const {
   if (ms_p < 0.05) return Agreement::outside;
-  const bool telling =
-      std::min(our_laps, laps) >= enough_laps && ms_ratio_ci.high - ms_ratio_ci.low <= 2 * telling_ratio;
-  return telling ? Agreement::inside : Agreement::undecided;
+  const bool conclusive =
+      std::min(our_laps, laps) >= enough_laps && ms_ratio_ci.high - ms_ratio_ci.low <= 2 * ms_half_width;
+  return conclusive ? Agreement::inside : Agreement::undecided;
 }
 
 Agreement LogComparison::collision_agreement() const {
   if (!collision_p) return Agreement::inside;
   if (*collision_p < 0.05) return Agreement::outside;
-  const bool telling = rate_difference_ci->high - rate_difference_ci->low <= 2 * telling_rate;
-  return telling ? Agreement::inside : Agreement::undecided;
+  const bool conclusive = rate_difference_ci->high - rate_difference_ci->low <= 2 * rate_half_width;
+  return conclusive ? Agreement::inside : Agreement::undecided;
 }
 
 Agreement LogComparison::agreement() const {
@@ -129,31 +129,31 @@ Agreement LogComparison::agreement() const {
 }
 
 LogComparison compare_with_log(const std::vector<LapRow>& rows, int obstacles, const LapLog& log) {
-  std::vector<double> ours;
+  std::vector<double> measured;
   std::int64_t contacts = 0;
   for (const LapRow& row : rows) {
-    ours.push_back(row.mean_sequence_cost());
+    measured.push_back(row.mean_sequence_cost());
     contacts += row.collisions;
   }
   LogComparison c;
   c.ms_mean = mean(log.ms);
   c.ms_ci = bootstrap_mean(log.ms);
-  c.ms_ratio = mean(ours) / c.ms_mean;
-  c.our_laps = static_cast<int>(ours.size());
+  c.ms_ratio = mean(measured) / c.ms_mean;
+  c.our_laps = static_cast<int>(measured.size());
   c.laps = log.laps;
-  const Interval difference = bootstrap_difference(ours, log.ms);
+  const Interval difference = bootstrap_difference(measured, log.ms);
   c.ms_ratio_ci = {1 + difference.low / c.ms_mean, 1 + difference.high / c.ms_mean};
-  // With a few laps a bootstrap takes their scatter for smaller or larger than it is.
+  // With few laps the bootstrap misjudges their scatter.
   const bool enough = std::min(c.our_laps, c.laps) >= LogComparison::enough_laps;
-  c.ms_p = enough ? bootstrap_difference_p(ours, log.ms) : permutation_difference_p(ours, log.ms);
+  c.ms_p = enough ? bootstrap_difference_p(measured, log.ms) : permutation_difference_p(measured, log.ms);
   if (obstacles > 0) {
-    const std::int64_t our_chances =
+    const std::int64_t measured_chances =
                            static_cast<std::int64_t>(obstacles) * static_cast<std::int64_t>(rows.size()),
                        chances = static_cast<std::int64_t>(obstacles) * log.laps;
     c.collision_rate = static_cast<double>(log.collisions) / static_cast<double>(chances);
     c.collision_rate_ci = wilson_interval(log.collisions, chances);
-    c.rate_difference_ci = rate_difference_interval(contacts, our_chances, log.collisions, chances);
-    c.collision_p = fisher_p(contacts, our_chances, log.collisions, chances);
+    c.rate_difference_ci = rate_difference_interval(contacts, measured_chances, log.collisions, chances);
+    c.collision_p = fisher_p(contacts, measured_chances, log.collisions, chances);
   }
   return c;
 }

@@ -32,7 +32,7 @@ void write_all(int descriptor, const std::string& text, const fs::path& file) {
   }
 }
 
-/// Writes a file so that at any moment either the old or the new one is there.
+/// Replaces a file atomically.
 void replace_file(const fs::path& file, const std::string& text) {
   const fs::path next = file.string() + ".new";
   const int descriptor = ::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
@@ -54,12 +54,12 @@ std::string read_text(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// "key: 1 there, 2 here; ..." for every leaf that differs.
-std::string differences(const nlohmann::json& there, const nlohmann::json& here) {
+/// "key: 1 stored, 2 requested; ..." for every value that differs.
+std::string differences(const nlohmann::json& stored, const nlohmann::json& requested) {
   std::string text;
-  const auto a = there.flatten(), b = here.flatten();
+  const auto a = stored.flatten(), b = requested.flatten();
   const auto note = [&](const std::string& key, const std::string& x, const std::string& y) {
-    text += (text.empty() ? "" : "; ") + key.substr(1) + ": " + x + " there, " + y + " here";
+    text += (text.empty() ? "" : "; ") + key.substr(1) + ": " + x + " stored, " + y + " requested";
   };
   for (const auto& [key, value] : a.items()) {
     if (!b.contains(key)) {
@@ -74,20 +74,20 @@ std::string differences(const nlohmann::json& there, const nlohmann::json& here)
   return text;
 }
 
-/// The build that drove the laps so far; "" if that is not known.
-std::string check_settings(const fs::path& file, const std::string& ours) {
-  nlohmann::json there;
+/// The build that drove the stored laps; "" if it is unknown.
+std::string check_settings(const fs::path& file, const std::string& requested) {
+  nlohmann::json stored;
   try {
-    there = nlohmann::json::parse(read_text(file));
+    stored = nlohmann::json::parse(read_text(file));
   } catch (const nlohmann::json::exception& error) {
     throw IoError(file.string(), 0, std::string("is not JSON: ") + error.what());
   }
   std::string build;
-  if (there.contains("build") && there["build"].is_string()) build = there["build"];
-  there.erase("build");
-  const std::string differing = differences(there, nlohmann::json::parse(ours));
+  if (stored.contains("build") && stored["build"].is_string()) build = stored["build"];
+  stored.erase("build");
+  const std::string differing = differences(stored, nlohmann::json::parse(requested));
   if (!differing.empty())
-    throw IoError(file.string(), 0, "the folder holds an evaluation with other settings: " + differing);
+    throw IoError(file.string(), 0, "the folder contains an evaluation with other settings: " + differing);
   return build;
 }
 
@@ -102,7 +102,7 @@ bool is_table_order(const LapRow& a, const LapRow& b) {
   return std::pair(a.experiment, a.lap) < std::pair(b.experiment, b.lap);
 }
 
-/// A table is written when all laps are there; what misses some was changed by others.
+/// laps.csv is written when all laps are there. If some are missing, somebody has edited it.
 void check_complete(const fs::path& table, const std::vector<LapRow>& sorted,
                     const std::vector<Experiment>& experiments) {
   std::size_t at = 0;
@@ -112,7 +112,7 @@ void check_complete(const fs::path& table, const std::vector<LapRow>& sorted,
       if (at < sorted.size() && sorted[at].experiment == e && sorted[at].lap == lap) continue;
       throw IoError(table.string(), 0,
                     "lap " + std::to_string(lap) + " of " + experiment.label() + ", " + experiment.scenario +
-                        ": is missing; named " + journal_name + " the file can be gone on with");
+                        ": is missing; rename the file to " + journal_name + " to continue the evaluation");
     }
   }
 }
@@ -123,23 +123,24 @@ LapStore::LapStore(const fs::path& folder, const Evaluation& evaluation, bool re
     : folder_(folder), experiments_(evaluation.experiments) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw IoError(folder.string(), 0, "cannot be made: " + error.message());
+  if (error) throw IoError(folder.string(), 0, "cannot create directory: " + error.message());
   const fs::path settings = folder / settings_name, journal = folder / journal_name,
                  table = folder / table_name;
   const bool has_laps = fs::exists(journal) || fs::exists(table);
   if (has_laps && !resume) {
     throw IoError(folder.string(), 0,
-                  "holds the laps of an evaluation: say --resume to go on with it, or take another folder");
+                  "contains the laps of an evaluation: give --resume to continue it, or another folder");
   }
   if (has_laps && !fs::exists(settings))
-    throw IoError(settings.string(), 0, "is missing, though there are laps");
+    throw IoError(settings.string(), 0, "is missing, but the folder contains laps");
   if (has_laps) {
-    const std::string there = check_settings(settings, evaluation.settings);
-    const bool same = there.ends_with(evaluation.build);
+    const std::string stored_build = check_settings(settings, evaluation.settings);
+    const bool same = stored_build.ends_with(evaluation.build);
     if (!fs::exists(table) && !same) {
-      check_build(evaluation, there);
-      replace_file(settings, with_build(evaluation.settings,
-                                        (there.empty() ? "unknown" : there) + " " + evaluation.build));
+      check_build(evaluation, stored_build);
+      replace_file(settings,
+                   with_build(evaluation.settings,
+                              (stored_build.empty() ? "unknown" : stored_build) + " " + evaluation.build));
     }
   } else {
     replace_file(settings, with_build(evaluation.settings, evaluation.build));
@@ -151,7 +152,7 @@ LapStore::LapStore(const fs::path& folder, const Evaluation& evaluation, bool re
     return;
   }
   if (fs::exists(journal)) rows_ = read_rows(journal, experiments_, true, evaluation.seed0);
-  // Written anew, so that a line that was cut short is gone for good.
+  // Rewritten, so that a truncated line is removed.
   std::string text = csv_header() + "\n";
   for (const LapRow& row : rows_) text += csv_line(row, experiments_) + "\n";
   replace_file(journal, text);
@@ -159,12 +160,12 @@ LapStore::LapStore(const fs::path& folder, const Evaluation& evaluation, bool re
   if (journal_ < 0) throw_system(journal, "cannot be written");
 }
 
-void LapStore::check_build(const Evaluation& evaluation, const std::string& there) const {
+void LapStore::check_build(const Evaluation& evaluation, const std::string& stored_build) const {
   if (evaluation.any_build) return;
   throw IoError((folder_ / settings_name).string(), 0,
-                "another build of the program drove the laps there (build " +
-                    (there.empty() ? "unknown" : there) + ", this is " + evaluation.build +
-                    "), and its laps may differ. Finish them with that build, take another folder, or say "
+                "the laps were driven by another build of the program (build " +
+                    (stored_build.empty() ? "unknown" : stored_build) + ", this is " + evaluation.build +
+                    "), whose laps may differ. Continue with that build, choose another folder, or give "
                     "--any-build to mix them");
 }
 

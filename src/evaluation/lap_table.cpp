@@ -83,9 +83,11 @@ void parse_cell(const std::string& text, const char* column, Field& field) {
       throw std::invalid_argument(std::string(column) + ": '" + text + "' must be a number");
     }
     if constexpr (std::is_floating_point_v<Field>) {
-      // Where there is no wall the clearance has no end; all else is finite, and means must not be spoiled.
-      const bool endless = std::string_view(column) == "minimum_clearance" && std::isinf(field) && field > 0;
-      if (!std::isfinite(field) && !endless)
+      // Without a wall the clearance is infinite. Any other value must be finite, since means are computed of
+      // it.
+      const bool may_be_infinite =
+          std::string_view(column) == "minimum_clearance" && std::isinf(field) && field > 0;
+      if (!std::isfinite(field) && !may_be_infinite)
         throw std::invalid_argument(std::string(column) + ": '" + text + "' must be a finite number");
     }
   }
@@ -93,16 +95,16 @@ void parse_cell(const std::string& text, const char* column, Field& field) {
 
 constexpr std::size_t identity_columns = 4;
 
-/// What is wrong with a header.
-std::string header_complaint(const std::string& line) {
+/// The message about an invalid header.
+std::string header_error(const std::string& line) {
   const auto there = split(line), ours = split(csv_header());
   for (const std::string& column : there)
     if (std::find(ours.begin(), ours.end(), column) == ours.end())
-      return "column '" + column + "' is none of this version's laps.csv";
+      return "column '" + column + "' is unknown to this version";
   for (const std::string& column : ours)
     if (std::find(there.begin(), there.end(), column) == there.end())
-      return "column " + column + ": is missing";
-  return "the columns stand in another order than in this version's laps.csv";
+      return "column " + column + " is missing";
+  return "the columns must be in this order: " + csv_header();
 }
 
 }  // namespace
@@ -207,11 +209,12 @@ LapRow parse_line(const std::string& line, const std::vector<Experiment>& experi
   const auto found = std::find_if(experiments.begin(), experiments.end(), [&](const Experiment& e) {
     return e.method == cells[0] && e.scenario == cells[1] && e.set_text() == cells[2];
   });
-  if (found == experiments.end()) throw std::invalid_argument("is of no experiment of this evaluation");
+  if (found == experiments.end()) throw std::invalid_argument("matches no experiment of this evaluation");
   row.experiment = static_cast<int>(found - experiments.begin());
   parse_cell(cells[3], "lap", row.lap);
   if (row.lap < 0 || row.lap >= found->laps)
-    throw std::invalid_argument("lap: " + cells[3] + " is not one of this evaluation");
+    throw std::invalid_argument("lap: " + cells[3] + " must be in [0, " + std::to_string(found->laps - 1) +
+                                "]");
   std::size_t i = identity_columns;
   visit_columns(row, [&](const char* name, auto& field) { parse_cell(cells[i++], name, field); });
   return row;
@@ -231,7 +234,7 @@ void check_seed(const LapRow& row, const Experiment& experiment, std::uint64_t s
 }  // namespace
 
 std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vector<Experiment>& experiments,
-                              bool forgive_last, std::optional<std::uint64_t> seed0) {
+                              bool accept_truncated, std::optional<std::uint64_t> seed0) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw IoError(file.string(), 0, "cannot be read");
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
@@ -244,23 +247,22 @@ std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vect
     const std::string line = text.substr(begin, complete ? end - begin : std::string::npos);
     begin = complete ? end + 1 : text.size();
     ++number;
-    if (!complete && forgive_last) break;
-    if (!complete) throw IoError(file.string(), number, "is cut short");
+    if (!complete && accept_truncated) break;
+    if (!complete) throw IoError(file.string(), number, "is truncated");
     if (number == 1) {
-      if (line != csv_header()) throw IoError(file.string(), 1, header_complaint(line));
+      if (line != csv_header()) throw IoError(file.string(), 1, header_error(line));
       continue;
     }
     try {
       LapRow row = parse_line(line, experiments);
-      if (!seen.insert({row.experiment, row.lap}).second)
-        throw std::invalid_argument("lap: stands here twice");
+      if (!seen.insert({row.experiment, row.lap}).second) throw std::invalid_argument("duplicate lap");
       if (seed0) check_seed(row, experiments[static_cast<std::size_t>(row.experiment)], *seed0);
       rows.push_back(std::move(row));
     } catch (const std::invalid_argument& error) {
       throw IoError(file.string(), number, error.what());
     }
   }
-  if (number == 0 && !forgive_last) throw IoError(file.string(), 1, "the header is missing");
+  if (number == 0 && !accept_truncated) throw IoError(file.string(), 1, "the header is missing");
   return rows;
 }
 

@@ -8,19 +8,20 @@
 namespace slalom::evaluation {
 namespace {
 
-/// The cells round a body in which the middle of the disc may be.
+/// The cells around a body that the centre of the disc can occupy.
 class Window {
  public:
-  Window(const sim::Track& track, std::span<const sim::Box> bodies, const maps::Point& middle,
-         const PassabilityOptions& rules)
-      : track_(track), bodies_(bodies), radius_(rules.radius), reach_(rules.window), middle_(middle) {
+  Window(const sim::Track& track, std::span<const sim::Box> bodies, const maps::Point& centre,
+         const PassabilityOptions& options)
+      : track_(track), bodies_(bodies), radius_(options.radius), reach_(options.window), centre_(centre) {
     resolution_ = track.grid().resolution;
-    half_ = static_cast<int>(std::ceil(rules.window / resolution_));
+    half_ = static_cast<int>(std::ceil(options.window / resolution_));
     side_ = 2 * half_ + 1;
     seen_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), 0);
   }
 
-  /// Whether a disc comes from one point to the other: a flood over free cells and their eight neighbours.
+  /// Whether a disc can move from one point to the other: flood fill over free cells and their eight
+  /// neighbours.
   bool connects(const maps::Point& from, const maps::Point& to) {
     const auto start = nearest_free(from), goal = nearest_free(to);
     if (!start || !goal) return false;
@@ -45,22 +46,23 @@ class Window {
 
  private:
   maps::Point point(int column, int row) const {
-    return {middle_.x + resolution_ * (column - half_), middle_.y + resolution_ * (row - half_)};
+    return {centre_.x + resolution_ * (column - half_), centre_.y + resolution_ * (row - half_)};
   }
 
-  /// In doubt it is: a way may pass a cell 0.71 cells from its middle, and walls are known to a cell.
+  /// Errs towards free: a trajectory may pass 0.71 cells from the centre of a cell, and walls are known to
+  /// one cell.
   bool is_free(const maps::Point& at) const {
-    if (std::hypot(at.x - middle_.x, at.y - middle_.y) > reach_) return false;
+    if (std::hypot(at.x - centre_.x, at.y - centre_.y) > reach_) return false;
     if (track_.distance_to_wall(at) + 1.75 * resolution_ < radius_) return false;
     const sim::Disc disc{at, std::max(radius_ - 0.75 * resolution_, 0.0)};
     return std::none_of(bodies_.begin(), bodies_.end(),
                         [&](const sim::Box& body) { return sim::signed_gap(body, disc) <= 0; });
   }
 
-  /// The free cell nearest to a point, within a metre: another body may stand on the course line.
+  /// The free cell nearest to a point, within 1 m, since another body may stand on the path.
   std::optional<int> nearest_free(const maps::Point& at) const {
-    const int column = half_ + static_cast<int>(std::lround((at.x - middle_.x) / resolution_)),
-              row = half_ + static_cast<int>(std::lround((at.y - middle_.y) / resolution_)),
+    const int column = half_ + static_cast<int>(std::lround((at.x - centre_.x) / resolution_)),
+              row = half_ + static_cast<int>(std::lround((at.y - centre_.y) / resolution_)),
               most = static_cast<int>(std::ceil(1 / resolution_));
     std::optional<int> best;
     int best_square = most * most + 1;
@@ -78,7 +80,7 @@ class Window {
   const sim::Track& track_;
   std::span<const sim::Box> bodies_;
   double radius_, reach_, resolution_ = 0;
-  maps::Point middle_;
+  maps::Point centre_;
   int half_ = 0, side_ = 0;
   std::vector<std::uint8_t> seen_;
 };
@@ -86,15 +88,15 @@ class Window {
 }  // namespace
 
 std::vector<int> impassable_obstacles(const sim::Track& track, std::span<const sim::Box> bodies,
-                                      const PassabilityOptions& rules) {
+                                      const PassabilityOptions& options) {
   std::vector<int> closed;
   const sim::LapPath* path = track.lap_path();
   if (!path) return closed;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const maps::Point middle{bodies[i].pose.x, bodies[i].pose.y};
-    const double arc = path->project(middle).arc;
-    const maps::Pose before = path->at(arc - rules.reach), behind = path->at(arc + rules.reach);
-    if (!Window(track, bodies, middle, rules).connects({before.x, before.y}, {behind.x, behind.y}))
+    const maps::Point centre{bodies[i].pose.x, bodies[i].pose.y};
+    const double arc = path->project(centre).arc;
+    const maps::Pose before = path->at(arc - options.reach), behind = path->at(arc + options.reach);
+    if (!Window(track, bodies, centre, options).connects({before.x, before.y}, {behind.x, behind.y}))
       closed.push_back(static_cast<int>(i));
   }
   return closed;

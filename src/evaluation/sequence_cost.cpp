@@ -23,7 +23,7 @@ constexpr int steps = SequenceCostMeter::states - 1;
 
 maps::LocalCostMapOptions cost_map_options() {
   auto options = maps::LocalCostMapOptions::published();
-  options.outside = -1;  // so that the problem can tell "off the map" from "occupied"
+  options.outside = -1;  // so that the problem distinguishes "off the map" from "occupied"
   return options;
 }
 
@@ -31,7 +31,7 @@ maps::Pose between(const maps::Pose& a, const maps::Pose& b, double part) {
   return {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y), a.yaw + part * maps::wrap_angle(b.yaw - a.yaw)};
 }
 
-/// States 0.05 s apart out of ones `spacing` (s) apart, which reach far enough.
+/// States 0.05 s apart, interpolated from states `spacing` (s) apart that cover the time.
 Ruler resampled(std::span<const PredictedState> predicted, double spacing) {
   Ruler ruler;
   for (int k = 0; k <= steps; ++k) {
@@ -57,9 +57,9 @@ struct SequenceCostMeter::Implementation {
   std::vector<PredictedState> states;
   std::vector<float> inputs;
   maps::Pose robot;
-  GridView<1> obstacles;  ///< of this meter's own cost map or of one made elsewhere
-  maps::Point low, high;  ///< m, the part of the field that is made, map frame
-  bool everywhere = false;
+  GridView<1> obstacles;    ///< of this cost map or of the caller's
+  maps::Point low, high;    ///< m, the part of the field that is up to date, map frame
+  bool everywhere = false;  ///< whether the whole field is up to date
 
   Implementation(std::span<const maps::ReferencePoint> path, const VehicleOptions& m)
       : model(m),
@@ -79,7 +79,7 @@ struct SequenceCostMeter::Implementation {
     return {both.value - collision, collision};
   }
 
-  /// Makes the field where these states lie, or everywhere; what is made already stays.
+  /// Updates the field where these states are, unless it is up to date there.
   void make_field(std::span<const PredictedState> sequence, double margin) noexcept {
     if (everywhere) return;
     maps::Point from{robot.x, robot.y}, to{robot.x, robot.y};
@@ -114,7 +114,8 @@ struct SequenceCostMeter::Implementation {
     return sum;
   }
 
-  /// The first `used` inputs a step of the sequence sent, a step every `spacing` (s), the last one held.
+  /// The first `used` inputs of each step of the planner's sequence, resampled to `spacing` (s); the last one
+  /// is held.
   std::span<const float> held(const vehicle::PlannerOutput& output, int used, std::size_t count,
                               double spacing) {
     const auto width = static_cast<std::size_t>(output.inputs_per_step),
@@ -132,8 +133,8 @@ struct SequenceCostMeter::Implementation {
     const PredictedState& first = output.predicted.front();
     const std::size_t count = sequence.size() / static_cast<std::size_t>(rollout.inputs());
     const std::span<PredictedState> reached(states.data(), count + 1);
-    // Where it leads is not known before. Most often it is about where the planner's own prediction leads; if
-    // not, once more with the whole field.
+    // The states are not known in advance. They are usually close to the planner's own prediction; if not,
+    // the prediction is repeated with the whole field.
     make_field(output.predicted, 0.5);
     while (true) {
       rollout.set_maps({field.view(), obstacles, robot});

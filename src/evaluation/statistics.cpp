@@ -121,7 +121,7 @@ double permutation_difference_p(std::span<const double> a, std::span<const doubl
   const double sum = std::accumulate(all.begin(), all.end(), 0.0);
   const double na = static_cast<double>(a.size()), nb = static_cast<double>(b.size());
   const auto difference = [&](double sum_a) { return std::abs(sum_a / na - (sum - sum_a) / nb); };
-  // What is as extreme must count whatever the rounding.
+  // Arrangements equally extreme must count in spite of rounding.
   const double observed = difference(std::accumulate(a.begin(), a.end(), 0.0)) * (1 - 1e-9) - 1e-12;
   RandomStream random({seed, 2});
   int as_extreme = 0;
@@ -190,7 +190,7 @@ double fisher_p(std::int64_t successes_a, std::int64_t trials_a, std::int64_t su
   const auto probability = [&](std::int64_t k) {
     return std::exp(log_choose(trials_a, k) + log_choose(trials_b, successes - k) - all);
   };
-  // Tables as likely as the one seen must count whatever the rounding.
+  // Tables as likely as the observed one must count in spite of rounding.
   const double seen = probability(a) * (1 + 1e-7);
   double p = 0;
   for (std::int64_t k = std::max<std::int64_t>(0, successes - trials_b); k <= std::min(successes, trials_a);
@@ -221,7 +221,7 @@ double wilcoxon_p(std::span<const double> differences) {
   const double nd = static_cast<double>(n), total = nd * (nd + 1) / 2,
                few = std::min(positive, total - positive);
   if (!ties && n <= 50) {
-    // How many of the 2^n choices of signs give each rank sum.
+    // The number of the 2^n choices of signs that give each rank sum.
     std::vector<double> ways(static_cast<std::size_t>(total) + 1);
     ways[0] = 1;
     for (std::size_t rank = 1; rank <= n; ++rank) {

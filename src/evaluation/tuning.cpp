@@ -10,7 +10,7 @@ namespace slalom::evaluation {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& text, const std::string& rule) {
+[[noreturn]] void throw_invalid(const std::string& text, const std::string& rule) {
   throw std::invalid_argument("'" + text + "' " + rule);
 }
 
@@ -48,21 +48,18 @@ struct Figure {
 constexpr Figure known_figures[] = {
     {"ms", "mean sequence cost of the lap",
      [](const LapRow& row) { return row.state_cost + row.collision_cost; }},
-    {"log_ms", "its natural logarithm, which a few bad laps do not rule",
+    {"log_ms", "its natural logarithm, which a few bad laps do not dominate",
      [](const LapRow& row) { return std::log(1e-3 + row.state_cost + row.collision_cost); }},
-    {"state_cost", "the part of it that is distance and heading",
-     [](const LapRow& row) { return row.state_cost; }},
-    {"collision_cost", "the part of it that is collisions",
-     [](const LapRow& row) { return row.collision_cost; }},
-    {"ms_driven", "the same cost of the states really driven",
-     [](const LapRow& row) { return row.ms_driven; }},
-    {"contacts", "contacts in the lap",
+    {"state_cost", "its part from distance and heading", [](const LapRow& row) { return row.state_cost; }},
+    {"collision_cost", "its part from collisions", [](const LapRow& row) { return row.collision_cost; }},
+    {"ms_driven", "the same cost of the driven states", [](const LapRow& row) { return row.ms_driven; }},
+    {"contacts", "number of collisions",
      [](const LapRow& row) { return static_cast<double>(row.collisions); }},
-    {"failures", "1 for a lap that is no success",
+    {"failures", "1 for a lap that did not succeed",
      [](const LapRow& row) { return static_cast<double>(!row.success); }},
-    {"timeouts", "1 for a lap that was given up",
+    {"timeouts", "1 for a lap that timed out",
      [](const LapRow& row) { return static_cast<double>(row.timeout); }},
-    {"lap_time", "s; of a lap given up, until then", [](const LapRow& row) { return row.lap_time; }},
+    {"lap_time", "s; of a lap that timed out, until then", [](const LapRow& row) { return row.lap_time; }},
     {"path_distance", "mean distance to the path, m",
      [](const LapRow& row) { return row.mean_path_distance; }},
 };
@@ -109,7 +106,7 @@ SearchDimension parse_dimension(const std::string& text, const vehicle::Configur
                                 const std::string& method) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
-    refuse(text, "must be key=lo:hi, key=lo:hi:log or key=v1,v2,...");
+    throw_invalid(text, "must be key=lo:hi, key=lo:hi:log or key=v1,v2,...");
   SearchDimension dimension;
   dimension.key = text.substr(0, equals);
   if (dimension.key.find('.') == std::string::npos) dimension.key = method + "." + dimension.key;
@@ -117,7 +114,7 @@ SearchDimension parse_dimension(const std::string& text, const vehicle::Configur
   vehicle::Configuration trial = configuration;
   if (range.find(':') == std::string::npos) {
     dimension.choices = split(range, ',');
-    if (dimension.choices.size() < 2) refuse(text, "gives no range lo:hi and no two values to choose from");
+    if (dimension.choices.size() < 2) throw_invalid(text, "must give a range lo:hi or at least two values");
     for (const auto& choice : dimension.choices) vehicle::set_option(trial, dimension.key, choice);
     return dimension;
   }
@@ -126,8 +123,8 @@ SearchDimension parse_dimension(const std::string& text, const vehicle::Configur
   if (parts.size() > 3 || (parts.size() == 3 && !dimension.logarithmic) ||
       !parse_number(parts[0], dimension.low) || !parse_number(parts[1], dimension.high) ||
       !(dimension.low < dimension.high))
-    refuse(text, "must be key=lo:hi or key=lo:hi:log with numbers lo < hi");
-  if (dimension.logarithmic && !(dimension.low > 0)) refuse(text, "must have lo > 0 with log");
+    throw_invalid(text, "must be key=lo:hi or key=lo:hi:log with numbers lo < hi");
+  if (dimension.logarithmic && !(dimension.low > 0)) throw_invalid(text, "must have lo > 0 with log");
   const auto sections = vehicle::list_sections(configuration);
   if (const OptionEntry* entry = find_option(sections, dimension.key)) {
     dimension.whole =
@@ -135,8 +132,8 @@ SearchDimension parse_dimension(const std::string& text, const vehicle::Configur
   }
   if (dimension.whole &&
       (dimension.low != std::floor(dimension.low) || dimension.high != std::floor(dimension.high)))
-    refuse(text, "must have whole numbers: the option is one");
-  // An unknown key and ends out of range are refused here, in the option's own words.
+    throw_invalid(text, "must have whole numbers as its ends, since the option is one");
+  // Reports unknown keys and ends out of range.
   for (const double place : {0.0, 1.0}) vehicle::set_option(trial, dimension.key, dimension.value(place));
   return dimension;
 }
@@ -150,9 +147,9 @@ std::vector<Candidate> design(const std::vector<SearchDimension>& dimensions,
   for (int k = first; k < first + count; ++k) {
     Candidate candidate;
     for (std::size_t i = 0; i < dimensions.size(); ++i) {
-      const double step = std::pow(ratio, -static_cast<double>(i + 1)), run = 0.5 + (k + 1) * step;
+      const double step = std::pow(ratio, -static_cast<double>(i + 1)), position = 0.5 + (k + 1) * step;
       const double low = std::clamp(centre[i] - width / 2, 0.0, 1 - width);
-      candidate.place.push_back(low + width * (run - std::floor(run)));
+      candidate.place.push_back(low + width * (position - std::floor(position)));
       candidate.set.emplace_back(dimensions[i].key, dimensions[i].value(candidate.place.back()));
     }
     candidates.push_back(std::move(candidate));
@@ -187,7 +184,7 @@ int candidates_for(int budget, int laps) {
 Objective::Objective(std::string_view text) {
   const std::string all(text);
   std::string term;
-  const auto take = [&] {
+  const auto add_term = [&] {
     // "3*contacts", "3 contacts" or "contacts"
     const auto name_at = term.find_first_of("abcdefghijklmnopqrstuvwxyz_");
     std::string number = term.substr(0, name_at == std::string::npos ? term.size() : name_at);
@@ -195,7 +192,7 @@ Objective::Objective(std::string_view text) {
     if (!number.empty() && number.back() == '*') number.pop_back();
     double weight = 1;
     if (!number.empty() && !(parse_number(number, weight) && weight > 0))
-      refuse(all, "must be a sum of figures, each with a weight above 0 before it or none");
+      throw_invalid(all, "must be a sum of figures, each with a weight above 0 before it or none");
     std::string names;
     for (std::size_t i = 0; i < std::size(known_figures); ++i) {
       names += (i ? ", " : "") + std::string(known_figures[i].name);
@@ -204,16 +201,16 @@ Objective::Objective(std::string_view text) {
       term.clear();
       return;
     }
-    refuse(all, "must be a sum of these figures: " + names);
+    throw_invalid(all, "must be a sum of these figures: " + names);
   };
   for (const char c : all) {
     if (c == '+') {
-      take();
+      add_term();
     } else if (c != ' ') {
       term += c;
     }
   }
-  take();
+  add_term();
 }
 
 double Objective::of(const LapRow& row) const noexcept {

@@ -33,14 +33,14 @@ TEST(ClosedLoop, FirstLapEqualsTheLapOfTheRunner) {
   ClosedLoop loop(runner("mppi"), 3);
   ASSERT_GT(steering.size(), 100u);
   for (std::size_t i = 0; i < steering.size(); ++i) {
-    loop.tick([&](const ControlStep& tick) {
+    loop.step([&](const ControlStep& tick) {
       ASSERT_EQ(tick.output.command.steer, steering[i]) << i;
       ASSERT_EQ(tick.time, times[i]) << i;
     });
   }
   EXPECT_GE(loop.world().laps(0)->laps(), 1);
   const double there = loop.world().state(0).x;
-  for (int i = 0; i < 20; ++i) loop.tick();
+  for (int i = 0; i < 20; ++i) loop.step();
   EXPECT_NE(loop.world().state(0).x, there) << "the car drives on";
 }
 
@@ -50,9 +50,9 @@ sim::CarState meddled() {
   for (int i = 0; i < 60; ++i) {
     if (i == 20) loop.world().add_disc({{loop.world().state(0).x + 1, loop.world().state(0).y}, 0.1});
     if (i == 40) loop.change_controller(runner("svg_mppi"));
-    loop.tick({}, i == 30 ? 0.02 : 0);
+    loop.step({}, i == 30 ? 0.02 : 0);
   }
-  EXPECT_EQ(loop.ticks(), 60);
+  EXPECT_EQ(loop.steps(), 60);
   return loop.world().state(0);
 }
 
@@ -60,7 +60,7 @@ TEST(ClosedLoop, SameInterventionsGiveTheSameDrive) {
   const sim::CarState once = meddled();
   EXPECT_TRUE(once == meddled());
   ClosedLoop untouched(runner("mppi"), 5);
-  for (int i = 0; i < 60; ++i) untouched.tick();
+  for (int i = 0; i < 60; ++i) untouched.step();
   EXPECT_FALSE(once == untouched.world().state(0));
 }
 
@@ -78,7 +78,7 @@ TEST(ClosedLoop, PredictionFollowsThePlan) {
   ClosedLoop loop(runner("svg_mppi"), 2);
   int compared = 0;
   for (int i = 0; i < 30; ++i) {
-    loop.tick([&](const ControlStep& tick) {
+    loop.step([&](const ControlStep& tick) {
       if (!tick.output.solve) return;
       std::vector<vehicle::PredictedState> states(tick.output.inputs.size() + 1);
       const auto cost = tick.planner.predict(tick.output.inputs, states);

@@ -113,10 +113,10 @@ TEST_F(LapLogFile, IsReadByColumnName) {
 }
 
 TEST_F(LapLogFile, ErrorsNameLineAndColumn) {
-  EXPECT_NE(complaint("success,collision,state_cost\n").find("collision_cost: this column is missing"),
+  EXPECT_NE(complaint("success,collision,state_cost\n").find("column collision_cost is missing"),
             std::string::npos);
   const std::string head = "success,collision,state_cost,collision_cost\n";
-  EXPECT_NE(complaint(head).find("holds no lap"), std::string::npos);
+  EXPECT_NE(complaint(head).find("contains no lap"), std::string::npos);
   EXPECT_NE(complaint(head + "1,0,1\n").find(":2: has 3 columns"), std::string::npos);
   EXPECT_NE(complaint(head + "1,0,nan,0\n").find(":2: state_cost"), std::string::npos);
   EXPECT_NE(complaint(head + "1,0.5,1,0\n").find(":2: collision"), std::string::npos);

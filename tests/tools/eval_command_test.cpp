@@ -83,9 +83,9 @@ TEST_F(EvalCommand, ThreeProcessesWriteTheTableOfOne) {
 
   const ProgramRun again = testing::run_shell(mpirun + small() + "--out three", folder_.string());
   EXPECT_NE(again.status, 0);
-  const auto first = again.output.find("say --resume");
+  const auto first = again.output.find("give --resume");
   EXPECT_NE(first, std::string::npos) << again.output;
-  EXPECT_EQ(again.output.find("say --resume", first + 1), std::string::npos) << "said once, not three times";
+  EXPECT_EQ(again.output.find("give --resume", first + 1), std::string::npos) << "said once, not three times";
 }
 
 TEST_F(EvalCommand, AFullDiskIsReportedAndNoLapIsLost) {
@@ -128,9 +128,9 @@ TEST_F(EvalCommand, ACorruptTableOrAnUnknownColumnIsNamed) {
   EXPECT_TRUE(contains(complaint(table.substr(0, table.size() - 30)), "laps.csv:3: "));
   std::string wrong = table;
   wrong.replace(wrong.find(",oa,") + 1, 2, "ob");
-  EXPECT_TRUE(contains(complaint(wrong), "laps.csv:2: is of no experiment"));
+  EXPECT_TRUE(contains(complaint(wrong), "laps.csv:2: matches no experiment"));
   const std::size_t second = table.find('\n', table.find('\n') + 1) + 1;
-  EXPECT_TRUE(contains(complaint(table + table.substr(second)), "laps.csv:4: lap: stands here twice"));
+  EXPECT_TRUE(contains(complaint(table + table.substr(second)), "laps.csv:4: duplicate lap"));
   std::ofstream(folder_ / "one/settings.json") << "{";
   EXPECT_TRUE(contains(complaint(table), "settings.json: is not JSON"));
 }
@@ -152,7 +152,7 @@ TEST_F(EvalCommand, RejectsLapsOfAnotherBuild) {
   const ProgramRun refused = run(small(1) + "--resume --out one");
   EXPECT_EQ(refused.status, 1);
   EXPECT_TRUE(
-      contains(refused.output, "another build of the program drove the laps there (build 0123456789ab"))
+      contains(refused.output, "the laps were driven by another build of the program (build 0123456789ab"))
       << refused.output;
   EXPECT_TRUE(contains(refused.output, "--any-build"));
   ASSERT_EQ(run(small(1) + "--resume --any-build --out one").status, 0);
@@ -168,8 +168,8 @@ TEST_F(EvalCommand, RejectsLapsOfOtherSettings) {
   EXPECT_TRUE(contains(again.output, "--resume")) << again.output;
   const ProgramRun other = run(small(1) + "--out one --resume --seed0 7 --evaluation published");
   EXPECT_EQ(other.status, 1);
-  EXPECT_TRUE(contains(other.output, "seed0: 0 there, 7 here")) << other.output;
-  EXPECT_TRUE(contains(other.output, "evaluation: \"true\" there, \"published\" here")) << other.output;
+  EXPECT_TRUE(contains(other.output, "seed0: 0 stored, 7 requested")) << other.output;
+  EXPECT_TRUE(contains(other.output, "evaluation: \"true\" stored, \"published\" requested")) << other.output;
 }
 
 TEST_F(EvalCommand, ReportsInvalidArgumentsBeforeTheFirstLap) {

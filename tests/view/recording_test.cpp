@@ -35,7 +35,7 @@ std::string record(bool wall_clock, int ticks = 12) {
   recorder.add_course(encode_scene(*where));
   FrameEncoder encoder;
   for (int i = 0; i < ticks; ++i)
-    loop.tick([&](const evaluation::ControlStep& tick) {
+    loop.step([&](const evaluation::ControlStep& tick) {
       recorder.add_frame(encoder.encode(tick, {}) + encode_bodies(tick.world));
     });
   recorder.finish();

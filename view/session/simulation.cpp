@@ -19,7 +19,7 @@ void Simulation::tick(const evaluation::ControlStepCallback& on_step, bool real_
     delays_.back() = static_cast<float>(delay);
   }
   // The delay is rounded to float for the log, and the loop shall be that of the log.
-  loop_.tick(
+  loop_.step(
       [&](const evaluation::ControlStep& step) {
         last_update_ = step.output.tick_time;
         if (on_step) on_step(step);
@@ -44,7 +44,7 @@ void Simulation::repeat(const std::vector<Logged>& log, const std::vector<float>
   for (int i = 0; i < ticks; ++i) {
     for (; next != log.end() && next->tick <= i; ++next) apply(next->edit);
     const auto at = static_cast<std::size_t>(i);
-    loop_.tick({}, at < delays.size() ? delays[at] : 0.0f);
+    loop_.step({}, at < delays.size() ? delays[at] : 0.0f);
   }
   delays_.assign(delays.begin(), delays.begin() + std::min<std::ptrdiff_t>(ticks, std::ssize(delays)));
 }

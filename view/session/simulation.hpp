@@ -50,7 +50,7 @@ class Simulation {
   /// Goes to the state before tick `ticks`; what was done after it is forgotten.
   void seek(int ticks);
 
-  int ticks() const noexcept { return loop_.ticks(); }
+  int ticks() const noexcept { return loop_.steps(); }
   bool edited() const noexcept { return !log_.empty(); }
   const evaluation::ClosedLoop& loop() const noexcept { return loop_; }
   /// Who drove first.

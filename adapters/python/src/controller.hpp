@@ -14,11 +14,11 @@ class Controller {
  public:
   Controller(const AnyProblem& problem, const SolverOptions& options);
 
-  /// Solves without the interpreter's lock. `owner` is the Python object of this controller.
+  /// Solves without the interpreter lock. `owner` is the Python object of this controller.
   void solve(py::handle owner, std::vector<double> state, const SolveRequest& request);
   void reset(std::uint64_t seed);
   void prepare();
-  /// What was applied before the next solve, where the problem limits rates.
+  /// Sets the input applied before the next solve, for problems with limits on input rates.
   void set_previous_input(std::vector<double> input);
 
   AnyProblem& problem() noexcept { return *problem_; }
@@ -26,17 +26,17 @@ class Controller {
   const SolverOptions& options() const noexcept { return options_; }
   const SolveResult& result() const noexcept { return result_; }
   Status status() const noexcept { return status_; }
-  /// How often it has solved, to tell whether a plan is still the last.
+  /// The number of solves, which tells whether a plan is the last one.
   std::uint64_t solves() const noexcept { return solves_; }
   /// The plan's inputs in double, [step][input].
   std::vector<double>& inputs() noexcept { return inputs_; }
-  /// What the plan leads to; worked out when first asked for.
+  /// The states and the cost of the plan, computed on the first call.
   Prediction& prediction();
 
  private:
   class Busy;
 
-  void recall_input(double elapsed);
+  void update_previous_input(double elapsed);
 
   std::unique_ptr<AnyProblem> problem_;
   SolverOptions options_;
@@ -45,7 +45,7 @@ class Controller {
   Status status_ = Status::ok;
   std::uint64_t solves_ = 0;
   std::vector<double> state_, inputs_, previous_;
-  bool told_ = true;  ///< what was applied before the next solve is in `previous_`
+  bool previous_known_ = true;  ///< whether `previous_` has been set for the next solve
   std::optional<Prediction> prediction_;
   std::atomic<bool> busy_ = false;
 };

@@ -8,38 +8,45 @@
 
 namespace slalom::evaluation {
 
-/// A drive that somebody else steps, looks into and meddles with. As long as nobody meddles, its first lap is
-/// that of LapRunner::run with the same seed, bit for bit; after the finish the car drives on. The same
-/// meddling at the same ticks gives the same drive.
+/// World and planner in a closed loop that the caller steps and may change between steps: bodies in the
+/// world, latency, the controller. Without such changes its first lap equals LapRunner::run with the same
+/// seed bit for bit; after the finish the car continues. The same changes at the same steps give the same
+/// result.
 class ClosedLoop {
  public:
   /// Throws as LapRunner::run does.
   ClosedLoop(std::shared_ptr<const LapRunner> runner, std::uint64_t seed);
   ~ClosedLoop();
+  /// Moves the loop; the source can only be destroyed or assigned to.
   ClosedLoop(ClosedLoop&&) noexcept;
+  /// Moves the loop; the source can only be destroyed or assigned to.
   ClosedLoop& operator=(ClosedLoop&&) noexcept;
 
-  /// One control period: a planner update, then the world until the next one. `further_latency` (s) is added
-  /// to the settings' for this command alone.
-  void tick(const ControlStepCallback& on_step = {}, double further_latency = 0);
+  /// One control period: a planner update, then the world until the next one. `extra_latency` (s) is added to
+  /// the latency of the settings for this command only.
+  void step(const ControlStepCallback& on_step = {}, double extra_latency = 0);
 
-  /// From the next tick on another configuration or method drives, with a planner that begins anew. The
-  /// environment must be the same and the control period too; throws std::invalid_argument otherwise.
+  /// From the next step on the configuration and method of `runner` drive, with a new planner. Throws
+  /// std::invalid_argument if the environment or the control period differs.
   void change_controller(std::shared_ptr<const LapRunner> runner);
 
-  int ticks() const noexcept;
+  /// Control steps so far.
+  int steps() const noexcept;
+  /// The simulated world, which may be changed between steps.
   sim::World& world() noexcept;
+  /// The simulated world.
   const sim::World& world() const noexcept;
+  /// Environment, configuration and method that drive now.
   const LapRunner& runner() const noexcept { return *runner_; }
-  /// Contacts so far, by the evaluation's way of counting.
+  /// The number of collisions so far, as the protocol counts them.
   int collisions() const noexcept;
-  /// The first touch of each body so far.
+  /// The first collision with each body so far, in order of time.
   std::span<const Collision> first_collisions() const noexcept;
 
  private:
   std::shared_ptr<const LapRunner> runner_;
   std::uint64_t seed_;
-  std::unique_ptr<LapRunner::Drive> drive_;
+  std::unique_ptr<LapRunner::LapInProgress> lap_;
 };
 
 }  // namespace slalom::evaluation

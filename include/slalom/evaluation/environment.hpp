@@ -11,39 +11,44 @@
 #include "slalom/sim/world.hpp"
 #include "slalom/vehicle/course/course.hpp"
 
-/// Laps that can be counted and compared: what is driven, how a lap is judged, one lap in lockstep.
+/// Laps that are counted and compared: the environment, one lap in lockstep, and evaluations of many laps.
 namespace slalom::evaluation {
 
-/// The rules of the world, of its clock and of counting.
+/// The rules of a lap: simulated world, clock, placement of obstacles, and how collisions are counted.
 enum class Protocol {
-  true_physics,  ///< named "true": right physics, a command every control period, contacts = bodies touched
-  published,     ///< as the published evaluation: f1tenth_gym, one step of 0.01 s per command, its counting
+  true_physics,  ///< named "true": a command every control period; collisions = different bodies hit
+  published,  ///< as in the program of Honda et al. (ICRA 2024): f1tenth_gym, one step of 0.01 s per command,
+              ///< its way of counting
 };
+/// The name of a protocol in configurations and results: "true" or "published".
 const char* name(Protocol protocol);
-/// Throws std::invalid_argument unless `text` is "true" or "published".
+/// The protocol of this name. Throws std::invalid_argument unless `text` is "true" or "published".
 Protocol protocol_named(std::string_view text);
 
-/// A course made ready to drive on. Heavy to make, immutable, shared by any number of laps and threads.
+/// A course prepared for driving under one protocol. Expensive to make; immutable and shared by any number of
+/// laps and threads.
 struct Environment {
   Protocol protocol = Protocol::true_physics;
   vehicle::Course course;
-  std::shared_ptr<const sim::Track> track;
-  std::vector<maps::ReferencePoint> path;  ///< the course's waypoints
-  std::vector<double>
-      obstacle_room;   ///< m from each point of the obstacle path to the wall on its wider side
-  maps::Pose start;    ///< of the car's centre of gravity, map frame
-  double timeout = 0;  ///< s; 0: three times the profile's lap time
-  std::optional<sim::LidarOptions> lidar;  ///< where it is not the evaluation's own
+  std::shared_ptr<const sim::Track>
+      track;                               ///< walls with their distance field, and the path that counts laps
+  std::vector<maps::ReferencePoint> path;  ///< the waypoints of the course
+  /// m, for each point of the course's obstacle path: the distance to the wall on its wider side.
+  std::vector<double> obstacle_room;
+  maps::Pose start;                        ///< of the centre of gravity, map frame
+  double timeout = 0;                      ///< s; 0: three times the lap time of the speed profile
+  std::optional<sim::LidarOptions> lidar;  ///< replaces the LiDAR of the protocol
 
-  /// The world of this evaluation.
+  /// The world of the protocol, with `lidar` where it is given. Settings of a lap (noise, friction, control
+  /// period) are not applied.
   sim::WorldOptions world_options() const;
 };
 
-/// Makes a course ready. Throws std::invalid_argument on a path or map that cannot be driven on.
+/// Prepares a course. Throws std::invalid_argument if its path or map cannot be driven on.
 std::shared_ptr<Environment> make_environment(vehicle::Course course, Protocol protocol);
 
-/// Loads the course in `folder`. `course_roots` are where the table of known courses lies: the published
-/// evaluation takes start and timeout from it. Throws IoError, std::invalid_argument.
+/// Loads the course in `folder` and prepares it. Under Protocol::published start and timeout come from the
+/// table of known courses in `course_roots`, if the course is in it. Throws IoError, std::invalid_argument.
 std::shared_ptr<const Environment> load_environment(const std::filesystem::path& folder, Protocol protocol,
                                                     const std::vector<std::filesystem::path>& course_roots);
 

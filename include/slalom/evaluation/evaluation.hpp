@@ -15,85 +15,93 @@
 
 namespace slalom::evaluation {
 
-/// An evaluation: experiments over the same course, configuration and seeds, so that lap k of one experiment
-/// is driven among the same obstacles as lap k of another with as many.
+/// Experiments in the same environment, with the same base configuration and the same seeds: lap k of one
+/// experiment has the same obstacles as lap k of another with as many.
 struct Evaluation {
   std::shared_ptr<const Environment> environment;
-  vehicle::Configuration configuration;
+  vehicle::Configuration configuration;  ///< of all experiments, before their own options are set
   std::vector<Experiment> experiments;
-  std::uint64_t seed0 = 0;
+  std::uint64_t seed0 = 0;       ///< seed of lap 0
   double latency = 0;            ///< s
-  bool additional_costs = true;  ///< also the published model's and the driven cost
-  std::string settings;    ///< all that determines the results, as JSON text; two evaluations with other
-                           ///< settings do not mix
-  std::string build;       ///< names the program that drives: laps of other builds may differ
-  bool any_build = false;  ///< mix them all the same
+  bool additional_costs = true;  ///< compute the costs of LapSettings::additional_costs
+  /// All that determines the results, as JSON text. Laps of evaluations with other settings are not mixed.
+  std::string settings;
+  std::string build;       ///< identifies the program that drives; laps of other builds may differ
+  bool any_build = false;  ///< mix laps of different builds
 };
 
-/// Drives the laps of one of the evaluation's experiments: run(lap_seed(evaluation.seed0, lap, obstacles)) is
-/// its lap `lap`, bit for bit. Throws std::invalid_argument.
+/// Drives the laps of one experiment: run(lap_seed(evaluation.seed0, lap, obstacles)) is its lap `lap`, bit
+/// for bit. Throws std::invalid_argument if an option or setting is invalid, std::out_of_range if there is no
+/// such experiment.
 LapRunner make_runner(const Evaluation& evaluation, int experiment);
 
-/// How far an evaluation is.
+/// The progress of an evaluation.
 struct EvaluationProgress {
   int laps_done = 0;
-  int laps_total = 0;
-  int laps_resumed = 0;     ///< of those done, found from an earlier run
-  double seconds_left = 0;  ///< estimated
-  const LapRow* last = nullptr;
+  int laps_total = 0;            ///< of all experiments
+  int laps_resumed = 0;          ///< number of those done that an earlier run has driven
+  double seconds_left = 0;       ///< estimated
+  const LapRow* last = nullptr;  ///< the lap that ended last; null before the first
 };
 
 /// A lap to be driven.
 struct LapTask {
-  int experiment = 0;
-  int lap = 0;
+  int experiment = 0;  ///< index
+  int lap = 0;         ///< from 0
 };
 
-/// Where laps to be driven come from and where driven ones go. Called from several threads at a time.
+/// Hands out laps to be driven and takes the results. Called by several threads at a time.
 class LapQueue {
  public:
   virtual ~LapQueue() = default;
-  virtual std::optional<LapTask> next() = 0;  ///< none: there is nothing left to do
-  virtual void keep(const LapRow& row) = 0;
+  virtual std::optional<LapTask> next() = 0;        ///< the next lap; none when all have been handed out
+  virtual void keep(const LapRow& row) = 0;         ///< a lap was driven
   virtual void fail(std::exception_ptr error) = 0;  ///< a lap could not be driven
 };
 
-/// Drives laps on `jobs` threads until `exchange` has none left or `cancel` is set. The laps do not depend on
-/// who drives which.
-void drive_laps(const Evaluation& evaluation, LapQueue& exchange, int jobs, const std::atomic<bool>& cancel);
+/// Drives laps on `jobs` threads until `queue` is empty or `cancel` is true. The results do not depend on
+/// which thread drives which lap.
+void drive_laps(const Evaluation& evaluation, LapQueue& queue, int jobs, const std::atomic<bool>& cancel);
 
-/// Where the laps of an evaluation are kept: `settings.json`, `laps.csv` when complete, and until then a
-/// journal to which each lap is appended when it ends. A run may be killed at any moment; with `resume` it
-/// goes on, and no finished lap is driven twice.
+/// Stores the laps of an evaluation in a folder: `settings.json`, `laps.csv` when all laps are there, and
+/// until then a journal to which each lap is appended when it ends. A run may be killed at any time; a later
+/// run with `resume` continues it, and no finished lap is driven twice.
 class LapStore {
  public:
-  /// Opens `folder` for the evaluation. Throws IoError if it cannot be written, if it holds results and
-  /// `resume` is not said, if it holds an evaluation with other settings (naming what differs), if its laps
-  /// are corrupt or not of its seeds, if a laps.csv misses some, and if laps are missing and another build of
-  /// the program drove those that are there.
+  /// Opens or makes `folder`. The evaluation must outlive the store. Throws IoError
+  /// - if the folder cannot be written,
+  /// - if it contains laps and `resume` is false,
+  /// - if it contains an evaluation with other settings (the message names the differences),
+  /// - if its laps are corrupt, have other seeds, or are missing in laps.csv,
+  /// - if laps are missing, another build has driven those that are there, and `any_build` is false.
   LapStore(const std::filesystem::path& folder, const Evaluation& evaluation, bool resume);
   ~LapStore();
   LapStore(const LapStore&) = delete;
   LapStore& operator=(const LapStore&) = delete;
 
+  /// The laps driven so far.
   const std::vector<LapRow>& rows() const noexcept { return rows_; }
-  /// Keeps a lap: when this returns it survives the process. Throws IoError if it cannot be written.
+  /// Appends a lap to the journal. It survives the end of the process once this returns. Throws IoError if it
+  /// cannot be written.
   void add(const LapRow& row);
-  /// All laps are there: writes laps.csv in the order of experiments and laps, and removes the journal.
+  /// Writes laps.csv in the order of experiments and laps and removes the journal. To be called when all laps
+  /// are there; does nothing if laps.csv was complete. Throws IoError if it cannot be written.
   void complete();
 
  private:
-  void check_build(const Evaluation& evaluation, const std::string& there) const;
+  void check_build(const Evaluation& evaluation, const std::string& stored_build) const;
 
   std::filesystem::path folder_;
   const std::vector<Experiment>& experiments_;
   std::vector<LapRow> rows_;
-  int journal_ = -1;
+  int journal_ = -1;  ///< file descriptor
 };
 
-/// The laps that a store does not have yet, handed out in order, and what became of them.
+/// The laps that a store does not have yet, in order.
 class EvaluationQueue final : public LapQueue {
  public:
+  /// `on_progress` is called after every lap; `cancel` is read before each lap is handed out. All arguments
+  /// must outlive the queue.
   EvaluationQueue(const Evaluation& evaluation, LapStore& store,
                   std::function<void(const EvaluationProgress&)> on_progress,
                   const std::atomic<bool>& cancel);
@@ -102,8 +110,8 @@ class EvaluationQueue final : public LapQueue {
   void keep(const LapRow& row) override;
   void fail(std::exception_ptr error) override;
 
-  /// When nobody drives any more: completes the store if every lap is there. False if it was cancelled.
-  /// Throws what failed.
+  /// To be called when no thread drives any more. Rethrows the first error; otherwise completes the store and
+  /// returns true if all laps are there.
   bool finish();
 
  private:
@@ -118,9 +126,9 @@ class EvaluationQueue final : public LapQueue {
   std::exception_ptr error_;
 };
 
-/// Drives every lap that the store does not have yet, on `jobs` threads, and completes the store. The laps do
-/// not depend on the number of jobs nor on interruptions. Returns false if `cancel` ended it early. Throws
-/// what a lap throws.
+/// Drives every lap that the store does not have yet on `jobs` threads, and completes the store. The laps
+/// depend neither on the number of jobs nor on interruptions. Returns false if `cancel` ended it early.
+/// Throws what a lap throws.
 bool run_evaluation(const Evaluation& evaluation, LapStore& store, int jobs,
                     const std::function<void(const EvaluationProgress&)>& on_progress,
                     const std::atomic<bool>& cancel);

@@ -19,103 +19,109 @@
 
 namespace slalom::evaluation {
 
-/// The seed of lap `lap`: seed0 + lap (obstacles + 5), as the published evaluation has it.
+/// The seed of lap `lap` (from 0): seed0 + lap (obstacles + 5), as in the program of Honda et al. (ICRA
+/// 2024).
 constexpr std::uint64_t lap_seed(std::uint64_t seed0, int lap, int obstacles) {
   return seed0 + static_cast<std::uint64_t>(lap) * static_cast<std::uint64_t>(obstacles + 5);
 }
 /// The seed of the solver's random numbers in a lap.
 std::uint64_t solver_seed(std::uint64_t lap_seed, std::string_view method);
 
-/// The first touch of a body, or of a wall (body -1).
+/// The first collision with a body or a wall.
 struct Collision {
   double time = 0;  ///< s
   maps::Pose pose;  ///< of the car's centre of gravity
-  int body = -1;
+  int body = -1;    ///< index of the body, -1 for a wall
 };
 
-/// A control step, before the command acts. References last until the callback returns.
+/// A control step after the planner's update and before its command takes effect. The references are valid
+/// until the callback returns.
 struct ControlStep {
-  int step = 0;
-  double time = 0;      ///< s
-  double progress = 0;  ///< of the lap, 0 ... 1
-  int collisions = 0;   ///< so far
-  const sim::Observation& seen;
-  const maps::LaserScanView& scan;
-  const vehicle::Odometry& odometry;
+  int step = 0;                       ///< control steps since the start
+  double time = 0;                    ///< s
+  double progress = 0;                ///< of the lap, 0 ... 1
+  int collisions = 0;                 ///< so far, as the protocol counts them
+  const sim::Observation& seen;       ///< the true state of the car
+  const maps::LaserScanView& scan;    ///< input of the planner
+  const vehicle::Odometry& odometry;  ///< input of the planner; the true one while the car is not localised
   const vehicle::PlannerOutput& output;
-  const vehicle::Planner& planner;
+  const vehicle::Planner& planner;  ///< after the update
   const sim::World& world;
-  SequenceCostMeter::Cost cost;  ///< of the sequence sent
+  SequenceCostMeter::Cost cost;  ///< of the control sequence that the planner chose
 };
+/// Called in every control step.
 using ControlStepCallback = std::function<void(const ControlStep&)>;
 
-/// A lap that has ended. Costs are means over its control steps.
+/// A lap that has ended. Costs and other means are over its control steps.
 struct LapResult {
   std::uint64_t seed = 0;
-  bool finished = false;
-  bool timeout = false;     ///< given up after `time` seconds
-  bool cancelled = false;   ///< told to end
-  int collisions = 0;       ///< by the evaluation's way of counting
-  int collided_bodies = 0;  ///< different bodies, all walls as one
-  bool wall = false;
-  double time = 0;  ///< s of the lap; where it is not finished, until its end
-  int steps = 0;    ///< control steps
-  double state_cost = 0;
-  double collision_cost = 0;
-  double mean_sequence_cost = 0;    ///< MS = state_cost + collision_cost
-  double published_model_cost = 0;  ///< MS with the published model's prediction
-  double driven_cost = 0;           ///< MS of the states really driven
-  double input_error = 0;           ///< sum of |u| over the sequence sent, rad
-  double mean_speed = 0;            ///< m/s
-  double mean_path_distance = 0;    ///< m, of the rear axle
-  double max_path_distance = 0;     ///< m
-  double least_clearance = 0;       ///< m from the body to wall or obstacle, negative inside
-  double mean_variance = 0;         ///< of the solver's last distribution, input^2
-  double mean_effective_samples = 0;
-  std::array<int, 7> planner_status{};  ///< control steps by vehicle::PlannerStatus
-  std::vector<Collision> first_collisions;
-  std::vector<maps::Pose> obstacles;
-  int impassable = 0;               ///< of these, as evaluation::impassable tells
-  std::vector<float> solve_ms;      ///< wall clock of each solve
-  std::vector<float> tick_ms;       ///< wall clock of each planner update
-  LocalisationRecord localisation;  ///< with `hardware`
+  bool finished = false;          ///< whether the car reached the finish in time
+  bool timeout = false;           ///< stopped after the timeout of the lap
+  bool cancelled = false;         ///< stopped by the caller
+  int collisions = 0;             ///< as the protocol counts them
+  int collided_bodies = 0;        ///< number of different bodies hit, all walls as one
+  bool wall = false;              ///< whether the car hit a wall
+  double time = 0;                ///< s, of the lap; where it is not finished, until it ended
+  int steps = 0;                  ///< control steps
+  double state_cost = 0;          ///< mean, of distance and heading
+  double collision_cost = 0;      ///< mean
+  double mean_sequence_cost = 0;  ///< MS = state_cost + collision_cost
+  double published_model_cost =
+      0;                   ///< MS predicted with the model of the paper's program; with `additional_costs`
+  double driven_cost = 0;  ///< MS of the states that the car reached; with `additional_costs`
+  double input_error = 0;  ///< mean of the sum of |steering| over the control sequence, rad
+  double mean_speed = 0;   ///< m/s
+  double mean_path_distance = 0;            ///< m, of the rear axle
+  double max_path_distance = 0;             ///< m
+  double least_clearance = 0;               ///< m from the body to wall or obstacle, negative in a collision
+  double mean_variance = 0;                 ///< of the steering in the solver's distribution, rad^2
+  double mean_effective_samples = 0;        ///< mean of the solver's effective sample size
+  std::array<int, 7> planner_status{};      ///< control steps by vehicle::PlannerStatus
+  std::vector<Collision> first_collisions;  ///< one for each body hit and one for walls, in order of time
+  std::vector<maps::Pose> obstacles;        ///< the parked cars
+  int impassable = 0;                       ///< number of obstacles in impassable_obstacles
+  std::vector<float> solve_ms;              ///< wall-clock time of each solve
+  std::vector<float> tick_ms;               ///< wall-clock time of each planner update
+  LocalisationRecord localisation;          ///< with LapSettings::hardware
 };
 
-/// Drives laps of one configuration and method, each on its own: world, planner and solver begin anew, all
-/// random numbers follow from the lap's seed, and nothing is shared with other runners but the environment.
-/// So laps may be driven in any order, by any number of runners in parallel, with the same results bit for
-/// bit.
+/// Drives laps of one configuration and method, each independent of the others: world, planner and solver
+/// start anew, all random numbers follow from the seed of the lap, and runners share only the environment. So
+/// laps can be driven in any order, by any number of runners in parallel, with the same results bit for bit.
 class LapRunner {
  public:
-  /// Throws std::invalid_argument on an unknown method, on options and settings out of range and on a start
-  /// in a wall.
+  /// Throws std::invalid_argument if `environment` is null, the method is unknown, an option or a setting is
+  /// out of range, or the start is in a wall.
   LapRunner(std::shared_ptr<const Environment> environment, const vehicle::Configuration& configuration,
             std::string method, const LapSettings& settings);
 
-  /// Drives one lap. `cancel` is looked at in every control step. Throws std::runtime_error if the obstacles
-  /// find no place, std::invalid_argument if one of them stands on the start.
+  /// Drives one lap and calls `on_step` in every control step. Ends early when `cancel` becomes true. Throws
+  /// std::runtime_error if there is no room for the obstacles or opponents, std::invalid_argument if one of
+  /// them overlaps the start.
   LapResult run(std::uint64_t seed, const ControlStepCallback& on_step = {},
                 const std::atomic<bool>* cancel = nullptr);
 
   double timeout() const noexcept { return timeout_; }         ///< s
   double control_period() const noexcept;                      ///< s of simulated time per command
   const maps::Pose& start() const noexcept { return start_; }  ///< of the centre of gravity
-  const Environment& environment() const noexcept { return *environment_; }
-  const std::string& method() const noexcept { return method_; }
+  const Environment& environment() const noexcept { return *environment_; }  ///< where laps are driven
+  const std::string& method() const noexcept { return method_; }             ///< name of the method
+  /// The options of planner, vehicle problem and methods.
   const vehicle::Configuration& configuration() const noexcept { return configuration_; }
 
  private:
   friend class ClosedLoop;
-  struct Drive;
-  std::unique_ptr<Drive> begin(std::uint64_t seed) const;
+  struct LapInProgress;
+  std::unique_ptr<LapInProgress> begin(std::uint64_t seed) const;
   std::vector<maps::Pose> place_obstacles(std::uint64_t seed) const;
   std::vector<maps::Pose> place_opponents(const std::vector<maps::Pose>& obstacles) const;
   std::unique_ptr<vehicle::Planner> make_planner() const;
   bool at_finish(const sim::World& world) const noexcept;
   double progress(const sim::World& world) const noexcept;
-  void control(Drive& drive, const ControlStepCallback& on_step, double further_latency = 0) const;
-  void advance(Drive& drive, bool past_finish = false) const;
-  void finish(Drive& drive) const;
+  void control(LapInProgress& lap, const ControlStepCallback& on_step, double extra_latency = 0) const;
+  void advance(LapInProgress& lap, bool past_finish = false) const;
+  void record_collisions(LapInProgress& lap) const;
+  void finish(LapInProgress& lap) const;
 
   std::shared_ptr<const Environment> environment_;
   std::vector<maps::ReferencePoint> path_;  ///< the environment's, with the speeds of this lap
@@ -124,7 +130,7 @@ class LapRunner {
   LapSettings settings_;
   maps::Pose start_;
   double timeout_ = 0;
-  double open_length_ = 0;  ///< m to drive where the course is no loop; 0 for loops
+  double open_length_ = 0;  ///< m to drive on an open course; 0 on closed courses
 };
 
 }  // namespace slalom::evaluation

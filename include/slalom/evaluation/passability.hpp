@@ -6,22 +6,23 @@
 #include "slalom/sim/shapes.hpp"
 #include "slalom/sim/track.hpp"
 
-/// Obstacles that nobody could have driven past, so that they can be counted apart.
+/// Obstacles that no car can pass, so that they can be counted separately.
 namespace slalom::evaluation {
 
-/// What the search takes for granted.
+/// The options of impassable_obstacles.
 struct PassabilityOptions {
-  double radius =
-      0.155;          ///< m, half the car's width: the disc about a point of its axle that must get through
-  double reach = 3;   ///< m along the course: from so far before an obstacle to so far behind it
-  double window = 6;  ///< m round the obstacle: what is searched, so that the way round a loop is none
+  double radius = 0.155;  ///< m, of the disc that must pass: half the width of the car
+  double reach = 3;  ///< m along the course, from which point before an obstacle to which point behind it
+  double window =
+      6;  ///< m around the obstacle that is searched, so that the course is not driven the other way
 };
 
-/// The bodies, by their index, that close the road: no disc of the given radius comes past them, by a search
-/// over the cells of the map that takes every cell for free of which any point may be. So what is named here
-/// cannot be passed by any car of that width; a car that must turn may fail elsewhere too. Bodies stand all
-/// together: two that close the road with each other are both named. None on a track without a lap path.
+/// The indices of the bodies that block the road: no disc of the given radius can pass them. The search is a
+/// flood fill over the cells of the map that treats a cell as free if any point in it may be free. So no car
+/// of that width can pass a body that is returned; a car with a limited turning circle may fail at others
+/// too. All bodies are present at once: two that block the road together are both returned. Empty on a track
+/// without a lap path.
 std::vector<int> impassable_obstacles(const sim::Track& track, std::span<const sim::Box> bodies,
-                                      const PassabilityOptions& rules = {});
+                                      const PassabilityOptions& options = {});
 
 }  // namespace slalom::evaluation

@@ -10,43 +10,48 @@
 
 namespace slalom::evaluation {
 
-/// The state cost of a control sequence (MS, "mean sequence cost", Honda et al., ICRA 2024, section VI) by
-/// one ruler for every method and configuration: the published cost map and reference field, the published
-/// weights, 15 states 0.05 s apart. For the published configuration it equals the planner's own costs.
+/// The state cost of a control sequence (MS, "mean sequence cost", Honda et al., ICRA 2024, section VI),
+/// measured in the same way for every method and configuration: cost map, reference field and weights of the
+/// paper's program, 15 states 0.05 s apart. For the configuration `published` it equals the planner's own
+/// costs.
 class SequenceCostMeter {
  public:
-  static constexpr int states = 15;
+  static constexpr int states = 15;          ///< that a cost is summed over
   static constexpr double time_step = 0.05;  ///< s
 
+  /// A cost in its parts.
   struct Cost {
-    double state = 0;
-    double collision = 0;
+    double state = 0;      ///< of the distance to the path and the heading error
+    double collision = 0;  ///< of walls and obstacles
+    /// Their sum.
     double total() const { return state + collision; }
   };
 
-  /// `model` is that of the planner. Throws std::invalid_argument on a bad path.
+  /// `model` has the options of the planner's vehicle problem. Throws std::invalid_argument if the path is
+  /// invalid.
   SequenceCostMeter(std::span<const maps::ReferencePoint> path, const vehicle::VehicleOptions& model);
   ~SequenceCostMeter();
+  /// Moves the meter; the source can only be destroyed or assigned to.
   SequenceCostMeter(SequenceCostMeter&&) noexcept;
+  /// Moves the meter; the source can only be destroyed or assigned to.
   SequenceCostMeter& operator=(SequenceCostMeter&&) noexcept;
 
-  /// Makes the published maps from a scan taken with the rear axle at `robot` (map frame).
-  /// `made` is the published cost map of this very scan where somebody has made it already; it must last
-  /// until the next call.
+  /// Makes the maps from a scan taken with the rear axle at `robot` (map frame). `made` is the cost map of
+  /// this scan if the caller has one with the same options; it must stay valid until the next call.
   void observe(const maps::LaserScanView& scan, const maps::Pose& robot,
                const maps::LocalCostMap* made = nullptr) noexcept;
 
-  /// Of what the planner's model predicts for the sequence it sends: interpolated to 0.05 s and cut at 15
-  /// states; where it is shorter, its last input is held. Without a sequence, the present state 15 times.
+  /// The cost of the states that the planner's model predicts for its control sequence, interpolated to 0.05
+  /// s and cut at 15 states; a shorter sequence is extended by its last input. Without a sequence: present().
   Cost planned(const vehicle::PlannerOutput& output) noexcept;
 
-  /// Of what the published model predicts for that sequence.
+  /// The cost of the states that the model of the paper's program predicts for that sequence.
   Cost published_model(const vehicle::PlannerOutput& output) noexcept;
 
-  /// Of the state the car is in, taken 15 times: averaged over a lap, the cost of the sequence really driven.
+  /// The cost of the present state, 15 times. Its mean over a lap is the cost of the driven trajectory.
   Cost present() const noexcept;
 
-  /// From the car's rear axle to the path, m.
+  /// m, from the car's rear axle to the path.
   double path_distance() const noexcept;
 
  private:

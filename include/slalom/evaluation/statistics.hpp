@@ -8,8 +8,8 @@ namespace slalom::evaluation {
 
 /// A two-sided interval, 95 % unless said otherwise.
 struct Interval {
-  double low = 0;
-  double high = 0;
+  double low = 0;   ///< lower end
+  double high = 0;  ///< upper end
 };
 
 /// Wilson's score interval for a rate of `successes` out of `trials` (E. B. Wilson, JASA 22, 1927). [0, 1]
@@ -21,8 +21,8 @@ double mean(std::span<const double> values);  ///< NaN without values
 /// Percentile bootstrap of the mean (Efron & Tibshirani 1993, chapter 13). NaN without values.
 Interval bootstrap_mean(std::span<const double> values, std::uint64_t seed = 1, int resamples = 10000);
 
-/// Percentile bootstrap of sum(numerator) / sum(denominator) over paired entries, for instance contacts over
-/// obstacles by laps: lap is resampled as a whole. NaN where the denominators sum to 0.
+/// Percentile bootstrap of sum(numerator) / sum(denominator) over paired entries, for instance collisions
+/// over obstacles per lap: laps are resampled as a whole. NaN where the denominators sum to 0.
 Interval bootstrap_ratio(std::span<const double> numerator, std::span<const double> denominator,
                          std::uint64_t seed = 1, int resamples = 10000);
 
@@ -34,7 +34,7 @@ double bootstrap_difference_p(std::span<const double> a, std::span<const double>
 
 /// Two-sided p value of two independent samples being draws of the same distribution: permutation test with
 /// the difference of means as statistic (Fisher 1935; `resamples` random permutations, so no p below 1 /
-/// (resamples + 1)). Right however few the values are, but blind where they are too few: with 2 and 2 no p is
+/// (resamples + 1)). Valid for any number of values, but without power for very few: with 2 and 2 no p is
 /// below 1/3. NaN without values in either.
 double permutation_difference_p(std::span<const double> a, std::span<const double> b, std::uint64_t seed = 1,
                                 int resamples = 10000);
@@ -50,12 +50,12 @@ Interval rate_difference_interval(std::int64_t successes_a, std::int64_t trials_
                                   std::int64_t trials_b);
 
 /// Exact two-sided McNemar test of paired yes/no outcomes: `only_a`, `only_b` count the pairs in which only
-/// the one says yes (McNemar 1947; binomial, so right for small counts too).
+/// one says yes (McNemar 1947; binomial, so valid for small counts too).
 double mcnemar_p(std::int64_t only_a, std::int64_t only_b);
 
 /// Fisher's exact two-sided test of equal rates in two independent samples (Fisher 1935): the probability of
-/// all tables with these margins that are no likelier than the one seen. Successes beyond the trials count as
-/// all of them; 1 where either has no trials.
+/// all tables with these margins that are no more likely than the observed one. Successes beyond the trials
+/// count as all of them; 1 where either has no trials.
 double fisher_p(std::int64_t successes_a, std::int64_t trials_a, std::int64_t successes_b,
                 std::int64_t trials_b);
 

@@ -1,0 +1,144 @@
+#include <algorithm>
+
+#include "plan.hpp"
+
+namespace slalom::python {
+namespace {
+
+template <class T>
+py::array view(const Plan& plan, const T* data, std::vector<py::ssize_t> shape,
+               std::vector<py::ssize_t> strides = {}) {
+  if (strides.empty()) {
+    py::array array(py::dtype::of<T>(), shape, data, plan.owner);
+    py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+    return array;
+  }
+  py::array array(py::dtype::of<T>(), shape, strides, data, plan.owner);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+/// [step][input] values as an array (steps, inputs); empty if there are none.
+py::array sequence(const Plan& plan, std::span<const float> values) {
+  const py::ssize_t inputs = plan.controller().solver().inputs();
+  return view(plan, values.data(), {static_cast<py::ssize_t>(values.size()) / inputs, inputs});
+}
+
+py::array sequences(const Plan& plan, const SequenceList& list) {
+  const Solver& solver = plan.controller().solver();
+  return view(plan, list.values.data(), {list.sequences, solver.horizon(), solver.inputs()});
+}
+
+template <class T>
+py::array values(const Plan& plan, std::span<const T> list) {
+  return view(plan, list.data(), {static_cast<py::ssize_t>(list.size())});
+}
+
+/// Per-sample values without their padding.
+template <class T>
+py::array per_sample(const Plan& plan, std::span<const T> list) {
+  const SequenceBatch* samples = plan.result().samples;
+  const std::size_t count = samples ? static_cast<std::size_t>(samples->samples()) : list.size();
+  return values(plan, list.first(std::min(count, list.size())));
+}
+
+py::array samples(const Plan& plan) {
+  const SequenceBatch* batch = plan.result().samples;
+  if (!batch) return view<float>(plan, nullptr, {0, 0, 0});
+  constexpr py::ssize_t width = sizeof(float);
+  const py::ssize_t row = width * batch->stride();
+  return view(plan, batch->row(0, 0), {batch->samples(), batch->steps(), batch->inputs()},
+              {width, row * batch->inputs(), row});
+}
+
+py::dict times(const Plan& plan) {
+  const StageTimes& t = plan.result().times;
+  py::dict all;
+  all["draw"] = t.draw;
+  all["evaluate"] = t.evaluate;
+  all["guide"] = t.guide;
+  all["update"] = t.update;
+  all["total"] = t.total;
+  return all;
+}
+
+}  // namespace
+
+void bind_plan(py::module_& module) {
+  py::class_<Plan>(
+      module, "Plan",
+      "The solution of a controller. Arrays are views of the controller's memory, valid until it solves "
+      "again; copy what you keep.")
+      .def_property_readonly(
+          "status", [](const Plan& p) { return std::string(name(p.controller().status())); },
+          "'ok', 'deadline', 'all_collided', 'degenerate' or 'non_finite_state'")
+      .def_property_readonly(
+          "ok", [](const Plan& p) { return p.controller().status() == Status::ok; },
+          "whether the status is 'ok'")
+      .def_property_readonly(
+          "inputs",
+          [](const Plan& p) {
+            Controller& c = p.controller();
+            return view(p, c.inputs().data(), {c.solver().horizon(), c.solver().inputs()});
+          },
+          "float64 [horizon, inputs]; the first row is for now")
+      .def_property_readonly(
+          "states",
+          [](const Plan& p) {
+            Controller& c = p.controller();
+            return view(p, c.prediction().states.data(), {c.solver().horizon() + 1, c.problem().states()});
+          },
+          "float64 [horizon + 1, states], predicted for the inputs")
+      .def_property_readonly(
+          "cost", [](const Plan& p) { return p.controller().prediction().cost; }, "cost of the plan")
+      .def_property_readonly(
+          "collided", [](const Plan& p) { return p.controller().prediction().collided; },
+          "whether the plan collides")
+      .def_property_readonly(
+          "cost_terms",
+          [](const Plan& p) {
+            py::dict all;
+            for (const auto& [name, value] : p.controller().prediction().terms) all[py::str(name)] = value;
+            return all;
+          },
+          "the parts of the plan's cost by name; they sum to it")
+      .def_property_readonly(
+          "nominal", [](const Plan& p) { return sequence(p, p.result().nominal); },
+          "float32 [horizon, inputs]; svg_mppi: the best guide")
+      .def_property_readonly(
+          "variances", [](const Plan& p) { return sequence(p, p.result().variances); },
+          "float32 [horizon, inputs], variances of the distribution")
+      .def_property_readonly("samples", samples, "float32 [samples, horizon, inputs], the last samples")
+      .def_property_readonly(
+          "costs", [](const Plan& p) { return per_sample(p, p.result().costs); }, "float32 [samples]")
+      .def_property_readonly(
+          "weights", [](const Plan& p) { return per_sample(p, p.result().weights); },
+          "float32 [samples]; they sum to 1")
+      .def_property_readonly(
+          "samples_collided", [](const Plan& p) { return per_sample(p, p.result().collided); },
+          "uint8 [samples], 1 where a sample collides")
+      .def_property_readonly(
+          "guides", [](const Plan& p) { return sequences(p, p.result().guides); },
+          "float32 [guides, horizon, inputs], the final guides")
+      .def_property_readonly(
+          "guide_path", [](const Plan& p) { return sequences(p, p.result().guide_path); },
+          "float32 [iterations x guides, horizon, inputs]")
+      .def_property_readonly(
+          "minimum_cost", [](const Plan& p) { return p.result().minimum_cost; },
+          "the lowest cost of a sample")
+      .def_property_readonly(
+          "expected_cost", [](const Plan& p) { return p.result().expected_cost; },
+          "weighted mean of the samples' costs")
+      .def_property_readonly(
+          "effective_sample_size", [](const Plan& p) { return p.result().effective_sample_size; },
+          "1 / sum of squared weights")
+      .def_property_readonly(
+          "collided_share", [](const Plan& p) { return p.result().collided_share; },
+          "fraction of the samples that collide, 0 ... 1")
+      .def_property_readonly(
+          "iterations", [](const Plan& p) { return p.result().iterations; },
+          "number of guide or distribution updates")
+      .def_property_readonly("times", times, "wall-clock time (s) of each stage");
+}
+
+}  // namespace slalom::python

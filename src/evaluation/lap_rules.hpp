@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "slalom/evaluation/environment.hpp"
+#include "slalom/evaluation/lap_settings.hpp"
+#include "slalom/maps/laser_scan.hpp"
+#include "slalom/sim/collision_log.hpp"
+#include "slalom/sim/placement.hpp"
+#include "slalom/sim/world.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
+
+namespace slalom::evaluation {
+
+/// What the protocols of a lap do differently. The published protocol is implemented in
+/// published_protocol.cpp, the product's own in standard_protocol.cpp; nothing else depends on which of them
+/// applies.
+class LapRules {
+ public:
+  virtual ~LapRules() = default;
+
+  /// How images of maps are read.
+  virtual maps::MapReading map_reading() const = 0;
+  /// Whether a car that leaves the map has hit a wall.
+  virtual bool outside_is_wall() const noexcept = 0;
+  /// Sets start and timeout that the table of known courses gives and the protocol prescribes.
+  virtual void complete(Environment& environment, const std::filesystem::path& folder,
+                        const std::vector<std::filesystem::path>& course_roots) const = 0;
+
+  /// The world before the settings of a lap are applied.
+  virtual sim::WorldOptions world_options() const = 0;
+  /// Applies settings and control period to the world. Throws nothing: `check` has been called.
+  virtual void configure(sim::WorldOptions& options, const LapSettings& settings,
+                         const vehicle::Configuration& configuration) const = 0;
+  /// Throws std::invalid_argument on settings that the protocol excludes.
+  virtual void check(const LapSettings& settings) const = 0;
+  /// s of simulated time per command.
+  virtual double control_period(const vehicle::Configuration& configuration) const noexcept = 0;
+
+  /// Where the parked cars of a lap stand. Throws std::runtime_error if there is no room for them.
+  virtual std::vector<sim::Placement> place_obstacles(const Environment& environment, int obstacles,
+                                                      std::uint64_t seed, const maps::Point& start) const = 0;
+
+  /// The scan as the planner gets it.
+  virtual maps::LaserScanView scan(const sim::Observation& seen, const sim::World& world) const noexcept = 0;
+  /// The command as the car gets it.
+  virtual Command command(const Command& planned) const noexcept = 0;
+
+  /// Whether a course without a loop ends a lap at its end; its length counts from the start otherwise.
+  virtual bool finishes_open_courses() const noexcept = 0;
+  /// Whether a lap of a closed course is complete; `progress` in [0, 1].
+  virtual bool lap_complete(const sim::World& world, double progress) const noexcept = 0;
+  /// s, of a finished lap of a closed course.
+  virtual double lap_time(const sim::World& world) const noexcept = 0;
+  /// The number of collisions so far.
+  virtual int collisions(const sim::CollisionLog& log) const noexcept = 0;
+};
+
+/// The rules of a protocol; they live as long as the program.
+const LapRules& rules_of(Protocol protocol) noexcept;
+
+namespace detail {
+const LapRules& standard_rules() noexcept;
+const LapRules& published_rules() noexcept;
+}  // namespace detail
+
+}  // namespace slalom::evaluation

@@ -1,0 +1,85 @@
+// The start of a lap: the world of its settings, and where obstacles and opponents stand.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "evaluation/lap_in_progress.hpp"
+#include "evaluation/lap_rules.hpp"
+#include "slalom/evaluation/passability.hpp"
+#include "slalom/sim/shapes.hpp"
+
+namespace slalom::evaluation {
+
+std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t lap_seed) const try {
+  const auto placed = rules_of(environment_->protocol)
+                          .place_obstacles(*environment_, settings_.obstacles,
+                                           settings_.layout.value_or(lap_seed), {start_.x, start_.y});
+  std::vector<maps::Pose> poses;
+  for (const sim::Placement& each : placed) poses.push_back(each.pose);
+  return poses;
+} catch (const std::runtime_error& error) {
+  throw std::runtime_error("course " + environment_->course.name + ": " + error.what() +
+                           "; the course may be too narrow to pass a parked car");
+}
+
+/// At equal distances along the course, moved forward where something else stands.
+std::vector<maps::Pose> LapRunner::place_opponents(const std::vector<maps::Pose>& obstacles) const {
+  const sim::LapPath& path = *environment_->track->lap_path();
+  const double begin = path.project({start_.x, start_.y}).arc;
+  const double least_distance = 1.0, step = 0.25;  // m
+  std::vector<maps::Pose> poses;
+  for (int i = 1; i <= settings_.opponents; ++i) {
+    double arc = begin + path.length() * i / (settings_.opponents + 1);
+    for (double tried = 0; tried < path.length(); tried += step, arc += step) {
+      const maps::Pose pose = path.at(arc);
+      const auto is_near = [&](const maps::Pose& other) {
+        return std::hypot(other.x - pose.x, other.y - pose.y) < least_distance;
+      };
+      if (std::any_of(obstacles.begin(), obstacles.end(), is_near) ||
+          std::any_of(poses.begin(), poses.end(), is_near) || is_near(start_))
+        continue;
+      poses.push_back(pose);
+      break;
+    }
+  }
+  if (static_cast<int>(poses.size()) < settings_.opponents)
+    throw std::runtime_error("course " + environment_->course.name + ": no room for " +
+                             std::to_string(settings_.opponents) + " opponents");
+  return poses;
+}
+
+std::unique_ptr<LapRunner::LapInProgress> LapRunner::begin(std::uint64_t seed) const {
+  sim::WorldOptions options = environment_->world_options();
+  rules_of(environment_->protocol).configure(options, settings_, configuration_);
+  if (settings_.hardware) HardwareModel::apply(*settings_.hardware, options);
+  auto lap = std::make_unique<LapInProgress>(options, *environment_, path_, configuration_, make_planner());
+  lap->planner->reset(solver_seed(seed, method_));
+  lap->result.seed = seed;
+  lap->result.obstacles = place_obstacles(seed);
+  lap->result.least_clearance = std::numeric_limits<double>::infinity();
+  std::vector<maps::Pose> cars{start_};
+  if (settings_.opponents > 0) {
+    std::vector<sim::PathPoint> line;
+    for (const maps::ReferencePoint& point : path_)
+      line.push_back({{point.x, point.y},
+                      settings_.opponent_speed * std::min(point.speed, configuration_.planner.max_speed)});
+    lap->opponents.emplace(std::move(line));
+    const auto opponents = place_opponents(lap->result.obstacles);
+    cars.insert(cars.end(), opponents.begin(), opponents.end());
+    lap->commands.resize(cars.size());
+  }
+  lap->world.reset(seed, cars, lap->result.obstacles);
+  std::vector<sim::Box> parked;
+  for (std::size_t i = cars.size(); i < lap->world.bodies(); ++i) parked.push_back(lap->world.outline(i));
+  lap->result.impassable = static_cast<int>(
+      impassable_obstacles(*environment_->track, parked, {.radius = 0.5 * options.car.width}).size());
+  for (std::size_t i = 1; i < cars.size(); ++i) lap->world.set_scanning(i, false);
+  if (settings_.hardware)
+    lap->hardware =
+        std::make_unique<HardwareModel>(*settings_.hardware, environment_->course.map, options.car,
+                                        lap->world.state(0), solver_seed(seed, "hardware"));
+  return lap;
+}
+
+}  // namespace slalom::evaluation

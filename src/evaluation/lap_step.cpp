@@ -1,0 +1,131 @@
+// One control step of a lap: the planner's update, then the world until the next one.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "evaluation/lap_in_progress.hpp"
+#include "evaluation/lap_rules.hpp"
+#include "slalom/sim/shapes.hpp"
+
+namespace slalom::evaluation {
+namespace {
+
+/// Pose and speed of the rear axle of the simulated car.
+vehicle::Odometry odometry_of(const sim::Observation& seen, double rear_length) {
+  const double c = std::cos(seen.pose.yaw), s = std::sin(seen.pose.yaw);
+  return {{seen.pose.x - rear_length * c, seen.pose.y - rear_length * s, seen.pose.yaw}, seen.speed};
+}
+
+/// sum of |u| over the first input (the steering) of every step, rad
+double sum_of_steering(const vehicle::PlannerOutput& output) {
+  double sum = 0;
+  for (std::size_t row = 0; row < output.inputs.size();
+       row += static_cast<std::size_t>(output.inputs_per_step))
+    sum += std::abs(static_cast<double>(output.inputs[row]));
+  return sum;
+}
+
+/// Mean over the steps of the variance of the first input, rad^2.
+double mean_variance(const SolveResult& solve, std::size_t inputs) {
+  if (solve.variances.empty()) return 0;
+  double sum = 0;
+  for (std::size_t row = 0; row < solve.variances.size(); row += inputs)
+    sum += static_cast<double>(solve.variances[row]);
+  return sum / static_cast<double>(solve.variances.size() / inputs);
+}
+
+}  // namespace
+
+void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, double extra_latency) const {
+  const LapRules& rules = rules_of(environment_->protocol);
+  const sim::Observation seen = lap.world.observe(0);
+  const maps::LaserScanView scan = rules.scan(seen, lap.world);
+  vehicle::Odometry odometry = odometry_of(seen, lap.world.options().car.rear_length);
+  bool localised = true;
+  if (lap.hardware) {
+    const auto sensed = lap.hardware->sense(seen, lap.world.state(0));
+    localised = sensed.has_value();
+    if (localised) odometry = *sensed;
+  }
+  // Without a pose the planner gets NaN and stops; the cost is still measured at the true pose.
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const vehicle::PlannerOutput& output = lap.planner->update(
+      {scan, localised ? odometry : vehicle::Odometry{{unknown, unknown, unknown}, odometry.speed}});
+
+  // Where the planner's cost map is built with the options of the meter's, it is not built twice.
+  lap.meter.observe(scan, odometry.pose,
+                    configuration_.planner.published.maps ? &lap.planner->cost_map() : nullptr);
+  const SequenceCostMeter::Cost cost = lap.meter.planned(output);
+  lap.sums.state_cost += cost.state;
+  lap.sums.collision_cost += cost.collision;
+  if (settings_.additional_costs) {
+    lap.sums.published_model_cost += lap.meter.published_model(output).total();
+    lap.sums.driven_cost += lap.meter.present().total();
+  }
+  lap.sums.input_error += sum_of_steering(output);
+  lap.sums.speed += seen.speed;
+  const double path_distance = lap.meter.path_distance();
+  lap.sums.path_distance += path_distance;
+  LapResult& result = lap.result;
+  result.max_path_distance = std::max(result.max_path_distance, path_distance);
+  ++result.planner_status[static_cast<std::size_t>(output.status)];
+  result.tick_ms.push_back(static_cast<float>(1e3 * output.tick_time));
+  if (output.solve) {
+    const SolveResult& solve = *output.solve;
+    ++lap.sums.solves;
+    lap.sums.effective_samples += solve.effective_sample_size;
+    lap.sums.variance += mean_variance(solve, static_cast<std::size_t>(output.inputs_per_step));
+    result.solve_ms.push_back(static_cast<float>(1e3 * solve.times.total));
+  }
+  if (on_step)
+    on_step({result.steps, seen.time, progress(lap.world), rules.collisions(lap.log), seen, scan, odometry,
+             output, *lap.planner, lap.world, cost});
+  ++result.steps;
+
+  const double time_step = lap.world.options().time_step;
+  const auto delay = std::llround(settings_.latency / time_step) +
+                     static_cast<long long>(std::ceil(extra_latency / time_step - 1e-9));
+  lap.pending.emplace_back(lap.world.steps() + delay,
+                           rules.command({output.command.steer, output.command.speed}));
+}
+
+void LapRunner::advance(LapInProgress& lap, bool past_finish) const {
+  const double time_step = lap.world.options().time_step;
+  const auto steps = std::max<long long>(1, std::llround(control_period() / time_step));
+  for (long long k = 0; k < steps && (past_finish || !at_finish(lap.world)); ++k) {
+    while (!lap.pending.empty() && lap.pending.front().first <= lap.world.steps()) {
+      lap.applied = lap.pending.front().second;
+      lap.pending.erase(lap.pending.begin());
+    }
+    lap.commands[0] = lap.hardware ? lap.hardware->servo(lap.applied, time_step) : lap.applied;
+    lap.commands[0].steer *= settings_.steering_gain;
+    for (std::size_t i = 1; i < lap.commands.size(); ++i) {
+      const sim::CarState& opponent = lap.world.state(i);
+      lap.commands[i] = lap.opponents->command({opponent.x, opponent.y, opponent.yaw});
+    }
+    lap.world.step(lap.commands);
+    if (lap.hardware) lap.hardware->moved(lap.world.state(0), time_step);
+    record_collisions(lap);
+  }
+  LapResult& result = lap.result;
+  const sim::Box body = lap.world.outline(0);
+  for (const maps::Point& corner : sim::corners(body))
+    result.least_clearance = std::min(result.least_clearance, environment_->track->distance_to_wall(corner));
+  for (std::size_t i = 1; i < lap.world.bodies(); ++i)
+    result.least_clearance = std::min(result.least_clearance, sim::signed_gap(body, lap.world.outline(i)));
+}
+
+void LapRunner::record_collisions(LapInProgress& lap) const {
+  const sim::Observation seen = lap.world.observe(0);
+  if (!seen.collides()) return;
+  auto& first = lap.result.first_collisions;
+  const auto record = [&](int body) {
+    const auto same = [&](const Collision& c) { return c.body == body; };
+    if (std::none_of(first.begin(), first.end(), same)) first.push_back({seen.time, seen.pose, body});
+  };
+  if (seen.wall) record(-1);
+  for (const int body : seen.colliding) record(body);
+  lap.log.update(lap.world, 0);
+}
+
+}  // namespace slalom::evaluation
