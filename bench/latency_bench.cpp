@@ -1,11 +1,10 @@
-// How late a solve can be: 100,000 solves of `svg_mppi` on the reference workload with a deadline of 2 ms,
-// one every millisecond as a controller would, while another process keeps the other core busy. Status 1 if
-// one returned later than 5 ms.
-// Between solves it looks at the clock for as long, to tell apart what the machine itself does (a virtual one
-// is taken off its core now and then).
+// The worst latency of a solve: 100,000 solves of `svg_mppi` on the reference workload with a deadline of 2
+// ms, one every millisecond, while another process keeps another core busy. Exits with status 1 if a solve
+// took longer than 5 ms. Between solves it polls the clock for the same time, which shows how often the
+// machine itself stops (a virtual machine is descheduled now and then).
 //   slalom_latency_bench [solves] [threads] [milliseconds between two]
-// Give it a real-time priority, as a controller has one (chrt -f 50 slalom_latency_bench), or what it
-// measures is how the system shares the core among all that runs.
+// Run it with real-time priority (chrt -f 50 slalom_latency_bench), as a controller would. Otherwise it
+// measures how the system shares the core among all processes.
 
 #include <sched.h>
 #include <signal.h>
@@ -38,7 +37,7 @@ void run_on(int core) {
   sched_setaffinity(0, sizeof set, &set);
 }
 
-/// A process that does nothing but keep a core busy, at ordinary priority.
+/// A process that keeps a core busy, at ordinary priority.
 pid_t start_hog(int core) {
   const pid_t child = fork();
   if (child != 0) return child;
@@ -63,11 +62,11 @@ SvgMppiOptions reference_options(int threads) {
 struct Run {
   std::vector<double> times;  // ms
   long cut_short = 0, late = 0;
-  long gaps = 0;           // longer than `latest`, while nothing but the clock was looked at
+  long gaps = 0;           // longer than `latest`, while polling the clock
   double longest_gap = 0;  // s
 };
 
-/// Looks at the clock for as long as a solve took: where it stands still, the machine did.
+/// Polls the clock for as long as a solve took. A gap means that the machine stopped.
 void watch_clock(double duration, Run& run) {
   const auto begin = Clock::now();
   for (auto last = begin;;) {
@@ -98,12 +97,12 @@ Run solve_often(long solves, int threads, double period) {
     run.cut_short += result.status == Status::deadline;
     run.late += taken > latest;
     watch_clock(taken, run);
-    if (next < begin) next = begin;  // behind: no two at once to catch up
+    if (next < begin) next = begin;  // late: does not catch up with two at once
   }
   return run;
 }
 
-/// Counts in bins that double.
+/// Counts in bins of doubling width.
 void print_histogram(const std::vector<double>& times) {
   double low = 0;
   for (double high = 0.125; low < times.back(); high *= 2) {
@@ -126,12 +125,11 @@ int run(long solves, int threads, double period) {
   std::printf("%s, %d thread%s, beside a busy core %d of %d: %ld solves\n", simd::name(simd::active_target()),
               threads, threads == 1 ? "" : "s", 0, cores, solves);
   std::printf(
-      "p50 %.3f, p99 %.3f, p99.9 %.3f, max %.3f ms; %ld cut short at the deadline of %.0f ms, %ld later than "
+      "p50 %.3f, p99 %.3f, p99.9 %.3f, max %.3f ms; %ld stopped at the deadline of %.0f ms, %ld later than "
       "%.0f ms\n",
       t.p50, t.p99, t.p999, t.max, made.cut_short, 1e3 * deadline, made.late, 1e3 * latest);
-  std::printf(
-      "in as much time spent on looking at the clock alone: %ld gaps beyond that, the longest %.3f ms\n",
-      made.gaps, 1e3 * made.longest_gap);
+  std::printf("in the same time spent polling the clock: %ld gaps longer than that, the longest %.3f ms\n",
+              made.gaps, 1e3 * made.longest_gap);
   print_histogram(made.times);
   return made.late > 0;
 }

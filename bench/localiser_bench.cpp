@@ -1,4 +1,4 @@
-// Localisation by 4000 particles and 60 beams, particles held at their full number.
+// Localisation with 4000 particles and 60 beams; the number of particles is constant.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ std::vector<Seen> record(const Place& place) {
   return seen;
 }
 
-/// `adaptive` leaves the number of particles to the spread of the guess.
+/// `adaptive`: the number of particles depends on their spread.
 void update(benchmark::State& state, SensorModel model, bool adaptive) {
   const Place place("wren");
   const std::vector<Seen> seen = record(place);

@@ -13,7 +13,7 @@
 namespace slalom::maps {
 namespace {
 
-/// A closed course with straights and turns about as long as an indoor race track, points every 4 cm.
+/// A closed path with straights and turns, about as long as an indoor race track, with a point every 4 cm.
 std::vector<ReferencePoint> course() {
   std::vector<ReferencePoint> path;
   constexpr int count = 1500;

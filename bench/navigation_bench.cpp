@@ -1,9 +1,9 @@
 // The comparison of Vlahov et al., "MPPI-Generic: A CUDA Library for Stochastic Trajectory Optimization"
 // (2024): a differential-drive robot crosses a map with three discs; T = 100, dt = 0.02 s, K = 2^7 ... 2^14.
-// The mean time of a cycle (one solve) over a whole drive on one core, and what each term of the cost came
-// to: a measurement in which one is zero says nothing and ends with status 1.
-// Published means at K = 2048: 0.146 ms (RTX 4090), 0.84 ms (GTX 1050 Ti), 1.65 ms (Orin Nano); nav2's
-// controller on the processor 6.7 ms (i9-13900K), 9.5 ms (Ryzen 5600X).
+// Prints the mean time of a cycle (one solve) over a whole drive on one core, and the mean of each term of
+// the cost. Exits with status 1 if a term is zero, since the measurement is then meaningless. Published means
+// at K = 2048: 0.146 ms (RTX 4090), 0.84 ms (GTX 1050 Ti), 1.65 ms (Orin Nano); nav2's controller on the
+// processor 6.7 ms (i9-13900K), 9.5 ms (Ryzen 5600X).
 //   slalom_navigation_bench [cycles]
 
 #include <array>
@@ -27,7 +27,7 @@ struct Disc {
 constexpr Disc discs[] = {{8, 8, 0.4}, {4, 6, 0.5}, {6, 5, 0.3}};
 constexpr double disc_cost = 250;
 
-/// Costs in cells of 0.1 m over 11 x 11 m, and a ring of zeros for what lies outside.
+/// Costs in cells of 0.1 m over 11 x 11 m, with a border of zeros for positions outside.
 class CostMap {
  public:
   CostMap() : cells_(static_cast<std::size_t>(rows + 2) << stride_log2) {
@@ -103,8 +103,9 @@ MppiOptions options_for(int samples) {
   return o;
 }
 
-/// Drives half of the cycles from the start of the comparison, whose first seconds meet no disc, and half
-/// from a place before the disc at (8, 8); reports, and returns whether every term of the cost counted.
+/// Drives half of the cycles from the start of the comparison, where there is no disc for some seconds, and
+/// half from a position before the disc at (8, 8). Prints the result and returns whether no term of the cost
+/// was zero.
 bool drive(int samples, int cycles) {
   const CostMap map;
   Navigation problem;
@@ -130,7 +131,7 @@ bool drive(int samples, int cycles) {
     for (std::size_t i = 0; i < 3; ++i) terms[i] += cost.value[i];
     x = problem.step(x, disc, u);
   }
-  terms[3] = disc_cost * collided;  // of the samples that touched a disc, for the robot should not
+  terms[3] = disc_cost * collided;  // of the samples that collided: the robot itself should not
   const tools::TimeStatistics t = tools::time_statistics(times);
   const double cycle_ns = 1e6 * t.p50 / (static_cast<double>(samples) * 100);
   std::printf("K %6d  mean %.3f ms, p50 %.3f, min %.3f, max %.3f; %.2f ns a rollout step; terms", samples,

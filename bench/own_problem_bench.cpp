@@ -1,5 +1,5 @@
-// The rollouts of a problem written to the concept against code made for it by hand: the differential drive
-// among three discs, 30 steps, 1024 samples. Both do the same work, which is checked.
+// Rollouts of a problem that meets the concept, compared with code written for it by hand: the differential
+// drive among three discs, 30 steps, 1024 samples. The bench checks that both compute the same costs.
 
 #include <benchmark/benchmark.h>
 
@@ -18,7 +18,7 @@ namespace {
 constexpr int steps = 30, samples = 1024;
 
 #if SLALOM_X86
-/// Sixteen samples at a time in vectors of this processor's own width; no concept, no generality.
+/// Sixteen samples at a time in vectors of this processor's width, for this problem only.
 template <class Target>
 struct HandTuned {
   using V = Pack<Target>;
@@ -92,8 +92,8 @@ void report(benchmark::State& state) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-/// The same robot with everything a problem may say of itself: its cost in named terms, bounds on its inputs
-/// and on their rates.
+/// The same robot with all optional parts of a problem: cost in named terms, bounds on inputs and on their
+/// rates.
 struct WithParts : problems::DifferentialDrive {
   static constexpr std::array cost_names{"distance", "turning", "collision"};
   double input_min = -2, input_max = 2;

@@ -7,8 +7,7 @@
 #include "bench/workload/reference_workload.hpp"
 #include "slalom/core/dispatch.hpp"
 
-/// The rollouts of the vehicle problem on every instruction set, beside the yardstick: ns_per_step of one
-/// core.
+/// Rollouts of the vehicle problem on every instruction set and of the yardstick: ns_per_step on one core.
 namespace slalom::tools {
 namespace {
 
@@ -22,7 +21,7 @@ const SequenceBatch& sequences() {
   static const SequenceBatch made = workload().sequences(samples);
   return made;
 }
-/// The yardstick's costs, with which every rollout must agree.
+/// The costs of the yardstick, with which every rollout must agree.
 const std::vector<double>& expected() {
   static const std::vector<double> made = [] {
     std::vector<double> costs(samples);
@@ -60,8 +59,8 @@ void rollouts(benchmark::State& state, simd::Target target) {
   int other = 0;
   for (std::size_t k = 0; k < samples; ++k)
     other += std::abs(static_cast<double>(costs[k]) - expected()[k]) > 1e-3 * std::max(1.0, expected()[k]);
-  // A rounding may put a state at a cell's edge into the next cell. The second trajectory starts with
-  // straight wheels, so that its costs are others.
+  // Rounding may move a state at the edge of a cell into the next one. The second trajectory starts with
+  // straight wheels, so its costs differ.
   if (!two_trajectories && other > samples / 500) state.SkipWithError("costs differ from the yardstick's");
   report(state, samples);
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A closed course 2.2 m wide on a map of 30 x 30 m at 0.05 m, much like an indoor race track.
+/// A closed course 2.2 m wide on a map of 30 x 30 m at 0.05 m, like an indoor race track.
 struct Course {
   std::vector<maps::Point> path;
   std::shared_ptr<const Track> track;
@@ -51,14 +51,14 @@ const Course& course() {
   return made;
 }
 
-/// Commands that drive `cars` cars round the course, so that the driver's work is not measured.
+/// Recorded commands that drive `cars` cars along the course, so that the driver is not measured.
 struct Drive {
   WorldOptions options;
   std::vector<maps::Pose> starts, parked;
   std::vector<std::vector<Command>> commands;
 
   Drive(int cars, int parked_cars, bool all_scan) {
-    // Contacts are counted and change nothing, so that every car goes on driving.
+    // Collisions are counted and have no effect, so that every car continues.
     options.body_response = CollisionResponse::count_only;
     for (int i = 0; i < cars; ++i) starts.push_back(course().pose(static_cast<std::size_t>(40 * i)));
     for (int i = 0; i < parked_cars; ++i) {
@@ -109,7 +109,7 @@ BENCHMARK_CAPTURE(world_steps, cars_2, 2, 0, false);
 BENCHMARK_CAPTURE(world_steps, cars_7_of_which_5_parked, 2, 5, false);
 BENCHMARK_CAPTURE(world_steps, cars_7_all_scanning, 2, 5, true);
 
-/// One scan of 1080 beams without noise from places all round the course.
+/// One scan of 1080 beams without noise, from positions along the course.
 void scan_1080(benchmark::State& state) {
   const Lidar lidar(LidarOptions{});
   std::vector<float> ranges(lidar.padded_beams());

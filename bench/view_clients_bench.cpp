@@ -1,5 +1,5 @@
-// Whether who looks slows what drives: the planner's time per control step with one client that measures, and
-// with five more that read and one that never does, in turns.
+// Whether clients of the live view slow the controller: the planner's time per control step with one client
+// that measures, and with five more that read and one that never reads, measured alternately.
 //
 //     slalom_view_clients_bench COURSE_FOLDER [ROUNDS]
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 using namespace slalom;
 using testing::WebClient;
 
-constexpr double rate = 2;  // of simulated to real time: every frame can still be sent
+constexpr double rate = 2;  // simulated / real time; every frame can still be sent
 constexpr int ticks_per_turn = 300, ticks_to_settle = 20;
 constexpr int readers = 5;
 
@@ -54,7 +54,7 @@ double tick_time(const std::string& message) {
   return value;
 }
 
-/// Clients that look on while this lives.
+/// Clients that are connected while the object lives.
 class Crowd {
  public:
   explicit Crowd(std::uint16_t port) : asleep_(port, 4096) {

@@ -1,4 +1,4 @@
-// A pendulum whose motor is too weak to lift it: it has to swing up.
+// A pendulum whose motor is too weak to lift it directly: it must swing up.
 
 #include <cmath>
 #include <numbers>
@@ -26,12 +26,13 @@ struct Pendulum {  // a mass of 1 kg on a rod of 1 m; the angle is measured from
   }
   template <class T>
   T terminal_cost(const State<T>& x) const {
-    const T energy = T(0.5) * x.rate * x.rate + T(9.81) * (slalom::cos(x.angle) - T(1));  // 0 when it stands
+    const T energy =
+        T(0.5) * x.rate * x.rate + T(9.81) * (slalom::cos(x.angle) - T(1));  // 0 when it is upright
     return energy * energy;
   }
 };
 
-/// Whether the pendulum, let go hanging, stands after 6 s.
+/// Whether the pendulum is upright 6 s after it started hanging down.
 template <class Controller>
 bool stands(Controller controller) {
   const Pendulum& pendulum = controller.problem();
@@ -67,5 +68,5 @@ int main() {
                                    .variance_max = 4,
                                    .seed = seed}});
   });
-  return report("the pendulum stands", mppi, svg_mppi, 20);
+  return report("the pendulum is upright", mppi, svg_mppi, 20);
 }

@@ -1,4 +1,4 @@
-// A pole on a cart: swing it up by pushing the cart, and keep the cart on its track.
+// A pole on a cart: swing the pole up by pushing the cart, and keep the cart on its track.
 
 #include <cmath>
 #include <numbers>
@@ -10,7 +10,7 @@
 
 using slalom::problems::CartPole;
 
-/// Whether the pole, let go hanging, stands after 6 s, and the cart never left its track.
+/// Whether the pole is upright 6 s after it started hanging down, and the cart never left its track.
 template <class Controller>
 bool stands(Controller controller) {
   const CartPole& cart = controller.problem();

@@ -1,5 +1,5 @@
-// A robot with two driven wheels, a disc in its way: left or right are equally good, their average is a
-// crash.
+// A robot with two driven wheels and a disc in its way. Left and right are equally good; their average
+// collides.
 
 #include <cmath>
 
@@ -10,7 +10,7 @@
 
 using slalom::problems::DifferentialDrive;
 
-/// Whether the robot reaches its goal within 12 s without touching a disc.
+/// Whether the robot reaches its goal within 12 s without a collision.
 template <class Controller>
 bool arrives(Controller controller) {
   const DifferentialDrive& robot = controller.problem();

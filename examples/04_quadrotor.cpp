@@ -9,7 +9,7 @@
 
 using slalom::problems::Quadrotor;
 
-/// Whether the quadrotor hovers within 1 m of its goal after 8 s and never touched the wall.
+/// Whether the quadrotor hovers within 1 m of its goal after 8 s and never collided with the wall.
 template <class Controller>
 bool arrives(Controller controller) {
   const Quadrotor& quadrotor = controller.problem();

@@ -1,4 +1,4 @@
-// A car that steers and accelerates: overtake what stands on the road, on either side, and stop at the line.
+// A car that steers and accelerates: pass parked cars on either side and stop at the line.
 
 #include <cmath>
 
@@ -9,7 +9,7 @@
 
 using slalom::problems::Car;
 
-/// Whether the car stands at the line after 20 s and never touched anything.
+/// Whether the car stands at the line after 20 s and had no collision.
 template <class Controller>
 bool arrives(Controller controller) {
   const Car& car = controller.problem();

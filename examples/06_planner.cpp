@@ -11,7 +11,7 @@
 
 using namespace slalom;
 
-/// Whether the car drives a lap within 20 s and touches nothing.
+/// Whether the car drives a lap within 20 s without a collision.
 bool drives_a_lap(const evaluation::Environment& environment, const SolverOptions& options) {
   const auto seed = std::visit([](const auto& o) { return o.seed; }, options);
   vehicle::Planner planner({}, vehicle::make_vehicle_model({}), environment.path, make_solver(options, 1));
@@ -57,5 +57,5 @@ int main(int, char** argv) {
                                                      .variance_max = 0.1,
                                                      .seed = seed});
   });
-  return report("a lap without contact", mppi, svg_mppi, 20);
+  return report("a lap without collision", mppi, svg_mppi, 20);
 }

@@ -1,4 +1,4 @@
-// An arm of seven joints reaches past a ball that hangs in its way: over it, under it or behind it.
+// An arm with seven joints reaches past a ball: over it, under it or behind it.
 
 #include <algorithm>
 
@@ -9,7 +9,8 @@
 
 using slalom::problems::Arm;
 
-/// Whether the hand comes within 5 cm of its goal in 8 s and no link touches the ball or the ground.
+/// Whether the hand comes within 5 cm of its goal within 8 s and no link collides with the ball or the
+/// ground.
 template <class Controller>
 bool arrives(Controller controller) {
   const Arm& arm = controller.problem();
@@ -25,7 +26,7 @@ bool arrives(Controller controller) {
 
 int main() {
   int failed = 0;
-  for (const double temperature : {0.3, 1.0}) {  // the arm itself bounds its inputs and their rates
+  for (const double temperature : {0.3, 1.0}) {  // the problem has bounds on its inputs and their rates
     const int mppi = succeeded([&](auto seed) {
       return arrives(slalom::Mppi{
           Arm{},

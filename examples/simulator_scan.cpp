@@ -1,4 +1,4 @@
-// The simulator alone: two cars and a barrel on a map, and what the first car's LiDAR sees, as an SVG
+// The simulator alone: two cars and a barrel on a map, and the scan of the first car's LiDAR, as an SVG
 // picture.
 //
 //   simulator_scan OUT.svg [MAP.yaml X Y YAW]
@@ -20,7 +20,7 @@ namespace sim = slalom::sim;
 
 namespace {
 
-/// A ring road, 3 m wide, for those who have no map at hand.
+/// A ring road, 3 m wide, used without a map file.
 maps::OccupancyGrid ring_road() {
   maps::OccupancyGrid grid{400, 400, 0.05, {}, std::vector<maps::Occupancy>(160000, maps::Occupancy::free)};
   for (int row = 0; row < 400; ++row)
@@ -64,7 +64,7 @@ class Picture {
     for (const maps::Point& corner : sim::corners(box))
       out_ << pixel(corner).x << ',' << pixel(corner).y << ' ';
     out_ << "'/>\n";
-    // A white line where the nose is.
+    // A white line at the front of the car.
     const auto c = sim::corners({maps::Pose{box.pose}, box.length * 0.6, box.width});
     line(c[2], c[3], "white", 1);
   }

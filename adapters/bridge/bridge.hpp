@@ -6,16 +6,18 @@
 #include <utility>
 #include <vector>
 
-/// Slalom for programs that are not compiled as C++20: Debian's ROS headers do not compile as that. Plain
-/// structs, and classes that hide what they hold. Constructors, `change` and `use_*` throw std::exception
-/// with a message for a person, and then nothing has changed.
+/// Slalom for programs that are not compiled as C++20, such as nodes that use the ROS headers of Debian.
+/// Plain structs, and classes that hide their implementation. Constructors, `change` and `use_*` throw
+/// std::exception with a message for the user; the object is then unchanged.
 namespace slalom_bridge {
 
+/// A position and heading in the plane.
 struct Pose {
   double x = 0, y = 0;  ///< m
   double yaw = 0;       ///< rad
 };
 
+/// A planar LiDAR scan; `ranges` must stay valid while it is used.
 struct Scan {
   const float* ranges = nullptr;  ///< m
   std::size_t count = 0;
@@ -23,7 +25,7 @@ struct Scan {
   double range_min = 0, range_max = 0;        ///< m
 };
 
-/// A map as nav_msgs/OccupancyGrid has it: 0 free, 100 occupied, -1 unknown.
+/// A map as in nav_msgs/OccupancyGrid: 0 free, 100 occupied, -1 unknown.
 struct Grid {
   int width = 0, height = 0;
   double resolution = 0;  ///< m
@@ -31,12 +33,14 @@ struct Grid {
   std::vector<std::int8_t> cells;
 };
 
+/// A point of the path.
 struct Waypoint {
   double x = 0, y = 0;  ///< m, map frame
   double yaw = 0;       ///< rad
   double speed = 0;     ///< m/s
 };
 
+/// A course to drive on.
 struct Course {
   std::string name;
   Grid map;
@@ -44,10 +48,10 @@ struct Course {
   bool closed = true;
   Pose start;  ///< of the rear axle
 };
-/// `course` is a name or a folder.
+/// Loads a course. `course` is a name or a folder. Throws std::exception.
 Course load_course(const std::string& course);
 
-/// A declared option as it is set.
+/// A declared option and its present value.
 struct Option {
   std::string name;  ///< "section/option", or "option" where there are no sections
   std::string type;  ///< "flag", "integer", "number", "numbers" or "choice"
@@ -57,32 +61,35 @@ struct Option {
 };
 using Changes = std::vector<std::pair<std::string, std::string>>;  ///< names and values as text
 
+/// The result of an update of the planner.
 struct Command {
-  double steer = 0;  ///< rad
-  double speed = 0;  ///< m/s
-  bool ok = false;   ///< false: no plan, or none that is free; it brakes
-  std::string status;
-  double effective_samples = 0;
-  double update_time = 0;  ///< s
+  double steer = 0;              ///< rad
+  double speed = 0;              ///< m/s
+  bool ok = false;               ///< false: there is no plan without collision, and the car brakes
+  std::string status;            ///< name of the planner's status
+  double effective_samples = 0;  ///< effective sample size of the solver
+  double update_time = 0;        ///< s, wall-clock
+  /// Terms of the mean sequence cost and the sum of |steering| (rad) over the control sequence.
   double state_cost = 0, collision_cost = 0, input_error = 0;
 };
 
-/// From scan and pose of the rear axle (map frame) to a command.
+/// Computes a command from a scan and the pose of the rear axle (map frame).
 class Planner {
  public:
-  /// `configuration` is a name or a file (empty: the classes' defaults).
+  /// `configuration` is a name or a file; empty means the defaults of the classes.
   Planner(const std::string& configuration, const std::string& method);
   ~Planner();
 
-  std::vector<Option> options() const;  ///< of vehicle, planner and the method
-  void change(const Changes& changes);
-  void use_path(const std::vector<Waypoint>& path);
-  bool has_path() const;
-  double control_period() const;  ///< s
-  Pose laser() const;             ///< from the rear axle, as the options have it
+  std::vector<Option> options() const;               ///< of vehicle problem, planner and method
+  void change(const Changes& changes);               ///< sets options; the planner starts anew
+  void use_path(const std::vector<Waypoint>& path);  ///< throws if the path is invalid
+  bool has_path() const;                             ///< whether a path was set
+  double control_period() const;                     ///< s
+  Pose laser() const;                                ///< pose relative to the rear axle, from the options
 
+  /// `speed` in m/s. Does not throw.
   Command update(const Scan& scan, const Pose& pose, double speed);
-  /// The states of the sequence sent last, map frame; empty where none was.
+  /// The predicted states of the last control sequence, map frame; empty if there is none.
   const std::vector<Pose>& predicted() const;
 
  private:
@@ -90,12 +97,13 @@ class Planner {
   std::unique_ptr<Hidden> hidden_;
 };
 
+/// The result of an update of the localiser.
 struct Estimate {
-  Pose pose;            ///< of the rear axle, map frame
-  Pose odometry_frame;  ///< map frame
-  double covariance[3][3] = {};
-  bool usable = false;
-  std::string status;
+  Pose pose;                              ///< of the rear axle, map frame
+  Pose odometry_frame;                    ///< pose of the odometry frame in the map frame
+  double covariance[3][3] = {};           ///< of x, y (m) and yaw (rad)
+  bool usable = false;                    ///< whether the pose can be used for driving
+  std::string status;                     ///< name of the localiser's status
   double health = 0, fit = 0, share = 0;  ///< 0 .. 1
   double effective_samples = 0;
   double update_time = 0;  ///< s
@@ -103,6 +111,7 @@ struct Estimate {
   bool searching = false;
 };
 
+/// Estimates the pose of the car in a map from scans and odometry.
 class Localiser {
  public:
   Localiser();
@@ -112,12 +121,12 @@ class Localiser {
   void change(const Changes& changes);
   void use_map(const Grid& map);
   bool has_map() const;
-  Pose laser() const;  ///< from the rear axle, as the options have it
+  Pose laser() const;  ///< pose relative to the rear axle, from the options
 
   void start_at(const Pose& pose);
   void start_everywhere();
   Estimate update(const Scan& scan, const Pose& odometry, double stamp);
-  /// At most `most` of the particles.
+  /// Poses of at most `most` particles.
   std::vector<Pose> particles(int most) const;
 
  private:
@@ -125,15 +134,16 @@ class Localiser {
   std::unique_ptr<Hidden> hidden_;
 };
 
-/// The simulator as a car.
+/// A simulated car on a course with parked cars.
 class World {
  public:
   World(const std::string& course, std::uint64_t seed, int obstacles);
   ~World();
   void reset();
-  /// Moves by 25 ms under a command.
+  /// Simulates 25 ms. `steer` in rad, `speed` in m/s.
   void step(double steer, double speed);
 
+  /// Measurements and true state after a step.
   struct Reading {
     std::vector<float> ranges;
     double angle_min = 0, angle_increment = 0, range_max = 0;
@@ -141,11 +151,11 @@ class World {
     Pose truth;     ///< of the rear axle, map frame
     double speed = 0, yaw_rate = 0;
     int laps = 0;
-    int contacts = 0;
+    int contacts = 0;  ///< number of collisions
   };
   const Reading& reading() const;
-  const std::vector<Pose>& obstacles() const;  ///< of their middles
-  Pose laser() const;                          ///< from the rear axle
+  const std::vector<Pose>& obstacles() const;  ///< of their centres
+  Pose laser() const;                          ///< pose relative to the rear axle
   double car_length() const;                   ///< m
   double car_width() const;                    ///< m
 

@@ -9,7 +9,7 @@
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/pose.hpp"
 
-/// Between the bridge's plain structs and the library's.
+/// Conversions between the structs of the bridge and those of the library.
 namespace slalom_bridge {
 
 inline Pose plain(const slalom::maps::Pose& p) {
@@ -21,8 +21,8 @@ inline slalom::maps::Pose pose(const Pose& p) {
 inline slalom::maps::LaserScanView view(const Scan& s) {
   return {{s.ranges, s.count}, s.angle_min, s.angle_increment, s.range_min, s.range_max};
 }
-/// The folder from which courses and configurations are looked for: bin/ of the install that the node is in
-/// (nodes lie in share/slalom_ros1), else the node's own.
+/// The folder from which courses and configurations are searched: bin/ of the prefix that the node is
+/// installed in (nodes are in share/slalom_ros1), otherwise the folder of the node.
 inline std::filesystem::path program_folder() {
   const auto own = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   const auto prefix = own.parent_path().parent_path();

@@ -28,7 +28,7 @@ struct Planner::Hidden {
 Planner::Planner(const std::string& configuration, const std::string& method)
     : hidden_(std::make_unique<Hidden>()) {
   hidden_->method = method;
-  slalom::solver_options(method);  // refuses an unknown method
+  slalom::solver_options(method);  // throws on an unknown method
   if (configuration.empty()) return;
   const auto roots = slalom::vehicle::configuration_roots(program_folder());
   hidden_->settings =

@@ -49,9 +49,9 @@ def ways(Kind):
     """{name: seed -> solve(x)} of everything that solves a problem."""
     p = Kind(np)
     common = (T, K, p.temperature, p.variance, p.low, p.high)
-    yield "batched numpy (ours)", lambda seed: NumpyMppi(p, *common, seed).solve
+    yield "batched numpy (this folder)", lambda seed: NumpyMppi(p, *common, seed).solve
     if torch:
-        yield "batched torch (ours)", lambda seed: TorchMppi(Kind(torch), *common, seed).solve
+        yield "batched torch (this folder)", lambda seed: TorchMppi(Kind(torch), *common, seed).solve
     own = callables(p)
     yield "slalom `mppi`, numpy callables", lambda seed: of_slalom(slalom.Mppi, own, p, seed, variance=p.variance)
     built_in = {"pendulum": slalom.Pendulum(dt=0.04), "obstacles": slalom.DifferentialDrive()}.get(p.name)
@@ -63,7 +63,7 @@ def ways(Kind):
 
 
 def drive(p, solve):
-    """The cost of the way driven, and the solve times."""
+    """The cost of the driven trajectory, and the solve times."""
     x, cost, times = np.array(p.start), 0.0, []
     for _ in range(p.steps):
         before = time.thread_time()

@@ -4,7 +4,7 @@ import numpy as np
 
 
 class Pendulum:
-    """Swing up with a motor too weak to lift; state angle from upright, rate."""
+    """A pendulum whose motor is too weak to lift it; state angle from upright, rate."""
 
     name, start, steps, dt = "pendulum", [np.pi, 0.0], 150, 0.04
     variance, low, high, temperature = [4.0], [-5.0], [5.0], 0.2
@@ -24,7 +24,7 @@ class Pendulum:
 
 
 class DoubleIntegrator:
-    """A point pushed about in the plane, to rest at the origin; state x, y and their speeds."""
+    """A point in the plane that is to stop at the origin; inputs are accelerations; state x, y and their speeds."""
 
     name, start, steps, dt = "double integrator", [2.0, -1.0, 0.0, 0.0], 80, 0.1
     variance, low, high, temperature = [1.0, 1.0], [-2.0, -2.0], [2.0, 2.0], 0.3

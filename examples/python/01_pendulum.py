@@ -1,4 +1,4 @@
-"""A pendulum whose motor is too weak to lift it, written as numpy callables: it has to swing up."""
+"""A pendulum whose motor is too weak to lift it directly, as numpy callables: it must swing up."""
 
 import numpy as np
 import slalom
@@ -20,14 +20,14 @@ def cost(x, u):
 
 def terminal_cost(x):
     angle, rate = x.T
-    return (rate**2 / 2 + np.float32(9.81) * (np.cos(angle) - 1)) ** 2  # the energy that is missing, squared
+    return (rate**2 / 2 + np.float32(9.81) * (np.cos(angle) - 1)) ** 2  # missing energy, squared
 
 
 pendulum = slalom.Problem(dynamics, cost, terminal_cost, states=2, inputs=1, dt=float(DT))
 
 
 def stands(controller):
-    """Whether the pendulum, let go hanging, stands after 6 s."""
+    """Whether the pendulum is upright 6 s after it started hanging down."""
     x = np.array([np.pi, 0.0])
     for _ in range(300):
         x = controller.problem.step(x, controller.solve(x, elapsed=float(DT)).inputs[0])
@@ -38,4 +38,4 @@ common = dict(horizon=60, samples=1024, temperature=0.2, input_min=-5, input_max
 mppi = succeeded(lambda seed: stands(slalom.Mppi(pendulum, **common, variance=4, seed=seed)))
 svg_mppi = succeeded(lambda seed: stands(slalom.SvgMppi(
     pendulum, **common, gradient_variance=1, variance_min=1, variance_max=4, seed=seed)))
-report("the pendulum stands", mppi, svg_mppi, 20)
+report("the pendulum is upright", mppi, svg_mppi, 20)

@@ -8,7 +8,7 @@ cart_pole = slalom.CartPole()
 
 
 def stands(controller):
-    """Whether the pole, let go hanging, stands after 6 s, and the cart never left its track."""
+    """Whether the pole is upright 6 s after it started hanging down, and the cart never left its track."""
     x = np.array([0, 0, np.pi, 0])
     for _ in range(300):
         x = cart_pole.step(x, controller.solve(x, elapsed=cart_pole.dt).inputs[0])

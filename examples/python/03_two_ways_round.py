@@ -1,4 +1,4 @@
-"""A robot with two driven wheels, a disc in its way: left or right are equally good, their average is a crash."""
+"""A robot with two driven wheels and a disc in its way. Left and right are equally good; their average collides."""
 
 import numpy as np
 import slalom
@@ -8,7 +8,7 @@ robot = slalom.DifferentialDrive()
 
 
 def arrives(controller):
-    """Whether the robot reaches its goal within 12 s without touching a disc."""
+    """Whether the robot reaches its goal within 12 s without a collision."""
     x = np.zeros(3)
     for _ in range(120):
         x = robot.step(x, controller.solve(x, elapsed=robot.dt).inputs[0])

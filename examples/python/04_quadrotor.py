@@ -13,7 +13,7 @@ def hits_wall(x):
 
 
 def arrives(controller):
-    """Whether the quadrotor hovers within 1 m of its goal after 8 s and never touched the wall."""
+    """Whether the quadrotor hovers within 1 m of its goal after 8 s and never collided with the wall."""
     x = np.zeros(6)
     for _ in range(160):
         x = quadrotor.step(x, controller.solve(x, elapsed=quadrotor.dt).inputs[0])

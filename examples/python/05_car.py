@@ -1,4 +1,4 @@
-"""A car that steers and accelerates: overtake what stands on the road, on either side, and stop at the line."""
+"""A car that steers and accelerates: pass parked cars on either side and stop at the line."""
 
 import numpy as np
 import slalom
@@ -14,7 +14,7 @@ def hits(x):
 
 
 def arrives(controller):
-    """Whether the car stands at the line after 20 s and never touched anything."""
+    """Whether the car stands at the line after 20 s and had no collision."""
     x = np.array([0, 0, 0, 5.0])
     for _ in range(200):
         x = car.step(x, controller.solve(x, elapsed=car.dt).inputs[0])

@@ -10,7 +10,7 @@ course = slalom.Course("wren")
 
 
 def drives_a_lap(method, seed, **options):
-    """Whether the car drives a lap within 20 s and touches nothing."""
+    """Whether the car drives a lap within 20 s without a collision."""
     planner = slalom.Planner(course, method, dict(
         horizon=14, samples=2000, temperature=3, input_min=-0.4189, input_max=0.4189, seed=seed, **options))
     world = slalom.World(course)
@@ -33,4 +33,4 @@ mppi = succeeded(lambda seed: drives_a_lap("mppi", seed, variance=0.05))
 svg_mppi = succeeded(lambda seed: drives_a_lap(
     "svg_mppi", seed, guide_step=0.005, guide_variance=0.01, gradient_variance=0.01, gradient_temperature=3,
     variance_min=0.001, variance_max=0.1))
-report("a lap without contact", mppi, svg_mppi, 20)
+report("a lap without collision", mppi, svg_mppi, 20)

@@ -1,4 +1,4 @@
-"""A method of one's own on top of the same problems: predictive sampling takes the best of many disturbed plans."""
+"""A method of your own for the same problems: predictive sampling chooses the best of many perturbed plans."""
 
 import numpy as np
 import slalom
@@ -23,7 +23,7 @@ class PredictiveSampling:
         return self.plan
 
 
-def dynamics(x, u):  # a point that is pushed about in the plane: x, y (m), their speeds (m/s)
+def dynamics(x, u):  # a point in the plane: x, y (m), their speeds (m/s)
     return np.concatenate([x[:, :2] + 0.1 * x[:, 2:], x[:, 2:] + 0.1 * u], axis=1)
 
 

@@ -1,4 +1,4 @@
-"""An arm of seven joints reaches past a ball that hangs in its way: over it, under it or behind it."""
+"""An arm with seven joints reaches past a ball: over it, under it or behind it."""
 
 import slalom
 from seeds import report, succeeded
@@ -7,7 +7,7 @@ arm = slalom.Arm()
 
 
 def arrives(controller):
-    """Whether the hand comes within 5 cm of its goal in 8 s and no link touches the ball or the ground."""
+    """Whether the hand comes within 5 cm of its goal within 8 s and no link collides with the ball or the ground."""
     x = arm.start
     for _ in range(160):
         x = arm.step(x, controller.solve(x, elapsed=arm.dt).inputs[0])
@@ -18,7 +18,7 @@ def arrives(controller):
     return False
 
 
-for temperature in 0.3, 1.0:  # the arm itself bounds its inputs and their rates
+for temperature in 0.3, 1.0:  # the problem has bounds on its inputs and their rates
     common = dict(horizon=20, samples=1024, temperature=temperature)
     mppi = succeeded(lambda seed: arrives(slalom.Mppi(arm, **common, variance=0.5, seed=seed)))
     svg_mppi = succeeded(lambda seed: arrives(slalom.SvgMppi(

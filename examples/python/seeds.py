@@ -1,4 +1,4 @@
-"""How many of 20 seeds succeed, as in the compiled examples; a number as argument asks for others."""
+"""The number of 20 seeds that succeed, as in the compiled examples; the argument sets another number of seeds."""
 
 import sys
 

@@ -85,8 +85,7 @@ void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, 
   const double time_step = lap.world.options().time_step;
   const auto delay = std::llround(settings_.latency / time_step) +
                      static_cast<long long>(std::ceil(extra_latency / time_step - 1e-9));
-  lap.pending.emplace_back(lap.world.steps() + delay,
-                           rules.command({output.command.steer, output.command.speed}));
+  lap.pending.emplace_back(lap.world.steps() + delay, rules.command(output.command));
 }
 
 void LapRunner::advance(LapInProgress& lap, bool past_finish) const {

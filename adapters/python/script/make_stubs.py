@@ -16,7 +16,7 @@ def keyword(option):
 
 
 def signature(function):
-    """The signature that stands in front of a bound function's docstring."""
+    """The signature at the start of a bound function's docstring."""
     first = (function.__doc__ or "").split("\n")[0]
     match = re.match(r"\w+\((.*)\) -> (.*)$", first)
     if not match:
@@ -33,7 +33,7 @@ def signature(function):
 
 
 def property_type(value):
-    """What a property returns, from its getter's signature; arrays by what the docstring says of them."""
+    """The type of a property, from its getter's signature; of arrays from the docstring."""
     first = (value.fget.__doc__ or "").split("\n")[0]
     match = re.search(r"-> (.*)$", first)
     if re.match(r"(float32|float64|uint8) \[", value.__doc__ or ""):

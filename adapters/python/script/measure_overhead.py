@@ -1,4 +1,4 @@
-"""What solving costs beside the callables of a problem: K = 1000 samples, T = 30 steps."""
+"""The time of a solve beyond that of the problem's callables: K = 1000 samples, T = 30 steps."""
 
 import time
 
@@ -21,7 +21,7 @@ def cost(x, u):
 
 
 def alone(inputs):
-    """The callables in a loop, as bare as it can be."""
+    """The callables in a plain loop."""
     x = np.zeros((2, K), np.float32).T
     start = time.perf_counter()
     for k in range(T):
@@ -33,7 +33,7 @@ def alone(inputs):
 controller = slalom.Mppi(slalom.Problem(dynamics, cost, states=2, inputs=1, dt=0.02), horizon=T, samples=K)
 inputs = np.random.default_rng(0).standard_normal((T, K, 1), dtype=np.float32)
 bare, solves = [], []
-for _ in range(REPEATS):  # one after the other, so that both see the same machine
+for _ in range(REPEATS):  # alternately, so that both are measured under the same conditions
     bare.append(alone(inputs))
     start = time.perf_counter()
     controller.solve([3.0, 0.0])

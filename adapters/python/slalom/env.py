@@ -1,4 +1,4 @@
-"""An environment round the simulator with the interface of Gymnasium; works without gymnasium too."""
+"""The simulator with the interface of Gymnasium, which need not be installed."""
 
 import math
 
@@ -15,7 +15,7 @@ except ImportError:
     Base = object
 
     class Box:
-        """An interval for each entry of an array: what is used here of gymnasium.spaces.Box."""
+        """An interval for each entry of an array: the part of gymnasium.spaces.Box that is used here."""
 
         def __init__(self, low, high, shape=None, dtype=np.float32):
             self.shape = tuple(shape) if shape is not None else np.shape(low)
@@ -38,8 +38,8 @@ class RacingEnv(Base):
     """One car on a course.
 
     Action: (steering angle rad, speed m/s). Observation: the LiDAR ranges (m), then speed (m/s), yaw rate
-    (rad/s) and steering angle (rad). The reward is the progress along the course (m); a contact ends the
-    episode and costs `contact_penalty`, a lap ends it too.
+    (rad/s) and steering angle (rad). The reward is the progress along the course (m); a collision ends the
+    episode and costs `contact_penalty`; a complete lap also ends it.
     """
 
     metadata = {"render_modes": []}
@@ -67,7 +67,7 @@ class RacingEnv(Base):
         return np.concatenate([seen["ranges"], rest]).astype(np.float32), info
 
     def reset(self, *, seed=None, options=None):
-        """The first observation and its info. `options` may have "start" and "parked" (poses x, y, yaw)."""
+        """Returns the first observation and info. `options` may have "start" and "parked" (poses x, y, yaw)."""
         if Base is not object:
             super().reset(seed=seed)
         options = options or {}
@@ -78,7 +78,7 @@ class RacingEnv(Base):
         return observation, info
 
     def step(self, action):
-        """observation, reward, terminated, truncated, info"""
+        """Returns observation, reward, terminated, truncated, info."""
         action = np.asarray(action, float)
         if action.shape != (2,):
             raise ValueError(f"action: has shape {action.shape}, must be (2,)")

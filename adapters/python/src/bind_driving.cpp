@@ -68,7 +68,7 @@ py::array view(const T* data, std::vector<py::ssize_t> shape, const py::object& 
 
 py::dict observe(const py::object& self, std::size_t car) {
   const auto& world = self.cast<const sim::World&>();
-  if (car >= world.cars()) throw py::index_error("car: there is none of this number");
+  if (car >= world.cars()) throw py::index_error("car: must be less than the number of cars");
   const sim::Observation seen = world.observe(car);
   py::dict all;
   all["pose"] = to_tuple(seen.pose);
@@ -92,7 +92,7 @@ py::dict observe(const py::object& self, std::size_t car) {
 }
 
 void bind_world(py::module_& module) {
-  py::class_<Environment, std::shared_ptr<Environment>>(module, "Course", "A course made ready to drive on.")
+  py::class_<Environment, std::shared_ptr<Environment>>(module, "Course", "A course prepared for driving.")
       .def(py::init([](const std::string& course, const std::string& evaluation) {
              return std::const_pointer_cast<Environment>(load(course, evaluation));
            }),
@@ -116,7 +116,7 @@ void bind_world(py::module_& module) {
             return all;
           },
           "float64 [n, 4]: x, y (m), yaw (rad), speed (m/s)");
-  py::class_<sim::World>(module, "World", "Cars with LiDAR on a course, simulated.")
+  py::class_<sim::World>(module, "World", "Simulated cars with LiDAR on a course.")
       .def(py::init([](const Environment& environment, double time_step, int beams, double noise) {
              sim::WorldOptions options = environment.world_options();
              options.time_step = time_step;
@@ -137,7 +137,7 @@ void bind_world(py::module_& module) {
             self.reset(seed, starts, others);
           },
           py::arg("seed"), py::arg("cars"), py::arg("parked") = std::vector<std::array<double, 3>>{},
-          "Begins anew: driven cars at rest at `cars`, parked ones at `parked`, each (x, y, yaw).")
+          "Restarts with driven cars at rest at `cars` and parked cars at `parked`, each (x, y, yaw).")
       .def(
           "step",
           [](sim::World& self, const std::vector<std::array<double, 2>>& commands, int steps) {
@@ -149,14 +149,14 @@ void bind_world(py::module_& module) {
               for (int k = 0; k < steps; ++k) status = self.step(all);
             }
             if (status == sim::StepStatus::missing_command)
-              throw py::value_error("commands: one for each car");
+              throw py::value_error("commands: must have one for each car");
             if (status == sim::StepStatus::non_finite_command)
               throw py::value_error("commands: must be finite");
           },
           py::arg("commands"), py::arg("steps") = 1,
           "Moves by `steps` time steps; a command is (steering angle rad, speed m/s).")
       .def("observe", observe, py::arg("car") = 0,
-           "What a car knows, by name; `ranges` is a view that the next step overwrites.")
+           "The measurements of a car, by name; `ranges` is a view that the next step overwrites.")
       .def_property_readonly("time", &sim::World::time, "s since the reset")
       .def_property_readonly(
           "time_step", [](const sim::World& w) { return w.options().time_step; }, "s");
@@ -180,7 +180,7 @@ py::dict lap_dict(const evaluation::LapResult& lap) {
 }
 
 void bind_planner(py::module_& module) {
-  py::class_<vehicle::Planner>(module, "Planner", "From LiDAR scan and odometry to steering and speed.")
+  py::class_<vehicle::Planner>(module, "Planner", "Computes steering and speed from LiDAR scan and odometry.")
       .def(py::init([](const Environment& environment, const std::string& method, const py::dict& options,
                        const std::string& config) {
              const auto configuration = configure(method, config, options);
@@ -190,7 +190,8 @@ void bind_planner(py::module_& module) {
            }),
            py::arg("course"), py::arg("method") = "svg_mppi", py::arg("options") = py::dict(), py::kw_only(),
            py::arg("config") = "",
-           "`config`: 'default', 'published' or a file; else the classes' defaults. `options`: {'samples': "
+           "`config`: 'default', 'published' or a file; otherwise the defaults of the classes. `options`: "
+           "{'samples': "
            "2000, 'planner.max_speed': 4, 'vehicle....': ...}")
       .def(
           "update",
@@ -228,7 +229,7 @@ void bind_planner(py::module_& module) {
           py::arg("range_min") = 0.0, py::arg("range_max"), py::arg("pose"), py::arg("speed"),
           "`pose`: (x, y, yaw) of the rear axle. Returns status, steer (rad), speed (m/s), predicted [n, 4].")
       .def("reset", &vehicle::Planner::reset, py::arg("seed") = 0,
-           "Forgets everything and starts the random numbers anew.");
+           "Discards all state and starts the random numbers from `seed`.");
   module.def(
       "drive_lap",
       [](const std::shared_ptr<Environment>& environment, const std::string& method, std::uint64_t seed,
@@ -245,7 +246,7 @@ void bind_planner(py::module_& module) {
       },
       py::arg("course"), py::arg("method") = "svg_mppi", py::kw_only(), py::arg("seed") = 0,
       py::arg("obstacles") = 0, py::arg("options") = py::dict(), py::arg("config") = "",
-      "Drives one lap in lockstep and returns its figures, as `slalom eval` counts them.");
+      "Drives one lap in lockstep and returns its results, as `slalom eval` does.");
 }
 
 }  // namespace
@@ -254,8 +255,7 @@ void bind_driving(py::module_& module) {
   bind_world(module);
   bind_planner(module);
   module.def(
-      "courses", [] { return vehicle::course_names(course_roots()); },
-      "The names of the courses that are found.");
+      "courses", [] { return vehicle::course_names(course_roots()); }, "The names of the courses found.");
 }
 
 }  // namespace slalom::python

@@ -76,15 +76,15 @@ void bind_arm(py::module_& module) {
   };
   bind_problem<Arm>(
       module, "Arm",
-      "An arm of seven joints that reaches past a ball. State: the joints' angles (rad); inputs: "
-      "their rates (rad/s), which the problem bounds, as it does their accelerations.")
+      "An arm with seven joints that reaches past a ball. State: the joints' angles (rad); inputs: "
+      "their rates (rad/s). The problem has bounds on rates and accelerations.")
       .def("distance", distance, py::arg("state"), "From the hand to the goal, m.")
       .def_property_readonly(
           "start", [](const BuiltIn<Arm>&) { return py::array_t<double>(Arm::joints, Arm::start.data()); },
           "angles from which the ball is in the way, rad");
 }
 
-/// A number, one for each input, or none.
+/// One number, one per input, or none.
 using Limits = std::variant<std::monostate, double, std::vector<double>>;
 
 std::vector<double> to_values(const Limits& bound) {
@@ -103,7 +103,7 @@ std::span<const double> checked(const std::vector<double>& values, int count, co
 }  // namespace
 
 void bind_problems(py::module_& module) {
-  py::class_<AnyProblem>(module, "AnyProblem", "What all problems have in common.")
+  py::class_<AnyProblem>(module, "AnyProblem", "Base class of all problems.")
       .def_property_readonly("states", &AnyProblem::states, "scalars of a state")
       .def_property_readonly("inputs", &AnyProblem::inputs, "inputs a step")
       .def(
@@ -119,19 +119,19 @@ void bind_problems(py::module_& module) {
           [](AnyProblem& self, const std::vector<double>& state) {
             return self.predict(checked(state, self.states(), "state"), {}).collided;
           },
-          py::arg("state"), "Whether the problem's terminal cost says that a state collides.");
+          py::arg("state"), "Whether a state collides, according to the terminal cost.");
   py::class_<CallableProblem, AnyProblem>(
       module, "Problem",
-      "A problem of one's own: callables on batches of K samples.\n\n"
+      "A problem of your own: callables on batches of K samples.\n\n"
       "dynamics(x[K, states], u[K, inputs]) -> x[K, states]\n"
       "cost(x, u) -> [K], or in terms {name: [K]}; or a pair (cost, collided[K])\n"
       "terminal_cost(x) -> the same, or None\n"
-      "input_min, input_max: bounds that hold besides those of the options, one number or one per input\n"
-      "input_rate_max: inputs move no faster than this, in 1/s, in rollouts as in plans; needs dt\n"
-      "sampler(random, samples, horizon, inputs) -> [samples, horizon, inputs]: noise in place of standard "
-      "normal values, drawn from the numpy Generator `random` alone\n\n"
-      "x and u are float32, with the samples of a column side by side in memory; u is a view of the solver's "
-      "memory, valid during the call. What dynamics returns is handed on as it is.")
+      "input_min, input_max: bounds in addition to those of the options, one number or one per input\n"
+      "input_rate_max: largest rate of the inputs, per s, in rollouts and plans; requires dt\n"
+      "sampler(random, samples, horizon, inputs) -> [samples, horizon, inputs]: noise instead of standard "
+      "normal values, drawn only from the numpy Generator `random`\n\n"
+      "x and u are float32, with contiguous columns; u is a view of the solver's "
+      "memory, valid during the call. The result of dynamics is not copied.")
       .def(py::init([](py::object dynamics, py::object cost, py::object terminal_cost, int states, int inputs,
                        double dt, const Limits& input_min, const Limits& input_max,
                        const Limits& input_rate_max, py::object sampler) {
@@ -145,11 +145,12 @@ void bind_problems(py::module_& module) {
            py::arg("input_max") = py::none(), py::arg("input_rate_max") = py::none(),
            py::arg("sampler") = py::none())
       .def_property("dt", &CallableProblem::dt, &CallableProblem::set_dt,
-                    "s, duration of a step; 0: not known");
+                    "s, duration of a step; 0: unknown");
   bind_arm(module);
-  bind_problem<problems::Pendulum>(module, "Pendulum",
-                                   "A pendulum whose motor is too weak to lift it. State: angle from upright "
-                                   "(rad), rate (rad/s); input: torque (N m).");
+  bind_problem<problems::Pendulum>(
+      module, "Pendulum",
+      "A pendulum whose motor is too weak to lift it directly. State: angle from upright "
+      "(rad), rate (rad/s); input: torque (N m).");
   bind_problem<problems::CartPole>(
       module, "CartPole",
       "A pole on a cart. State: position (m), speed (m/s), angle from upright (rad), "

@@ -64,7 +64,8 @@ CallableProblem::CallableProblem(py::object dynamics, py::object cost, py::objec
   for (const double rate : parts_.input_rate_max)
     require(rate >= 0, "input_rate_max: " + std::to_string(rate) + " must be at least 0");
   set_dt(parts_.dt);
-  require(parts_.input_rate_max.empty() || parts_.dt > 0, "input_rate_max: needs the duration of a step, dt");
+  require(parts_.input_rate_max.empty() || parts_.dt > 0,
+          "input_rate_max: requires dt, the duration of a step");
 }
 
 namespace {
@@ -99,7 +100,7 @@ void CallableProblem::set_dt(double dt) {
     throw std::invalid_argument("Problem.dt: " + std::to_string(dt) +
                                 " must be finite and at least 0 (0: not known)");
   if (dt == 0 && !parts_.input_rate_max.empty())
-    throw std::invalid_argument("Problem.dt: input_rate_max needs the duration of a step");
+    throw std::invalid_argument("Problem.dt: must be positive, since input_rate_max is set");
   parts_.dt = dt;
 }
 

@@ -7,17 +7,16 @@
 
 namespace slalom::python {
 
-/// What a problem of callables may state besides.
+/// The optional parts of a problem of callables.
 struct CallableParts {
-  double dt = 0;                                             ///< s, duration of a step; 0: not known
+  double dt = 0;                                             ///< s, duration of a step; 0: unknown
   std::vector<double> input_min, input_max, input_rate_max;  ///< one value, one per input, or none
   py::object sampler;                                        ///< callable or None
 };
 
 /// A problem made of callables on batches of K samples: dynamics(x[K, nx], u[K, nu]) -> x[K, nx],
-/// cost(x, u) -> [K], terminal_cost(x) -> [K]. A cost may come in terms, {name: [K]}, and as a pair
-/// (cost, collided). The inputs are views of the solver's memory and what dynamics returns is handed on as it
-/// is: nothing is copied.
+/// cost(x, u) -> [K], terminal_cost(x) -> [K]. A cost may consist of terms, {name: [K]}, or be a pair
+/// (cost, collided). The inputs are views of the solver's memory, and the result of dynamics is not copied.
 class CallableProblem final : public AnyProblem, public BatchEvaluator, private Sampler {
  public:
   CallableProblem(py::object dynamics, py::object cost, py::object terminal_cost, int states, int inputs,
@@ -39,7 +38,7 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   std::vector<double> step(std::span<const double> state, std::span<const double> input) override;
   Prediction predict(std::span<const double> state, std::span<const double> inputs) override;
   void begin(py::handle owner) override;
-  /// Throws what a callable has thrown during the solve.
+  /// Rethrows the first exception of a callable during the solve.
   void finish() override;
 
   void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
@@ -65,7 +64,7 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   CallableParts parts_;
   std::vector<float> state_, previous_;
   py::handle owner_;                  ///< during a solve
-  mutable std::exception_ptr error_;  ///< the first of a solve; guarded by the interpreter's lock
+  mutable std::exception_ptr error_;  ///< the first of a solve; guarded by the interpreter lock
 };
 
 }  // namespace slalom::python

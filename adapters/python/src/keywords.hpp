@@ -27,8 +27,8 @@ const char* type_words(const Field&) {
   }
 }
 
-/// Sets a field from a Python value. Throws TypeError for values of another type, ValueError for a choice
-/// that there is not.
+/// Sets a field from a Python value. Throws TypeError for values of another type, ValueError for an
+/// unknown choice.
 template <class Field>
 void set_field(Field& field, const std::string& name, py::handle value) {
   try {
@@ -53,7 +53,7 @@ void set_field(Field& field, const std::string& name, py::handle value) {
   }
 }
 
-/// Sets the options that are given. `where` stands before their names in errors.
+/// Sets the options that are given. `where` precedes their names in errors.
 template <class Options>
 void set_from_keywords(Options& options, const py::kwargs& keywords, const std::string& where) {
   for (const auto& keyword : keywords) {
@@ -85,7 +85,7 @@ inline py::object to_python(const OptionValue& value) {
       value);
 }
 
-/// Options as a list of dictionaries, for whoever asks what can be set.
+/// The options as a list of dictionaries.
 template <class Options>
 py::list describe_options(const Options& options) {
   py::list all;

@@ -21,9 +21,9 @@ struct Prediction {
   std::vector<double> states;  ///< [step][state], one step more than inputs
   double cost = 0;
   bool collided = false;
-  std::vector<std::pair<std::string, double>> terms;  ///< what the cost is made of
+  std::vector<std::pair<std::string, double>> terms;  ///< the parts of the cost
 
-  /// Adds to the term of a name.
+  /// Adds to the term with this name.
   void add(const std::string& name, double value) {
     for (auto& [known, sum] : terms) {
       if (known == name) {
@@ -35,7 +35,7 @@ struct Prediction {
   }
 };
 
-/// A problem as Python holds it: one of ours, or one made of callables.
+/// A problem in Python: a built-in one, or one made of callables.
 class AnyProblem {
  public:
   virtual ~AnyProblem() = default;
@@ -44,28 +44,28 @@ class AnyProblem {
   virtual int states() const noexcept = 0;
   virtual int inputs() const noexcept = 0;
   virtual const BatchEvaluator& evaluator() const noexcept = 0;
-  /// Where the next rollouts start; `states()` values.
+  /// Sets the start of the next rollouts; `states()` values.
   virtual void set_state(std::span<const double> state) = 0;
   /// One step of the dynamics from a state.
   virtual std::vector<double> step(std::span<const double> state, std::span<const double> input) = 0;
   /// `inputs` [step][input].
   virtual Prediction predict(std::span<const double> state, std::span<const double> inputs) = 0;
-  /// Bounds that the problem states for an input; infinite where it states none.
+  /// Bounds of the problem for an input; infinite if it has none.
   virtual double input_min(int /*input*/) const { return -std::numeric_limits<double>::infinity(); }
   virtual double input_max(int /*input*/) const { return std::numeric_limits<double>::infinity(); }
-  /// Cuts what moves faster than the problem allows, u [step][input], when `previous` was applied before it;
-  /// returns whether it limits rates at all.
+  /// Limits the rates of u [step][input], where `previous` was applied before. Returns whether the problem
+  /// limits rates.
   virtual bool hold_rates(std::span<const double> /*previous*/, std::span<double> /*u*/) const {
     return false;
   }
-  /// What was applied before the next rollouts, of a problem that limits rates.
+  /// Sets the input applied before the next rollouts, for a problem that limits rates.
   virtual void set_previous_input(std::span<const double>) {}
-  /// To be called before and after a solve, with the Python object that owns the solver's memory.
+  /// To be called before and after a solve. The argument is the Python object that owns the solver's memory.
   virtual void begin(py::handle) {}
   virtual void finish() {}
 };
 
-/// A problem struct of ours, at full speed.
+/// A built-in problem, compiled.
 template <Problem P>
 class BuiltIn final : public AnyProblem {
  public:

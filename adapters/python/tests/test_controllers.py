@@ -180,7 +180,7 @@ def test_reset_repeats_and_a_bad_state_is_told():
 
 
 def pushed(**changes):
-    """A point that is pushed along a line by two motors, its cost in terms."""
+    """A point moved along a line by two motors, with its cost in terms."""
     def dynamics(x, u):
         return np.stack([x[:, 0] + np.float32(0.1) * x[:, 1], x[:, 1] + np.float32(0.1) * (u[:, 0] + u[:, 1])]).T
 

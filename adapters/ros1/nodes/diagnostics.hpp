@@ -3,7 +3,7 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/ros.h>
 
-/// How a node is, once a second on `/diagnostics`.
+/// Publishes the state of a node on `/diagnostics` once per second.
 namespace slalom_ros {
 
 class Diagnostics {
@@ -11,7 +11,7 @@ class Diagnostics {
   explicit Diagnostics(ros::NodeHandle& node)
       : out_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 5)) {}
 
-  /// Whether a second has gone by since the last report.
+  /// Whether a second has passed since the last report.
   bool due() const { return ros::WallTime::now().toSec() - sent_ >= 1; }
 
   template <class Value>
@@ -24,7 +24,7 @@ class Diagnostics {
     values_.push_back(pair);
   }
 
-  /// `level` as in diagnostic_msgs/DiagnosticStatus: 0 well, 1 warning, 2 error.
+  /// `level` as in diagnostic_msgs/DiagnosticStatus: 0 ok, 1 warning, 2 error.
   void send(int level, const std::string& message, const std::string& about) {
     diagnostic_msgs::DiagnosticArray array;
     array.header.stamp = ros::Time::now();

@@ -5,15 +5,15 @@
 #include <optional>
 #include <string>
 
-#include "ros_forms.hpp"
+#include "conversions.hpp"
 
-/// What may be wrong with what a driving node is told. Any fault stops the car for `settle_time` after it was
-/// last seen; then it goes on by itself.
+/// Checks the inputs of a driving node. Any fault stops the car until `settle_time` after it last occurred;
+/// then the car continues by itself.
 namespace slalom_ros {
 
 struct WatchLimits {
   double most_age = 0.15;     ///< s, of a scan or an odometry
-  double most_ahead = 0.05;   ///< s, by which a stamp may be later than now
+  double most_ahead = 0.05;   ///< s, that a stamp may be in the future
   double settle_time = 0.25;  ///< s
   double jump = 0.3;          ///< m, beyond what the car can have driven, or rad
   double most_speed = 12;     ///< m/s
@@ -28,18 +28,18 @@ class InputWatch {
     reason_ = reason;
     at_ = caused_at_ = wall();
   }
-  /// What may be but the consequence of a fault reported lately, which then stays the reason, for longer than
-  /// a Sayer waits.
+  /// Reports a fault that can be the consequence of another one. A fault reported recently remains the
+  /// reason, for longer than the interval between messages of the log.
   void report_consequence(const std::string& reason) {
     constexpr double lately = 1.2;  // s
     if (wall() - caused_at_ > lately) reason_ = reason;
     at_ = wall();
   }
-  /// The last fault while it is not settled; else empty.
+  /// The last fault until it has settled; otherwise empty.
   std::string fault() const { return wall() - at_ < limits_.settle_time ? reason_ : ""; }
 
-  /// Whether the clock has gone on as time does since the last call; once it has not, stamps before it say
-  /// nothing.
+  /// Whether the ROS clock has advanced like the system clock since the last call. After a jump of the clock
+  /// earlier stamps are discarded.
   bool clock_runs() {
     const double now = ros::Time::now().toSec(), steady = wall();
     const double gone = now - clock_, really = steady - clock_wall_;
@@ -51,8 +51,8 @@ class InputWatch {
     return false;
   }
 
-  /// Whether a message may be used by its stamp; else the fault is reported. `last` is the newest stamp used
-  /// so far.
+  /// Whether the stamp of a message is valid; otherwise reports the fault. `last` is the newest stamp used so
+  /// far.
   bool accepts(const char* what, ros::Time stamp, ros::Time last) {
     const double age = (ros::Time::now() - stamp).toSec();
     if (age < -limits_.most_ahead)
@@ -66,7 +66,7 @@ class InputWatch {
     return false;
   }
 
-  /// Whether what is there is young enough; else that is reported, unless more is known of why.
+  /// Whether an input is recent enough; otherwise reports the fault, unless its cause is known.
   bool fresh(const char* what, ros::Time stamp) {
     const double age = (ros::Time::now() - stamp).toSec();
     if (!stamp.isZero() && age <= limits_.most_age) return true;
@@ -74,7 +74,7 @@ class InputWatch {
     return false;
   }
 
-  /// Whether the car can have come here from where it was; else the fault is reported.
+  /// Whether the car can have moved here from its last pose; otherwise reports the fault.
   bool moves_like_a_car(const Pose& pose, ros::Time stamp) {
     if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.yaw)) {
       report("pose is not finite");

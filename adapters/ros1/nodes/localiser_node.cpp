@@ -1,6 +1,6 @@
-// Where the car is: from `scan`, `odom` and a map to the transform from map to odom, `pf/pose/odom` and
-// `particlecloud`. While the guess is not to be trusted it sends neither pose nor transform, and the planner
-// stops for want of them.
+// Localisation: computes the transform from map to odom, `pf/pose/odom` and `particlecloud` from `scan`,
+// `odom` and a map. While the estimate is not reliable the node publishes neither pose nor transform, and the
+// planner stops.
 #include <geometry_msgs/PoseArray.h>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <nav_msgs/Odometry.h>
@@ -62,15 +62,15 @@ class LocaliserNode {
         odometry_.clear();
         last_scan_ = ros::Time(0);
         if (known_) localiser_.start_at(*known_);
-        say_(watch_.fault());
+        log_(watch_.fault());
       }
-      say_.flush();
+      log_.flush();
       if (diagnostics_.due()) report();
     }
   }
 
  private:
-  /// Where a node that was here before stood last, if the launch file says nothing else; else everywhere.
+  /// Starts at the last pose of an earlier node unless the launch file says otherwise; otherwise everywhere.
   void begin() {
     Pose p;
     if (known_) return localiser_.start_at(*known_);
@@ -91,7 +91,7 @@ class LocaliserNode {
       begin();
       ROS_INFO_STREAM("a map of " << m->info.width << " x " << m->info.height << " cells");
     } catch (const std::exception& error) {
-      say_(std::string("map: ") + error.what());
+      log_(std::string("map: ") + error.what());
     }
   }
   void hear_start(const geometry_msgs::PoseWithCovarianceStamped::ConstPtr& m) {
@@ -100,16 +100,17 @@ class LocaliserNode {
   void hear_odometry(const Odometry::ConstPtr& m) {
     if (!watch_.accepts("odometry", m->header.stamp,
                         odometry_.empty() ? ros::Time(0) : odometry_.back()->header.stamp))
-      return say_("localisation: " + watch_.fault());
+      return log_("localisation: " + watch_.fault());
     odometry_.push_back(m);
     if (odometry_.size() > 50) odometry_.pop_front();
   }
   void hear_scan(const sensor_msgs::LaserScan::ConstPtr& scan) {
     if (!watch_.accepts("scan", scan->header.stamp, last_scan_))
-      return say_("localisation: " + watch_.fault());
+      return log_("localisation: " + watch_.fault());
     last_scan_ = scan->header.stamp;
     Pose at;
-    if (!odometry_at(scan->header.stamp, at)) return say_("localisation: no odometry of the scan's time");
+    if (!odometry_at(scan->header.stamp, at))
+      return log_("localisation: no odometry at the time of the scan");
     place_laser(scan->header.frame_id);
     slalom_bridge::Scan plain = scan_of(*scan);
     if (!count_fits(*scan)) plain.count = 0;
@@ -117,14 +118,15 @@ class LocaliserNode {
     slowest_ = std::max(slowest_, estimate_.update_time);
     if (!estimate_.usable) doubt_ = estimate_.status;
     if (!trusted())
-      return say_("localisation: " + doubt_ + (estimate_.usable ? ", over, until it is sure" : "") +
+      return log_("localisation: " + doubt_ + (estimate_.usable ? ", over, until it is sure" : "") +
                   ", health " + std::to_string(estimate_.health));
     known_ = estimate_.pose;
     publish(*scan);
   }
 
-  /// Whether the estimate is to be driven by. Once it was not, it must be good for a moment: in a wrong place
-  /// some scans fit by chance. One that is but passable, as beside a parked car, must be so for longer.
+  /// Whether the estimate can be used for driving. After it could not, it must be good for a moment, since
+  /// some scans fit a wrong pose by chance. A mediocre estimate, as beside a parked car, must persist for
+  /// longer.
   bool trusted() {
     good_ = estimate_.usable ? good_ + 1 : 0;
     fine_ = estimate_.usable && estimate_.health >= trust_health_ ? fine_ + 1 : 0;
@@ -132,7 +134,8 @@ class LocaliserNode {
     return trust_;
   }
 
-  /// The odometry when the scan was taken, between the two nearest messages; beyond the last by its speed.
+  /// The odometry at the time of the scan: interpolated between messages, extrapolated by speed after the
+  /// last.
   bool odometry_at(ros::Time stamp, Pose& pose) const {
     if (odometry_.empty()) return false;
     std::size_t after = 0;
@@ -169,8 +172,7 @@ class LocaliserNode {
                          {"laser_y", std::to_string(laser.y)},
                          {"laser_yaw", std::to_string(laser.yaw)}});
     } catch (const tf2::TransformException& error) {
-      say_(std::string("localisation: the laser is taken to be where the parameters say; tf: ") +
-           error.what());
+      log_(std::string("localisation: uses the pose of the laser in the parameters; tf: ") + error.what());
     }
   }
 
@@ -187,7 +189,7 @@ class LocaliserNode {
         out.pose.covariance[static_cast<std::size_t>(6 * row[i] + row[j])] = estimate_.covariance[i][j];
     pose_out_.publish(out);
     tf2_msgs::TFMessage tf;
-    // Dated ahead, so that it holds until the next scan has been weighed.
+    // Stamped in the future, so that it is valid until the next scan has been processed.
     tf.transforms.push_back(transform(estimate_.odometry_frame, "map", last.header.frame_id,
                                       scan.header.stamp + ros::Duration(tolerance_)));
     tf_out_.publish(tf);
@@ -196,8 +198,8 @@ class LocaliserNode {
   void report() {
     diagnostics_.add("status", estimate_.status);
     diagnostics_.add("health", estimate_.health);
-    diagnostics_.add("share of beams explained", estimate_.fit);
-    diagnostics_.add("share of weight in one place", estimate_.share);
+    diagnostics_.add("fraction of beams explained", estimate_.fit);
+    diagnostics_.add("fraction of weight in one cluster", estimate_.share);
     diagnostics_.add("effective sample size", estimate_.effective_samples);
     diagnostics_.add("particles", estimate_.particles);
     diagnostics_.add("slowest update, ms", 1e3 * slowest_);
@@ -205,7 +207,7 @@ class LocaliserNode {
     const std::string what = !localiser_.has_map() ? "no map" : !seen ? "no scans" : estimate_.status;
     diagnostics_.send(seen && trust_ ? 0 : 2, what, "localisation");
     slowest_ = 0;
-    if (known_ && trust_) {  // so that a node that is started again knows
+    if (known_ && trust_) {  // for a node that is restarted
       own_.setParam("initial_pose/x", known_->x);
       own_.setParam("initial_pose/y", known_->y);
       own_.setParam("initial_pose/yaw", known_->yaw);
@@ -236,9 +238,9 @@ class LocaliserNode {
   ros::Time last_scan_{0};
   std::optional<Pose> start_, known_;
   Estimate estimate_;
-  std::string doubt_ = "uncertain";  ///< what was wrong last
+  std::string doubt_ = "uncertain";  ///< the last reason
   double slowest_ = 0;
-  Sayer say_;
+  ThrottledLog log_;
 };
 
 }  // namespace

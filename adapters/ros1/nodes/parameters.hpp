@@ -12,9 +12,9 @@
 
 #include "bridge/bridge.hpp"
 
-/// Declared options as ROS parameters, and changed while the node runs: the messages of dynamic_reconfigure,
-/// made from the declarations instead of a list of their own, so that rqt_reconfigure and `dynparam` know
-/// every option.
+/// Declared options as ROS parameters that can change while the node runs. The messages of
+/// dynamic_reconfigure are made from the declarations, so that rqt_reconfigure and `dynparam` know every
+/// option.
 namespace slalom_ros {
 
 inline std::string text_of(XmlRpc::XmlRpcValue value) {
@@ -43,8 +43,8 @@ inline std::string text_of(XmlRpc::XmlRpcValue value) {
   return text.str();
 }
 
-/// What the parameter server says of the options in the node's own namespace. In a section every name counts,
-/// so that one that does not exist is refused.
+/// The options that the parameter server has in the namespace of the node. An unknown name in a section is an
+/// error.
 inline slalom_bridge::Changes parameters_set(ros::NodeHandle& own,
                                              const std::vector<slalom_bridge::Option>& options) {
   slalom_bridge::Changes changes;
@@ -68,7 +68,8 @@ inline slalom_bridge::Changes parameters_set(ros::NodeHandle& own,
 class DynamicParameters {
  public:
   using List = std::function<std::vector<slalom_bridge::Option>()>;
-  using Change = std::function<void(const slalom_bridge::Changes&)>;  ///< throws what is said to the user
+  using Change = std::function<void(const slalom_bridge::Changes&)>;  ///< throws std::exception with a
+                                                                      ///< message for the user
 
   DynamicParameters(ros::NodeHandle& own, List list, Change change)
       : own_(own), list_(std::move(list)), change_(std::move(change)) {
@@ -93,7 +94,7 @@ class DynamicParameters {
     return s;
   }
 
-  /// `pick` gives the text of an option's value.
+  /// `pick` returns the value of an option as text.
   template <class Pick>
   dynamic_reconfigure::Config config(Pick&& pick) const {
     dynamic_reconfigure::Config c;

@@ -1,6 +1,7 @@
-// The controller: from `scan`, `odom` and tf to `drive`. A plan is made for every scan. Where an input is
-// missing, late, out of order, from the future or makes no sense, it sends speed 0 and says why, and goes on
-// by itself once input has been well for a moment. docs/on-the-car.md has topics, frames and parameters.
+// The controller: computes `drive` from `scan`, `odom` and tf, with a new plan for every scan. If an input is
+// missing, late, out of order, from the future or invalid, it sends speed 0 and reports the reason, and
+// continues once the inputs have been valid for a moment. docs/on-the-car.md has topics, frames and
+// parameters.
 #include <ackermann_msgs/AckermannDriveStamped.h>
 #include <mppi_metrics_msgs/MPPIMetrics.h>
 #include <nav_msgs/Odometry.h>
@@ -31,7 +32,7 @@ WatchLimits limits_from(ros::NodeHandle& own) {
   return l;
 }
 
-/// A path that ends about where it begins leads on to its beginning.
+/// A path is closed if its end is near its start.
 bool is_closed(const std::vector<slalom_bridge::Waypoint>& path) {
   double length = 0;
   for (std::size_t i = 1; i < path.size(); ++i)
@@ -40,7 +41,7 @@ bool is_closed(const std::vector<slalom_bridge::Waypoint>& path) {
   return gap < 5 * length / static_cast<double>(path.size());
 }
 
-/// What happened since the last report.
+/// Statistics since the last report.
 struct Second {
   int plans = 0, stops = 0, late = 0;
   double slowest = 0, least_samples = 1e300;
@@ -85,13 +86,13 @@ class PlannerNode {
       if (!watch_.clock_runs()) start_anew();
       const double idle = ros::SteadyTime::now().toSec() - sent_;
       if (scan_is_due() || idle > 1.6 * planner_.control_period()) tick();
-      say_.flush();
+      log_.flush();
       if (diagnostics_.due()) report();
     }
   }
 
  private:
-  /// A scan waits a little for the transforms of its time, which come by another way.
+  /// A scan waits a little for the transforms of its time, which arrive on another topic.
   bool scan_is_due() const {
     if (!new_scan_) return false;
     return ros::SteadyTime::now().toSec() - scan_heard_ > 0.8 * planner_.control_period() ||
@@ -108,7 +109,7 @@ class PlannerNode {
 
   void hear_scan(const sensor_msgs::LaserScan::ConstPtr& m) {
     if (!watch_.accepts("scan", m->header.stamp, scan_ ? scan_->header.stamp : ros::Time(0))) return;
-    if (!count_fits(*m)) return watch_.report("the scan's count does not fit its angles");
+    if (!count_fits(*m)) return watch_.report("the number of ranges of the scan does not match its angles");
     scan_ = m;
     scan_heard_ = ros::SteadyTime::now().toSec();
     new_scan_ = true;
@@ -116,7 +117,8 @@ class PlannerNode {
   void hear_odometry(const nav_msgs::Odometry::ConstPtr& m) {
     if (!watch_.accepts("odometry", m->header.stamp, odometry_ ? odometry_->header.stamp : ros::Time(0)))
       return;
-    if (!std::isfinite(m->twist.twist.linear.x)) return watch_.report("the odometry's speed is not finite");
+    if (!std::isfinite(m->twist.twist.linear.x))
+      return watch_.report("the speed of the odometry is not finite");
     odometry_ = m;
   }
   void hear_drive(const ros::MessageEvent<Drive const>& event) {
@@ -124,19 +126,19 @@ class PlannerNode {
       watch_.report("another node commands the car: " + event.getPublisherName());
   }
   void hear_goal_speed(const std_msgs::Float32::ConstPtr& m) {
-    if (!std::isfinite(m->data)) return say_("goal speed is not finite; ignored");
+    if (!std::isfinite(m->data)) return log_("goal speed is not finite; ignored");
     stopped_by_goal_ = m->data <= 0;
     if (stopped_by_goal_) return;
     try {
       planner_.change({{"planner/max_speed", std::to_string(std::clamp<double>(m->data, 0.01, 100))}});
     } catch (const std::exception& error) {
-      say_(error.what());
+      log_(error.what());
     }
   }
   void hear_waypoints(const waypoint_msg::Waypoint::ConstPtr& m) {
     std::vector<slalom_bridge::Waypoint> path;
     const std::size_t count = m->poses.size();
-    if (m->twists.size() != count) return say_("waypoints: poses and speeds differ in number; ignored");
+    if (m->twists.size() != count) return log_("waypoints: the numbers of poses and speeds differ; ignored");
     for (std::size_t i = 0; i < count; ++i) {
       const Pose p = pose_of(m->poses[i].pose);
       path.push_back({p.x, p.y, p.yaw, m->twists[i].twist.linear.x});
@@ -145,7 +147,7 @@ class PlannerNode {
       if (count < 3) throw std::invalid_argument("fewer than 3");
       use_path(path, is_closed(path));
     } catch (const std::exception& error) {
-      say_(std::string("waypoints: ") + error.what() + "; ignored");
+      log_(std::string("waypoints: ") + error.what() + "; ignored");
     }
   }
 
@@ -164,8 +166,7 @@ class PlannerNode {
     path_out_.publish(m);
   }
 
-  /// The pose of the rear axle when the scan was taken; false, with the fault reported, if it is not to be
-  /// had.
+  /// The pose of the rear axle at the time of the scan. Returns false and reports the fault if it is unknown.
   bool find_pose(Pose& pose) {
     try {
       const ros::Time stamp = scan_->header.stamp;
@@ -203,7 +204,7 @@ class PlannerNode {
     if (!fault.empty()) return stop(fault);
     if (!placed) return stop("input");
     if (stopped_by_goal_) return stop("goal speed is 0");
-    if (!scanned) return;  // a scan is a little late; the last command holds
+    if (!scanned) return;  // the scan is slightly late; the last command remains valid
     const Command command = planner_.update(scan_of(*scan_), pose, odometry_->twist.twist.linear.x);
     ++second_.plans;
     second_.late += command.update_time > planner_.control_period();
@@ -211,7 +212,7 @@ class PlannerNode {
     second_.least_samples = std::min(second_.least_samples, command.effective_samples);
     if (!command.ok) {
       second_.why = command.status;
-      say_("braking: " + command.status);
+      log_("braking: " + command.status);
     }
     last_steer_ = command.steer;
     send(command.steer, command.speed);
@@ -221,7 +222,7 @@ class PlannerNode {
   void stop(const std::string& why) {
     ++second_.stops;
     second_.why = why;
-    say_("stopping: " + why);
+    log_("stopping: " + why);
     send(last_steer_, 0);
   }
 
@@ -295,7 +296,7 @@ class PlannerNode {
   nav_msgs::Odometry::ConstPtr odometry_;
   bool new_scan_ = false, stopped_by_goal_ = false;
   double last_steer_ = 0, sent_ = 0, scan_heard_ = 0;
-  Sayer say_;
+  ThrottledLog log_;
   Second second_;
 };
 

@@ -1,7 +1,7 @@
-// The simulator as a car: hears `drive`; sends `scan`, `odom` (wheel odometry) and its transforms, `map`,
-// `reference_waypoint` and the parked cars of its course, and the truth as `ground_truth`, `laps` and
-// `contacts` (bodies touched). A car that has heard no finite command for 0.2 s, or two nodes commanding it,
-// brakes, as the vehicle side of a real one must.
+// The simulator as a car: subscribes to `drive` and publishes `scan`, `odom` (wheel odometry) with its
+// transforms, `map`, `reference_waypoint`, the parked cars, and the true state as `ground_truth`, `laps` and
+// `contacts` (number of collisions). Like a real car it must brake without a finite command for 0.2 s, or
+// when two nodes command it.
 #include <ackermann_msgs/AckermannDriveStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <std_msgs/Int32.h>
@@ -14,7 +14,7 @@
 
 #include <map>
 
-#include "ros_forms.hpp"
+#include "conversions.hpp"
 
 namespace slalom_ros {
 namespace {
@@ -77,9 +77,10 @@ class WorldNode {
     ros::Time due = ros::Time::now();
     while (ros::ok()) {
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.001));
-      say_.flush();
+      log_.flush();
       const double behind = (ros::Time::now() - due).toSec();
-      if (behind < -1 || behind > 0.5) due = ros::Time::now();  // the clock jumped, or this process stood
+      if (behind < -1 || behind > 0.5)
+        due = ros::Time::now();  // the clock jumped, or this process was stopped
       if (ros::Time::now() < due) continue;
       step(due);
       due += ros::Duration(period);
@@ -90,7 +91,7 @@ class WorldNode {
   void hear_drive(const ros::MessageEvent<Drive const>& event) {
     const auto& drive = event.getMessage()->drive;
     if (!std::isfinite(drive.steering_angle) || !std::isfinite(drive.speed))
-      return say_("a command is not finite");
+      return log_("a command is not finite");
     steer_ = drive.steering_angle;
     speed_ = drive.speed;
     heard_[event.getPublisherName()] = ros::SteadyTime::now().toSec();
@@ -100,7 +101,7 @@ class WorldNode {
     return true;
   }
 
-  /// What does not change: map, path, where the laser is.
+  /// Publishes what does not change: map, path, pose of the laser.
   void describe() {
     const auto course = slalom_bridge::load_course(course_);
     map_out_.publish(message_of(course.map));
@@ -122,8 +123,8 @@ class WorldNode {
     tf_static_out_.publish(tf);
   }
 
-  /// Obstacles and car. Said again and again: a display that has no transforms yet forgets what it cannot
-  /// place.
+  /// Publishes obstacles and car, repeatedly, since a display discards markers that it has no transform for
+  /// yet.
   void mark() {
     visualization_msgs::MarkerArray array;
     for (const Pose& p : world_.obstacles()) {
@@ -137,7 +138,7 @@ class WorldNode {
     markers_out_.publish(array);
   }
 
-  /// The command that the car follows: none if nobody commands, or more than one does.
+  /// The command that the car follows; none unless exactly one node publishes commands.
   bool commanded() {
     const double now = ros::SteadyTime::now().toSec();
     int voices = 0;
@@ -147,7 +148,7 @@ class WorldNode {
       ++voices;
       names += " " + name;
     }
-    if (voices > 1) say_("braking: commanded by more than one:" + names);
+    if (voices > 1) log_("braking: commanded by more than one:" + names);
     return voices == 1;
   }
 
@@ -185,12 +186,12 @@ class WorldNode {
   double timeout_;  // s
   double steer_ = 0, speed_ = 0;
   int steps_ = 0;
-  std::map<std::string, double> heard_;  // s, by the name of who commands
+  std::map<std::string, double> heard_;  // s, by name of the publisher
   ros::Publisher scan_out_, odometry_out_, truth_out_, laps_out_, contacts_out_, tf_out_, tf_static_out_,
       map_out_, waypoints_out_, markers_out_;
   ros::Subscriber drive_in_;
   ros::ServiceServer reset_in_;
-  Sayer say_;
+  ThrottledLog log_;
 };
 
 }  // namespace

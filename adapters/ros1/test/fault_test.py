@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Faults on the way from the car to its driver: each must stop the car, with a reason said at most once a second, and the
-car must drive on by itself once it is over. Scans, odometry, transforms and map pass through this test, which spoils them.
+"""Faults between car and controller. Each must stop the car, with a reason logged at most once per second, and the car
+must continue by itself afterwards. Scans, odometry, transforms and map pass through this test, which modifies them.
 
 usage: fault_test.py PREFIX_OF_INSTALL [FAULT...]
 """
@@ -27,7 +27,7 @@ starts = []  # (time, name) of every node's process
 
 
 class Car:
-    """Passes on what the world sends; `fault` is what is wrong with it."""
+    """Forwards the messages of the world, modified according to `fault`."""
 
     def __init__(self):
         self.fault = None
@@ -101,7 +101,7 @@ class Car:
         self.out["tf"].publish(m)
 
     def misfit(self):
-        """A map that somebody saved with a wrong resolution."""
+        """A map with a wrong resolution."""
         m = copy.deepcopy(self.map)
         m.info.resolution *= 1.6
         self.out["map"].publish(m)
@@ -136,7 +136,7 @@ def kill(name):
 
 
 class Clocks:
-    """The time of all nodes: as the wall has it, with jumps."""
+    """The clock of all nodes: the system clock with jumps."""
 
     def __init__(self):
         self.ahead = 0.0
@@ -152,8 +152,8 @@ class Clocks:
             time.sleep(0.004)
 
 
-PASSED_ON = {  # fault of what is passed on: a word of the reason
-    "scan silent": "no scan", "scan of NaN": "", "scan of a wrong count": "count", "scan from the future": "future",
+FORWARDING = {  # fault of forwarded messages: a word of the reason
+    "scan silent": "no scan", "scan of NaN": "", "scan of a wrong count": "number", "scan from the future": "future",
     "scan late": "late", "scans out of order": "out of order", "odometry silent": "no odometry", "odometry of NaN": "finite",
     "odometry late": "late", "odometry from the future": "future", "odometry jumps": "jump", "tf missing": "tf",
     "tf extrapolates": "extrapolation", "tf of NaN": "tf"}
@@ -164,11 +164,11 @@ def set_fault(car, fault):
 
 
 def faults(car, clock):
-    """Name: what begins it, what ends it, a word of the reason."""
+    """Name: function that begins it, function that ends it, a word of the reason."""
     nothing = lambda: None  # noqa: E731
-    made = {name: (set_fault(car, name), set_fault(car, None), word) for name, word in PASSED_ON.items()}
+    made = {name: (set_fault(car, name), set_fault(car, None), word) for name, word in FORWARDING.items()}
     made["two planners"] = (lambda: run_planner("planner2"), lambda: kill("planner2"), "another node commands")
-    made["a map that does not fit"] = (car.misfit, lambda: car.out["map"].publish(car.map), "localisation")
+    made["a map that does not match"] = (car.misfit, lambda: car.out["map"].publish(car.map), "localisation")
     made["localiser dies"] = (lambda: kill("localiser"), run_localiser, "tf")
     made["world dies"] = (lambda: kill("world"), run_world, "no scan")
     made["clock jumps ahead"] = (lambda: setattr(clock, "ahead", clock.ahead + 20), nothing, "clock")
@@ -195,14 +195,14 @@ def inject(name, fault, car, drive):
         wait(f"{name}: the car stands", lambda: abs(car.speed) < 0.2 or "odom" in name or name == "world dies", 5)
         time.sleep(1.5)
         assert drive.stopped(), f"{name}: does not stay stopped"
-    wait(f"{name}: says why ({word})", lambda: car.said(begin, word), 2)
+    wait(f"{name}: reports the reason ({word})", lambda: car.said(begin, word), 2)
     print("   reason:", car.said(begin, word)[0][1], car.said(begin, word)[0][2][:110], flush=True)
     end_fault()
     wait(f"{name}: drives on", drive.drives, 30)
 
 
 def planner_death(car, drive):
-    """The vehicle side notices that nobody commands."""
+    """The vehicle stops without commands."""
     wait("planner dies: drives before", drive.drives, 30)
     kill("planner")
     wait("planner dies: the car stands", lambda: abs(car.speed) < 0.2, 3)
@@ -214,8 +214,8 @@ def check_reasons(car):
     last, count = {}, 0
     for at, node, text in car.reasons:
         said = last.get(node, 0)
-        again = any(name == node and said < begun <= at for begun, name in starts)  # its process is another
-        assert again or at - said > 0.9, f"{node} says too much: {text}"
+        again = any(name == node and said < begun <= at for begun, name in starts)  # the process was restarted
+        assert again or at - said > 0.9, f"{node} logs too often: {text}"
         last[node] = at
         count += 1
     print(f"ok: {count} reasons, none within a second of the one before of the same node", flush=True)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Laps among parked cars through ROS alone, from the launch files, recorded in a bag that is read back.
+"""Laps among parked cars through ROS alone, started from the launch files and recorded in a bag that is read back.
 
 usage: race_test.py PREFIX_OF_INSTALL [LAPS [OBSTACLES [COURSE]]]
 """
@@ -44,15 +44,15 @@ class Seen:
 
 
 def check_parameters(seen, drive):
-    """An option changed while it drives, and one refused."""
+    """Changes an option while the car drives, and checks that an invalid value is rejected."""
     client = dynamic_reconfigure.client.Client("planner", timeout=10)
     first = client.get_configuration()["planner/max_speed"]
     client.update_configuration({"planner/max_speed": 1.0})
     wait("max_speed changed while driving", lambda: max(drive.speeds(0.3), default=9) <= 1.0 and seen.speed < 1.3, 5)
     answer = client.update_configuration({"svg_mppi/samples": -3})
-    assert answer["svg_mppi/samples"] > 0, "an option out of range was taken"
+    assert answer["svg_mppi/samples"] > 0, "a value out of range was accepted"
     client.update_configuration({"planner/max_speed": first})
-    print("ok: an option out of range is refused; options:", len(client.get_configuration()), flush=True)
+    print("ok: a value out of range is rejected; options:", len(client.get_configuration()), flush=True)
 
 
 def read_back(file):
@@ -78,7 +78,7 @@ def read_back(file):
 
 
 def show(file):
-    """What the program makes of the bag, where the install has it."""
+    """Runs the program on the bag, if it is installed."""
     program = f"{PREFIX}/bin/slalom"
     if not os.path.exists(program):
         return print("skipped: slalom replay and identify: the program is not installed", flush=True)

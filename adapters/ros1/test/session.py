@@ -1,4 +1,4 @@
-"""A roscore and nodes of a test's own, what the car is told, and how long it may take."""
+"""A roscore and nodes for one test, a monitor of the commands, and time limits."""
 import os
 import signal
 import socket
@@ -67,7 +67,7 @@ def wait(what, holds, seconds):
 
 
 class Drive:
-    """What is commanded on `drive`, with the time it was heard and who said it."""
+    """The commands on `drive`, each with time and publisher."""
 
     def __init__(self):
         self.commands = []

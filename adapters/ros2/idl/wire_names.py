@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Names the types of messages.idl as ROS 2 names them on the wire: pkg::msg::Type becomes pkg::msg::dds_::Type_, final.
+"""Gives the types of messages.idl the names that ROS 2 uses on the wire: pkg::msg::Type becomes pkg::msg::dds_::Type_, final.
 
 usage: wire_names.py IN OUT
 """

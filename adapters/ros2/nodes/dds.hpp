@@ -9,9 +9,9 @@
 #include "dds/dds.h"
 #include "wire.h"
 
-/// A node that ROS 2 takes for one of its own, over CycloneDDS: topics `rt/...`, types
-/// `pkg::msg::dds_::Type_`, XCDR1, the user data that names its enclave, and `ros_discovery_info` by which
-/// `ros2 node list` finds it.
+/// A node that is compatible with ROS 2, over CycloneDDS: topics `rt/...`, types `pkg::msg::dds_::Type_`,
+/// XCDR1, user data with the name of the enclave, and `ros_discovery_info`, from which `ros2 node list` knows
+/// it.
 namespace slalom_ros2 {
 
 inline dds_entity_t checked(dds_entity_t entity, const std::string& what) {
@@ -62,7 +62,7 @@ class Node {
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
-  /// `topic` without `rt/`.
+  /// `topic` is given without `rt/`.
   dds_entity_t writer(const dds_topic_descriptor_t* type, const std::string& topic, Quality quality) {
     writers_.push_back(make_writer(type, "rt/" + topic, quality));
     return writers_.back();
@@ -74,7 +74,7 @@ class Node {
     return readers_.back();
   }
 
-  /// Says which readers and writers are this node's; to be called when all are made.
+  /// Publishes the readers and writers of this node; to be called when all have been made.
   void announce() {
     using Gid = rmw_dds_common_msg_dds__Gid_;
     std::vector<Gid> readers, writers;
@@ -116,7 +116,7 @@ class Node {
   std::vector<dds_entity_t> readers_, writers_;
 };
 
-/// Calls `use` with every message that has come.
+/// Calls `use` with every message received.
 template <class Message, class Use>
 void take_all(dds_entity_t reader, Use&& use) {
   void* samples[8] = {};

@@ -1,6 +1,7 @@
-// Localisation and planner as one ROS 2 node: from `scan`, `odom` and `map` to `drive` and the transform from
-// map to odom. Where input is missing, late, out of order, from the future or not usable it sends speed 0,
-// says why at most once a second, and drives on by itself when input has been well for a moment.
+// Localisation and planner as one ROS 2 node: computes `drive` and the transform from map to odom from
+// `scan`, `odom` and `map`. If an input is missing, late, out of order, from the future or invalid, it sends
+// speed 0 and logs the reason at most once per second. It continues by itself once the inputs have been valid
+// for a moment.
 //
 //   slalom_ros2_driver --course NAME [--configuration NAME] [--method NAME] [--domain N] [--set
 //   section/option=value]
@@ -110,7 +111,7 @@ class Driver {
       fault(std::string(what) + " from the future");
     } else if (stamp <= last) {
       fault(std::string(what) + " out of order");
-      if (last - now() > most_ahead) last_scan_ = last_odometry_ = 0;  // the clock went back
+      if (last - now() > most_ahead) last_scan_ = last_odometry_ = 0;  // the clock was set back
     } else if (age > most_age) {
       fault(std::string(what) + " late");
     } else {

@@ -1,6 +1,6 @@
-// A car on another implementation of the wire, Fast DDS: the simulator sends scans, odometry, transforms and
-// a map as ROS 2 would, and follows `drive`. Ends well once the laps are driven without contact and a silence
-// of the scans, and scans from the future, have stopped the car and it has driven on.
+// A car on another implementation of the protocol, Fast DDS: the simulator publishes scans, odometry,
+// transforms and a map as ROS 2 does, and follows `drive`. Succeeds if the laps are driven without a
+// collision, and missing scans and scans from the future stop the car, which then continues.
 //
 //   slalom_ros2_peer COURSE LAPS OBSTACLES DOMAIN
 #include <atomic>
@@ -104,7 +104,7 @@ geometry_msgs::msg::Quaternion quaternion(double yaw) {
   return q;
 }
 
-/// The simulated car and what it has heard.
+/// The simulated car and the messages that it has received.
 class Car {
  public:
   Car(const std::string& course, int obstacles, int domain)
@@ -218,7 +218,8 @@ class Car {
   bool knows_node_ = false, heard_transform_ = false;
 };
 
-/// Lets the world run until `holds` has held for `lasting` (s); false if not within `most` (s).
+/// Runs the world until `holds` has been true for `lasting` (s). Returns false if that takes longer than
+/// `most` (s).
 template <class Holds>
 bool run_until(Car& car, double& due, const char* what, Holds&& holds, double lasting, double most) {
   const double begin = now();
@@ -236,7 +237,7 @@ bool run_until(Car& car, double& due, const char* what, Holds&& holds, double la
     std::fflush(stdout);
     return true;
   }
-  std::printf("FAILED: %s: not within %.0f s\n", what, most);
+  std::printf("FAILED: %s: timed out after %.0f s\n", what, most);
   return false;
 }
 

@@ -11,7 +11,7 @@
 
 #include "bridge/bridge.hpp"
 
-/// What ROS messages and our plain structs say in each other's form.
+/// Conversions between ROS messages and the structs of the bridge.
 namespace slalom_ros {
 
 using slalom_bridge::Pose;
@@ -68,7 +68,7 @@ inline nav_msgs::OccupancyGrid message_of(const slalom_bridge::Grid& g) {
   return m;
 }
 
-/// Whether the scan's count is what its angles promise, to within a beam.
+/// Whether the number of ranges matches the angles of the scan, to within one beam.
 inline bool count_fits(const sensor_msgs::LaserScan& s) {
   const double promised = (static_cast<double>(s.angle_max) - s.angle_min) / s.angle_increment + 1;
   return std::isfinite(promised) && std::abs(promised - static_cast<double>(s.ranges.size())) <= 1.5;
@@ -78,31 +78,31 @@ inline double angle_between(double a, double b) {
   return std::abs(std::remainder(a - b, 6.283185307179586));
 }
 
-/// A rough length of time in seconds, for messages.
+/// A duration in seconds, rounded for messages.
 inline std::string seconds(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2f s", value);
   return text;
 }
 
-/// Says something at most once a second, by a clock that does not jump. What comes sooner is said when the
-/// second is over, the latest of it.
-class Sayer {
+/// Logs at most one message per second of the steady clock. Of the messages that come sooner the last is
+/// logged when the second is over.
+class ThrottledLog {
  public:
-  void operator()(const std::string& what) {
-    waiting_ = what;
+  void operator()(const std::string& message) {
+    waiting_ = message;
     flush();
   }
   void flush() {
     const double now = ros::SteadyTime::now().toSec();
-    if (waiting_.empty() || now - said_ < 1) return;
-    said_ = now;
+    if (waiting_.empty() || now - last_ < 1) return;
+    last_ = now;
     ROS_WARN_STREAM(waiting_);
     waiting_.clear();
   }
 
  private:
-  double said_ = -1e9;
+  double last_ = -1e9;
   std::string waiting_;
 };
 
