@@ -218,7 +218,7 @@ def test_rates_of_a_problem_hold_from_solve_to_solve():
     assert before[0] > 0.5
     controller.set_previous_input([-2, 0])
     assert np.all(np.abs(controller.solve(x).inputs[0] - [-2, 0]) <= reach)
-    with pytest.raises(ValueError, match="Problem.dt: input_rate_max needs the duration of a step"):
+    with pytest.raises(ValueError, match="Problem.dt: must be positive, since input_rate_max is set"):
         slalom.Problem(lambda x, u: x, lambda x, u: x[:, 0], states=1, inputs=1, input_rate_max=1)
     with pytest.raises(ValueError, match="input_min: has 3 values, must have 1 or 2"):
         pushed(input_min=[1, 2, 3])
