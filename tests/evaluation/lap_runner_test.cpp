@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::shared_ptr<const Environment> wren(Protocol protocol = Protocol::true_physics) {
-  return load_environment(fs::path(SLALOM_COURSES) / "wren", evaluation, {SLALOM_COURSES});
+  return load_environment(fs::path(SLALOM_COURSES) / "wren", protocol, {SLALOM_COURSES});
 }
 
 vehicle::Configuration configuration(const std::string& name, int samples = 256) {
