@@ -63,7 +63,7 @@ int main() {
                                    .temperature = 0.2,
                                    .input_min = {-5},
                                    .input_max = {5},
-                                   .gradient_variance = 1,
+                                   .guides = {.gradient_variance = 1},
                                    .variance_min = 1,
                                    .variance_max = 4,
                                    .seed = seed}});

@@ -34,19 +34,17 @@ int main() {
                                 .seed = seed}});
   });
   const int svg_mppi = succeeded([](auto seed) {
-    return stands(slalom::SvgMppi{CartPole{},
-                                  {.horizon = 60,
-                                   .samples = 4096,
-                                   .temperature = 0.1,
-                                   .input_min = {-10},
-                                   .input_max = {10},
-                                   .guide_step = 0.2,
-                                   .guide_variance = 4,
-                                   .gradient_variance = 2,
-                                   .gradient_temperature = 0.1,
-                                   .variance_min = 4,
-                                   .variance_max = 8,
-                                   .seed = seed}});
+    return stands(slalom::SvgMppi{
+        CartPole{},
+        {.horizon = 60,
+         .samples = 4096,
+         .temperature = 0.1,
+         .input_min = {-10},
+         .input_max = {10},
+         .guides = {.step = 0.2, .variance = 4, .gradient_variance = 2, .gradient_temperature = 0.1},
+         .variance_min = 4,
+         .variance_max = 8,
+         .seed = seed}});
   });
   return report("the pole stands", mppi, svg_mppi, 20);
 }

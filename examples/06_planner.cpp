@@ -4,7 +4,7 @@
 #include <memory>
 
 #include <slalom/evaluation/environment.hpp>
-#include <slalom/solvers/make_solver.hpp>
+#include <slalom/solvers/registry.hpp>
 #include <slalom/vehicle/planner/planner.hpp>
 
 #include "seeds.hpp"
@@ -49,10 +49,7 @@ int main(int, char** argv) {
                                                      .temperature = 3,
                                                      .input_min = -0.4189,
                                                      .input_max = 0.4189,
-                                                     .guide_step = 0.005,
-                                                     .guide_variance = 0.01,
-                                                     .gradient_variance = 0.01,
-                                                     .gradient_temperature = 3,
+                                                     .guides = {.step = 0.005, .variance = 0.01, .gradient_variance = 0.01, .gradient_temperature = 3},
                                                      .variance_min = 0.001,
                                                      .variance_max = 0.1,
                                                      .seed = seed});

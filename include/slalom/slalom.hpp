@@ -14,7 +14,7 @@
 #include "slalom/core/version.hpp"
 #include "slalom/solvers/cem.hpp"
 #include "slalom/solvers/controller.hpp"
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/registry.hpp"
 #include "slalom/solvers/mppi.hpp"
 #include "slalom/solvers/reverse_mppi.hpp"
 #include "slalom/solvers/solver.hpp"

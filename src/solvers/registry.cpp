@@ -1,44 +1,73 @@
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/registry.hpp"
 
 #include <stdexcept>
 #include <string>
+#include <vector>
+
+#include "slalom/solvers/cem_options.hpp"
+#include "slalom/solvers/mppi_options.hpp"
+#include "slalom/solvers/reverse_mppi_options.hpp"
+#include "slalom/solvers/sv_mpc_options.hpp"
+#include "slalom/solvers/svg_mppi_options.hpp"
 
 namespace slalom {
 
 namespace {
-/// In the order of the alternatives of `SolverOptions`.
-constexpr const char* names[] = {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"};
-static_assert(std::size(names) == std::variant_size_v<SolverOptions>);
 
-template <std::size_t I = 0>
-SolverOptions default_of(std::size_t index) {
-  if constexpr (I + 1 < std::variant_size_v<SolverOptions>) {
-    if (index != I) return default_of<I + 1>(index);
+/// Default options of every method, and the names in the same order.
+struct Registry {
+  std::vector<SolverOptions> methods{
+      MppiOptions{},         //
+      SvgMppiOptions{},      //
+      ReverseMppiOptions{},  //
+      SvMpcOptions{},        //
+      CemOptions{},          //
+  };
+  std::vector<const char*> names;
+
+  Registry() {
+    for (const SolverOptions& method : methods) names.push_back(method.method());
   }
-  return std::variant_alternative_t<I, SolverOptions>{};
+};
+
+Registry& registry() {
+  static Registry all;
+  return all;
 }
+
+template <class Type>
+void require(const SolverOptions& defaults, const char* option, const char* type) {
+  if (defaults.find<Type>(option)) return;
+  throw std::invalid_argument("method " + std::string(defaults.method()) + ": must declare the option " +
+                              option + " of type " + type);
+}
+
 }  // namespace
 
 std::span<const char* const> solver_names() noexcept {
-  return names;
+  return registry().names;
 }
 
 SolverOptions solver_options(std::string_view name) {
   std::string known;
-  for (std::size_t i = 0; i < std::size(names); ++i) {
-    if (name == names[i]) return default_of(i);
-    known += (i ? ", " : "") + std::string(names[i]);
+  for (const SolverOptions& method : registry().methods) {
+    if (name == method.method()) return method;
+    known += (known.empty() ? "" : ", ") + std::string(method.method());
   }
-  throw std::invalid_argument("method: " + std::string(name) + " is not one of " + known);
+  throw std::invalid_argument("method: unknown method '" + std::string(name) + "', must be one of " + known);
 }
 
-const char* solver_name(const SolverOptions& options) noexcept {
-  return names[options.index()];
-}
-
-std::unique_ptr<Solver> make_solver(const SolverOptions& options, int inputs,
-                                    std::shared_ptr<ThreadPool> pool) {
-  return std::visit([&](const auto& o) { return make_solver(o, inputs, std::move(pool)); }, options);
+void register_solver(SolverOptions defaults) {
+  for (const char* name : registry().names)
+    if (std::string_view(name) == defaults.method())
+      throw std::invalid_argument("method " + std::string(name) + ": is registered already");
+  require<int>(defaults, "horizon", "int");
+  require<int>(defaults, "threads", "int");
+  require<std::uint64_t>(defaults, "seed", "std::uint64_t");
+  require<PerInput>(defaults, "input_min", "PerInput");
+  require<PerInput>(defaults, "input_max", "PerInput");
+  registry().methods.push_back(std::move(defaults));
+  registry().names.push_back(registry().methods.back().method());
 }
 
 }  // namespace slalom

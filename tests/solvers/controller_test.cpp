@@ -90,7 +90,7 @@ TEST(BatchEvaluation, WholeBatchesGiveTheSameBitsAsSlices) {
   const WholeBatches whole(problem);
   for (const char* name : {"mppi", "svg_mppi", "reverse_mppi", "cem"}) {
     SolverOptions options = solver_options(name);
-    std::visit([](auto& o) { o.samples = 1000; }, options);
+    *options.find<int>("samples") = 1000;
     const auto one = make_solver(options, 1), other = make_solver(options, 1);
     whole.calls = 0;
     for (int k = 0; k < 3; ++k) {

@@ -63,11 +63,12 @@ TEST_P(ModeSeeking, SvgMppiCommitsWhereMppiAverages) {
   std::printf("[ modes    ] temperature %g\n", temperature);
   const Outcome mppi = outcome(MppiOptions{.temperature = temperature});
   const Outcome both =
-      outcome(SvgMppiOptions{.temperature = temperature, .gradient_temperature = temperature});
-  const Outcome nominal = outcome(SvgMppiOptions{
-      .temperature = temperature, .gradient_temperature = temperature, .adapt_covariance = false});
-  const Outcome covariance = outcome(
-      SvgMppiOptions{.temperature = temperature, .gradient_temperature = temperature, .use_nominal = false});
+      outcome(SvgMppiOptions{.temperature = temperature, .guides = {.gradient_temperature = temperature}});
+  const Outcome nominal = outcome(SvgMppiOptions{.temperature = temperature,
+                                                 .guides = {.gradient_temperature = temperature},
+                                                 .adapt_covariance = false});
+  const Outcome covariance = outcome(SvgMppiOptions{
+      .temperature = temperature, .guides = {.gradient_temperature = temperature}, .use_nominal = false});
   print("mppi", mppi);
   print("svg_mppi", both);
   print("svg_mppi, nominal only", nominal);

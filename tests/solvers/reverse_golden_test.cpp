@@ -1,7 +1,7 @@
 #include "solvers/golden_json.hpp"
 #include "solvers/methods/control_term.hpp"
-#include "solvers/methods/rejection.hpp"
 #include "solvers/methods/reverse_weights.hpp"
+#include "solvers/published/published_rejection.hpp"
 
 namespace slalom::testing {
 namespace {

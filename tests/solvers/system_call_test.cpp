@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/registry.hpp"
 #include "solvers/problems.hpp"
 
 #if defined(__linux__)
@@ -53,7 +53,7 @@ TEST_P(SystemCalls, SolvingOnOneThreadMakesNone) {
   ProblemEvaluator<DoubleIntegrator> evaluator{DoubleIntegrator{}};
   evaluator.set_state({1, 0});
   SolverOptions options = solver_options(GetParam());
-  std::visit([](auto& o) { o.samples = 256; }, options);
+  *options.find<int>("samples") = 256;
   const auto solver = make_solver(options, 1);
   const pid_t child = fork();
   ASSERT_GE(child, 0);

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/registry.hpp"
 #include "support/allocations.hpp"
 #include "vehicle/planner/back_up.hpp"
 
@@ -42,8 +42,8 @@ SvgMppiOptions few_samples() {
   method.horizon = 20;
   method.samples = 512;
   method.variance = 0.03;
-  method.guide_variance = method.gradient_variance = 0.01;
-  method.guide_step = 0.005;
+  method.guides.variance = method.guides.gradient_variance = 0.01;
+  method.guides.step = 0.005;
   method.variance_min = 0.001;
   method.variance_max = 0.1;
   method.input_min = -0.4;
@@ -88,7 +88,7 @@ TEST(Planner, FollowsAFreeLaneAtItsSpeed) {
   method.samples = 4096;
   method.temperature = 0.1;
   method.variance_max = 0.003;
-  method.guide_iterations = 20;
+  method.guides.iterations = 20;
   for (method.seed = 0; method.seed < 20; ++method.seed) {
     Planner planner = make_planner(careful(), method);
     for (int i = 0; i < 5; ++i) {
@@ -144,8 +144,8 @@ TEST(Planner, WithTheAccelerationAsAnInputItIsFastWhereItCanAndSlowsDownInTime) 
   method.horizon = 20;
   method.samples = 1024;
   method.variance = {0.03, 4};
-  method.guide_variance = method.gradient_variance = {0.01, 4};
-  method.guide_step = {0.005, 2};
+  method.guides.variance = method.guides.gradient_variance = {0.01, 4};
+  method.guides.step = {0.005, 2};
   method.variance_min = {0.001, 0.5};
   method.variance_max = {0.1, 9};
   method.input_min = {-0.4, -6};

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "slalom/problems/passing_point.hpp"
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/registry.hpp"
 
 /// What a method makes of the smallest problem with two ways, `problems::PassingPoint`, told in places.
 namespace slalom::tools {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "slalom/core/error.hpp"
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/course/course.hpp"
 
 namespace slalom::tools {

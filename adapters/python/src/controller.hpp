@@ -5,7 +5,7 @@
 
 #include "keywords.hpp"
 #include "problem.hpp"
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/registry.hpp"
 
 namespace slalom::python {
 

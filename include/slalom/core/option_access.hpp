@@ -50,6 +50,8 @@ template <class Field>
 OptionValue value_of(const Field& field) {
   if constexpr (std::is_same_v<Field, PerInput>) {
     return field.values();
+  } else if constexpr (std::is_same_v<Field, Choice>) {
+    return std::string(field.names()[field.index()]);
   } else if constexpr (std::is_enum_v<Field>) {
     return std::string(enum_names(field)[static_cast<int>(field)]);
   } else {
@@ -63,6 +65,8 @@ void parse_into(Field& field, const Declaration& declaration, std::string_view t
     field = parse_flag(text);
   } else if constexpr (std::is_enum_v<Field>) {
     field = static_cast<Field>(parse_choice(text, enum_names(field)));
+  } else if constexpr (std::is_same_v<Field, Choice>) {
+    field.set(parse_choice(text, field.names()));
   } else if constexpr (std::is_same_v<Field, PerInput>) {
     std::vector<double> values = parse_numbers(text);
     for (const double value : values) check_range(declaration, value);
@@ -94,6 +98,8 @@ std::vector<OptionEntry> list_options(const Options& options) {
     OptionEntry entry{declaration, detail::value_of(field), {}};
     if constexpr (std::is_enum_v<Field>)
       for (const char* const* name = enum_names(field); *name; ++name) entry.choices.emplace_back(*name);
+    if constexpr (std::is_same_v<Field, Choice>)
+      for (const char* const* name = field.names(); *name; ++name) entry.choices.emplace_back(*name);
     entries.push_back(std::move(entry));
   });
   return entries;

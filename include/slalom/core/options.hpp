@@ -22,7 +22,7 @@
 ///     }
 ///
 /// that names every field. Fields are `bool`, `int`, `std::uint64_t`, `double`, `PerInput` or an enumeration
-/// with a `enum_names(E)` function.
+/// with an `enum_names(E)` function (or a `Choice`, a reference to one).
 namespace slalom {
 
 /// What is said of an option besides its type and default.
@@ -33,6 +33,31 @@ struct Declaration {
   const char* help = "";    ///< effect, in one line
   double min = -std::numeric_limits<double>::infinity();  ///< inclusive, per entry
   double max = std::numeric_limits<double>::infinity();   ///< inclusive, per entry
+  const char* formerly = "";  ///< a name that the option had before, to tell whoever still uses it
+};
+
+/// A reference to an enumeration of any type, for code that is compiled once for all options. It stands where an
+/// enumeration stands in a call of `visit`.
+class Choice {
+ public:
+  template <class Enumeration>
+  requires std::is_enum_v<Enumeration>
+  explicit Choice(Enumeration& field)
+      : field_(&field),
+        names_(enum_names(field)),
+        get_([](const void* from) { return static_cast<int>(*static_cast<const Enumeration*>(from)); }),
+        set_([](void* to, int index) { *static_cast<Enumeration*>(to) = static_cast<Enumeration>(index); }) {}
+
+  /// The names of the enumerators, ended by a null pointer.
+  const char* const* names() const noexcept { return names_; }
+  int index() const { return get_(field_); }
+  void set(int index) const { set_(field_, index); }
+
+ private:
+  void* field_;
+  const char* const* names_;
+  int (*get_)(const void*);
+  void (*set_)(void*, int);
 };
 
 /// Whether `Options` is `Of`, const or not.

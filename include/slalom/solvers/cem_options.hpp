@@ -3,29 +3,32 @@
 #include <cstdint>
 #include <limits>
 
-#include "slalom/solvers/option_declarations.hpp"
+#include "slalom/solvers/option_groups.hpp"
+#include "slalom/solvers/solver.hpp"
 
 namespace slalom {
 
 /// Options of `cem`, the cross-entropy method (Rubinstein 1999; for control: Kobilarov 2012): the
-/// distribution is refitted to its best samples, several times a solve. It is no method of the paper.
+/// distribution is refitted to its best samples several times per solve.
 struct CemOptions {
+  static constexpr const char* method = "cem";
+
   int horizon = 30;       ///< T, steps
   int samples = 512;      ///< K, drawn in each iteration
   PerInput variance = 1;  ///< Sigma at the start of every solve, input^2
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
 
-  int iterations = 5;
-  double elite_share = 0.1;      ///< of the samples, at least one
-  double smoothing = 0.1;        ///< share of the old distribution that is kept in an update
-  PerInput variance_min = 1e-4;  ///< input^2
+  int iterations = 5;  ///< refits of the distribution in a solve
+  double elite_share =
+      0.1;                 ///< share of the samples that the distribution is refitted to; at least one sample
+  double smoothing = 0.1;  ///< share of the old distribution that is kept in an update
+  PerInput variance_min = 1e-4;  ///< least variance, input^2
   bool send_best = false;        ///< the solution is the best sample seen instead of the mean
 
-  PerInput noise_exponent = 0;     ///< beta of the noise's spectrum 1/f^beta; 0: white
-  PerInput log_normal_spread = 0;  ///< sigma_ln, log-normal factor of the noise; 0: none
-  double zero_mean_share = 0;
-  bool shift_warm_start = true;
+  NoiseOptions noise;            ///< shape of the noise; white and normal
+  double zero_mean_share = 0;    ///< of the samples, drawn around zero instead of the mean
+  bool shift_warm_start = true;  ///< move the last solution forward by the elapsed time
   std::uint64_t seed = 0;
   int threads = 1;
 };
@@ -53,8 +56,12 @@ void visit_options(Options& o, Visit&& visit) {
                                     .max = detail::finite});
   visit(o.send_best,
         Declaration{.name = "send_best", .help = "send the best sample seen instead of the mean"});
-  detail::visit_noise_options(o, visit);
+  detail::visit_noise_options(o.noise, visit);
   detail::visit_run_options(o, visit);
 }
+
+/// A solver with these options, see registry.hpp.
+std::unique_ptr<Solver> make_solver(const CemOptions& options, int inputs,
+                                    std::shared_ptr<ThreadPool> pool = nullptr);
 
 }  // namespace slalom

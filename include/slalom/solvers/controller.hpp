@@ -10,7 +10,7 @@
 
 #include "slalom/core/problem_check.hpp"
 #include "slalom/core/problem_evaluator.hpp"
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/registry.hpp"
 
 namespace slalom {
 

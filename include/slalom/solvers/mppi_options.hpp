@@ -3,43 +3,48 @@
 #include <cstdint>
 #include <limits>
 
-#include "slalom/solvers/option_declarations.hpp"
+#include "slalom/solvers/option_groups.hpp"
+#include "slalom/solvers/published/published_options.hpp"
+#include "slalom/solvers/solver.hpp"
 
 namespace slalom {
 
-/// Options of `mppi`. Defaults are the method as Williams et al. (2018) have it; what "published" says of an
-/// option is its value in the published program of Honda et al. (ICRA 2024).
+/// Options of `mppi`, model predictive path integral control. Defaults are the method of Williams et al.
+/// (2018).
 struct MppiOptions {
-  int horizon = 30;        ///< T, steps; published: 14 (15 states)
-  int samples = 1024;      ///< K; published: 10000
-  double temperature = 1;  ///< lambda; published: 3
-  PerInput variance = 1;   ///< Sigma, input^2; published: 0.1
+  static constexpr const char* method = "mppi";
+
+  int horizon = 30;        ///< T, steps
+  int samples = 1024;      ///< K, control sequences drawn in a solve
+  double temperature = 1;  ///< lambda
+  PerInput variance = 1;   ///< Sigma, input^2
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
-  PerInput noise_exponent = 0;       ///< beta of the noise's spectrum 1/f^beta; 0: white
-  PerInput log_normal_spread = 0;    ///< sigma_ln, log-normal factor of the noise; 0: none
-  double tsallis_index = 1;          ///< q of the weights' q-exponential; 1: exp
-  double effective_share = 0;        ///< effective sample size sought, a share of K; 0: `temperature` as set
-  int smoothing_half_width = 0;      ///< steps to each side, of Savitzky-Golay smoothing; 0: none
-  int smoothing_degree = 3;          ///< of its polynomials
-  double control_cost_discount = 0;  ///< alpha; published: 0.1
-  double zero_mean_share = 0;        ///< published: 0.1
-  double inverse_variance_offset = 0;  ///< 1/input^2; published: 1e-4
-  double normaliser_offset = 0;        ///< published: 1e-10
-  bool shift_warm_start = true;        ///< published: false
+  NoiseOptions noise;                ///< shape of the noise; white and normal
+  WeightingOptions weighting;        ///< how costs become weights; exponentially
+  SmoothingOptions smoothing;        ///< of the solution; none
+  double control_cost_discount = 0;  ///< alpha: the control term is multiplied by 1 - alpha
+  double zero_mean_share = 0;        ///< of the samples, drawn around zero instead of the last solution
+  bool shift_warm_start = true;      ///< move the last solution forward by the elapsed time
   std::uint64_t seed = 0;
   int threads = 1;
+  PublishedMppi published;  ///< only to reproduce the published program
 };
 
 template <class Options, class Visit>
 requires is_options_of<Options, MppiOptions>
 void visit_options(Options& o, Visit&& visit) {
   detail::visit_sampling_options(o, visit);
-  detail::visit_noise_options(o, visit);
-  detail::visit_weight_options(o, visit);
-  detail::visit_smoothing_options(o, visit);
+  detail::visit_noise_options(o.noise, visit);
+  detail::visit_weighting_options(o.weighting, visit);
+  detail::visit_smoothing_options(o.smoothing, visit);
   detail::visit_control_cost_options(o, visit);
   detail::visit_run_options(o, visit);
+  visit_options(o.published, visit);
 }
+
+/// A solver with these options, see registry.hpp.
+std::unique_ptr<Solver> make_solver(const MppiOptions& options, int inputs,
+                                    std::shared_ptr<ThreadPool> pool = nullptr);
 
 }  // namespace slalom

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/cem_options.hpp"
 #include "solvers/solver_base.hpp"
 
 namespace slalom {
@@ -16,7 +16,7 @@ class CemSolver final : public detail::SolverBase {
       : SolverBase(options, inputs, std::move(pool)),
         options_(options),
         samples_(options.horizon, inputs, options.samples,
-                 detail::NoiseShape(options.noise_exponent, options.log_normal_spread, options.horizon,
+                 detail::NoiseShape(options.noise.exponent, options.noise.log_normal_spread, options.horizon,
                                     inputs, options.samples)),
         elites_(std::clamp(static_cast<int>(std::lround(options.elite_share * options.samples)), 1,
                            options.samples)),
@@ -33,7 +33,7 @@ class CemSolver final : public detail::SolverBase {
     reset(options.seed);
   }
 
-  const char* name() const noexcept override { return "cem"; }
+  const char* name() const noexcept override { return CemOptions::method; }
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
@@ -148,7 +148,7 @@ class CemSolver final : public detail::SolverBase {
 }  // namespace
 
 std::unique_ptr<Solver> make_solver(const CemOptions& options, int inputs, std::shared_ptr<ThreadPool> pool) {
-  validate_options(options, "cem", inputs);
+  validate_options(options, CemOptions::method, inputs);
   return std::make_unique<CemSolver>(options, inputs, std::move(pool));
 }
 

@@ -27,8 +27,8 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
                std::span<const float> high)
     : options_(options),
       inputs_(inputs),
-      count_(options.guides),
-      block_(padded(options.gradient_samples + 1)),
+      count_(options.guides.count),
+      block_(padded(options.guides.gradient_samples + 1)),
       rows_(low.size()),
       low_(low),
       high_(high),
@@ -44,16 +44,16 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       collided_(costs_.size()),
       end_collided_(end_costs_.size()),
       gradient_(at(count_)),
-      deviation_(spread(options.gradient_variance, options.horizon, inputs)),
+      deviation_(spread(options.guides.gradient_variance, options.horizon, inputs)),
       inverse_(deviation_),
-      step_(spread(options.guide_step, options.horizon, inputs)),
-      weight_variance_(spread(options.guide_variance, options.horizon, inputs)),
+      step_(spread(options.guides.step, options.horizon, inputs)),
+      weight_variance_(spread(options.guides.variance, options.horizon, inputs)),
       linear_(rows_),
       distance_weight_(rows_),
       solution_(rows_),
-      path_(path_at(options.guide_iterations, 0) * rows_),
+      path_(path_at(options.guides.iterations, 0) * rows_),
       path_float_(path_.size()),
-      path_costs_(path_at(options.guide_iterations, 0)),
+      path_costs_(path_at(options.guides.iterations, 0)),
       made_(static_cast<std::size_t>(count_)),
       points_(path_costs_.size()),
       density_(path_costs_.size()),
@@ -62,7 +62,7 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       abscissa_(path_costs_.size()) {
   for (std::size_t r = 0; r < rows_; ++r) {
     const double variance = static_cast<double>(deviation_[r]);
-    inverse_[r] = static_cast<float>(inverse_variance(variance, options.inverse_variance_offset));
+    inverse_[r] = static_cast<float>(inverse_variance(variance, options.published.inverse_variance_offset));
     deviation_[r] = static_cast<float>(std::sqrt(variance));
   }
 }
@@ -92,7 +92,7 @@ void Guides::shift(double steps) noexcept {
 
 /// Smooth deviations: straight lines between normal values at knots a third of the horizon apart.
 void Guides::restart_others(RandomKey key) noexcept {
-  if (!options_.restart_guides || count_ == 1) return;
+  if (!options_.guides.restart || count_ == 1) return;
   std::copy_n(&theta_[at(best_)], rows_, shifted_.begin());
   std::copy_n(shifted_.begin(), rows_, &theta_[at(0)]);
   best_ = 0;
@@ -108,7 +108,7 @@ void Guides::restart_others(RandomKey key) noexcept {
       const int next = std::min(k + 1, options_.horizon - 1);
       const double deviation = (1 - part) * knot(k, input, g) + part * knot(next, input, g);
       theta_[at(g) + r] =
-          std::clamp(theta_[at(0) + r] + std::sqrt(options_.restart_variance[input]) * deviation,
+          std::clamp(theta_[at(0) + r] + std::sqrt(options_.guides.restart_variance[input]) * deviation,
                      static_cast<double>(low_[r]), static_cast<double>(high_[r]));
     }
   }
@@ -132,14 +132,14 @@ std::span<const float> Guides::path_costs() const noexcept {
 void Guides::place(RandomKey key, int first, int last) noexcept {
   fill_normal(batch_, first * block_, (last - first) * block_, key);
   const Rows<float> rows{batch_.row(0, 0), batch_.stride(), static_cast<int>(rows_)};
-  const int biased =
-      static_cast<int>((1.0 - options_.zero_mean_share) * static_cast<double>(options_.gradient_samples));
+  const int biased = static_cast<int>((1.0 - options_.zero_mean_share) *
+                                      static_cast<double>(options_.guides.gradient_samples));
   for (int g = first; g < last; ++g) {
     const Range block{g * block_, block_};
     kernels().place(rows, rows,
                     {&guides_[at(g)], deviation_.data(), low_.data(), high_.data(), block.first + biased},
                     block);
-    const int own = block.first + options_.gradient_samples;
+    const int own = block.first + options_.guides.gradient_samples;
     for (int r = 0; r < rows.rows; ++r) {
       rows.row(r)[own] = guides_[at(g) + static_cast<std::size_t>(r)];
     }
@@ -150,26 +150,26 @@ void Guides::place(RandomKey key, int first, int last) noexcept {
 void Guides::step(int g, int iteration) noexcept {
   const Rows<float> rows{batch_.row(0, 0), batch_.stride(), static_cast<int>(rows_)};
   const Range block{g * block_, block_};
-  const auto own = static_cast<std::size_t>(block.first + options_.gradient_samples);
+  const auto own = static_cast<std::size_t>(block.first + options_.guides.gradient_samples);
   if (iteration > 0) path_costs_[path_at(iteration - 1, g)] = costs_[own];
   std::copy_n(costs_.data() + block.first, block_, totals_.data() + block.first);
   SurrogateGradient<float> gradient;
-  gradient.temperature = static_cast<float>(options_.gradient_temperature);
-  gradient.subtract_minimum = options_.subtract_minimum;
-  gradient.floor = options_.gradient_floor;
+  gradient.temperature = static_cast<float>(options_.guides.gradient_temperature);
+  gradient.subtract_minimum = options_.published.subtract_minimum;
+  gradient.floor = options_.published.gradient_floor;
   gradient.centre = &guides_[at(g)];
   gradient.inverse_variance = inverse_.data();
-  if (options_.guide_weight == GuideWeight::importance) gradient.linear = linear_.data();
-  if (options_.guide_weight == GuideWeight::proximity) {
+  if (options_.guides.weight == GuideWeight::importance) gradient.linear = linear_.data();
+  if (options_.guides.weight == GuideWeight::proximity) {
     gradient.distance_centre = solution_.data();
     gradient.distance_weight = distance_weight_.data();
   }
-  surrogate_gradient(gradient, rows, block, options_.gradient_samples, totals_.data(), weights_.data(),
+  surrogate_gradient(gradient, rows, block, options_.guides.gradient_samples, totals_.data(), weights_.data(),
                      &gradient_[at(g)]);
   double* theta = &theta_[at(g)];
   for (std::size_t r = 0; r < rows_; ++r) {
     theta[r] += static_cast<double>(step_[r]) * static_cast<double>(gradient_[at(g) + r]);
-    if (options_.clamp_guides) {
+    if (options_.published.clamp_guides) {
       theta[r] = std::clamp(theta[r], static_cast<double>(low_[r]), static_cast<double>(high_[r]));
     }
     if (!(std::abs(theta[r]) < 1e30)) theta[r] = static_cast<double>(solution_[r]);
@@ -194,8 +194,8 @@ int Guides::move(const BatchEvaluator& evaluator, RandomKey key, const float* so
                  ThreadPool& pool, const Deadline& deadline) noexcept {
   for (std::size_t r = 0; r < rows_; ++r) {
     const double inverse =
-        options_.gradient_temperature *
-        inverse_variance(static_cast<double>(weight_variance_[r]), options_.inverse_variance_offset);
+        options_.guides.gradient_temperature * inverse_variance(static_cast<double>(weight_variance_[r]),
+                                                                options_.published.inverse_variance_offset);
     solution_[r] = solution[r];
     linear_[r] =
         static_cast<float>(inverse * (static_cast<double>(solution[r]) - static_cast<double>(nominal[r])));
@@ -207,7 +207,7 @@ int Guides::move(const BatchEvaluator& evaluator, RandomKey key, const float* so
   const int shares = std::min(pool.threads(), count_);
   pool.run(shares, [&](int share) {
     move_some(evaluator, key, count_ * share / shares, count_ * (share + 1) / shares,
-              options_.guide_iterations, deadline, made_[static_cast<std::size_t>(share)]);
+              options_.guides.iterations, deadline, made_[static_cast<std::size_t>(share)]);
   });
   iterations_ = *std::min_element(made_.begin(), made_.begin() + shares);
   evaluate_ends(evaluator, iterations_);
@@ -235,8 +235,8 @@ void Guides::evaluate_ends(const BatchEvaluator& evaluator, int iterations) noex
 /// q* at the points of the paths: exp(-S / lambda), times the density round the nominal if asked for,
 /// normalised over the points.
 void Guides::densities(std::span<const int> points) noexcept {
-  const bool with_prior = options_.fit_target == FitTarget::optimal_density;
-  const double temperature = with_prior ? options_.temperature : options_.fit_temperature;
+  const bool with_prior = options_.published.fit_target == FitTarget::optimal_density;
+  const double temperature = with_prior ? options_.temperature : options_.published.fit_temperature;
   double largest = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto point = static_cast<std::size_t>(points[i]);
@@ -245,13 +245,13 @@ void Guides::densities(std::span<const int> points) noexcept {
       for (std::size_t r = 0; r < rows_; ++r) {
         const double difference = path_[point * rows_ + r] - theta_[at(best_) + r];
         logarithm -= 0.5 * difference * difference * static_cast<double>(distance_weight_[r]) /
-                     options_.gradient_temperature;
+                     options_.guides.gradient_temperature;
       }
     }
     density_[i] = logarithm;
     largest = std::max(largest, logarithm);
   }
-  double sum = options_.normaliser_offset;
+  double sum = options_.published.normaliser_offset;
   for (std::size_t i = 0; i < points.size(); ++i) sum += density_[i] = std::exp(density_[i] - largest);
   for (std::size_t i = 0; i < points.size(); ++i) density_[i] /= sum;
 }
@@ -260,7 +260,7 @@ void Guides::fit_variance(float* variance) noexcept {
   std::size_t count = 0;
   for (int l = 0; l < iterations_; ++l)
     for (int g = 0; g < count_; ++g)
-      if (options_.fit_all_guides || g == best_) points_[count++] = static_cast<int>(path_at(l, g));
+      if (options_.published.fit_all_guides || g == best_) points_[count++] = static_cast<int>(path_at(l, g));
   const std::span<const int> points(points_.data(), count);
   const bool known = best_cost_ < infinite && count > 0;
   if (known) {
@@ -277,8 +277,8 @@ void Guides::fit_variance(float* variance) noexcept {
       }
       const GaussianFit fit =
           fit_gaussian(abscissa_.data(), square_.data(), logarithm_.data(), static_cast<int>(count));
-      fitted = fitted_variance(fit, options_.fit_absolute_curvature);
-      if (options_.fit_standard_deviation) fitted = std::sqrt(fitted);
+      fitted = fitted_variance(fit, options_.published.fit_absolute_curvature);
+      if (options_.published.fit_standard_deviation) fitted = std::sqrt(fitted);
     }
     variance[r] = static_cast<float>(std::clamp(fitted, least, std::max(least, most)));
   }

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/mppi_options.hpp"
 #include "solvers/methods/mppi_update.hpp"
 
 namespace slalom {
@@ -22,7 +22,7 @@ class MppiSolver final : public detail::SolverBase {
     reset(options.seed);
   }
 
-  const char* name() const noexcept override { return "mppi"; }
+  const char* name() const noexcept override { return MppiOptions::method; }
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
@@ -65,7 +65,7 @@ class MppiSolver final : public detail::SolverBase {
 
 std::unique_ptr<Solver> make_solver(const MppiOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool) {
-  validate_options(options, "mppi", inputs);
+  validate_options(options, MppiOptions::method, inputs);
   return std::make_unique<MppiSolver>(options, inputs, std::move(pool));
 }
 

@@ -30,12 +30,13 @@ class MppiUpdate {
   template <class Options>
   MppiUpdate(const Options& o, int inputs)
       : MppiUpdate(
-            {o.control_cost_discount, o.inverse_variance_offset, o.normaliser_offset, o.zero_mean_share},
+            {o.control_cost_discount, o.published.inverse_variance_offset, o.published.normaliser_offset,
+             o.zero_mean_share},
             SampleSet(o.horizon, inputs, o.samples,
-                      NoiseShape(o.noise_exponent, o.log_normal_spread, o.horizon, inputs, o.samples)),
-            Weighting({o.temperature, o.tsallis_index, o.effective_share}),
-            o.smoothing_half_width > 0
-                ? Smoother(o.horizon, inputs, o.smoothing_half_width, o.smoothing_degree)
+                      NoiseShape(o.noise.exponent, o.noise.log_normal_spread, o.horizon, inputs, o.samples)),
+            Weighting({o.temperature, o.weighting.tsallis_index, o.weighting.target_ess_fraction}),
+            o.smoothing.half_width > 0
+                ? Smoother(o.horizon, inputs, o.smoothing.half_width, o.smoothing.degree)
                 : Smoother()) {}
 
   SampleSet& samples() noexcept { return samples_; }

@@ -2,10 +2,11 @@
 #include <cmath>
 #include <limits>
 
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/reverse_mppi_options.hpp"
 #include "solvers/methods/mirror_descent.hpp"
-#include "solvers/methods/rejection.hpp"
+#include "solvers/methods/resampler.hpp"
 #include "solvers/methods/reverse_weights.hpp"
+#include "solvers/published/published_rejection.hpp"
 #include "solvers/solver_base.hpp"
 
 namespace slalom {
@@ -42,7 +43,7 @@ class ReverseMppiSolver final : public detail::SolverBase {
         own_distance_(static_cast<std::size_t>(inflated_.stride())),
         rejected_distance_(own_distance_.size()),
         keep_(own_distance_.size()),
-        picker_(inflated_.samples(), options.samples),
+        resampler_(inflated_.samples(), options.samples),
         picked_(static_cast<std::size_t>(samples_.stride())),
         evaluated_(static_cast<std::size_t>(samples_.stride())),
         rejected_(evaluated_.size()) {
@@ -53,7 +54,7 @@ class ReverseMppiSolver final : public detail::SolverBase {
     reset(options.seed);
   }
 
-  const char* name() const noexcept override { return "reverse_mppi"; }
+  const char* name() const noexcept override { return ReverseMppiOptions::method; }
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
@@ -125,8 +126,8 @@ class ReverseMppiSolver final : public detail::SolverBase {
     if (options_.reject_samples) {
       keep_probabilities();
       RandomStream random(key(2 * iteration + 1));
-      picker_.pick(keep_.data(), samples_.samples(), options_.resampling == Resampling::systematic, random,
-                   picked_.data());
+      resampler_.pick(keep_.data(), samples_.samples(), options_.resampling == Resampling::systematic, random,
+                      picked_.data());
       detail::kernels().gather(inflated_.row_view(), picked_.data(), {0, samples_.stride()},
                                samples_.row_view());
     }
@@ -137,7 +138,7 @@ class ReverseMppiSolver final : public detail::SolverBase {
   void keep_probabilities() noexcept {
     const detail::Range range{0, inflated_.stride()};
     float* logarithms = own_distance_.data();
-    if (options_.rejection == RejectionModel::published) {
+    if (options_.published.rejection == RejectionModel::published) {
       published_.set(now_.mean.data(), now_.variance.data(), now_rejected_.mean.data(),
                      now_rejected_.variance.data());
       detail::kernels().published_rejection(inflated_.row_view(), published_.rows(), range, logarithms);
@@ -174,7 +175,7 @@ class ReverseMppiSolver final : public detail::SolverBase {
   detail::BatchStatistics evaluate(const BatchEvaluator& evaluator,
                                    const detail::Deadline& deadline) noexcept {
     detail::control_coefficients(options_.temperature, options_.control_cost_discount,
-                                 options_.inverse_variance_offset, now_.mean.data(), zero_.data(),
+                                 options_.published.inverse_variance_offset, now_.mean.data(), zero_.data(),
                                  now_.variance.data(), rows(), linear_.data());
     const detail::BatchStatistics statistics = samples_.evaluate(evaluator, linear_.data(), pool(), deadline);
     result_.times.evaluate += statistics.evaluate_time;
@@ -188,8 +189,8 @@ class ReverseMppiSolver final : public detail::SolverBase {
     const detail::Range range{0, samples_.stride()};
     const detail::ReverseSums sums = detail::reverse_weights(
         samples_.totals().data(), static_cast<float>(options_.temperature),
-        static_cast<float>(options_.negative_ratio), static_cast<float>(options_.normaliser_offset), range,
-        evaluated_.data(), rejected_.data());
+        static_cast<float>(options_.negative_ratio), static_cast<float>(options_.published.normaliser_offset),
+        range, evaluated_.data(), rejected_.data());
     if (!(sums.evaluated > 0)) {  // all costs are equal: no sample is better than another
       const float equal = 1.0f / static_cast<float>(statistics.finite);
       for (std::size_t k = 0; k < evaluated_.size(); ++k)
@@ -197,8 +198,8 @@ class ReverseMppiSolver final : public detail::SolverBase {
     }
     const Gaussian& before = now_;
     for (std::size_t r = 0; r < size(); ++r)
-      inverse_[r] =
-          detail::inverse_variance(before.variance[r], static_cast<float>(options_.inverse_variance_offset));
+      inverse_[r] = detail::inverse_variance(before.variance[r],
+                                             static_cast<float>(options_.published.inverse_variance_offset));
     std::copy(before.mean.begin(), before.mean.end(), shifted_.begin());
     samples_.two_moments(evaluated_.data(), rejected_.data(), shifted_.data(), sums_.data(), pool());
     if (sums.rejected > 0) descend(2, now_rejected_);
@@ -211,7 +212,7 @@ class ReverseMppiSolver final : public detail::SolverBase {
   /// in `sums_`. The squares are taken about the mean of the samples' distribution.
   void descend(std::size_t list, Gaussian& g) noexcept {
     for (std::size_t r = 0; r < size(); ++r) {
-      const double scale = options_.dimensionless_variance ? static_cast<double>(inverse_[r]) : 1.0;
+      const double scale = options_.published.dimensionless_variance ? static_cast<double>(inverse_[r]) : 1.0;
       moment_mean_[r] = static_cast<float>(sums_[r * detail::moments + list]);
       moment_variance_[r] = static_cast<float>(sums_[r * detail::moments + list + 1] * scale);
     }
@@ -252,7 +253,7 @@ class ReverseMppiSolver final : public detail::SolverBase {
   detail::PublishedRejection<float> published_;
   std::vector<float> own_distance_, rejected_distance_;  ///< [inflated sample]
   std::vector<float> keep_;                              ///< [inflated sample]
-  detail::Picker picker_;
+  detail::Resampler resampler_;
   std::vector<int> picked_;                  ///< [sample]
   std::vector<float> evaluated_, rejected_;  ///< weights [sample]
   SolveResult result_;
@@ -262,7 +263,7 @@ class ReverseMppiSolver final : public detail::SolverBase {
 
 std::unique_ptr<Solver> make_solver(const ReverseMppiOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool) {
-  validate_options(options, "reverse_mppi", inputs);
+  validate_options(options, ReverseMppiOptions::method, inputs);
   return std::make_unique<ReverseMppiSolver>(options, inputs, std::move(pool));
 }
 

@@ -16,8 +16,8 @@ namespace slalom::detail {
 
 inline constexpr double least_bandwidth = 1e-5;
 
-/// h = median / log n of the values given, which are reordered; published rule: element n/2 of the sorted
-/// ones, at least 1e-5. `particles` is n.
+/// h = median / log n of the values given, which are reordered; the median is element count/2 of the sorted
+/// ones, h is at least 1e-5. `particles` is n.
 template <class Real>
 Real bandwidth(Real* values, int count, int particles) noexcept {
   Real* middle = values + count / 2;
@@ -25,16 +25,6 @@ Real bandwidth(Real* values, int count, int particles) noexcept {
   const Real h = *middle / std::log(static_cast<Real>(particles));
   const Real least = static_cast<Real>(least_bandwidth);
   return h > least ? h : least;
-}
-
-/// Squared norms of the particles, as the published program takes for its bandwidth.
-template <class Real>
-int squared_norms(const Rows<Real>& x, int count, Real* values) noexcept {
-  for (int i = 0; i < count; ++i) {
-    values[i] = 0;
-    for (int r = 0; r < x.rows; ++r) values[i] += x.row(r)[i] * x.row(r)[i];
-  }
-  return count;
 }
 
 /// Squared distances between pairs of at most 64 particles, evenly picked: their median estimates that of all
@@ -58,11 +48,9 @@ int pair_distances(const Rows<Real>& x, int count, Real* values) noexcept {
   return pairs;
 }
 
-/// Gradient of the log of a Gaussian prior at x, an entry of it: -Sigma^-1 (x - m). The published program
-/// takes the inverse of the inverse variance, and the other sign.
+/// Gradient of the log of a Gaussian prior at x, an entry of it: -Sigma^-1 (x - m).
 template <class Real>
-Real prior_gradient(Real x, Real mean, Real inverse_variance, bool published) noexcept {
-  if (published) return (x - mean) / inverse_variance;
+Real prior_gradient(Real x, Real mean, Real inverse_variance) noexcept {
   return -inverse_variance * (x - mean);
 }
 

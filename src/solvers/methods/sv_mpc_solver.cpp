@@ -2,8 +2,9 @@
 #include <cmath>
 #include <limits>
 
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/sv_mpc_options.hpp"
 #include "solvers/methods/stein.hpp"
+#include "solvers/published/published_stein.hpp"
 #include "solvers/solver_base.hpp"
 
 namespace slalom {
@@ -41,14 +42,14 @@ class SvMpcSolver final : public detail::SolverBase {
         shifted_(size()),
         sums_(size()) {
     for (std::size_t r = 0; r < size(); ++r) {
-      inverse_[r] =
-          detail::inverse_variance(deviation_[r], static_cast<float>(options.inverse_variance_offset));
+      inverse_[r] = detail::inverse_variance(deviation_[r],
+                                             static_cast<float>(options.published.inverse_variance_offset));
       deviation_[r] = std::sqrt(deviation_[r]);
     }
     reset(options.seed);
   }
 
-  const char* name() const noexcept override { return "sv_mpc"; }
+  const char* name() const noexcept override { return SvMpcOptions::method; }
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
@@ -82,7 +83,7 @@ class SvMpcSolver final : public detail::SolverBase {
     result_.guides = {};
     if (usable) {
       sums = particles_.weigh(statistics.minimum_total, static_cast<float>(options_.temperature), pool());
-      particles_.scale_weights(1.0 / (sums.weight + options_.normaliser_offset));
+      particles_.scale_weights(1.0 / (sums.weight + options_.published.normaliser_offset));
       update_solution();
     } else {
       std::fill(particles_.weights().begin(), particles_.weights().end(), 0.0f);
@@ -139,15 +140,15 @@ class SvMpcSolver final : public detail::SolverBase {
   /// What depends on the prior: its inverse, and the control terms of gradients and weights.
   void set_prior() noexcept {
     for (std::size_t r = 0; r < size(); ++r) {
-      prior_inverse_[r] =
-          detail::inverse_variance(variance_[r], static_cast<float>(options_.inverse_variance_offset));
+      prior_inverse_[r] = detail::inverse_variance(
+          variance_[r], static_cast<float>(options_.published.inverse_variance_offset));
       const float curvature = prior_inverse_[r] + inverse_[r];
       limited_step_[r] =
           options_.limit_step && curvature > 0 ? std::min(step_[r], 1.0f / curvature) : step_[r];
-      linear_[r] = options_.gradient_control_term ? mean_[r] * prior_inverse_[r] : 0.0f;
+      linear_[r] = options_.published.gradient_control_term ? mean_[r] * prior_inverse_[r] : 0.0f;
     }
     detail::control_coefficients(options_.temperature, options_.control_cost_discount,
-                                 options_.inverse_variance_offset, mean_.data(), zero_.data(),
+                                 options_.published.inverse_variance_offset, mean_.data(), zero_.data(),
                                  variance_.data(), rows(), control_.data());
   }
 
@@ -156,7 +157,7 @@ class SvMpcSolver final : public detail::SolverBase {
     pool().run(tiles(), [&](int t) { estimate_gradients(evaluator, iteration, range(t)); });
     const detail::Rows<float> x = particles_.row_view();
     const int count = particles_.samples();
-    const int values = options_.bandwidth == BandwidthModel::squared_norms
+    const int values = options_.published.bandwidth == BandwidthModel::squared_norms
                            ? detail::squared_norms(x, count, distances_.data())
                            : detail::pair_distances(x, count, distances_.data());
     const float h = count > 1 ? detail::bandwidth(distances_.data(), values, count) : 1.0f;
@@ -179,8 +180,8 @@ class SvMpcSolver final : public detail::SolverBase {
     const detail::ParticleGradients<float> how{options_.gradient_samples,
                                                stride,
                                                static_cast<float>(options_.temperature),
-                                               options_.subtract_minimum,
-                                               static_cast<float>(options_.gradient_floor),
+                                               options_.published.subtract_minimum,
+                                               static_cast<float>(options_.published.gradient_floor),
                                                linear_.data(),
                                                inverse_.data()};
     detail::kernels().particle_gradients(how, v, x, r, exponents_.data(), view(gradient_));
@@ -189,7 +190,9 @@ class SvMpcSolver final : public detail::SolverBase {
       if (!(prior_inverse_[i] > 0)) continue;
       float* g = view(gradient_).row(row);
       for (int k = r.first; k < r.first + r.count; ++k)
-        g[k] += detail::prior_gradient(x.row(row)[k], mean_[i], prior_inverse_[i], options_.inverted_prior);
+        g[k] += options_.published.inverted_prior
+                    ? detail::published_prior_gradient(x.row(row)[k], mean_[i], prior_inverse_[i])
+                    : detail::prior_gradient(x.row(row)[k], mean_[i], prior_inverse_[i]);
     }
   }
 
@@ -198,8 +201,10 @@ class SvMpcSolver final : public detail::SolverBase {
       const auto i = static_cast<std::size_t>(row);
       float* x = particles_.row_view().row(row);
       const float* direction = view(phi_).row(row);
-      const float low_bound = options_.clamp_particles ? low()[i] : -std::numeric_limits<float>::infinity();
-      const float high_bound = options_.clamp_particles ? high()[i] : std::numeric_limits<float>::infinity();
+      const float low_bound =
+          options_.published.clamp_particles ? low()[i] : -std::numeric_limits<float>::infinity();
+      const float high_bound =
+          options_.published.clamp_particles ? high()[i] : std::numeric_limits<float>::infinity();
       for (int k = r.first; k < r.first + r.count; ++k)
         x[k] = std::min(std::max(x[k] + limited_step_[i] * direction[k], low_bound), high_bound);
     }
@@ -220,7 +225,8 @@ class SvMpcSolver final : public detail::SolverBase {
   void update_solution() noexcept {
     particles_.weighted_squares(mean_.data(), sums_.data(), pool());
     for (std::size_t r = 0; r < size(); ++r) {
-      const double scale = options_.dimensionless_variance ? static_cast<double>(prior_inverse_[r]) : 1.0;
+      const double scale =
+          options_.published.dimensionless_variance ? static_cast<double>(prior_inverse_[r]) : 1.0;
       const float least = std::min(least_variance_[r], first_variance_[r]);
       variance_[r] = std::clamp(static_cast<float>(sums_[r] * scale), least, 1e12f);
     }
@@ -254,7 +260,7 @@ class SvMpcSolver final : public detail::SolverBase {
 
 std::unique_ptr<Solver> make_solver(const SvMpcOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool) {
-  validate_options(options, "sv_mpc", inputs);
+  validate_options(options, SvMpcOptions::method, inputs);
   return std::make_unique<SvMpcSolver>(options, inputs, std::move(pool));
 }
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/svg_mppi_options.hpp"
 #include "solvers/methods/guides.hpp"
 #include "solvers/methods/mppi_update.hpp"
 
@@ -28,7 +28,7 @@ class SvgMppiSolver final : public detail::SolverBase {
     reset(options.seed);
   }
 
-  const char* name() const noexcept override { return "svg_mppi"; }
+  const char* name() const noexcept override { return SvgMppiOptions::method; }
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
@@ -95,7 +95,7 @@ class SvgMppiSolver final : public detail::SolverBase {
 
 std::unique_ptr<Solver> make_solver(const SvgMppiOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool) {
-  validate_options(options, "svg_mppi", inputs);
+  validate_options(options, SvgMppiOptions::method, inputs);
   return std::make_unique<SvgMppiSolver>(options, inputs, std::move(pool));
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "slalom/core/option_access.hpp"
-#include "slalom/solvers/make_solver.hpp"
+#include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/model/vehicle_options.hpp"
 #include "slalom/vehicle/planner/planner_options.hpp"
 
@@ -32,8 +32,7 @@ requires is_options_of<AnyConfiguration, Configuration>
 void visit_sections(AnyConfiguration& configuration, Visit&& visit) {
   visit("vehicle", configuration.vehicle);
   visit("planner", configuration.planner);
-  for (auto& method : configuration.methods)
-    std::visit([&](auto& options) { visit(solver_name(method), options); }, method);
+  for (auto& method : configuration.methods) visit(method.method(), method);
 }
 
 /// Reads a configuration file: YAML with a map of options for each section,

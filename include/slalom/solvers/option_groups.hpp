@@ -2,8 +2,32 @@
 
 #include "slalom/core/options.hpp"
 
-/// Declarations of the options that several methods share: the fields stand in each method's own aggregate
-/// with their defaults, what is said of them stands here once.
+/// Options that several methods share. What a user sets often stands in each method's own aggregate with its
+/// default, what is set rarely in the groups below; what is declared of both stands here once.
+namespace slalom {
+
+/// The shape of the samples' noise.
+struct NoiseOptions {
+  PerInput exponent = 0;           ///< beta of the noise's spectrum 1/f^beta, 0 ... 4; 0: white
+  PerInput log_normal_spread = 0;  ///< sigma_ln of a log-normal factor of the noise, 0 ... 2; 0: none
+};
+
+/// How costs become weights.
+struct WeightingOptions {
+  double tsallis_index = 1;  ///< q of the weights' q-exponential; 1: exp
+  /// Effective sample size, as a fraction of the samples, for which the temperature is searched in every
+  /// solve; 0: the temperature is as set.
+  double target_ess_fraction = 0;
+};
+
+/// Savitzky-Golay smoothing of the solution along the steps.
+struct SmoothingOptions {
+  int half_width = 0;  ///< steps to each side; 0: no smoothing
+  int degree = 3;      ///< of the fitted polynomials
+};
+
+}  // namespace slalom
+
 namespace slalom::detail {
 
 /// Largest finite value of an option that has no natural bound.
@@ -34,27 +58,25 @@ void visit_sampling_options(Options& o, Visit&& visit) {
   visit(o.variance, Declaration{.name = "variance",
                                 .symbol = "Sigma",
                                 .unit = "input^2",
-                                .help = "variance of the samples, per input",
+                                .help = "variance of the samples",
                                 .min = 0,
                                 .max = finite});
-  visit(o.input_min, Declaration{.name = "input_min", .unit = "input", .help = "lower bound, per input"});
-  visit(o.input_max, Declaration{.name = "input_max", .unit = "input", .help = "upper bound, per input"});
+  visit(o.input_min, Declaration{.name = "input_min", .unit = "input", .help = "lower bound of the inputs"});
+  visit(o.input_max, Declaration{.name = "input_max", .unit = "input", .help = "upper bound of the inputs"});
   visit(
       o.zero_mean_share,
       Declaration{.name = "zero_mean_share",
                   .help = "share of the samples drawn around zero instead of the mean, without correction of "
-                          "their weights; published: 0.1",
+                          "their weights",
                   .min = 0,
                   .max = 1});
-  visit(o.shift_warm_start,
-        Declaration{.name = "shift_warm_start",
-                    .help = "move the last solution forward by the elapsed time; published: false"});
+  visit(o.shift_warm_start, Declaration{.name = "shift_warm_start",
+                                        .help = "move the last solution forward by the elapsed time"});
 }
 
-/// The shape of the samples' noise.
 template <class Options, class Visit>
 void visit_noise_options(Options& o, Visit&& visit) {
-  visit(o.noise_exponent,
+  visit(o.exponent,
         Declaration{.name = "noise_exponent",
                     .symbol = "beta",
                     .help =
@@ -71,9 +93,8 @@ void visit_noise_options(Options& o, Visit&& visit) {
                     .max = 2});
 }
 
-/// How costs become weights.
 template <class Options, class Visit>
-void visit_weight_options(Options& o, Visit&& visit) {
+void visit_weighting_options(Options& o, Visit&& visit) {
   visit(o.tsallis_index,
         Declaration{.name = "tsallis_index",
                     .symbol = "q",
@@ -82,28 +103,28 @@ void visit_weight_options(Options& o, Visit&& visit) {
                         "temperature / (1 - q) count nothing, above 1 tails are heavy",
                     .min = -20,
                     .max = 3});
-  visit(o.effective_share,
-        Declaration{
-            .name = "effective_share",
-            .help = "effective sample size as a share of the samples, for which the temperature is sought "
-                    "in every solve; 0: the temperature is as set",
-            .min = 0,
-            .max = 1});
+  visit(
+      o.target_ess_fraction,
+      Declaration{.name = "target_ess_fraction",
+                  .formerly = "effective_share",
+                  .help = "effective sample size, as a fraction of the samples, for which the temperature is "
+                          "searched in every solve; 0: the temperature is as set",
+                  .min = 0,
+                  .max = 1});
 }
 
-/// Smoothing of the solution along the steps.
 template <class Options, class Visit>
 void visit_smoothing_options(Options& o, Visit&& visit) {
-  visit(o.smoothing_half_width,
+  visit(o.half_width,
         Declaration{
             .name = "smoothing_half_width",
             .unit = "steps",
             .help = "Savitzky-Golay smoothing of the solution over this many steps to each side; 0: none",
             .min = 0,
             .max = 1000});
-  visit(o.smoothing_degree,
+  visit(o.degree,
         Declaration{
-            .name = "smoothing_degree", .help = "degree of the polynomials that smooth", .min = 0, .max = 9});
+            .name = "smoothing_degree", .help = "degree of the fitted polynomials", .min = 0, .max = 9});
 }
 
 template <class Options, class Visit>
@@ -111,30 +132,16 @@ void visit_control_cost_options(Options& o, Visit&& visit) {
   visit(o.control_cost_discount,
         Declaration{.name = "control_cost_discount",
                     .symbol = "alpha",
-                    .help = "the control term of the weights is multiplied by 1 - alpha; published: 0.1, the "
-                            "paper has no such factor",
+                    .help = "the control term of the weights is multiplied by 1 - alpha; 1 leaves it out",
                     .min = 0,
                     .max = 1});
-  visit(o.inverse_variance_offset,
-        Declaration{.name = "inverse_variance_offset",
-                    .unit = "1/input^2",
-                    .help = "added to the inverse of every variance; published: 1e-4",
-                    .min = 0,
-                    .max = finite});
-  visit(
-      o.normaliser_offset,
-      Declaration{.name = "normaliser_offset",
-                  .help = "added to the sum of weights before dividing by it, so that they sum to less than "
-                          "1; published: 1e-10",
-                  .min = 0,
-                  .max = 1});
 }
 
 template <class Options, class Visit>
 void visit_run_options(Options& o, Visit&& visit) {
-  visit(o.seed, Declaration{.name = "seed", .help = "of the random numbers"});
+  visit(o.seed, Declaration{.name = "seed", .help = "seed of the random numbers"});
   visit(o.threads, Declaration{.name = "threads",
-                               .help = "that work on a solve; the result does not depend on it",
+                               .help = "threads that work on a solve; the result does not depend on it",
                                .min = 1,
                                .max = 1024});
 }

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "solvers/kernels/kernels.hpp"
+
+/// The rejection of samples in the published program of Honda et al. (ICRA 2024).
+namespace slalom::detail {
+
+/// What the published program takes for a normal density: exp((x - mean)^2 / deviation) / sqrt(2 pi
+/// variance). Its exponent has the wrong sign and scale, so it grows with the distance.
+template <class Real>
+Real published_density(Real x, Real mean, Real variance) noexcept {
+  const Real difference = x - mean;
+  return std::exp(difference * (difference / std::sqrt(variance))) /
+         std::sqrt(Real(2) * std::numbers::pi_v<Real> * variance);
+}
+
+/// The published program's probabilities of keeping samples: prod over rows of 1 / (base + density), where
+/// `base` is the density of the samples' distribution at the rejected mean, not at the sample.
+template <class Real>
+class PublishedRejection {
+ public:
+  explicit PublishedRejection(int rows) : values_(static_cast<std::size_t>(4 * rows)), rows_(rows) {}
+
+  void set(const Real* mean, const Real* variance, const Real* rejected_mean,
+           const Real* rejected_variance) noexcept {
+    for (int r = 0; r < rows_; ++r) {
+      entry(1, r) = rejected_mean[r];
+      if (!(variance[r] > 0) || !(rejected_variance[r] > 0)) {  // an input that is not sampled has no say
+        entry(0, r) = 1;
+        entry(2, r) = entry(3, r) = 0;
+        continue;
+      }
+      entry(0, r) = published_density(rejected_mean[r], mean[r], variance[r]);
+      entry(2, r) = Real(1) / std::sqrt(rejected_variance[r]);
+      entry(3, r) = Real(1) / std::sqrt(Real(2) * std::numbers::pi_v<Real> * rejected_variance[r]);
+    }
+  }
+  const Real* base() const noexcept { return values_.data(); }
+  RejectionRows<Real> rows() const noexcept {
+    const Real* v = values_.data();
+    return {v, v + rows_, v + 2 * rows_, v + 3 * rows_};
+  }
+
+ private:
+  Real& entry(int list, int r) noexcept { return values_[static_cast<std::size_t>(list * rows_ + r)]; }
+
+  std::vector<Real> values_;  ///< [base, mean, inverse, scale][row]
+  int rows_;
+};
+
+}  // namespace slalom::detail
