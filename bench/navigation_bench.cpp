@@ -16,7 +16,7 @@
 #include "bench/workload/statistics.hpp"
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/problem_evaluator.hpp"
-#include "slalom/solvers/registry.hpp"
+#include "slalom/solvers/mppi_options.hpp"
 
 namespace slalom {
 namespace {

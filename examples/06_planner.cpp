@@ -4,7 +4,9 @@
 #include <memory>
 
 #include <slalom/evaluation/environment.hpp>
+#include <slalom/solvers/mppi_options.hpp>
 #include <slalom/solvers/registry.hpp>
+#include <slalom/solvers/svg_mppi_options.hpp>
 #include <slalom/vehicle/planner/planner.hpp>
 
 #include "seeds.hpp"
@@ -44,15 +46,18 @@ int main(int, char** argv) {
                                                   .seed = seed});
   });
   const int svg_mppi = succeeded([&](auto seed) {
-    return drives_a_lap(*environment, SvgMppiOptions{.horizon = 14,
-                                                     .samples = 2000,
-                                                     .temperature = 3,
-                                                     .input_min = -0.4189,
-                                                     .input_max = 0.4189,
-                                                     .guides = {.step = 0.005, .variance = 0.01, .gradient_variance = 0.01, .gradient_temperature = 3},
-                                                     .variance_min = 0.001,
-                                                     .variance_max = 0.1,
-                                                     .seed = seed});
+    return drives_a_lap(
+        *environment,
+        SvgMppiOptions{
+            .horizon = 14,
+            .samples = 2000,
+            .temperature = 3,
+            .input_min = -0.4189,
+            .input_max = 0.4189,
+            .guides = {.step = 0.005, .variance = 0.01, .gradient_variance = 0.01, .gradient_temperature = 3},
+            .variance_min = 0.001,
+            .variance_max = 0.1,
+            .seed = seed});
   });
   return report("a lap without collision", mppi, svg_mppi, 20);
 }

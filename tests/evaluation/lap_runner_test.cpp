@@ -233,7 +233,7 @@ TEST(LapRunner, RejectsInvalidSettings) {
   }
   auto two = usual;
   for (SolverOptions& method : two.methods)
-    if (auto* mppi = std::get_if<MppiOptions>(&method)) mppi->variance = {0.1, 0.2};
+    if (std::string_view(method.method()) == "mppi") *method.find<PerInput>("variance") = {0.1, 0.2};
   says(refusal("mppi", {}, two), "variance");
 }
 

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "slalom/solvers/registry.hpp"
+#include "slalom/solvers/svg_mppi_options.hpp"
 #include "support/allocations.hpp"
 #include "vehicle/planner/back_up.hpp"
 

@@ -1,6 +1,7 @@
 // The options with which the golden data are compared are those of `--config published`.
 #include <gtest/gtest.h>
 
+#include "slalom/solvers/published/published_solvers.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/published/options.hpp"
 #include "solvers/published_options.hpp"
@@ -13,10 +14,7 @@ TEST(PublishedConfiguration, EqualsTheOptionsOfTheGoldenTests) {
   int compared = 0;
   for (const SolverOptions& method : file.methods) {
     const std::string name = solver_name(method);
-    const auto list = [](const SolverOptions& options) {
-      return std::visit([](const auto& o) { return list_options(o); }, options);
-    };
-    const auto ours = list(method), golden = list(slalom::testing::published_options(name));
+    const auto ours = list_options(method), golden = list_options(published_solver_options(name));
     ASSERT_EQ(ours.size(), golden.size()) << name;
     for (std::size_t i = 0; i < ours.size(); ++i) {
       const std::string option = ours[i].declaration.name;

@@ -56,13 +56,10 @@ Json json_of(const TimeStatistics& t) {
 
 /// Changes the sample count of any method's options.
 SolverOptions with(SolverOptions options, int samples, int threads, int horizon = 0) {
-  std::visit(
-      [&](auto& o) {
-        o.samples = samples > 0 ? samples : o.samples;
-        o.threads = threads;
-        if (horizon > 0) o.horizon = horizon;
-      },
-      options);
+  int* const count = options.find<int>("samples");
+  if (count && samples > 0) *count = samples;
+  *options.find<int>("threads") = threads;
+  if (horizon > 0) *options.find<int>("horizon") = horizon;
   return options;
 }
 

@@ -61,7 +61,7 @@ void apply(const std::string& word, std::vector<ExplainedMethod>& methods, probl
     if (key.rfind("problem.", 0) == 0) {
       try_on(point, "problem.");
     } else {
-      for (ExplainedMethod& method : methods) std::visit([&](auto& o) { try_on(o, ""); }, method.options);
+      for (ExplainedMethod& method : methods) try_on(method.options, "");
     }
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("--set " + key + ": " + error.what());

@@ -29,13 +29,11 @@ struct Prior {
   double variance = 1, temperature = 1;
 };
 Prior prior_of(const SolverOptions& options) {
-  return std::visit(
-      [](const auto& o) {
-        Prior prior{o.variance[0], MppiOptions{}.temperature};
-        if constexpr (requires { o.temperature; }) prior.temperature = o.temperature;
-        return prior;
-      },
-      options);
+  Prior prior;
+  if (const auto* variance = options.find<PerInput>("variance")) prior.variance = (*variance)[0];
+  const auto* temperature = options.find<double>("temperature");
+  prior.temperature = temperature ? *temperature : MppiOptions{}.temperature;
+  return prior;
 }
 
 /// Histogram of the places beside the disc of many samples of the prior, weighted by exp(-S / lambda).
@@ -132,14 +130,15 @@ std::vector<ExplainedMethod> explained_methods() {
       {"reverse_mppi", "reverse KL, by mirror descent", ReverseMppiOptions{}},
       {"sv_mpc", "particles, moved by SVGD", SvMpcOptions{}},
       {"cem", "refitted to the best samples", CemOptions{}}};
+  for (const char* name : solver_names()) {  // methods that were registered beside those of the library
+    const bool known =
+        std::any_of(methods.begin(), methods.end(), [&](const ExplainedMethod& m) { return m.name == name; });
+    if (!known) methods.push_back({name, "", solver_options(name)});
+  }
   for (ExplainedMethod& method : methods) {
-    std::visit(
-        [](auto& o) {
-          o.horizon = 20;
-          o.input_min = -3;
-          o.input_max = 3;
-        },
-        method.options);
+    *method.options.find<int>("horizon") = 20;
+    *method.options.find<PerInput>("input_min") = -3;
+    *method.options.find<PerInput>("input_max") = 3;
   }
   return methods;
 }

@@ -8,7 +8,7 @@ import slalom
 from slalom import _slalom
 
 TYPES = {"flag": "bool", "integer": "int", "number": "float", "numbers": "float | Sequence[float]", "choice": "str"}
-METHOD_OF = {"Mppi": "mppi", "SvgMppi": "svg_mppi", "ReverseMppi": "reverse_mppi", "SvMpc": "sv_mpc", "Cem": "cem"}
+METHOD_OF = {"".join(word.capitalize() for word in method.split("_")): method for method in slalom.methods()}
 
 
 def keyword(option):

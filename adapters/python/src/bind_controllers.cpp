@@ -21,38 +21,39 @@ std::string class_name(std::string_view method) {
   return name;
 }
 
-template <class Options>
-struct Method : Controller {
-  Method(const AnyProblem& problem, const Options& options) : Controller(problem, options) {}
-};
-
-template <class Options>
-void bind_method(py::module_& module) {
-  const std::string method = solver_name(SolverOptions(Options{}));
-  const std::string text =
-      "A controller that solves its problem by the method `" + method +
-      "`.\n\nThe problem is copied: `controller.problem` is the copy, whose parameters may "
-      "change between solves. Keyword arguments with their defaults:\n\n" +
-      options_text(Options{});
-  py::class_<Method<Options>, Controller>(module, class_name(method).c_str(), text.c_str())
-      .def(py::init([method](const AnyProblem& problem, const py::kwargs& keywords) {
-             Options options;
-             set_from_keywords(options, keywords, method);
-             return std::make_unique<Method<Options>>(problem, options);
-           }),
-           py::arg("problem"));
-}
-
-template <std::size_t... I>
-void bind_methods(py::module_& module, std::index_sequence<I...>) {
-  (bind_method<std::variant_alternative_t<I, SolverOptions>>(module), ...);
+/// Adds the class of a method, derived from `Controller`, whose constructor takes the problem and the
+/// options.
+void bind_method(py::module_& module, const py::object& controller, const std::string& method) {
+  py::dict members;
+  members["__module__"] = module.attr("__name__");
+  members["__doc__"] = "A controller that solves its problem by the method `" + method +
+                       "`.\n\nThe problem is copied: `controller.problem` is the copy, whose parameters may "
+                       "change between solves. Keyword arguments with their defaults:\n\n" +
+                       options_text(solver_options(method));
+  const std::string name = class_name(method);
+  const auto metaclass =
+      py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(Py_TYPE(controller.ptr())));
+  const py::object cls = metaclass(name, py::make_tuple(controller), members);
+  cls.attr("__init__") = py::cpp_function(
+      [controller, method](const py::object& self, const py::object& problem, const py::kwargs& keywords) {
+        controller.attr("__init__")(self, method, problem, **keywords);
+      },
+      py::name("__init__"), py::is_method(cls), py::arg("problem"));
+  module.attr(name.c_str()) = cls;
 }
 
 }  // namespace
 
 void bind_controllers(py::module_& module) {
   bind_plan(module);
-  py::class_<Controller>(module, "Controller", "Base class of all controllers.")
+  py::class_<Controller> controller(module, "Controller", "Base class of all controllers.");
+  controller
+      .def(py::init([](const std::string& method, const AnyProblem& problem, const py::kwargs& keywords) {
+             SolverOptions options = solver_options(method);
+             set_from_keywords(options, keywords, method);
+             return std::make_unique<Controller>(problem, options);
+           }),
+           py::arg("method"), py::arg("problem"))
       .def(
           "solve",
           [](const py::object& self, std::vector<double> state, double elapsed, double deadline) {
@@ -83,16 +84,12 @@ void bind_controllers(py::module_& module) {
           "options",
           [](const Controller& c) {
             py::dict all;
-            std::visit(
-                [&](const auto& options) {
-                  for (const OptionEntry& entry : list_options(options))
-                    all[entry.declaration.name] = to_python(entry.value);
-                },
-                c.options());
+            for (const OptionEntry& entry : list_options(c.options()))
+              all[entry.declaration.name] = to_python(entry.value);
             return all;
           },
           "the options in use, by name");
-  bind_methods(module, std::make_index_sequence<std::variant_size_v<SolverOptions>>{});
+  for (const char* method : solver_names()) bind_method(module, controller, method);
   module.def(
       "methods",
       [] {
@@ -101,11 +98,7 @@ void bind_controllers(py::module_& module) {
       },
       "The names of all methods.");
   module.def(
-      "options",
-      [](const std::string& method) {
-        return std::visit([](const auto& options) { return describe_options(options); },
-                          solver_options(method));
-      },
+      "options", [](const std::string& method) { return describe_options(solver_options(method)); },
       py::arg("method"), "The options of a method: a dictionary for each.");
 }
 

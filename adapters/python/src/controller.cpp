@@ -30,12 +30,10 @@ SolverOptions within_bounds(const AnyProblem& problem, SolverOptions options) {
     const bool equal = std::all_of(values.begin(), values.end(), [&](double v) { return v == values[0]; });
     option = equal ? PerInput(values[0]) : PerInput(values);
   };
-  std::visit(
-      [&](auto& o) {
-        narrow(o.input_min, [&](double bound, int i) { return std::max(bound, problem.input_min(i)); });
-        narrow(o.input_max, [&](double bound, int i) { return std::min(bound, problem.input_max(i)); });
-      },
-      options);
+  narrow(*options.find<PerInput>("input_min"),
+         [&](double bound, int i) { return std::max(bound, problem.input_min(i)); });
+  narrow(*options.find<PerInput>("input_max"),
+         [&](double bound, int i) { return std::min(bound, problem.input_max(i)); });
   return options;
 }
 

@@ -16,7 +16,7 @@ template <class Field>
 const char* type_words(const Field&) {
   if constexpr (std::is_same_v<Field, bool>) {
     return "True or False";
-  } else if constexpr (std::is_enum_v<Field>) {
+  } else if constexpr (std::is_enum_v<Field> || std::is_same_v<Field, Choice>) {
     return "one of its choices";
   } else if constexpr (std::is_same_v<Field, PerInput>) {
     return "a number, or one for each input";
@@ -36,7 +36,10 @@ void set_field(Field& field, const std::string& name, py::handle value) {
       if (!py::isinstance<py::bool_>(value)) throw py::cast_error();
       field = value.cast<bool>();
     } else if constexpr (std::is_enum_v<Field>) {
-      field = static_cast<Field>(detail::parse_choice(value.cast<std::string>(), enum_names(field)));
+      Choice choice(field);
+      choice.set(detail::parse_choice(value.cast<std::string>(), choice.names()));
+    } else if constexpr (std::is_same_v<Field, Choice>) {
+      field.set(detail::parse_choice(value.cast<std::string>(), field.names()));
     } else if constexpr (std::is_same_v<Field, PerInput>) {
       if (py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value)) {
         field = PerInput(value.cast<double>());
@@ -63,6 +66,8 @@ void set_from_keywords(Options& options, const py::kwargs& keywords, const std::
     bool found = false;
     visit_options(options, [&](auto& field, const Declaration& declaration) {
       names.emplace_back(declaration.name);
+      if (*declaration.formerly && name == declaration.formerly)
+        throw py::type_error(where + ": the option '" + name + "' is now called '" + declaration.name + "'");
       if (name != declaration.name) return;
       found = true;
       set_field(field, where + "." + name, value);

@@ -36,8 +36,8 @@ struct Declaration {
   const char* formerly = "";  ///< a name that the option had before, to tell whoever still uses it
 };
 
-/// A reference to an enumeration of any type, for code that is compiled once for all options. It stands where an
-/// enumeration stands in a call of `visit`.
+/// A reference to an enumeration of any type, for code that is compiled once for all options. It stands where
+/// an enumeration stands in a call of `visit`.
 class Choice {
  public:
   template <class Enumeration>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "slalom/solvers/cem_options.hpp"
 #include "slalom/solvers/controller.hpp"
 
 namespace slalom {

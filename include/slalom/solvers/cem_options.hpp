@@ -26,7 +26,7 @@ struct CemOptions {
   PerInput variance_min = 1e-4;  ///< least variance, input^2
   bool send_best = false;        ///< the solution is the best sample seen instead of the mean
 
-  NoiseOptions noise;            ///< shape of the noise; white and normal
+  NoiseOptions noise{};          ///< shape of the noise; white and normal
   double zero_mean_share = 0;    ///< of the samples, drawn around zero instead of the mean
   bool shift_warm_start = true;  ///< move the last solution forward by the elapsed time
   std::uint64_t seed = 0;

@@ -1,10 +1,15 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <concepts>
 #include <cstring>
 #include <memory>
 #include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -14,22 +19,75 @@
 
 namespace slalom {
 
-/// What a controller wants to do: the inputs to apply and the states they are predicted to lead to. Its spans
-/// point into the controller and stay valid until the next solve or reset.
-template <Problem P>
-struct Plan {
-  using State = detail::StateOf<P, double>;
-
-  Status status = Status::ok;
-  std::span<const Input<double, P::inputs>> inputs;  ///< [horizon]; the first is for now
-  std::span<const State> states;                     ///< [horizon + 1]; the first is the state given
-  double cost = 0;                                   ///< of the plan
-  bool collided = false;                             ///< whether the plan collides
-  std::span<const CostTerm> cost_terms;              ///< what its cost is made of; they sum to it
-  const SolveResult& stats;                          ///< samples, weights, guides, times ...
+/// A batch evaluator that a `Controller` can own in place of a problem: one that evaluates batches on a GPU,
+/// in a physics engine or by hand-written loops. Beside what `BatchEvaluator` asks for it has
+///
+///     struct State { double x, y, yaw; };               // `double` members only
+///     static constexpr int input_count = 2;             // what inputs() returns
+///     void set_state(const State&);                     // where the next sequences start
+///
+/// and may have
+///
+///     Cost<double> predict(const State&, const Input<double, 2>* u, int steps, State* x) const;
+///                                                       // x[0 ... steps] and the cost of one sequence
+///     void set_previous_input(const Input<double, 2>&); // what was applied before the next sequences
+template <class E>
+concept StateEvaluator = std::derived_from<E, BatchEvaluator> && requires(E& e, const typename E::State& x) {
+  requires std::is_trivially_copyable_v<typename E::State>;
+  requires sizeof(typename E::State) % sizeof(double) == 0;
+  requires E::input_count >
+  0;
+  e.set_state(x);
 };
 
-/// A problem and a method that solves it, over and over:
+namespace detail {
+
+/// What a controller has to know of the problem or the evaluator that it owns.
+template <class P>
+struct Controlled {
+  static_assert(check_problem<P>());
+  using Evaluator = ProblemEvaluator<P>;
+  using State = StateOf<P, double>;
+  static constexpr int inputs = P::inputs;
+  static constexpr bool predicts = true;
+  static constexpr bool uses_previous_input = limits_rates<P>;
+  static constexpr auto cost_terms() { return cost_terms_of<P>(); }
+};
+
+template <StateEvaluator E>
+struct Controlled<E> {
+  using Evaluator = E;
+  using State = typename E::State;
+  static constexpr int inputs = E::input_count;
+  static constexpr bool predicts =
+      requires(const E& e, const State& x, const Input<double, inputs>* u, State* states) {
+    { e.predict(x, u, 1, states) } -> std::convertible_to<Cost<double>>;
+  };
+  static constexpr bool uses_previous_input = requires(E & e, const Input<double, inputs>& u) {
+    e.set_previous_input(u);
+  };
+  static constexpr auto cost_terms() { return std::array<CostTerm, 1>{{{"total", 0}}}; }
+};
+
+}  // namespace detail
+
+/// The answer of a controller: the inputs to apply and the states they are predicted to lead to. Its spans
+/// point into the controller and stay valid until the next solve or reset.
+template <class P>
+struct Plan {
+  using State = typename detail::Controlled<P>::State;
+
+  Status status = Status::ok;                                            ///< how the solve ended
+  std::span<const Input<double, detail::Controlled<P>::inputs>> inputs;  ///< [horizon]; the first is for now
+  /// [horizon + 1]; the first is the state given. Empty with an evaluator that does not predict.
+  std::span<const State> states;
+  double cost = 0;                       ///< of the plan
+  bool collided = false;                 ///< whether the plan collides
+  std::span<const CostTerm> cost_terms;  ///< the parts of the cost, which sum to it
+  const SolveResult& stats;              ///< samples, weights, guides, times ...
+};
+
+/// A problem, or an evaluator of one's own (`StateEvaluator`), and a solver that solves it over and over:
 ///
 ///     slalom::SvgMppi controller{Pendulum{}, {.horizon = 60, .input_min = {-5}, .input_max = {5}}};
 ///     const auto plan = controller.solve(x, {.elapsed = 0.02, .deadline = 0.002});
@@ -38,61 +96,62 @@ struct Plan {
 /// Construction allocates and may throw std::invalid_argument; `solve` does neither.
 template <class P>
 class Controller {
-  static_assert(detail::check_problem<P>());
+  using Controlled = detail::Controlled<P>;
+  static constexpr int input_count = Controlled::inputs;
 
  public:
-  using State = detail::StateOf<P, double>;
+  using Evaluator = typename Controlled::Evaluator;
+  using State = typename Controlled::State;
+  using Inputs = Input<double, input_count>;
 
   /// With the options of any method, within the bounds that the problem states for its inputs. Throws
-  /// std::invalid_argument that names the option, its value and the rule. Threads are the controller's own
-  /// unless a pool is given to share.
+  /// std::invalid_argument that names the option, its value and the rule. The threads are the controller's
+  /// own unless a pool is given to share.
   Controller(P problem, const SolverOptions& options, std::shared_ptr<ThreadPool> pool = nullptr)
-      : Controller(problem, make_solver(within_bounds(problem, options), P::inputs, std::move(pool))) {}
-
-  /// With a solver of one's own, which keeps its own bounds. Throws std::invalid_argument on none and on one
-  /// for other inputs.
-  Controller(P problem, std::unique_ptr<Solver> solver)
-      : evaluator_(std::move(problem)), solver_(checked(std::move(solver))) {
-    const auto steps = static_cast<std::size_t>(solver_->horizon());
-    inputs_.resize(steps);
-    states_.resize(steps + 1);
+      : evaluator_(std::move(problem)),
+        solver_(make_solver(within_bounds(evaluator_, options), input_count, std::move(pool))) {
+    allocate();
   }
 
-  /// The plan from state `x`. Where the state is not finite nothing is solved and the last plan is repeated.
+  /// With a solver of one's own, which keeps its own bounds. Throws std::invalid_argument if the solver is
+  /// null or made for another number of inputs.
+  Controller(P problem, std::unique_ptr<Solver> solver)
+      : evaluator_(std::move(problem)), solver_(checked(std::move(solver))) {
+    allocate();
+  }
+
+  /// The plan from state `x`. If the state is not finite nothing is solved and the last plan is repeated.
   Plan<P> solve(const State& x, const SolveRequest& request = {}) noexcept {
-    if (!finite(x)) {
-      static const SolveResult nothing{};
-      const SolveResult& stats = result_ ? *result_ : nothing;
-      return {Status::non_finite_state, inputs_, states_, cost_.value, cost_.collided, terms_, stats};
-    }
+    if (!finite(x)) return plan(Status::non_finite_state);
     evaluator_.set_state(x);
-    if constexpr (detail::limits_rates<P>) {
+    if constexpr (Controlled::uses_previous_input) {
       recall_input(request.elapsed);
       evaluator_.set_previous_input(previous_);
     }
     result_ = &solver_->solve(evaluator_, request);
-    for (std::size_t k = 0; k < inputs_.size(); ++k)
-      for (std::size_t i = 0; i < P::inputs; ++i)
-        inputs_[k].value[i] = static_cast<double>(result_->inputs[k * P::inputs + i]);
-    if constexpr (detail::limits_rates<P>)
-      hold_input_rates(evaluator_.problem(), previous_, inputs_.data(), solver_->horizon());
-    cost_ = predict(evaluator_.problem(), x, inputs_.data(), solver_->horizon(), states_.data(), &terms_);
-    return {result_->status, inputs_, states_, cost_.value, cost_.collided, terms_, *result_};
+    const float* value = result_->inputs.data();
+    for (Inputs& input : inputs_)
+      for (int i = 0; i < input_count; ++i) input[i] = static_cast<double>(*value++);
+    predict_plan(x);
+    return plan(result_->status);
   }
 
-  /// Tells a problem with `input_rate_max` what was applied before the next solve. Unless told, it is taken
-  /// to be what the last plan had for then (0 before the first).
-  void set_previous_input(const Input<double, P::inputs>& u) noexcept {
+  /// What was applied before the next solve, for a problem with `input_rate_max`. Without this call it is
+  /// taken to be what the last plan had for that time (0 before the first).
+  void set_previous_input(const Inputs& u) noexcept {
     previous_ = u;
     told_ = true;
   }
 
   /// The problem, to change its parameters between solves.
-  P& problem() noexcept { return evaluator_.problem(); }
-  const P& problem() const noexcept { return evaluator_.problem(); }
+  P& problem() noexcept requires(!StateEvaluator<P>) { return evaluator_.problem(); }
+  const P& problem() const noexcept requires(!StateEvaluator<P>) { return evaluator_.problem(); }
+  /// The evaluator of the problem, or the one given.
+  Evaluator& evaluator() noexcept { return evaluator_; }
+  const Evaluator& evaluator() const noexcept { return evaluator_; }
   const Solver& solver() const noexcept { return *solver_; }
 
-  /// Forgets everything and starts the random numbers anew.
+  /// Returns to the state after construction, with random numbers from `seed`.
   void reset(std::uint64_t seed) noexcept {
     solver_->reset(seed);
     previous_ = {};
@@ -103,64 +162,99 @@ class Controller {
 
  private:
   static std::unique_ptr<Solver> checked(std::unique_ptr<Solver> solver) {
-    if (!solver) throw std::invalid_argument("solver: there is none");
-    if (solver->inputs() != P::inputs) {
-      throw std::invalid_argument("solver: made for " + std::to_string(solver->inputs()) +
-                                  " inputs, the problem has " + std::to_string(P::inputs));
+    if (!solver) throw std::invalid_argument("solver: must not be null");
+    if (solver->inputs() != input_count) {
+      throw std::invalid_argument("solver: is made for " + std::to_string(solver->inputs()) +
+                                  " inputs, must be made for the problem's " + std::to_string(input_count));
     }
     return solver;
   }
 
   /// The options with their bounds narrowed to the problem's.
-  static SolverOptions within_bounds(const P& problem, SolverOptions options) {
-    std::visit(
-        [&](auto& o) {
-          if constexpr (detail::has_input_min<P>)
-            o.input_min = narrowed(o.input_min, [&](double bound, int i) {
-              return std::max(bound, detail::least_input(problem, i));
-            });
-          if constexpr (detail::has_input_max<P>)
-            o.input_max = narrowed(o.input_max, [&](double bound, int i) {
-              return std::min(bound, detail::largest_input(problem, i));
-            });
-        },
-        options);
+  static SolverOptions within_bounds(const Evaluator& evaluator, SolverOptions options) {
+    if constexpr (!StateEvaluator<P>) {
+      const P& problem = evaluator.problem();
+      if constexpr (detail::has_input_min<P>)
+        narrow(*options.find<PerInput>("input_min"),
+               [&](double bound, int i) { return std::max(bound, detail::least_input(problem, i)); });
+      if constexpr (detail::has_input_max<P>)
+        narrow(*options.find<PerInput>("input_max"),
+               [&](double bound, int i) { return std::min(bound, detail::largest_input(problem, i)); });
+    }
     return options;
   }
-  template <class Narrow>
-  static PerInput narrowed(const PerInput& bound, Narrow&& narrow) {
-    if (!bound.fits(P::inputs)) return bound;  // the solver's own check will say so
+  template <class Narrowed>
+  static void narrow(PerInput& bound, Narrowed&& narrowed) {
+    if (!bound.fits(input_count)) return;  // the solver's own check reports it
     std::vector<double> values;
-    for (int i = 0; i < P::inputs; ++i) values.push_back(narrow(bound[i], i));
-    return values;
+    for (int i = 0; i < input_count; ++i) values.push_back(narrowed(bound[i], i));
+    bound = values;
+  }
+
+  void allocate() {
+    const auto steps = static_cast<std::size_t>(solver_->horizon());
+    inputs_.resize(steps);
+    if constexpr (Controlled::predicts) {
+      states_.resize(steps + 1);
+    } else {
+      alone_ = SequenceBatch(solver_->horizon(), input_count, 1);
+      alone_cost_ = AlignedBuffer(alone_.stride());
+      alone_collided_.resize(static_cast<std::size_t>(alone_.stride()));
+    }
+  }
+
+  /// Cost of the inputs, held within the problem's rates, and the states that they lead to.
+  void predict_plan(const State& x) noexcept {
+    const int steps = solver_->horizon();
+    if constexpr (!StateEvaluator<P>) {
+      if constexpr (detail::limits_rates<P>)
+        hold_input_rates(evaluator_.problem(), previous_, inputs_.data(), steps);
+      cost_ = predict(evaluator_.problem(), x, inputs_.data(), steps, states_.data(), &terms_);
+    } else {
+      if constexpr (Controlled::predicts) {
+        cost_ = evaluator_.predict(x, inputs_.data(), steps, states_.data());
+      } else {
+        alone_.set_sample(0, result_->inputs);
+        evaluator_.evaluate(alone_, 0, 1, alone_cost_.data(), alone_collided_.data());
+        cost_ = {static_cast<double>(alone_cost_[0]), alone_collided_[0] != 0};
+      }
+      terms_[0].value = cost_.value;
+    }
+  }
+
+  Plan<P> plan(Status status) const noexcept {
+    static const SolveResult nothing{};
+    const SolveResult& stats = result_ ? *result_ : nothing;
+    return {status, inputs_, states_, cost_.value, cost_.collided, terms_, stats};
   }
 
   /// The input that the last plan had for `elapsed` (s) after it was made: what is being applied.
   void recall_input(double elapsed) noexcept {
     if (std::exchange(told_, false)) return;
-    const double step = detail::time_step_of(evaluator_.problem());
+    const double step = evaluator_.time_step();
     const double last = static_cast<double>(inputs_.size() - 1);
     const double now = step > 0 && elapsed > step ? std::min(std::round(elapsed / step) - 1, last) : 0;
     previous_ = inputs_[static_cast<std::size_t>(now)];
   }
 
   static bool finite(const State& x) noexcept {
-    double values[detail::state_size<P>];
+    double values[sizeof(State) / sizeof(double)];
     std::memcpy(values, &x, sizeof values);
-    for (const double value : values)
-      if (!std::isfinite(value)) return false;
-    return true;
+    return std::all_of(std::begin(values), std::end(values), [](double v) { return std::isfinite(v); });
   }
 
-  ProblemEvaluator<P> evaluator_;
+  Evaluator evaluator_;
   std::unique_ptr<Solver> solver_;
-  std::vector<Input<double, P::inputs>> inputs_;
+  std::vector<Inputs> inputs_;
   std::vector<State> states_;
   Cost<double> cost_{0.0, false};
-  CostTermsOf<P> terms_ = detail::cost_terms_of<P>();
-  Input<double, P::inputs> previous_{};
+  decltype(Controlled::cost_terms()) terms_ = Controlled::cost_terms();
+  Inputs previous_{};
   bool told_ = true;  ///< what was applied before the next solve is in `previous_`
   const SolveResult* result_ = nullptr;
+  SequenceBatch alone_;  ///< the plan as a batch of one, for an evaluator that does not predict
+  AlignedBuffer alone_cost_;
+  std::vector<std::uint8_t> alone_collided_;
 };
 
 }  // namespace slalom

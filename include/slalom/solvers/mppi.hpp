@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slalom/solvers/controller.hpp"
+#include "slalom/solvers/mppi_options.hpp"
 
 namespace slalom {
 

@@ -20,15 +20,15 @@ struct MppiOptions {
   PerInput variance = 1;   ///< Sigma, input^2
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
-  NoiseOptions noise;                ///< shape of the noise; white and normal
-  WeightingOptions weighting;        ///< how costs become weights; exponentially
-  SmoothingOptions smoothing;        ///< of the solution; none
+  NoiseOptions noise{};              ///< shape of the noise; white and normal
+  WeightingOptions weighting{};      ///< how costs become weights; exponentially
+  SmoothingOptions smoothing{};      ///< of the solution; none
   double control_cost_discount = 0;  ///< alpha: the control term is multiplied by 1 - alpha
   double zero_mean_share = 0;        ///< of the samples, drawn around zero instead of the last solution
   bool shift_warm_start = true;      ///< move the last solution forward by the elapsed time
   std::uint64_t seed = 0;
   int threads = 1;
-  PublishedMppi published;  ///< only to reproduce the published program
+  PublishedMppi published{};  ///< only to reproduce the published program
 };
 
 template <class Options, class Visit>

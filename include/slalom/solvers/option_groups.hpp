@@ -106,11 +106,11 @@ void visit_weighting_options(Options& o, Visit&& visit) {
   visit(
       o.target_ess_fraction,
       Declaration{.name = "target_ess_fraction",
-                  .formerly = "effective_share",
                   .help = "effective sample size, as a fraction of the samples, for which the temperature is "
                           "searched in every solve; 0: the temperature is as set",
                   .min = 0,
-                  .max = 1});
+                  .max = 1,
+                  .formerly = "effective_share"});
 }
 
 template <class Options, class Visit>

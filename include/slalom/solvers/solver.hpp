@@ -2,12 +2,15 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 
 #include "slalom/core/batch_evaluator.hpp"
 #include "slalom/core/status.hpp"
 
 namespace slalom {
+
+class ThreadPool;
 
 /// What changes from one solve to the next.
 struct SolveRequest {

@@ -13,8 +13,6 @@
 
 namespace slalom {
 
-class ThreadPool;
-
 /// An options aggregate of a method, see `SolverOptions`.
 template <class Options>
 concept MethodOptions = std::copy_constructible<Options> && requires {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slalom/solvers/controller.hpp"
+#include "slalom/solvers/sv_mpc_options.hpp"
 
 namespace slalom {
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slalom/solvers/controller.hpp"
+#include "slalom/solvers/svg_mppi_options.hpp"
 
 namespace slalom {
 

@@ -49,21 +49,21 @@ struct SvgMppiOptions {
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
 
-  GuideOptions guides;
+  GuideOptions guides{};
   bool use_nominal = true;  ///< the best guide is the nominal sequence (NS), equation (12); otherwise zero is
   bool adapt_covariance = true;  ///< fit the variances to the best guide's path (AC), equation (13)
   PerInput variance_min = 0.01;  ///< least adapted variance, input^2
   PerInput variance_max = 1;     ///< largest adapted variance, input^2
 
-  NoiseOptions noise;                ///< shape of the noise; white and normal
-  WeightingOptions weighting;        ///< how costs become weights; exponentially
-  SmoothingOptions smoothing;        ///< of the solution; none
+  NoiseOptions noise{};              ///< shape of the noise; white and normal
+  WeightingOptions weighting{};      ///< how costs become weights; exponentially
+  SmoothingOptions smoothing{};      ///< of the solution; none
   double control_cost_discount = 0;  ///< alpha: the control term is multiplied by 1 - alpha
   double zero_mean_share = 0;        ///< of the samples, drawn around zero instead of the last solution
   bool shift_warm_start = true;      ///< move guides and last solution forward by the elapsed time
   std::uint64_t seed = 0;
   int threads = 1;
-  PublishedSvgMppi published;  ///< only to reproduce the published program
+  PublishedSvgMppi published{};  ///< only to reproduce the published program
 };
 
 namespace detail {

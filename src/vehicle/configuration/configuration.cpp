@@ -21,7 +21,11 @@ std::string resolved(std::string_view key, std::string_view default_section) {
   for (const Section& each : list_sections(configuration)) {
     sections += (sections.empty() ? "" : ", ") + each.name;
     section_known = section_known || each.name == section;
-    for (const OptionEntry& entry : each.options) keys.push_back(each.name + "." + entry.declaration.name);
+    for (const OptionEntry& entry : each.options) {
+      keys.push_back(each.name + "." + entry.declaration.name);
+      if (*entry.declaration.formerly && key == each.name + "." + entry.declaration.formerly)
+        throw std::invalid_argument("key " + std::string(key) + ": is now called " + keys.back());
+    }
   }
   std::string message = "key " + std::string(key) + ": unknown option";
   if (section_known)
@@ -70,7 +74,7 @@ std::unique_ptr<Solver> make_solver(const Configuration& configuration, std::str
   SolverOptions chosen = solver_options(method);
   for (const SolverOptions& each : configuration.methods)
     if (method == solver_name(each)) chosen = each;
-  std::visit([&](auto& options) { options.threads = threads; }, chosen);
+  *chosen.find<int>("threads") = threads;
   try {
     return slalom::make_solver(chosen, input_count(configuration.vehicle));
   } catch (const std::invalid_argument& error) {

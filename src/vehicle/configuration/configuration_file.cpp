@@ -102,18 +102,17 @@ void check_together(const Configuration& configuration, const fs::path& file, Li
                         std::to_string(values->size()) + " values in the base");
     }
   }
-  for (const SolverOptions& method : configuration.methods)
-    std::visit(
-        [&](const auto& o) {
-          for (int i = 0; i < inputs; ++i) {
-            if (o.input_min[i] <= o.input_max[i]) continue;
-            const std::string section = std::string(solver_name(method)) + ".";
-            throw IoError(file.string(), std::max(lines[section + "input_min"], lines[section + "input_max"]),
-                          "key " + section + "input_min: '" + to_text(o.input_min[i]) + "' must be at most " +
-                              section + "input_max, '" + to_text(o.input_max[i]) + "'");
-          }
-        },
-        method);
+  for (const SolverOptions& method : configuration.methods) {
+    const PerInput& low = *method.find<PerInput>("input_min");
+    const PerInput& high = *method.find<PerInput>("input_max");
+    for (int i = 0; i < inputs; ++i) {
+      if (low[i] <= high[i]) continue;
+      const std::string section = std::string(method.method()) + ".";
+      throw IoError(file.string(), std::max(lines[section + "input_min"], lines[section + "input_max"]),
+                    "key " + section + "input_min: '" + to_text(low[i]) + "' must be at most " + section +
+                        "input_max, '" + to_text(high[i]) + "'");
+    }
+  }
 }
 
 /// The file that `base` names: one beside the file, or a configuration known by name.
