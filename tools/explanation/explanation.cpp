@@ -5,6 +5,11 @@
 
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/core/random.hpp"
+#include "slalom/solvers/cem_options.hpp"
+#include "slalom/solvers/mppi_options.hpp"
+#include "slalom/solvers/reverse_mppi_options.hpp"
+#include "slalom/solvers/sv_mpc_options.hpp"
+#include "slalom/solvers/svg_mppi_options.hpp"
 
 namespace slalom::tools {
 namespace {
