@@ -15,7 +15,7 @@ using namespace slalom;
 
 /// Whether the car drives a lap within 20 s without a collision.
 bool drives_a_lap(const evaluation::Environment& environment, const SolverOptions& options) {
-  const auto seed = std::visit([](const auto& o) { return o.seed; }, options);
+  const auto seed = *options.find<std::uint64_t>("seed");
   vehicle::Planner planner({}, vehicle::make_vehicle_model({}), environment.path, make_solver(options, 1));
   sim::WorldOptions world_options = environment.world_options();
   sim::World world(world_options, environment.track);

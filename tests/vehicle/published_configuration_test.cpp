@@ -4,7 +4,6 @@
 #include "slalom/solvers/published/published_solvers.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/published/options.hpp"
-#include "solvers/published_options.hpp"
 
 namespace slalom::vehicle {
 namespace {
