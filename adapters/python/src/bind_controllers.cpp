@@ -46,8 +46,8 @@ void bind_method(py::module_& module, const py::object& controller, const std::s
 
 void bind_controllers(py::module_& module) {
   bind_plan(module);
-  py::class_<Controller> controller(module, "Controller", "Base class of all controllers.");
-  controller
+  py::class_<Controller> base(module, "Controller", "Base class of all controllers.");
+  base
       .def(py::init([](const std::string& method, const AnyProblem& problem, const py::kwargs& keywords) {
              SolverOptions options = solver_options(method);
              set_from_keywords(options, keywords, method);
@@ -89,7 +89,7 @@ void bind_controllers(py::module_& module) {
             return all;
           },
           "the options in use, by name");
-  for (const char* method : solver_names()) bind_method(module, controller, method);
+  for (const char* method : solver_names()) bind_method(module, base, method);
   module.def(
       "methods",
       [] {
