@@ -120,7 +120,7 @@ void scan_1080(benchmark::State& state) {
     sum += static_cast<double>(ranges[540]);
   }
   if (!(sum > 0)) state.SkipWithError("nothing was seen");
-  state.SetLabel(detail::kernels().name);
+  state.SetLabel(detail::scan_kernels().name);
 }
 BENCHMARK(scan_1080);
 

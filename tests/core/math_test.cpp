@@ -71,11 +71,36 @@ struct CheckFunctions {
   }
 };
 
+/// x x - (1 + 2^-11) for x = 1 + 2^-12, whose square needs a bit more than a float32 has.
+struct SquareLess {
+  template <class Target>
+  SLALOM_KERNEL static void run(const float* x, float* unfused, float* fused) {
+    using U = Pack<simd::Unfused<Target>>;
+    using F = Pack<Target>;
+    const U u = U::load(x);
+    const F f = F::load(x);
+    (u * u - U(1.00048828125f)).store(unfused);
+    (f * f - F(1.00048828125f)).store(fused);
+  }
+};
+
 class PackMath : public testing::TestWithParam<simd::Target> {};
 
 TEST_P(PackMath, IsAccurateOnEveryInstructionSet) {
   if (!simd::supported(GetParam())) GTEST_SKIP() << "this processor has no " << simd::name(GetParam());
   simd::kernel<CheckFunctions>(GetParam())();
+}
+
+TEST_P(PackMath, UnfusedPacksRoundProducts) {
+  if (!simd::supported(GetParam())) GTEST_SKIP() << "this processor has no " << simd::name(GetParam());
+  float x[16], unfused[16] = {}, fused[16] = {};
+  for (float& value : x) value = 1.000244140625f;
+  simd::kernel<SquareLess>(GetParam())(x, unfused, fused);
+  EXPECT_EQ(unfused[0], 0.0f);
+#if !defined(__clang__) && defined(__OPTIMIZE__) && SLALOM_X86
+  const bool fuses = GetParam() == simd::Target::avx2 || GetParam() == simd::Target::avx512;
+  EXPECT_EQ(fused[0], fuses ? 0x1p-24f : 0.0f);
+#endif
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, PackMath,

@@ -83,25 +83,25 @@ TEST(ScanProperty, EveryInstructionSetGivesTheSameBits) {
       cone_sines[i] = static_cast<float>(std::sin(angle));
     }
     std::vector<float> first;
-    for (const detail::Kernels& kernels : detail::all_kernels()) {
+    for (const detail::ScanKernels& kernels : detail::all_scan_kernels()) {
       std::vector<float> ranges(lidar.padded_beams());
-      kernels.scan({.clearance = track.clearance().data(),
-                    .stride = track.clearance_stride(),
-                    .x = 90.3f,
-                    .y = 70.7f,
-                    .cosine = std::cos(0.4f),
-                    .sine = std::sin(0.4f),
-                    .cosines = cosines.data(),
-                    .sines = sines.data(),
-                    .beams = beams,
-                    .cone_cosines = cone_cosines.data(),
-                    .cone_sines = cone_sines.data(),
-                    .cone_width = static_cast<float>(7.5 * options.angle_increment() + 1e-5),
-                    .most = 600,
-                    .beyond = 1e-3f,
-                    .resolution = 0.05f,
-                    .range_max = 30,
-                    .ranges = ranges.data()});
+      kernels.walls({.clearance = track.clearance().data(),
+                     .stride = track.clearance_stride(),
+                     .x = 90.3f,
+                     .y = 70.7f,
+                     .cosine = std::cos(0.4f),
+                     .sine = std::sin(0.4f),
+                     .cosines = cosines.data(),
+                     .sines = sines.data(),
+                     .beams = beams,
+                     .cone_cosines = cone_cosines.data(),
+                     .cone_sines = cone_sines.data(),
+                     .cone_width = static_cast<float>(7.5 * options.angle_increment() + 1e-5),
+                     .most = 600,
+                     .beyond = 1e-3f,
+                     .resolution = 0.05f,
+                     .range_max = 30,
+                     .ranges = ranges.data()});
       kernels.cast({.x = -2,
                     .y = 0.3f,
                     .cosine = std::cos(0.2f),
@@ -166,7 +166,7 @@ TEST(ScanProperty, TheGymWalkIsTheSameToTheBitOnEveryInstructionSet) {
       cosines[i] = std::cos(turn + 0.1 * static_cast<double>(i));
       sines[i] = std::sin(turn + 0.1 * static_cast<double>(i));
     }
-    for (const detail::Kernels& kernels : detail::all_kernels()) {
+    for (const detail::ScanKernels& kernels : detail::all_scan_kernels()) {
       kernels.gym_walk({.distance = track.distance().distance.data(),
                         .width = grid.width,
                         .height = grid.height,

@@ -172,6 +172,23 @@ SLALOM_INLINE Pack<Target> abs(const Pack<Target>& x) {
   return Pack<Target>(reinterpret_cast<typename Pack<Target>::Vector>(reinterpret_cast<I>(x.v) & 0x7fffffff));
 }
 
+/// Whether a lane is set.
+template <class Target>
+SLALOM_INLINE_CALLS bool any(const simd::Mask<Target>& mask) {
+  return simd::Operations<Target>::any(mask.v);
+}
+/// The integers towards zero; |x| < 2^31.
+template <class Target>
+SLALOM_INLINE simd::IntPack<Target> truncate(const Pack<Target>& x) {
+  using I = typename simd::IntPack<Target>::Vector;
+  return simd::IntPack<Target>(__builtin_convertvector(x.v, I));
+}
+/// The integers as float32, rounded.
+template <class Target>
+SLALOM_INLINE Pack<Target> to_float(const simd::IntPack<Target>& x) {
+  return Pack<Target>(__builtin_convertvector(x.v, typename Pack<Target>::Vector));
+}
+
 /// The product rounded to the nearest integer, for products below 2^22: adding 1.5 * 2^23 pushes the fraction
 /// out, and leaves the integer in the low bits of the sum (`bits`, to be used modulo a power of two up to
 /// 2^22). Cheaper than a rounding instruction and a conversion.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "slalom/core/coefficient.hpp"
 
@@ -75,6 +76,18 @@
 #define SLALOM_FUSE
 #endif
 
+/// Keeps the compiler from fusing a product, a variable, with a sum that follows. clang fuses only what
+/// SLALOM_FUSE allows it to; an unoptimised build fuses nothing.
+#if defined(__clang__) || !defined(__OPTIMIZE__)
+#define SLALOM_ROUND(product)
+#elif SLALOM_X86
+#define SLALOM_ROUND(product) __asm__("" : "+v"(product))
+#elif defined(__aarch64__)
+#define SLALOM_ROUND(product) __asm__("" : "+w"(product))
+#else
+#define SLALOM_ROUND(product) __asm__("" : "+m"(product))
+#endif
+
 namespace slalom::simd {
 
 /// The instruction sets a batch loop is compiled for.
@@ -102,6 +115,14 @@ struct Avx512 {
   static constexpr bool fused = true;  ///< whether it has fused multiply-add
 };
 
+/// The instruction set `T` without fused multiply-adds: every product is rounded before it is added. A kernel
+/// that takes its packs from it gives the same bits on every instruction set, as long as it uses no
+/// `reciprocal_sqrt` and no function of math.hpp that says so.
+template <class T>
+struct Unfused : T {
+  static constexpr bool fused = false;
+};
+
 /// Batches are padded to a multiple of this many samples, the lanes of the widest pack, whatever the
 /// instruction set.
 inline constexpr int padding = 16;
@@ -114,6 +135,25 @@ struct VectorTypes {
   typedef std::int32_t Int __attribute__((vector_size(4 * N)));
   typedef std::uint32_t Unsigned __attribute__((vector_size(4 * N)));
 };
+
+/// Whether products are rounded before they are added.
+template <class T>
+inline constexpr bool rounds_products = false;
+template <class T>
+inline constexpr bool rounds_products<Unfused<T>> = true;
+
+/// What comparisons of packs yield: all bits of a lane set where true.
+template <class T>
+struct MaskVector {
+  using type = typename VectorTypes<T::lanes>::Int;
+};
+/// AVX-512 compares into registers of one bit per lane, and selects by them.
+template <>
+struct MaskVector<Avx512> {
+  using type = std::uint16_t;
+};
+template <class T>
+struct MaskVector<Unfused<T>> : MaskVector<T> {};
 
 /// One value in all lanes. x - 0 is x for every x, and so folds to a broadcast. But g++ builds a vector wider
 /// than the baseline's lane by lane, unless it is told the instruction.
@@ -137,14 +177,17 @@ struct Broadcast<Avx512> {
   }
 };
 #endif
+template <class T>
+struct Broadcast<Unfused<T>> : Broadcast<T> {};
 
 }  // namespace detail
 
 /// One truth value per lane.
 template <class T>
 struct Mask {
-  using Vector = typename detail::VectorTypes<T::lanes>::Int;  ///< vector type of the compiler
-  Vector v;                                                    ///< all bits set where true
+  using Vector = typename detail::MaskVector<T>::type;
+  static constexpr bool bits = std::is_integral_v<Vector>;  ///< one bit per lane
+  Vector v;                                                 ///< all bits of a lane set where true
 
   Mask() = default;
   /// From lanes with all bits 1 or all bits 0.
@@ -157,34 +200,13 @@ struct Mask {
     return *this;
   }
   /// The same value in all lanes.
-  SLALOM_INLINE explicit Mask(bool value) { v = Vector{} - static_cast<int>(value); }
-
-  /// Applies to each lane.
-  SLALOM_INLINE friend Mask operator&(const Mask& a, const Mask& b) { return Mask(a.v & b.v); }
-  /// Applies to each lane.
-  SLALOM_INLINE friend Mask operator|(const Mask& a, const Mask& b) { return Mask(a.v | b.v); }
-  /// Applies to each lane.
-  SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(~a.v); }
-  bool operator[](int lane) const { return v[lane] != 0; }  ///< of a lane
-};
-/// AVX-512 compares into registers of a bit a lane, and selects by them.
-template <>
-struct Mask<Avx512> {
-  using Vector = std::uint16_t;  ///< one bit for each lane
-  Vector v;                      ///< a bit a lane
-
-  Mask() = default;
-  /// From lanes with all bits 1 or all bits 0.
-  SLALOM_INLINE Mask(const Vector& bits) : v(bits) {}
-  /// Copies.
-  SLALOM_INLINE Mask(const Mask& other) : v(other.v) {}
-  /// Copies.
-  SLALOM_INLINE Mask& operator=(const Mask& other) {
-    v = other.v;
-    return *this;
+  SLALOM_INLINE explicit Mask(bool value) {
+    if constexpr (bits) {
+      v = static_cast<Vector>(-static_cast<int>(value));
+    } else {
+      v = Vector{} - static_cast<int>(value);
+    }
   }
-  /// The same value in all lanes.
-  SLALOM_INLINE explicit Mask(bool value) : v(static_cast<Vector>(-static_cast<int>(value))) {}
 
   /// Applies to each lane.
   SLALOM_INLINE friend Mask operator&(const Mask& a, const Mask& b) {
@@ -196,8 +218,19 @@ struct Mask<Avx512> {
   }
   /// Applies to each lane.
   SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(static_cast<Vector>(~a.v)); }
-  bool operator[](int lane) const { return ((v >> lane) & 1) != 0; }  ///< of a lane
+  /// Of one lane.
+  bool operator[](int lane) const {
+    if constexpr (bits) {
+      return ((v >> lane) & 1) != 0;
+    } else {
+      return v[lane] != 0;
+    }
+  }
 };
+
+/// Operations for which compilers need to be told the instruction: simd_operations.hpp.
+template <class T>
+struct Operations;
 
 /// A pack of 32-bit integers.
 template <class T>
@@ -217,11 +250,23 @@ struct IntPack {
     v = other.v;
     return *this;
   }
-};
 
-/// Operations for which compilers need to be told the instruction: simd_operations.hpp.
-template <class T>
-struct Operations;
+  /// Applies to each lane.
+  SLALOM_INLINE friend IntPack operator+(const IntPack& a, const IntPack& b) { return IntPack(a.v + b.v); }
+  /// Applies to each lane.
+  SLALOM_INLINE friend IntPack operator*(const IntPack& a, int b) { return IntPack(a.v * b); }
+  SLALOM_INLINE_CALLS friend Mask<T> operator<(const IntPack& a, const IntPack& b) {
+    Mask<T> r;
+    Operations<T>::less(a.v, b.v, r.v);
+    return r;
+  }
+  SLALOM_INLINE_CALLS friend Mask<T> operator>(const IntPack& a, const IntPack& b) { return b < a; }
+  SLALOM_INLINE_CALLS friend Mask<T> operator==(const IntPack& a, const IntPack& b) {
+    Mask<T> r;
+    Operations<T>::equal(a.v, b.v, r.v);
+    return r;
+  }
+};
 
 /// A pack of float32 values: arithmetic like a float's, lane by lane.
 template <class T>
@@ -265,7 +310,15 @@ struct Pack {
   /// Applies to each lane.
   SLALOM_INLINE friend Pack operator-(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v - b.v); }
   /// Applies to each lane.
-  SLALOM_INLINE friend Pack operator*(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v * b.v); }
+  SLALOM_INLINE friend Pack operator*(const Pack& a, const Pack& b) {
+    if constexpr (detail::rounds_products<T>) {
+      Vector product = a.v * b.v;
+      SLALOM_ROUND(product);
+      return Pack(product);
+    } else {
+      SLALOM_FUSE return Pack(a.v * b.v);
+    }
+  }
   /// Applies to each lane.
   SLALOM_INLINE friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.v / b.v); }
   /// Applies to each lane.

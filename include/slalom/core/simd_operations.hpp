@@ -24,6 +24,14 @@ struct PortableOperations {
   static void subtract_product(const F& a, const F& b, const F& c, F& r) { r = a - b * c; }
   static void less(const F& a, const F& b, I& r) { r = a < b; }
   static void less_or_equal(const F& a, const F& b, I& r) { r = a <= b; }
+  static void less(const I& a, const I& b, I& r) { r = a < b; }
+  static void equal(const I& a, const I& b, I& r) { r = a == b; }
+  /// Whether a lane is set.
+  static bool any(const I& mask) {
+    std::int32_t all = 0;
+    for (int i = 0; i < lanes; ++i) all |= mask[i];
+    return all != 0;
+  }
   /// `a` where all bits of the condition are set, `b` where none is.
   static void select(const I& condition, const F& a, const F& b, F& r) { r = condition ? a : b; }
   /// 1 or 0 a lane.
@@ -46,6 +54,10 @@ struct PortableOperations {
     a = (a << 24) | ((a & 0xff00) << 8) | ((a >> 8) & 0xff00) | ((a >> 24) & 0xff);
   }
   static void gather(const float* from, const I& index, F& r) {
+    for (int i = 0; i < lanes; ++i) r[i] = from[index[i]];
+  }
+  /// 16-bit values; may read the 2 bytes after them.
+  static void gather(const std::int16_t* from, const I& index, I& r) {
     for (int i = 0; i < lanes; ++i) r[i] = from[index[i]];
   }
   /// Reads the 16-byte cell `index` of every lane and returns its four values as four packs.
@@ -119,6 +131,7 @@ struct Operations<Sse4> : PortableOperations<Sse4> {
   SLALOM_ISA_SSE4 static void reverse_bytes(I& a) {
     a = (I)_mm_shuffle_epi8((__m128i)a, detail::reversed_bytes);
   }
+  SLALOM_ISA_SSE4 static bool any(const I& mask) { return _mm_movemask_ps((__m128)mask) != 0; }
   SLALOM_ISA_SSE4 static void gather_cells(const float* from, const I& index, F& r0, F& r1, F& r2, F& r3) {
     __m128 a = _mm_loadu_ps(from + 4 * static_cast<std::ptrdiff_t>(index[0]));
     __m128 b = _mm_loadu_ps(from + 4 * static_cast<std::ptrdiff_t>(index[1]));
@@ -158,8 +171,13 @@ struct Operations<Avx2> : PortableOperations<Avx2> {
   SLALOM_ISA_AVX2 static void reverse_bytes(I& a) {
     a = (I)_mm256_shuffle_epi8((__m256i)a, _mm256_broadcastsi128_si256(detail::reversed_bytes));
   }
+  SLALOM_ISA_AVX2 static bool any(const I& mask) { return _mm256_movemask_ps((__m256)mask) != 0; }
   SLALOM_ISA_AVX2 static void gather(const float* from, const I& index, F& r) {
     r = (F)_mm256_i32gather_ps(from, (__m256i)index, 4);
+  }
+  SLALOM_ISA_AVX2 static void gather(const std::int16_t* from, const I& index, I& r) {
+    const __m256i both = _mm256_i32gather_epi32(reinterpret_cast<const int*>(from), (__m256i)index, 2);
+    r = (I)_mm256_srai_epi32(_mm256_slli_epi32(both, 16), 16);
   }
   SLALOM_ISA_AVX2 static void gather_cells(const float* from, const I& index, F& r0, F& r1, F& r2, F& r3) {
     alignas(32) std::int32_t at[8];
@@ -200,6 +218,13 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
   SLALOM_ISA_AVX512 static void less_or_equal(const F& a, const F& b, std::uint16_t& r) {
     r = _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LE_OQ);
   }
+  SLALOM_ISA_AVX512 static void less(const I& a, const I& b, std::uint16_t& r) {
+    r = _mm512_cmplt_epi32_mask((__m512i)a, (__m512i)b);
+  }
+  SLALOM_ISA_AVX512 static void equal(const I& a, const I& b, std::uint16_t& r) {
+    r = _mm512_cmpeq_epi32_mask((__m512i)a, (__m512i)b);
+  }
+  static bool any(const std::uint16_t& mask) { return mask != 0; }
   SLALOM_ISA_AVX512 static void select(const std::uint16_t& condition, const F& a, const F& b, F& r) {
     r = (F)_mm512_mask_blend_ps(condition, (__m512)b, (__m512)a);
   }
@@ -226,6 +251,11 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
   }
   SLALOM_ISA_AVX512 static void gather(const float* from, const I& index, F& r) {
     r = (F)_mm512_mask_i32gather_ps(_mm512_setzero_ps(), all, (__m512i)index, from, 4);
+  }
+  SLALOM_ISA_AVX512 static void gather(const std::int16_t* from, const I& index, I& r) {
+    const __m512i both = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), all, (__m512i)index,
+                                                     reinterpret_cast<const int*>(from), 2);
+    r = (I)_mm512_maskz_srai_epi32(all, _mm512_maskz_slli_epi32(all, both, 16), 16);
   }
   SLALOM_ISA_AVX512 static void gather_cells(const float* from, const I& index, F& r0, F& r1, F& r2, F& r3) {
     if (detail::gathers_are_fast) {
@@ -283,5 +313,8 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
 };
 #undef SLALOM_SHUFFLE
 #endif
+
+template <class T>
+struct Operations<Unfused<T>> : Operations<T> {};
 
 }  // namespace slalom::simd

@@ -11,7 +11,7 @@
 namespace slalom::sim {
 
 namespace detail {
-struct Kernels;
+struct ScanKernels;
 }
 
 /// Options of a LiDAR scanner on a car.
@@ -86,7 +86,7 @@ class Lidar {
   std::vector<double> angles_;
   std::vector<float> cosines_, sines_;            ///< of the angles, padded
   std::vector<float> cone_cosines_, cone_sines_;  ///< of the middles of cones of beams, padded
-  const detail::Kernels* kernels_;
+  const detail::ScanKernels* kernels_;
 };
 
 }  // namespace slalom::sim

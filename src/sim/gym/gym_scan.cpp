@@ -76,7 +76,7 @@ double gym_distance(const Track& track, const maps::Point& point) {
 }
 
 void gym_scan(const Track& track, const maps::Pose& sensor, const LidarOptions& options,
-              std::span<const double> angles, const Kernels& kernels, std::span<double> ranges) {
+              std::span<const double> angles, const ScanKernels& kernels, std::span<double> ranges) {
   constexpr std::size_t block = scan_padding;
   std::array<double, block> cosines, sines, walked;
   const Field field(track);

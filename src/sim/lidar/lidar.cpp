@@ -43,7 +43,7 @@ void LidarOptions::validate() const {
   detail::require_range("dropout", dropout, 0, 1);
 }
 
-Lidar::Lidar(const LidarOptions& options) : options_(options), kernels_(&detail::kernels()) {
+Lidar::Lidar(const LidarOptions& options) : options_(options), kernels_(&detail::scan_kernels()) {
   options.validate();
   const double first = options.angle_min(), increment = options.angle_increment();
   for (int i = 0; i < options.beams; ++i) angles_.push_back(first + i * increment);
@@ -107,7 +107,7 @@ void Lidar::scan(const Track& track, const maps::Pose& sensor, std::span<float> 
   task.cone_sines = cone_sines_.data();
   task.beams = options_.beams;
   task.ranges = ranges.data();
-  kernels_->scan(task);
+  kernels_->walls(task);
 }
 
 void Lidar::gym_directions_scan(const Track& track, const maps::Pose& sensor,
@@ -142,7 +142,7 @@ void Lidar::gym_directions_scan(const Track& track, const maps::Pose& sensor,
     task.cone_sines = cone_sines.data();
     task.beams = static_cast<int>(here);
     task.ranges = ranges.data() + first;
-    kernels_->scan(task);
+    kernels_->walls(task);
   }
 }
 

@@ -31,7 +31,7 @@ void NormalNoise::add(std::span<float> ranges, int count, double deviation, doub
       .lost_below = static_cast<std::uint32_t>(std::min(dropout * 0x1p32, 0x1p32 - 1)),
       .count = count,
       .ranges = ranges.data()};
-  detail::kernels().noise(task);
+  detail::scan_kernels().noise(task);
 }
 
 }  // namespace slalom::sim

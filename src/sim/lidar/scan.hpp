@@ -63,21 +63,19 @@ struct NoiseTask {
   float* ranges;  ///< in and out, m, with room for the padding
 };
 
-/// The loops, for one instruction set. All give the same bits.
-struct Kernels {
-  void (*scan)(const ScanTask&);
+/// The kernels of scans for one instruction set. All instruction sets give the same bits.
+struct ScanKernels {
+  void (*walls)(const ScanTask&);
   void (*cast)(const CastTask&);
   void (*noise)(const NoiseTask&);
   void (*gym_walk)(const GymWalkTask&);
-  const char* name;
+  const char* name;  ///< of the instruction set
 };
 
-extern const Kernels kernels_baseline, kernels_avx2, kernels_avx512;
-
 /// Those for simd::active_target(). Throws as that does.
-const Kernels& kernels();
+const ScanKernels& scan_kernels();
 
 /// All that this processor runs, the widest first.
-std::span<const Kernels> all_kernels();
+std::span<const ScanKernels> all_scan_kernels();
 
 }  // namespace slalom::sim::detail
