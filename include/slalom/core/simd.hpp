@@ -5,127 +5,21 @@
 #include <type_traits>
 
 #include "slalom/core/coefficient.hpp"
+#include "slalom/core/instruction_set.hpp"
 
 /// Packs of float32 lanes, so that one piece of template code runs a whole pack of samples at once.
 ///
-/// A pack is made of the compiler's own vector types: its operators are ordinary inline functions that carry
-/// no instruction set. A batch loop is compiled once per instruction set as a function with `SLALOM_TARGET_*`
-/// (a target attribute plus `flatten`), into which everything is inlined; the wide vectors then become whole
-/// registers of that set. So a user's own problem runs at full width without any compiler flag, and one
-/// binary serves every processor. Only where the compilers do not find the right instruction (clamped
-/// conversions, square roots, look-ups) does a pack call a function that is itself tied to an instruction
-/// set.
+/// A pack is made of the compiler's vector types: its operators are ordinary inline functions without an
+/// instruction set. A kernel (dispatch.hpp) is compiled once per instruction set, into one function with that
+/// set's target attribute, and everything it calls is inlined there; the vectors then become whole registers
+/// of the set. So a user's problem runs at full width without any compiler flag, and one binary serves every
+/// processor. Only where compilers do not find the right instruction (clamped conversions, square roots,
+/// look-ups) does a pack call a function that is compiled for one instruction set.
 ///
-/// Packs have a copy constructor of their own on purpose: so they are passed by reference in memory wherever
-/// a call is not inlined (unoptimised builds), and the calling convention does not depend on the instruction
-/// set.
-
-#if defined(__x86_64__) || defined(__i386__)
-#define SLALOM_X86 1
-#include <immintrin.h>
-#else
-#define SLALOM_X86 0
-#endif
-
-#if SLALOM_X86
-/// Instruction sets of SSE4 code.
-#define SLALOM_ISA_SSE4 __attribute__((target("sse4.2")))
-/// Instruction sets of AVX2 code.
-#define SLALOM_ISA_AVX2 __attribute__((target("avx2,fma,bmi,bmi2")))
-/// Instruction sets of AVX-512 code.
-#define SLALOM_ISA_AVX512 \
-  __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,avx512cd,avx2,fma,bmi,bmi2")))
-#else
-/// Instruction sets of SSE4 code.
-#define SLALOM_ISA_SSE4
-/// Instruction sets of AVX2 code.
-#define SLALOM_ISA_AVX2
-/// Instruction sets of AVX-512 code.
-#define SLALOM_ISA_AVX512
-#endif
-
-/// Marks a function as the entry of a batch loop for one instruction set: everything it calls is inlined into
-/// it.
-#define SLALOM_TARGET_GENERIC __attribute__((flatten))
-/// Attributes of a function that uses SSE4.
-#define SLALOM_TARGET_SSE4 SLALOM_ISA_SSE4 __attribute__((flatten))
-/// Attributes of a function that uses AVX2.
-#define SLALOM_TARGET_AVX2 SLALOM_ISA_AVX2 __attribute__((flatten))
-/// Attributes of a function that uses AVX-512.
-#define SLALOM_TARGET_AVX512 SLALOM_ISA_AVX512 __attribute__((flatten))
-
-/// On the small functions that make up a batch loop. g++ follows `flatten` all the way down, but only over
-/// functions that are not `always_inline` (for those it settles too early that they cannot take in code of a
-/// wider instruction set); clang inlines only one call deep and needs to be told, and told again
-/// (`SLALOM_INLINE_CALLS`) where a function of another's making, or one of an instruction set, is called.
-#if defined(__clang__)
-#define SLALOM_INLINE __attribute__((always_inline)) inline
-/// Like SLALOM_INLINE, and inlines all calls in the function.
-#define SLALOM_INLINE_CALLS __attribute__((always_inline, flatten)) inline
-#else
-#define SLALOM_INLINE inline
-/// Like SLALOM_INLINE, and inlines all calls in the function.
-#define SLALOM_INLINE_CALLS inline
-#endif
-
-#if defined(__clang__)
-/// Lets clang fuse a product and a sum that stand in different inline functions (g++ does by default).
-#define SLALOM_FUSE _Pragma("clang fp contract(fast)")
-#else
-/// Allows fused multiply-add.
-#define SLALOM_FUSE
-#endif
-
-/// Keeps the compiler from fusing a product, a variable, with a sum that follows. clang fuses only what
-/// SLALOM_FUSE allows it to; an unoptimised build fuses nothing.
-#if defined(__clang__) || !defined(__OPTIMIZE__)
-#define SLALOM_ROUND(product)
-#elif SLALOM_X86
-#define SLALOM_ROUND(product) __asm__("" : "+v"(product))
-#elif defined(__aarch64__)
-#define SLALOM_ROUND(product) __asm__("" : "+w"(product))
-#else
-#define SLALOM_ROUND(product) __asm__("" : "+m"(product))
-#endif
+/// Packs have a user-defined copy constructor on purpose: where a call is not inlined (unoptimised builds)
+/// they are passed by reference in memory, so the calling convention does not depend on the instruction set.
 
 namespace slalom::simd {
-
-/// The instruction sets a batch loop is compiled for.
-enum class Target : std::uint8_t { generic, sse4, avx2, avx512 };
-
-/// Tags of the instruction sets: `lanes` float32 values a pack, and whether it multiplies and adds with one
-/// rounding. `Generic` uses what the build's baseline has (SSE2 on x86-64, NEON on AArch64).
-struct Generic {
-  static constexpr int lanes = 4;                 ///< number of float32 values
-  static constexpr bool fused = SLALOM_X86 == 0;  ///< whether it has fused multiply-add
-};
-/// SSE 4.2.
-struct Sse4 {
-  static constexpr int lanes = 4;       ///< number of float32 values
-  static constexpr bool fused = false;  ///< whether it has fused multiply-add
-};
-/// AVX2 with FMA.
-struct Avx2 {
-  static constexpr int lanes = 8;      ///< number of float32 values
-  static constexpr bool fused = true;  ///< whether it has fused multiply-add
-};
-/// AVX-512 F, DQ, BW and VL.
-struct Avx512 {
-  static constexpr int lanes = 16;     ///< number of float32 values
-  static constexpr bool fused = true;  ///< whether it has fused multiply-add
-};
-
-/// The instruction set `T` without fused multiply-adds: every product is rounded before it is added. A kernel
-/// that takes its packs from it gives the same bits on every instruction set, as long as it uses no
-/// `reciprocal_sqrt` and no function of math.hpp that says so.
-template <class T>
-struct Unfused : T {
-  static constexpr bool fused = false;
-};
-
-/// Batches are padded to a multiple of this many samples, the lanes of the widest pack, whatever the
-/// instruction set.
-inline constexpr int padding = 16;
 
 namespace detail {
 

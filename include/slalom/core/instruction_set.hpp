@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstdint>
+
+/// The instruction sets that kernels are compiled for, as tags and as function attributes.
+
+#if defined(__x86_64__) || defined(__i386__)
+#define SLALOM_X86 1
+#include <immintrin.h>
+#else
+#define SLALOM_X86 0
+#endif
+
+#if SLALOM_X86
+/// Instruction sets of SSE4 code.
+#define SLALOM_ISA_SSE4 __attribute__((target("sse4.2")))
+/// Instruction sets of AVX2 code.
+#define SLALOM_ISA_AVX2 __attribute__((target("avx2,fma,bmi,bmi2")))
+/// Instruction sets of AVX-512 code.
+#define SLALOM_ISA_AVX512 \
+  __attribute__((target("avx512f,avx512vl,avx512dq,avx512bw,avx512cd,avx2,fma,bmi,bmi2")))
+#else
+/// Instruction sets of SSE4 code.
+#define SLALOM_ISA_SSE4
+/// Instruction sets of AVX2 code.
+#define SLALOM_ISA_AVX2
+/// Instruction sets of AVX-512 code.
+#define SLALOM_ISA_AVX512
+#endif
+
+/// Attributes of a function into which everything that it calls is inlined, for one instruction set. Kernels
+/// get them from dispatch.hpp.
+#define SLALOM_TARGET_GENERIC __attribute__((flatten))
+/// Attributes of a function that uses SSE4.
+#define SLALOM_TARGET_SSE4 SLALOM_ISA_SSE4 __attribute__((flatten))
+/// Attributes of a function that uses AVX2.
+#define SLALOM_TARGET_AVX2 SLALOM_ISA_AVX2 __attribute__((flatten))
+/// Attributes of a function that uses AVX-512.
+#define SLALOM_TARGET_AVX512 SLALOM_ISA_AVX512 __attribute__((flatten))
+
+/// On the functions that a kernel calls. g++ applies `flatten` to calls at every depth, but only to functions
+/// that are not `always_inline`: those it rejects early, because their callers lack the instruction set.
+/// clang applies `flatten` to direct calls only, so every function of a kernel is marked; those that call a
+/// user's function, or an operation of one instruction set, are marked `SLALOM_INLINE_CALLS`.
+#if defined(__clang__)
+#define SLALOM_INLINE __attribute__((always_inline)) inline
+/// Like SLALOM_INLINE, and inlines all calls in the function.
+#define SLALOM_INLINE_CALLS __attribute__((always_inline, flatten)) inline
+#else
+#define SLALOM_INLINE inline
+/// Like SLALOM_INLINE, and inlines all calls in the function.
+#define SLALOM_INLINE_CALLS inline
+#endif
+
+#if defined(__clang__)
+/// Lets clang fuse a product and a sum that stand in different inline functions (g++ does by default).
+#define SLALOM_FUSE _Pragma("clang fp contract(fast)")
+#else
+/// Allows fused multiply-add.
+#define SLALOM_FUSE
+#endif
+
+/// Keeps the compiler from fusing a product, a variable, with a sum that follows. clang fuses only what
+/// SLALOM_FUSE allows it to; an unoptimised build fuses nothing.
+#if defined(__clang__) || !defined(__OPTIMIZE__)
+#define SLALOM_ROUND(product)
+#elif SLALOM_X86
+#define SLALOM_ROUND(product) __asm__("" : "+v"(product))
+#elif defined(__aarch64__)
+#define SLALOM_ROUND(product) __asm__("" : "+w"(product))
+#else
+#define SLALOM_ROUND(product) __asm__("" : "+m"(product))
+#endif
+
+namespace slalom::simd {
+
+/// The instruction sets a batch loop is compiled for.
+enum class Target : std::uint8_t { generic, sse4, avx2, avx512 };
+
+/// Tags of the instruction sets: the `lanes` of a pack, and whether products and sums are fused, that is,
+/// rounded once. `Generic` uses what the build's baseline has (SSE2 on x86-64, NEON on AArch64).
+struct Generic {
+  static constexpr int lanes = 4;                 ///< number of float32 values
+  static constexpr bool fused = SLALOM_X86 == 0;  ///< whether it has fused multiply-add
+};
+/// SSE 4.2.
+struct Sse4 {
+  static constexpr int lanes = 4;       ///< number of float32 values
+  static constexpr bool fused = false;  ///< whether it has fused multiply-add
+};
+/// AVX2 with FMA.
+struct Avx2 {
+  static constexpr int lanes = 8;      ///< number of float32 values
+  static constexpr bool fused = true;  ///< whether it has fused multiply-add
+};
+/// AVX-512 F, DQ, BW and VL.
+struct Avx512 {
+  static constexpr int lanes = 16;     ///< number of float32 values
+  static constexpr bool fused = true;  ///< whether it has fused multiply-add
+};
+
+/// The instruction set `T` without fused multiply-adds: every product is rounded before it is added. A kernel
+/// that takes its packs from it gives the same bits on every instruction set, as long as it does not use
+/// `reciprocal_sqrt`, whose approximations differ.
+template <class T>
+struct Unfused : T {
+  static constexpr bool fused = false;  ///< products are rounded
+};
+
+/// Batches are padded to a multiple of this many samples, the lanes of the widest pack, whatever the
+/// instruction set.
+inline constexpr int padding = 16;
+
+}  // namespace slalom::simd
