@@ -43,7 +43,7 @@ struct World::Hidden {
   std::vector<slalom::maps::Pose> parked;
   std::vector<Pose> obstacles;
   Reading reading;
-  bool touching = false;
+  bool colliding = false;
 
   void read() {
     const auto seen = world.observe(0);
@@ -57,8 +57,8 @@ struct World::Hidden {
     reading.speed = odometry.speed();
     reading.yaw_rate = odometry.yaw_rate();
     reading.laps = world.laps(0) ? world.laps(0)->laps() : 0;
-    reading.contacts += seen.collides() && !touching;
-    touching = seen.collides();
+    reading.contacts += seen.collides() && !colliding;
+    colliding = seen.collides();
   }
 };
 

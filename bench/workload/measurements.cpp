@@ -24,7 +24,7 @@ void repeat(double seconds, Once&& once) {
   for (int i = 0; i < 30 || seconds_since(begin) < seconds; ++i) once();
 }
 
-/// The yardstick on 200 rollouts at a time, ns a step.
+/// Measures the yardstick on 200 rollouts at a time, ns per step.
 class Stick {
  public:
   explicit Stick(const ReferenceWorkload& workload)
@@ -36,7 +36,7 @@ class Stick {
     const auto begin = Clock::now();
     yardstick_.evaluate(start_, batch_, count, costs_.data());
     times_.push_back(1e9 * seconds_since(begin) / (count * ReferenceWorkload::steps));
-    if (!(costs_.front() > 0)) throw std::logic_error("the yardstick's rollouts cost nothing");
+    if (!(costs_.front() > 0)) throw std::logic_error("the costs of the yardstick must be positive");
   }
   TimeStatistics statistics() const { return time_statistics(times_); }
 
@@ -67,7 +67,7 @@ RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::
       times.push_back(1e9 * seconds_since(begin) / (static_cast<double>(samples) * steps));
     }
   });
-  if (!(costs[0] > 0)) throw std::logic_error("the rollouts cost nothing");
+  if (!(costs[0] > 0)) throw std::logic_error("the costs of the rollouts must be positive");
   return {stick.statistics(), time_statistics(times)};
 }
 
@@ -121,7 +121,7 @@ TickSpeed measure_tick(const vehicle::Configuration& configuration, double secon
   std::size_t at = 0;
   repeat(seconds, [&] {
     const vehicle::PlannerOutput& out = planner.update({scans[at].view(), {poses[at], 4.0}, {}});
-    if (!out.solve) throw std::logic_error("the planner of the workload made no plan");
+    if (!out.solve) throw std::logic_error("the planner of the workload returned no plan");
     whole.push_back(1e3 * out.tick_time);
     rest.push_back(1e3 * (out.tick_time - out.solve->times.total));
     at = (at + 1) % places;

@@ -7,15 +7,15 @@
 #include "bench/workload/statistics.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 
-/// What `slalom bench` measures. All times of one core unless threads are said; every measurement goes on for
-/// `seconds` of wall clock or 30 repetitions, whichever is longer.
+/// The measurements of `slalom bench`. All times are of one core unless the number of threads is given. Every
+/// measurement takes `seconds` of wall-clock time or 30 repetitions, whichever is longer.
 namespace slalom::tools {
 
 struct RolloutSpeed {
-  TimeStatistics yardstick;  ///< ns a step
-  TimeStatistics rollout;    ///< ns a step
+  TimeStatistics yardstick;  ///< ns per step
+  TimeStatistics rollout;    ///< ns per step
 };
-/// Rollouts and the yardstick by turns, so that both meet the same clock.
+/// Measures rollouts and the yardstick alternately, so that both run at the same clock frequency.
 RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
                               int samples, int steps, simd::Target target, double seconds);
 
@@ -23,18 +23,18 @@ struct SolveSpeed {
   std::string method;
   TimeStatistics solve;      ///< ms
   TimeStatistics prepared;   ///< ms, with the noise drawn before the solve
-  TimeStatistics yardstick;  ///< ns a step, in between
+  TimeStatistics yardstick;  ///< ns per step, measured between solves
   StageTimes stages;         ///< s, medians
-  double degenerate_share;   ///< of the solves: the published sv_mpc drives its particles apart
+  double degenerate_share;   ///< fraction of the solves; the particles of sv_mpc as in the paper diverge
 };
 SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
                          const SolverOptions& options, double seconds);
 
 struct TickSpeed {
   TimeStatistics tick;          ///< ms, a whole update of the planner
-  TimeStatistics round_solver;  ///< ms, of it without the solve
+  TimeStatistics round_solver;  ///< ms, of the update without the solve
 };
-/// The planner with svg_mppi, driven along the course from scan to scan.
+/// Measures the planner with svg_mppi on successive scans along the course.
 TickSpeed measure_tick(const vehicle::Configuration& configuration, double seconds);
 
 /// Additions and multiplications of one step and its cost in the published problem with one trajectory;

@@ -4,8 +4,8 @@
 
 namespace slalom::tools {
 
-/// The most float32 operations a second one core does here, GFLOP/s, a fused multiply and add counted as two:
-/// measured on independent ones in registers.
+/// The peak float32 performance of one core, GFLOP/s, where a fused multiply-add counts as two operations.
+/// Measured on independent operations in registers.
 double measured_peak_gflops(simd::Target target);
 
 }  // namespace slalom::tools

@@ -11,7 +11,7 @@ namespace slalom::tools {
 
 namespace {
 
-/// The course's middle in polar form, squeezed along y.
+/// The centre line of the course in polar coordinates, compressed along y.
 constexpr double squeeze = 0.8;
 double radius(double turn) {
   return 8 + 2.5 * std::cos(3 * turn);

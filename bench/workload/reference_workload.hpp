@@ -11,25 +11,25 @@
 #include "slalom/maps/reference_field.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
 
-/// The workload `reference` that speed is measured on: the vehicle problem with the published parameters and
-/// 14 inputs (15 states), on a course with two parked cars, the same in every run.
+/// The workload `reference` for measurements of speed: the vehicle problem with the parameters of Honda et
+/// al. (ICRA 2024) and 14 inputs (15 states), on a course with two parked cars. It is the same in every run.
 namespace slalom::tools {
 
 /// A closed course with straights and turns, points every 5 cm, speeds 3 to 5 m/s.
 std::vector<maps::ReferencePoint> reference_course();
 
-/// What a LiDAR of 1080 beams sees from a pose on that course: its walls, 1.1 m to either side of the middle,
-/// and two parked cars, 2.5 and 6 m ahead of the first point. m.
+/// m, the ranges of a LiDAR with 1080 beams at a pose on that course: walls 1.1 m to either side of the
+/// centre line, and two parked cars 2.5 and 6 m ahead of the first point.
 struct ReferenceScan {
   std::vector<float> ranges;
   maps::LaserScanView view() const;
 };
 ReferenceScan reference_scan(const maps::Pose& robot);
 
-/// The published vehicle problem; `two_trajectories` as the published program has it.
+/// The vehicle problem of the paper; with `two_trajectories` as in the paper's program.
 vehicle::VehicleOptions reference_problem(bool two_trajectories);
 
-/// Maps, start and control sequences in place.
+/// Maps, start and control sequences.
 class ReferenceWorkload {
  public:
   static constexpr int steps = 14;
@@ -41,12 +41,12 @@ class ReferenceWorkload {
   const maps::ReferenceField& field() const { return field_; }
   const maps::LocalCostMap& cost_map() const { return cost_map_; }
 
-  /// Normal samples of `steps` inputs, steering in [-0.45, 0.45] rad, round a sequence that goes straight on.
+  /// Normal samples of `steps` inputs, steering in [-0.45, 0.45] rad, around a sequence that drives straight.
   SequenceBatch sequences(int samples, int steps_wanted = steps) const;
 
   Yardstick yardstick() const { return {reference_problem(false), field_, cost_map_, robot_}; }
 
-  /// The vehicle model with the maps and the start in place, for one instruction set.
+  /// The vehicle model with maps and start set, for one instruction set.
   std::unique_ptr<vehicle::VehicleModel> model(const vehicle::VehicleOptions& options,
                                                simd::Target target) const;
 

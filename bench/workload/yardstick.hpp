@@ -16,18 +16,18 @@ struct CarStart {
   double steer = 0;              ///< rad
 };
 
-/// What every time is compared with: the published vehicle problem, one trajectory per rollout, as plain
-/// scalar code in double. A step calls std::tan, std::atan, cos(yaw + b), sin(yaw + b) and sin(b), wraps the
-/// state's yaw and the angle difference by atan2(sin, cos) and looks the nearest cells up in separate layers.
-/// It is compiled with -O2 and stays as it is: a processor's clock drifts, and the ratio to a yardstick that
-/// runs in the same program does not.
+/// The reference for all times: the vehicle problem of the paper, one trajectory per rollout, as plain scalar
+/// code in double. A step calls std::tan, std::atan, cos(yaw + b), sin(yaw + b) and sin(b), wraps yaw and
+/// angle difference by atan2(sin, cos), and looks up the nearest cells in separate layers. It is compiled
+/// with -O2 and does not change: the clock frequency of a processor varies, but the ratio to a yardstick in
+/// the same program does not.
 class Yardstick {
  public:
-  /// `options` are those of the published program; `robot` is the pose of the cost map's frame.
+  /// `options` are those of the vehicle problem; `robot` is the pose of the cost map's frame.
   Yardstick(const vehicle::PathTrackingOptions& options, const maps::ReferenceField& field,
             const maps::LocalCostMap& cost_map, const maps::Pose& robot);
 
-  /// The costs of the sequences 0 ... count - 1 of one input a step.
+  /// The costs of the sequences 0 ... count - 1 with one input per step.
   void evaluate(const CarStart& start, const SequenceBatch& batch, int count, double* costs) const;
 
  private:

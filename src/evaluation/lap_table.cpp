@@ -163,10 +163,10 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
   r.blocked_steps = result.planner_status[static_cast<std::size_t>(vehicle::PlannerStatus::blocked)];
   r.degenerate_steps =
       result.planner_status[static_cast<std::size_t>(vehicle::PlannerStatus::solver_degenerate)];
-  for (const Collision& touch : result.first_collisions) {
+  for (const Collision& collision : result.first_collisions) {
     char point[64];
-    std::snprintf(point, sizeof point, "%s%.3f:%.3f", r.contact_points.empty() ? "" : " ", touch.pose.x,
-                  touch.pose.y);
+    std::snprintf(point, sizeof point, "%s%.3f:%.3f", r.contact_points.empty() ? "" : " ", collision.pose.x,
+                  collision.pose.y);
     r.contact_points += point;
   }
   r.wall_time = wall_time;

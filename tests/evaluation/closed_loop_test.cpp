@@ -1,4 +1,4 @@
-// A loop is the lap of the command line until somebody meddles, and the same meddling gives the same loop.
+// A closed loop equals a lap of LapRunner without interventions; the same interventions give the same result.
 #include "slalom/evaluation/closed_loop.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST(ClosedLoop, FirstLapEqualsTheLapOfTheRunner) {
 }
 
 /// A loop with an obstacle, another method and a late command on the way.
-sim::CarState meddled() {
+sim::CarState with_interventions() {
   ClosedLoop loop(runner("mppi"), 5);
   for (int i = 0; i < 60; ++i) {
     if (i == 20) loop.world().add_disc({{loop.world().state(0).x + 1, loop.world().state(0).y}, 0.1});
@@ -57,8 +57,8 @@ sim::CarState meddled() {
 }
 
 TEST(ClosedLoop, SameInterventionsGiveTheSameDrive) {
-  const sim::CarState once = meddled();
-  EXPECT_TRUE(once == meddled());
+  const sim::CarState once = with_interventions();
+  EXPECT_TRUE(once == with_interventions());
   ClosedLoop untouched(runner("mppi"), 5);
   for (int i = 0; i < 60; ++i) untouched.step();
   EXPECT_FALSE(once == untouched.world().state(0));

@@ -1,4 +1,4 @@
-// Laps: finished on a course of ours, the same bits for the same seed, one ruler for the cost.
+// Laps finish on a course of the repository, repeat bit for bit for the same seed, and have comparable costs.
 #include "slalom/evaluation/lap_runner.hpp"
 
 #include <gtest/gtest.h>
@@ -201,8 +201,8 @@ TEST(LapRunner, TheWorldCanBeMadeHarder) {
 
 TEST(LapRunner, RejectsInvalidSettings) {
   const auto environment = wren();
-  const auto refusal = [&](const std::string& method, const LapSettings& settings,
-                           vehicle::Configuration made) {
+  const auto error_of = [&](const std::string& method, const LapSettings& settings,
+                            vehicle::Configuration made) {
     try {
       LapRunner(environment, made, method, settings);
     } catch (const std::invalid_argument& error) {
@@ -214,17 +214,17 @@ TEST(LapRunner, RejectsInvalidSettings) {
     EXPECT_NE(text.find(word), std::string::npos) << text;
   };
   const auto usual = configuration("default");
-  says(refusal("guess", {}, usual), "guess");
-  says(refusal("mppi", {.obstacles = -1}, usual), "obstacles");
-  says(refusal("mppi", {.start = maps::Pose{1e6, 0, 0}}, usual), "start");
-  says(refusal("mppi", {.latency = std::numeric_limits<double>::quiet_NaN()}, usual), "latency");
-  says(refusal("mppi", {.threads = 0}, usual), "threads");
+  says(error_of("guess", {}, usual), "guess");
+  says(error_of("mppi", {.obstacles = -1}, usual), "obstacles");
+  says(error_of("mppi", {.start = maps::Pose{1e6, 0, 0}}, usual), "start");
+  says(error_of("mppi", {.latency = std::numeric_limits<double>::quiet_NaN()}, usual), "latency");
+  says(error_of("mppi", {.threads = 0}, usual), "threads");
   HardwareConditions lost;
   lost.dropout = 2;
-  says(refusal("mppi", {.hardware = lost}, usual), "dropout");
+  says(error_of("mppi", {.hardware = lost}, usual), "dropout");
   lost = {};
   lost.localiser.beams = 0;
-  says(refusal("mppi", {.hardware = lost}, usual), "beams");
+  says(error_of("mppi", {.hardware = lost}, usual), "beams");
   try {
     LapRunner(wren(Protocol::published), usual, "mppi", {.hardware = HardwareConditions{}});
     ADD_FAILURE() << "the published evaluation knows no hardware";
@@ -234,7 +234,7 @@ TEST(LapRunner, RejectsInvalidSettings) {
   auto two = usual;
   for (SolverOptions& method : two.methods)
     if (std::string_view(method.method()) == "mppi") *method.find<PerInput>("variance") = {0.1, 0.2};
-  says(refusal("mppi", {}, two), "variance");
+  says(error_of("mppi", {}, two), "variance");
 }
 
 TEST(LapSeeds, AreThoseOfTheProtocol) {

@@ -1,4 +1,4 @@
-// laps.csv reads back to the same bits, and says what is wrong where it does not.
+// laps.csv reads back to the same bits; errors name line and column.
 #include "slalom/evaluation/lap_table.hpp"
 
 #include <gtest/gtest.h>
@@ -104,16 +104,16 @@ TEST_F(LapTable, NamesLineAndColumnOfAnInvalidValue) {
 }
 
 TEST_F(LapTable, RejectsNonFiniteNumbers) {
-  LapRow spoiled = row(0, 2);
+  LapRow invalid = row(0, 2);
   for (const double number : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-    spoiled.state_cost = number;
-    EXPECT_NE(complaint(head_ + csv_line(spoiled, experiments) + "\n").find(":2: state_cost: '"),
+    invalid.state_cost = number;
+    EXPECT_NE(complaint(head_ + csv_line(invalid, experiments) + "\n").find(":2: state_cost: '"),
               std::string::npos)
         << number;
   }
-  spoiled = row(0, 2);
-  spoiled.minimum_clearance = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(complaint(head_ + csv_line(spoiled, experiments) + "\n"), "") << "where there is no wall";
+  invalid = row(0, 2);
+  invalid.minimum_clearance = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(complaint(head_ + csv_line(invalid, experiments) + "\n"), "") << "where there is no wall";
 }
 
 TEST_F(LapTable, RejectsTheSeedOfAnotherLap) {
@@ -141,9 +141,9 @@ class LapStoreResume : public testing::TemporaryFolder {
     evaluation_.settings = "{}";
   }
 
-  /// Completes an evaluation, puts what `spoil` makes of its laps.csv in its place, and resumes.
-  template <class Spoil>
-  std::string complaint_when_resumed(Spoil&& spoil) {
+  /// Completes an evaluation, replaces laps.csv by `edit(laps.csv)`, and resumes.
+  template <class Edit>
+  std::string complaint_when_resumed(Edit&& edit) {
     fs::remove_all(folder_);
     std::string text = csv_header() + "\n";
     {
@@ -156,7 +156,7 @@ class LapStoreResume : public testing::TemporaryFolder {
       }
       store.complete();
     }
-    std::ofstream(folder_ / "laps.csv", std::ios::binary) << spoil(text);
+    std::ofstream(folder_ / "laps.csv", std::ios::binary) << edit(text);
     try {
       LapStore(folder_, evaluation_, true);
     } catch (const IoError& error) {

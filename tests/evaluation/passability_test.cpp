@@ -1,4 +1,4 @@
-// Obstacles that close the road are told from those that leave a way.
+// Obstacles that block the road are distinguished from those that can be passed.
 #include "slalom/evaluation/passability.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// One ruler for sequences of any step and length.
+// The cost of a sequence does not depend on its time step and length.
 #include "slalom/evaluation/sequence_cost.hpp"
 
 #include <gtest/gtest.h>

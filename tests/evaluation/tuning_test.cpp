@@ -1,4 +1,4 @@
-// The search for options: where candidates lie, who goes on, what is minimised.
+// The search for options: the design, successive halving, the objective.
 #include "slalom/evaluation/tuning.hpp"
 
 #include <gtest/gtest.h>

@@ -105,7 +105,7 @@ def test_callables_get_whole_batches_without_copies():
     assert seen == [((1000, 2), (1000, 1), False, False, np.float32, 4)] * 4
 
 
-def test_collisions_of_callables_are_told():
+def test_collisions_of_callables_are_reported():
     def cost(x, u):
         return x[:, 0] ** 2, u[:, 0] > 0
 
@@ -129,7 +129,7 @@ def test_what_a_callable_throws_is_thrown_by_solve(changes, error, text, threads
             controller.solve([0, 0])
 
 
-def test_a_bad_problem_is_refused():
+def test_an_invalid_problem_is_rejected():
     with pytest.raises(ValueError, match="dynamics: must be callable"):
         linear(dynamics=3)
     with pytest.raises(ValueError, match="states: 0 must be in"):
@@ -170,7 +170,7 @@ def test_parameters_change_between_solves():
         controller.problem.dt = 0
 
 
-def test_reset_repeats_and_a_bad_state_is_told():
+def test_reset_repeats_and_a_non_finite_state_is_reported():
     controller = slalom.SvgMppi(slalom.Pendulum(), input_min=-5, input_max=5)
     first = controller.solve([1.0, 0.0]).inputs.copy()
     controller.reset(0)

@@ -56,7 +56,7 @@ def test_a_configuration_drives_a_lap():
         slalom.drive_lap(slalom.Course("wren"), "svg_mppi", config="no_such_configuration")
 
 
-def test_mistakes_are_told():
+def test_errors_name_the_mistake():
     with pytest.raises(slalom.IoError, match="nowhere_to_be_found"):
         slalom.Course("nowhere_to_be_found")
     course = slalom.Course("wren")
