@@ -28,8 +28,8 @@ Protocol protocol_named(std::string_view text);
 /// A course prepared for driving under one protocol. Expensive to make; immutable and shared by any number of
 /// laps and threads.
 struct Environment {
-  Protocol protocol = Protocol::true_physics;
-  vehicle::Course course;
+  Protocol protocol = Protocol::true_physics;  ///< rules of world, clock and counting
+  vehicle::Course course;                      ///< the course
   std::shared_ptr<const sim::Track>
       track;                               ///< walls with their distance field, and the path that counts laps
   std::vector<maps::ReferencePoint> path;  ///< the waypoints of the course

@@ -18,12 +18,12 @@ namespace slalom::evaluation {
 /// Experiments in the same environment, with the same base configuration and the same seeds: lap k of one
 /// experiment has the same obstacles as lap k of another with as many.
 struct Evaluation {
-  std::shared_ptr<const Environment> environment;
-  vehicle::Configuration configuration;  ///< of all experiments, before their own options are set
-  std::vector<Experiment> experiments;
-  std::uint64_t seed0 = 0;       ///< seed of lap 0
-  double latency = 0;            ///< s
-  bool additional_costs = true;  ///< compute the costs of LapSettings::additional_costs
+  std::shared_ptr<const Environment> environment;  ///< where all laps are driven
+  vehicle::Configuration configuration;            ///< of all experiments, before their own options are set
+  std::vector<Experiment> experiments;             ///< the experiments to compare
+  std::uint64_t seed0 = 0;                         ///< seed of lap 0
+  double latency = 0;                              ///< s
+  bool additional_costs = true;                    ///< compute the costs of LapSettings::additional_costs
   /// All that determines the results, as JSON text. Laps of evaluations with other settings are not mixed.
   std::string settings;
   std::string build;       ///< identifies the program that drives; laps of other builds may differ
@@ -37,7 +37,7 @@ LapRunner make_runner(const Evaluation& evaluation, int experiment);
 
 /// The progress of an evaluation.
 struct EvaluationProgress {
-  int laps_done = 0;
+  int laps_done = 0;             ///< laps finished so far
   int laps_total = 0;            ///< of all experiments
   int laps_resumed = 0;          ///< number of those done that an earlier run has driven
   double seconds_left = 0;       ///< estimated
@@ -107,6 +107,7 @@ class EvaluationQueue final : public LapQueue {
                   const std::atomic<bool>& cancel);
 
   std::optional<LapTask> next() override;
+  /// Receives a lap that was driven.
   void keep(const LapRow& row) override;
   void fail(std::exception_ptr error) override;
 

@@ -44,17 +44,17 @@ struct ControlStep {
   const sim::Observation& seen;       ///< the true state of the car
   const maps::LaserScanView& scan;    ///< input of the planner
   const vehicle::Odometry& odometry;  ///< input of the planner; the true one while the car is not localised
-  const vehicle::PlannerOutput& output;
-  const vehicle::Planner& planner;  ///< after the update
-  const sim::World& world;
-  SequenceCostMeter::Cost cost;  ///< of the control sequence that the planner chose
+  const vehicle::PlannerOutput& output;  ///< output of the planner
+  const vehicle::Planner& planner;       ///< after the update
+  const sim::World& world;               ///< the simulated world
+  SequenceCostMeter::Cost cost;          ///< of the control sequence that the planner chose
 };
 /// Called in every control step.
 using ControlStepCallback = std::function<void(const ControlStep&)>;
 
 /// A lap that has ended. Costs and other means are over its control steps.
 struct LapResult {
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;         ///< seed of the random numbers
   bool finished = false;          ///< whether the car reached the finish in time
   bool timeout = false;           ///< stopped after the timeout of the lap
   bool cancelled = false;         ///< stopped by the caller

@@ -19,7 +19,7 @@ struct Experiment {
   std::vector<std::pair<std::string, std::string>> set;  ///< key (section.option) and value, as text
   std::string scenario;                                  ///< "pt" (no obstacles) or "oa"
   int obstacles = 0;                                     ///< per lap
-  int laps = 0;
+  int laps = 0;                                          ///< number
 
   /// The options that differ, for instance "svg_mppi.variance=0.05 vehicle.dead_time=0"; empty without any.
   /// Commas become semicolons.
@@ -32,13 +32,13 @@ struct Experiment {
 /// with `solve_`, `deadline_` or `wall_`, hold wall-clock times (ms, but `wall_time` s); all others repeat
 /// exactly.
 struct LapRow {
-  int experiment = 0;  ///< index
-  int lap = 0;         ///< from 0
-  std::uint64_t seed = 0;
-  bool success = false;  ///< finished without a collision
-  int collisions = 0;    ///< as the protocol counts them; column `collision`
-  bool timeout = false;  ///< stopped after the timeout of the lap
-  bool finished = false;
+  int experiment = 0;      ///< index
+  int lap = 0;             ///< from 0
+  std::uint64_t seed = 0;  ///< seed of the random numbers
+  bool success = false;    ///< finished without a collision
+  int collisions = 0;      ///< as the protocol counts them; column `collision`
+  bool timeout = false;    ///< stopped after the timeout of the lap
+  bool finished = false;   ///< whether the lap was finished in time
   double state_cost = 0, collision_cost = 0, input_error = 0;  ///< means over the control steps
   double mean_calculation_time = 0, max_calculation_time = 0, min_calculation_time = 0;  ///< ms
   double lap_time = 0;                                                                   ///< s

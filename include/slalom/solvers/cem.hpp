@@ -9,6 +9,7 @@ namespace slalom {
 template <class P>
 class Cem : public Controller<P> {
  public:
+  /// Throws std::invalid_argument on options out of range.
   explicit Cem(P problem, const CemOptions& options = {}, std::shared_ptr<ThreadPool> pool = nullptr)
       : Controller<P>(std::move(problem), options, std::move(pool)) {}
 };

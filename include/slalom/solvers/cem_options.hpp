@@ -29,7 +29,7 @@ struct CemOptions {
   NoiseOptions noise{};          ///< shape of the noise; white and normal
   double zero_mean_share = 0;    ///< of the samples, drawn around zero instead of the mean
   bool shift_warm_start = true;  ///< move the last solution forward by the elapsed time
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;        ///< seed of the random numbers
   int threads = 1;
 };
 

@@ -75,7 +75,7 @@ struct Controlled<E> {
 /// point into the controller and stay valid until the next solve or reset.
 template <class P>
 struct Plan {
-  using State = typename detail::Controlled<P>::State;
+  using State = typename detail::Controlled<P>::State;  ///< the problem's state in double
 
   Status status = Status::ok;                                            ///< how the solve ended
   std::span<const Input<double, detail::Controlled<P>::inputs>> inputs;  ///< [horizon]; the first is for now
@@ -101,7 +101,7 @@ class Controller {
 
  public:
   using Evaluator = typename Controlled::Evaluator;
-  using State = typename Controlled::State;
+  using State = typename Controlled::State;  ///< the problem's state in double
   using Inputs = Input<double, input_count>;
 
   /// With the options of any method, within the bounds that the problem states for its inputs. Throws
@@ -145,10 +145,12 @@ class Controller {
 
   /// The problem, to change its parameters between solves.
   P& problem() noexcept requires(!StateEvaluator<P>) { return evaluator_.problem(); }
+  /// The problem.
   const P& problem() const noexcept requires(!StateEvaluator<P>) { return evaluator_.problem(); }
   /// The evaluator of the problem, or the one given.
   Evaluator& evaluator() noexcept { return evaluator_; }
   const Evaluator& evaluator() const noexcept { return evaluator_; }
+  /// The solver in use.
   const Solver& solver() const noexcept { return *solver_; }
 
   /// Returns to the state after construction, with random numbers from `seed`.

@@ -10,6 +10,7 @@ namespace slalom {
 template <class P>
 class Mppi : public Controller<P> {
  public:
+  /// Throws std::invalid_argument on options out of range.
   explicit Mppi(P problem, const MppiOptions& options = {}, std::shared_ptr<ThreadPool> pool = nullptr)
       : Controller<P>(std::move(problem), options, std::move(pool)) {}
 };

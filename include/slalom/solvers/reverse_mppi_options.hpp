@@ -42,7 +42,7 @@ struct ReverseMppiOptions {
   double control_cost_discount = 0;  ///< alpha: the control term is multiplied by 1 - alpha
   double zero_mean_share = 0;        ///< of the samples, drawn around zero instead of the mean
   bool shift_warm_start = true;      ///< move the last solution forward by the elapsed time
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;            ///< seed of the random numbers
   int threads = 1;
   PublishedReverseMppi published{};  ///< only to reproduce the published program
 };

@@ -26,18 +26,18 @@ struct StageTimes {
   double evaluate = 0;  ///< rollouts of the samples
   double guide = 0;     ///< moving guide particles or iterating on the distribution
   double update = 0;    ///< weights, means, covariances
-  double total = 0;
+  double total = 0;     ///< whole solve, s
 };
 
 /// One control sequence after another, [sequence][step][input].
 struct SequenceList {
-  std::span<const float> values;
-  int sequences = 0;
+  std::span<const float> values;  ///< [sequence][step][input]
+  int sequences = 0;              ///< number
 };
 
 /// The outcome of a solve. Its spans point into the solver and stay valid until the next solve or reset.
 struct SolveResult {
-  Status status = Status::ok;
+  Status status = Status::ok;        ///< how the solve ended
   std::span<const float> inputs;     ///< the control sequence to apply, [step][input]
   std::span<const float> nominal;    ///< the nominal sequence (svg_mppi: the best guide), [step][input]
   std::span<const float> mean;       ///< mean of the resulting distribution, [step][input]
@@ -56,7 +56,7 @@ struct SolveResult {
   double collided_share = 0;         ///< of the samples, 0 ... 1
   double temperature = 0;            ///< lambda in use
   int iterations = 0;                ///< guide or distribution updates made
-  StageTimes times;
+  StageTimes times;                  ///< times of the stages
 };
 
 /// A method that solves any problem behind the seam of `BatchEvaluator`. After construction nothing here
@@ -68,6 +68,7 @@ class Solver {
   /// The method's name, as configurations and results write it: "svg_mppi", ...
   virtual const char* name() const noexcept = 0;
   virtual int horizon() const noexcept = 0;  ///< steps
+  /// Number of inputs of a step.
   virtual int inputs() const noexcept = 0;
 
   /// Solves from the evaluator's current state. Whatever happens, the result's inputs are finite and within

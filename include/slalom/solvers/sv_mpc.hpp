@@ -9,6 +9,7 @@ namespace slalom {
 template <class P>
 class SvMpc : public Controller<P> {
  public:
+  /// Throws std::invalid_argument on options out of range.
   explicit SvMpc(P problem, const SvMpcOptions& options = {}, std::shared_ptr<ThreadPool> pool = nullptr)
       : Controller<P>(std::move(problem), options, std::move(pool)) {}
 };

@@ -10,6 +10,7 @@ namespace slalom {
 template <class P>
 class SvgMppi : public Controller<P> {
  public:
+  /// Throws std::invalid_argument on options out of range.
   explicit SvgMppi(P problem, const SvgMppiOptions& options = {}, std::shared_ptr<ThreadPool> pool = nullptr)
       : Controller<P>(std::move(problem), options, std::move(pool)) {}
 };

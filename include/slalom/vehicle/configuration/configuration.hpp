@@ -19,7 +19,7 @@ namespace slalom::vehicle {
 /// The sections of a configuration. An option that a file does not set has the default of its aggregate.
 struct Configuration {
   VehicleOptions vehicle;
-  PlannerOptions planner;
+  PlannerOptions planner;                               ///< options of the planner
   std::vector<SolverOptions> methods = every_method();  ///< one of each, in the order of solver_names()
 
   /// The default options of every method, in the order of solver_names().
@@ -66,7 +66,7 @@ void set_option(Configuration& configuration, std::string_view key, std::string_
 
 /// One section with all its options.
 struct Section {
-  std::string name;
+  std::string name;                  ///< the name
   std::vector<OptionEntry> options;  ///< with their present values
 };
 /// All options by section.

@@ -33,9 +33,9 @@ struct Waypoint {
 /// stand. `course.yaml`, if present, may give `name`, `description`, `command`, `start` {x, y, yaw},
 /// `timeout` (s), `closed`.
 struct Course {
-  std::string name;
-  std::string description;
-  maps::OccupancyGrid map;
+  std::string name;         ///< the name
+  std::string description;  ///< one sentence
+  maps::OccupancyGrid map;  ///< the map
   std::vector<Waypoint>
       waypoints;  ///< at least 3, successive ones differ; the first is not repeated at the end
   std::vector<maps::Point>
@@ -83,7 +83,7 @@ std::vector<std::string> course_names(const std::vector<std::filesystem::path>& 
 
 /// Start and timeout that the evaluation of the paper prescribes for one of its courses.
 struct KnownCourse {
-  maps::Pose start;
+  maps::Pose start;    ///< start pose of the centre of gravity, m, m, rad
   double timeout = 0;  ///< s per lap
 };
 

@@ -21,9 +21,9 @@ TrackCharacter track_character(const std::string& name);
 
 /// Options of a generated track. Ranges are checked by validate().
 struct TrackOptions {
-  std::uint64_t seed = 0;
-  double length = 60.0;  ///< of the centre line, m, 20..1000, and at least 16 (width / 2 + wall)
-  double width = 2.2;    ///< from wall to wall, m, 1.2..10
+  std::uint64_t seed = 0;  ///< seed of the random numbers
+  double length = 60.0;    ///< of the centre line, m, 20..1000, and at least 16 (width / 2 + wall)
+  double width = 2.2;      ///< from wall to wall, m, 1.2..10
   TrackCharacter character = TrackCharacter::balanced;  ///< style of its corners
   double wall = 0.2;                                    ///< thickness of the walls, m, 0.1..1
   double resolution = 0.05;                             ///< of the map, m, 0.02..0.1
@@ -72,9 +72,9 @@ Track generate_track(const TrackOptions& options);
 
 /// What save_track writes in addition to the geometry.
 struct TrackLabel {
-  std::string name;
-  std::string description;
-  std::string command;  ///< that generates the same track
+  std::string name;         ///< the name
+  std::string description;  ///< one sentence
+  std::string command;      ///< that generates the same track
 };
 
 /// Writes a course folder: map.yaml, map.png, raceline.csv (`# s_m; x_m; ...`), opp_ref_path.csv,

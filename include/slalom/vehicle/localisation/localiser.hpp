@@ -62,9 +62,9 @@ constexpr const char* name(LocaliserStatus status) noexcept {
 
 /// The input of an update.
 struct LocaliserInput {
-  maps::LaserScanView scan;
-  maps::Pose odometry;  ///< of the rear axle at the time of the scan, in a frame that may drift
-  double stamp = 0;     ///< s, of the scan
+  maps::LaserScanView scan;  ///< the scan, body frame
+  maps::Pose odometry;       ///< of the rear axle at the time of the scan, in a frame that may drift
+  double stamp = 0;          ///< s, of the scan
 };
 
 /// The estimate and its quality.
@@ -99,7 +99,9 @@ class Localiser {
   /// origin or resolution that is not finite and positive.
   explicit Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options = {});
   ~Localiser();
+  /// Moves.
   Localiser(Localiser&&) noexcept;
+  /// Moves.
   Localiser& operator=(Localiser&&) noexcept;
 
   /// Draws all particles around a pose of the rear axle (map frame); false, without effect, if not finite.
@@ -121,6 +123,7 @@ class Localiser {
 
   int particle_count() const noexcept;          ///< of the present particles
   Particle particle(int index) const noexcept;  ///< 0 <= index < particle_count()
+  /// The options given at construction.
   const LocaliserOptions& options() const noexcept;
 
  private:

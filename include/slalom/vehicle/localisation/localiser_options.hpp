@@ -18,7 +18,7 @@ inline const char* const* enum_names(SensorModel) {
 
 /// Options of Localiser.
 struct LocaliserOptions {
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 0;  ///< seed of the random numbers
   SensorModel sensor_model = SensorModel::beam;
 
   double laser_x = 0.275;  ///< m, of the laser from the rear axle

@@ -49,7 +49,7 @@ template <MotionModel Motion>
 class PathTracking {
  public:
   template <class T>
-  using State = typename Motion::template State<T>;
+  using State = typename Motion::template State<T>;  ///< the problem's state in double
   using Options = typename Motion::Options;
   static constexpr const char* name = Motion::name;
   static constexpr const char* help = Motion::help;
@@ -61,6 +61,7 @@ class PathTracking {
   explicit PathTracking(const PathTrackingOptions& options, const Options& own = {})
       : options_(options), motion_(options, own), cost_(options), obstacles_(options.body) {}
 
+  /// The options given at construction.
   const PathTrackingOptions& options() const { return options_; }
   double time_step() const { return options_.time_step; }  ///< s
   VehicleTraits traits() const { return traits_of(options_, plans_speed); }
@@ -94,10 +95,12 @@ class PathTracking {
     return motion_.step(s, seen.speed, u, k);
   }
 
+  /// Cost of a step.
   template <class T>
   Cost<T> stage_cost(const State<T>& s, const Surroundings<T>& seen, const Input<T, inputs>&) const {
     return with_speed(cost_.stage(s.yaw, seen), s, seen);
   }
+  /// Cost of the last state.
   template <class T>
   Cost<T> terminal_cost(const State<T>& s, const Surroundings<T>& seen) const {
     return with_speed(cost_.terminal(s.yaw, seen), s, seen);

@@ -13,7 +13,7 @@ namespace slalom::vehicle {
 ///     Planner planner(options, std::make_unique<ProblemModel<MyProblem>>(MyProblem{}), path, solver);
 template <VehicleProblem P>
 class ProblemModel final : public VehicleModel {
-  using State = typename ProblemEvaluator<P>::State;
+  using State = typename ProblemEvaluator<P>::State;  ///< the problem's state in double
 
  public:
   explicit ProblemModel(P problem, simd::Target target = simd::active_target())

@@ -24,8 +24,8 @@ namespace slalom::vehicle {
 
 /// Pose (of the rear axle, map frame) and speed (m/s) as odometry or localisation gives them.
 struct Odometry {
-  maps::Pose pose;
-  double speed = 0;
+  maps::Pose pose;   ///< m, m, rad, in the map frame
+  double speed = 0;  ///< m/s
 };
 
 /// The reason for a command.
@@ -61,15 +61,15 @@ constexpr const char* name(PlannerStatus status) noexcept {
 
 /// What a planner is given.
 struct PlannerInput {
-  maps::LaserScanView scan;
+  maps::LaserScanView scan;                  ///< the scan, body frame
   Odometry odometry;                         ///< at the time of the scan
   std::span<const maps::Point> obstacles{};  ///< further obstacle points, robot frame, m
 };
 
 /// The outcome of an update. Spans stay valid until the next one.
 struct PlannerOutput {
-  PlannerStatus status = PlannerStatus::ok;
-  Command command;                ///< to send now
+  PlannerStatus status = PlannerStatus::ok;  ///< result of the update
+  Command command;                           ///< to send now
   std::span<const float> inputs;  ///< [step][input], the sequence that is sent: steering in rad, and with
                                   ///< two inputs acceleration in m/s^2; empty where none is
   int inputs_per_step = 1;
@@ -91,7 +91,9 @@ class Planner {
   Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
           std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver);
   ~Planner();
+  /// Moves.
   Planner(Planner&&) noexcept;
+  /// Moves.
   Planner& operator=(Planner&&) noexcept;
 
   /// Plans from scan and odometry; to be called once per `control_period`.
@@ -104,6 +106,7 @@ class Planner {
   /// update that made a plan began, over its maps. For viewers; it may be called between updates.
   PredictedCost predict(std::span<const float> inputs, std::span<PredictedState> states) const noexcept;
 
+  /// The solver in use.
   const Solver& solver() const noexcept;
   const maps::LocalCostMap& cost_map() const noexcept;  ///< of the last scan
 

@@ -51,6 +51,7 @@ class Bicycle {
 /// The published vehicle problem with one trajectory: collisions are looked up where the car is.
 class OneTrajectory {
  public:
+  /// State of the dynamics.
   template <class T>
   struct State {
     T x, y, yaw;  ///< m, m, rad, map frame
@@ -63,6 +64,7 @@ class OneTrajectory {
   /// Options must be valid (see validate_options).
   OneTrajectory(const PathTrackingOptions& options, const ModelOptions& own);
 
+  /// The options given at construction.
   const PathTrackingOptions& options() const { return options_; }
   double time_step() const { return options_.time_step; }  ///< s
   VehicleTraits traits() const { return traits_of(options_, false); }
@@ -77,11 +79,13 @@ class OneTrajectory {
   State<double> start(const VehicleStart& start, double reference_speed) noexcept;
   PredictedState predicted(const State<double>& s) const noexcept;
 
+  /// Looks up the maps at a state.
   template <class T>
   Surroundings<T> look_up(const State<T>& s) const {
     const T obstacle = obstacles_.in_map_frame(s.x, s.y, s.yaw);
     return cost_.look_up(s.x, s.y, s.speed, obstacle);
   }
+  /// State after one step.
   template <class T>
   State<T> step(const State<T>& s, const Surroundings<T>& seen, const Input<T, 1>& u, int k) const {
     State<T> next;
@@ -129,6 +133,7 @@ class OneTrajectory {
 /// robot's frame, which starts at its origin with straight wheels.
 class TwoTrajectories : public OneTrajectory {
  public:
+  /// State of the dynamics.
   template <class T>
   struct State {
     T x, y, yaw, speed, steer, held;             ///< as OneTrajectory has it
@@ -142,11 +147,13 @@ class TwoTrajectories : public OneTrajectory {
   /// The state of which `predicted` gives the pose and the local pose, standing, with straight wheels.
   static State<double> standing_at(const PredictedState& predicted) noexcept;
 
+  /// Looks up the maps at a state.
   template <class T>
   Surroundings<T> look_up(const State<T>& s) const {
     const T obstacle = obstacles_.in_robot_frame(s.local_x, s.local_y, s.local_yaw);
     return cost_.look_up(s.x, s.y, s.speed, obstacle);
   }
+  /// State after one step.
   template <class T>
   State<T> step(const State<T>& s, const Surroundings<T>& seen, const Input<T, 1>& u, int k) const {
     State<T> next;
