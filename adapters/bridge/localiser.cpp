@@ -45,7 +45,7 @@ void Localiser::change(const Changes& changes) {
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("key " + name + ": " + error.what());
     }
-    throw std::invalid_argument("key " + name + ": is no option of the localiser");
+    throw std::invalid_argument("key " + name + ": unknown option of the localiser");
   }
   changed.validate();
   if (hidden_->localiser) {

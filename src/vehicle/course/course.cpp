@@ -60,7 +60,7 @@ fs::path find_map(const fs::path& folder, std::vector<std::string>& notes) {
     if (detail::may_be_map(file)) {
       candidates.push_back(file);
     } else {
-      notes.push_back(file.filename().string() + " is left aside: it names no map image");
+      notes.push_back(file.filename().string() + " is ignored: it names no map image");
       ignored += "; " + notes.back();
     }
   }
@@ -76,7 +76,7 @@ fs::path find_waypoints(const fs::path& folder, detail::CsvForm& form, std::vect
       candidates.push_back(file);
       form = candidate_form;
     } else {
-      notes.push_back(file.filename().string() + " is left aside: it is in neither form of a waypoint file");
+      notes.push_back(file.filename().string() + " is ignored: it is in neither form of a waypoint file");
       ignored += "; " + notes.back();
     }
   }

@@ -75,7 +75,7 @@ CourseFile read_course_file(const std::filesystem::path& file) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
     // yaml-cpp gives an absent value the position of the next token.
     if (entry.second.IsNull())
-      throw IoError(file.string(), entry.first.Mark().line + 1, "key " + key + ": has no value");
+      throw IoError(file.string(), entry.first.Mark().line + 1, "key " + key + ": must have a value");
     const Value value(file, key, entry.second);
     if (key == "name") {
       result.name = value.text();
