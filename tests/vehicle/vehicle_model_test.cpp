@@ -11,6 +11,7 @@
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"
+#include "slalom/solvers/mppi_options.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/model/problem_model.hpp"
 #include "slalom/vehicle/planner/planner.hpp"

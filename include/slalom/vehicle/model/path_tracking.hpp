@@ -43,8 +43,9 @@ concept MotionModel = std::constructible_from<M, const PathTrackingOptions&, con
 ///     cost of a state = distance_weight d^2 + yaw_weight e^2 + collision_weight c
 ///
 /// with d the distance to the path, e the yaw error, c the value of the cost map (Honda et al., ICRA 2024,
-/// section V-A, in the text, without a number). Steering is the only input there, and the speed is the path's. Where the acceleration is an
-/// input too, `speed_weight` times the square of the speed below the path's is added.
+/// section V-A, in the text, without a number). Steering is the only input there, and the speed is the
+/// path's. Where the acceleration is an input too, `speed_weight` times the square of the speed below the
+/// path's is added.
 template <MotionModel Motion>
 class PathTracking {
  public:
