@@ -40,6 +40,7 @@ struct Declaration {
 /// an enumeration stands in a call of `visit`.
 class Choice {
  public:
+  /// A reference to an enumeration that has `enum_names`.
   template <class Enumeration>
   requires std::is_enum_v<Enumeration>
   explicit Choice(Enumeration& field)
@@ -50,7 +51,9 @@ class Choice {
 
   /// The names of the enumerators, ended by a null pointer.
   const char* const* names() const noexcept { return names_; }
+  /// Index of the enumerator.
   int index() const { return get_(field_); }
+  /// Sets the enumerator by its index.
   void set(int index) const { set_(field_, index); }
 
  private:

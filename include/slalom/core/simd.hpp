@@ -79,7 +79,7 @@ struct Broadcast<Unfused<T>> : Broadcast<T> {};
 /// One truth value per lane.
 template <class T>
 struct Mask {
-  using Vector = typename detail::MaskVector<T>::type;
+  using Vector = typename detail::MaskVector<T>::type;      ///< vector type of the compiler
   static constexpr bool bits = std::is_integral_v<Vector>;  ///< one bit per lane
   Vector v;                                                 ///< all bits of a lane set where true
 
@@ -149,12 +149,15 @@ struct IntPack {
   SLALOM_INLINE friend IntPack operator+(const IntPack& a, const IntPack& b) { return IntPack(a.v + b.v); }
   /// Applies to each lane.
   SLALOM_INLINE friend IntPack operator*(const IntPack& a, int b) { return IntPack(a.v * b); }
+  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator<(const IntPack& a, const IntPack& b) {
     Mask<T> r;
     Operations<T>::less(a.v, b.v, r.v);
     return r;
   }
+  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator>(const IntPack& a, const IntPack& b) { return b < a; }
+  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator==(const IntPack& a, const IntPack& b) {
     Mask<T> r;
     Operations<T>::equal(a.v, b.v, r.v);

@@ -11,7 +11,7 @@ namespace slalom {
 /// Options of `cem`, the cross-entropy method (Rubinstein 1999; for control: Kobilarov 2012): the
 /// distribution is refitted to its best samples several times per solve.
 struct CemOptions {
-  static constexpr const char* method = "cem";
+  static constexpr const char* method = "cem";  ///< name in configurations
 
   int horizon = 30;       ///< T, steps
   int samples = 512;      ///< K, drawn in each iteration

@@ -100,9 +100,9 @@ class Controller {
   static constexpr int input_count = Controlled::inputs;
 
  public:
-  using Evaluator = typename Controlled::Evaluator;
-  using State = typename Controlled::State;  ///< the problem's state in double
-  using Inputs = Input<double, input_count>;
+  using Evaluator = typename Controlled::Evaluator;  ///< type of the evaluator
+  using State = typename Controlled::State;          ///< the problem's state in double
+  using Inputs = Input<double, input_count>;         ///< inputs of a step
 
   /// With the options of any method, within the bounds that the problem states for its inputs. Throws
   /// std::invalid_argument that names the option, its value and the rule. The threads are the controller's
@@ -149,6 +149,7 @@ class Controller {
   const P& problem() const noexcept requires(!StateEvaluator<P>) { return evaluator_.problem(); }
   /// The evaluator of the problem, or the one given.
   Evaluator& evaluator() noexcept { return evaluator_; }
+  /// The evaluator.
   const Evaluator& evaluator() const noexcept { return evaluator_; }
   /// The solver in use.
   const Solver& solver() const noexcept { return *solver_; }

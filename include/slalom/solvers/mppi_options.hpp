@@ -12,7 +12,7 @@ namespace slalom {
 /// Options of `mppi`, model predictive path integral control. Defaults are the method of Williams et al.
 /// (2018).
 struct MppiOptions {
-  static constexpr const char* method = "mppi";
+  static constexpr const char* method = "mppi";  ///< name in configurations
 
   int horizon = 30;        ///< T, steps
   int samples = 1024;      ///< K, control sequences drawn in a solve

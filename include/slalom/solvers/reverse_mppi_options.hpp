@@ -21,7 +21,7 @@ inline const char* const* enum_names(Resampling) {
 
 /// Options of `reverse_mppi`: mirror descent on the reverse KL divergence (Kobayashi and Fukumoto 2022).
 struct ReverseMppiOptions {
-  static constexpr const char* method = "reverse_mppi";
+  static constexpr const char* method = "reverse_mppi";  ///< name in configurations
 
   int horizon = 30;        ///< T, steps
   int samples = 256;       ///< K, evaluated in each iteration

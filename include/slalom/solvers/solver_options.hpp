@@ -34,16 +34,22 @@ class SolverOptions {
  public:
   /// A pointer to an option, by the type of the option.
   using Field = std::variant<bool*, int*, std::uint64_t*, double*, PerInput*, Choice>;
+  /// Function that is called with an option and its declaration.
   using FieldVisitor = std::function<void(const Field&, const Declaration&)>;
 
+  /// From the options of a method.
   template <MethodOptions Options>
   SolverOptions(Options options) : held_(std::make_unique<Held<Options>>(std::move(options))) {}
+  /// Copies.
   SolverOptions(const SolverOptions& other) : held_(other.held_->clone()) {}
+  /// Moves.
   SolverOptions(SolverOptions&&) noexcept = default;
+  /// Copies.
   SolverOptions& operator=(const SolverOptions& other) {
     held_ = other.held_->clone();
     return *this;
   }
+  /// Moves.
   SolverOptions& operator=(SolverOptions&&) noexcept = default;
   ~SolverOptions() = default;
 
@@ -56,6 +62,7 @@ class SolverOptions {
     auto* held = dynamic_cast<Held<Options>*>(held_.get());
     return held ? &held->options : nullptr;
   }
+  /// The aggregate itself; null if it is of another type.
   template <MethodOptions Options>
   const Options* get_if() const noexcept {
     const auto* held = dynamic_cast<const Held<Options>*>(held_.get());
@@ -74,6 +81,7 @@ class SolverOptions {
     });
     return found;
   }
+  /// The option of that name and type; null if there is none.
   template <class Type>
   const Type* find(std::string_view name) const {
     return const_cast<SolverOptions*>(this)->find<Type>(name);

@@ -11,7 +11,7 @@ namespace slalom {
 
 /// Options of `sv_mpc`: Stein variational MPC (Lambert et al., CoRL 2020).
 struct SvMpcOptions {
-  static constexpr const char* method = "sv_mpc";
+  static constexpr const char* method = "sv_mpc";  ///< name in configurations
 
   int horizon = 30;        ///< T, steps
   int samples = 128;       ///< number of particles n

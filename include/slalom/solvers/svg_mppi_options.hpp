@@ -40,7 +40,7 @@ struct GuideOptions {
 /// Options of `svg_mppi`: Stein variational guided MPPI (Honda et al., ICRA 2024), whose equations are cited
 /// here.
 struct SvgMppiOptions {
-  static constexpr const char* method = "svg_mppi";
+  static constexpr const char* method = "svg_mppi";  ///< name in configurations
 
   int horizon = 30;        ///< T, steps
   int samples = 1024;      ///< K, control sequences drawn in a solve
@@ -49,7 +49,7 @@ struct SvgMppiOptions {
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
 
-  GuideOptions guides{};
+  GuideOptions guides{};    ///< the guide particles
   bool use_nominal = true;  ///< the best guide is the nominal sequence (NS), equation (12); otherwise zero is
   bool adapt_covariance = true;  ///< fit the variances to the best guide's path (AC), equation (13)
   PerInput variance_min = 0.01;  ///< least adapted variance, input^2

@@ -13,9 +13,13 @@
 /// paper included; the same as in configs/published.yaml.
 namespace slalom {
 
+/// `mppi` of the published program.
 MppiOptions published_mppi();
+/// `svg_mppi` of the published program.
 SvgMppiOptions published_svg_mppi();
+/// `reverse_mppi` of the published program.
 ReverseMppiOptions published_reverse_mppi();
+/// `sv_mpc` of the published program.
 SvMpcOptions published_sv_mpc();
 /// The program has no `cem`: bounds and horizon are those of the program's methods.
 CemOptions published_cem();

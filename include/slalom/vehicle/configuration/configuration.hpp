@@ -18,7 +18,7 @@ namespace slalom::vehicle {
 
 /// The sections of a configuration. An option that a file does not set has the default of its aggregate.
 struct Configuration {
-  VehicleOptions vehicle;
+  VehicleOptions vehicle;                               ///< options of the car model and its costs
   PlannerOptions planner;                               ///< options of the planner
   std::vector<SolverOptions> methods = every_method();  ///< one of each, in the order of solver_names()
 

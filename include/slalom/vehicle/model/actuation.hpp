@@ -38,6 +38,7 @@ class SteeringActuator {
 /// The predicted speed of the next step.
 class SpeedPrediction {
  public:
+  /// With the options of the car.
   explicit SpeedPrediction(const PathTrackingOptions& options);
 
   /// The target of the linear model, m/s.

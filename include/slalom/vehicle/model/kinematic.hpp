@@ -24,8 +24,9 @@ class KinematicBicycle {
     T steer;      ///< rad, of the wheels
     T held;       ///< rad, the sequence's first input where it is held
   };
-  using Options = NoOptions;
+  using Options = NoOptions;  ///< the model's own options
 
+  /// With the options of the car.
   explicit KinematicBicycle(const PathTrackingOptions& options);
 
   /// The state at the start; the reference speed (m/s) is the target of SpeedModel::linear.
@@ -50,7 +51,7 @@ class KinematicBicycle {
     return next;
   }
 
-  SpeedPrediction speed_;
+  SpeedPrediction speed_;  ///< prediction of the speed
 
  private:
   SteeringActuator steering_;
@@ -61,13 +62,16 @@ class KinematicBicycle {
 /// The kinematic bicycle with the steering as its input; its speed follows SpeedModel.
 class Kinematic : public KinematicBicycle {
  public:
-  static constexpr const char* name = "kinematic";
+  static constexpr const char* name = "kinematic";  ///< name in configurations
+  /// Description, in one line.
   static constexpr const char* help = "kinematic bicycle; the steering is the input, the speed is the path's";
-  static constexpr int inputs = 1;
-  static constexpr std::array input_names{"steering"};
+  static constexpr int inputs = 1;                      ///< inputs of a step
+  static constexpr std::array input_names{"steering"};  ///< names of the inputs
 
+  /// With the options of the car.
   explicit Kinematic(const PathTrackingOptions& options, const Options& = {}) : KinematicBicycle(options) {}
 
+  /// The state after step `k`; `reference_speed` (m/s) is that of the path.
   template <class T>
   SLALOM_INLINE State<T> step(const State<T>& s, const T& reference_speed, const Input<T, 1>& u,
                               int k) const {
@@ -79,14 +83,17 @@ class Kinematic : public KinematicBicycle {
 /// `max_deceleration` and `max_acceleration` takes effect, and the path's speed is a limit.
 class KinematicAcceleration : public KinematicBicycle {
  public:
-  static constexpr const char* name = "kinematic_acceleration";
+  static constexpr const char* name = "kinematic_acceleration";  ///< name in configurations
+  /// Description, in one line.
   static constexpr const char* help = "kinematic bicycle; steering and acceleration are the inputs";
-  static constexpr int inputs = 2;
-  static constexpr std::array input_names{"steering", "acceleration"};
+  static constexpr int inputs = 2;                                      ///< inputs of a step
+  static constexpr std::array input_names{"steering", "acceleration"};  ///< names of the inputs
 
+  /// With the options of the car.
   explicit KinematicAcceleration(const PathTrackingOptions& options, const Options& = {})
       : KinematicBicycle(options) {}
 
+  /// The state after step `k`; `reference_speed` (m/s) is that of the path.
   template <class T>
   SLALOM_INLINE State<T> step(const State<T>& s, const T& reference_speed, const Input<T, 2>& u,
                               int k) const {

@@ -12,6 +12,7 @@ namespace slalom::vehicle {
 /// negative off the map.
 class ObstacleCost {
  public:
+  /// With the options of the body.
   explicit ObstacleCost(const BodyOptions& options);
 
   /// The clearance up to which a map for discs must be right, m.

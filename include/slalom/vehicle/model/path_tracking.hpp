@@ -17,7 +17,7 @@ namespace slalom::vehicle {
 ///       static constexpr const char* help = "...";
 ///       static constexpr int inputs = 1;
 ///       static constexpr std::array input_names{"steering"};        // steering first; then "acceleration"
-///       using Options = NoOptions;                                  // options of the model's own
+///       using Options = NoOptions;                                  // the model's own options
 ///       template <class T> struct State { T x, y, yaw, speed, steer; };   // at least these: rear axle, map
 ///                                                                         // frame; m, m, rad, m/s, rad
 ///       Motion(const PathTrackingOptions&, const Options&);
@@ -50,13 +50,13 @@ template <MotionModel Motion>
 class PathTracking {
  public:
   template <class T>
-  using State = typename Motion::template State<T>;  ///< the problem's state in double
-  using Options = typename Motion::Options;
-  static constexpr const char* name = Motion::name;
-  static constexpr const char* help = Motion::help;
-  static constexpr int inputs = Motion::inputs;
-  static constexpr auto input_names = Motion::input_names;
-  static constexpr bool plans_speed = inputs > 1;  ///< the acceleration is an input
+  using State = typename Motion::template State<T>;         ///< state of the motion model
+  using Options = typename Motion::Options;                 ///< the model's own options
+  static constexpr const char* name = Motion::name;         ///< name in configurations
+  static constexpr const char* help = Motion::help;         ///< description, in one line
+  static constexpr int inputs = Motion::inputs;             ///< inputs of a step
+  static constexpr auto input_names = Motion::input_names;  ///< names of the inputs
+  static constexpr bool plans_speed = inputs > 1;           ///< the acceleration is an input
 
   /// Options must be valid (see validate_options).
   explicit PathTracking(const PathTrackingOptions& options, const Options& own = {})
@@ -65,8 +65,10 @@ class PathTracking {
   /// The options given at construction.
   const PathTrackingOptions& options() const { return options_; }
   double time_step() const { return options_.time_step; }  ///< s
+  /// What the planner needs to know of the model.
   VehicleTraits traits() const { return traits_of(options_, plans_speed); }
 
+  /// Sets the maps that rollouts look up.
   void set_maps(const VehicleMaps& maps) noexcept {
     cost_.set_reference(maps.reference);
     obstacles_.set_map(maps.obstacles, maps.robot);
@@ -77,6 +79,7 @@ class PathTracking {
     return motion_.start(start, reference_speed);
   }
 
+  /// A state as the planner needs it.
   PredictedState predicted(const State<double>& s) const noexcept {
     const maps::Point local = maps::inverse_transform(obstacles_.robot(), {s.x, s.y});
     return {{s.x, s.y, s.yaw}, s.speed, s.steer, {local.x, local.y, s.yaw - obstacles_.robot().yaw}};
@@ -106,9 +109,11 @@ class PathTracking {
   Cost<T> terminal_cost(const State<T>& s, const Surroundings<T>& seen) const {
     return with_speed(cost_.terminal(s.yaw, seen), s, seen);
   }
+  /// The part of a cost that collisions make.
   double collision_part(const Surroundings<double>& seen, bool last) const {
     return cost_.collision_part(seen, last);
   }
+  /// The part of a cost that the distance to the path makes.
   double distance_part(const Surroundings<double>& seen, bool last) const {
     return cost_.distance_part(seen, last);
   }
@@ -124,10 +129,10 @@ class PathTracking {
     }
   }
 
-  PathTrackingOptions options_;
+  PathTrackingOptions options_;  ///< options of the car
   Motion motion_;
-  TrackingCost cost_;
-  ObstacleCost obstacles_;
+  TrackingCost cost_;       ///< cost of path and speed errors
+  ObstacleCost obstacles_;  ///< cost of obstacles
 };
 
 }  // namespace slalom::vehicle

@@ -69,8 +69,8 @@ struct PathTrackingOptions {
   /// the dead time, with the commands sent, and the rollout has no dead time.
   bool hold_first_input = false;
   bool localisation_less = false;  ///< drive by the cost map alone, without pose or path
-  TrackingCostOptions cost;
-  BodyOptions body;
+  TrackingCostOptions cost;        ///< weights of the cost
+  BodyOptions body;                ///< dimensions of the body
 
   /// Wheelbase, m.
   double wheelbase() const noexcept { return front_length + rear_length; }

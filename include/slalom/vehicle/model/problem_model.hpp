@@ -16,11 +16,14 @@ class ProblemModel final : public VehicleModel {
   using State = typename ProblemEvaluator<P>::State;  ///< the problem's state in double
 
  public:
+  /// A vehicle model of `problem`, whose rollouts use the instruction set `target`.
   explicit ProblemModel(P problem, simd::Target target = simd::active_target())
       : evaluator_(std::move(problem), target) {}
 
   int inputs() const noexcept override { return P::inputs; }
+  /// What the planner needs to know of the model.
   VehicleTraits traits() const noexcept override { return evaluator_.problem().traits(); }
+  /// Sets the maps that rollouts look up.
   void set_maps(const VehicleMaps& maps) noexcept override { evaluator_.problem().set_maps(maps); }
 
   void set_start(const VehicleStart& start, double reference_speed) noexcept override {

@@ -12,13 +12,16 @@
 /// PathTracking) or a vehicle problem (see VehicleProblem) and a line here.
 namespace slalom::vehicle {
 
+/// A list of vehicle models.
 template <class... Models>
 struct ModelList {
-  using Options = std::tuple<typename Models::Options...>;
+  using Options = std::tuple<typename Models::Options...>;  ///< the options of all models
+  /// Number of models.
   static constexpr std::size_t size = sizeof...(Models);
-  static constexpr std::array<const char*, size + 1> names{Models::name..., nullptr};
+  static constexpr std::array<const char*, size + 1> names{Models::name...,
+                                                           nullptr};  ///< names of the models, then null
   template <std::size_t i>
-  using At = std::tuple_element_t<i, std::tuple<Models...>>;
+  using At = std::tuple_element_t<i, std::tuple<Models...>>;  ///< the model with an index
 };
 
 /// The first one is the default.

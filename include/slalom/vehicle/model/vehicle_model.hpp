@@ -24,7 +24,9 @@ class VehicleModel {
   virtual ~VehicleModel() = default;
 
   virtual int inputs() const noexcept = 0;  ///< per step; the first is the steering
+  /// What the planner needs to know of the model.
   virtual VehicleTraits traits() const noexcept = 0;
+  /// Sets the maps that rollouts look up; they must outlive their use.
   virtual void set_maps(const VehicleMaps& maps) noexcept = 0;
   /// Where rollouts start; `reference_speed` (m/s) is that of the path there.
   virtual void set_start(const VehicleStart& start, double reference_speed) noexcept = 0;

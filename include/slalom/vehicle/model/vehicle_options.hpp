@@ -21,13 +21,14 @@ VehicleModelId vehicle_model(std::string_view name);
 /// The options of the car: which model it has, the options that all models share, and each model's own.
 struct VehicleOptions : PathTrackingOptions {
   VehicleModelId model{};
-  VehicleModels::Options own;
+  VehicleModels::Options own;  ///< each model's own options
 
   /// The own options of a registered model, by their type.
   template <class Options>
   Options& own_of() {
     return std::get<Options>(own);
   }
+  /// The own options of a registered model, by their type.
   template <class Options>
   const Options& own_of() const {
     return std::get<Options>(own);

@@ -50,9 +50,9 @@ struct VehicleTraits {
   bool plans_speed = false;             ///< the speed to command is that of the plan, not that of the path
   bool follows_path = true;             ///< false: drives by the obstacles alone, at `reference_speed`
   double reference_speed = 0;           ///< m/s, without a path
-  ObstacleMap obstacle_map = ObstacleMap::inflated;
-  double clearance_reach = 0;  ///< m
-  BodyOptions body;            ///< by which obstacles are inflated
+  ObstacleMap obstacle_map = ObstacleMap::inflated;  ///< what the map of obstacles holds
+  double clearance_reach = 0;                        ///< m
+  BodyOptions body;                                  ///< by which obstacles are inflated
 };
 
 /// The traits of models that take these options as they are.

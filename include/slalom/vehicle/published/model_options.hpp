@@ -29,6 +29,7 @@ struct ModelOptions {
   /// Published: true. With SpeedModel::linear a car that is too fast accelerates.
   bool linear_sign_error = false;
 
+  /// Whether all values are equal.
   bool operator==(const ModelOptions&) const = default;
 
   /// The values of the published program.

@@ -13,6 +13,7 @@ namespace slalom::vehicle::published {
 /// The bicycle of the published program: one step of its pose and steering.
 class Bicycle {
  public:
+  /// With the options of the car and of the model.
   Bicycle(const PathTrackingOptions& options, const ModelOptions& own);
 
   /// The pose and wheels' angle after `travelled` (m) with this command (rad).
@@ -38,6 +39,7 @@ class Bicycle {
     next_steer = steering_.turned(steer, command);
   }
 
+  /// Model of the steering.
   const SteeringActuator& steering() const { return steering_; }
 
  private:
@@ -67,8 +69,10 @@ class OneTrajectory {
   /// The options given at construction.
   const PathTrackingOptions& options() const { return options_; }
   double time_step() const { return options_.time_step; }  ///< s
+  /// What the planner needs to know of the model.
   VehicleTraits traits() const { return traits_of(options_, false); }
 
+  /// Sets the maps that rollouts look up.
   void set_maps(const VehicleMaps& maps) noexcept {
     cost_.set_reference(maps.reference);
     obstacles_.set_map(maps.obstacles, maps.robot);
@@ -76,7 +80,9 @@ class OneTrajectory {
   /// The target of SpeedModel::linear, m/s.
   void set_target_speed(double speed) { speed_.set_target(speed); }
 
+  /// The state at the start; `reference_speed` (m/s) is that of the path.
   State<double> start(const VehicleStart& start, double reference_speed) noexcept;
+  /// A state as the planner needs it.
   PredictedState predicted(const State<double>& s) const noexcept;
 
   /// Looks up the maps at a state.
@@ -94,17 +100,21 @@ class OneTrajectory {
     bicycle_.move(s.x, s.y, s.yaw, s.steer, command, travelled, next.x, next.y, next.yaw, next.steer);
     return next;
   }
+  /// Cost of a step.
   template <class S, class T>
   Cost<T> stage_cost(const S& s, const Surroundings<T>& seen, const Input<T, 1>&) const {
     return cost_.stage(s.yaw, seen);
   }
+  /// Cost of the last state.
   template <class S, class T>
   Cost<T> terminal_cost(const S& s, const Surroundings<T>& seen) const {
     return cost_.terminal(s.yaw, seen);
   }
+  /// The part of a cost that collisions make.
   double collision_part(const Surroundings<double>& seen, bool last) const {
     return cost_.collision_part(seen, last);
   }
+  /// The part of a cost that the distance to the path makes.
   double distance_part(const Surroundings<double>& seen, bool last) const {
     return cost_.distance_part(seen, last);
   }
@@ -121,12 +131,12 @@ class OneTrajectory {
     travelled = s.speed * T(time_step_);
   }
 
-  PathTrackingOptions options_;
-  Bicycle bicycle_;
-  SpeedPrediction speed_;
-  TrackingCost cost_;
-  ObstacleCost obstacles_;
-  Coefficient time_step_;
+  PathTrackingOptions options_;  ///< options of the car
+  Bicycle bicycle_;              ///< motion of the car
+  SpeedPrediction speed_;        ///< prediction of the speed
+  TrackingCost cost_;            ///< cost of path and speed errors
+  ObstacleCost obstacles_;       ///< cost of obstacles
+  Coefficient time_step_;        ///< s, of a step
 };
 
 /// The published vehicle problem as published: collisions are looked up along a second trajectory in the
@@ -142,7 +152,9 @@ class TwoTrajectories : public OneTrajectory {
 
   using OneTrajectory::OneTrajectory;
 
+  /// The state at the start; `reference_speed` (m/s) is that of the path.
   State<double> start(const VehicleStart& start, double reference_speed) noexcept;
+  /// A state as the planner needs it.
   PredictedState predicted(const State<double>& s) const noexcept;
   /// The state of which `predicted` gives the pose and the local pose, standing, with straight wheels.
   static State<double> standing_at(const PredictedState& predicted) noexcept;
@@ -168,11 +180,12 @@ class TwoTrajectories : public OneTrajectory {
 
 /// The published vehicle problem as a vehicle model: one of the two, as `straight_local_rollout` says.
 struct Model {
-  static constexpr const char* name = "published";
+  static constexpr const char* name = "published";  ///< name in configurations
+  /// Description, in one line.
   static constexpr const char* help = "the vehicle problem of the published program";
-  static constexpr int inputs = OneTrajectory::inputs;
-  static constexpr std::array input_names{"steering"};
-  using Options = ModelOptions;
+  static constexpr int inputs = OneTrajectory::inputs;  ///< inputs of a step
+  static constexpr std::array input_names{"steering"};  ///< names of the inputs
+  using Options = ModelOptions;                         ///< the model's own options
 
   /// Calls `use` with the problem of these options and returns what it returns.
   template <class Use>

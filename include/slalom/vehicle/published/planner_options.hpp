@@ -6,6 +6,7 @@ namespace slalom::vehicle::published {
 struct PlannerOptions {
   bool maps = false;  ///< cost map and reference field as the published program makes them
 
+  /// Whether all values are equal.
   bool operator==(const PlannerOptions&) const = default;
 };
 
