@@ -90,7 +90,7 @@ TEST_F(LapTable, AcceptsATruncatedLineOnlyAtTheEndOfAJournal) {
 }
 
 TEST_F(LapTable, NamesLineAndColumnOfAnInvalidValue) {
-  EXPECT_NE(complaint("lap,seed\n" + first_).find(":1: column method: is missing"), std::string::npos);
+  EXPECT_NE(complaint("lap,seed\n" + first_).find(":1: column method is missing"), std::string::npos);
   EXPECT_NE(complaint(head_ + first_ + first_).find(":3: duplicate lap"), std::string::npos);
   std::string other = first_;
   other.replace(0, 4, "cem");
