@@ -31,19 +31,25 @@ struct DoubleMaskVector<Unfused<T>> : DoubleMaskVector<T> {};
 /// Operations for which compilers need to be told the instruction, as in simd_operations.hpp.
 template <class T>
 struct PortableDoubleOperations {
-  using D = typename detail::DoubleVectorTypes<T::lanes>::Double;
-  using L = typename detail::DoubleVectorTypes<T::lanes>::Long;
-  using I = typename detail::DoubleVectorTypes<T::lanes>::Int;
+  using D = typename detail::DoubleVectorTypes<T::lanes>::Double;  ///< vector of float64 values
+  using L = typename detail::DoubleVectorTypes<T::lanes>::Long;    ///< mask, one 64-bit integer for each lane
+  using I = typename detail::DoubleVectorTypes<T::lanes>::Int;     ///< vector of indices
 
+  /// The same value in all lanes.
   static void broadcast(double value, D& r) { r = value - D{}; }
+  /// Whether a < b, in each lane.
   static void less(const D& a, const D& b, L& r) { r = a < b; }
+  /// Whether a <= b, in each lane.
   static void less_or_equal(const D& a, const D& b, L& r) { r = a <= b; }
+  /// `a` in lanes where the condition is true, else `b`.
   static void select(const L& condition, const D& a, const D& b, D& r) { r = condition ? a : b; }
+  /// Whether any lane is true.
   static bool any(const L& mask) {
     std::int64_t all = 0;
     for (int i = 0; i < T::lanes / 2; ++i) all |= mask[i];
     return all != 0;
   }
+  /// Reads from[index] in each lane.
   static void gather(const double* from, const I& index, D& r) {
     for (int i = 0; i < T::lanes / 2; ++i) r[i] = from[index[i]];
   }
@@ -76,6 +82,7 @@ struct DoubleOperations<Avx512> : PortableDoubleOperations<Avx512> {
   SLALOM_ISA_AVX512 static void select(const std::uint8_t& condition, const D& a, const D& b, D& r) {
     r = (D)_mm512_mask_blend_pd(condition, (__m512d)b, (__m512d)a);
   }
+  /// Whether any lane is true.
   static bool any(const std::uint8_t& mask) { return mask != 0; }
   SLALOM_ISA_AVX512 static void gather(const double* from, const I& index, D& r) {
     r = (D)_mm512_mask_i32gather_pd(_mm512_setzero_pd(), 0xff, (__m256i)index, from, 8);
@@ -89,16 +96,20 @@ struct DoubleOperations<Unfused<T>> : DoubleOperations<T> {};
 /// One truth value per lane of a `DoublePack`.
 template <class T>
 struct DoubleMask {
-  using Vector = typename detail::DoubleMaskVector<T>::type;
-  Vector v;
+  using Vector = typename detail::DoubleMaskVector<T>::type;  ///< vector type of the compiler
+  Vector v;                                                   ///< the lanes
 
   DoubleMask() = default;
+  /// From a vector.
   SLALOM_INLINE DoubleMask(const Vector& vector) : v(vector) {}
+  /// Copies.
   SLALOM_INLINE DoubleMask(const DoubleMask& other) : v(other.v) {}
+  /// Copies.
   SLALOM_INLINE DoubleMask& operator=(const DoubleMask& other) {
     v = other.v;
     return *this;
   }
+  /// Applies to each lane.
   SLALOM_INLINE friend DoubleMask operator&(const DoubleMask& a, const DoubleMask& b) {
     return DoubleMask(static_cast<Vector>(a.v & b.v));
   }
@@ -108,16 +119,20 @@ struct DoubleMask {
 /// added, on every instruction set.
 template <class T>
 struct DoublePack {
-  using Target = T;
-  using Vector = typename detail::DoubleVectorTypes<T::lanes>::Double;
-  using Int = typename detail::DoubleVectorTypes<T::lanes>::Int;
-  static constexpr int lanes = T::lanes / 2;
-  Vector v;
+  using Target = T;                                                     ///< the instruction set
+  using Vector = typename detail::DoubleVectorTypes<T::lanes>::Double;  ///< vector type of the compiler
+  using Int = typename detail::DoubleVectorTypes<T::lanes>::Int;        ///< vector of indices
+  static constexpr int lanes = T::lanes / 2;                            ///< number of float64 values
+  Vector v;                                                             ///< the lanes
 
   DoublePack() = default;
+  /// The same value in all lanes.
   SLALOM_INLINE_CALLS DoublePack(double value) { DoubleOperations<T>::broadcast(value, v); }
+  /// From a vector.
   SLALOM_INLINE DoublePack(const Vector& vector) : v(vector) {}
+  /// Copies.
   SLALOM_INLINE DoublePack(const DoublePack& other) : v(other.v) {}
+  /// Copies.
   SLALOM_INLINE DoublePack& operator=(const DoublePack& other) {
     v = other.v;
     return *this;
@@ -138,34 +153,43 @@ struct DoublePack {
     return p;
   }
 
+  /// Applies to each lane.
   SLALOM_INLINE friend DoublePack operator+(const DoublePack& a, const DoublePack& b) {
     return DoublePack(a.v + b.v);
   }
+  /// Applies to each lane.
   SLALOM_INLINE friend DoublePack operator-(const DoublePack& a, const DoublePack& b) {
     return DoublePack(a.v - b.v);
   }
+  /// Applies to each lane.
   SLALOM_INLINE friend DoublePack operator*(const DoublePack& a, const DoublePack& b) {
     Vector product = a.v * b.v;
     SLALOM_ROUND(product);
     return DoublePack(product);
   }
+  /// Applies to each lane.
   SLALOM_INLINE friend DoublePack operator/(const DoublePack& a, const DoublePack& b) {
     return DoublePack(a.v / b.v);
   }
+  /// Applies to each lane.
   SLALOM_INLINE friend DoublePack operator-(const DoublePack& a) { return DoublePack(-a.v); }
+  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend DoubleMask<T> operator<(const DoublePack& a, const DoublePack& b) {
     DoubleMask<T> r;
     DoubleOperations<T>::less(a.v, b.v, r.v);
     return r;
   }
+  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend DoubleMask<T> operator<=(const DoublePack& a, const DoublePack& b) {
     DoubleMask<T> r;
     DoubleOperations<T>::less_or_equal(a.v, b.v, r.v);
     return r;
   }
+  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend DoubleMask<T> operator>(const DoublePack& a, const DoublePack& b) {
     return b < a;
   }
+  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend DoubleMask<T> operator>=(const DoublePack& a, const DoublePack& b) {
     return b <= a;
   }

@@ -48,7 +48,7 @@ struct LogComparison {
   static constexpr int enough_laps = 10;  ///< laps from which on the bootstrap is used
   /// `inside` requires confidence intervals no wider than this to each side: a fraction of MS, and a
   /// collision rate.
-  static constexpr double ms_half_width = 0.5, rate_half_width = 0.1;
+  static constexpr double ms_half_width = 0.5, rate_half_width = 0.1;  ///< fraction of MS, collision rate
 
   Agreement ms_agreement() const;         ///< of MS
   Agreement collision_agreement() const;  ///< of the collision rate; inside without obstacles

@@ -47,6 +47,7 @@ class Lidar {
   /// Throws std::invalid_argument on options out of range.
   explicit Lidar(const LidarOptions& options);
 
+  /// The options given at construction.
   const LidarOptions& options() const noexcept { return options_; }
   std::span<const double> angles() const noexcept { return angles_; }  ///< rad, in the sensor's frame
   /// Ranges are written to arrays of this size: beams, then padding of no meaning.

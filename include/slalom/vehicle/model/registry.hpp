@@ -18,8 +18,8 @@ struct ModelList {
   using Options = std::tuple<typename Models::Options...>;  ///< the options of all models
   /// Number of models.
   static constexpr std::size_t size = sizeof...(Models);
-  static constexpr std::array<const char*, size + 1> names{Models::name...,
-                                                           nullptr};  ///< names of the models, then null
+  /// Names of the models, then null.
+  static constexpr std::array<const char*, size + 1> names{Models::name..., nullptr};
   template <std::size_t i>
   using At = std::tuple_element_t<i, std::tuple<Models...>>;  ///< the model with an index
 };

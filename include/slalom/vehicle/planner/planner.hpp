@@ -72,7 +72,7 @@ struct PlannerOutput {
   Command command;                           ///< to send now
   std::span<const float> inputs;  ///< [step][input], the sequence that is sent: steering in rad, and with
                                   ///< two inputs acceleration in m/s^2; empty where none is
-  int inputs_per_step = 1;
+  int inputs_per_step = 1;        ///< number of inputs of a step
   std::span<const PredictedState> predicted;  ///< horizon + 1 states of the sequence that is sent
   double state_cost = 0;                      ///< of the predicted states without collisions
   double collision_cost = 0;                  ///< of the predicted states
