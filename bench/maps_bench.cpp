@@ -86,7 +86,7 @@ void cost_map(benchmark::State& state, const LocalCostMapOptions& options) {
   if (map.at(1, 1.1) != 100 || map.at(1, 0) != 0) state.SkipWithError("the corridor is not in the map");
 }
 BENCHMARK_CAPTURE(cost_map, exact, LocalCostMapOptions{})->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(cost_map, published, LocalCostMapOptions::published())->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(cost_map, published, published_cost_map())->Unit(benchmark::kMicrosecond);
 
 void reference_field(benchmark::State& state, const ReferenceFieldOptions& options, double reach) {
   const auto path = course();
@@ -101,9 +101,9 @@ void reference_field(benchmark::State& state, const ReferenceFieldOptions& optio
     benchmark::ClobberMemory();
   }
 }
-BENCHMARK_CAPTURE(reference_field, published_whole, ReferenceFieldOptions::published(), INFINITY)
+BENCHMARK_CAPTURE(reference_field, published_whole, published_reference_field(), INFINITY)
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(reference_field, published_reach_4m, ReferenceFieldOptions::published(), 4.0)
+BENCHMARK_CAPTURE(reference_field, published_reach_4m, published_reference_field(), 4.0)
     ->Unit(benchmark::kMicrosecond);
 
 }  // namespace

@@ -76,8 +76,8 @@ vehicle::VehicleOptions reference_problem(bool two_trajectories) {
 }
 
 ReferenceWorkload::ReferenceWorkload()
-    : field_(reference_course(), maps::ReferenceFieldOptions::published()), cost_map_([] {
-        auto options = maps::LocalCostMapOptions::published();
+    : field_(reference_course(), maps::published_reference_field()), cost_map_([] {
+        auto options = maps::published_cost_map();
         options.outside = -1;
         return options;
       }()) {

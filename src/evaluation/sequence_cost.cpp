@@ -22,7 +22,7 @@ using Ruler = std::array<PredictedState, SequenceCostMeter::states>;
 constexpr int steps = SequenceCostMeter::states - 1;
 
 maps::LocalCostMapOptions cost_map_options() {
-  auto options = maps::LocalCostMapOptions::published();
+  auto options = maps::published_cost_map();
   options.outside = -1;  // so that the problem distinguishes "off the map" from "occupied"
   return options;
 }
@@ -63,7 +63,7 @@ struct SequenceCostMeter::Implementation {
 
   Implementation(std::span<const maps::ReferencePoint> path, const VehicleOptions& m)
       : model(m),
-        field(path, maps::ReferenceFieldOptions::published()),
+        field(path, maps::published_reference_field()),
         own(make_vehicle_model(m)),
         published(make_vehicle_model(vehicle::published::vehicle_options())),
         states(std::max<std::size_t>(

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rules.hpp"
+#include "maps/validation.hpp"
 
 namespace slalom::maps {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "rules.hpp"
+#include "maps/validation.hpp"
 #include "slalom/maps/pose.hpp"
 
 namespace slalom::maps {

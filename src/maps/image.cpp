@@ -29,7 +29,7 @@ class PgmReader {
       if (value > largest) fail(std::string(what) + " must be at most " + std::to_string(largest));
     }
     if (position_ == first)
-      fail(std::string(what) + " is missing or is no number: the PGM is truncated or corrupt");
+      fail(std::string(what) + " is missing or not a number: the PGM is truncated or corrupt");
     return value;
   }
 

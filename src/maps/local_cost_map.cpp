@@ -4,7 +4,7 @@
 #include <cmath>
 #include <initializer_list>
 
-#include "rules.hpp"
+#include "maps/validation.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -24,14 +24,6 @@ int clamped_floor(double cell, int low, int high) {
 
 }  // namespace
 
-LocalCostMapOptions LocalCostMapOptions::published() {
-  LocalCostMapOptions options;
-  options.body_inset = 0;
-  options.half_open_inflation = true;
-  options.forget_points_outside = true;
-  return options;
-}
-
 void LocalCostMapOptions::validate() const {
   validate_options(*this, "local_cost_map");
   detail::cell_count("local_cost_map.length_x", length_x, resolution);
@@ -43,7 +35,7 @@ LocalCostMap::LocalCostMap(const LocalCostMapOptions& options)
   const auto whole_cells = [&](double reach) {
     return static_cast<int>(std::ceil((reach + options.margin) / options.resolution));
   };
-  // Row 0 lies at the largest x: the car that stands ahead of a point touches it with its rear.
+  // Row 0 lies at the largest x: a car ahead of a point collides with it with its rear.
   cells_ahead_ = whole_cells(options.footprint.rear);
   cells_behind_ = whole_cells(options.footprint.front);
   cells_left_ = whole_cells(options.footprint.right);
@@ -181,16 +173,16 @@ void LocalCostMap::add_grid(const OccupancyGrid& obstacles, const Pose& robot) n
   write_cells();
 }
 
-/// Counts a square of half width `reach` (m) about (x, y) in every cell where the body would touch it.
+/// Counts a square of half width `reach` (m) about (x, y) in every cell where the body would collide with it.
 void LocalCostMap::mark(double x, double y, double reach) noexcept {
-  const bool by_cells = options_.half_open_inflation || options_.forget_points_outside;
+  const bool by_cells = options_.published.half_open_inflation || options_.published.forget_points_outside;
   int row = by_cells ? geometry_.row(x) : 0, column = by_cells ? geometry_.column(y) : 0;
-  if (options_.forget_points_outside && (row < 0 || column < 0)) return;
+  if (options_.published.forget_points_outside && (row < 0 || column < 0)) return;
   // The point in units of cells from the corner where row and column 0 begin.
   const double scale = 1 / geometry_.resolution;
   const double u = (geometry_.center_x - x) * scale + 0.5 * geometry_.rows;
   const double v = (geometry_.center_y - y) * scale + 0.5 * geometry_.columns;
-  if (options_.half_open_inflation) {
+  if (options_.published.half_open_inflation) {
     const int more = static_cast<int>(std::ceil(reach * scale));
     if (row < 0) row = clamped_floor(u, -100000, 100000);
     if (column < 0) column = clamped_floor(v, -100000, 100000);

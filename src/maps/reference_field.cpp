@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "rules.hpp"
+#include "maps/validation.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -37,12 +37,6 @@ void check_reference_path(std::span<const ReferencePoint> path) {
     check("speed", path[i].speed, std::isfinite(path[i].speed) && path[i].speed >= 0,
           "finite and not negative");
   }
-}
-
-ReferenceFieldOptions ReferenceFieldOptions::published() {
-  ReferenceFieldOptions options;
-  options.points_behind = 0;
-  return options;
 }
 
 void ReferenceFieldOptions::validate() const {

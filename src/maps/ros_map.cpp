@@ -41,7 +41,7 @@ class Reader {
     try {
       documents = YAML::LoadAll(stream);
     } catch (const YAML::Exception& error) {
-      throw IoError(path.string(), error.mark.line + 1, "no valid yaml: " + error.msg);
+      throw IoError(path.string(), error.mark.line + 1, "invalid YAML: " + error.msg);
     }
     if (documents.size() > 1)
       throw IoError(path.string(), documents[1].Mark().line + 1, "a second yaml document: must be only one");

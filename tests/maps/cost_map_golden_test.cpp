@@ -20,7 +20,7 @@ LaserScanView published_scan(const std::vector<float>& ranges) {
 
 TEST(GoldenMaps, CostMap) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/costmap");
-  LocalCostMap map(LocalCostMapOptions::published());
+  LocalCostMap map(published_cost_map());
   const auto points = read_csv_numbers(folder / "points.csv", true);
   int scans = 0, cells = 0, differing = 0, used = 0, differing_points = 0;
   for (const auto& line : read_csv_numbers(folder / "scans.csv", false)) {

@@ -54,7 +54,7 @@ TEST(LocalCostMap, InflationIsSymmetric) {
 }
 
 TEST(LocalCostMap, PublishedInflationIsOneCellShortToOneSide) {
-  LocalCostMap map(LocalCostMapOptions::published());
+  LocalCostMap map(published_cost_map());
   const Point point{3.025, 0.025};  // the centre of a cell
   map.add_points({&point, 1});
   EXPECT_EQ(occupied_cells(map), 13 * 6);
@@ -72,7 +72,7 @@ TEST(LocalCostMap, PointsOutsideTheMapReachIntoItUnlessForgotten) {
   LocalCostMap map;
   map.add_points({&point, 1});
   EXPECT_EQ(map.at(7.9, 0), 100);
-  LocalCostMap forgetful(LocalCostMapOptions::published());
+  LocalCostMap forgetful(published_cost_map());
   forgetful.add_points({&point, 1});
   EXPECT_EQ(occupied_cells(forgetful), 0);
 }
@@ -80,7 +80,7 @@ TEST(LocalCostMap, PointsOutsideTheMapReachIntoItUnlessForgotten) {
 TEST(LocalCostMap, PointsFarAwayOrNotFiniteDoNothing) {
   const Point points[] = {{1e300, 0}, {-1e300, 1e300}, {NAN, 0}, {0, INFINITY},
                           {3, 6},     {3, -6},         {9, 0},   {-3, 0}};
-  for (const auto& options : {LocalCostMapOptions{}, LocalCostMapOptions::published()}) {
+  for (const auto& options : {LocalCostMapOptions{}, published_cost_map()}) {
     LocalCostMap map(options);
     map.add_points(points);
     EXPECT_EQ(occupied_cells(map), 0);
@@ -103,7 +103,7 @@ TEST(LocalCostMap, BadReadingsAreDroppedAndCounted) {
 TEST(LocalCostMap, KeepsObstaclesThatTouchTheBody) {
   const std::vector<float> ranges{0.17F, 0.1F};  // 2.5 cm within the front of the body, and 9.5 cm
   const LaserScanView scan{ranges, 0, 1e-3, 0.05, 30};
-  LocalCostMap map, published(LocalCostMapOptions::published());
+  LocalCostMap map, published(published_cost_map());
   EXPECT_EQ(map.update(scan).on_body, 1);
   EXPECT_EQ(published.update(scan).on_body, 2);
 }

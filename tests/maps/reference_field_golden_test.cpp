@@ -10,6 +10,7 @@
 #include "golden.hpp"
 #include "maps/csv_table.hpp"
 #include "maps/grid_map_csv.hpp"
+#include "slalom/maps/published.hpp"
 #include "slalom/maps/reference_field.hpp"
 
 namespace slalom::maps {
@@ -38,7 +39,7 @@ TEST(GoldenMaps, ReferenceField) {
   const auto path = load_path(folder / "ego_ref_waypoint.csv");
   const auto waypoints = read_csv_numbers(folder / "waypoints.csv", true);
   const auto samples = read_csv_numbers(folder / "samples.csv", true);
-  ReferenceField field(path, ReferenceFieldOptions::published());
+  ReferenceField field(path, published_reference_field());
   int poses = 0, compared = 0;
   double worst = 0;
   for (const auto& pose : read_csv_numbers(folder / "poses.csv", true)) {
@@ -94,7 +95,7 @@ TEST(GoldenMaps, ReferenceMaps) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/maps");
   const auto path_file = folder.parent_path() / "reference_sdf" / "ego_ref_waypoint.csv";
   if (!std::filesystem::exists(path_file)) GTEST_SKIP() << "no waypoints: " << path_file << " is missing";
-  ReferenceField field(load_path(path_file), ReferenceFieldOptions::published());
+  ReferenceField field(load_path(path_file), published_reference_field());
   int maps = 0, cells = 0;
   double worst = 0;
   for (const auto& [id, robot] : robot_positions(folder / "maps.json")) {

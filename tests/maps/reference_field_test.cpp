@@ -1,4 +1,5 @@
 #include "slalom/maps/reference_field.hpp"
+#include "slalom/maps/published.hpp"
 
 #include <gtest/gtest.h>
 
@@ -93,7 +94,7 @@ TEST(ReferenceField, TheWindowKeepsItsSpacingAndWraps) {
 
 TEST(ReferenceField, AShortPathAppearsOnce) {
   const auto path = circle(7, 1);
-  ReferenceField field(path, ReferenceFieldOptions::published());
+  ReferenceField field(path, published_reference_field());
   EXPECT_EQ(field.window().size(), 7u);
   expect_nearest(field, path);
 }

@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "support/temporary_folder.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/maps/image.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -108,7 +108,7 @@ TEST_F(RosMap, BadYamlIsNamed) {
   write("map.pgm", pgm);
   expect_error(folder_ / "absent.yaml", 0, "does not exist");
   expect_error(folder_, 0, "does not exist or cannot be read");
-  expect_error(map("image: [\n"), 2, "no valid yaml");
+  expect_error(map("image: [\n"), 2, "invalid YAML");
   expect_error(map("just words\n"), 1, "key: value");
   expect_error(map(""), 1, "key: value");
   const std::string image = "image: map.pgm\n";

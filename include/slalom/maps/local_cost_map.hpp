@@ -8,6 +8,7 @@
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/occupancy_grid.hpp"
+#include "slalom/maps/published.hpp"
 
 namespace slalom::maps {
 
@@ -26,32 +27,22 @@ struct LocalCostMapOptions {
   double resolution = 0.05;  ///< m per cell, > 0
   double center_x = 3;       ///< m, the map's centre in the robot's frame
   double center_y = 0;       ///< m
-  double occupied = 100;     ///< value of a cell where the body would touch an obstacle
+  double occupied = 100;     ///< value of a cell where the body would collide with an obstacle
   double outside = 100;      ///< value of the ring of cells round the map
   Footprint footprint{};     ///< the body by which obstacles are inflated
   double margin = 0;         ///< m, >= 0, added to every side of the footprint
   double soft_margin = 0;    ///< m, >= 0, beyond the margin, in which cells have the value `soft`
   double soft = 10;          ///< value of a cell where the body would come near an obstacle
   Pose laser{0.275, 0, 0};   ///< the laser's pose in the robot's frame
-  int max_beams = 4096;      ///< a scan may have at most so many; 1 .. 1000000
+  int max_beams = 4096;      ///< largest number of beams of a scan; 1 .. 1000000
 
   /// Drop the points of a scan that lie within the footprint (without margin): the car sees itself.
   bool drop_points_on_body = true;
-  /// m, >= 0: only points so deep within the footprint are dropped, so that what the car leans against stays
-  /// in sight. Published: 0.
+  /// m, >= 0: only points so deep within the footprint are dropped, so that an obstacle
+  /// against the car's side remains visible.
   double body_inset = 0.05;
 
-  /// Published program: an obstacle's cell is inflated by whole cells, ceil(reach / resolution) to each side
-  /// as a half-open range. That is one cell less towards smaller x and y than towards larger ones: 0.15 m to
-  /// the left, 0.10 m to the right. The default marks every cell in which some position lets the footprint
-  /// touch the point.
-  bool half_open_inflation = false;
-
-  /// Published program: a point outside the map is forgotten, also where its inflation reaches into the map.
-  bool forget_points_outside = false;
-
-  /// The published program's cost map.
-  static LocalCostMapOptions published();
+  PublishedCostMap published{};  ///< only to reproduce the published program
 
   /// Throws std::invalid_argument naming the field, its value and the rule.
   void validate() const;
@@ -127,10 +118,10 @@ void visit_options(Options& options, Visit&& visit) {
                                         .help = "how deep within the body a reading is ignored",
                                         .min = 0,
                                         .max = 10});
-  visit(options.half_open_inflation,
+  visit(options.published.half_open_inflation,
         Declaration{.name = "half_open_inflation",
                     .help = "published: inflate by whole cells, one less to one side"});
-  visit(options.forget_points_outside,
+  visit(options.published.forget_points_outside,
         Declaration{.name = "forget_points_outside", .help = "published: ignore points off the map"});
 }
 
@@ -140,7 +131,7 @@ struct ScanPoint {
   float y;  ///< m
 };
 
-/// What became of a scan.
+/// What was done with the beams of a scan.
 struct ScanReport {
   bool accepted =
       false;        ///< false: empty, too many beams, or a geometry that is not finite; nothing was added
@@ -151,8 +142,8 @@ struct ScanReport {
 };
 
 /// A map of the free ground around the car, in the car's own frame (x ahead, y to the left), made from one
-/// LiDAR scan: a cell holds `occupied` where the car's reference point cannot be without the body touching an
-/// obstacle, else 0. The heading of the body is taken as that of now, whatever the path does; what lies
+/// LiDAR scan: a cell holds `occupied` where the car's reference point cannot be without a collision of the
+/// body, else 0. The heading of the body is taken as that of now, whatever the path does; what lies
 /// behind an obstacle is free. After construction nothing allocates.
 class LocalCostMap {
  public:
@@ -219,7 +210,7 @@ class LocalCostMap {
   CellGrid<1> cells_;
   /// How far a half-open box reaches beyond the cell of the point.
   int cells_ahead_ = 0, cells_behind_ = 0, cells_left_ = 0, cells_right_ = 0;
-  Layer hard_, soft_;  ///< cells where the body touches; where it comes near (empty without a soft margin)
+  Layer hard_, soft_;  ///< cells where the body collides; where it comes near (empty without a soft margin)
 
   std::vector<double> beam_cos_, beam_sin_;  ///< directions of the beams in the robot's frame
   int beam_count_ = 0;                       ///< how many of them are valid

@@ -12,7 +12,7 @@
 
 namespace slalom::maps {
 
-/// Options of ReferenceField. The defaults are the published program's, but for `points_behind`.
+/// Options of ReferenceField.
 struct ReferenceFieldOptions {
   double length_x = 20;        ///< m, > 0
   double length_y = 20;        ///< m, > 0
@@ -21,13 +21,9 @@ struct ReferenceFieldOptions {
   double spacing = 0.1;        ///< m, >= 0, least distance between successive points of the window
   ReferenceOutside outside{};  ///< what a look-up off the map returns
 
-  /// Points of the window behind the nearest one, in addition; points + points_behind <= 250. The published
-  /// program has 0: off to the side and behind, the distance is that to the window's first point, not that to
-  /// the path.
+  /// Points of the window behind the nearest one, in addition; points + points_behind <= 250. With 0
+  /// the distance of positions behind the nearest point is that to the window's first point, not to the path.
   int points_behind = 10;
-
-  /// The published program's reference field.
-  static ReferenceFieldOptions published();
 
   /// Throws std::invalid_argument naming the field, its value and the rule.
   void validate() const;
@@ -45,10 +41,10 @@ void visit_options(Options& options, Visit&& visit) {
   visit(options.points,
         Declaration{
             .name = "points", .help = "points of the window, from the nearest on", .min = 1, .max = 250});
-  visit(options.points_behind, Declaration{.name = "points_behind",
-                                           .help = "points of the window behind the nearest; published: 0",
-                                           .min = 0,
-                                           .max = 249});
+  visit(
+      options.points_behind,
+      Declaration{
+          .name = "points_behind", .help = "points of the window behind the nearest", .min = 0, .max = 249});
   visit(options.spacing, Declaration{.name = "spacing",
                                      .unit = "m",
                                      .help = "least distance between points of the window",

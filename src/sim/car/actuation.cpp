@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/require.hpp"
+#include "sim/validation.hpp"
 
 namespace slalom::sim {
 

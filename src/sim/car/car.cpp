@@ -1,6 +1,6 @@
 #include "slalom/sim/car.hpp"
 
-#include "sim/require.hpp"
+#include "sim/validation.hpp"
 
 namespace slalom::sim {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/require.hpp"
+#include "sim/validation.hpp"
 
 namespace slalom::sim {
 
@@ -19,7 +19,7 @@ void PurePursuitOptions::validate() const {
 PurePursuit::PurePursuit(std::vector<PathPoint> path, const PurePursuitOptions& options)
     : path_(std::move(path)), options_(options) {
   options.validate();
-  if (path_.size() < 3) detail::refuse("path points", std::to_string(path_.size()), "at least 3");
+  if (path_.size() < 3) detail::fail("path points", std::to_string(path_.size()), "at least 3");
   for (const PathPoint& p : path_) {
     detail::require_finite("path point x", p.point.x);
     detail::require_finite("path point y", p.point.y);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/require.hpp"
+#include "sim/validation.hpp"
 
 namespace slalom::sim {
 
@@ -12,7 +12,7 @@ Script::Script(std::vector<Line> lines) : lines_(std::move(lines)) {
     detail::require_finite("script: steer", lines_[i].command.steer);
     detail::require_finite("script: speed", lines_[i].command.speed);
     if (i > 0 && !(lines_[i].from > lines_[i - 1].from))
-      detail::refuse("script time", std::to_string(lines_[i].from), "after that of the line before");
+      detail::fail("script time", std::to_string(lines_[i].from), "after that of the line before");
   }
 }
 

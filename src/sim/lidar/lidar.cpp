@@ -7,7 +7,7 @@
 
 #include "sim/gym/gym_scan.hpp"
 #include "sim/lidar/scan.hpp"
-#include "sim/require.hpp"
+#include "sim/validation.hpp"
 
 namespace slalom::sim {
 namespace {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/require.hpp"
+#include "sim/validation.hpp"
 
 namespace slalom::sim {
 
 LapPath::LapPath(std::vector<maps::Point> points) : points_(std::move(points)) {
-  if (points_.size() < 3) detail::refuse("lap path points", std::to_string(points_.size()), "at least 3");
+  if (points_.size() < 3) detail::fail("lap path points", std::to_string(points_.size()), "at least 3");
   double arc = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     detail::require_finite("lap path x", points_[i].x);

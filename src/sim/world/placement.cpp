@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/require.hpp"
+#include "sim/validation.hpp"
 #include "slalom/sim/numpy_random.hpp"
 #include "slalom/sim/shapes.hpp"
 

@@ -42,10 +42,10 @@ class Reader {
     T value{};
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc{} || end != digits.data() + digits.size() || digits.empty())
-      refuse(std::string("expected ") + what + ", found '" + std::string(digits) + "'");
+      fail(std::string("expected ") + what + ", found '" + std::string(digits) + "'");
     return value;
   }
-  [[noreturn]] void refuse(const std::string& why) const {
+  [[noreturn]] void fail(const std::string& why) const {
     throw std::invalid_argument("recording, line " + std::to_string(number_) + ": " + why);
   }
 
@@ -117,9 +117,9 @@ Recording Recording::from_text(std::string_view text) {
         recording.commands.push_back({steering, reader.number<double>("a drive command")});
       }
     } else {
-      reader.refuse("unknown word '" + std::string(what) + "'");
+      reader.fail("unknown word '" + std::string(what) + "'");
     }
-    if (!reader.at_end()) reader.refuse("more than expected");
+    if (!reader.at_end()) reader.fail("unexpected text at the end of the line");
   }
   return recording;
 }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim/require.hpp"
+#include "sim/validation.hpp"
 
 namespace slalom::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/require.hpp"
+#include "sim/validation.hpp"
 
 namespace slalom::sim {
 namespace {
@@ -20,7 +20,7 @@ void require_finite(const char* name, const maps::Pose& pose) {
 }
 
 std::shared_ptr<const Track> present(std::shared_ptr<const Track> track) {
-  if (!track) throw std::invalid_argument("track: a world needs one");
+  if (!track) throw std::invalid_argument("track: must not be null");
   return track;
 }
 
@@ -118,16 +118,16 @@ void World::reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::spa
 }
 
 void World::check_start(std::size_t car) const {
-  const auto refuse = [&](const std::string& where) {
+  const auto fail = [&](const std::string& where) {
     const maps::Pose& p = boxes_[car].pose;
     throw std::invalid_argument("start of car " + std::to_string(car) + " at (" + std::to_string(p.x) + ", " +
                                 std::to_string(p.y) + ", " + std::to_string(p.yaw) + "): lies in " + where);
   };
-  if (track_->collides_with_wall(boxes_[car])) refuse("a wall");
+  if (track_->collides_with_wall(boxes_[car])) fail("a wall");
   for (std::size_t other = 0; other < cars_.size(); ++other)
-    if (other != car && signed_gap(boxes_[car], boxes_[other]) <= 0) refuse("car " + std::to_string(other));
+    if (other != car && signed_gap(boxes_[car], boxes_[other]) <= 0) fail("car " + std::to_string(other));
   for (std::size_t i = 0; i < fixed_.size(); ++i)
-    if (collides(boxes_[car], fixed_[i])) refuse("body " + std::to_string(cars_.size() + i));
+    if (collides(boxes_[car], fixed_[i])) fail("body " + std::to_string(cars_.size() + i));
 }
 
 int World::add(const Fixed& body) {
@@ -155,7 +155,7 @@ int World::add_disc(const Disc& disc) {
 void World::move_body(int body, const maps::Pose& pose) {
   require_finite("pose of a body", pose);
   if (body < static_cast<int>(cars_.size()) || body >= static_cast<int>(bodies()))
-    throw std::invalid_argument("body = " + std::to_string(body) + ": must be one that does not drive");
+    throw std::invalid_argument("body = " + std::to_string(body) + ": must be a parked car, a box or a disc");
   fixed_[static_cast<std::size_t>(body) - cars_.size()].box.pose = pose;
   find_fixed_partners();
 }
@@ -163,7 +163,7 @@ void World::move_body(int body, const maps::Pose& pose) {
 void World::remove_body(int body) {
   const auto driven = static_cast<int>(cars_.size());
   if (body < driven || body >= static_cast<int>(bodies()))
-    throw std::invalid_argument("body = " + std::to_string(body) + ": must be one that does not drive");
+    throw std::invalid_argument("body = " + std::to_string(body) + ": must be a parked car, a box or a disc");
   fixed_.erase(fixed_.begin() + (body - driven));
   flags_.erase(flags_.begin() + body);
   partners_.erase(partners_.begin() + body);

@@ -20,7 +20,7 @@ using detail::CommandHistory;
 maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const VehicleTraits& traits) {
   maps::LocalCostMapOptions made;
   if (options.published.maps) {
-    made = maps::LocalCostMapOptions::published();
+    made = maps::published_cost_map();
   } else {
     const BodyOptions& body = traits.body;
     made.footprint = {body.front, body.rear, body.width / 2, body.width / 2};
@@ -40,7 +40,7 @@ maps::ClearanceMapOptions clearance_options(const VehicleTraits& traits) {
 }
 
 maps::ReferenceFieldOptions field_options(const PlannerOptions& options) {
-  return options.published.maps ? maps::ReferenceFieldOptions::published() : maps::ReferenceFieldOptions{};
+  return options.published.maps ? maps::published_reference_field() : maps::ReferenceFieldOptions{};
 }
 
 std::vector<maps::ReferencePoint> capped(std::span<const maps::ReferencePoint> path, double max_speed) {
