@@ -161,7 +161,7 @@ TEST_F(RosMap, BadImagesAreNamed) {
                                       {"P2 2 2 70000 0 0 0 0", "largest grey value"},
                                       {"P2 2 2 255 0 0 0", "truncated"},
                                       {"P2 2 2 255 0 0 0 256", "at most 255"},
-                                      {"P2 2 2 255 0 0 0 x", "no number"},
+                                      {"P2 2 2 255 0 0 0 x", "not a number"},
                                       {"P5 2 2 255 abc", "truncated"},
                                       {"P5 2 2 65535 abcdefg", "truncated"},
                                       {"P5 2 2 100 zzzz", "at most 100"},
