@@ -45,8 +45,8 @@ class LapPath {
   std::vector<double> start_;  ///< arc length at each point, then the whole length
 };
 
-/// Laps of one car by arc length along a path. What is driven backwards must be driven forwards again; the
-/// line is where the car started. Times are interpolated within a step.
+/// Laps of one car by arc length along a path. Driving backwards reduces the progress; the finish line is
+/// where the car started. Times are interpolated within a step.
 class LapTimer {
  public:
   /// `sectors` >= 1 equal parts of the path get split times. Throws std::invalid_argument otherwise.
@@ -58,7 +58,7 @@ class LapTimer {
   /// To be called after each step, with the position and the time (s) reached.
   void update(const LapPath& path, const maps::Point& position, double time) noexcept;
 
-  /// The car was put elsewhere: progress goes on from there, and what lies between does not count.
+  /// The car was moved elsewhere: progress continues from there, and the distance between does not count.
   void relocate(const LapPath& path, const maps::Point& position) noexcept {
     place_ = path.project(position);
   }
@@ -87,8 +87,8 @@ class LapTimer {
 };
 
 /// Laps as f1tenth_gym counts them: a zone 4 m wide and 0.316 m deep round the car's own start, turned as the
-/// first car's start is. Every way in or out is half a lap, in whatever direction, and after two laps the
-/// time stands still.
+/// first car's start is. Each crossing of the zone's border counts as half a lap, in either direction, and
+/// after two laps the time stops.
 class StartZoneLaps {
  public:
   /// `own` is the car's start, `heading` (rad) the first car's yaw there.
@@ -99,7 +99,7 @@ class StartZoneLaps {
 
   /// Whether the car is in the start zone.
   bool near_start() const noexcept { return near_; }
-  int toggles() const noexcept { return toggles_; }  ///< ways in and out
+  int toggles() const noexcept { return toggles_; }  ///< crossings of the zone's border
   /// Number of finished laps.
   int laps() const noexcept { return toggles_ / 2; }
   double time() const noexcept { return time_; }  ///< s

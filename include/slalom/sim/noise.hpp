@@ -5,8 +5,8 @@
 
 namespace slalom::sim {
 
-/// A stream of normal noise of its own for each (seed, car): call n yields the same values whatever was
-/// called before, on every machine and instruction set.
+/// A stream of normal noise for each (seed, car). The values of call n do not depend on other streams, and
+/// are the same on every machine and instruction set.
 ///
 /// Random bits by a counter and two rounds of a multiply-and-shift hash, then the transform of Box & Muller
 /// (1958) in float32; the tails reach 5.9 standard deviations.

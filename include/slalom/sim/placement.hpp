@@ -29,11 +29,11 @@ struct PlacementRules {
   double gap = 1.5;         ///< m, least room between two cars
   double keep_clear = 3.0;  ///< m, least distance of a car's middle from `start`
   double passage = 0.6;     ///< m, least room to a wall on one side of a car, if `room` is given
-  int attempts = 2000;      ///< draws over all before giving up
+  int attempts = 2000;      ///< largest number of draws in total
 };
 
-/// Parked cars that leave the course passable: none overlaps another or stands near the start, and beside
-/// each a passage stays open. `room` gives for each waypoint the distance (m) to the nearest wall, or is
+/// Parked cars that leave the course passable: none overlaps another or is near the start, and a passage
+/// beside each stays open. `room` gives for each waypoint the distance (m) to the nearest wall, or is
 /// empty where this is not known. Throws std::invalid_argument as above, and std::runtime_error if the
 /// attempts do not suffice.
 std::vector<Placement> place_apart(std::span<const maps::Point> path, std::span<const double> room, int cars,

@@ -10,8 +10,8 @@
 
 namespace slalom::sim {
 
-/// A run as what went into it: start and commands. Replayed in a world of the same options and track it gives
-/// the same states, scans and contacts bit for bit.
+/// The inputs of a run: start and commands. Replayed in a world with the same options and track, it gives the
+/// same states, scans and collisions bit for bit.
 struct Recording {
   std::uint64_t seed = 0;            ///< seed of the random numbers
   std::vector<maps::Pose> cars{};    ///< start poses of the cars

@@ -6,7 +6,7 @@
 
 namespace slalom::sim {
 
-/// A driver that does what it was told beforehand, whatever happens: commands by time.
+/// A driver without feedback: a fixed sequence of commands by time.
 class Script {
  public:
   /// A command and its duration.

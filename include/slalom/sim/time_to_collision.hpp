@@ -11,7 +11,7 @@ namespace slalom::sim {
 /// f1tenth_gym's test for a wall hit: a beam whose range, less the way to the car's outline, is used up in
 /// less than 5 ms at the present speed. The outline is taken (l_f + l_r) / 2 ahead and behind instead of half
 /// a length, a range inside it ahead of the car does not count, and at speed the car moves farther per step
-/// than the test looks. Contacts proper come from Track::collides_with_wall.
+/// than the test looks. Exact collisions come from Track::collides_with_wall.
 class TimeToCollision {
  public:
   /// Computed for a scanner on a car.

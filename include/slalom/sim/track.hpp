@@ -13,12 +13,13 @@ namespace slalom::sim {
 
 /// Options of the conversion from map to walls.
 struct TrackOptions {
-  bool unknown_is_wall = false;  ///< cells of which nothing is known stop cars and beams
-  bool outside_is_wall = true;   ///< so does the border of the map; else a beam that leaves it never returns
+  bool unknown_is_wall = false;  ///< unknown cells stop cars and beams
+  bool outside_is_wall =
+      true;  ///< the border of the map stops them too; else a beam that leaves it has no return
 };
 
-/// What does not change in a world: walls, the fields made from them and the path along which laps are
-/// measured. Heavy to make, immutable, and shared by any number of worlds and threads.
+/// The constant part of a world: walls, the fields computed from them and the path along which laps are
+/// measured. Expensive to construct, immutable, and shared by any number of worlds and threads.
 class Track {
  public:
   /// Throws std::invalid_argument on a map of no size, a resolution that is not positive, an origin that is
@@ -41,12 +42,12 @@ class Track {
   /// Whether a point of the map frame lies in a wall.
   bool in_wall(const maps::Point& point) const noexcept;
 
-  /// Whether a body touches a wall: an overlap of the rectangle with an obstacle cell, as a square, or with
-  /// the outside.
+  /// Whether a body collides with a wall: an overlap of the rectangle with an obstacle cell, as a square, or
+  /// with the outside.
   bool collides_with_wall(const Box& box) const noexcept;
 
-  /// The distance (m) from a point to the nearest wall, as far as the field tells: within a cell of the
-  /// truth; 0 in a wall, infinite where there is none.
+  /// The distance (m) from a point to the nearest wall, with an error of at most one cell; 0 in a
+  /// wall, infinite without any wall.
   double distance_to_wall(const maps::Point& point) const noexcept;
 
   /// A point in cells of the grid: column and row with fractions.

@@ -28,7 +28,7 @@ void World::find_fixed_partners() noexcept {
   for (Fixed& body : fixed_) body.last_partner = -1;
   for (std::size_t i = 0; i < fixed_.size(); ++i)
     for (std::size_t j = i + 1; j < fixed_.size(); ++j) {
-      // Two discs are told apart here by their squares; it is only about what is placed into something else.
+      // For two discs the enclosing squares are compared, which is sufficient for fixed bodies.
       const bool touches = fixed_[j].disc_radius > 0 && fixed_[i].disc_radius > 0
                                ? signed_gap(fixed_[i].box, fixed_[j].box) <= 0
                            : fixed_[i].disc_radius > 0 ? collides(fixed_[j].box, fixed_[i])
