@@ -7,8 +7,6 @@
 namespace slalom::testing {
 namespace {
 
-using detail::KernelsOf;
-
 /// Gradients so small that the published program's floor has swallowed them count as zero.
 constexpr double swallowed = 1e-12;
 
@@ -67,11 +65,11 @@ void compare_svmpc_gradient(const std::filesystem::path& folder) {
     const auto inverse = numbers<Real>(json["grad_sampler_inv_cov"]),
                prior_inverse = numbers<Real>(json["prior_inv_cov"]);
     for (std::size_t r = 0; r < linear.size(); ++r) linear[r] = mean[r] * prior_inverse[r];
-    const detail::ParticleGradients<Real> how{
+    const detail::GradientSettings<Real> how{
         count,         simd::padding, static_cast<Real>(number(json["lambda"])), false, Real(1e-10),
         linear.data(), inverse.data()};
-    KernelsOf<Real>::particle_gradients(how, samples.view(), theta.view(), theta.range(), exponents.data(),
-                                        gradient.view());
+    detail::kernels<Real>().particle_gradients(how, samples.view(), theta.view(), theta.range(),
+                                               exponents.data(), gradient.view());
     comparison.compare(gradient.sequence(0), numbers<double>(json["grad_log_likelihood"]), case_name(json),
                        swallowed);
     std::vector<Real> prior(centre.size());
@@ -98,7 +96,7 @@ void compare_phi(const std::filesystem::path& folder) {
     const int count = detail::squared_norms(x.view(), x.samples, norms.data());
     const Real h = detail::bandwidth(norms.data(), count, x.samples);
     comparison.compare<Real>({h}, {number(json["bandwidth_h"])}, case_name(json) + " bandwidth");
-    KernelsOf<Real>::stein_directions(x.view(), gradient.view(), x.samples, h, x.range(), phi.view());
+    detail::kernels<Real>().stein_directions(x.view(), gradient.view(), x.samples, h, x.range(), phi.view());
     for (int i = 0; i < x.samples; ++i) {
       comparison.compare(phi.sequence(i), numbers<double>(json["phi"][static_cast<std::size_t>(i)]),
                          case_name(json) + " particle " + std::to_string(i));
@@ -110,7 +108,7 @@ void compare_phi(const std::filesystem::path& folder) {
       pair.view().row(r)[1] = x.view().row(r)[1];
       ones.view().row(r)[0] = 1;
     }
-    KernelsOf<Real>::stein_directions(pair.view(), zeros.view(), 2, h, pair.range(), out.view());
+    detail::kernels<Real>().stein_directions(pair.view(), zeros.view(), 2, h, pair.range(), out.view());
     auto repulsion = out.sequence(1);  // half of grad_{x0} k(x0, x1)
     for (Real& v : repulsion) v *= 2;
     // The repulsion is a summand of phi and as exact as that: particles may differ by less than float32
@@ -120,7 +118,7 @@ void compare_phi(const std::filesystem::path& folder) {
       for (const double entry : numbers<double>(direction)) scale = std::max(scale, std::abs(entry));
     comparison.compare(repulsion, numbers<double>(json["grad_kernel_01"]), case_name(json) + " grad kernel",
                        scale);
-    KernelsOf<Real>::stein_directions(pair.view(), ones.view(), 2, h, pair.range(), out.view());
+    detail::kernels<Real>().stein_directions(pair.view(), ones.view(), 2, h, pair.range(), out.view());
     const auto with_gradient = out.sequence(1);
     comparison.compare<Real>({2 * with_gradient[0] - repulsion[0]}, {number(json["kernel_01"])},
                              case_name(json) + " kernel", 1);

@@ -6,8 +6,6 @@
 namespace slalom::testing {
 namespace {
 
-using detail::KernelsOf;
-
 bool any_nan(const std::vector<double>& values) {
   return std::any_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
 }
@@ -21,9 +19,10 @@ void compare_moments(const Json& json, const char* suffix, Batch<Real>& samples,
   const auto prior = numbers<Real>(json["mean"]), variance = numbers<Real>(json["cov"]);
   const std::vector<Real> zero(prior.size());
   std::vector<Real> mean(prior.size()), sigma(prior.size());
-  KernelsOf<Real>::weighted_sums(samples.view(), weights.data(), zero.data(), samples.range(), mean.data());
-  KernelsOf<Real>::weighted_squares(samples.view(), weights.data(), prior.data(), samples.range(),
-                                    sigma.data());
+  detail::kernels<Real>().weighted_sums(samples.view(), weights.data(), zero.data(), samples.range(),
+                                        mean.data());
+  detail::kernels<Real>().weighted_squares(samples.view(), weights.data(), prior.data(), samples.range(),
+                                           sigma.data());
   for (std::size_t r = 0; r < sigma.size(); ++r)
     sigma[r] *= detail::inverse_variance(variance[r], Real(1e-4));
   comparison.compare(mean, expected_mean, case_name(json) + " mean_" + suffix);
@@ -38,9 +37,10 @@ void compare_plain_moments(const Json& json, Batch<Real>& samples, Comparison& c
       variance(mean.size());
   std::fill_n(weights.begin(), samples.samples, Real(1) / static_cast<Real>(samples.samples));
   const std::vector<Real> zero(mean.size());
-  KernelsOf<Real>::weighted_sums(samples.view(), weights.data(), zero.data(), samples.range(), mean.data());
-  KernelsOf<Real>::weighted_squares(samples.view(), weights.data(), mean.data(), samples.range(),
-                                    variance.data());
+  detail::kernels<Real>().weighted_sums(samples.view(), weights.data(), zero.data(), samples.range(),
+                                        mean.data());
+  detail::kernels<Real>().weighted_squares(samples.view(), weights.data(), mean.data(), samples.range(),
+                                           variance.data());
   for (Real& v : variance) v += Real(1e-5);
   comparison.compare(mean, numbers<double>(json["est_mu"]), case_name(json) + " est_mu");
   comparison.compare(variance, numbers<double>(json["est_sigma"]), case_name(json) + " est_sigma");
@@ -60,7 +60,7 @@ void compare_reverse(const std::filesystem::path& folder) {
     detail::control_coefficients(temperature, number(json["alpha"]), 1e-4, mean.data(), nominal.data(),
                                  variance.data(), samples.rows, coefficients.data());
     auto totals = padded_numbers<Real>(json["costs"], std::numeric_limits<Real>::infinity());
-    KernelsOf<Real>::add_linear(samples.view(), coefficients.data(), samples.range(), totals.data());
+    detail::kernels<Real>().add_linear(samples.view(), coefficients.data(), samples.range(), totals.data());
     std::vector<Real> evaluated(totals.size()), rejected(totals.size());
     const auto sums = detail::reverse_weights(totals.data(), static_cast<Real>(temperature),
                                               static_cast<Real>(number(json["negative_ratio"])), Real(1e-10),
@@ -111,8 +111,8 @@ void compare_rejection(const std::filesystem::path& folder) {
     comparison.compare(first, numbers<double>(json["normal_pdf_sample0"]), case_name(json) + " sample 0");
 
     std::vector<Real> logarithms(static_cast<std::size_t>(samples.stride));
-    KernelsOf<Real>::published_rejection(samples.view(), densities.rows(), samples.range(),
-                                         logarithms.data());
+    detail::kernels<Real>().published_rejection(samples.view(), densities.rows(), samples.range(),
+                                                logarithms.data());
     // The program divides by min(sum, 1e-10); only ratios matter, so both are compared as ratios to the
     // whole.
     std::vector<double> raw, expected = numbers<double>(json["prob_raw"]);

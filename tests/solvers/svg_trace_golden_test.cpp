@@ -1,5 +1,5 @@
 #include "solvers/golden_json.hpp"
-#include "solvers/kernels/kernels_of.hpp"
+#include "solvers/kernels/kernels.hpp"
 #include "solvers/methods/control_term.hpp"
 #include "solvers/methods/gaussian_fit.hpp"
 #include "solvers/methods/surrogate_gradient.hpp"
@@ -7,8 +7,6 @@
 /// Whole solves of the published SVG-MPPI, stage by stage, each stage from what the trace says went into it.
 namespace slalom::testing {
 namespace {
-
-using detail::KernelsOf;
 
 // The parameters of the traces.
 constexpr double temperature = 3, discount = 0.1, gradient_temperature = 3, guide_step = 0.005,
@@ -68,10 +66,10 @@ int compare_fits(const Json& solve, const std::string& where, Comparison& compar
   auto density = numbers<double>(solve["costs_history"]);
   const detail::Range range{0, static_cast<int>(density.size())};
   std::vector<double> weights(density.size());
-  const double least = KernelsOf<double>::minimum(density.data(), range);
-  const auto sums = KernelsOf<double>::exponential_weights(density.data(), density.data(), least,
-                                                           fit_temperature, range, weights.data());
-  KernelsOf<double>::scale(1 / (sums.weight + offset), range, weights.data());
+  const double least = detail::kernels<double>().minimum(density.data(), range);
+  const auto sums = detail::kernels<double>().exponential_weights(density.data(), density.data(), least,
+                                                                  fit_temperature, range, weights.data());
+  detail::kernels<double>().scale(1 / (sums.weight + offset), range, weights.data());
   const auto expected_weights = numbers<double>(solve["softmax_costs"]);
   for (std::size_t i = 0; i < weights.size(); ++i)
     EXPECT_NEAR(weights[i], expected_weights[i], 1e-9) << where;
@@ -108,7 +106,7 @@ void compare_update(const Json& solve, const std::filesystem::path& csv, const s
   with_term.resize(static_cast<std::size_t>(samples.stride));
   detail::control_coefficients(temperature, discount, 1e-4, mean.data(), nominal.data(), variance.data(),
                                samples.rows, coefficients.data());
-  KernelsOf<Real>::add_linear(samples.view(), coefficients.data(), samples.range(), with_term.data());
+  detail::kernels<Real>().add_linear(samples.view(), coefficients.data(), samples.range(), with_term.data());
   comparison.compare(with_term, {totals.begin(), totals.begin() + samples.samples}, where + " control term");
 
   std::vector<Real> all(totals.begin(), totals.end());
@@ -116,17 +114,18 @@ void compare_update(const Json& solve, const std::filesystem::path& csv, const s
              std::numeric_limits<Real>::infinity());
   std::vector<Real> w(all.size());
   const detail::Range range{0, static_cast<int>(all.size())};
-  const Real least = KernelsOf<Real>::minimum(all.data(), range);
+  const Real least = detail::kernels<Real>().minimum(all.data(), range);
   comparison.compare<Real>({least}, {number(solve["min_cost_with_control_term"])}, where + " least cost");
-  const auto sums = KernelsOf<Real>::exponential_weights(all.data(), all.data(), least,
-                                                         static_cast<Real>(temperature), range, w.data());
-  KernelsOf<Real>::scale(Real(1) / (sums.weight + Real(offset)), range, w.data());
+  const auto sums = detail::kernels<Real>().exponential_weights(
+      all.data(), all.data(), least, static_cast<Real>(temperature), range, w.data());
+  detail::kernels<Real>().scale(Real(1) / (sums.weight + Real(offset)), range, w.data());
   comparison.compare(w, weights, where + " weights");
 
   if (known == costs.size()) {
     const std::vector<Real> zero(mean.size());
     std::vector<Real> solution(mean.size());
-    KernelsOf<Real>::weighted_sums(samples.view(), w.data(), zero.data(), samples.range(), solution.data());
+    detail::kernels<Real>().weighted_sums(samples.view(), w.data(), zero.data(), samples.range(),
+                                          solution.data());
     comparison.compare(solution, numbers<double>(solve["result_control_seq"]), where + " solution");
   }
 }

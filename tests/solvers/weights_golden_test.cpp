@@ -1,13 +1,11 @@
 #include "solvers/golden_json.hpp"
-#include "solvers/kernels/kernels_of.hpp"
+#include "solvers/kernels/kernels.hpp"
 #include "solvers/methods/control_term.hpp"
 #include "solvers/methods/gaussian_fit.hpp"
 #include "solvers/methods/mirror_descent.hpp"
 
 namespace slalom::testing {
 namespace {
-
-using detail::KernelsOf;
 
 template <class Real>
 void compare_softmax(const std::filesystem::path& folder) {
@@ -28,10 +26,10 @@ void compare_softmax(const std::filesystem::path& folder) {
     const std::vector<Real> costs(exact.begin(), exact.end());
     std::vector<Real> weights(costs.size());
     const detail::Range range{0, static_cast<int>(costs.size())};
-    const Real least = KernelsOf<Real>::minimum(costs.data(), range);
-    const auto sums = KernelsOf<Real>::exponential_weights(
+    const Real least = detail::kernels<Real>().minimum(costs.data(), range);
+    const auto sums = detail::kernels<Real>().exponential_weights(
         costs.data(), costs.data(), least, static_cast<Real>(number(json["lambda"])), range, weights.data());
-    KernelsOf<Real>::scale(Real(1) / (sums.weight + Real(1e-10)), range, weights.data());
+    detail::kernels<Real>().scale(Real(1) / (sums.weight + Real(1e-10)), range, weights.data());
     comparison.compare(weights, numbers<double>(json["weights"]), case_name(json));
   });
   comparison.note(std::to_string(shifted) +
@@ -57,7 +55,7 @@ void compare_control_term(const std::filesystem::path& folder) {
     detail::control_coefficients(number(json["lambda"]), number(json["alpha"]), 1e-4, mean.data(),
                                  nominal.data(), variance.data(), samples.rows, coefficients.data());
     auto costs = padded_numbers<Real>(json["costs"], 0);
-    KernelsOf<Real>::add_linear(samples.view(), coefficients.data(), samples.range(), costs.data());
+    detail::kernels<Real>().add_linear(samples.view(), coefficients.data(), samples.range(), costs.data());
     comparison.compare(costs, numbers<double>(json["costs_with_control_term"]), case_name(json));
   });
   EXPECT_GT(comparison.cases(), 0);

@@ -2,11 +2,11 @@
 
 #include <cstddef>
 
-#include "slalom/core/simd.hpp"
+#include "slalom/core/dispatch.hpp"
 
-/// The inner loops of the solvers over batches [row][sample], row = step * inputs + input. Each is one
-/// template over its scalar type (weight_kernels.hpp and others): `double` for reference, and packs of
-/// float32, compiled once per instruction set behind the function pointers below.
+/// The inner loops of the solvers over batches [row][sample], row = step * inputs + input. Each is a kernel
+/// (see core/dispatch.hpp) in weight_kernels.hpp, noise_kernels.hpp or particle_kernels.hpp, compiled for
+/// every instruction set on packs of float32, and for reference on `double`.
 namespace slalom::detail {
 
 /// Values [row][sample], rows `stride` apart.
@@ -19,14 +19,15 @@ struct Rows {
   Real* row(int r) const { return values + r * stride; }
 };
 
-/// Where standard normal values are moved to: clamp(mean + deviation z, low, high), entries [row].
+/// The distribution of samples: independent normal values with this mean and standard deviation, clamped to
+/// [low, high]; entries [row].
 template <class Real>
 struct SamplingDistribution {
   const Real* mean = nullptr;
   const Real* deviation = nullptr;
   const Real* low = nullptr;
   const Real* high = nullptr;
-  int zero_mean_from = 0;  ///< samples from this index on are placed around zero instead of the mean
+  int zero_mean_from = 0;  ///< samples from this index on are around zero instead of the mean
 };
 
 /// A run of samples. `first` and `count` are multiples of the lanes.
@@ -43,7 +44,7 @@ struct WeightSums {
   Real cost = 0;     ///< sum of w times the cost given
 };
 
-/// What the samples of a range came to.
+/// Statistics of the costs of a range of samples.
 template <class Real>
 struct CostStatistics {
   Real least_cost = 0;   ///< infinite if none is finite
@@ -58,7 +59,7 @@ inline constexpr int moments = 4;
 /// How gradients of particles are estimated: see surrogate_gradient.hpp. Exponents are
 /// S / temperature + sum linear[row] v[row].
 template <class Real>
-struct ParticleGradients {
+struct GradientSettings {
   int samples = 0;          ///< a particle
   int particle_stride = 0;  ///< from one sample of a particle to the next
   Real temperature = 1;
@@ -77,73 +78,82 @@ struct RejectionRows {
   const Real* rejected_scale = nullptr;    ///< 1 / sqrt(2 pi variance)
 };
 
-/// The float32 kernels of one instruction set.
+/// The kernels of one instruction set for float32, or those for `double`. All arrays are padded to whole
+/// packs.
+template <class Real>
 struct Kernels {
-  /// Moves normal values to samples; `noise` and `samples` may be the same.
-  void (*place)(const Rows<float>& noise, const Rows<float>& samples, const SamplingDistribution<float>& to,
-                Range range);
+  /// Makes samples of standard normal values: clamp(mean + deviation z, low, high). `noise` and `samples` may
+  /// be the same.
+  void (*sample)(const Rows<Real>& noise, const Rows<Real>& samples, const SamplingDistribution<Real>& to,
+                 Range range);
   /// totals[k] += sum over rows of coefficient[row] v[row][k].
-  void (*add_linear)(const Rows<float>& v, const float* coefficient, Range range, float* totals);
+  void (*add_linear)(const Rows<Real>& v, const Real* coefficient, Range range, Real* totals);
   /// totals[k] += sum over rows of weight[row] (v[row][k] - centre[row])^2.
-  void (*add_squared_distance)(const Rows<float>& v, const float* centre, const float* weight, Range range,
-                               float* totals);
+  void (*add_squared_distance)(const Rows<Real>& v, const Real* centre, const Real* weight, Range range,
+                               Real* totals);
   /// Costs become +infinity where they are not finite, and likewise the totals, costs[k] + sum over rows of
   /// linear[row] v[row][k]; `linear` may be null.
-  CostStatistics<float> (*finish)(const Rows<float>& v, const float* linear, Range range, float* costs,
-                                  float* totals);
+  CostStatistics<Real> (*finish)(const Rows<Real>& v, const Real* linear, Range range, Real* costs,
+                                 Real* totals);
   /// Replaces what is not finite by +infinity.
-  void (*make_finite)(Range range, float* costs);
-  float (*minimum)(const float* costs, Range range);
+  void (*make_finite)(Range range, Real* costs);
+  Real (*minimum)(const Real* costs, Range range);
   /// weights[k] = exp((least - totals[k]) / temperature), and sums over them with `costs` (infinite ones of
   /// weight 0 count nothing).
-  WeightSums<float> (*exponential_weights)(const float* totals, const float* costs, float least,
-                                           float temperature, Range range, float* weights);
+  WeightSums<Real> (*exponential_weights)(const Real* totals, const Real* costs, Real least, Real temperature,
+                                          Range range, Real* weights);
   /// The same with the q-exponential of `index` q != 1: weights[k] = e_q((least - totals[k]) / temperature).
-  WeightSums<float> (*tsallis_weights)(const float* totals, const float* costs, float least,
-                                       float temperature, float index, Range range, float* weights);
+  WeightSums<Real> (*tsallis_weights)(const Real* totals, const Real* costs, Real least, Real temperature,
+                                      Real index, Range range, Real* weights);
   /// values[k] *= factor.
-  void (*scale)(float factor, Range range, float* values);
+  void (*scale)(Real factor, Range range, Real* values);
   /// sums[row] = sum over samples of w[k] (v[row][k] - centre[row]).
-  void (*weighted_sums)(const Rows<float>& v, const float* weights, const float* centre, Range range,
-                        float* sums);
+  void (*weighted_sums)(const Rows<Real>& v, const Real* weights, const Real* centre, Range range,
+                        Real* sums);
   /// sums[row] = sum over samples of w[k] (v[row][k] - centre[row])^2.
-  void (*weighted_squares)(const Rows<float>& v, const float* weights, const float* centre, Range range,
-                           float* sums);
+  void (*weighted_squares)(const Rows<Real>& v, const Real* weights, const Real* centre, Range range,
+                           Real* sums);
   /// totals[k] = costs[k] + factor terms[k].
-  void (*add_scaled)(const float* costs, float factor, const float* terms, Range range, float* totals);
+  void (*add_scaled)(const Real* costs, Real factor, const Real* terms, Range range, Real* totals);
   /// z <- L z over the rows first, first + step, ... with L lower triangular, row by row.
-  void (*colour)(const Rows<float>& z, const float* factor, int first, int step, Range range);
+  void (*colour)(const Rows<Real>& z, const Real* factor, int first, int step, Range range);
   /// z <- z exp(s y - s^2), y laid out like z, s `spread` [row].
-  void (*spread_log_normal)(const Rows<float>& z, const float* y, const float* spread, Range range);
+  void (*spread_log_normal)(const Rows<Real>& z, const Real* y, const Real* spread, Range range);
   /// Gradients [row][particle]; `exponents` holds the samples' costs and becomes their weights.
-  void (*particle_gradients)(const ParticleGradients<float>& how, const Rows<float>& samples,
-                             const Rows<float>& theta, Range particles, float* exponents,
-                             const Rows<float>& gradient);
-  /// Normal values to `count` samples round each particle, in place.
-  void (*place_round)(const Rows<float>& samples, const Rows<float>& theta,
-                      const SamplingDistribution<float>& to, int particle_stride, int count, Range particles);
+  void (*particle_gradients)(const GradientSettings<Real>& how, const Rows<Real>& samples,
+                             const Rows<Real>& theta, Range particles, Real* exponents,
+                             const Rows<Real>& gradient);
+  /// The same in place, for `count` samples around each particle instead of the mean.
+  void (*sample_around)(const Rows<Real>& samples, const Rows<Real>& theta,
+                        const SamplingDistribution<Real>& to, int particle_stride, int count,
+                        Range particles);
   /// SVGD's directions [row][particle] for the particles of a range.
-  void (*stein_directions)(const Rows<float>& x, const Rows<float>& gradient, int count, float bandwidth,
-                           Range particles, const Rows<float>& phi);
+  void (*stein_directions)(const Rows<Real>& x, const Rows<Real>& gradient, int count, Real bandwidth,
+                           Range particles, const Rows<Real>& phi);
   /// sums[row * moments ...] of two lists of weights.
-  void (*two_moments)(const Rows<float>& v, const float* first, const float* second, const float* centre,
-                      Range range, float* sums);
+  void (*two_moments)(const Rows<Real>& v, const Real* first, const Real* second, const Real* centre,
+                      Range range, Real* sums);
   /// to[row][k] = from[row][indices[k]].
-  void (*gather)(const Rows<float>& from, const int* indices, Range range, const Rows<float>& to);
+  void (*gather)(const Rows<Real>& from, const int* indices, Range range, const Rows<Real>& to);
   /// evaluated and rejected become the positive and the negative part of evaluated / falling - rejected /
   /// growing; their sums are `weight` and `squared`.
-  WeightSums<float> (*split_weights)(float falling, float growing, Range range, float* evaluated,
-                                     float* rejected);
+  WeightSums<Real> (*split_weights)(Real falling, Real growing, Range range, Real* evaluated, Real* rejected);
   /// Logarithms of the inverse of the published program's probabilities of keeping samples.
-  void (*published_rejection)(const Rows<float>& v, const RejectionRows<float>& densities, Range range,
-                              float* logarithms);
+  void (*published_rejection)(const Rows<Real>& v, const RejectionRows<Real>& densities, Range range,
+                              Real* logarithms);
   /// The same for normal densities, from squared distances in units of the variances; replaces `own`.
-  void (*rejection_logarithm)(const float* rejected, float offset, Range range, float* own);
+  void (*rejection_logarithm)(const Real* rejected, Real offset, Range range, Real* own);
 };
 
-/// Those of the instruction set in use.
-const Kernels& kernels();
-/// Those of one instruction set.
-const Kernels& kernels(simd::Target target);
+/// The kernels for float32 of the instruction set in use, or the reference kernels for `double`.
+template <class Real = float>
+const Kernels<Real>& kernels();
+template <>
+const Kernels<float>& kernels<float>();
+template <>
+const Kernels<double>& kernels<double>();
+
+/// The kernels for float32 of one instruction set.
+const Kernels<float>& kernels(simd::Target target);
 
 }  // namespace slalom::detail

@@ -1,9 +1,10 @@
 #pragma once
 
-#include "solvers/kernels/weight_kernels.hpp"
+#include "solvers/kernels/kernels.hpp"
+#include "solvers/kernels/lanes.hpp"
 
 /// Bodies of the kernels that shape noise: see noise_shape.hpp.
-namespace slalom::detail::body {
+namespace slalom::detail::kernel {
 
 /// `colour` for the `packs` packs from sample k on, which share every entry of L.
 template <int packs, class F>
@@ -25,29 +26,36 @@ SLALOM_INLINE void colour_packs(const Rows<RealOf<F>>& z, const RealOf<F>* facto
 }
 
 /// z <- L z over the rows first, first + step, ... of one input, from the last backwards, in place.
-template <class F>
-SLALOM_INLINE void colour(const Rows<RealOf<F>>& z, const RealOf<F>* factor, int first, int step,
-                          Range range) {
-  constexpr int lanes = Lanes<F>::count;
-  const int end = range.first + range.count;
-  int k = range.first;
-  for (; k + 4 * lanes <= end; k += 4 * lanes) colour_packs<4, F>(z, factor, first, step, k);
-  for (; k < end; k += lanes) colour_packs<1, F>(z, factor, first, step, k);
-}
+struct Colour {
+  template <class Target>
+  SLALOM_KERNEL static void run(const Rows<RealIn<Target>>& z, const RealIn<Target>* factor, int first,
+                                int step, Range range) {
+    using F = PackIn<Target>;
+    constexpr int lanes = Lanes<F>::count;
+    const int end = range.first + range.count;
+    int k = range.first;
+    for (; k + 4 * lanes <= end; k += 4 * lanes) colour_packs<4, F>(z, factor, first, step, k);
+    for (; k < end; k += lanes) colour_packs<1, F>(z, factor, first, step, k);
+  }
+};
 
 /// z <- z exp(s y - s^2). `y` is laid out like z, `spread` [row] is s.
-template <class F>
-SLALOM_INLINE void spread_log_normal(const Rows<RealOf<F>>& z, const RealOf<F>* y, const RealOf<F>* spread,
-                                     Range range) {
-  using L = Lanes<F>;
-  for (int r = 0; r < z.rows; ++r) {
-    const F s(spread[r]), shift(-spread[r] * spread[r]);
-    RealOf<F>* to = z.row(r);
-    const RealOf<F>* from = y + r * z.stride;
-    for (int k = range.first; k < range.first + range.count; k += L::count) {
-      L::store(L::load(to + k) * exp(s * L::load(from + k) + shift), to + k);
+struct SpreadLogNormal {
+  template <class Target>
+  SLALOM_KERNEL static void run(const Rows<RealIn<Target>>& z, const RealIn<Target>* y,
+                                const RealIn<Target>* spread, Range range) {
+    using F = PackIn<Target>;
+    using L = Lanes<F>;
+    using Real = RealIn<Target>;
+    for (int r = 0; r < z.rows; ++r) {
+      const F s(spread[r]), shift(-spread[r] * spread[r]);
+      Real* to = z.row(r);
+      const Real* from = y + r * z.stride;
+      for (int k = range.first; k < range.first + range.count; k += L::count) {
+        L::store(L::load(to + k) * exp(s * L::load(from + k) + shift), to + k);
+      }
     }
   }
-}
+};
 
-}  // namespace slalom::detail::body
+}  // namespace slalom::detail::kernel

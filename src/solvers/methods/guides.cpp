@@ -136,9 +136,9 @@ void Guides::place(RandomKey key, int first, int last) noexcept {
                                       static_cast<double>(options_.guides.gradient_samples));
   for (int g = first; g < last; ++g) {
     const Range block{g * block_, block_};
-    kernels().place(rows, rows,
-                    {&guides_[at(g)], deviation_.data(), low_.data(), high_.data(), block.first + biased},
-                    block);
+    kernels().sample(rows, rows,
+                     {&guides_[at(g)], deviation_.data(), low_.data(), high_.data(), block.first + biased},
+                     block);
     const int own = block.first + options_.guides.gradient_samples;
     for (int r = 0; r < rows.rows; ++r) {
       rows.row(r)[own] = guides_[at(g) + static_cast<std::size_t>(r)];

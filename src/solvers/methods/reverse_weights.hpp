@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/kernels/kernels_of.hpp"
+#include "solvers/kernels/kernels.hpp"
 
 namespace slalom::detail {
 
@@ -28,29 +28,31 @@ struct ReverseSums {
 template <class Real>
 ReverseSums reverse_weights(const Real* totals, Real temperature, Real ratio, Real offset, Range range,
                             Real* evaluated, Real* rejected) noexcept {
-  using K = KernelsOf<Real>;
+  const Kernels<Real>& kernel_set = kernels<Real>();
   constexpr Real infinite = std::numeric_limits<Real>::infinity();
   const int end = range.first + range.count;
   ReverseSums sums;
-  const Real least = K::minimum(totals, range);
+  const Real least = kernel_set.minimum(totals, range);
   std::fill(evaluated + range.first, evaluated + end, Real(0));
   std::fill(rejected + range.first, rejected + end, Real(0));
   if (!(least < infinite)) return sums;
   sums.usable = true;
   const Real falling =
-      K::exponential_weights(totals, totals, least, temperature, range, evaluated).weight + offset;
+      kernel_set.exponential_weights(totals, totals, least, temperature, range, evaluated).weight + offset;
   // exp((J - max) / lambda) = exp((min' - J') / lambda) with J' = -J.
   for (int k = range.first; k < end; ++k) rejected[k] = totals[k] < infinite ? -totals[k] : infinite;
-  const Real most = K::minimum(rejected, range);
-  Real growing = K::exponential_weights(rejected, rejected, most, temperature, range, rejected).weight;
+  const Real most = kernel_set.minimum(rejected, range);
+  Real growing =
+      kernel_set.exponential_weights(rejected, rejected, most, temperature, range, rejected).weight;
   const Real spread = (-most - least) / temperature;
   sums.log_growth = static_cast<double>(spread + std::log(growing));
   growing += offset * std::exp(-spread);
-  const WeightSums<Real> parts = K::split_weights(falling, growing / ratio, range, evaluated, rejected);
+  const WeightSums<Real> parts =
+      kernel_set.split_weights(falling, growing / ratio, range, evaluated, rejected);
   sums.evaluated = static_cast<double>(parts.weight);
   sums.rejected = static_cast<double>(parts.squared);
-  if (sums.evaluated > 0) K::scale(static_cast<Real>(1 / sums.evaluated), range, evaluated);
-  if (sums.rejected > 0) K::scale(static_cast<Real>(1 / sums.rejected), range, rejected);
+  if (sums.evaluated > 0) kernel_set.scale(static_cast<Real>(1 / sums.evaluated), range, evaluated);
+  if (sums.rejected > 0) kernel_set.scale(static_cast<Real>(1 / sums.rejected), range, rejected);
   return sums;
 }
 

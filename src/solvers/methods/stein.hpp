@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/kernels/kernels_of.hpp"
+#include "solvers/kernels/kernels.hpp"
 
 /// Stein variational gradient descent (Liu and Wang, NeurIPS 2016): particles x_i move along
 ///
 ///     phi(x_i) = 1/n sum_j [ k(x_j, x_i) g_j + grad_{x_j} k(x_j, x_i) ],   k(a, b) = exp(-|a - b|^2 / h)
 ///     grad_{x_j} k = -2/h k (x_j - x_i)
 ///
-/// with g_j the gradient of the log posterior at x_j: KernelsOf<Real>::stein_directions. This file has the
+/// with g_j the gradient of the log posterior at x_j: `Kernels::stein_directions`. This file has the
 /// bandwidth h.
 namespace slalom::detail {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/kernels/kernels_of.hpp"
+#include "solvers/kernels/kernels.hpp"
 
 namespace slalom::detail {
 
@@ -35,24 +35,24 @@ struct SurrogateGradient {
 template <class Real>
 bool surrogate_gradient(const SurrogateGradient<Real>& s, const Rows<Real>& v, Range block, int samples,
                         Real* totals, Real* weights, Real* gradient) noexcept {
-  using K = KernelsOf<Real>;
+  const Kernels<Real>& k = kernels<Real>();
   constexpr Real infinite = std::numeric_limits<Real>::infinity();
-  if (s.linear) K::add_linear(v, s.linear, block, totals);
-  if (s.distance_centre) K::add_squared_distance(v, s.distance_centre, s.distance_weight, block, totals);
-  K::make_finite(block, totals);
+  if (s.linear) k.add_linear(v, s.linear, block, totals);
+  if (s.distance_centre) k.add_squared_distance(v, s.distance_centre, s.distance_weight, block, totals);
+  k.make_finite(block, totals);
   std::fill(totals + block.first + samples, totals + block.first + block.count, infinite);
-  const Real least = K::minimum(totals, block);
+  const Real least = k.minimum(totals, block);
   if (!(least < infinite)) {
     std::fill_n(gradient, v.rows, Real(0));
     return false;
   }
-  const double sum = static_cast<double>(
-      K::exponential_weights(totals, totals, least, s.temperature, block, weights).weight);
+  const double sum =
+      static_cast<double>(k.exponential_weights(totals, totals, least, s.temperature, block, weights).weight);
   const double floor =
       s.subtract_minimum
           ? s.floor
           : s.floor * std::exp(static_cast<double>(least) / static_cast<double>(s.temperature));
-  K::weighted_sums(v, weights, s.centre, block, gradient);
+  k.weighted_sums(v, weights, s.centre, block, gradient);
   for (int r = 0; r < v.rows; ++r) {
     gradient[r] = static_cast<Real>(static_cast<double>(s.inverse_variance[r]) *
                                     static_cast<double>(gradient[r]) / (sum + floor));

@@ -173,17 +173,17 @@ class SvMpcSolver final : public detail::SolverBase {
     for (int s = 0; s < options_.gradient_samples; ++s)
       fill_normal(gradient_batch_, s * stride + r.first, r.count, key(iteration));
     const int biased = zero_mean_from(options_.gradient_samples, options_.zero_mean_share);
-    detail::kernels().place_round(v, x, {nullptr, deviation_.data(), low().data(), high().data(), biased},
-                                  stride, options_.gradient_samples, r);
+    detail::kernels().sample_around(v, x, {nullptr, deviation_.data(), low().data(), high().data(), biased},
+                                    stride, options_.gradient_samples, r);
     for (int s = 0; s < options_.gradient_samples; ++s)
       evaluator.evaluate(gradient_batch_, s * stride + r.first, r.count, exponents_.data(), collided_.data());
-    const detail::ParticleGradients<float> how{options_.gradient_samples,
-                                               stride,
-                                               static_cast<float>(options_.temperature),
-                                               options_.published.subtract_minimum,
-                                               static_cast<float>(options_.published.gradient_floor),
-                                               linear_.data(),
-                                               inverse_.data()};
+    const detail::GradientSettings<float> how{options_.gradient_samples,
+                                              stride,
+                                              static_cast<float>(options_.temperature),
+                                              options_.published.subtract_minimum,
+                                              static_cast<float>(options_.published.gradient_floor),
+                                              linear_.data(),
+                                              inverse_.data()};
     detail::kernels().particle_gradients(how, v, x, r, exponents_.data(), view(gradient_));
     for (int row = 0; row < rows(); ++row) {
       const auto i = static_cast<std::size_t>(row);

@@ -137,7 +137,7 @@ BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, Ra
       const Range r = range(tile);
       if (!ready) fill_noise(sampler, values_, r, key);
       SequenceBatch& from = ready ? noise_ : values_;
-      kernels().place({from.row(0, 0), from.stride(), rows()}, row_view(), to, r);
+      kernels().sample({from.row(0, 0), from.stride(), rows()}, row_view(), to, r);
       const auto drawn = Clock::now();
       finish_tile(tile, &evaluator, linear, statistics);
       statistics.draw_time = seconds(start, drawn);
@@ -155,7 +155,7 @@ void SampleSet::place(const Sampler* sampler, RandomKey key, const SamplingDistr
     const Range r = range(tile);
     if (!ready) fill_noise(sampler, values_, r, key);
     SequenceBatch& from = ready ? noise_ : values_;
-    kernels().place({from.row(0, 0), from.stride(), rows()}, row_view(), to, r);
+    kernels().sample({from.row(0, 0), from.stride(), rows()}, row_view(), to, r);
   });
 }
 
@@ -218,7 +218,7 @@ float SampleSet::mix_totals(float factor, ThreadPool& pool) noexcept {
 }
 
 WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& pool, float index) noexcept {
-  const Kernels& k = kernels();
+  const Kernels<float>& k = kernels();
   pool.run(tiles(), [&](int tile) {
     WeightSums<float>& sums = weight_sums_[static_cast<std::size_t>(tile)];
     const float *totals = totals_.data(), *costs = costs_.data();
