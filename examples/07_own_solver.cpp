@@ -1,63 +1,12 @@
-// A method of one's own: predictive sampling (Howell et al., "Predictive Sampling", 2022). Of many disturbed
-// copies of the last plan the best is the next plan. It solves whatever the other methods solve.
+// A method of one's own (predictive_sampling.hpp) solves a problem through the same `Controller` as the
+// methods of the library.
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
 
-#include <slalom/core/random.hpp>
 #include <slalom/slalom.hpp>
 
+#include "predictive_sampling.hpp"
 #include "seeds.hpp"
-
-/// The method: draw, evaluate, take the best.
-class PredictiveSampling final : public slalom::Solver {
- public:
-  PredictiveSampling(int horizon, int inputs, int samples, float deviation, std::uint64_t seed)
-      : batch_(horizon, inputs, samples),
-        costs_(static_cast<std::size_t>(batch_.stride())),
-        collided_(costs_.size()),
-        plan_(static_cast<std::size_t>(horizon * inputs)),
-        deviation_(deviation) {
-    reset(seed);
-  }
-  const char* name() const noexcept override { return "predictive_sampling"; }
-  int horizon() const noexcept override { return batch_.steps(); }
-  int inputs() const noexcept override { return batch_.inputs(); }
-  void reset(std::uint64_t seed) noexcept override {
-    key_ = {seed, 0};
-    std::fill(plan_.begin(), plan_.end(), 0.0f);
-  }
-
-  const slalom::SolveResult& solve(const slalom::BatchEvaluator& evaluator,
-                                   const slalom::SolveRequest&) noexcept override {
-    const int rows = horizon() * inputs();
-    std::rotate(plan_.begin(), plan_.begin() + inputs(), plan_.end());  // one step has passed
-    slalom::fill_normal(batch_, 0, batch_.stride(), key_);
-    ++key_.stream;
-    for (int r = 0; r < rows; ++r) {
-      float* row = batch_.row(0, 0) + r * batch_.stride();
-      const float last = plan_[static_cast<std::size_t>(r)];
-      for (int k = 0; k < batch_.samples(); ++k) row[k] = k == 0 ? last : last + deviation_ * row[k];
-    }
-    evaluator.evaluate(batch_, 0, batch_.samples(), costs_.data(), collided_.data());
-    const auto best = std::min_element(costs_.begin(), costs_.begin() + batch_.samples()) - costs_.begin();
-    for (int r = 0; r < rows; ++r)
-      plan_[static_cast<std::size_t>(r)] = batch_.row(0, 0)[r * batch_.stride() + best];
-    result_.inputs = plan_;
-    result_.minimum_cost = static_cast<double>(costs_[static_cast<std::size_t>(best)]);
-    return result_;
-  }
-
- private:
-  slalom::SequenceBatch batch_;
-  std::vector<float> costs_;
-  std::vector<std::uint8_t> collided_;
-  std::vector<float> plan_;  // [step][input]
-  float deviation_;
-  slalom::RandomKey key_;
-  slalom::SolveResult result_;
-};
 
 struct Point {  // pushed about in the plane
   template <class T>
@@ -84,9 +33,10 @@ struct Point {  // pushed about in the plane
 
 int main() {
   const int count = succeeded([](auto seed) {
-    slalom::Controller controller{Point{}, std::make_unique<PredictiveSampling>(20, 2, 512, 0.5f, seed)};
+    slalom::Controller controller{
+        Point{}, PredictiveSamplingOptions{.variance = 0.25, .input_min = -2, .input_max = 2, .seed = seed}};
     Point::State<double> x{2, -1, 0, 0};
-    for (int k = 0; k < 100; ++k) x = Point{}.step(x, controller.solve(x).inputs[0]);
+    for (int k = 0; k < 100; ++k) x = Point{}.step(x, controller.solve(x, {.elapsed = 0.1}).inputs[0]);
     return std::hypot(x.x, x.y) < 0.15;
   });
   std::printf("the point comes to rest: predictive_sampling %d of 20 seeds\n", count);

@@ -18,5 +18,6 @@
 #include "slalom/solvers/mppi.hpp"
 #include "slalom/solvers/reverse_mppi.hpp"
 #include "slalom/solvers/solver.hpp"
+#include "slalom/solvers/solver_base.hpp"
 #include "slalom/solvers/sv_mpc.hpp"
 #include "slalom/solvers/svg_mppi.hpp"

@@ -1,4 +1,4 @@
-#include "solvers/solver_base.hpp"
+#include "slalom/solvers/solver_base.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "slalom/core/option_access.hpp"
 
-namespace slalom::detail {
+namespace slalom {
 
 namespace {
 
@@ -21,6 +21,9 @@ float not_above(double bound) {
   const float f = static_cast<float>(bound);
   return static_cast<double>(f) > bound ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
 }
+
+/// Marks the first sample of a tile that was evaluated, beside its collision.
+constexpr std::uint8_t evaluated_mark = 2;
 
 template <class Real>
 void shift_rows(const Real* sequence, int steps, int inputs, double shift, Real* result) noexcept {
@@ -38,6 +41,28 @@ void shift_rows(const Real* sequence, int steps, int inputs, double shift, Real*
 }
 
 }  // namespace
+
+Deadline::Deadline(Clock::time_point start, double allowed) : start_(start) {
+  limited_ = allowed < 1e6;
+  if (limited_) {
+    end_ = start +
+           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::max(allowed, 0.0)));
+  }
+}
+
+Deadline Deadline::part(double share) const noexcept {
+  Deadline result = *this;
+  if (limited_) {
+    result.end_ = start_ + std::chrono::duration_cast<Clock::duration>(share * (end_ - start_));
+  }
+  return result;
+}
+
+Status BatchOutcome::status() const noexcept {
+  if (evaluated < samples) return Status::deadline;
+  if (finite == 0) return Status::degenerate;
+  return collided == samples ? Status::all_collided : Status::ok;
+}
 
 SolverBase::SolverBase(int horizon, int inputs, const PerInput& input_min, const PerInput& input_max,
                        std::uint64_t seed, std::shared_ptr<ThreadPool> pool)
@@ -66,6 +91,31 @@ void SolverBase::clamp(float* sequence) const noexcept {
   for (std::size_t r = 0; r < size(); ++r) sequence[r] = std::clamp(sequence[r], low_[r], high_[r]);
 }
 
+BatchOutcome SolverBase::evaluate(const BatchEvaluator& evaluator, const SequenceBatch& batch,
+                                  const Deadline& deadline, float* costs, std::uint8_t* collided) noexcept {
+  constexpr float infinite = std::numeric_limits<float>::infinity();
+  std::fill_n(costs, batch.stride(), infinite);
+  std::fill_n(collided, batch.stride(), std::uint8_t{0});
+  const int tile = evaluator.whole_batches() ? batch.stride() : 16 * simd::padding;
+  pool_->run((batch.stride() + tile - 1) / tile, [&](int t) {
+    if (deadline.passed()) return;
+    evaluator.evaluate(batch, t * tile, std::min(tile, batch.samples() - t * tile), costs, collided);
+    collided[t * tile] |= evaluated_mark;
+  });
+  BatchOutcome outcome{.samples = batch.samples()};
+  for (int k = 0; k < batch.samples(); ++k) {
+    if (k % tile == 0 && (collided[k] & evaluated_mark) != 0) {
+      collided[k] &= static_cast<std::uint8_t>(~evaluated_mark);
+      outcome.evaluated += std::min(tile, batch.samples() - k);
+    }
+    if (!std::isfinite(costs[k])) costs[k] = infinite;
+    outcome.finite += costs[k] < infinite;
+    outcome.collided += collided[k] != 0;
+    if (costs[k] < costs[outcome.best]) outcome.best = k;
+  }
+  return outcome;
+}
+
 void shift_sequence(const float* sequence, int steps, int inputs, double shift, float* result) noexcept {
   shift_rows(sequence, steps, inputs, shift, result);
 }
@@ -79,19 +129,4 @@ double warm_start_shift(const BatchEvaluator& evaluator, const SolveRequest& req
   return std::min(request.elapsed / step, 1e6);
 }
 
-void report_samples(const SampleSet& set, const BatchStatistics& statistics, const WeightSums<double>& sums,
-                    SolveResult& result) noexcept {
-  result.samples = &set.values();
-  result.costs = set.costs();
-  result.collided = set.collided();
-  result.weights = set.weights();
-  result.minimum_cost = static_cast<double>(statistics.minimum_cost);
-  result.expected_cost = sums.weight > 0 ? sums.cost / sums.weight : 0;
-  result.effective_sample_size = sums.squared > 0 ? sums.weight * sums.weight / sums.squared : 0;
-  result.collided_share =
-      statistics.evaluated > 0 ? static_cast<double>(statistics.collided) / statistics.evaluated : 0;
-  result.times.draw += statistics.draw_time;
-  result.times.evaluate += statistics.evaluate_time;
-}
-
-}  // namespace slalom::detail
+}  // namespace slalom

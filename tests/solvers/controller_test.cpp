@@ -104,5 +104,58 @@ TEST(BatchEvaluation, WholeBatchesGiveTheSameBitsAsSlices) {
   }
 }
 
+/// The double integrator by hand-written loops over a whole batch, as code for a GPU would be.
+class BatchedIntegrator final : public BatchEvaluator {
+ public:
+  struct State {
+    double position, speed;
+  };
+  static constexpr int input_count = 1;
+
+  void set_state(const State& state) noexcept { start_ = state; }
+  int inputs() const noexcept override { return input_count; }
+  double time_step() const noexcept override { return 0.1; }
+  bool whole_batches() const noexcept override { return true; }
+  void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
+                std::uint8_t* collided) const noexcept override {
+    for (int k = first; k < first + count; ++k) {
+      DoubleIntegrator::State<double> x{start_.position, start_.speed};
+      double cost = 0;
+      for (int t = 0; t < batch.steps(); ++t) {
+        const Input<double, 1> u{{static_cast<double>(batch.at(t, 0, k))}};
+        cost += problem_.stage_cost(x, u);
+        x = problem_.step(x, u);
+      }
+      costs[k] = static_cast<float>(cost + problem_.terminal_cost(x));
+      collided[k] = x.position > 100;
+    }
+  }
+
+ private:
+  DoubleIntegrator problem_;
+  State start_{};
+};
+
+TEST(Controller, DrivesABatchedEvaluator) {
+  static_assert(StateEvaluator<BatchedIntegrator>);
+  const MppiOptions options{
+      .horizon = 15, .samples = 256, .temperature = 0.1, .input_min = -2, .input_max = 2};
+  Controller batched{BatchedIntegrator{}, options};
+  DoubleIntegrator::State<double> x{1, 0};
+  for (int k = 0; k < 80; ++k) {
+    const auto plan = batched.solve({x.position, x.speed}, {.elapsed = 0.1});
+    ASSERT_EQ(plan.status, Status::ok);
+    ASSERT_EQ(plan.inputs.size(), 15u);
+    EXPECT_TRUE(plan.states.empty());
+    EXPECT_FALSE(plan.collided);
+    EXPECT_EQ(plan.cost_terms[0].value, plan.cost);
+    const double expected = predict(DoubleIntegrator{}, x, plan.inputs.data(), 15, nullptr).value;
+    EXPECT_NEAR(plan.cost, expected, 1e-4 * expected + 1e-5) << k;
+    x = DoubleIntegrator{}.step(x, plan.inputs[0]);
+  }
+  EXPECT_NEAR(x.position, 0, 0.1);
+  EXPECT_EQ(batched.solve({std::nan(""), 0}).status, Status::non_finite_state);
+}
+
 }  // namespace
 }  // namespace slalom

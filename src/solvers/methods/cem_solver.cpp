@@ -3,14 +3,14 @@
 #include <limits>
 
 #include "slalom/solvers/cem_options.hpp"
-#include "solvers/solver_base.hpp"
+#include "solvers/sampling/sample_report.hpp"
 
 namespace slalom {
 
 namespace {
 
 /// `cem`: draw, keep the best share, fit mean and variance to it, again.
-class CemSolver final : public detail::SolverBase {
+class CemSolver final : public SolverBase {
  public:
   CemSolver(const CemOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options, inputs, std::move(pool)),
@@ -50,9 +50,9 @@ class CemSolver final : public detail::SolverBase {
 
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
     const auto begin = detail::Clock::now();
-    const detail::Deadline deadline(begin, request.deadline);
+    const Deadline deadline(begin, request.deadline);
     result_.times = {};
-    if (options_.shift_warm_start) shift(detail::warm_start_shift(evaluator, request));
+    if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
     std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
 
     detail::BatchStatistics statistics;
@@ -91,7 +91,7 @@ class CemSolver final : public detail::SolverBase {
  private:
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
-    detail::shift_sequence(mean_.data(), horizon(), inputs(), steps, elite_mean_.data());
+    shift_sequence(mean_.data(), horizon(), inputs(), steps, elite_mean_.data());
     std::copy(elite_mean_.begin(), elite_mean_.end(), mean_.begin());
   }
 

@@ -9,7 +9,7 @@ Real inverse_variance(Real variance, Real offset) noexcept {
 }
 
 /// Coefficients [row] of the control term, sum_row coefficient v = lambda (1 - alpha) sum_t (u - n)^T
-/// Sigma^-1 v (Honda et al., ICRA 2024, equation (weight), which has no alpha): u the mean of the samples, n
+/// Sigma^-1 v (Honda et al., ICRA 2024, equation (8), which has no alpha): u the mean of the samples, n
 /// the nominal.
 template <class Real>
 void control_coefficients(double temperature, double discount, double inverse_variance_offset,

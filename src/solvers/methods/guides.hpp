@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "slalom/solvers/svg_mppi_options.hpp"
-#include "solvers/solver_base.hpp"
+#include "solvers/sampling/sample_report.hpp"
 
 namespace slalom::detail {
 

@@ -9,7 +9,7 @@ namespace slalom {
 namespace {
 
 /// `mppi`: the closed-form update once, with zero as the nominal sequence.
-class MppiSolver final : public detail::SolverBase {
+class MppiSolver final : public SolverBase {
  public:
   MppiSolver(const MppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options, inputs, std::move(pool)),
@@ -39,11 +39,11 @@ class MppiSolver final : public detail::SolverBase {
 
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
     const auto start = detail::Clock::now();
-    const detail::Deadline deadline(start, request.deadline);
+    const Deadline deadline(start, request.deadline);
     result_.times = {};
-    const double shift = shift_ ? detail::warm_start_shift(evaluator, request) : 0;
+    const double shift = shift_ ? warm_start_shift(evaluator, request) : 0;
     if (shift > 0) {
-      detail::shift_sequence(mean_.data(), horizon(), inputs(), shift, shifted_.data());
+      shift_sequence(mean_.data(), horizon(), inputs(), shift, shifted_.data());
       std::swap_ranges(mean_.begin(), mean_.end(), shifted_.begin());
     }
     result_.status = update_.update(evaluator, key(0), nominal_.data(), variance_.data(), low().data(),

@@ -2,14 +2,14 @@
 
 #include <vector>
 
+#include "solvers/sampling/sample_report.hpp"
 #include "solvers/sampling/smoother.hpp"
 #include "solvers/sampling/weighting.hpp"
-#include "solvers/solver_base.hpp"
 
 namespace slalom::detail {
 
 /// The closed-form update of MPPI (Williams et al., "Information-Theoretic Model Predictive Control", IEEE
-/// T-RO 2018; Honda et al., ICRA 2024, equations (opt_u_by_is) and (weight)):
+/// T-RO 2018; Honda et al., ICRA 2024, equations (7) and (8)):
 ///
 ///     v_k ~ N(u, Sigma),   J_k = S(v_k) + lambda (1 - alpha) sum_t (u - n)^T Sigma^-1 v_k
 ///     w_k = exp(-(J_k - min J) / lambda) / sum,   u <- sum_k w_k v_k

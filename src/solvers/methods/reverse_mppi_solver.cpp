@@ -7,7 +7,7 @@
 #include "solvers/methods/resampler.hpp"
 #include "solvers/methods/reverse_weights.hpp"
 #include "solvers/published/published_rejection.hpp"
-#include "solvers/solver_base.hpp"
+#include "solvers/sampling/sample_report.hpp"
 
 namespace slalom {
 
@@ -20,7 +20,7 @@ struct Gaussian {
 
 /// `reverse_mppi` (Kobayashi and Fukumoto 2022): mirror descent on the reverse KL divergence, with a second
 /// distribution that learns where bad samples lie and thins out the draws there.
-class ReverseMppiSolver final : public detail::SolverBase {
+class ReverseMppiSolver final : public SolverBase {
  public:
   ReverseMppiSolver(const ReverseMppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options, inputs, std::move(pool)),
@@ -71,9 +71,9 @@ class ReverseMppiSolver final : public detail::SolverBase {
 
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
     const auto begin = detail::Clock::now();
-    const detail::Deadline deadline(begin, request.deadline);
+    const Deadline deadline(begin, request.deadline);
     result_.times = {};
-    if (options_.shift_warm_start) shift(detail::warm_start_shift(evaluator, request));
+    if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
     copy(start_, now_);
     copy(start_rejected_, now_rejected_);
 
@@ -108,7 +108,7 @@ class ReverseMppiSolver final : public detail::SolverBase {
     if (!(steps > 0)) return;
     for (Gaussian* g : {&start_, &start_rejected_}) {
       for (std::vector<float>* values : {&g->mean, &g->variance}) {
-        detail::shift_sequence(values->data(), horizon(), inputs(), steps, shifted_.data());
+        shift_sequence(values->data(), horizon(), inputs(), steps, shifted_.data());
         std::copy(shifted_.begin(), shifted_.end(), values->begin());
       }
     }
@@ -172,8 +172,7 @@ class ReverseMppiSolver final : public detail::SolverBase {
     return logarithm;
   }
 
-  detail::BatchStatistics evaluate(const BatchEvaluator& evaluator,
-                                   const detail::Deadline& deadline) noexcept {
+  detail::BatchStatistics evaluate(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
     detail::control_coefficients(options_.temperature, options_.control_cost_discount,
                                  options_.published.inverse_variance_offset, now_.mean.data(), zero_.data(),
                                  now_.variance.data(), rows(), linear_.data());

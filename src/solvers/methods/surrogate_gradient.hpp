@@ -10,7 +10,7 @@ namespace slalom::detail {
 
 /// The gradient of log E[w] at a particle theta, estimated from samples v_i ~ N(theta, Sigma_g) without any
 /// derivative of the cost (Lambert et al., "Stein Variational Model Predictive Control", CoRL 2020; Honda et
-/// al., ICRA 2024, equation (surrogate_grad)):
+/// al., ICRA 2024, equation (11)):
 ///
 ///     g = sum_i w_i Sigma_g^-1 (v_i - theta) / (sum_i w_i + floor),   w_i = exp(-J_i / lambda)
 ///

@@ -5,7 +5,7 @@
 #include "slalom/solvers/sv_mpc_options.hpp"
 #include "solvers/methods/stein.hpp"
 #include "solvers/published/published_stein.hpp"
-#include "solvers/solver_base.hpp"
+#include "solvers/sampling/sample_report.hpp"
 
 namespace slalom {
 
@@ -13,7 +13,7 @@ namespace {
 
 /// `sv_mpc` (Lambert et al., "Stein Variational Model Predictive Control", CoRL 2020): all samples are
 /// particles that SVGD moves towards the posterior of good control sequences, given a Gaussian prior.
-class SvMpcSolver final : public detail::SolverBase {
+class SvMpcSolver final : public SolverBase {
  public:
   SvMpcSolver(const SvMpcOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options, inputs, std::move(pool)),
@@ -65,13 +65,13 @@ class SvMpcSolver final : public detail::SolverBase {
 
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
     const auto begin = detail::Clock::now();
-    const detail::Deadline deadline(begin, request.deadline);
+    const Deadline deadline(begin, request.deadline);
     result_.times = {};
     next_solve();
-    if (options_.shift_warm_start) shift(detail::warm_start_shift(evaluator, request));
+    if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
     set_prior();
     int iteration = 0;
-    const detail::Deadline moving = deadline.part(0.8);  // weights and solution need a last evaluation
+    const Deadline moving = deadline.part(0.8);  // weights and solution need a last evaluation
     for (; iteration < options_.iterations && !moving.passed(); ++iteration) move(evaluator, iteration);
     result_.times.guide = detail::seconds(begin, detail::Clock::now());
 
@@ -126,12 +126,12 @@ class SvMpcSolver final : public detail::SolverBase {
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
     for (std::vector<float>* sequence : {&mean_, &variance_, &solution_}) {
-      detail::shift_sequence(sequence->data(), horizon(), inputs(), steps, shifted_.data());
+      shift_sequence(sequence->data(), horizon(), inputs(), steps, shifted_.data());
       std::copy(shifted_.begin(), shifted_.end(), sequence->begin());
     }
     for (int k = 0; k < particles_.samples(); ++k) {
       for (int r = 0; r < rows(); ++r) column_[static_cast<std::size_t>(r)] = particles_.row_view().row(r)[k];
-      detail::shift_sequence(column_.data(), horizon(), inputs(), steps, shifted_.data());
+      shift_sequence(column_.data(), horizon(), inputs(), steps, shifted_.data());
       for (int r = 0; r < rows(); ++r)
         particles_.row_view().row(r)[k] = shifted_[static_cast<std::size_t>(r)];
     }

@@ -11,7 +11,7 @@ namespace {
 /// `svg_mppi` (Honda et al., "Stein Variational Guided Model Predictive Path Integral Control", ICRA 2024):
 /// (a) guides move to modes, (b) the best is the nominal sequence, (c) the variances are fitted to its path,
 /// (d) MPPI with that nominal and those variances.
-class SvgMppiSolver final : public detail::SolverBase {
+class SvgMppiSolver final : public SolverBase {
  public:
   SvgMppiSolver(const SvgMppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options, inputs, std::move(pool)),
@@ -48,9 +48,9 @@ class SvgMppiSolver final : public detail::SolverBase {
 
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
     const auto start = detail::Clock::now();
-    const detail::Deadline deadline(start, request.deadline);
+    const Deadline deadline(start, request.deadline);
     result_.times = {};
-    if (shift_) shift(detail::warm_start_shift(evaluator, request));
+    if (shift_) shift(warm_start_shift(evaluator, request));
 
     guides_.restart_others(key(restarts));
     // The guides may take half of the time allowed: without samples they are worth nothing.
@@ -77,9 +77,9 @@ class SvgMppiSolver final : public detail::SolverBase {
 
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
-    detail::shift_sequence(mean_.data(), horizon(), inputs(), steps, shifted_.data());
+    shift_sequence(mean_.data(), horizon(), inputs(), steps, shifted_.data());
     std::swap_ranges(mean_.begin(), mean_.end(), shifted_.begin());
-    detail::shift_sequence(nominal_.data(), horizon(), inputs(), steps, shifted_.data());
+    shift_sequence(nominal_.data(), horizon(), inputs(), steps, shifted_.data());
     std::swap_ranges(nominal_.begin(), nominal_.end(), shifted_.begin());
     guides_.shift(steps);
   }

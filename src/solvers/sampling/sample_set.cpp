@@ -20,22 +20,6 @@ int tile_size(int rows) {
 
 }  // namespace
 
-Deadline::Deadline(Clock::time_point start, double allowed) : start_(start) {
-  limited_ = allowed < 1e6;
-  if (limited_) {
-    end_ = start +
-           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::max(allowed, 0.0)));
-  }
-}
-
-Deadline Deadline::part(double share) const noexcept {
-  Deadline result = *this;
-  if (limited_) {
-    result.end_ = start_ + std::chrono::duration_cast<Clock::duration>(share * (end_ - start_));
-  }
-  return result;
-}
-
 SampleSet::SampleSet(int steps, int inputs, int samples, NoiseShape shape)
     : values_(steps, inputs, samples),
       noise_(steps, inputs, samples),

@@ -9,34 +9,20 @@
 #include "slalom/core/random.hpp"
 #include "slalom/core/sequence_batch.hpp"
 #include "slalom/core/thread_pool.hpp"
+#include "slalom/solvers/solver_base.hpp"
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/sampling/noise_shape.hpp"
 
 namespace slalom::detail {
 
-using Clock = std::chrono::steady_clock;
+using Clock = Deadline::Clock;
 
 /// Seconds from one moment to another.
 inline double seconds(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
-/// The moment at which a solve has to end. Without a limit it never looks at the clock.
-class Deadline {
- public:
-  Deadline() = default;
-  /// `allowed` seconds (infinite: no limit) after `start`.
-  Deadline(Clock::time_point start, double allowed);
-  bool passed() const noexcept { return limited_ && Clock::now() >= end_; }
-  /// One that leaves only the share `share` of the time.
-  Deadline part(double share) const noexcept;
-
- private:
-  Clock::time_point start_{}, end_{};
-  bool limited_ = false;
-};
-
-/// What a batch of samples turned out to be.
+/// Statistics of a batch of samples.
 struct BatchStatistics {
   float minimum_total = 0;  ///< least cost with control term; infinite if none is finite
   float minimum_cost = 0;   ///< least cost without

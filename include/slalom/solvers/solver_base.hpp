@@ -1,0 +1,115 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "slalom/core/batch_evaluator.hpp"
+#include "slalom/core/options.hpp"
+#include "slalom/core/random.hpp"
+#include "slalom/core/thread_pool.hpp"
+#include "slalom/solvers/solver.hpp"
+
+/// What solvers have in common, for those of the library and for your own: examples/predictive_sampling.hpp.
+namespace slalom {
+
+/// The moment at which a solve has to end. Without a limit it never reads the clock.
+class Deadline {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  Deadline() = default;
+  /// `allowed` seconds after `start`; infinite: no limit.
+  Deadline(Clock::time_point start, double allowed);
+  bool passed() const noexcept { return limited_ && Clock::now() >= end_; }
+  /// A deadline after the fraction `share` of the time.
+  Deadline part(double share) const noexcept;
+
+ private:
+  Clock::time_point start_{}, end_{};
+  bool limited_ = false;
+};
+
+/// The outcome of evaluating a batch.
+struct BatchOutcome {
+  int samples = 0;    ///< in the batch
+  int evaluated = 0;  ///< before the deadline
+  int finite = 0;     ///< of finite cost
+  int collided = 0;   ///< that collide
+  int best = 0;       ///< index of the sample of least cost, the first of equal ones
+
+  /// `deadline` if samples were left out, `degenerate` without a finite cost, `all_collided`, or `ok`.
+  Status status() const noexcept;
+};
+
+/// Dimensions, bounds, threads and random streams of a solver.
+class SolverBase : public Solver {
+ public:
+  int horizon() const noexcept override { return horizon_; }
+  int inputs() const noexcept override { return inputs_; }
+
+ protected:
+  /// `Options` has the fields `horizon`, `input_min`, `input_max`, `seed` and `threads`. The solver has
+  /// threads of its own unless a pool is given. Throws std::invalid_argument if the bounds hold no float32
+  /// value.
+  template <class Options>
+  SolverBase(const Options& options, int inputs, std::shared_ptr<ThreadPool> pool)
+      : SolverBase(options.horizon, inputs, options.input_min, options.input_max, options.seed,
+                   pool ? std::move(pool) : std::make_shared<ThreadPool>(options.threads)) {}
+
+  int rows() const noexcept { return horizon_ * inputs_; }  ///< values of a control sequence
+  std::size_t size() const noexcept { return static_cast<std::size_t>(rows()); }
+  ThreadPool& pool() noexcept { return *pool_; }
+
+  /// The random stream of a stage (< 65536) of the present solve.
+  RandomKey key(int stage) const noexcept {
+    return {seed_, (solves_ << 16) | static_cast<std::uint64_t>(stage)};
+  }
+  /// To be called once per solve, so that the next one has other random numbers.
+  void next_solve() noexcept { ++solves_; }
+  /// Starts the random numbers again: for `reset`.
+  void restart(std::uint64_t seed) noexcept {
+    seed_ = seed;
+    solves_ = 0;
+  }
+
+  /// A value per row, [step][input], from one per input.
+  std::vector<float> spread(const PerInput& values) const;
+  /// Bounds, [row].
+  const std::vector<float>& low() const noexcept { return low_; }
+  const std::vector<float>& high() const noexcept { return high_; }
+  /// Moves a control sequence [row] into the bounds.
+  void clamp(float* sequence) const noexcept;
+
+  /// Evaluates a batch on all threads, until the deadline: `costs` and `collided` hold `batch.stride()`
+  /// entries. Costs that are not finite, and those of samples that were not reached, become +infinity.
+  BatchOutcome evaluate(const BatchEvaluator& evaluator, const SequenceBatch& batch, const Deadline& deadline,
+                        float* costs, std::uint8_t* collided) noexcept;
+
+  /// The first index of the samples that are drawn around zero, if they are the fraction `share` of all.
+  static int zero_mean_from(int samples, double share) noexcept {
+    return static_cast<int>((1.0 - share) * static_cast<double>(samples));
+  }
+
+ private:
+  SolverBase(int horizon, int inputs, const PerInput& input_min, const PerInput& input_max,
+             std::uint64_t seed, std::shared_ptr<ThreadPool> pool);
+
+  int horizon_;
+  int inputs_;
+  std::shared_ptr<ThreadPool> pool_;
+  std::uint64_t seed_;
+  std::uint64_t solves_ = 0;
+  std::vector<float> low_, high_;  ///< [row]
+};
+
+/// A control sequence [step][input] moved forward by `shift` >= 0 steps, by linear interpolation; the last
+/// input is held. `sequence` and `result` must not overlap.
+void shift_sequence(const float* sequence, int steps, int inputs, double shift, float* result) noexcept;
+void shift_sequence(const double* sequence, int steps, int inputs, double shift, double* result) noexcept;
+
+/// The time since the last solve in steps of the evaluator; 0 if the duration of a step is unknown.
+double warm_start_shift(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept;
+
+}  // namespace slalom

@@ -1,0 +1,20 @@
+#include "solvers/sampling/sample_report.hpp"
+
+namespace slalom::detail {
+
+void report_samples(const SampleSet& set, const BatchStatistics& statistics, const WeightSums<double>& sums,
+                    SolveResult& result) noexcept {
+  result.samples = &set.values();
+  result.costs = set.costs();
+  result.collided = set.collided();
+  result.weights = set.weights();
+  result.minimum_cost = static_cast<double>(statistics.minimum_cost);
+  result.expected_cost = sums.weight > 0 ? sums.cost / sums.weight : 0;
+  result.effective_sample_size = sums.squared > 0 ? sums.weight * sums.weight / sums.squared : 0;
+  result.collided_share =
+      statistics.evaluated > 0 ? static_cast<double>(statistics.collided) / statistics.evaluated : 0;
+  result.times.draw += statistics.draw_time;
+  result.times.evaluate += statistics.evaluate_time;
+}
+
+}  // namespace slalom::detail
