@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
 #include "slalom/sim/collision_log.hpp"
 #include "tools/bags/bag_drive.hpp"
+#include "tools/json/json.hpp"
 #include "tools/recording/recording.hpp"
 
 namespace slalom::tools {

@@ -1,24 +1,20 @@
-#include "tools/commands/bench_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <thread>
 
 #include "bench/workload/measurements.hpp"
 #include "bench/workload/peak.hpp"
 #include "slalom/core/dispatch.hpp"
+#include "tools/commands/commands.hpp"
 #include "tools/drawing/bench_plot.hpp"
+#include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Arguments {
   std::string config, json, plot;
@@ -197,26 +193,21 @@ class Bench {
 
 }  // namespace
 
-CLI::App* add_bench_command(CLI::App& app, int& exit_status) {
-  CLI::App* command = app.add_subcommand(
-      "bench", "Measure rollouts, every method and the planner's tick on this machine, beside a yardstick");
+void declare_bench(Command& command) {
+  command.summary(
+      "Measure rollouts, every method and the planner's tick on this machine, beside a yardstick");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--config", arguments->config,
-                      "Measure this configuration; without it the fixed workload: the published methods and "
-                      "problem, one trajectory a rollout");
-  command->add_option("--set", arguments->set, "section.option=value; may be repeated")
-      ->allow_extra_args(false);
-  command->add_option("--methods", arguments->methods, "Only these, separated by commas")->delimiter(',');
-  command->add_option("--seconds", arguments->seconds, "For every measurement")
-      ->check(CLI::Range(0.01, 600.0))
-      ->capture_default_str();
-  command->add_flag("--scaling", arguments->scaling,
-                    "Also over samples, horizon, threads and instruction sets");
-  command->add_option("--plot", arguments->plot, "Write solve times over samples as PNG to this file");
-  command->add_option("--json", arguments->json, "Write JSON to this file, or to standard output: -");
-  command->footer("SLALOM_TARGET=avx2 (avx512, sse4, generic) forces an instruction set.");
-  command->callback([arguments, &exit_status] { exit_status = Bench(*arguments).run(); });
-  return command;
+  command.option("--config", arguments->config,
+                 "Measure this configuration; without it the fixed workload: the published methods and "
+                 "problem, one trajectory a rollout");
+  command.option("--set", arguments->set, "section.option=value; may be repeated").repeatable();
+  command.option("--methods", arguments->methods, "Only these, separated by commas").comma_separated();
+  command.option("--seconds", arguments->seconds, "For every measurement").range(0.01, 600.0).show_default();
+  command.flag("--scaling", arguments->scaling, "Also over samples, horizon, threads and instruction sets");
+  command.option("--plot", arguments->plot, "Write solve times over samples as PNG to this file");
+  command.option("--json", arguments->json, "Write JSON to this file, or to standard output: -");
+  command.footer("SLALOM_TARGET=avx2 (avx512, sse4, generic) forces an instruction set.");
+  command.action([arguments] { return Bench(*arguments).run(); });
 }
 
 }  // namespace slalom::tools

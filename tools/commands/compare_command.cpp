@@ -1,22 +1,19 @@
-#include "tools/commands/compare_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/results.hpp"
+#include "tools/commands/commands.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
+#include "tools/json/json.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using namespace evaluation;
 namespace fs = std::filesystem;
 
@@ -271,20 +268,16 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-CLI::App* add_compare_command(CLI::App& app, int& exit_status) {
-  CLI::App* command =
-      app.add_subcommand("compare", "Two evaluations side by side, with tests of significance");
+void declare_compare(Command& command) {
+  command.summary("Two evaluations side by side, with tests of significance");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("first", arguments->first, "The --out of an evaluation, or a folder of several")
-      ->required();
+  command.option("first", arguments->first, "The --out of an evaluation, or a folder of several").required();
   command
-      ->add_option("second", arguments->second,
-                   "That of another; of several, those with the same name are compared")
-      ->required();
-  command->add_option("--json", arguments->json,
-                      "Write the comparison to this file, or to standard output: -");
-  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
-  return command;
+      .option("second", arguments->second,
+              "That of another; of several, those with the same name are compared")
+      .required();
+  command.option("--json", arguments->json, "Write the comparison to this file, or to standard output: -");
+  command.action([arguments] { return run(*arguments); });
 }
 
 }  // namespace slalom::tools

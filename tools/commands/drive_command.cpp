@@ -1,14 +1,12 @@
-#include "tools/commands/drive_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
+#include "tools/commands/commands.hpp"
 #include "tools/drawing/lap_picture.hpp"
+#include "tools/json/json.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/report/lap_json.hpp"
 #include "tools/scenario/scenario.hpp"
@@ -19,7 +17,6 @@
 namespace slalom::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using evaluation::LapResult;
 
 struct Arguments {
@@ -201,26 +198,25 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-CLI::App* add_drive_command(CLI::App& app, int& exit_status) {
-  CLI::App* command = app.add_subcommand("drive", "Drive laps, with a summary, results in JSON, a picture");
+void declare_drive(Command& command) {
+  command.summary("Drive laps, with a summary, results in JSON, a picture");
   const auto arguments = std::make_shared<Arguments>();
-  add_scenario_options(*command, arguments->scenario);
-  add_method_option(*command, arguments->method);
-  command->add_option("--seed", arguments->seed, "Of the first lap; each further one has obstacles + 5 more")
-      ->capture_default_str();
-  command->add_option("--laps", arguments->laps, "How many, each from a fresh start")->capture_default_str();
-  command->add_option("--json", arguments->json,
-                      "Write the results as JSON to this file, or to standard output: -");
-  auto* record = command->add_option(
-      "--record", arguments->record,
-      "Record every control step to this file: MCAP if it ends in .mcap, else JSON lines");
+  add_scenario_options(command, arguments->scenario);
+  add_method_option(command, arguments->method);
+  command.option("--seed", arguments->seed, "Of the first lap; each further one has obstacles + 5 more")
+      .show_default();
+  command.option("--laps", arguments->laps, "How many, each from a fresh start").show_default();
+  command.option("--json", arguments->json,
+                 "Write the results as JSON to this file, or to standard output: -");
+  const Option record =
+      command.option("--record", arguments->record,
+                     "Record every control step to this file: MCAP if it ends in .mcap, else JSON lines");
   command
-      ->add_flag("--record-times", arguments->record_times,
-                 "With the wall clock's figures, which differ from run to run (MCAP)")
-      ->needs(record);
-  command->add_option("--plot", arguments->plot, "Draw the last lap to this PNG");
-  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
-  return command;
+      .flag("--record-times", arguments->record_times,
+            "With the wall clock's figures, which differ from run to run (MCAP)")
+      .needs(record);
+  command.option("--plot", arguments->plot, "Draw the last lap to this PNG");
+  command.action([arguments] { return run(*arguments); });
 }
 
 }  // namespace slalom::tools

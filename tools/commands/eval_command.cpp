@@ -1,11 +1,9 @@
-#include "tools/commands/eval_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 
+#include "tools/commands/commands.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/evaluation/ranks.hpp"
+#include "tools/json/json.hpp"
 #include "tools/report/report.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -45,32 +43,25 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-CLI::App* add_eval_command(CLI::App& app, int& exit_status) {
-  CLI::App* command =
-      app.add_subcommand("eval", "Compare methods over many laps: intervals, paired tests, every lap kept");
+void declare_eval(Command& command) {
+  command.summary("Compare methods over many laps: intervals, paired tests, every lap kept");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--methods", arguments->methods, "Separated by commas")
-      ->delimiter(',')
-      ->capture_default_str();
+  command.option("--methods", arguments->methods, "Separated by commas").comma_separated().show_default();
+  command.option("--scenario", arguments->scenarios, "pt: path tracking, oa: among obstacles; or both: pt,oa")
+      .comma_separated()
+      .show_default();
+  command.option("--laps", arguments->laps, "Of every method in every scenario").show_default();
+  command.option("--obstacles", arguments->obstacles, "Parked cars a lap in scenario oa")
+      .range(1, 1000)
+      .show_default();
   command
-      ->add_option("--scenario", arguments->scenarios,
-                   "pt: path tracking, oa: among obstacles; or both: pt,oa")
-      ->delimiter(',')
-      ->capture_default_str();
-  command->add_option("--laps", arguments->laps, "Of every method in every scenario")->capture_default_str();
-  command->add_option("--obstacles", arguments->obstacles, "Parked cars a lap in scenario oa")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--set", arguments->sweeps,
-          "key=v1,v2,...: one experiment for each value (and each combination where it is said more "
-          "than once); world.friction=0.7,1 and so on make the world harder: slalom options lists them")
-      ->allow_extra_args(false);
-  command->add_flag("--report", arguments->report, "Also write report.html and its figures");
-  add_evaluation_options(*command, arguments->evaluation);
-  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
-  return command;
+      .option("--set", arguments->sweeps,
+              "key=v1,v2,...: one experiment for each value (and each combination where it is said more "
+              "than once); world.friction=0.7,1 and so on make the world harder: slalom options lists them")
+      .repeatable();
+  command.flag("--report", arguments->report, "Also write report.html and its figures");
+  add_evaluation_options(command, arguments->evaluation);
+  command.action([arguments] { return run(*arguments); });
 }
 
 }  // namespace slalom::tools

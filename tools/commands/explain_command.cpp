@@ -1,21 +1,17 @@
-#include "tools/commands/explain_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "slalom/core/option_access.hpp"
+#include "tools/commands/commands.hpp"
 #include "tools/explanation/explain_picture.hpp"
 #include "tools/explanation/explanation.hpp"
+#include "tools/json/json.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Arguments {
   std::vector<std::string> methods{"svg_mppi"}, set;
@@ -124,33 +120,30 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-CLI::App* add_explain_command(CLI::App& app, int& exit_status) {
-  CLI::App* command = app.add_subcommand(
-      "explain", "Show what methods make of a problem with two ways: samples, guides, plan, distribution");
+void declare_explain(Command& command) {
+  command.summary("Show what methods make of a problem with two ways: samples, guides, plan, distribution");
   const auto arguments = std::make_shared<Arguments>();
   command
-      ->add_option(
-          "--method", arguments->methods,
-          "Separated by commas: mppi, svg_mppi, svg_mppi_nominal, svg_mppi_covariance, reverse_mppi, "
-          "sv_mpc, cem; or all")
-      ->delimiter(',')
-      ->capture_default_str();
+      .option("--method", arguments->methods,
+              "Separated by commas: mppi, svg_mppi, svg_mppi_nominal, svg_mppi_covariance, reverse_mppi, "
+              "sv_mpc, cem; or all")
+      .comma_separated()
+      .show_default();
   command
-      ->add_option("--set", arguments->set,
-                   "option=value of the methods shown, or problem.option=value; may be repeated")
-      ->allow_extra_args(false);
-  command->add_option("--solves", arguments->solves, "From the same state; the last is shown")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Of the random numbers")->capture_default_str();
-  command->add_option("--plot", arguments->plot, "Draw them side by side to this PNG");
-  command->add_option("--json", arguments->json,
-                      "Write everything as JSON to this file, or to standard output: -");
-  command->callback([arguments, &exit_status] {
+      .option("--set", arguments->set,
+              "option=value of the methods shown, or problem.option=value; may be repeated")
+      .repeatable();
+  command.option("--solves", arguments->solves, "From the same state; the last is shown")
+      .range(1, 100000)
+      .show_default();
+  command.option("--seed", arguments->seed, "Of the random numbers").show_default();
+  command.option("--plot", arguments->plot, "Draw them side by side to this PNG");
+  command.option("--json", arguments->json,
+                 "Write everything as JSON to this file, or to standard output: -");
+  command.action([arguments] {
     run(*arguments);
-    exit_status = 0;
+    return 0;
   });
-  return command;
 }
 
 }  // namespace slalom::tools

@@ -1,16 +1,14 @@
-#include "tools/commands/hardware_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <memory>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/statistics.hpp"
+#include "tools/commands/commands.hpp"
+#include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
@@ -19,7 +17,6 @@ namespace slalom::tools {
 namespace {
 
 using namespace evaluation;
-using Json = nlohmann::ordered_json;
 
 struct Arguments {
   std::string course = "wren", json;
@@ -228,40 +225,31 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-CLI::App* add_hardware_command(CLI::App& app, int& exit_status) {
-  CLI::App* command = app.add_subcommand(
-      "hardware",
+void declare_hardware(Command& command) {
+  command.summary(
       "Laps under the conditions of a real car: noise, slip, a guessed pose, a servo unlike the model");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("--course", arguments->course, "A course by name, or its folder")
-      ->capture_default_str();
-  command->add_option("--drivers", arguments->drivers, "method@configuration, separated by commas")
-      ->delimiter(',')
-      ->capture_default_str();
-  command->add_option("--set", arguments->set, "section.option=value, for every driver")
-      ->allow_extra_args(false);
-  command->add_option("--tracking-laps", arguments->tracking_laps, "Without obstacles")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
-  command->add_option("--layouts", arguments->layouts, "Of obstacles, the same for every driver")
-      ->check(CLI::Range(0, 10000))
-      ->capture_default_str();
-  command->add_option("--laps", arguments->laps, "In each layout")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
-  command->add_option("--obstacles", arguments->obstacles, "Parked cars in a layout")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command
-      ->add_option("--latency-ms", arguments->latency_ms, "From a scan to its command's effect on the servo")
-      ->check(CLI::Range(0.0, 500.0))
-      ->capture_default_str();
-  command->add_option("--jobs", arguments->jobs, "Laps driven at a time")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  command->add_option("--json", arguments->json, "Write the results to this file, or to standard output: -");
-  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
-  return command;
+  command.option("--course", arguments->course, "A course by name, or its folder").show_default();
+  command.option("--drivers", arguments->drivers, "method@configuration, separated by commas")
+      .comma_separated()
+      .show_default();
+  command.option("--set", arguments->set, "section.option=value, for every driver").repeatable();
+  command.option("--tracking-laps", arguments->tracking_laps, "Without obstacles")
+      .range(0, 100000)
+      .show_default();
+  command.option("--layouts", arguments->layouts, "Of obstacles, the same for every driver")
+      .range(0, 10000)
+      .show_default();
+  command.option("--laps", arguments->laps, "In each layout").range(1, 10000).show_default();
+  command.option("--obstacles", arguments->obstacles, "Parked cars in a layout")
+      .range(1, 1000)
+      .show_default();
+  command.option("--latency-ms", arguments->latency_ms, "From a scan to its command's effect on the servo")
+      .range(0.0, 500.0)
+      .show_default();
+  command.option("--jobs", arguments->jobs, "Laps driven at a time").range(1, 1024).show_default();
+  command.option("--json", arguments->json, "Write the results to this file, or to standard output: -");
+  command.action([arguments] { return run(*arguments); });
 }
 
 }  // namespace slalom::tools

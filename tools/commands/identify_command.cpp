@@ -1,21 +1,18 @@
-#include "tools/commands/identify_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/model/identification.hpp"
 #include "tools/bags/bag_drive.hpp"
 #include "tools/bags/ros_bag.hpp"
+#include "tools/commands/commands.hpp"
+#include "tools/json/json.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using vehicle::Identification;
 using vehicle::Identified;
 
@@ -25,7 +22,7 @@ struct Arguments {
 };
 
 double entry(const Json& tick, const char* key, std::size_t index) {
-  const Json& value = tick.at(key).at(index);
+  const Json& value = tick.at(key)[index];
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
 }
 
@@ -40,7 +37,7 @@ std::vector<vehicle::DrivenSample> read_bag_samples(const std::string& file) {
 
 /// The ticks of a bag or a recording (docs/recording.md). Throws IoError with file and line.
 std::vector<vehicle::DrivenSample> read_recording(const std::string& file) {
-  if (std::filesystem::is_directory(file)) throw IoError(file, 0, "is a folder, not a recording");
+  if (std::filesystem::is_directory(file)) throw IoError(file, 0, "is a directory; a recording is a file");
   if (is_bag(file)) return read_bag_samples(file);
   std::ifstream stream(file);
   if (!stream) throw IoError(file, 0, "cannot be read");
@@ -54,14 +51,14 @@ std::vector<vehicle::DrivenSample> read_recording(const std::string& file) {
                     "in .mcap");
     try {
       const Json record = Json::parse(line);
-      const std::string type = record.at("type");
+      const auto type = record.at("type").get<std::string>();
       if (number == 1 && type != "recording") throw IoError(file, 1, "is not the beginning of a recording");
       if (type != "tick") continue;
-      samples.push_back({record.at("time"), entry(record, "odometry", 0), entry(record, "odometry", 1),
-                         entry(record, "odometry", 2), entry(record, "odometry", 3),
-                         entry(record, "command", 0)});
-    } catch (const Json::exception& error) {
-      throw IoError(file, number, std::string("is no record: ") + error.what());
+      samples.push_back({record.at("time").get<double>(), entry(record, "odometry", 0),
+                         entry(record, "odometry", 1), entry(record, "odometry", 2),
+                         entry(record, "odometry", 3), entry(record, "command", 0)});
+    } catch (const JsonError& error) {
+      throw IoError(file, number, std::string("is not a record: ") + error.what());
     }
   }
   return samples;
@@ -137,23 +134,19 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-CLI::App* add_identify_command(CLI::App& app, int& exit_status) {
-  CLI::App* command = app.add_subcommand(
-      "identify", "Steering gain, trim, delay, lag and wheelbase of a car, from a recording");
+void declare_identify(Command& command) {
+  command.summary("Steering gain, trim, delay, lag and wheelbase of a car, from a recording");
   const auto arguments = std::make_shared<Arguments>();
   command
-      ->add_option("recording", arguments->recording,
-                   "Of slalom drive --record, in JSON lines; or a bag of ROS 1")
-      ->required();
-  command->add_option("--wheelbase", arguments->options.wheelbase, "m, if it was measured; else it is sought")
-      ->check(CLI::Range(0.01, 20.0));
-  command->add_option("--least-speed", arguments->options.least_speed, "m/s, below it samples are not used")
-      ->check(CLI::Range(0.01, 100.0))
-      ->capture_default_str();
-  command->add_option("--json", arguments->json,
-                      "Write what was found to this file, or to standard output: -");
-  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
-  return command;
+      .option("recording", arguments->recording, "Of slalom drive --record, in JSON lines; or a bag of ROS 1")
+      .required();
+  command.option("--wheelbase", arguments->options.wheelbase, "m, if it was measured; else it is sought")
+      .range(0.01, 20.0);
+  command.option("--least-speed", arguments->options.least_speed, "m/s, below it samples are not used")
+      .range(0.01, 100.0)
+      .show_default();
+  command.option("--json", arguments->json, "Write what was found to this file, or to standard output: -");
+  command.action([arguments] { return run(*arguments); });
 }
 
 }  // namespace slalom::tools

@@ -1,19 +1,15 @@
-#include "tools/commands/options_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
+#include "tools/commands/commands.hpp"
+#include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Arguments {
   ScenarioArguments scenario;
@@ -90,27 +86,25 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-CLI::App* add_options_command(CLI::App& app, int& exit_status) {
-  CLI::App* command = app.add_subcommand("options", "List what can be set, with values, units, ranges");
+void declare_options(Command& command) {
+  command.summary("List what can be set, with values, units, ranges");
   const auto arguments = std::make_shared<Arguments>();
   command
-      ->add_option("--config", arguments->scenario.config,
-                   "default, default_speed, published, hardware, or a file")
-      ->capture_default_str();
-  command->add_option("--set", arguments->scenario.set, "section.option=value; may be repeated")
-      ->allow_extra_args(false);
-  auto* method = command->add_option("--method", arguments->method,
-                                     "Only this method's section, and those of vehicle, planner and world");
-  auto* json = command->add_option("--json", arguments->json,
-                                   "Write them as JSON to this file, or to standard output: -");
-  command->add_flag("--yaml", arguments->yaml, "Print the whole configuration as a file")
-      ->excludes(method)
-      ->excludes(json);
-  command->callback([arguments, &exit_status] {
+      .option("--config", arguments->scenario.config,
+              "default, default_speed, published, hardware, or a file")
+      .show_default();
+  command.option("--set", arguments->scenario.set, "section.option=value; may be repeated").repeatable();
+  const Option method = command.option("--method", arguments->method,
+                                       "Only this method's section, and those of vehicle, planner and world");
+  const Option json =
+      command.option("--json", arguments->json, "Write them as JSON to this file, or to standard output: -");
+  command.flag("--yaml", arguments->yaml, "Print the whole configuration as a file")
+      .excludes(method)
+      .excludes(json);
+  command.action([arguments] {
     run(*arguments);
-    exit_status = 0;
+    return 0;
   });
-  return command;
 }
 
 }  // namespace slalom::tools

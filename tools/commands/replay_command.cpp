@@ -1,19 +1,17 @@
-#include "tools/commands/replay_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "tools/bags/replay_bag.hpp"
 #include "tools/bags/ros_bag.hpp"
+#include "tools/commands/commands.hpp"
 #include "tools/drawing/lap_picture.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
+#include "tools/json/json.hpp"
 #include "tools/live_view/replay_recording.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/report/lap_json.hpp"
@@ -53,9 +51,9 @@ constexpr struct {
               {"--port", bag | recording}};
 
 /// Throws IoError where an option was said that would be passed over.
-void refuse_unheeded(const CLI::App& command, Kind kind) {
+void refuse_unheeded(const Command& command, Kind kind) {
   for (const auto& [option, kinds] : heeded)
-    if (command.count(option) > 0 && (kinds & kind) == 0)
+    if (command.given(option) && (kinds & kind) == 0)
       throw IoError(option, 0, std::string("does nothing where ") + kind_name(kind) + " is replayed");
 }
 
@@ -106,7 +104,7 @@ int replay_lap(const Arguments& arguments) {
   const std::uint64_t seed = lap_seed(evaluation.seed0, arguments.lap, experiment.obstacles);
   std::unique_ptr<Recording> recording;
   if (!arguments.record.empty()) {
-    const auto settings = nlohmann::ordered_json::parse(stored.settings);
+    const auto settings = Json::parse(stored.settings);
     const ScenarioArguments told = campaign_arguments(stored, arguments.course);
     recording = make_recording(arguments.record, {.arguments = told,
                                                   .scenario = scenario,
@@ -178,12 +176,12 @@ int replay_bag(Arguments& arguments) {
   return replay_recording(arguments.recording);
 }
 
-int run(Arguments& arguments, const CLI::App& command) {
+int run(Arguments& arguments, const Command& command) {
   const Kind kind = std::filesystem::is_directory(arguments.folder) ? lap_of_evaluation
                     : is_bag(arguments.folder)                      ? bag
                                                                     : recording;
   refuse_unheeded(command, kind);
-  arguments.lap_said = command.count("--lap") > 0;
+  arguments.lap_said = command.given("--lap");
   if (kind == lap_of_evaluation) return replay_lap(arguments);
   if (kind == bag) return replay_bag(arguments);
   arguments.recording.file = arguments.folder;
@@ -192,39 +190,35 @@ int run(Arguments& arguments, const CLI::App& command) {
 
 }  // namespace
 
-CLI::App* add_replay_command(CLI::App& app, int& exit_status) {
-  CLI::App* command = app.add_subcommand(
-      "replay",
+void declare_replay(Command& command) {
+  command.summary(
       "Show a recording or a bag in the browser; or drive a lap of an evaluation again: picture, recording");
   const auto arguments = std::make_shared<Arguments>();
   command
-      ->add_option("what", arguments->folder,
-                   "A recording in MCAP, a bag of ROS 1, or the --out of an evaluation")
-      ->required();
-  auto* html =
-      command->add_option("--html", arguments->recording.html,
-                          "Write the recording as a page that opens from disk, instead of serving it");
-  auto* host = command->add_option("--host", arguments->recording.host, "Address to serve it on");
-  host->capture_default_str();
-  auto* port = command->add_option("--port", arguments->recording.port, "0: any that is free");
-  port->capture_default_str();
-  command->add_option("--lap", arguments->lap, "Of an evaluation: which, from 0");
-  command->add_option("--method", arguments->method,
-                      "Of an evaluation: method, or method and options as results name them; of a bag: who "
-                      "looks on [svg_mppi]");
-  command->add_option("--config", arguments->config, "Of a bag: configuration of who looks on")
-      ->capture_default_str();
-  command->add_option("--set", arguments->set, "Of a bag: section.option=value; may be repeated")
-      ->allow_extra_args(false);
-  command->add_option("--scenario", arguments->scenario, "pt or oa");
-  command->add_option("--course", arguments->course,
-                      "Where the course is, if not found by its name, or if a bag does not hold it");
-  command->add_option("--plot", arguments->plot, "Draw it to this PNG");
-  auto* record = command->add_option("--record", arguments->record,
-                                     "Record it to this file: MCAP if it ends in .mcap, else JSON lines");
-  for (auto* served : {host, port}) served->excludes(html)->excludes(record);
-  command->callback([arguments, command, &exit_status] { exit_status = run(*arguments, *command); });
-  return command;
+      .option("what", arguments->folder, "A recording in MCAP, a bag of ROS 1, or the --out of an evaluation")
+      .required();
+  const Option html =
+      command.option("--html", arguments->recording.html,
+                     "Write the recording as a page that opens from disk, instead of serving it");
+  const Option host =
+      command.option("--host", arguments->recording.host, "Address to listen on").show_default();
+  const Option port =
+      command.option("--port", arguments->recording.port, "Port to listen on; 0 means any free port")
+          .show_default();
+  command.option("--lap", arguments->lap, "Of an evaluation: which, from 0");
+  command.option("--method", arguments->method,
+                 "Of an evaluation: method, or method and options as results name them; of a bag: who "
+                 "looks on [svg_mppi]");
+  command.option("--config", arguments->config, "Of a bag: configuration of who looks on").show_default();
+  command.option("--set", arguments->set, "Of a bag: section.option=value; may be repeated").repeatable();
+  command.option("--scenario", arguments->scenario, "pt or oa");
+  command.option("--course", arguments->course,
+                 "Where the course is, if not found by its name, or if a bag does not hold it");
+  command.option("--plot", arguments->plot, "Draw it to this PNG");
+  const Option record = command.option("--record", arguments->record,
+                                       "Record it to this file: MCAP if it ends in .mcap, else JSON lines");
+  for (Option served : {host, port}) served.excludes(html).excludes(record);
+  command.action([arguments, &command] { return run(*arguments, command); });
 }
 
 }  // namespace slalom::tools

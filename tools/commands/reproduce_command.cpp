@@ -1,14 +1,12 @@
-#include "tools/commands/reproduce_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/course/course.hpp"
+#include "tools/commands/commands.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/evaluation/ranks.hpp"
+#include "tools/json/json.hpp"
 #include "tools/report/report.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -135,31 +133,27 @@ int run(Arguments arguments) {
 
 }  // namespace
 
-CLI::App* add_reproduce_command(CLI::App& app, int& exit_status) {
-  CLI::App* command = app.add_subcommand(
-      "reproduce", "The paper's simulation section: every row beside the authors' figures, with a verdict");
+void declare_reproduce(Command& command) {
+  command.summary("The paper's simulation section: every row beside the authors' figures, with a verdict");
   const auto arguments = std::make_shared<Arguments>();
   auto& scenario = arguments->evaluation.scenario;
   scenario.course = "berlin";
   scenario.config = scenario.evaluation = "published";
-  add_evaluation_options(*command, arguments->evaluation);
-  command->add_option("--published", arguments->published, "The folder of the authors' logs");
-  command->add_option("--sections", arguments->sections, "Of: baseline, ablation, sweep")
-      ->delimiter(',')
-      ->capture_default_str();
-  command->add_option("--laps-pt", arguments->laps_pt, "Of every row in path tracking")
-      ->capture_default_str();
-  command->add_option("--laps-oa", arguments->laps_oa, "Of every row among obstacles")->capture_default_str();
-  command->add_flag("--quick", arguments->quick, "A tenth of the laps");
+  add_evaluation_options(command, arguments->evaluation);
+  command.option("--published", arguments->published, "The folder of the authors' logs");
+  command.option("--sections", arguments->sections, "Of: baseline, ablation, sweep")
+      .comma_separated()
+      .show_default();
+  command.option("--laps-pt", arguments->laps_pt, "Of every row in path tracking").show_default();
+  command.option("--laps-oa", arguments->laps_oa, "Of every row among obstacles").show_default();
+  command.flag("--quick", arguments->quick, "A tenth of the laps");
   command
-      ->add_option("--set", scenario.set,
-                   "section.option=value, for all rows: the same section, otherwise driven")
-      ->allow_extra_args(false);
-  command->callback([arguments, command, &exit_status] {
-    arguments->course_said = command->count("--course") > 0;
-    exit_status = run(*arguments);
+      .option("--set", scenario.set, "section.option=value, for all rows: the same section, otherwise driven")
+      .repeatable();
+  command.action([arguments, &command] {
+    arguments->course_said = command.given("--course");
+    return run(*arguments);
   });
-  return command;
 }
 
 }  // namespace slalom::tools

@@ -1,6 +1,3 @@
-#include "tools/commands/track_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -8,13 +5,14 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <string>
 
 #include "slalom/vehicle/course/track_generator.hpp"
+#include "tools/commands/commands.hpp"
 #include "tools/drawing/track_picture.hpp"
+#include "tools/json/json.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
@@ -74,8 +72,7 @@ std::string command_of(const Arguments& arguments, const TrackOptions& options) 
   return text + " --out " + shell_word(folder);
 }
 
-nlohmann::ordered_json summary_of(const Track& track, const Arguments& arguments,
-                                  const std::string& command) {
+Json summary_of(const Track& track, const Arguments& arguments, const std::string& command) {
   double slowest = track.raceline.front().speed, fastest = slowest, sharpest = 0;
   for (const auto& point : track.raceline) {
     slowest = std::min(slowest, point.speed);
@@ -125,41 +122,35 @@ void run(Arguments arguments) {
 
 }  // namespace
 
-CLI::App* add_track_command(CLI::App& app, int& exit_status) {
-  CLI::App* command =
-      app.add_subcommand("track", "Make a course: map, raceline with speeds, obstacle path, picture");
+void declare_track(Command& command) {
+  command.summary("Make a course: map, raceline with speeds, obstacle path, picture");
   const auto arguments = std::make_shared<Arguments>();
   TrackOptions& options = arguments->options;
-  command->add_option("--out", arguments->out, "Folder to write; made if it does not exist")->required();
-  command->add_option("--seed", options.seed, "Which track; the same options and seed give the same files")
-      ->capture_default_str();
-  command->add_option("--length", options.length, "Length of the centre line, m, 20..1000")
-      ->capture_default_str();
-  command->add_option("--width", arguments->width,
-                      "From wall to wall, m, 1.2..10 [by character: 2.2, 2.6, 2.2, 1.5]");
-  command->add_option("--character", arguments->character, "balanced, fast, twisty or narrow")
-      ->capture_default_str();
-  command->add_option("--top-speed", arguments->top_speed, "m/s [by character: 6, 7, 5, 4.5]");
+  command.option("--out", arguments->out, "Folder to write; made if it does not exist").required();
+  command.option("--seed", options.seed, "Which track; the same options and seed give the same files")
+      .show_default();
+  command.option("--length", options.length, "Length of the centre line, m, 20..1000").show_default();
+  command.option("--width", arguments->width,
+                 "From wall to wall, m, 1.2..10 [by character: 2.2, 2.6, 2.2, 1.5]");
+  command.option("--character", arguments->character, "balanced, fast, twisty or narrow").show_default();
+  command.option("--top-speed", arguments->top_speed, "m/s [by character: 6, 7, 5, 4.5]");
   command
-      ->add_option("--lateral-acceleration", options.limits.lateral_acceleration,
-                   "Limit of the speed profile, m/s^2")
-      ->capture_default_str();
-  command->add_option("--acceleration", options.limits.acceleration, "Limit of the speed profile, m/s^2")
-      ->capture_default_str();
-  command->add_option("--braking", options.limits.braking, "Limit of the speed profile, m/s^2")
-      ->capture_default_str();
-  command->add_option("--wall-margin", options.wall_margin, "How far the raceline keeps from the walls, m")
-      ->capture_default_str();
-  command->add_option("--name", arguments->name, "Name of the course [the folder's]");
-  command->add_option("--description", arguments->description, "A sentence for course.yaml");
-  command->add_option("--json", arguments->json,
-                      "Write a summary as JSON to this file, or to standard output: -");
-  command->add_flag("--no-picture", arguments->no_picture, "Do not draw picture.png");
-  command->callback([arguments, &exit_status] {
+      .option("--lateral-acceleration", options.limits.lateral_acceleration,
+              "Limit of the speed profile, m/s^2")
+      .show_default();
+  command.option("--acceleration", options.limits.acceleration, "Limit of the speed profile, m/s^2")
+      .show_default();
+  command.option("--braking", options.limits.braking, "Limit of the speed profile, m/s^2").show_default();
+  command.option("--wall-margin", options.wall_margin, "How far the raceline keeps from the walls, m")
+      .show_default();
+  command.option("--name", arguments->name, "Name of the course [the folder's]");
+  command.option("--description", arguments->description, "A sentence for course.yaml");
+  command.option("--json", arguments->json, "Write a summary as JSON to this file, or to standard output: -");
+  command.flag("--no-picture", arguments->no_picture, "Do not draw picture.png");
+  command.action([arguments] {
     run(*arguments);
-    exit_status = 0;
+    return 0;
   });
-  return command;
 }
 
 }  // namespace slalom::tools

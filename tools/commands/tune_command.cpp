@@ -1,9 +1,7 @@
-#include "tools/commands/tune_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "slalom/core/error.hpp"
+#include "tools/commands/commands.hpp"
 #include "tools/evaluation/ranks.hpp"
 #include "tools/evaluation/tuning_job.hpp"
 #include "tools/terminal/interrupt.hpp"
@@ -26,47 +24,46 @@ int run(const TuningArguments& arguments) {
 
 }  // namespace
 
-CLI::App* add_tune_command(CLI::App& app, int& exit_status) {
-  CLI::App* command = app.add_subcommand(
-      "tune", "Search options over paired seeds: successive halving, held-out seeds for the final figure");
+void declare_tune(Command& command) {
+  command.summary(
+      "Search options over paired seeds: successive halving, held-out seeds for the final figure");
   const auto arguments = std::make_shared<TuningArguments>();
-  add_method_option(*command, arguments->method);
+  add_method_option(command, arguments->method);
   std::string figures;
   for (const auto& [name, meaning] : evaluation::Objective::figures())
     figures += std::string(figures.empty() ? "" : "; ") + name + ": " + meaning;
   command
-      ->add_option("--objective", arguments->objective,
-                   "What is made small, a mean over laps: a sum like 'log_ms + 5*failures' of " + figures)
-      ->capture_default_str();
+      .option("--objective", arguments->objective,
+              "What is made small, a mean over laps: a sum like 'log_ms + 5*failures' of " + figures)
+      .show_default();
   command
-      ->add_option("--set", arguments->set,
-                   "key=lo:hi, key=lo:hi:log or key=v1,v2,...: search it; key=value: set it for all")
-      ->required()
-      ->allow_extra_args(false);
-  command->add_option("--scenario", arguments->scenarios, "pt, oa or both: pt,oa")
-      ->delimiter(',')
-      ->capture_default_str();
-  command->add_option("--obstacles", arguments->obstacles, "Parked cars a lap in scenario oa")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--budget", arguments->budget, "Laps of the search; held-out laps come on top")
-      ->capture_default_str();
+      .option("--set", arguments->set,
+              "key=lo:hi, key=lo:hi:log or key=v1,v2,...: search it; key=value: set it for all")
+      .required()
+      .repeatable();
+  command.option("--scenario", arguments->scenarios, "pt, oa or both: pt,oa")
+      .comma_separated()
+      .show_default();
+  command.option("--obstacles", arguments->obstacles, "Parked cars a lap in scenario oa")
+      .range(1, 1000)
+      .show_default();
+  command.option("--budget", arguments->budget, "Laps of the search; held-out laps come on top")
+      .show_default();
   command
-      ->add_option("--laps", arguments->laps,
-                   "Of every candidate to begin with, in every scenario on every course")
-      ->capture_default_str();
+      .option("--laps", arguments->laps,
+              "Of every candidate to begin with, in every scenario on every course")
+      .show_default();
   command
-      ->add_option("--rounds", arguments->rounds,
-                   "Each but the first searches a box half as wide round the best so far")
-      ->capture_default_str();
+      .option("--rounds", arguments->rounds,
+              "Each but the first searches a box half as wide round the best so far")
+      .show_default();
   command
-      ->add_option("--held-out", arguments->held_out,
-                   "Laps for the final figure, in every scenario on every course, on seeds of their own")
-      ->capture_default_str();
-  add_evaluation_options(*command, arguments->evaluation);
-  command->get_option("--course")->description("Courses by name, or their folders, separated by commas");
-  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
-  return command;
+      .option("--held-out", arguments->held_out,
+              "Laps for the final figure, in every scenario on every course, on seeds of their own")
+      .show_default();
+  add_evaluation_options(command, arguments->evaluation);
+  command.find("--course").describe("Courses by name, or their folders, separated by commas");
+  command.action([arguments] { return run(*arguments); });
 }
 
 }  // namespace slalom::tools

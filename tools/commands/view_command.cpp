@@ -1,10 +1,8 @@
-#include "tools/commands/view_command.hpp"
-
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 
 #include "slalom/core/version.hpp"
+#include "tools/commands/commands.hpp"
 #include "tools/live_view/view_evaluation.hpp"
 #include "tools/live_view/view_words.hpp"
 #include "tools/scenario/scenario.hpp"
@@ -65,29 +63,26 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-CLI::App* add_view_command(CLI::App& app, int& exit_status) {
-  CLI::App* command =
-      app.add_subcommand("view", "Drive, and serve a page on which everything can be seen and touched");
+void declare_view(Command& command) {
+  command.summary("Drive, and serve a page on which everything can be seen and touched");
   const auto arguments = std::make_shared<Arguments>();
   arguments->scenario.obstacles = 8;
-  add_scenario_options(*command, arguments->scenario);
-  add_method_option(*command, arguments->method);
-  command->add_option("--seed", arguments->seed, "Of the drive")->capture_default_str();
-  command->add_option("--against", arguments->against, "A second method, driven as a ghost on the same seed");
-  command->add_option(
-      "--eval", arguments->evaluation,
-      "Open an evaluation (the --out of slalom eval): its laps, and what led to each contact");
-  command->add_flag("--record-times", arguments->record_times,
-                    "Recordings saved from the page hold the wall clock's figures too");
+  add_scenario_options(command, arguments->scenario);
+  add_method_option(command, arguments->method);
+  command.option("--seed", arguments->seed, "Of the drive").show_default();
+  command.option("--against", arguments->against, "A second method, driven as a ghost on the same seed");
+  command.option("--eval", arguments->evaluation,
+                 "Open an evaluation (the --out of slalom eval): its laps, and what led to each contact");
+  command.flag("--record-times", arguments->record_times,
+               "Recordings saved from the page hold the wall clock's figures too");
   command
-      ->add_option("--host", arguments->host,
-                   "Address to listen on; others than this machine's own need the token")
-      ->capture_default_str();
-  command->add_option("--port", arguments->port, "0: any that is free")->capture_default_str();
-  command->add_option("--token", arguments->token,
-                      "Ask for this token; made at random where --host opens the view to others");
-  command->callback([arguments, &exit_status] { exit_status = run(*arguments); });
-  return command;
+      .option("--host", arguments->host,
+              "Address to listen on; others than this machine's own need the token")
+      .show_default();
+  command.option("--port", arguments->port, "0: any that is free").show_default();
+  command.option("--token", arguments->token,
+                 "Ask for this token; made at random where --host opens the view to others");
+  command.action([arguments] { return run(*arguments); });
 }
 
 }  // namespace slalom::tools

@@ -1,17 +1,17 @@
 #include "tools/evaluation/evaluation_job.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "slalom/core/dispatch.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
+#include "tools/command_line/command.hpp"
 #include "tools/evaluation/build_identity.hpp"
 #include "tools/evaluation/ranks.hpp"
+#include "tools/json/json.hpp"
 #include "tools/terminal/campaign_progress.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
@@ -20,7 +20,6 @@ namespace slalom::tools {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using namespace evaluation;
 
 Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
@@ -46,12 +45,13 @@ Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
           {"options", options}};
 }
 
-/// Settings that are there must be some. What is no JSON at all the store refuses itself.
+/// Rejects settings that are JSON but not an object. The store itself rejects a text that is not JSON.
 void require_object(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) return;
-  const Json there = Json::parse(stream, nullptr, false);
-  if (!there.is_discarded() && !there.is_object()) throw IoError(file.string(), 0, "is no JSON object");
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  const Json there = Json::parse_or_null(text);
+  if (!there.is_null() && !there.is_object()) throw IoError(file.string(), 0, "is not a JSON object");
 }
 
 Json interval_json(const Interval& i) {
@@ -96,26 +96,25 @@ std::string course_hash(const Environment& environment) {
   return text;
 }
 
-void add_evaluation_options(CLI::App& command, EvaluationArguments& a) {
-  command.add_option("--course", a.scenario.course, "A course by name, or its folder")->capture_default_str();
-  command.add_option("--config", a.scenario.config, "default, default_speed, published, hardware, or a file")
-      ->capture_default_str();
+void add_evaluation_options(Command& command, EvaluationArguments& a) {
+  command.option("--course", a.scenario.course, "A course by name, or its folder").show_default();
+  command.option("--config", a.scenario.config, "default, default_speed, published, hardware, or a file")
+      .show_default();
   command
-      .add_option("--evaluation", a.scenario.evaluation,
-                  "true: right physics; published: as the paper's program counted")
-      ->capture_default_str();
+      .option("--evaluation", a.scenario.evaluation,
+              "true: right physics; published: as the paper's program counted")
+      .show_default();
   add_latency_option(command, a.scenario.latency_ms);
-  command.add_option("--seed0", a.seed0, "Lap k has seed seed0 + k (obstacles + 5)")->capture_default_str();
+  command.option("--seed0", a.seed0, "Lap k has seed seed0 + k (obstacles + 5)").show_default();
   command
-      .add_option("--jobs", a.jobs,
-                  "Laps driven at a time; 0: one per processor core, under mpirun one per process")
-      ->capture_default_str();
-  command.add_option("--out", a.out, "Folder for laps.csv and summary.json")->required();
-  command.add_flag("--resume", a.resume,
-                   "Go on with the evaluation in --out; no finished lap is driven again");
-  command.add_flag("--any-build", a.any_build,
-                   "With --resume: go on although another build of the program drove the laps so far");
-  command.add_option("--json", a.json, "Write the summary also to this file, or to standard output: -");
+      .option("--jobs", a.jobs,
+              "Laps driven at a time; 0: one per processor core, under mpirun one per process")
+      .show_default();
+  command.option("--out", a.out, "Folder for laps.csv and summary.json").required();
+  command.flag("--resume", a.resume, "Go on with the evaluation in --out; no finished lap is driven again");
+  command.flag("--any-build", a.any_build,
+               "With --resume: go on although another build of the program drove the laps so far");
+  command.option("--json", a.json, "Write the summary also to this file, or to standard output: -");
 }
 
 Json Evaluated::summary() const {

@@ -1,16 +1,18 @@
 #pragma once
 
 #include <atomic>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "slalom/evaluation/evaluation.hpp"
 #include "slalom/evaluation/results.hpp"
+#include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 
 /// What `eval` and `reproduce` share: an evaluation from its words to laps.csv and summary.json.
 namespace slalom::tools {
+
+class Command;
 
 struct EvaluationArguments {
   ScenarioArguments scenario;  ///< `set` holds what applies to all experiments
@@ -24,7 +26,7 @@ struct EvaluationArguments {
 
 /// Adds --course, --config, --evaluation, --latency-ms, --seed0, --jobs, --out, --resume, --any-build and
 /// --json.
-void add_evaluation_options(CLI::App& command, EvaluationArguments& arguments);
+void add_evaluation_options(Command& command, EvaluationArguments& arguments);
 
 /// Whether an option does anything to laps of a method: its own, or one of vehicle, planner, world.
 bool applies_to(const std::string& key, const std::string& method);
@@ -49,7 +51,7 @@ struct Evaluated {
   std::vector<evaluation::LapRow> rows;
   std::vector<evaluation::ExperimentResult> results;
   std::filesystem::path course_folder;
-  nlohmann::ordered_json summary() const;
+  Json summary() const;
 };
 
 /// All that is driven, with the settings that are kept beside the laps.

@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
+#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 using namespace evaluation;
 
 constexpr const char* authors = "https://github.com/kohonda/proj-svg_mppi";

@@ -2,12 +2,12 @@
 
 #include <filesystem>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "slalom/evaluation/lap_log.hpp"
+#include "tools/json/json.hpp"
 
 /// The simulation section of Honda et al. (ICRA 2024, section VI) as experiments, and what the authors
 /// logged.
@@ -62,6 +62,6 @@ std::vector<Reference> find_references(const LogFolders& folders,
                                        const std::vector<evaluation::LapRow>& rows);
 
 /// `published`, `lockstep`, `verdict` and `note` of an entry of a summary's results.
-void add_reference(nlohmann::ordered_json& result, const Reference& reference);
+void add_reference(Json& result, const Reference& reference);
 
 }  // namespace slalom::tools

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
+#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 using evaluation::Experiment;
 
 /// What Experiment::set_text made of them: "key=value key=value", commas as semicolons.
@@ -57,13 +56,14 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
   std::uint64_t seed0 = 0;
   try {
     const auto settings = Json::parse(stored.settings);
-    if (!settings.is_object()) throw IoError(file.string(), 0, "is no JSON object");
+    if (!settings.is_object()) throw IoError(file.string(), 0, "is not a JSON object");
     for (const auto& e : settings.at("experiments")) {
       stored.experiments.push_back(
-          {e.at("method"), parse_set(e.at("set")), e.at("scenario"), e.at("obstacles"), e.at("laps")});
+          {e.at("method").get<std::string>(), parse_set(e.at("set").get<std::string>()),
+           e.at("scenario").get<std::string>(), e.at("obstacles").get<int>(), e.at("laps").get<int>()});
     }
-    seed0 = settings.at("seed0");
-  } catch (const nlohmann::json::exception& error) {
+    seed0 = settings.at("seed0").get<std::uint64_t>();
+  } catch (const JsonError& error) {
     throw IoError(file.string(), 0, std::string("makes no sense: ") + error.what());
   }
   const fs::path table = folder / "laps.csv", journal = folder / "laps.journal.csv";
@@ -94,14 +94,14 @@ ScenarioArguments campaign_arguments(const StoredEvaluation& stored, const std::
   try {
     const auto settings = Json::parse(stored.settings);
     arguments.course = course.empty() ? settings.at("course").get<std::string>() : course;
-    arguments.config = settings.at("config");
-    arguments.evaluation = settings.at("evaluation");
-    arguments.latency_ms = settings.at("latency_ms");
+    arguments.config = settings.at("config").get<std::string>();
+    arguments.evaluation = settings.at("evaluation").get<std::string>();
+    arguments.latency_ms = settings.at("latency_ms").get<double>();
     // The file may say something else by now: every option is set as it was.
     for (const auto& [section, options] : settings.at("options").items())
       for (const auto& [key, value] : options.items())
         arguments.set.push_back(section + "." + key + "=" + option_text(value));
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const JsonError& error) {
     throw IoError(file.string(), 0, std::string("makes no sense: ") + error.what());
   }
   return arguments;
@@ -115,15 +115,15 @@ evaluation::Evaluation rebuild_campaign(const StoredEvaluation& stored, const st
     const auto settings = Json::parse(stored.settings);
     const ScenarioArguments arguments = campaign_arguments(stored, course);
     scenario = load_scenario(arguments, stored.experiments.front().method);
-    if (const std::string hash = settings.at("course_hash"); hash != course_hash(*scenario.environment))
+    if (const auto hash = settings.at("course_hash").get<std::string>(); hash != course_hash(*scenario.environment))
       throw IoError(scenario.folder.string(), 0, "is not the course of " + stored.folder.string());
     evaluation.environment = scenario.environment;
     evaluation.configuration = scenario.configuration;
     evaluation.experiments = stored.experiments;
-    evaluation.seed0 = settings.at("seed0");
+    evaluation.seed0 = settings.at("seed0").get<std::uint64_t>();
     evaluation.latency = scenario.lap.latency;
     evaluation.settings = stored.settings;
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const JsonError& error) {
     throw IoError(file.string(), 0, std::string("makes no sense: ") + error.what());
   }
   return evaluation;

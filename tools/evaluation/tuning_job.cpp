@@ -8,13 +8,13 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/results.hpp"
+#include "tools/json/json.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 using namespace evaluation;
 
 void require(const char* option, int value, int low, int high) {
@@ -139,8 +139,9 @@ void TuningJob::keep_plan() const {
                   "holds a search: say --resume to go on with it, or take another folder");
   Json there;
   try {
-    there = Json::parse(std::ifstream(file));
-  } catch (const nlohmann::json::exception& failure) {
+    std::ifstream stream(file);
+    there = Json::parse({std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()});
+  } catch (const JsonError& failure) {
     throw IoError(file.string(), 0, std::string("is not JSON: ") + failure.what());
   }
   const std::string differing = differences(there, plan());

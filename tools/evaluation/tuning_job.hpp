@@ -2,12 +2,12 @@
 
 #include <atomic>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "slalom/evaluation/tuning.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
+#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 
@@ -33,17 +33,17 @@ class TuningJob {
   /// False if it was interrupted.
   bool run(const std::atomic<bool>& cancel, std::FILE* words);
 
-  const nlohmann::ordered_json& result() const noexcept { return result_; }
+  const Json& result() const noexcept { return result_; }
 
  private:
   /// What candidates drove in a step.
   struct Driven {
     std::vector<std::vector<double>> values;  ///< of each candidate: of its laps, in the same order for all
-    nlohmann::ordered_json results = nlohmann::ordered_json::array();
+    Json results = Json::array();
   };
 
   int places() const { return static_cast<int>(courses_.size() * arguments_.scenarios.size()); }
-  nlohmann::ordered_json plan() const;
+  Json plan() const;
   void keep_plan() const;
   bool drive(const std::string& step, const std::vector<evaluation::Candidate>& candidates, int first_lap,
              int laps, const std::atomic<bool>& cancel, Driven& driven) const;
@@ -57,7 +57,7 @@ class TuningJob {
   std::vector<evaluation::SearchDimension> dimensions_;
   std::vector<evaluation::Rung> rungs_;  ///< of every round
   evaluation::Candidate best_;           ///< at first the configuration as it stands, which sets nothing
-  nlohmann::ordered_json result_;
+  Json result_;
 };
 
 }  // namespace slalom::tools

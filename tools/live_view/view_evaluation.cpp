@@ -1,16 +1,14 @@
 #include "tools/live_view/view_evaluation.hpp"
 
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 
 #include "tools/evaluation/stored_evaluation.hpp"
+#include "tools/json/json.hpp"
 #include "tools/live_view/view_words.hpp"
 
 namespace slalom::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// "x:y x:y" as pairs.
 Json points(const std::string& text) {
@@ -43,7 +41,7 @@ std::string evaluation_message(const StoredEvaluation& stored, const std::string
               {"course", course},
               {"experiments", experiments},
               {"laps", laps}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+      .dump();
 }
 
 }  // namespace

@@ -4,12 +4,12 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "slalom/core/error.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/course/course.hpp"
+#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -51,7 +51,7 @@ std::string further_arguments(const ScenarioArguments& a) {
   std::string words;
   if (a.evaluation != "true") words += " --evaluation " + a.evaluation;
   if (!a.start.empty()) words += " --start " + a.start;
-  if (a.latency_ms > 0) words += " --latency-ms " + nlohmann::json(a.latency_ms).dump();
+  if (a.latency_ms > 0) words += " --latency-ms " + Json(a.latency_ms).dump();
   for (const std::string& each : a.set) words += " --set '" + each + "'";
   return words;
 }

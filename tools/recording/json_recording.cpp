@@ -2,15 +2,13 @@
 
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
+#include "tools/json/json.hpp"
 #include "tools/report/lap_json.hpp"
 
 namespace slalom::tools {
-
-using Json = nlohmann::ordered_json;
 
 JsonRecording::JsonRecording(const std::string& file, const Json& settings)
     : file_(file), stream_(file, std::ios::binary) {

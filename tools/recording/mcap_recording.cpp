@@ -1,9 +1,8 @@
 #include "tools/recording/mcap_recording.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
+#include "tools/json/json.hpp"
 #include "tools/live_view/view_words.hpp"
 
 namespace slalom::tools {

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+
+#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json pose_json(const maps::Pose& pose) {
   return {pose.x, pose.y, pose.yaw};

@@ -1,17 +1,17 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
 #include "slalom/evaluation/lap_runner.hpp"
+#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 
 /// A lap as results have it. Nothing in it depends on the clock of the wall.
-nlohmann::ordered_json lap_json(const evaluation::LapResult& lap, int number);
+Json lap_json(const evaluation::LapResult& lap, int number);
 
 /// Percentiles by nearest rank of wall-clock times, ms; null without any.
-nlohmann::ordered_json times_json(std::vector<float> milliseconds);
+Json times_json(std::vector<float> milliseconds);
 
 /// All solve times of laps, ms.
 std::vector<float> solve_times(const std::vector<evaluation::LapResult>& laps);

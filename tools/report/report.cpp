@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
+#include "tools/json/json.hpp"
 #include "view/recording/encodings.hpp"
 
 namespace slalom::tools {
@@ -234,7 +234,7 @@ std::string paired_table(const Report& report) {
 }
 
 std::string page(const Report& report, const std::vector<ReportFigure>& figures) {
-  const auto settings = nlohmann::ordered_json::parse(report.evaluated.evaluation.settings);
+  const auto settings = Json::parse(report.evaluated.evaluation.settings);
   const auto word = [&](const char* key) { return escaped(settings[key].get<std::string>()); };
   std::string html =
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "

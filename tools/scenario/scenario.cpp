@@ -1,20 +1,19 @@
 #include "tools/scenario/scenario.hpp"
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/option_access.hpp"
+#include "tools/command_line/command.hpp"
+#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 Json number_json(double value) {
   if (std::isfinite(value)) return value;
@@ -81,44 +80,40 @@ fs::path program_folder() {
   return failed ? fs::current_path() : program.parent_path();
 }
 
-void add_scenario_options(CLI::App& command, ScenarioArguments& a) {
-  command.add_option("--course", a.course, "A course by name, or its folder")->capture_default_str();
-  command.add_option("--config", a.config, "default, default_speed, published, hardware, or a file")
-      ->capture_default_str();
+void add_scenario_options(Command& command, ScenarioArguments& a) {
+  command.option("--course", a.course, "A course by name, or its folder").show_default();
+  command.option("--config", a.config, "default, default_speed, published, hardware, or a file")
+      .show_default();
   command
-      .add_option("--evaluation", a.evaluation,
-                  "true: right physics; published: as the paper's program counted")
-      ->capture_default_str();
+      .option("--evaluation", a.evaluation, "true: right physics; published: as the paper's program counted")
+      .show_default();
   command
-      .add_option(
-          "--set", a.set,
-          "section.option=value, or option=value for the method's own; may be repeated (slalom options "
-          "lists them)")
-      ->allow_extra_args(false);
-  command.add_option("--obstacles", a.obstacles, "Parked cars on the course")->capture_default_str();
+      .option("--set", a.set,
+              "section.option=value, or option=value for the method's own; may be repeated (slalom options "
+              "lists them)")
+      .repeatable();
+  command.option("--obstacles", a.obstacles, "Parked cars on the course").show_default();
   command
-      .add_option("--opponents", a.opponents,
-                  "Cars that drive along the course line at half its speed, --evaluation true only")
-      ->capture_default_str();
-  command.add_option("--start", a.start, "x,y,yaw of the car's centre of gravity, m, m, rad [the course's]");
+      .option("--opponents", a.opponents,
+              "Cars that drive along the course line at half its speed, --evaluation true only")
+      .show_default();
+  command.option("--start", a.start, "x,y,yaw of the car's centre of gravity, m, m, rad [the course's]");
   add_latency_option(command, a.latency_ms);
-  command.add_flag("--hardware", a.hardware,
-                   "As on a real car: noise, slip, a guessed pose, a servo unlike the model");
-  command.add_option("--threads", a.threads, "Threads of the solver; results do not depend on it")
-      ->capture_default_str();
+  command.flag("--hardware", a.hardware,
+               "As on a real car: noise, slip, a guessed pose, a servo unlike the model");
+  command.option("--threads", a.threads, "Threads of the solver; results do not depend on it").show_default();
 }
 
-void add_latency_option(CLI::App& command, double& latency_ms) {
-  command
-      .add_option("--latency-ms", latency_ms, "From a scan to its command's effect, --evaluation true only")
-      ->check(CLI::Range(0.0, 1000.0))
-      ->capture_default_str();
+void add_latency_option(Command& command, double& latency_ms) {
+  command.option("--latency-ms", latency_ms, "From a scan to its command's effect, --evaluation true only")
+      .range(0.0, 1000.0)
+      .show_default();
 }
 
-void add_method_option(CLI::App& command, std::string& method) {
+void add_method_option(Command& command, std::string& method) {
   std::string names;
   for (const char* name : solver_names()) names += (names.empty() ? "" : ", ") + std::string(name);
-  command.add_option("--method", method, "One of " + names)->capture_default_str();
+  command.option("--method", method, "One of " + names).show_default();
 }
 
 vehicle::Configuration load_configuration(const ScenarioArguments& arguments, const std::string& method) {

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,13 +9,12 @@
 #include "slalom/evaluation/environment.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
-
-namespace CLI {
-class App;
-}
+#include "tools/json/json.hpp"
 
 /// What every command that drives is told in the same words: course, configuration, evaluation, method.
 namespace slalom::tools {
+
+class Command;
 
 /// The folder of the running program.
 std::filesystem::path program_folder();
@@ -36,11 +34,11 @@ struct ScenarioArguments {
 
 /// Adds --course, --config, --evaluation, --set, --start, --obstacles, --opponents, --latency-ms,
 /// --hardware and --threads.
-void add_scenario_options(CLI::App& command, ScenarioArguments& arguments);
+void add_scenario_options(Command& command, ScenarioArguments& arguments);
 /// Adds --latency-ms, in ms.
-void add_latency_option(CLI::App& command, double& latency_ms);
+void add_latency_option(Command& command, double& latency_ms);
 /// Adds --method to `method`, with the names known.
-void add_method_option(CLI::App& command, std::string& method);
+void add_method_option(Command& command, std::string& method);
 
 struct Scenario {
   std::filesystem::path folder;  ///< of the course
@@ -61,10 +59,9 @@ vehicle::Configuration load_configuration(const ScenarioArguments& arguments, co
 Scenario load_scenario(const ScenarioArguments& arguments, const std::string& method);
 
 /// Every option as it is set: {section: {option: value}}; infinite values as text.
-nlohmann::ordered_json options_json(const vehicle::Configuration& configuration, const std::string& method);
+Json options_json(const vehicle::Configuration& configuration, const std::string& method);
 
 /// The settings that go with a result: course, evaluation, method, obstacles, start, options ...
-nlohmann::ordered_json settings_json(const ScenarioArguments& arguments, const Scenario& scenario,
-                                     const std::string& method);
+Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario, const std::string& method);
 
 }  // namespace slalom::tools

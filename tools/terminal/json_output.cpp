@@ -2,13 +2,13 @@
 
 #include <fstream>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "slalom/core/error.hpp"
+#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 
-void write_json(const nlohmann::ordered_json& result, const std::string& file) {
+void write_json(const Json& result, const std::string& file) {
   const std::string text = result.dump(2) + "\n";
   if (file == "-") {
     std::cout << text << std::flush;

@@ -1,19 +1,17 @@
 #include "view/protocol/messages.hpp"
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "slalom/core/option_access.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
+#include "tools/json/json.hpp"
 #include "view/protocol/frame.hpp"
 
 namespace slalom::view {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json.dump();
 }
 
 /// A lap's seed and the program's threads take their place.
@@ -150,7 +148,7 @@ std::string state_message(const StateFacts& facts) {
 }
 
 std::string options_message(const OptionsFacts& facts) {
-  Json sections = Json::array();
+  std::vector<Json> sections;
   const auto now = vehicle::list_sections(facts.now), loaded = vehicle::list_sections(facts.loaded);
   for (std::size_t i = 0; i < now.size(); ++i) {
     Json options = Json::array();
@@ -160,12 +158,9 @@ std::string options_message(const OptionsFacts& facts) {
         options.push_back(option_json(entry, loaded[i].options[k]));
     }
     if (options.empty()) continue;
-    const Json section = {{"name", now[i].name}, {"options", options}};
-    // The method's own options come first: they are what one wants to turn.
-    if (now[i].name == facts.names.method)
-      sections.insert(sections.begin(), section);
-    else
-      sections.push_back(section);
+    // The method's own options come first: they are changed most often.
+    const auto place = now[i].name == facts.names.method ? sections.begin() : sections.end();
+    sections.insert(place, Json{{"name", now[i].name}, {"options", options}});
   }
   const auto changed = changed_options(facts);
   return text_of({{"type", "options"},

@@ -2,9 +2,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "tools/json/json.hpp"
 #include "view/recording/encodings.hpp"
 
 namespace slalom::view::foxglove {
@@ -18,7 +18,7 @@ std::string timestamp(std::uint64_t time) {
 }
 
 std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return Json(text).dump();
 }
 
 void append_vector(std::string& to, double x, double y, double z) {

@@ -1,13 +1,13 @@
 #include "view/recording/foxglove_schemas.hpp"
 
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
+
+#include "tools/json/json.hpp"
 
 namespace slalom::view::foxglove {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Fields = std::vector<std::pair<std::string, Json>>;
 
 Json of_type(const char* name) {

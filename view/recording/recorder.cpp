@@ -4,15 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <nlohmann/json.hpp>
 
+#include "tools/json/json.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/recording/foxglove_schemas.hpp"
 
 namespace slalom::view {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t gap_between_drives = 1'000'000'000;  // ns
 

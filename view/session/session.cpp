@@ -1,7 +1,8 @@
 #include "view/session/session.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+
+#include "tools/json/json.hpp"
 
 namespace slalom::view {
 namespace {

@@ -6,7 +6,6 @@
 #include <deque>
 #include <functional>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <thread>
@@ -14,6 +13,7 @@
 
 #include "slalom/evaluation/lap_runner.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
+#include "tools/json/json.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/protocol/messages.hpp"
 #include "view/server/server.hpp"
@@ -91,18 +91,18 @@ class Session {
 
   // Obeying.
   void obey(const Received& received);
-  void obey(std::uint64_t client, const nlohmann::json& command);
+  void obey(std::uint64_t client, const Json& command);
   void edit(const Edit& edit);
   void change(const vehicle::Configuration& configuration, const std::string& method, bool remember);
   void start_ghost(const std::string& method, const vehicle::Configuration& configuration);
   void end_ghost();
-  void fork(const nlohmann::json& command);
-  void obey_lap(const nlohmann::json& command);
+  void fork(const Json& command);
+  void obey_lap(const Json& command);
   int tick_of_contact(int contact);
-  bool obey_transport(const std::string& what, const nlohmann::json& command);
-  bool obey_edit(const std::string& what, const nlohmann::json& command);
-  bool obey_options(const std::string& what, const nlohmann::json& command);
-  void obey_scenario(const nlohmann::json& command);
+  bool obey_transport(const std::string& what, const Json& command);
+  bool obey_edit(const std::string& what, const Json& command);
+  bool obey_options(const std::string& what, const Json& command);
+  void obey_scenario(const Json& command);
   void save(std::uint64_t client, const std::string& what);
 
   // Telling.

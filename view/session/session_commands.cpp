@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "view/session/session.hpp"
 
+#include "tools/json/json.hpp"
+
 namespace slalom::view {
 namespace {
-
-using Json = nlohmann::json;
 
 /// What is wrong with a command's form, as against what cannot be done.
 struct Malformed : std::invalid_argument {
@@ -17,7 +16,7 @@ struct Malformed : std::invalid_argument {
 
 double number(const Json& command, const char* key) {
   const auto found = command.find(key);
-  if (found == command.end() || !found->is_number() || !std::isfinite(found->get<double>()))
+  if (found == nullptr || !found->is_number() || !std::isfinite(found->get<double>()))
     throw Malformed(std::string(key) + ": must be a finite number");
   return found->get<double>();
 }
@@ -32,13 +31,12 @@ int integer(const Json& command, const char* key) {
 }
 std::string text(const Json& command, const char* key) {
   const auto found = command.find(key);
-  if (found == command.end() || !found->is_string()) throw Malformed(std::string(key) + ": must be text");
+  if (found == nullptr || !found->is_string()) throw Malformed(std::string(key) + ": must be text");
   return found->get<std::string>();
 }
 bool flag(const Json& command, const char* key) {
   const auto found = command.find(key);
-  if (found == command.end() || !found->is_boolean())
-    throw Malformed(std::string(key) + ": must be true or false");
+  if (found == nullptr || !found->is_boolean()) throw Malformed(std::string(key) + ": must be true or false");
   return found->get<bool>();
 }
 maps::Pose pose(const Json& command) {
@@ -58,7 +56,7 @@ void Session::obey(const Received& received) {
     state_changed_ = true;
     return;
   }
-  const Json command = Json::parse(received.text, nullptr, false);
+  const Json command = Json::parse_or_null(received.text);
   if (!command.is_object()) {
     ++refused_;
     return refuse(received.client, "a command must be a JSON object");
@@ -197,7 +195,7 @@ void Session::start_ghost(const std::string& method, const vehicle::Configuratio
 void Session::fork(const Json& command) {
   const std::string method = text(command, "method"), before = names_.method;
   vehicle::Configuration changed = configuration_;
-  const Json set = command.value("set", Json::array());
+  const Json set = command.contains("set") ? command.at("set") : Json::array();
   if (!set.is_array() || set.size() > 100) throw Malformed("set: must be a list of key=value");
   for (const Json& each : set) {
     const std::string assignment = each.is_string() ? each.get<std::string>() : "";

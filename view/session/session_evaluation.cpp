@@ -1,8 +1,9 @@
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "view/session/session.hpp"
+
+#include "tools/json/json.hpp"
 
 namespace slalom::view {
 namespace {
@@ -10,9 +11,9 @@ namespace {
 constexpr double before_contact = 2.0, after_contact = 0.25;  // s shown
 constexpr double slow = 0.25;                                 // of simulated to real time
 
-int integer(const nlohmann::json& command, const char* key) {
+int integer(const Json& command, const char* key) {
   const auto found = command.find(key);
-  if (found == command.end() || !found->is_number_integer())
+  if (found == nullptr || !found->is_integer())
     throw std::invalid_argument(std::string(key) + ": must be an integer");
   return found->get<int>();
 }
@@ -33,7 +34,7 @@ int Session::tick_of_contact(int contact) {
 }
 
 /// A lap of the evaluation: from its start, or the seconds before one of its contacts.
-void Session::obey_lap(const nlohmann::json& command) {
+void Session::obey_lap(const Json& command) {
   if (!options_.load_lap) throw std::invalid_argument("lap: no evaluation is open");
   const int experiment = integer(command, "experiment"), lap = integer(command, "lap"),
             contact = command.contains("contact") ? integer(command, "contact") : -1;

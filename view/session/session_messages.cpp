@@ -1,6 +1,7 @@
-#include <nlohmann/json.hpp>
 
 #include "view/session/session.hpp"
+
+#include "tools/json/json.hpp"
 
 namespace slalom::view {
 
@@ -25,14 +26,11 @@ void Session::greet(std::uint64_t client) {
 
 void Session::refuse(std::uint64_t client, const std::string& why) {
   server_.send(
-      client,
-      {std::make_shared<const std::string>(nlohmann::ordered_json{{"type", "error"}, {"message", why}}.dump(
-           -1, ' ', false, nlohmann::json::error_handler_t::replace)),
-       false});
+      client, {std::make_shared<const std::string>(Json{{"type", "error"}, {"message", why}}.dump()), false});
 }
 
 void Session::note(const std::string& what) {
-  const nlohmann::ordered_json json = {{"type", "note"}, {"message", what}};
+  const Json json = {{"type", "note"}, {"message", what}};
   server_.broadcast({std::make_shared<const std::string>(json.dump()), false});
 }
 

@@ -1,7 +1,7 @@
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 
+#include "tools/json/json.hpp"
 #include "view/protocol/frame_writer.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/recorder.hpp"
@@ -67,12 +67,11 @@ void Session::save(std::uint64_t client, const std::string& what) {
   Frames frames;
   for (const Step& step : history_) frames.push_back(step.frame);
   const sim::WorldOptions world = scenario_.environment->world_options();
-  RecorderOptions recorder{
-      .program = options_.program,
-      .settings = {{"settings", nlohmann::json{{"command_line", command_line()}}.dump()}},
-      .lidar_angle_min = world.lidar.angle_min(),
-      .lidar_angle_increment = world.lidar.angle_increment(),
-      .wall_clock = options_.record_times};
+  RecorderOptions recorder{.program = options_.program,
+                           .settings = {{"settings", Json{{"command_line", command_line()}}.dump()}},
+                           .lidar_angle_min = world.lidar.angle_min(),
+                           .lidar_angle_increment = world.lidar.angle_increment(),
+                           .wall_clock = options_.record_times};
   const std::string name = "slalom-" + scenario_.environment->course.name + "-" + names_.method + "-" +
                            std::to_string(history_.back().tick) + (what == "replay" ? ".html" : ".mcap");
   saver_ = std::jthread([this, client, what, name, frames = std::move(frames), recorder = std::move(recorder),

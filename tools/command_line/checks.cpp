@@ -1,0 +1,124 @@
+#include "tools/command_line/checks.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+
+#include "slalom/core/error.hpp"
+#include "tools/command_line/command.hpp"
+
+namespace slalom::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The options that name a file to be written.
+constexpr const char* outputs[] = {"--json", "--record", "--plot", "--html"};
+
+void check_value(const GivenOption& option, const std::string& value) {
+  // An empty value usually comes from an unset shell variable.
+  if (value.empty()) throw CommandLineError(option.name, "the value is empty");
+  if (option.type == GivenOption::Type::natural_number) {
+    errno = 0;
+    std::strtoull(value.c_str(), nullptr, 0);
+    if (value.find('-') != std::string::npos || errno == ERANGE)
+      throw CommandLineError(option.name, value + " must be a whole number from 0 to 2^64 - 1");
+  }
+  if (option.type == GivenOption::Type::real_number && std::isnan(std::strtod(value.c_str(), nullptr)))
+    throw CommandLineError(option.name, value + " must be a number");
+}
+
+struct NamedFile {
+  std::string option, file;
+};
+
+/// A canonical path, equal for equal files; empty for devices and pipes, which can be named more than once.
+std::string canonical_path(const std::string& file) {
+  std::error_code unknown;
+  const auto status = fs::status(file, unknown);
+  if (fs::exists(status) && !fs::is_regular_file(status)) return {};
+  const fs::path path = fs::weakly_canonical(fs::absolute(file, unknown), unknown);
+  return unknown ? file : path.string();
+}
+
+void check_distinct(const std::vector<NamedFile>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::string path = canonical_path(files[i].file);
+      if (!path.empty() && path == canonical_path(files[j].file))
+        throw CommandLineError(files[j].option + ", " + files[i].option,
+                               "both name the file " + files[i].file);
+    }
+  }
+}
+
+/// Fails now instead of after hours of work. Leaves no file behind.
+void require_writable(const std::string& file) {
+  std::error_code unknown;
+  const auto status = fs::status(file, unknown);
+  if (fs::is_directory(status)) throw IoError(file, 0, "cannot be written: is a directory");
+  // Opening a pipe would block until somebody reads it.
+  if (fs::exists(status) && !fs::is_regular_file(status)) return;
+  const bool there = fs::exists(status);
+  const int descriptor =
+      ::open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | (there ? 0 : O_CREAT | O_EXCL), 0666);
+  if (descriptor < 0) {
+    const int why = errno;
+    // Under mpirun another process tries the same file.
+    if (why == (there ? ENOENT : EEXIST)) return;
+    throw IoError(file, 0, std::string("cannot be written: ") + std::strerror(why));
+  }
+  ::close(descriptor);
+  if (!there) ::unlink(file.c_str());
+}
+
+void check_output(const std::string& name, const std::string& file) {
+  if (file == "-") throw CommandLineError(name, "must be a file; only --json accepts - for standard output");
+  std::string extension = fs::path(file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (name == "--plot" && !extension.empty() && extension != ".png")
+    throw CommandLineError(name, file + " must end in .png");
+  require_writable(file);
+}
+
+}  // namespace
+
+void check_options(const std::vector<GivenOption>& options) {
+  std::vector<NamedFile> files;
+  for (const GivenOption& option : options) {
+    for (const std::string& value : option.values) {
+      if (option.type != GivenOption::Type::flag) check_value(option, value);
+      if ((option.positional || option.name == "--config") && fs::is_regular_file(value))
+        files.push_back({option.name, value});
+    }
+  }
+  for (const char* name : outputs) {
+    for (const GivenOption& option : options) {
+      if (option.name != name) continue;
+      const std::string& file = option.values.back();
+      if (file == "-" && option.name == "--json") continue;
+      check_output(option.name, file);
+      files.push_back({option.name, file});
+      check_distinct(files);
+    }
+  }
+}
+
+int after_output(int exit_status) {
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return exit_status;
+  std::cerr << "slalom: standard output: cannot be written\n";
+  return exit_status == 0 ? 1 : exit_status;
+}
+
+}  // namespace slalom::tools

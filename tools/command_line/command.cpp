@@ -1,0 +1,187 @@
+#include "tools/command_line/command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <deque>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "slalom/core/dispatch.hpp"
+#include "slalom/core/version.hpp"
+#include "tools/command_line/checks.hpp"
+#include "tools/evaluation/ranks.hpp"
+
+namespace slalom::tools {
+
+Option& Option::required() {
+  parsed_->required();
+  return *this;
+}
+
+Option& Option::show_default() {
+  parsed_->capture_default_str();
+  return *this;
+}
+
+Option& Option::range(int least, int most) {
+  parsed_->check(CLI::Range(least, most));
+  return *this;
+}
+
+Option& Option::range(double least, double most) {
+  parsed_->check(CLI::Range(least, most));
+  return *this;
+}
+
+Option& Option::comma_separated() {
+  parsed_->delimiter(',');
+  return *this;
+}
+
+Option& Option::repeatable() {
+  parsed_->allow_extra_args(false);
+  return *this;
+}
+
+Option& Option::needs(const Option& other) {
+  parsed_->needs(other.parsed_);
+  return *this;
+}
+
+Option& Option::excludes(const Option& other) {
+  parsed_->excludes(other.parsed_);
+  return *this;
+}
+
+Option& Option::describe(const std::string& help) {
+  parsed_->description(help);
+  return *this;
+}
+
+void Command::summary(const std::string& text) {
+  parser_.description(text);
+}
+
+void Command::footer(const std::string& text) {
+  parser_.footer(text);
+}
+
+Option Command::option(const std::string& name, std::string& value, const std::string& help) {
+  return Option(parser_.add_option(name, value, help));
+}
+
+Option Command::option(const std::string& name, int& value, const std::string& help) {
+  return Option(parser_.add_option(name, value, help));
+}
+
+Option Command::option(const std::string& name, std::uint16_t& value, const std::string& help) {
+  return Option(parser_.add_option(name, value, help));
+}
+
+Option Command::option(const std::string& name, std::uint64_t& value, const std::string& help) {
+  return Option(parser_.add_option(name, value, help));
+}
+
+Option Command::option(const std::string& name, double& value, const std::string& help) {
+  return Option(parser_.add_option(name, value, help));
+}
+
+Option Command::option(const std::string& name, std::optional<double>& value, const std::string& help) {
+  return Option(parser_.add_option(name, value, help));
+}
+
+Option Command::option(const std::string& name, std::vector<std::string>& value, const std::string& help) {
+  return Option(parser_.add_option(name, value, help));
+}
+
+Option Command::flag(const std::string& name, bool& value, const std::string& help) {
+  return Option(parser_.add_flag(name, value, help));
+}
+
+Option Command::find(const std::string& name) {
+  CLI::Option* found = parser_.get_option_no_throw(name);
+  if (found == nullptr) throw std::invalid_argument("unknown option " + name);
+  return Option(found);
+}
+
+bool Command::given(const std::string& name) const {
+  return parser_.count(name) > 0;
+}
+
+namespace {
+
+GivenOption given_option(const CLI::Option& option) {
+  using Type = GivenOption::Type;
+  const std::string type = option.get_type_name();
+  const auto begins = [&](const char* with) { return type.rfind(with, 0) == 0; };
+  GivenOption given{.name = option.get_name(), .positional = option.get_positional(), .values = {}};
+  given.type = option.get_expected_max() == 0 ? Type::flag
+               : begins("UINT")               ? Type::natural_number
+               : begins("FLOAT")              ? Type::real_number
+                                              : Type::text;
+  for (const std::string& value : option.results()) given.values.push_back(value);
+  return given;
+}
+
+/// Throws CLI::ValidationError, IoError, and std::invalid_argument for an unknown SLALOM_TARGET.
+void check(const CLI::App& command) {
+  std::vector<GivenOption> given;
+  for (const CLI::Option* option : command.get_options())
+    if (option->count() > 0) given.push_back(given_option(*option));
+  try {
+    check_options(given);
+  } catch (const CommandLineError& error) {
+    throw CLI::ValidationError(error.option, error.rule);
+  }
+  // Solvers ask for the target in functions that cannot throw.
+  simd::active_target();
+}
+
+int parse_and_run(int argc, const char* const* argv, const std::vector<CommandEntry>& entries) {
+  int exit_status = 0;
+  CLI::App app{
+      "Slalom: sampling-based stochastic optimal control that commits to one good way round an obstacle",
+      "slalom"};
+  app.set_version_flag("--version", std::string("slalom ") + version());
+  app.require_subcommand(1);
+  std::deque<Command> commands;
+  for (const CommandEntry& entry : entries) {
+    CLI::App* parser = app.add_subcommand(entry.name);
+    Command& command = commands.emplace_back(*parser);
+    entry.declare(command);
+    parser->callback([&command, &exit_status] { exit_status = command.run(); });
+  }
+  app.parse_complete_callback([&app] {
+    for (const CLI::App* command : app.get_subcommands()) check(*command);
+  });
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return exit_status;
+}
+
+/// Under mpirun every process meets the same error; only the first one reports it.
+int report_error(const char* what) {
+  if (rank() == 0) std::cerr << "slalom: " << what << "\n";
+  return 1;
+}
+
+int run_guarded(int argc, const char* const* argv, const std::vector<CommandEntry>& commands) {
+  try {
+    return parse_and_run(argc, argv, commands);
+  } catch (const std::bad_alloc&) {
+    return report_error("not enough memory for this number of samples or this horizon");
+  } catch (const std::exception& error) {
+    return report_error(error.what());
+  }
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv, const std::vector<CommandEntry>& commands) {
+  return after_output(run_guarded(argc, argv, commands));
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,17 @@
+#include "tools/commands/commands.hpp"
+
+namespace slalom::tools {
+
+const std::vector<CommandEntry>& all_commands() {
+  static const std::vector<CommandEntry> commands = {
+      {"bench", declare_bench},       {"compare", declare_compare},
+      {"drive", declare_drive},       {"eval", declare_eval},
+      {"explain", declare_explain},   {"hardware", declare_hardware},
+      {"identify", declare_identify}, {"options", declare_options},
+      {"replay", declare_replay},     {"reproduce", declare_reproduce},
+      {"track", declare_track},       {"tune", declare_tune},
+      {"view", declare_view}};
+  return commands;
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,149 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// JSON for results, settings and messages. The text is written and read by nlohmann/json, which is compiled
+/// once, in json.cpp.
+namespace slalom {
+
+/// A text that is not JSON, a value of another type than asked for, or a missing key.
+struct JsonError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A JSON value. Objects keep the order in which their members were inserted.
+class Json {
+ public:
+  struct Member;
+
+  Json() = default;
+  Json(std::nullptr_t) {}
+  template <std::same_as<bool> T>
+  Json(T value) : type_(Type::boolean), boolean_(value) {}
+  template <std::signed_integral T>
+  Json(T value) : Json(Signed{value}) {}
+  template <std::unsigned_integral T>
+  requires(!std::same_as<T, bool>)  // a bool is unsigned
+      Json(T value)
+      : Json(Unsigned{value}) {}
+  /// Infinite values and NaN are written as null.
+  Json(double value);
+  Json(const char* value);
+  Json(std::string value);
+  Json(const std::vector<std::string>& values);
+  Json(const std::vector<double>& values);
+  Json(const std::vector<int>& values);
+  Json(std::vector<Json> values);
+  /// An object if all elements are pairs whose first element is a text; otherwise an array.
+  Json(std::initializer_list<Json> elements);
+  Json(const Json& other);
+  Json(Json&& other) noexcept;
+  Json& operator=(const Json& other);
+  Json& operator=(Json&& other) noexcept;
+  ~Json();
+
+  static Json array();
+  static Json array(std::initializer_list<Json> elements);
+  static Json object();
+
+  /// Throws JsonError.
+  static Json parse(std::string_view text);
+  /// Null if the text is not JSON.
+  static Json parse_or_null(std::string_view text);
+
+  /// The text, in one line, or with `indent` spaces per level. Bytes that are not UTF-8 become U+FFFD.
+  std::string dump(int indent = -1) const;
+
+  bool is_null() const noexcept { return type_ == Type::null; }
+  bool is_boolean() const noexcept { return type_ == Type::boolean; }
+  bool is_integer() const noexcept { return type_ == Type::integer || type_ == Type::natural; }
+  bool is_number() const noexcept { return is_integer() || type_ == Type::real; }
+  bool is_string() const noexcept { return type_ == Type::text; }
+  bool is_array() const noexcept { return type_ == Type::array; }
+  bool is_object() const noexcept { return type_ == Type::object; }
+
+  /// The value as bool, int, std::uint64_t, double or std::string. Numbers are converted into each other.
+  /// Throws JsonError on a value of another type.
+  template <class T>
+  T get() const;
+
+  /// Elements of an array or members of an object; 0 for anything else.
+  std::size_t size() const noexcept { return values_.size(); }
+  bool empty() const noexcept { return values_.empty(); }
+  std::vector<Json>::const_iterator begin() const noexcept { return values_.begin(); }
+  std::vector<Json>::const_iterator end() const noexcept { return values_.end(); }
+
+  /// Appends to an array; null becomes an array.
+  void push_back(Json value);
+  /// Throws JsonError where there is no such element.
+  const Json& operator[](std::size_t index) const;
+  const Json& operator[](int index) const { return (*this)[static_cast<std::size_t>(index)]; }
+
+  /// The member of this key. The first form inserts a null where there is none, and null becomes an object;
+  /// the others throw JsonError where there is none.
+  Json& operator[](const std::string& key);
+  const Json& operator[](const std::string& key) const { return at(key); }
+  Json& operator[](const char* key) { return (*this)[std::string(key)]; }
+  const Json& operator[](const char* key) const { return at(key); }
+  const Json& at(std::string_view key) const;
+  /// Null pointer where there is no such member.
+  const Json* find(std::string_view key) const noexcept;
+  bool contains(std::string_view key) const noexcept { return find(key) != nullptr; }
+  /// The members of an object, in order; the references live as long as the object.
+  std::vector<Member> items() const;
+  /// Inserts the members of another object; those of the same key are replaced.
+  void update(const Json& other);
+  /// The object with a member for every value below this one; its key is the path, "/a/b/0".
+  Json flatten() const;
+
+  /// Numbers are equal if their values are. Objects are equal if their members are, in the same order.
+  friend bool operator==(const Json& a, const Json& b);
+
+ private:
+  enum class Type { null, boolean, integer, natural, real, text, array, object };
+  struct Signed {
+    std::int64_t value;
+  };
+  struct Unsigned {
+    std::uint64_t value;
+  };
+  explicit Json(Signed number);
+  explicit Json(Unsigned number);
+  friend struct JsonText;
+
+  Type type_ = Type::null;
+  union {
+    bool boolean_;
+    std::int64_t integer_;
+    std::uint64_t natural_ = 0;
+    double real_;
+  };
+  std::string text_;
+  std::vector<std::string> keys_;  ///< of an object's members
+  std::vector<Json> values_;       ///< of an array's elements or an object's members
+};
+
+struct Json::Member {
+  const std::string& key;
+  const Json& value;
+};
+
+template <>
+bool Json::get<bool>() const;
+template <>
+int Json::get<int>() const;
+template <>
+std::uint64_t Json::get<std::uint64_t>() const;
+template <>
+double Json::get<double>() const;
+template <>
+std::string Json::get<std::string>() const;
+
+}  // namespace slalom
