@@ -265,7 +265,7 @@ TEST_F(BagReplay, RejectsCorruptBags) {
   BagWriter torn;
   torn.add("/drive", "ackermann_msgs/AckermannDriveStamped", Wire().put(1));
   write("torn.bag", torn.bytes());
-  expect_refused("identify torn.bag", {"/drive", "is cut short"});
+  expect_refused("identify torn.bag", {"/drive", "is incomplete"});
 }
 
 }  // namespace

@@ -102,7 +102,7 @@ TEST_F(CommandLine, RejectsContradictoryOptions) {
   refuses("bench --methods foo", {"foo", "svg_mppi"});
   refuses("explain --method all,mppi", {"all stands for every method"});
   refuses("explain --method mppi,mppi", {"mppi is said twice"});
-  refuses("hardware --drivers mppi@default,mppi@default", {"'mppi@default' is said twice"});
+  refuses("hardware --drivers mppi@default,mppi@default", {"'mppi@default' is given twice"});
   refuses("hardware --tracking-laps 0 --layouts 0", {"--tracking-laps, --layouts"});
 }
 

@@ -78,7 +78,7 @@ void join(Topics& topics, BagDrive& drive) {
     const double stamp = scan.header.stamp;
     const auto pose = pose_at(topics.poses, stamp);
     const auto speed = after(topics.odometry, stamp);
-    // What the driver made of this scan; where it made nothing, its last command holds.
+    // The driver's command for this scan, or its last command if there is none.
     auto command = after(topics.commands, stamp);
     if (command == topics.commands.end() && command != topics.commands.begin()) --command;
     if (!pose || speed == topics.odometry.begin() || command == topics.commands.end() ||
@@ -115,7 +115,7 @@ BagDrive load_bag_drive(const std::string& file) {
   });
   for (const char* needed : {"/scan", "/odom", "/drive", "/pf/pose/odom"})
     if (!topics.names.contains(needed))
-      throw IoError(file, 0, std::string("holds nothing on ") + needed + "; it holds " + list(topics.names));
+      throw IoError(file, 0, std::string("has no message on ") + needed + "; it holds " + list(topics.names));
   sort(topics.scans);
   sort(topics.poses);
   sort(topics.odometry);
@@ -124,8 +124,7 @@ BagDrive load_bag_drive(const std::string& file) {
   for (const ros::Transform& each : topics.transforms)
     if (each.child == laser) drive.laser = each.pose;
   join(topics, drive);
-  if (drive.ticks.empty())
-    throw IoError(file, 0, "holds no scan for which pose, speed and command are known");
+  if (drive.ticks.empty()) throw IoError(file, 0, "contains no scan with a known pose, speed and command");
   return drive;
 }
 

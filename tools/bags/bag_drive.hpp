@@ -10,7 +10,7 @@
 
 namespace slalom::tools {
 
-/// What was known when a scan was taken, and what was commanded after it.
+/// The data at the time of a scan, and the command that followed.
 struct BagTick {
   double time = 0;            ///< s since the first scan
   maps::LaserScanView shape;  ///< of the scan, without its ranges
@@ -28,7 +28,7 @@ struct BagDrive {
   std::optional<maps::Pose> laser;      ///< from the rear axle
 };
 
-/// Throws IoError on what is no bag (see read_bag), on messages of other types and on a missing topic.
+/// Throws IoError if the file is not a bag (see read_bag), and on wrong message types and missing topics.
 BagDrive load_bag_drive(const std::string& file);
 
 }  // namespace slalom::tools

@@ -20,7 +20,7 @@ using namespace evaluation;
 vehicle::Course course_of(const BagReplay& replay, const BagDrive& drive) {
   if (!drive.map || drive.path.empty())
     throw IoError(replay.file, 0,
-                  std::string("holds nothing on ") + (drive.map ? "/reference_waypoint" : "/map") +
+                  std::string("has no message on ") + (drive.map ? "/reference_waypoint" : "/map") +
                       ": name the course with --course");
   vehicle::Course course;
   course.name = std::filesystem::path(replay.file).stem().string();
@@ -67,7 +67,7 @@ Scenario scenario_of(const BagReplay& replay, const BagDrive& drive) {
   return scenario;
 }
 
-/// Root mean square of what is added.
+/// Root mean square of the added values.
 class Difference {
  public:
   void add(double value) {
@@ -81,7 +81,7 @@ class Difference {
   int count_ = 0;
 };
 
-/// The car of a bag, with a planner that looks on.
+/// The car of a bag, with a planner that processes its scans.
 class Follower {
  public:
   Follower(const BagReplay& replay, const BagDrive& drive, const Scenario& scenario)

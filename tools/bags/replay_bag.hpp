@@ -13,8 +13,8 @@ struct BagReplay {
   std::string method = "svg_mppi";
 };
 
-/// Puts what the car saw, scan by scan, before a planner, and records what it makes of that as if it drove:
-/// the car goes where it went in the bag, whatever the planner says. Prints how the planner's commands differ
+/// Feeds the scans of a bag to a planner and records its plans as if it drove:
+/// the car moves as in the bag, regardless of the planner's commands. Prints how these differ
 /// from those in the bag. Throws IoError, std::invalid_argument.
 void record_bag(const BagReplay& replay);
 

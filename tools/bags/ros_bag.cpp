@@ -24,7 +24,7 @@ class Bytes {
   bool done() const { return bytes_.empty(); }
   std::string_view take(std::size_t count) {
     if (count > bytes_.size())
-      throw IoError(file_, 0, "is damaged or cut short; `rosbag reindex` may mend it");
+      throw IoError(file_, 0, "is damaged or incomplete; `rosbag reindex` may repair it");
     const std::string_view taken = bytes_.substr(0, count);
     bytes_.remove_prefix(count);
     return taken;
@@ -109,7 +109,7 @@ class Reader {
 
   void message(const Fields& fields, std::string_view data) {
     const auto found = connections_.find(Bytes::number(field(fields, "conn", 4)));
-    if (found == connections_.end()) throw IoError(file_, 0, "is damaged: a message belongs to no topic");
+    if (found == connections_.end()) throw IoError(file_, 0, "is damaged: a message has no topic");
     take_({found->second.topic, found->second.type, data});
   }
 
@@ -131,7 +131,7 @@ void read_bag(const std::string& file, const std::function<void(const BagMessage
   stream.seekg(0);
   if (!stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
     throw IoError(file, 0, "cannot be read");
-  if (bytes.compare(0, magic.size(), magic) != 0) throw IoError(file, 0, "is no bag of ROS 1 (format 2.0)");
+  if (bytes.compare(0, magic.size(), magic) != 0) throw IoError(file, 0, "is not a ROS 1 bag (format 2.0)");
   Reader(file, take).records(std::string_view(bytes).substr(magic.size()));
 }
 

@@ -24,11 +24,11 @@ class Fields {
   /// The number of a list's elements, each of at least `size` bytes.
   std::size_t count(std::size_t size) {
     const auto number = get<std::uint32_t>();
-    if (number > bytes_.size() / size) throw std::invalid_argument("is cut short");
+    if (number > bytes_.size() / size) throw std::invalid_argument("is incomplete");
     return number;
   }
   std::string_view take(std::size_t size) {
-    if (size > bytes_.size()) throw std::invalid_argument("is cut short");
+    if (size > bytes_.size()) throw std::invalid_argument("is incomplete");
     const std::string_view taken = bytes_.substr(0, size);
     bytes_.remove_prefix(size);
     return taken;
@@ -136,7 +136,7 @@ std::vector<Waypoint> waypoints(std::string_view bytes) {
     f.header();
     point.pose = f.pose();
   }
-  if (f.count(1) != points.size()) throw std::invalid_argument("has poses and speeds that differ in number");
+  if (f.count(1) != points.size()) throw std::invalid_argument("has different numbers of poses and speeds");
   for (Waypoint& point : points) {
     f.header();
     point.speed = f.twist();

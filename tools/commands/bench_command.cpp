@@ -66,7 +66,8 @@ class Bench {
         words_(arguments.json == "-" ? stderr : stdout),
         configuration_(configuration_of(arguments)),
         target_(simd::active_target()) {
-    for (const std::string& method : arguments.methods) solver_options(method);  // refuses an unknown one
+    for (const std::string& method : arguments.methods)
+      solver_options(method);  // throws if a method is unknown
   }
 
   int run() {
@@ -195,16 +196,20 @@ class Bench {
 
 void declare_bench(Command& command) {
   command.summary(
-      "Measure rollouts, every method and the planner's tick on this machine, beside a yardstick");
+      "Measure the speed of rollouts, methods and planner on this machine, relative to scalar code");
   const auto arguments = std::make_shared<Arguments>();
   command.option("--config", arguments->config,
-                 "Measure this configuration; without it the fixed workload: the published methods and "
+                 "Configuration to measure; by default the fixed workload: the published methods and "
                  "problem, one trajectory a rollout");
   command.option("--set", arguments->set, "section.option=value; may be repeated").repeatable();
-  command.option("--methods", arguments->methods, "Only these, separated by commas").comma_separated();
-  command.option("--seconds", arguments->seconds, "For every measurement").range(0.01, 600.0).show_default();
-  command.flag("--scaling", arguments->scaling, "Also over samples, horizon, threads and instruction sets");
-  command.option("--plot", arguments->plot, "Write solve times over samples as PNG to this file");
+  command.option("--methods", arguments->methods, "Methods to measure, separated by commas [all]")
+      .comma_separated();
+  command.option("--seconds", arguments->seconds, "Duration of each measurement, s")
+      .range(0.01, 600.0)
+      .show_default();
+  command.flag("--scaling", arguments->scaling,
+               "Also measure over samples, horizon, threads and instruction sets");
+  command.option("--plot", arguments->plot, "Write a plot of solve times over samples to this PNG");
   command.option("--json", arguments->json, "Write JSON to this file, or to standard output: -");
   command.footer("SLALOM_TARGET=avx2 (avx512, sse4, generic) forces an instruction set.");
   command.action([arguments] { return Bench(*arguments).run(); });

@@ -153,7 +153,7 @@ void print(const std::vector<Match>& matches, std::FILE* out) {
   const auto title = [](const Match& m) { return m.place.empty() ? m.name : m.place + ": " + m.name; };
   for (const Match& m : matches) width = std::max(width, title(m).size());
   std::fprintf(out, "%-*s     %11s %20s %20s %-10s %17s %-10s %17s %-10s %s\n", static_cast<int>(width), "",
-               "laps", "MS", "MS", "p", "contacts", "p", "success, %", "p", "");
+               "laps", "MS", "MS", "p", "collisions", "p", "success, %", "p", "");
   for (const Match& m : matches) {
     const auto ms = [](const ExperimentResult& r) {
       char text[48];
@@ -200,7 +200,7 @@ std::vector<std::string> places_of(const Arguments& arguments) {
   std::sort(places.begin(), places.end());
   if (places.empty())
     throw IoError(arguments.second, 0,
-                  "neither an evaluation nor a folder of such as " + arguments.first + " has");
+                  "must be an evaluation or a folder of evaluations, as " + arguments.first + " has");
   return places;
 }
 
@@ -243,7 +243,7 @@ int run(const Arguments& arguments) {
         if (side->rows.empty())
           throw IoError(stored->folder.string(), 0,
                         "has no lap of " + side->experiment.label() + ", " + side->experiment.scenario +
-                            ": there is nothing to compare");
+                            "; they have nothing in common to compare");
     }
     matches.insert(matches.end(), found.begin(), found.end());
     for (const auto* e : {&a, &b})
@@ -269,12 +269,13 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void declare_compare(Command& command) {
-  command.summary("Two evaluations side by side, with tests of significance");
+  command.summary("Compare two evaluations, with tests of significance");
   const auto arguments = std::make_shared<Arguments>();
-  command.option("first", arguments->first, "The --out of an evaluation, or a folder of several").required();
+  command.option("first", arguments->first, "Output folder of an evaluation, or a folder of several")
+      .required();
   command
       .option("second", arguments->second,
-              "That of another; of several, those with the same name are compared")
+              "The same of another; in folders of several, those of equal name are compared")
       .required();
   command.option("--json", arguments->json, "Write the comparison to this file, or to standard output: -");
   command.action([arguments] { return run(*arguments); });

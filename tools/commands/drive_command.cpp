@@ -28,7 +28,7 @@ struct Arguments {
   bool record_times = false;
 };
 
-/// A drive of several laps and where it tells about itself.
+/// A drive of several laps and its outputs.
 class DriveJob {
  public:
   explicit DriveJob(const Arguments& arguments)
@@ -105,13 +105,13 @@ class DriveJob {
   void say(const LapResult& lap) const {
     auto times = lap.solve_ms;
     std::sort(times.begin(), times.end());
-    std::fprintf(words_,
-                 "lap %zu: %s, %.2f s, %d steps, %d contact%s, cost %.3f (state %.3f, collision %.3f), mean "
-                 "%.2f m/s, solve %.2f ms (p99 %.2f)\n",
-                 laps_.size(), outcome(lap), lap.time, lap.steps, lap.collisions,
-                 lap.collisions == 1 ? "" : "s", lap.mean_sequence_cost, lap.state_cost, lap.collision_cost,
-                 lap.mean_speed, times.empty() ? 0.0 : percentile(times, 0.5),
-                 times.empty() ? 0.0 : percentile(times, 0.99));
+    std::fprintf(
+        words_,
+        "lap %zu: %s, %.2f s, %d steps, %d collision%s, cost %.3f (state %.3f, collision %.3f), mean "
+        "%.2f m/s, solve %.2f ms (p99 %.2f)\n",
+        laps_.size(), outcome(lap), lap.time, lap.steps, lap.collisions, lap.collisions == 1 ? "" : "s",
+        lap.mean_sequence_cost, lap.state_cost, lap.collision_cost, lap.mean_speed,
+        times.empty() ? 0.0 : percentile(times, 0.5), times.empty() ? 0.0 : percentile(times, 0.99));
     std::fflush(words_);
   }
 
@@ -132,7 +132,7 @@ class DriveJob {
   void write_results() {
     const Json total = summary();
     if (laps_.size() > 1)
-      std::fprintf(words_, "%d of %d laps finished, %d contacts, cost %.3f\n", finished(), arguments_.laps,
+      std::fprintf(words_, "%d of %d laps finished, %d collisions, cost %.3f\n", finished(), arguments_.laps,
                    total["contacts"].get<int>(), total["mean_sequence_cost"].get<double>());
     if (recording_) {
       recording_->close();
@@ -163,7 +163,7 @@ class DriveJob {
     char facts[200];
     std::snprintf(
         facts, sizeof facts,
-        "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d contact%s \xC2\xB7 cost %.2f \xC2\xB7 %d "
+        "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d collision%s \xC2\xB7 cost %.2f \xC2\xB7 %d "
         "obstacles, seed %llu",
         outcome(lap), lap.time, lap.mean_speed, lap.collisions, lap.collisions == 1 ? "" : "s",
         lap.mean_sequence_cost, scenario_.lap.obstacles, static_cast<unsigned long long>(lap.seed));
@@ -199,23 +199,23 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void declare_drive(Command& command) {
-  command.summary("Drive laps, with a summary, results in JSON, a picture");
+  command.summary("Drive laps; write results, recordings and pictures");
   const auto arguments = std::make_shared<Arguments>();
   add_scenario_options(command, arguments->scenario);
   add_method_option(command, arguments->method);
-  command.option("--seed", arguments->seed, "Of the first lap; each further one has obstacles + 5 more")
+  command.option("--seed", arguments->seed, "Seed of the first lap; lap k has seed + k (obstacles + 5)")
       .show_default();
-  command.option("--laps", arguments->laps, "How many, each from a fresh start").show_default();
+  command.option("--laps", arguments->laps, "Number of laps; each starts from standstill").show_default();
   command.option("--json", arguments->json,
                  "Write the results as JSON to this file, or to standard output: -");
-  const Option record =
-      command.option("--record", arguments->record,
-                     "Record every control step to this file: MCAP if it ends in .mcap, else JSON lines");
+  const Option record = command.option(
+      "--record", arguments->record,
+      "Record every control step to this file: MCAP if its name ends in .mcap, otherwise JSON lines");
   command
       .flag("--record-times", arguments->record_times,
-            "With the wall clock's figures, which differ from run to run (MCAP)")
+            "Record wall-clock times, too, which differ from run to run; only in MCAP")
       .needs(record);
-  command.option("--plot", arguments->plot, "Draw the last lap to this PNG");
+  command.option("--plot", arguments->plot, "Write a picture of the last lap to this PNG");
   command.action([arguments] { return run(*arguments); });
 }
 

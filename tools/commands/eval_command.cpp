@@ -44,22 +44,23 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void declare_eval(Command& command) {
-  command.summary("Compare methods over many laps: intervals, paired tests, every lap kept");
+  command.summary("Evaluate methods over many laps, with confidence intervals and paired tests");
   const auto arguments = std::make_shared<Arguments>();
   command.option("--methods", arguments->methods, "Separated by commas").comma_separated().show_default();
   command.option("--scenario", arguments->scenarios, "pt: path tracking, oa: among obstacles; or both: pt,oa")
       .comma_separated()
       .show_default();
-  command.option("--laps", arguments->laps, "Of every method in every scenario").show_default();
-  command.option("--obstacles", arguments->obstacles, "Parked cars a lap in scenario oa")
+  command.option("--laps", arguments->laps, "Number of laps of each method in each scenario").show_default();
+  command.option("--obstacles", arguments->obstacles, "Number of parked cars in scenario oa")
       .range(1, 1000)
       .show_default();
   command
       .option("--set", arguments->sweeps,
-              "key=v1,v2,...: one experiment for each value (and each combination where it is said more "
-              "than once); world.friction=0.7,1 and so on make the world harder: slalom options lists them")
+              "key=v1,v2,...: one experiment for each value (and each combination if the option is "
+              "repeated); options of the simulated world, such as world.friction, can be varied, too: see "
+              "slalom options")
       .repeatable();
-  command.flag("--report", arguments->report, "Also write report.html and its figures");
+  command.flag("--report", arguments->report, "Write report.html and its figures, too");
   add_evaluation_options(command, arguments->evaluation);
   command.action([arguments] { return run(*arguments); });
 }

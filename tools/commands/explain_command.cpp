@@ -31,11 +31,11 @@ std::vector<ExplainedMethod> chosen(const std::vector<std::string>& names) {
     if (at == known.end()) {
       std::string all = "all";
       for (const ExplainedMethod& m : known) all += ", " + m.name;
-      if (name == "all") throw std::invalid_argument("--method: all stands for every method: say it alone");
+      if (name == "all") throw std::invalid_argument("--method: 'all' cannot be combined with other methods");
       throw std::invalid_argument("--method: " + name + " is not one of " + all);
     }
     if (std::count(names.begin(), names.end(), name) > 1)
-      throw std::invalid_argument("--method: " + name + " is said twice");
+      throw std::invalid_argument("--method: " + name + " is given twice");
     result.push_back(*at);
   }
   return result;
@@ -64,7 +64,7 @@ void apply(const std::string& word, std::vector<ExplainedMethod>& methods, probl
   }
   if (found) return;
   const std::string near = nearest_name(key, names);
-  throw std::invalid_argument("--set " + key + ": is no option of what is shown" +
+  throw std::invalid_argument("--set " + key + ": is not an option of the methods shown" +
                               (near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
@@ -121,7 +121,8 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void declare_explain(Command& command) {
-  command.summary("Show what methods make of a problem with two ways: samples, guides, plan, distribution");
+  command.summary(
+      "Show how methods solve a problem with two homotopy classes: samples, guides, plan, distribution");
   const auto arguments = std::make_shared<Arguments>();
   command
       .option("--method", arguments->methods,
@@ -131,13 +132,13 @@ void declare_explain(Command& command) {
       .show_default();
   command
       .option("--set", arguments->set,
-              "option=value of the methods shown, or problem.option=value; may be repeated")
+              "option=value of the methods, or problem.option=value; may be repeated")
       .repeatable();
-  command.option("--solves", arguments->solves, "From the same state; the last is shown")
+  command.option("--solves", arguments->solves, "Number of solves from the same state; the last is shown")
       .range(1, 100000)
       .show_default();
-  command.option("--seed", arguments->seed, "Of the random numbers").show_default();
-  command.option("--plot", arguments->plot, "Draw them side by side to this PNG");
+  command.option("--seed", arguments->seed, "Seed of the random numbers").show_default();
+  command.option("--plot", arguments->plot, "Write a picture of the methods side by side to this PNG");
   command.option("--json", arguments->json,
                  "Write everything as JSON to this file, or to standard output: -");
   command.action([arguments] {

@@ -51,7 +51,7 @@ Driver make_driver(const std::string& text, const Arguments& arguments) {
   return driver;
 }
 
-/// All laps, in parallel; the results do not depend on how many at a time. False if told to end.
+/// All laps, in parallel; the results do not depend on the number of threads. False if interrupted.
 bool drive(std::vector<Task>& tasks, const std::vector<Driver>& drivers,
            const std::shared_ptr<const Environment>& environment, const Arguments& arguments) {
   std::mutex mutex;
@@ -168,12 +168,11 @@ void print_row(std::FILE* out, const std::string& label, const char* scenario, c
 
 int run(const Arguments& arguments) {
   if (arguments.tracking_laps == 0 && arguments.layouts == 0)
-    throw IoError("--tracking-laps, --layouts", 0,
-                  "one of them must be more than 0: there is no lap to drive");
+    throw IoError("--tracking-laps, --layouts", 0, "one of them must be greater than 0");
   std::vector<Driver> drivers;
   for (const std::string& text : arguments.drivers) {
     if (std::count(arguments.drivers.begin(), arguments.drivers.end(), text) > 1)
-      throw IoError("--drivers", 0, "'" + text + "' is said twice");
+      throw IoError("--drivers", 0, "'" + text + "' is given twice");
     drivers.push_back(make_driver(text, arguments));
   }
   const auto roots = vehicle::course_roots(program_folder());
@@ -194,7 +193,7 @@ int run(const Arguments& arguments) {
                  tasks.size());
   std::FILE* words = arguments.json == "-" ? stderr : stdout;
   std::fprintf(words, "%-20s %-3s %7s %8s %18s %8s %18s %17s %15s\n", "driver", "", "done", "MS", "95 %",
-               "contacts", "collision rate", "pose m, mean p99", "ms, p50 p99");
+               "collisions", "collision rate", "pose m, mean p99", "ms, p50 p99");
   Json rows = Json::array();
   for (std::size_t d = 0; d < drivers.size(); ++d) {
     for (const bool among : {false, true}) {
@@ -227,27 +226,32 @@ int run(const Arguments& arguments) {
 
 void declare_hardware(Command& command) {
   command.summary(
-      "Laps under the conditions of a real car: noise, slip, a guessed pose, a servo unlike the model");
+      "Evaluate laps under the conditions of a real car: noise, slip, localisation, servo mismatch");
   const auto arguments = std::make_shared<Arguments>();
-  command.option("--course", arguments->course, "A course by name, or its folder").show_default();
-  command.option("--drivers", arguments->drivers, "method@configuration, separated by commas")
+  command.option("--course", arguments->course, "Course name or folder").show_default();
+  command.option("--drivers", arguments->drivers, "Drivers, method@configuration, separated by commas")
       .comma_separated()
       .show_default();
-  command.option("--set", arguments->set, "section.option=value, for every driver").repeatable();
-  command.option("--tracking-laps", arguments->tracking_laps, "Without obstacles")
+  command.option("--set", arguments->set, "section.option=value, for all drivers; may be repeated")
+      .repeatable();
+  command.option("--tracking-laps", arguments->tracking_laps, "Number of laps without obstacles")
       .range(0, 100000)
       .show_default();
-  command.option("--layouts", arguments->layouts, "Of obstacles, the same for every driver")
+  command.option("--layouts", arguments->layouts, "Number of obstacle layouts, the same for all drivers")
       .range(0, 10000)
       .show_default();
-  command.option("--laps", arguments->laps, "In each layout").range(1, 10000).show_default();
-  command.option("--obstacles", arguments->obstacles, "Parked cars in a layout")
+  command.option("--laps", arguments->laps, "Number of laps in each layout").range(1, 10000).show_default();
+  command.option("--obstacles", arguments->obstacles, "Number of parked cars in a layout")
       .range(1, 1000)
       .show_default();
-  command.option("--latency-ms", arguments->latency_ms, "From a scan to its command's effect on the servo")
+  command
+      .option("--latency-ms", arguments->latency_ms,
+              "Delay from a scan to the effect of its command on the servo, ms")
       .range(0.0, 500.0)
       .show_default();
-  command.option("--jobs", arguments->jobs, "Laps driven at a time").range(1, 1024).show_default();
+  command.option("--jobs", arguments->jobs, "Number of laps driven in parallel")
+      .range(1, 1024)
+      .show_default();
   command.option("--json", arguments->json, "Write the results to this file, or to standard output: -");
   command.action([arguments] { return run(*arguments); });
 }

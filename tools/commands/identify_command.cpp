@@ -44,10 +44,11 @@ std::vector<vehicle::DrivenSample> read_recording(const std::string& file) {
   std::vector<vehicle::DrivenSample> samples;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
-    // What an MCAP file begins with.
+    // The magic bytes of an MCAP file.
     if (number == 1 && line.rfind("\x89MCAP", 0) == 0)
       throw IoError(file, 0,
-                    "is in MCAP, JSON lines are needed: slalom drive --record with a name that does not end "
+                    "is an MCAP recording; JSON lines are needed: use slalom drive --record with a name that "
+                    "does not end "
                     "in .mcap");
     try {
       const Json record = Json::parse(line);
@@ -73,7 +74,7 @@ void print(std::FILE* out, const char* name, const Identified& value, const char
   std::fprintf(out, "\n");
 }
 
-/// What to write into a configuration file.
+/// Prints the lines for a configuration file.
 void advise(std::FILE* out, const Identification& found) {
   const double ratio = found.steering_gain.value / found.wheelbase.value;
   const bool wheelbase_known = found.wheelbase.deviation < 0.1 * found.wheelbase.value;
@@ -103,7 +104,7 @@ int run(const Arguments& arguments) {
     }
   }();
   std::FILE* words = arguments.json == "-" ? stderr : stdout;
-  std::fprintf(words, "%d of %zu samples; %.1f %% of the turning explained, %.3f rad/s left\n\n",
+  std::fprintf(words, "%d of %zu samples; %.1f %% of the yaw rate explained, residual %.3f rad/s\n\n",
                found.samples, samples.size(), 100 * found.explained, found.residual);
   print(words, "steering gain", found.steering_gain, "");
   print(words, "steering offset", found.steering_offset, "rad");
@@ -111,8 +112,8 @@ int run(const Arguments& arguments) {
   print(words, "time constant", found.time_constant, "s");
   print(words, "wheelbase", found.wheelbase, "m");
   print(words, "understeer", found.understeer, "s^2/m");
-  std::fprintf(words, "%-20s %9.4f        (way by the poses over way by the speed)\n\n", "speed scale",
-               found.speed_scale);
+  std::fprintf(words, "%-20s %9.4f        (distance from the poses / distance from the speed)\n\n",
+               "speed scale", found.speed_scale);
   advise(words, found);
   if (arguments.json.empty()) return 0;
   const auto pair = [](const Identified& value) {
@@ -135,17 +136,19 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void declare_identify(Command& command) {
-  command.summary("Steering gain, trim, delay, lag and wheelbase of a car, from a recording");
+  command.summary("Estimate steering gain, offset, delay, lag and wheelbase of a car from a recording");
   const auto arguments = std::make_shared<Arguments>();
   command
-      .option("recording", arguments->recording, "Of slalom drive --record, in JSON lines; or a bag of ROS 1")
+      .option("recording", arguments->recording,
+              "Recording of slalom drive --record in JSON lines, or a ROS 1 bag")
       .required();
-  command.option("--wheelbase", arguments->options.wheelbase, "m, if it was measured; else it is sought")
+  command.option("--wheelbase", arguments->options.wheelbase, "Measured wheelbase, m [estimated]")
       .range(0.01, 20.0);
-  command.option("--least-speed", arguments->options.least_speed, "m/s, below it samples are not used")
+  command.option("--least-speed", arguments->options.least_speed, "Samples below this speed are ignored, m/s")
       .range(0.01, 100.0)
       .show_default();
-  command.option("--json", arguments->json, "Write what was found to this file, or to standard output: -");
+  command.option("--json", arguments->json,
+                 "Write the estimates as JSON to this file, or to standard output: -");
   command.action([arguments] { return run(*arguments); });
 }
 

@@ -66,7 +66,7 @@ void run(const Arguments& arguments) {
   }
   auto standard = vehicle::list_sections(vehicle::Configuration{});
   auto sections = vehicle::list_sections(configuration);
-  // No part of a configuration: what evaluations set of the world they drive in.
+  // Options of the simulated world belong to an evaluation, not to a configuration.
   for (auto* list : {&standard, &sections})
     list->push_back({"world", list_options(evaluation::LapSettings{})});
   Json json;
@@ -87,18 +87,18 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void declare_options(Command& command) {
-  command.summary("List what can be set, with values, units, ranges");
+  command.summary("List all options with values, units and ranges");
   const auto arguments = std::make_shared<Arguments>();
   command
       .option("--config", arguments->scenario.config,
-              "default, default_speed, published, hardware, or a file")
+              "Configuration: default, default_speed, published, hardware, or a file")
       .show_default();
   command.option("--set", arguments->scenario.set, "section.option=value; may be repeated").repeatable();
   const Option method = command.option("--method", arguments->method,
-                                       "Only this method's section, and those of vehicle, planner and world");
-  const Option json =
-      command.option("--json", arguments->json, "Write them as JSON to this file, or to standard output: -");
-  command.flag("--yaml", arguments->yaml, "Print the whole configuration as a file")
+                                       "Only the options of this method, vehicle, planner and world");
+  const Option json = command.option("--json", arguments->json,
+                                     "Write the options as JSON to this file, or to standard output: -");
+  command.flag("--yaml", arguments->yaml, "Print the complete configuration as YAML")
       .excludes(method)
       .excludes(json);
   command.action([arguments] {

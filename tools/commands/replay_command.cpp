@@ -29,7 +29,7 @@ struct Arguments {
   bool lap_said = false;
 };
 
-/// What can be replayed; each heeds options of its own.
+/// What can be replayed; each kind has its own options.
 enum Kind { lap_of_evaluation = 1, bag = 2, recording = 4 };
 constexpr const char* kind_name(Kind kind) {
   return kind == lap_of_evaluation ? "a lap of an evaluation" : kind == bag ? "a bag" : "a recording in MCAP";
@@ -50,11 +50,11 @@ constexpr struct {
               {"--host", bag | recording},
               {"--port", bag | recording}};
 
-/// Throws IoError where an option was said that would be passed over.
+/// Throws IoError if an option was given that has no effect for this kind.
 void refuse_unheeded(const Command& command, Kind kind) {
   for (const auto& [option, kinds] : heeded)
     if (command.given(option) && (kinds & kind) == 0)
-      throw IoError(option, 0, std::string("does nothing where ") + kind_name(kind) + " is replayed");
+      throw IoError(option, 0, std::string("has no effect where ") + kind_name(kind) + " is replayed");
 }
 
 /// Whether two rows of the same lap agree in all that repeats.
@@ -73,7 +73,7 @@ void plot(const Arguments& arguments, const Scenario& scenario, const LapRunner&
   char facts[200];
   std::snprintf(
       facts, sizeof facts,
-      "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d contacts \xC2\xB7 cost %.2f \xC2\xB7 seed %llu",
+      "%s after %.2f s \xC2\xB7 mean %.2f m/s \xC2\xB7 %d collisions \xC2\xB7 cost %.2f \xC2\xB7 seed %llu",
       lap.finished ? "finished" : "timeout", lap.time, lap.mean_speed, lap.collisions, lap.mean_sequence_cost,
       static_cast<unsigned long long>(lap.seed));
   const auto map = vehicle::load_course(scenario.folder).map;
@@ -91,7 +91,7 @@ void plot(const Arguments& arguments, const Scenario& scenario, const LapRunner&
 /// The exit status: 0 only if the lap is the one that was kept.
 int replay_lap(const Arguments& arguments) {
   const StoredEvaluation stored = load_evaluation(arguments.folder);
-  if (!arguments.lap_said) throw IoError("--lap", 0, "which lap of the evaluation?");
+  if (!arguments.lap_said) throw IoError("--lap", 0, "is required to replay a lap of an evaluation");
   const int index = stored.find(arguments.method, arguments.scenario);
   const Experiment& experiment = stored.experiments[static_cast<std::size_t>(index)];
   if (arguments.lap < 0 || arguments.lap >= experiment.laps)
@@ -120,7 +120,7 @@ int replay_lap(const Arguments& arguments) {
     driven.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
     driven.speeds.push_back(tick.seen.speed);
   });
-  std::printf("%s, %s, lap %d, seed %llu: %s, %.2f s, %d contacts, cost %.3f\n", experiment.label().c_str(),
+  std::printf("%s, %s, lap %d, seed %llu: %s, %.2f s, %d collisions, cost %.3f\n", experiment.label().c_str(),
               experiment.scenario.c_str(), arguments.lap, static_cast<unsigned long long>(seed),
               lap.finished ? "finished" : "timeout", lap.time, lap.collisions, lap.mean_sequence_cost);
   if (recording) {
@@ -138,12 +138,13 @@ int replay_lap(const Arguments& arguments) {
     return row.experiment == index && row.lap == arguments.lap;
   });
   if (kept == stored.rows.end()) {
-    std::printf("the evaluation has not driven this lap yet\n");
+    std::printf("the evaluation does not contain this lap yet\n");
     return 0;
   }
   const bool same = same_lap(now, *kept, stored.experiments);
-  std::printf(same ? "it is the lap of the evaluation, to the last bit\n"
-                   : "it is NOT the lap of the evaluation: another version or instruction set drove that\n");
+  std::printf(
+      same ? "identical to the lap of the evaluation, bit for bit\n"
+           : "NOT identical to the lap of the evaluation, which another version or instruction set drove\n");
   return same ? 0 : 1;
 }
 
@@ -157,7 +158,7 @@ struct TemporaryFile {
   }
 };
 
-/// A bag is made a recording, which is kept where --record says so, shown otherwise, and a page with --html.
+/// Converts a bag to a recording, which is kept with --record, written as a page with --html, or else shown.
 int replay_bag(Arguments& arguments) {
   if (!arguments.record.empty() && !arguments.recording.html.empty() &&
       std::filesystem::path(arguments.record).extension() != ".mcap")
@@ -191,32 +192,30 @@ int run(Arguments& arguments, const Command& command) {
 }  // namespace
 
 void declare_replay(Command& command) {
-  command.summary(
-      "Show a recording or a bag in the browser; or drive a lap of an evaluation again: picture, recording");
+  command.summary("Show a recording or bag in the browser, or repeat a lap of an evaluation");
   const auto arguments = std::make_shared<Arguments>();
-  command
-      .option("what", arguments->folder, "A recording in MCAP, a bag of ROS 1, or the --out of an evaluation")
+  command.option("what", arguments->folder, "MCAP recording, ROS 1 bag, or output folder of an evaluation")
       .required();
-  const Option html =
-      command.option("--html", arguments->recording.html,
-                     "Write the recording as a page that opens from disk, instead of serving it");
+  const Option html = command.option("--html", arguments->recording.html,
+                                     "Write the recording as an HTML page instead of serving it");
   const Option host =
       command.option("--host", arguments->recording.host, "Address to listen on").show_default();
   const Option port =
       command.option("--port", arguments->recording.port, "Port to listen on; 0 means any free port")
           .show_default();
-  command.option("--lap", arguments->lap, "Of an evaluation: which, from 0");
+  command.option("--lap", arguments->lap, "Evaluation: number of the lap, from 0");
   command.option("--method", arguments->method,
-                 "Of an evaluation: method, or method and options as results name them; of a bag: who "
-                 "looks on [svg_mppi]");
-  command.option("--config", arguments->config, "Of a bag: configuration of who looks on").show_default();
-  command.option("--set", arguments->set, "Of a bag: section.option=value; may be repeated").repeatable();
-  command.option("--scenario", arguments->scenario, "pt or oa");
+                 "Evaluation: method, or method and options as in the results; bag: planner that "
+                 "processes the scans [svg_mppi]");
+  command.option("--config", arguments->config, "Bag: configuration of the planner").show_default();
+  command.option("--set", arguments->set, "Bag: section.option=value; may be repeated").repeatable();
+  command.option("--scenario", arguments->scenario, "Evaluation: pt or oa");
   command.option("--course", arguments->course,
-                 "Where the course is, if not found by its name, or if a bag does not hold it");
-  command.option("--plot", arguments->plot, "Draw it to this PNG");
-  const Option record = command.option("--record", arguments->record,
-                                       "Record it to this file: MCAP if it ends in .mcap, else JSON lines");
+                 "Course folder, if it is not found by name or not contained in the bag");
+  command.option("--plot", arguments->plot, "Evaluation: write a picture of the lap to this PNG");
+  const Option record =
+      command.option("--record", arguments->record,
+                     "Record to this file: MCAP if its name ends in .mcap, otherwise JSON lines");
   for (Option served : {host, port}) served.excludes(html).excludes(record);
   command.action([arguments, &command] { return run(*arguments, command); });
 }

@@ -45,7 +45,7 @@ std::string course_or_ours(const Arguments& arguments, std::FILE* words) {
   }
 }
 
-/// The rows of a section beside what the authors logged.
+/// The rows of a section beside the authors' results.
 void print_section(const std::string& section, const Evaluated& evaluated,
                    const std::vector<Reference>& references, std::FILE* out) {
   std::fprintf(out, "\n%s\n%-32s %-2s %5s  %-26s %-26s %-22s %-22s %s\n", section.c_str(), "", "", "laps",
@@ -111,7 +111,7 @@ int run(Arguments arguments) {
       find_logs(arguments.published, fs::path(arguments.evaluation.scenario.course).filename().string());
   for (const std::string& note : folders.notes) std::fprintf(words, "note: %s\n", note.c_str());
   std::fflush(words);
-  // A log that cannot be read must not be found out after hours of driving.
+  // Fail on an unreadable log now, not after hours of driving.
   find_references(folders, experiments, {});
 
   Evaluated evaluated;
@@ -134,22 +134,22 @@ int run(Arguments arguments) {
 }  // namespace
 
 void declare_reproduce(Command& command) {
-  command.summary("The paper's simulation section: every row beside the authors' figures, with a verdict");
+  command.summary("Reproduce the simulation section of the paper and compare it with the authors' logs");
   const auto arguments = std::make_shared<Arguments>();
   auto& scenario = arguments->evaluation.scenario;
   scenario.course = "berlin";
   scenario.config = scenario.evaluation = "published";
   add_evaluation_options(command, arguments->evaluation);
-  command.option("--published", arguments->published, "The folder of the authors' logs");
-  command.option("--sections", arguments->sections, "Of: baseline, ablation, sweep")
+  command.option("--published", arguments->published, "Folder of the authors' logs");
+  command
+      .option("--sections", arguments->sections, "Sections, separated by commas: baseline, ablation, sweep")
       .comma_separated()
       .show_default();
-  command.option("--laps-pt", arguments->laps_pt, "Of every row in path tracking").show_default();
-  command.option("--laps-oa", arguments->laps_oa, "Of every row among obstacles").show_default();
-  command.flag("--quick", arguments->quick, "A tenth of the laps");
-  command
-      .option("--set", scenario.set, "section.option=value, for all rows: the same section, otherwise driven")
-      .repeatable();
+  command.option("--laps-pt", arguments->laps_pt, "Number of path-tracking laps of each row").show_default();
+  command.option("--laps-oa", arguments->laps_oa, "Number of obstacle-avoidance laps of each row")
+      .show_default();
+  command.flag("--quick", arguments->quick, "Drive a tenth of the laps");
+  command.option("--set", scenario.set, "section.option=value, for all rows; may be repeated").repeatable();
   command.action([arguments, &command] {
     arguments->course_said = command.given("--course");
     return run(*arguments);

@@ -123,17 +123,17 @@ void run(Arguments arguments) {
 }  // namespace
 
 void declare_track(Command& command) {
-  command.summary("Make a course: map, raceline with speeds, obstacle path, picture");
+  command.summary("Generate a course: map, raceline with speeds, obstacle path, picture");
   const auto arguments = std::make_shared<Arguments>();
   TrackOptions& options = arguments->options;
-  command.option("--out", arguments->out, "Folder to write; made if it does not exist").required();
-  command.option("--seed", options.seed, "Which track; the same options and seed give the same files")
+  command.option("--out", arguments->out, "Output folder; created if it does not exist").required();
+  command.option("--seed", options.seed, "Seed; the same options and seed give the same files")
       .show_default();
   command.option("--length", options.length, "Length of the centre line, m, 20..1000").show_default();
   command.option("--width", arguments->width,
-                 "From wall to wall, m, 1.2..10 [by character: 2.2, 2.6, 2.2, 1.5]");
+                 "Width from wall to wall, m, 1.2..10 [by character: 2.2, 2.6, 2.2, 1.5]");
   command.option("--character", arguments->character, "balanced, fast, twisty or narrow").show_default();
-  command.option("--top-speed", arguments->top_speed, "m/s [by character: 6, 7, 5, 4.5]");
+  command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s [by character: 6, 7, 5, 4.5]");
   command
       .option("--lateral-acceleration", options.limits.lateral_acceleration,
               "Limit of the speed profile, m/s^2")
@@ -141,12 +141,12 @@ void declare_track(Command& command) {
   command.option("--acceleration", options.limits.acceleration, "Limit of the speed profile, m/s^2")
       .show_default();
   command.option("--braking", options.limits.braking, "Limit of the speed profile, m/s^2").show_default();
-  command.option("--wall-margin", options.wall_margin, "How far the raceline keeps from the walls, m")
+  command.option("--wall-margin", options.wall_margin, "Minimum distance of the raceline from the walls, m")
       .show_default();
-  command.option("--name", arguments->name, "Name of the course [the folder's]");
-  command.option("--description", arguments->description, "A sentence for course.yaml");
+  command.option("--name", arguments->name, "Name of the course [name of the folder]");
+  command.option("--description", arguments->description, "Description for course.yaml");
   command.option("--json", arguments->json, "Write a summary as JSON to this file, or to standard output: -");
-  command.flag("--no-picture", arguments->no_picture, "Do not draw picture.png");
+  command.flag("--no-picture", arguments->no_picture, "Do not write picture.png");
   command.action([arguments] {
     run(*arguments);
     return 0;

@@ -12,7 +12,7 @@ namespace {
 
 int run(const TuningArguments& arguments) {
   if (rank_count() > 1)
-    throw IoError("mpirun", 0, "slalom tune drives its laps on the threads of one process: --jobs");
+    throw IoError("mpirun", 0, "slalom tune runs in one process; use --jobs instead of mpirun");
   make_experiments({arguments.method}, arguments.scenarios, 1, arguments.obstacles, {});  // refuses bad words
   std::FILE* words = arguments.evaluation.json == "-" ? stderr : stdout;
   TuningJob job(arguments);
@@ -25,8 +25,7 @@ int run(const TuningArguments& arguments) {
 }  // namespace
 
 void declare_tune(Command& command) {
-  command.summary(
-      "Search options over paired seeds: successive halving, held-out seeds for the final figure");
+  command.summary("Tune options by successive halving over paired seeds; validate on held-out seeds");
   const auto arguments = std::make_shared<TuningArguments>();
   add_method_option(command, arguments->method);
   std::string figures;
@@ -34,35 +33,35 @@ void declare_tune(Command& command) {
     figures += std::string(figures.empty() ? "" : "; ") + name + ": " + meaning;
   command
       .option("--objective", arguments->objective,
-              "What is made small, a mean over laps: a sum like 'log_ms + 5*failures' of " + figures)
+              "Objective to minimise, a mean over laps: a sum such as 'log_ms + 5*failures' of " + figures)
       .show_default();
   command
       .option("--set", arguments->set,
-              "key=lo:hi, key=lo:hi:log or key=v1,v2,...: search it; key=value: set it for all")
+              "key=lo:hi, key=lo:hi:log or key=v1,v2,... is searched; key=value is set for all candidates")
       .required()
       .repeatable();
   command.option("--scenario", arguments->scenarios, "pt, oa or both: pt,oa")
       .comma_separated()
       .show_default();
-  command.option("--obstacles", arguments->obstacles, "Parked cars a lap in scenario oa")
+  command.option("--obstacles", arguments->obstacles, "Number of parked cars in scenario oa")
       .range(1, 1000)
       .show_default();
-  command.option("--budget", arguments->budget, "Laps of the search; held-out laps come on top")
+  command.option("--budget", arguments->budget, "Number of laps of the search, without the held-out laps")
       .show_default();
   command
       .option("--laps", arguments->laps,
-              "Of every candidate to begin with, in every scenario on every course")
+              "Number of laps of each candidate at first, in each scenario on each course")
       .show_default();
   command
       .option("--rounds", arguments->rounds,
-              "Each but the first searches a box half as wide round the best so far")
+              "Number of rounds; each further one searches a box of half the width around the best candidate")
       .show_default();
   command
       .option("--held-out", arguments->held_out,
-              "Laps for the final figure, in every scenario on every course, on seeds of their own")
+              "Number of held-out laps for the final result, in each scenario on each course")
       .show_default();
   add_evaluation_options(command, arguments->evaluation);
-  command.find("--course").describe("Courses by name, or their folders, separated by commas");
+  command.find("--course").describe("Course names or folders, separated by commas");
   command.action([arguments] { return run(*arguments); });
 }
 

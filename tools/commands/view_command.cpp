@@ -4,7 +4,7 @@
 #include "slalom/core/version.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/live_view/view_evaluation.hpp"
-#include "tools/live_view/view_words.hpp"
+#include "tools/live_view/view_setup.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "view/server/page_data.hpp"
@@ -64,24 +64,24 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void declare_view(Command& command) {
-  command.summary("Drive, and serve a page on which everything can be seen and touched");
+  command.summary("Drive and serve an interactive page in the browser");
   const auto arguments = std::make_shared<Arguments>();
   arguments->scenario.obstacles = 8;
   add_scenario_options(command, arguments->scenario);
   add_method_option(command, arguments->method);
-  command.option("--seed", arguments->seed, "Of the drive").show_default();
-  command.option("--against", arguments->against, "A second method, driven as a ghost on the same seed");
+  command.option("--seed", arguments->seed, "Seed of the drive").show_default();
+  command.option("--against", arguments->against, "Second method, driven as a ghost with the same seed");
   command.option("--eval", arguments->evaluation,
-                 "Open an evaluation (the --out of slalom eval): its laps, and what led to each contact");
+                 "Open an evaluation (output folder of slalom eval): its laps and the collisions in them");
   command.flag("--record-times", arguments->record_times,
-               "Recordings saved from the page hold the wall clock's figures too");
+               "Recordings saved from the page contain wall-clock times");
   command
       .option("--host", arguments->host,
-              "Address to listen on; others than this machine's own need the token")
+              "Address to listen on; addresses other than loopback require a token")
       .show_default();
-  command.option("--port", arguments->port, "0: any that is free").show_default();
+  command.option("--port", arguments->port, "Port to listen on; 0 means any free port").show_default();
   command.option("--token", arguments->token,
-                 "Ask for this token; made at random where --host opens the view to others");
+                 "Token that the page must present; random if --host is not a loopback address");
   command.action([arguments] { return run(*arguments); });
 }
 

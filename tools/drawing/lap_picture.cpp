@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "slalom/sim/shapes.hpp"
-#include "tools/drawing/canvas.hpp"
+#include "tools/drawing/map_picture.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -12,14 +12,14 @@ namespace {
 constexpr Colour ink{0.13, 0.16, 0.22, 1};
 constexpr Colour path_colour{0.62, 0.66, 0.73, 0.9};
 constexpr Colour obstacle_fill{0.32, 0.36, 0.44, 1};
-constexpr Colour touched_fill{0.80, 0.13, 0.23, 1};
+constexpr Colour hit_fill{0.80, 0.13, 0.23, 1};
 constexpr Colour white{1, 1, 1, 1};
 
-void draw_cross(Canvas& canvas, const maps::Point& at, double size) {
-  for (const auto& [colour, width] : {std::pair(white, 9.0), std::pair(touched_fill, 4.5)})
+void draw_cross(MapPicture& picture, const maps::Point& at, double size) {
+  for (const auto& [colour, width] : {std::pair(white, 9.0), std::pair(hit_fill, 4.5)})
     for (const double side : {1.0, -1.0})
-      canvas.line({{at.x - size, at.y - side * size}, {at.x + size, at.y + side * size}}, colour, width,
-                  false);
+      picture.line({{at.x - size, at.y - side * size}, {at.x + size, at.y + side * size}}, colour, width,
+                   false);
 }
 
 }  // namespace
@@ -29,35 +29,35 @@ void draw_lap(const LapPicture& picture, const std::filesystem::path& file) {
   for (const auto& point : picture.path) path.push_back({point.x, point.y});
   shown.insert(shown.end(), path.begin(), path.end());
   const maps::OccupancyGrid map = cropped(picture.map, shown, 3.0);
-  Canvas canvas(map, 1400);
+  MapPicture drawn(map, 1400);
 
-  canvas.line(path, path_colour, 2, picture.closed, true);
+  drawn.line(path, path_colour, 2, picture.closed, true);
   const auto& speeds = picture.driven.speeds;
   double slowest = 0, fastest = 1;
   if (!speeds.empty()) {
-    // The way up from standstill would take most of the scale.
+    // Acceleration from standstill would take up most of the scale.
     auto sorted = speeds;
     std::sort(sorted.begin(), sorted.end());
     slowest = std::floor(2 * sorted[sorted.size() / 50]) / 2;
     fastest = std::max(std::ceil(2 * sorted.back()) / 2, slowest + 0.5);
   }
-  canvas.speed_line(picture.driven.points, speeds, slowest, fastest, 6, false);
+  drawn.speed_line(picture.driven.points, speeds, slowest, fastest, 6, false);
 
-  const auto touched = [&](std::size_t body) {
+  const auto was_hit = [&](std::size_t body) {
     return std::any_of(picture.lap.first_collisions.begin(), picture.lap.first_collisions.end(),
                        [&](const auto& touch) { return touch.body == static_cast<int>(body); });
   };
   const sim::CarParameters car;
   for (std::size_t i = 0; i < picture.lap.obstacles.size(); ++i) {
     const auto corners = sim::corners({picture.lap.obstacles[i], car.length, car.width});
-    canvas.polygon({corners.begin(), corners.end()}, touched(i + 1) ? touched_fill : obstacle_fill, white);
+    drawn.polygon({corners.begin(), corners.end()}, was_hit(i + 1) ? hit_fill : obstacle_fill, white);
   }
-  canvas.arrow(picture.start, 20, ink);
+  drawn.arrow(picture.start, 20, ink);
   const double cross = 0.010 * std::max(map.width, map.height) * map.resolution;
   for (const auto& touch : picture.lap.first_collisions)
-    draw_cross(canvas, {touch.pose.x, touch.pose.y}, cross);
-  canvas.legend(picture.title, picture.facts, slowest, fastest);
-  canvas.save(file);
+    draw_cross(drawn, {touch.pose.x, touch.pose.y}, cross);
+  drawn.legend(picture.title, picture.facts, slowest, fastest);
+  drawn.save(file);
 }
 
 }  // namespace slalom::tools

@@ -15,7 +15,7 @@ struct DrivenLine {
   std::vector<double> speeds;       ///< m/s
 };
 
-/// What a picture of a lap shows.
+/// The content of a picture of a lap.
 struct LapPicture {
   const maps::OccupancyGrid& map;
   const std::vector<maps::ReferencePoint>& path;
@@ -26,7 +26,7 @@ struct LapPicture {
   std::string title, facts;
 };
 
-/// Draws map, path, obstacles, driven line coloured by speed and contacts. Writes a PNG; throws IoError.
+/// Draws map, path, obstacles, driven line coloured by speed, and collisions. Writes a PNG; throws IoError.
 void draw_lap(const LapPicture& picture, const std::filesystem::path& file);
 
 }  // namespace slalom::tools

@@ -13,7 +13,7 @@ struct Span {
   double value = 0, low = 0, high = 0;
 };
 
-/// What a row of a panel shows: all values (a box), or one value with a span. Nothing where there is none.
+/// What a row of a panel shows: all values (a box), or one value with a span. Empty if there is no value.
 struct Marks {
   std::vector<double> values;
   std::optional<Span> span;

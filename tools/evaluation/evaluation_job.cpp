@@ -9,7 +9,7 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
 #include "tools/command_line/command.hpp"
-#include "tools/evaluation/build_identity.hpp"
+#include "tools/evaluation/build_id.hpp"
 #include "tools/evaluation/ranks.hpp"
 #include "tools/json/json.hpp"
 #include "tools/terminal/campaign_progress.hpp"
@@ -97,24 +97,26 @@ std::string course_hash(const Environment& environment) {
 }
 
 void add_evaluation_options(Command& command, EvaluationArguments& a) {
-  command.option("--course", a.scenario.course, "A course by name, or its folder").show_default();
-  command.option("--config", a.scenario.config, "default, default_speed, published, hardware, or a file")
+  command.option("--course", a.scenario.course, "Course name or folder").show_default();
+  command
+      .option("--config", a.scenario.config,
+              "Configuration: default, default_speed, published, hardware, or a file")
       .show_default();
   command
       .option("--evaluation", a.scenario.evaluation,
-              "true: right physics; published: as the paper's program counted")
+              "true: physical evaluation; published: as the program of the paper counted")
       .show_default();
   add_latency_option(command, a.scenario.latency_ms);
-  command.option("--seed0", a.seed0, "Lap k has seed seed0 + k (obstacles + 5)").show_default();
+  command.option("--seed0", a.seed0, "Seed of lap 0; lap k has seed0 + k (obstacles + 5)").show_default();
   command
       .option("--jobs", a.jobs,
-              "Laps driven at a time; 0: one per processor core, under mpirun one per process")
+              "Number of laps driven in parallel; 0: one per processor core, under mpirun one per process")
       .show_default();
-  command.option("--out", a.out, "Folder for laps.csv and summary.json").required();
-  command.flag("--resume", a.resume, "Go on with the evaluation in --out; no finished lap is driven again");
+  command.option("--out", a.out, "Output folder for laps.csv and summary.json").required();
+  command.flag("--resume", a.resume, "Continue the evaluation in --out; finished laps are kept");
   command.flag("--any-build", a.any_build,
-               "With --resume: go on although another build of the program drove the laps so far");
-  command.option("--json", a.json, "Write the summary also to this file, or to standard output: -");
+               "With --resume: continue even if another build of the program drove the earlier laps");
+  command.option("--json", a.json, "Write the summary to this file, too, or to standard output: -");
 }
 
 Json Evaluated::summary() const {
@@ -164,7 +166,7 @@ Json Evaluated::summary() const {
                      {"contacts_wilcoxon_p", c.collision_p}});
   }
   return {{"program", std::string("slalom ") + version()},
-          {"build", build_identity()},
+          {"build", build_id()},
           {"settings", Json::parse(evaluation.settings)},
           {"machine", machine_json()},
           {"results", list},
@@ -179,7 +181,7 @@ Evaluation make_campaign(const EvaluationArguments& arguments, const Scenario& s
           .seed0 = arguments.seed0,
           .latency = scenario.lap.latency,
           .settings = settings_of(arguments, scenario, experiments).dump(2),
-          .build = build_identity(),
+          .build = build_id(),
           .any_build = arguments.any_build};
 }
 
@@ -189,7 +191,7 @@ bool drive_campaign(const Evaluation& evaluation, const EvaluationArguments& arg
     throw IoError("--jobs", 0, std::to_string(arguments.jobs) + " must be in [0, 1024]");
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int jobs = arguments.jobs > 0 ? arguments.jobs : rank_count() > 1 ? 1 : cores;
-  // What cannot be driven must not leave a folder behind.
+  // Do not create a folder for an evaluation that cannot be driven.
   for (const Experiment& e : evaluation.experiments) {
     vehicle::Configuration trial = evaluation.configuration;
     LapSettings world;
@@ -230,7 +232,7 @@ void print_results(const Evaluated& evaluated, std::FILE* out) {
   std::size_t width = 6;
   for (const Experiment& e : evaluated.evaluation.experiments) width = std::max(width, e.label().size());
   std::fprintf(out, "%-*s  %-3s %5s %9s %19s %9s %17s %8s %9s\n", static_cast<int>(width), "method", "",
-               "laps", "MS", "95 %", "contacts", "collision rate", "success", "solve ms");
+               "laps", "MS", "95 %", "collisions", "collision rate", "success", "solve ms");
   for (const ExperimentResult& r : evaluated.results) {
     const Experiment& e = evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)];
     char rate[40] = "-";

@@ -9,7 +9,7 @@
 #include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 
-/// What `eval` and `reproduce` share: an evaluation from its words to laps.csv and summary.json.
+/// Shared by `eval` and `reproduce`: an evaluation from its arguments to laps.csv and summary.json.
 namespace slalom::tools {
 
 class Command;
@@ -28,14 +28,14 @@ struct EvaluationArguments {
 /// --json.
 void add_evaluation_options(Command& command, EvaluationArguments& arguments);
 
-/// Whether an option does anything to laps of a method: its own, or one of vehicle, planner, world.
+/// Whether an option affects laps of a method: an option of the method, vehicle, planner or world.
 bool applies_to(const std::string& key, const std::string& method);
-/// Throws IoError where it does nothing to any of them.
+/// Throws IoError if it affects none of the methods.
 void require_driven(const std::string& key, const std::vector<std::string>& methods);
 /// Throws IoError where both keys are the same option of one of them.
 void refuse_twice(const std::string& key, const std::string& other, const std::vector<std::string>& methods);
 
-/// Of what of a course decides a lap (FNV-1a).
+/// Hash (FNV-1a) of everything in a course that affects a lap.
 std::string course_hash(const evaluation::Environment& environment);
 
 /// The experiments of a comparison: every method in every scenario ("pt", "oa") with every combination of the
@@ -59,7 +59,7 @@ evaluation::Evaluation make_campaign(const EvaluationArguments& arguments, const
                                      const std::vector<evaluation::Experiment>& experiments);
 
 /// Drives what is still missing in `arguments.out`, with a progress line that begins with `title`. False if
-/// it was interrupted, which it says, and in every process under mpirun but the first, which has the rows.
+/// it was interrupted, and under mpirun in all processes but the first, which has the rows.
 /// Throws IoError and what a lap throws.
 bool drive_campaign(const evaluation::Evaluation& evaluation, const EvaluationArguments& arguments,
                     const std::string& title, const std::atomic<bool>& cancel,

@@ -1,4 +1,4 @@
-// What is driven in an evaluation, from --methods, --scenario and --set.
+// The experiments of an evaluation, from --methods, --scenario and --set.
 #include <set>
 
 #include "slalom/core/error.hpp"
@@ -85,7 +85,7 @@ std::vector<Experiment> make_experiments(const std::vector<std::string>& methods
   std::vector<Experiment> experiments;
   if (laps < 1 || laps > 1000000)
     throw IoError("--laps", 0, std::to_string(laps) + " must be in [1, 1000000]");
-  for (const std::string& method : methods) solver_options(method);  // refuses an unknown method
+  for (const std::string& method : methods) solver_options(method);  // throws if the method is unknown
   const std::vector<Sweep> sweeps = parse_sweeps(texts, methods);
   for (const std::string& scenario : scenarios) {
     if (scenario != "pt" && scenario != "oa")
@@ -106,7 +106,7 @@ std::vector<Experiment> make_experiments(const std::vector<std::string>& methods
       experiments.insert(experiments.end(), variants.begin(), variants.end());
     }
   }
-  // In laps.csv nothing would tell two of the same apart.
+  // Two equal experiments could not be distinguished in laps.csv.
   std::set<std::string> seen;
   for (const Experiment& e : experiments)
     if (!seen.insert(e.label() + ", " + e.scenario).second)

@@ -18,7 +18,7 @@
 namespace slalom::tools {
 namespace {
 
-/// How many processes mpirun says it started; Open MPI, and MPICH's and Intel's.
+/// The number of processes that mpirun started: Open MPI, MPICH, Intel MPI.
 int started_processes() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
     if (const char* text = std::getenv(name)) return std::max(1, std::atoi(text));
@@ -49,7 +49,8 @@ class World {
     if (started_processes() < 2) return;
     int provided = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
-    if (provided < MPI_THREAD_SERIALIZED) throw IoError("mpirun", 0, "this MPI allows no threads");
+    if (provided < MPI_THREAD_SERIALIZED)
+      throw IoError("mpirun", 0, "this MPI library does not support threads");
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     MPI_Comm_size(MPI_COMM_WORLD, &count);
   }
@@ -154,7 +155,8 @@ void drive_for_first_rank(const Evaluation& evaluation, int jobs, const std::ato
 
 int rank_count() {
   if (started_processes() > 1)
-    throw IoError("mpirun", 0, "this slalom was built without MPI: build it with libopenmpi-dev at hand");
+    throw IoError("mpirun", 0,
+                  "this program was built without MPI; install libopenmpi-dev and build it again");
   return 1;
 }
 int rank() {

@@ -185,7 +185,8 @@ namespace {
 
 /// A folder that was named is meant: without a single log in it it is the wrong one.
 void require_logs(const fs::path& published) {
-  if (!fs::is_directory(published)) throw IoError("--published", 0, published.string() + " is no folder");
+  if (!fs::is_directory(published))
+    throw IoError("--published", 0, published.string() + " is not a directory");
   for (const PaperRow& row : paper_rows())
     if (fs::is_regular_file(published / row.log_pt) || fs::is_regular_file(published / row.log_oa)) return;
   throw IoError("--published", 0,

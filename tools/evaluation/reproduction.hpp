@@ -37,7 +37,7 @@ std::vector<evaluation::Experiment> paper_experiments(const std::vector<std::str
 /// Whether an experiment is that of a row.
 bool drives(const evaluation::Experiment& experiment, const PaperRow& row);
 
-/// What is known of an experiment from elsewhere.
+/// Reference results of an experiment: logs of the authors and of a lockstep run.
 struct Reference {
   std::optional<evaluation::LapLog> log, lockstep_log;
   std::optional<evaluation::LogComparison> published, lockstep;
@@ -45,7 +45,7 @@ struct Reference {
   std::string note;     ///< why, where it is known
 };
 
-/// Where logs are, and what of them is missing.
+/// Folders of logs, and which logs are missing.
 struct LogFolders {
   std::filesystem::path published, lockstep;  ///< empty: none
   std::vector<std::string> notes;             ///< for people: what is missing and where to get it

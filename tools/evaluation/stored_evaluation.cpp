@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using evaluation::Experiment;
 
-/// What Experiment::set_text made of them: "key=value key=value", commas as semicolons.
+/// Inverse of Experiment::set_text: "key=value key=value", commas as semicolons.
 std::vector<std::pair<std::string, std::string>> parse_set(const std::string& text) {
   std::vector<std::pair<std::string, std::string>> set;
   int depth = 0;
@@ -64,7 +64,7 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
     }
     seed0 = settings.at("seed0").get<std::uint64_t>();
   } catch (const JsonError& error) {
-    throw IoError(file.string(), 0, std::string("makes no sense: ") + error.what());
+    throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());
   }
   const fs::path table = folder / "laps.csv", journal = folder / "laps.journal.csv";
   stored.complete = fs::exists(table);
@@ -102,7 +102,7 @@ ScenarioArguments campaign_arguments(const StoredEvaluation& stored, const std::
       for (const auto& [key, value] : options.items())
         arguments.set.push_back(section + "." + key + "=" + option_text(value));
   } catch (const JsonError& error) {
-    throw IoError(file.string(), 0, std::string("makes no sense: ") + error.what());
+    throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());
   }
   return arguments;
 }
@@ -115,7 +115,8 @@ evaluation::Evaluation rebuild_campaign(const StoredEvaluation& stored, const st
     const auto settings = Json::parse(stored.settings);
     const ScenarioArguments arguments = campaign_arguments(stored, course);
     scenario = load_scenario(arguments, stored.experiments.front().method);
-    if (const auto hash = settings.at("course_hash").get<std::string>(); hash != course_hash(*scenario.environment))
+    if (const auto hash = settings.at("course_hash").get<std::string>();
+        hash != course_hash(*scenario.environment))
       throw IoError(scenario.folder.string(), 0, "is not the course of " + stored.folder.string());
     evaluation.environment = scenario.environment;
     evaluation.configuration = scenario.configuration;
@@ -124,7 +125,7 @@ evaluation::Evaluation rebuild_campaign(const StoredEvaluation& stored, const st
     evaluation.latency = scenario.lap.latency;
     evaluation.settings = stored.settings;
   } catch (const JsonError& error) {
-    throw IoError(file.string(), 0, std::string("makes no sense: ") + error.what());
+    throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());
   }
   return evaluation;
 }

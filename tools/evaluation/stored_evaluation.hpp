@@ -22,13 +22,13 @@ struct StoredEvaluation {
   int find(const std::string& name, const std::string& scenario) const;
 };
 
-/// Throws IoError where the folder holds no evaluation or what it holds makes no sense.
+/// Throws IoError if the folder does not contain a valid evaluation.
 StoredEvaluation load_evaluation(const std::filesystem::path& folder);
 
-/// What it was driven with. `course` takes the place of the course's name where that is not empty.
+/// The arguments it was driven with. `course` takes the place of the course's name where that is not empty.
 ScenarioArguments campaign_arguments(const StoredEvaluation& stored, const std::string& course);
 
-/// Makes the evaluation's laps drivable again: course, configuration with every option as it was. `course`
+/// Restores the evaluation so that its laps can be repeated: course, configuration, all options. `course`
 /// takes the place of the course's name where that is not empty. Throws IoError if the course is another one.
 evaluation::Evaluation rebuild_campaign(const StoredEvaluation& stored, const std::string& course,
                                         Scenario& scenario);

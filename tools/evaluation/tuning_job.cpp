@@ -73,7 +73,9 @@ TuningJob::TuningJob(TuningArguments arguments)
     (one_value || text.find('[') != std::string::npos ? fixed : searched).push_back(text);
   }
   if (searched.empty())
-    throw IoError("--set", 0, "names nothing to search: key=lo:hi, key=lo:hi:log or key=v1,v2,...");
+    throw IoError(
+        "--set", 0,
+        "at least one must name a range or a list to search: key=lo:hi, key=lo:hi:log or key=v1,v2,...");
   arguments_.evaluation.scenario.set = fixed;
   const auto names = split(arguments_.evaluation.scenario.course);
   if (names.empty()) throw IoError("--course", 0, "names no course");
@@ -132,20 +134,22 @@ void TuningJob::keep_plan() const {
   const fs::path file = fs::path(arguments_.evaluation.out) / "plan.json";
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
-  if (error) throw IoError(file.parent_path().string(), 0, "cannot be made: " + error.message());
+  if (error) throw IoError(file.parent_path().string(), 0, "cannot be created: " + error.message());
   if (!fs::exists(file)) return write_json(plan(), file.string());
   if (!arguments_.evaluation.resume)
     throw IoError(arguments_.evaluation.out, 0,
-                  "holds a search: say --resume to go on with it, or take another folder");
+                  "contains a search; continue it with --resume, or use another folder");
   Json there;
   try {
     std::ifstream stream(file);
-    there = Json::parse({std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()});
+    there =
+        Json::parse(std::string(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()));
   } catch (const JsonError& failure) {
     throw IoError(file.string(), 0, std::string("is not JSON: ") + failure.what());
   }
   const std::string differing = differences(there, plan());
-  if (!differing.empty()) throw IoError(file.string(), 0, "the folder holds another search: " + differing);
+  if (!differing.empty())
+    throw IoError(file.string(), 0, "the folder contains a different search: " + differing);
 }
 
 bool TuningJob::drive(const std::string& step, const std::vector<Candidate>& candidates, int first_lap,
@@ -236,7 +240,7 @@ bool TuningJob::search(int round, const std::atomic<bool>& cancel, std::FILE* wo
   return true;
 }
 
-/// The figure that counts: laps that took no part in the search, the best beside what it started from.
+/// The final result: laps that were not part of the search, for the best candidate and the initial one.
 bool TuningJob::hold_out(const std::atomic<bool>& cancel, std::FILE* words) {
   if (arguments_.held_out == 0) return true;
   std::vector<Candidate> both{{best_.place, {}}};
@@ -263,7 +267,7 @@ bool TuningJob::hold_out(const std::atomic<bool>& cancel, std::FILE* words) {
                  mean(best), mean(differences), interval.low, interval.high, p);
   for (const auto& r : driven.results)
     std::fprintf(
-        words, "  %-10s %-2s MS %8.3f (%.3f - %.3f), %d contacts, success %5.1f %%, solve %.2f ms  %s\n",
+        words, "  %-10s %-2s MS %8.3f (%.3f - %.3f), %d collisions, success %5.1f %%, solve %.2f ms  %s\n",
         r["course"].get<std::string>().c_str(), r["scenario"].get<std::string>().c_str(),
         r["ms_mean"].get<double>(), r["ms_ci"][0].get<double>(), r["ms_ci"][1].get<double>(),
         r["contacts"].get<int>(), 100 * r["success_rate"].get<double>(), r["solve_ms_p50"].get<double>(),

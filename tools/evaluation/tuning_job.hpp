@@ -23,8 +23,8 @@ struct TuningArguments {
   int held_out = 30;  ///< laps of the final figure, in every scenario on every course; 0: none
 };
 
-/// A search, from its words to `best.yaml` and `tune.json`. Every step of it is an evaluation of its own in
-/// the folder: a search that was interrupted goes on where it was, and its laps can be replayed.
+/// A search, from its arguments to `best.yaml` and `tune.json`. Every step of it is an evaluation of its own
+/// in the folder: an interrupted search can be continued, and its laps can be replayed.
 class TuningJob {
  public:
   /// Throws IoError, std::invalid_argument.
@@ -36,7 +36,7 @@ class TuningJob {
   const Json& result() const noexcept { return result_; }
 
  private:
-  /// What candidates drove in a step.
+  /// The results of the candidates in a step.
   struct Driven {
     std::vector<std::vector<double>> values;  ///< of each candidate: of its laps, in the same order for all
     Json results = Json::array();

@@ -203,7 +203,7 @@ double key_text(Pen& pen, double x, double y, const std::string& words) {
   return x + 6.15 * static_cast<double>(words.size()) + 22;
 }
 
-/// What lines and colours mean, in two rows.
+/// The key of lines and colours, in two rows.
 void draw_key(Pen& pen, double left) {
   double x = left, y = 56;
   pen.line(x, y, x + 22, y, ink, 3);

@@ -7,7 +7,7 @@
 #include "slalom/problems/passing_point.hpp"
 #include "slalom/solvers/registry.hpp"
 
-/// What a method makes of the smallest problem with two ways, `problems::PassingPoint`, told in places.
+/// How a method solves the smallest problem with two homotopy classes, `problems::PassingPoint`.
 namespace slalom::tools {
 
 /// The lateral position (m, left is positive) at every state of a rollout.
@@ -49,7 +49,7 @@ struct ExplainedMethod {
 };
 std::vector<ExplainedMethod> explained_methods();
 
-/// Solves `solves` times from the same state, as a controller that stands still would, and tells of the last.
+/// Solves `solves` times from the same state and explains the last solve.
 /// Throws std::invalid_argument where an option is out of range.
 Explanation explain(const ExplainedMethod& method, const problems::PassingPoint& point, int solves,
                     std::uint64_t seed);

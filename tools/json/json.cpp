@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace slalom {
 
@@ -213,6 +214,10 @@ const Json& Json::operator[](std::size_t index) const {
   if (!is_array() || index >= values_.size())
     throw JsonError("element " + std::to_string(index) + " is missing");
   return values_[index];
+}
+
+Json& Json::operator[](std::size_t index) {
+  return const_cast<Json&>(std::as_const(*this)[index]);
 }
 
 Json& Json::operator[](const std::string& key) {

@@ -83,7 +83,9 @@ class Json {
   /// Appends to an array; null becomes an array.
   void push_back(Json value);
   /// Throws JsonError where there is no such element.
+  Json& operator[](std::size_t index);
   const Json& operator[](std::size_t index) const;
+  Json& operator[](int index) { return (*this)[static_cast<std::size_t>(index)]; }
   const Json& operator[](int index) const { return (*this)[static_cast<std::size_t>(index)]; }
 
   /// The member of this key. The first form inserts a null where there is none, and null becomes an object;

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "slalom/core/error.hpp"
-#include "tools/live_view/view_words.hpp"
+#include "tools/live_view/view_setup.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/replay.hpp"

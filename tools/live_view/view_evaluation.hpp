@@ -6,7 +6,7 @@
 
 namespace slalom::tools {
 
-/// Makes the live view show an evaluation: its laps and contacts, each of which can be driven again. Throws
+/// Makes the live view show an evaluation: its laps and collisions, each of which can be repeated. Throws
 /// IoError.
 void open_evaluation(const std::string& folder, view::SessionOptions& options);
 

@@ -102,7 +102,7 @@ void JsonRecording::end_lap(const evaluation::LapResult& lap, int number) {
 
 void JsonRecording::close() {
   stream_.close();
-  if (!stream_) throw IoError(file_, 0, "cannot be written to its end; the disk may be full");
+  if (!stream_) throw IoError(file_, 0, "cannot be written completely; the disk may be full");
 }
 
 }  // namespace slalom::tools

@@ -8,8 +8,8 @@
 
 namespace slalom::tools {
 
-/// JSON lines: settings, then for each lap its beginning, every control step with what went in and what came
-/// out, and its end.
+/// JSON lines: settings, then for each lap its start, the inputs and outputs of every control step, and its
+/// end.
 class JsonRecording : public Recording {
  public:
   /// Throws IoError.

@@ -3,7 +3,7 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
 #include "tools/json/json.hpp"
-#include "tools/live_view/view_words.hpp"
+#include "tools/live_view/view_setup.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -72,7 +72,7 @@ void McapRecording::end_lap(const evaluation::LapResult& lap, int number) {
 void McapRecording::close() {
   recorder_.finish();
   stream_.close();
-  if (!stream_) throw IoError(file_, 0, "cannot be written to its end; the disk may be full");
+  if (!stream_) throw IoError(file_, 0, "cannot be written completely; the disk may be full");
 }
 
 }  // namespace slalom::tools

@@ -226,7 +226,7 @@ std::string paired_table(const Report& report) {
   if (rows.empty()) return {};
   return "<section><h2>Lap by lap against SVG-MPPI</h2><p class=\"caption\">The same seeds: the same "
          "obstacles for "
-         "both. MS by Wilcoxon's signed-rank test, success (finished without contact) by McNemar's.</p>"
+         "both. MS by Wilcoxon's signed-rank test, success (finished without collision) by McNemar's.</p>"
          "<div class=\"scroll\"><table><thead><tr><th></th><th></th><th>laps</th><th>MS above "
          "SVG-MPPI</th><th>p</th>"
          "<th>only SVG-MPPI succeeds</th><th>only this one</th><th>p</th></tr></thead><tbody>\n" +
@@ -264,9 +264,11 @@ std::string page(const Report& report, const std::vector<ReportFigure>& figures)
       "the "
       "trajectory predicted for the control sequence sent, averaged over a lap's control steps; intervals "
       "are "
-      "bootstraps over laps. The collision rate is contacts by obstacles and laps, with Wilson's interval. "
+      "bootstraps over laps. The collision rate is the number of collisions divided by the number of "
+      "obstacles, with Wilson's interval. "
       "\xE2\x80\x9COutside\xE2\x80\x9D: at 5 % a two-sample bootstrap of MS (with fewer than 10 laps a "
-      "permutation test) or Fisher's exact test of contacts tells these laps from the published ones. "
+      "permutation test) or Fisher's exact test of collisions distinguishes these laps from the published "
+      "ones. "
       "\xE2\x80\x9CInside\xE2\x80\x9D: neither does, and the intervals of the differences are narrower "
       "than half of the published MS and 10 points of the collision rate to either side. "
       "\xE2\x80\x9CUndecided\xE2\x80\x9D: neither does, but the laps are too few or too scattered to say "
@@ -281,7 +283,7 @@ void write_report(const Report& report, const fs::path& folder) {
   const fs::path pictures = folder / "figures";
   std::error_code error;
   fs::create_directories(pictures, error);
-  if (error) throw IoError(pictures.string(), 0, "cannot be made: " + error.message());
+  if (error) throw IoError(pictures.string(), 0, "cannot be created: " + error.message());
   auto figures = report_charts(report, pictures);
   for (ReportFigure& figure : report_pictures(report, pictures)) figures.push_back(std::move(figure));
   const fs::path file = folder / "report.html";

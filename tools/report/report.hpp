@@ -36,7 +36,7 @@ struct Report {
   }
 };
 
-/// A figure in words and as an image.
+/// A figure with its caption.
 struct ReportFigure {
   std::string name;     ///< of its files
   std::string section;  ///< below which it stands; empty: at the end
@@ -47,7 +47,8 @@ struct ReportFigure {
 /// Boxes of costs and bars of collision rates for every section; times of computation. Writes SVG and PNG to
 /// `folder`.
 std::vector<ReportFigure> report_charts(const Report& report, const std::filesystem::path& folder);
-/// Driven lines of two methods on one map, and where contacts happen. Drives up to 4 laps again. Writes PNG.
+/// Driven lines of two methods on one map, and where collisions happen. Drives up to 4 laps again. Writes
+/// PNG.
 std::vector<ReportFigure> report_pictures(const Report& report, const std::filesystem::path& folder);
 
 /// Writes report.html, and figures/ beside it. Throws IoError.

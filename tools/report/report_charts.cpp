@@ -68,7 +68,7 @@ Panel cost_panel(const Report& report, const std::vector<NamedRow>& rows, const 
 }
 
 Panel collision_panel(const Report& report, const std::vector<NamedRow>& rows) {
-  Panel panel{.title = "Obstacles: contacts",
+  Panel panel{.title = "Obstacles: collisions",
               .axis = "collision rate, %, with its 95 % interval",
               .kind = Panel::Kind::bars,
               .ours = {},

@@ -8,8 +8,8 @@
 #include "slalom/core/error.hpp"
 #include "slalom/sim/shapes.hpp"
 #include "slalom/vehicle/course/course.hpp"
-#include "tools/drawing/canvas.hpp"
 #include "tools/drawing/lap_picture.hpp"
+#include "tools/drawing/map_picture.hpp"
 #include "tools/report/report.hpp"
 
 namespace slalom::tools {
@@ -27,9 +27,9 @@ constexpr std::array<Colour, 6> palette = {{blue,
                                             {0.35, 0.35, 0.40, 1}}};
 constexpr int long_side = 1300;
 
-ReportFigure save(const Canvas& canvas, ReportFigure figure, const std::filesystem::path& folder) {
+ReportFigure save(const MapPicture& picture, ReportFigure figure, const std::filesystem::path& folder) {
   const auto file = folder / (figure.name + ".png");
-  canvas.save(file);
+  picture.save(file);
   std::ifstream stream(file, std::ios::binary);
   figure.mime = "image/png";
   figure.data.assign(std::istreambuf_iterator<char>(stream), {});
@@ -77,7 +77,7 @@ std::vector<int> pair_of(const Report& report, const std::string& scenario) {
   return chosen;
 }
 
-/// The first lap that the second one touches something in and the first does not; else the first of all.
+/// The first lap in which only the second method collides; otherwise lap 0.
 int telling_lap(const Report& report, const std::vector<int>& pair) {
   std::map<int, std::array<int, 2>> contacts;
   for (const LapRow& row : report.evaluated.rows)
@@ -104,39 +104,39 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
   auto shown = path;
   for (const Line& line : lines)
     shown.insert(shown.end(), line.driven.points.begin(), line.driven.points.end());
-  Canvas canvas(cropped(map, shown, 1.5), long_side);
-  canvas.line(path, path_colour, 2, evaluation.environment->course.closed, true);
+  MapPicture picture(cropped(map, shown, 1.5), long_side);
+  picture.line(path, path_colour, 2, evaluation.environment->course.closed, true);
   const sim::CarParameters car;
   for (const maps::Pose& obstacle : lines.front().lap.obstacles) {
     const auto corners = sim::corners({obstacle, car.length, car.width});
-    canvas.polygon({corners.begin(), corners.end()}, obstacle_fill, white);
+    picture.polygon({corners.begin(), corners.end()}, obstacle_fill, white);
   }
   std::vector<std::pair<std::string, Colour>> key;
   std::string facts = "lap " + std::to_string(lap);
   for (std::size_t i = lines.size(); i-- > 0;) {
     const Colour colour = i == 0 ? blue : orange;
-    canvas.line(lines[i].driven.points, colour, 4.5, false);
+    picture.line(lines[i].driven.points, colour, 4.5, false);
     for (const Collision& touch : lines[i].lap.first_collisions)
-      canvas.disc({touch.pose.x, touch.pose.y}, 11, colour);
+      picture.disc({touch.pose.x, touch.pose.y}, 11, colour);
   }
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const auto row = std::find_if(report.rows.begin(), report.rows.end(),
                                   [&](const ReportRow& r) { return r.experiment == pair[i]; });
     key.emplace_back(row->name, i == 0 ? blue : orange);
     char words[80];
-    std::snprintf(words, sizeof words, " \xC2\xB7 MS %.2f, %d contact%s", lines[i].lap.mean_sequence_cost,
+    std::snprintf(words, sizeof words, " \xC2\xB7 MS %.2f, %d collision%s", lines[i].lap.mean_sequence_cost,
                   lines[i].lap.collisions, lines[i].lap.collisions == 1 ? "" : "s");
     facts += words;
   }
   const bool tracking = scenario == "pt";
-  canvas.key(tracking ? "Path tracking" : "Among obstacles", facts, key);
+  picture.key(tracking ? "Path tracking" : "Among obstacles", facts, key);
   std::string caption = tracking ? "The first lap of both, on the reference path (dashed). "
-                                 : "The same obstacles for both; discs mark where they are touched. ";
+                                 : "The same obstacles for both; discs mark collisions. ";
   if (!tracking)
     caption +=
-        "The lap is the first in which only the second of the two touches something, if there is one: it "
-        "shows how contacts come about, not how often.";
-  return save(canvas,
+        "The lap is the first in which only the second method collides, if there is one: it "
+        "shows how collisions happen, not how often.";
+  return save(picture,
               {"driven_" + scenario,
                "",
                tracking ? "Driven lines: path tracking" : "Driven lines: obstacles",
@@ -164,10 +164,10 @@ std::vector<maps::Point> contact_points(const std::string& text) {
 
 ReportFigure contact_map(const Report& report, const maps::OccupancyGrid& map,
                          const std::filesystem::path& folder) {
-  const Evaluation& evaluation = report.evaluated.evaluation;
+  const Evaluation& campaign = report.evaluated.evaluation;
   const auto path = points_of(evaluation.environment->path);
-  Canvas canvas(cropped(map, path, 2.5), long_side);
-  canvas.line(path, path_colour, 2, evaluation.environment->course.closed, true);
+  MapPicture picture(cropped(map, path, 2.5), long_side);
+  picture.line(path, path_colour, 2, evaluation.environment->course.closed, true);
   std::vector<std::pair<std::string, Colour>> key;
   const auto colour_of = [&](const std::string& method) {
     auto found = std::find_if(key.begin(), key.end(), [&](const auto& k) { return k.first == method; });
@@ -184,23 +184,24 @@ ReportFigure contact_map(const Report& report, const maps::OccupancyGrid& map,
     Colour colour = colour_of(evaluation.experiments[static_cast<std::size_t>(row.experiment)].method);
     colour.opacity = 0.75;
     for (const maps::Point& point : contact_points(row.contact_points)) {
-      canvas.disc(point, 8, colour);
+      picture.disc(point, 8, colour);
       ++count;
     }
   }
-  canvas.key(
-      "Where bodies are touched",
-      std::to_string(count) + " first touches in " + std::to_string(report.evaluated.rows.size()) + " laps",
+  picture.key(
+      "Where collisions happen",
+      std::to_string(count) + " collisions in " + std::to_string(report.evaluated.rows.size()) + " laps",
       key);
-  return save(canvas,
-              {"contacts",
-               "",
-               "Where contacts happen",
-               "The car's centre of gravity at every first touch of a body or wall, all laps of all rows. "
-               "Where many lie together the course leaves little room or the turn hides what comes.",
-               {},
-               {}},
-              folder);
+  return save(
+      picture,
+      {"contacts",
+       "",
+       "Where collisions happen",
+       "The car's centre of gravity at every first collision with a body or wall, all laps of all rows. "
+       "Where many lie together the course leaves little room or the turn hides what comes.",
+       {},
+       {}},
+      folder);
 }
 
 }  // namespace

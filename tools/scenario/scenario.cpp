@@ -81,31 +81,39 @@ fs::path program_folder() {
 }
 
 void add_scenario_options(Command& command, ScenarioArguments& a) {
-  command.option("--course", a.course, "A course by name, or its folder").show_default();
-  command.option("--config", a.config, "default, default_speed, published, hardware, or a file")
+  command.option("--course", a.course, "Course name or folder").show_default();
+  command
+      .option("--config", a.config, "Configuration: default, default_speed, published, hardware, or a file")
       .show_default();
   command
-      .option("--evaluation", a.evaluation, "true: right physics; published: as the paper's program counted")
+      .option("--evaluation", a.evaluation,
+              "true: physical evaluation; published: as the program of the paper counted")
       .show_default();
   command
       .option("--set", a.set,
               "section.option=value, or option=value for the method's own; may be repeated (slalom options "
               "lists them)")
       .repeatable();
-  command.option("--obstacles", a.obstacles, "Parked cars on the course").show_default();
+  command.option("--obstacles", a.obstacles, "Number of parked cars on the course").show_default();
   command
-      .option("--opponents", a.opponents,
-              "Cars that drive along the course line at half its speed, --evaluation true only")
+      .option(
+          "--opponents", a.opponents,
+          "Number of cars that drive along the course line at half its speed; only with --evaluation true")
       .show_default();
-  command.option("--start", a.start, "x,y,yaw of the car's centre of gravity, m, m, rad [the course's]");
+  command.option("--start", a.start,
+                 "Start pose x,y,yaw of the car's centre of gravity, m, m, rad [start of the course]");
   add_latency_option(command, a.latency_ms);
-  command.flag("--hardware", a.hardware,
-               "As on a real car: noise, slip, a guessed pose, a servo unlike the model");
-  command.option("--threads", a.threads, "Threads of the solver; results do not depend on it").show_default();
+  command.flag(
+      "--hardware", a.hardware,
+      "Conditions of a real car: sensor noise, slip, localisation, a servo that differs from the model");
+  command.option("--threads", a.threads, "Number of solver threads; results do not depend on it")
+      .show_default();
 }
 
 void add_latency_option(Command& command, double& latency_ms) {
-  command.option("--latency-ms", latency_ms, "From a scan to its command's effect, --evaluation true only")
+  command
+      .option("--latency-ms", latency_ms,
+              "Delay from a scan to the effect of its command, ms; only with --evaluation true")
       .range(0.0, 1000.0)
       .show_default();
 }
@@ -117,7 +125,7 @@ void add_method_option(Command& command, std::string& method) {
 }
 
 vehicle::Configuration load_configuration(const ScenarioArguments& arguments, const std::string& method) {
-  solver_options(method);  // refuses an unknown method
+  solver_options(method);  // throws if the method is unknown
   const auto roots = vehicle::configuration_roots(program_folder());
   auto configuration =
       vehicle::load_configuration(vehicle::find_configuration(arguments.config, roots), roots);

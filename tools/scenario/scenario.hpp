@@ -11,7 +11,7 @@
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "tools/json/json.hpp"
 
-/// What every command that drives is told in the same words: course, configuration, evaluation, method.
+/// The options shared by all commands that drive: course, configuration, evaluation, method.
 namespace slalom::tools {
 
 class Command;

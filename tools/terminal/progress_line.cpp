@@ -38,8 +38,8 @@ void ProgressLine::show(int lap, int laps, const evaluation::ControlStep& tick) 
   const SolveResult* solve = tick.output.solve;
   char text[256];
   std::snprintf(text, sizeof text,
-                "lap %d/%d [%s] %5.1f s  %4.1f m/s  cost %8.3g  ESS %6.0f  solve %5.2f ms  contacts %d", lap,
-                laps, bar(tick.progress, 20).c_str(), tick.time, tick.seen.speed, tick.cost.total(),
+                "lap %d/%d [%s] %5.1f s  %4.1f m/s  cost %8.3g  ESS %6.0f  solve %5.2f ms  collisions %d",
+                lap, laps, bar(tick.progress, 20).c_str(), tick.time, tick.seen.speed, tick.cost.total(),
                 solve ? solve->effective_sample_size : 0.0, solve ? 1e3 * solve->times.total : 0.0,
                 tick.collisions);
   text[std::min<std::size_t>(std::strlen(text), static_cast<std::size_t>(columns(stream_) - 1))] = '\0';

@@ -18,7 +18,7 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(int lap, int laps, const evaluation::ControlStep& tick);
-  /// Removes the line, so that something else can be said.
+  /// Removes the line before other output.
   void clear();
 
  private:

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
-#include "slalom/sim/shapes.hpp"
 #include "view/protocol/frame_writer.hpp"
 
 namespace slalom::view {
@@ -54,11 +54,6 @@ constexpr const char* names[] = {"tick",
                                  "prediction_step",
                                  "method"};
 
-/// Without the head that a message begins with, so that the block can be appended to one.
-std::string headless(std::string message) {
-  return message.substr(4);
-}
-
 /// How many states a sequence of inputs leads through.
 std::size_t states_of(const vehicle::Planner& planner, std::span<const float> inputs) {
   return inputs.size() / static_cast<std::size_t>(planner.solver().inputs()) + 1;
@@ -68,18 +63,6 @@ std::size_t states_of(const vehicle::Planner& planner, std::span<const float> in
 
 std::span<const char* const> scalar_names() noexcept {
   return names;
-}
-
-double clearance_of(const sim::World& world) {
-  const sim::Box body = world.outline(0);
-  double least = std::numeric_limits<double>::infinity();
-  for (const maps::Point& corner : sim::corners(body))
-    least = std::min(least, world.track().distance_to_wall(corner));
-  for (std::size_t i = 1; i < world.bodies(); ++i) {
-    const auto disc = world.disc(i);
-    least = std::min(least, disc ? sim::signed_gap(body, *disc) : sim::signed_gap(body, world.outline(i)));
-  }
-  return least;
 }
 
 std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts) {
@@ -235,7 +218,7 @@ void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
   }
   for (int i = 0; i < count; ++i) to.put(solve.collided[static_cast<std::size_t>(chosen(i))]);
   to.pad();
-  to.append(headless(points.take()));
+  to.append(points.take_blocks());
   to.end();
 }
 
@@ -290,71 +273,6 @@ void FrameEncoder::put_plan(FrameWriter& to, const ControlStep& tick) {
       to.put_f32(value);
   }
   to.end();
-}
-
-std::string encode_bodies(const sim::World& world) {
-  FrameWriter to;
-  to.begin(Block::bodies);
-  to.put(static_cast<std::uint32_t>(world.bodies()));
-  const sim::Observation seen = world.observe(0);
-  for (std::size_t i = 0; i < world.bodies(); ++i) {
-    const sim::Box box = world.outline(i);
-    const bool is_car = box.length == world.options().car.length && box.width == world.options().car.width;
-    const int kind = i == 0 ? 0 : i < world.cars() ? 4 : world.disc(i) ? 3 : is_car ? 1 : 2;
-    const bool touched = i == 0 ? seen.collides()
-                                : std::find(seen.colliding.begin(), seen.colliding.end(),
-                                            static_cast<int>(i)) != seen.colliding.end();
-    to.put(static_cast<std::uint16_t>(i));
-    to.put(static_cast<std::uint8_t>(kind));
-    to.put(static_cast<std::uint8_t>(touched));
-    for (const double value : {box.pose.x, box.pose.y, box.pose.yaw, box.length, box.width})
-      to.put_f32(value);
-  }
-  to.end();
-  return headless(to.take());
-}
-
-std::string encode_ghost(const sim::World& world, std::span<const maps::Pose> plan) {
-  const sim::CarState& car = world.state(0);
-  FrameWriter to;
-  to.begin(Block::ghost);
-  to.put_pose({car.x, car.y, car.yaw});
-  to.put(car.steer);
-  to.put(car.speed);
-  to.put(world.laps(0)->progress() / world.track().lap_path()->length());
-  to.put(world.laps(0)->last_lap_time());
-  to.put(static_cast<std::uint32_t>(plan.size()));
-  to.begin_points({car.x, car.y});
-  for (const maps::Pose& pose : plan) to.put_point({pose.x, pose.y});
-  to.end();
-  return headless(to.take());
-}
-
-std::string encode_scene(const evaluation::Environment& environment) {
-  const maps::OccupancyGrid& grid = environment.course.map;
-  std::vector<std::uint32_t> runs;  // value in the upper 8 bits, length in the lower 24
-  for (const maps::Occupancy cell : grid.cells) {
-    const auto value = static_cast<std::uint32_t>(cell);
-    if (runs.empty() || runs.back() >> 24 != value || (runs.back() & 0xffffffu) == 0xffffffu)
-      runs.push_back(value << 24);
-    ++runs.back();
-  }
-  FrameWriter to;
-  to.begin(Block::grid);
-  to.put(static_cast<std::uint32_t>(grid.width));
-  to.put(static_cast<std::uint32_t>(grid.height));
-  to.put(grid.resolution);
-  to.put_pose(grid.origin);
-  to.put(static_cast<std::uint32_t>(runs.size()));
-  for (const std::uint32_t run : runs) to.put(run);
-  to.end();
-  to.begin(Block::path);
-  to.put(static_cast<std::uint32_t>(environment.path.size()));
-  to.put(static_cast<std::uint32_t>(environment.course.closed));
-  for (const maps::ReferencePoint& point : environment.path)
-    for (const double value : {point.x, point.y, point.speed}) to.put_f32(value);
-  to.end();
-  return to.take();
 }
 
 }  // namespace slalom::view

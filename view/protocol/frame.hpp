@@ -7,13 +7,13 @@
 
 #include "slalom/evaluation/closed_loop.hpp"
 
-/// What is sent for a control step: everything that the page draws of it.
+/// The message of a control step: everything that the page draws.
 namespace slalom::view {
 
 /// The names of the figures that each frame begins with, in their order.
 std::span<const char* const> scalar_names() noexcept;
 
-/// What was known of a control step besides what ControlStep says.
+/// Facts about a control step that ControlStep does not contain.
 struct StepFacts {
   double deadline = 0;         ///< s that an update may take before the next is due
   double prediction_step = 0;  ///< s, of the plan

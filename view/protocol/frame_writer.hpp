@@ -74,6 +74,8 @@ class FrameWriter {
 
   void append(const std::string& bytes) { bytes_ += bytes; }
   std::string take() { return std::move(bytes_); }
+  /// Without the four bytes that a message begins with, to be appended to another message.
+  std::string take_blocks() { return take().substr(4); }
 
  private:
   static constexpr double unit = 0.001;  ///< m; 16 bits reach 32 m either way

@@ -8,10 +8,10 @@
 #include "slalom/evaluation/environment.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 
-/// The text messages that tell a page what is driven (docs/live-view.md, "Messages").
+/// The text messages to the page (docs/live-view.md, "Messages").
 namespace slalom::view {
 
-/// What is driven, in the words of the command line.
+/// The scenario, with the names of the command line.
 struct ScenarioNames {
   std::string course = "stag";
   std::string method = "svg_mppi";
@@ -22,7 +22,7 @@ struct ScenarioNames {
   bool operator==(const ScenarioNames&) const = default;
 };
 
-/// What can be chosen.
+/// The available choices.
 struct Choices {
   std::vector<std::string> courses, methods, configurations;
 };
@@ -38,7 +38,7 @@ struct OptionsFacts {
   const std::string& further_arguments;  ///< of the command line, begins with a space
   std::size_t undo = 0, redo = 0;        ///< how many steps there are
 };
-/// Every option's declaration and value, and how the command line says it.
+/// Declaration and value of every option, and the equivalent command line.
 std::string options_message(const OptionsFacts& facts);
 
 /// The command line that drives the same.
@@ -67,7 +67,7 @@ struct StateFacts {
   int generation = 0;
   int clients = 0;
   std::uint64_t refused = 0;
-  /// Of an evaluation, what is shown: experiment, lap, contact (-1 the whole lap), and the contact's tick.
+  /// The part of an evaluation that is shown: experiment, lap, collision (-1: the whole lap) and its tick.
   std::array<int, 4> contact{-1, -1, -1, -1};
 };
 std::string state_message(const StateFacts& facts);

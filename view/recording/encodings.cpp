@@ -63,7 +63,7 @@ std::string gunzip(std::string_view bytes) {
     if (status == Z_OK && stream.avail_in == 0 && stream.avail_out > 0) break;
   }
   inflateEnd(&stream);
-  if (status != Z_STREAM_END) throw std::invalid_argument("gunzip: damaged or cut short");
+  if (status != Z_STREAM_END) throw std::invalid_argument("gunzip: the data is damaged or incomplete");
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-/// What MCAP files are made of (https://mcap.dev/spec): records of an opcode, a length and a content, numbers
+/// The elements of MCAP files (https://mcap.dev/spec): records of an opcode, a length and a content, numbers
 /// little-endian, texts and lists behind their length in bytes.
 namespace slalom::view::mcap {
 

@@ -49,14 +49,14 @@ class File {
     if (!stream_) throw IoError(name, 0, "cannot be read");
     size_ = static_cast<std::uint64_t>(stream_.tellg());
     if (size_ < 2 * magic.size() + footer_size || read(0, magic.size()) != magic)
-      throw IoError(name, 0, "is no recording in MCAP");
+      throw IoError(name, 0, "is not an MCAP recording");
     if (read(size_ - magic.size(), magic.size()) != magic)
-      throw IoError(name, 0, "is cut short: the recording was not finished");
+      throw IoError(name, 0, "is incomplete: the recording was not finished");
   }
 
   std::string read(std::uint64_t offset, std::uint64_t length) {
     if (offset > size_ || length > size_ - offset)
-      throw IoError(name_, 0, "is damaged: an index leads out of it");
+      throw IoError(name_, 0, "is damaged: an index points outside the file");
     std::string bytes(length, '\0');
     stream_.seekg(static_cast<std::streamoff>(offset));
     if (!stream_.read(bytes.data(), static_cast<std::streamsize>(length)))
@@ -93,7 +93,7 @@ Attachment attachment_at(File& file, std::uint64_t offset, std::uint64_t length)
   const std::string record = file.read(offset, length);
   Reader head(record, file.name());
   if (head.get<std::uint8_t>() != static_cast<std::uint8_t>(Op::attachment))
-    throw IoError(file.name(), 0, "is damaged: an index leads to no attachment");
+    throw IoError(file.name(), 0, "is damaged: an index does not point to an attachment");
   const std::string_view content = head.take(head.get<std::uint64_t>());
   Reader reader(content, file.name());
   reader.take(16);  // times

@@ -12,7 +12,7 @@
 namespace slalom::view::mcap {
 
 /// Writes an MCAP file: messages in chunks compressed with zstd, message and chunk indexes, statistics,
-/// checksums throughout. What it writes depends on what it is given alone, so equal recordings are equal
+/// checksums throughout. Its output depends on its input only, so equal recordings are equal
 /// bytes.
 ///
 ///     Writer writer(stream, "slalom 1.0");
@@ -34,7 +34,7 @@ class Writer {
                       std::string_view data);
   void add_metadata(const std::string& name, const std::map<std::string, std::string>& values);
 
-  /// Closes the file's structure. The stream's state tells whether everything was written.
+  /// Closes the file's structure. The state of the stream says whether everything was written.
   void finish();
 
  private:

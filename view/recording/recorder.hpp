@@ -14,7 +14,7 @@
 
 namespace slalom::view {
 
-/// What a recording says about itself and needs to know.
+/// The facts that a recording contains about itself.
 struct RecorderOptions {
   std::string program = "slalom";                         ///< who wrote it
   std::map<std::string, std::string> settings;            ///< kept as the metadata "slalom"

@@ -1,4 +1,4 @@
-// What a control step looks like, as Foxglove's messages.
+// A control step as Foxglove messages.
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +12,7 @@ using foxglove::Color;
 constexpr std::size_t most_candidates = 40;  // in Foxglove's JSON; the page's own messages have them all
 constexpr Color car_color{0.95, 0.96, 0.98, 1}, ghost_color{0.78, 0.61, 1, 0.7},
     plan_color{0.1, 0.8, 0.65, 1}, nominal_color{0.6, 0.65, 0.7, 0.9}, guide_color{0.8, 0.35, 0.85, 0.9},
-    obstacle_color{0.91, 0.63, 0.23, 1}, touched_color{1, 0.35, 0.21, 1}, collided_color{1, 0.35, 0.21, 0.35};
+    obstacle_color{0.91, 0.63, 0.23, 1}, hit_color{1, 0.35, 0.21, 1}, collided_color{1, 0.35, 0.21, 0.35};
 constexpr double car_height = 0.15, obstacle_height = 0.25;  // m
 
 /// From the best (0) to the worst (1): yellow, green, blue.
@@ -77,10 +77,10 @@ void Recorder::add_cars(const FrameReader& reader) {
     if (id == 0) add(Topic::transform, foxglove::frame_transform(time_, "car", pose));
     constexpr int disc = 3;
     if (kind == disc)
-      scene.disc({x, y}, length, obstacle_height, touched ? touched_color : obstacle_color);
+      scene.disc({x, y}, length, obstacle_height, touched ? hit_color : obstacle_color);
     else
       scene.box(pose, length, width, id == 0 ? car_height : obstacle_height,
-                touched   ? touched_color
+                touched   ? hit_color
                 : id == 0 ? car_color
                           : obstacle_color);
   }

@@ -45,7 +45,8 @@ std::vector<std::string> load_replay(const std::string& file) {
   std::vector<std::string> segments;
   for (mcap::Attachment& each : mcap::read_attachments(file, "replay/"))
     segments.push_back(std::move(each.data));
-  if (segments.empty()) throw IoError(file, 0, "holds nothing to replay: was it recorded with slalom?");
+  if (segments.empty())
+    throw IoError(file, 0, "contains nothing to replay; recordings of slalom drive and slalom view do");
   return segments;
 }
 

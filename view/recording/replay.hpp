@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-/// What the page replays from: the messages that it would have got from a live drive, in their order, cut
+/// The data of a replay: the messages of a live drive, in their order, cut
 /// into segments that are compressed one by one. A message is its kind (a byte: 0 text, 1 binary), its length
 /// (u32) and its bytes.
 namespace slalom::view {
@@ -34,7 +34,7 @@ class ReplaySegments {
 /// The page with a replay inside: one file that needs no server. `page`: the page's HTML.
 std::string replay_page(std::string page, const std::vector<std::string>& segments);
 
-/// The segments of a recording in MCAP. Throws IoError on what is none.
+/// The segments of an MCAP recording. Throws IoError if it is not one.
 std::vector<std::string> load_replay(const std::string& file);
 
 }  // namespace slalom::view

@@ -7,17 +7,17 @@
 #include <string>
 #include <vector>
 
-/// Serves a page and a WebSocket to a handful of browsers from a thread of its own:
+/// Serves a page and a WebSocket to a few browsers from its own thread:
 ///
 ///     Server server({.port = 8400}, {{"/", page}});
 ///     while (driving) {
-///       for (const Received& message : server.take()) obey(message);
+///       for (const Received& message : server.take()) execute(message);
 ///       server.publish(frame);   // never waits
 ///     }
 ///
-/// Who publishes never waits for who looks: each client holds at most one frame that waits to be sent, and a
-/// newer one takes its place. What must not be lost goes through `send` and `broadcast`, in order; a client
-/// that lets too much of it pile up is disconnected.
+/// Publishing never waits for clients: each client has at most one pending frame, which a newer frame
+/// replaces. Messages that must not be lost are sent in order with `send` and `broadcast`; a client with too
+/// many pending messages is disconnected.
 namespace slalom::view {
 
 struct ServerOptions {
@@ -30,7 +30,7 @@ struct ServerOptions {
   double burst = 240;                ///< messages that a client may send at once after silence
 };
 
-/// What is served under a path.
+/// A resource that is served under a path.
 struct Resource {
   std::string type;      ///< Content-Type
   std::string encoding;  ///< Content-Encoding, or empty
@@ -43,7 +43,7 @@ struct Message {
   bool binary = false;
 };
 
-/// What has come from a client.
+/// A message or event from a client.
 struct Received {
   enum class Kind { joined, left, message };
   Kind kind = Kind::message;
@@ -51,7 +51,7 @@ struct Received {
   std::string text;
 };
 
-/// What has happened since the start.
+/// Counters since the start.
 struct ServerCounters {
   std::uint64_t connections = 0;     ///< WebSockets opened
   std::uint64_t messages = 0;        ///< delivered to `take`
@@ -66,8 +66,8 @@ struct ServerCounters {
 
 class Server {
  public:
-  /// Listens from now on. Throws std::invalid_argument on a host that is no address, std::runtime_error where
-  /// the port cannot be had.
+  /// Starts to listen. Throws std::invalid_argument if the host is not an IP address, std::runtime_error if
+  /// the port cannot be bound.
   Server(const ServerOptions& options, std::map<std::string, Resource> resources);
   ~Server();
   Server(const Server&) = delete;
@@ -75,16 +75,16 @@ class Server {
 
   std::uint16_t port() const noexcept;
 
-  /// Hands a frame to every client that is ready for one by the time it can be sent; the latest wins.
+  /// Sends a frame to every client that is ready for it; a newer frame replaces a pending one.
   void publish(std::shared_ptr<const std::string> frame);
   /// Sends in order, to one client or to all.
   void send(std::uint64_t client, Message message);
   void broadcast(Message message);
 
-  /// What has come since the last call; at most 1024 messages are kept, further ones count as refused by
+  /// The messages since the last call; at most 1024 messages are kept, further ones count as refused by
   /// rate.
   std::vector<Received> take();
-  /// Waits until something has come, `at_most` at longest.
+  /// Waits for a message, for `at_most` at most.
   void wait(std::chrono::nanoseconds at_most);
 
   int clients() const noexcept;
@@ -95,7 +95,8 @@ class Server {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Whether an address is reached from this machine alone. Throws std::invalid_argument if it is no address.
+/// Whether an address can be reached from this machine only. Throws std::invalid_argument if it is not an IP
+/// address.
 bool is_loopback(const std::string& host);
 
 }  // namespace slalom::view

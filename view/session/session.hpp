@@ -36,12 +36,12 @@ struct LoadedLap {
 
 struct SessionOptions {
   ScenarioNames scenario;
-  std::function<LoadedScenario(const ScenarioNames&)> load;  ///< throws what is to be told to the user
+  std::function<LoadedScenario(const ScenarioNames&)> load;  ///< throws errors for the user
   Choices choices;
   std::string further_arguments;  ///< of the command line that drives the same lap, begins with a space
   double history = 60;            ///< s that can be gone back
   bool wait_for_client = true;    ///< the drive begins when the first page is opened
-  /// An evaluation to look into: what the page is told of it (JSON), and how one of its laps is loaded.
+  /// An evaluation to show: its message to the page (JSON), and how one of its laps is loaded.
   std::string evaluation{};
   std::function<LoadedLap(int experiment, int lap)> load_lap{};
   std::string against{};           ///< method of a ghost from the start; empty for none
@@ -49,8 +49,8 @@ struct SessionOptions {
   std::string program = "slalom";  ///< who writes recordings
 };
 
-/// Drives, tells the clients of a server about it, and obeys them. Everything happens in the thread that
-/// calls `run`; the server never waits for it nor it for the server.
+/// Drives, sends frames to the clients of a server, and executes their commands. Everything happens in the
+/// thread that calls `run`; the server never waits for it nor it for the server.
 class Session {
  public:
   /// Throws what `load` throws.
@@ -63,7 +63,7 @@ class Session {
   /// Obeys what has come and makes one tick if it is due; for tests.
   void turn();
 
-  std::uint64_t refused() const noexcept { return refused_; }  ///< messages that were no commands
+  std::uint64_t refused() const noexcept { return refused_; }  ///< messages that were not valid commands
 
  private:
   using Clock = std::chrono::steady_clock;

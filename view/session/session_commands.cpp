@@ -9,7 +9,7 @@
 namespace slalom::view {
 namespace {
 
-/// What is wrong with a command's form, as against what cannot be done.
+/// A malformed command, in contrast to one that cannot be executed.
 struct Malformed : std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
@@ -81,7 +81,7 @@ void Session::obey(std::uint64_t client, const Json& command) {
   else if (what == "save")
     save(client, text(command, "what"));
   else if (!obey_transport(what, command) && !obey_edit(what, command) && !obey_options(what, command))
-    throw Malformed("do: '" + what.substr(0, 40) + "' is no command");
+    throw Malformed("do: '" + what.substr(0, 40) + "' is not a command");
 }
 
 bool Session::obey_transport(const std::string& what, const Json& command) {
@@ -102,7 +102,7 @@ bool Session::obey_transport(const std::string& what, const Json& command) {
     show(integer(command, "tick"));
   } else if (what == "rate") {
     const double rate = number(command, "rate");
-    if (rate < 0 || rate > 100) throw Malformed("rate: must be in [0, 100]; 0 is as fast as it goes");
+    if (rate < 0 || rate > 100) throw Malformed("rate: must be in [0, 100]; 0 means maximum speed");
     rate_ = rate;
     due_ = Clock::now();
   } else if (what == "real_time") {
@@ -158,8 +158,7 @@ void Session::edit(const Edit& edit) {
 
 /// Another configuration or method drives from now on.
 void Session::change(const vehicle::Configuration& configuration, const std::string& method, bool remember) {
-  const auto runner =
-      make_runner(configuration, method);  // refuses what it does not like before anything changes
+  const auto runner = make_runner(configuration, method);  // throws before anything changes
   if (remember) {
     undo_.push_back(configuration_);
     if (undo_.size() > 200) undo_.erase(undo_.begin());
@@ -181,7 +180,7 @@ void Session::end_ghost() {
   ghost_label_.clear();
 }
 
-/// From now on, in a world of its own that has come the same way.
+/// Starts a ghost in its own world with the same history.
 void Session::start_ghost(const std::string& method, const vehicle::Configuration& configuration) {
   if (method.empty()) return end_ghost();
   const auto runner = make_runner(configuration, method);
@@ -191,7 +190,7 @@ void Session::start_ghost(const std::string& method, const vehicle::Configuratio
   ghost_method_ = ghost_label_ = method;
 }
 
-/// Another method, other options or both drive on from here; what drove goes on as a ghost.
+/// Continues with another method or other options; the previous driver continues as a ghost.
 void Session::fork(const Json& command) {
   const std::string method = text(command, "method"), before = names_.method;
   vehicle::Configuration changed = configuration_;
@@ -203,9 +202,9 @@ void Session::fork(const Json& command) {
     if (equals == std::string::npos) throw Malformed("set: must be a list of key=value");
     vehicle::set_option(changed, assignment.substr(0, equals), assignment.substr(equals + 1), method);
   }
-  const auto runner = make_runner(changed, method);  // refuses before anything changes
+  const auto runner = make_runner(changed, method);  // throws before anything changes
   if (runner->control_period() != simulation_->loop().runner().control_period())
-    throw std::invalid_argument("fork: the control period cannot change on the way");
+    throw std::invalid_argument("fork: the control period cannot change during a drive");
   go_to_viewed();
   start_ghost(before, configuration_);
   if (before == method) ghost_label_ = before + " as before";
@@ -221,7 +220,7 @@ bool Session::obey_options(const std::string& what, const Json& command) {
   } else if (what == "undo" || what == "redo") {
     auto& from = what == "undo" ? undo_ : redo_;
     auto& to = what == "undo" ? redo_ : undo_;
-    if (from.empty()) throw std::invalid_argument("there is nothing to " + what);
+    if (from.empty()) throw std::invalid_argument("nothing to " + what);
     to.push_back(configuration_);
     const vehicle::Configuration changed = from.back();
     from.pop_back();
@@ -252,14 +251,14 @@ void Session::obey_scenario(const Json& command) {
   if (command.contains("opponents")) names.opponents = integer(command, "opponents");
   if (names.opponents < 0 || names.opponents > 16) throw Malformed("opponents: must be in [0, 16]");
   if (names.obstacles < 0 || names.obstacles > 60) throw Malformed("obstacles: must be in [0, 60]");
-  // A page may choose among what is known, not read any folder of this machine.
+  // A page may only choose from the listed courses; it must not make the server read other folders.
   const auto known = [](const std::vector<std::string>& all, const std::string& name) {
     return std::find(all.begin(), all.end(), name) != all.end();
   };
   if (names.course != options_.scenario.course && !known(options_.choices.courses, names.course))
-    throw std::invalid_argument("course: '" + names.course + "' is not known here");
+    throw std::invalid_argument("course: '" + names.course + "' is unknown");
   if (names.config != options_.scenario.config && !known(options_.choices.configurations, names.config))
-    throw std::invalid_argument("config: '" + names.config + "' is not known here");
+    throw std::invalid_argument("config: '" + names.config + "' is unknown");
   load(names);
   paused_ = false;
 }

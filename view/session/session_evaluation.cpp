@@ -20,7 +20,7 @@ int integer(const Json& command, const char* key) {
 
 }  // namespace
 
-/// The tick in which a lap's contact happens. Drives the lap to find it.
+/// The tick of a collision in a lap. Drives the lap to find it.
 int Session::tick_of_contact(int contact) {
   const evaluation::LapRunner& runner = simulation_->loop().runner();
   const double period = runner.control_period();
@@ -28,12 +28,11 @@ int Session::tick_of_contact(int contact) {
   const auto touches = [&] { return simulation_->loop().first_collisions(); };
   while (std::ssize(touches()) <= contact && simulation_->ticks() < most) simulation_->tick({}, false);
   if (std::ssize(touches()) <= contact)
-    throw std::runtime_error(
-        "the lap driven again has no such contact: another version drove the evaluation");
+    throw std::runtime_error("the repeated lap has no such collision: another version drove the evaluation");
   return static_cast<int>(touches()[static_cast<std::size_t>(contact)].time / period);
 }
 
-/// A lap of the evaluation: from its start, or the seconds before one of its contacts.
+/// A lap of the evaluation: from its start, or the seconds before one of its collisions.
 void Session::obey_lap(const Json& command) {
   if (!options_.load_lap) throw std::invalid_argument("lap: no evaluation is open");
   const int experiment = integer(command, "experiment"), lap = integer(command, "lap"),

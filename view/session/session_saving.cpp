@@ -14,7 +14,7 @@ namespace {
 
 using Frames = std::vector<std::shared_ptr<const std::string>>;
 
-/// What a recording or replay begins with.
+/// The opening messages of a recording or replay.
 struct Opening {
   std::string hello, options, state;
   std::shared_ptr<const std::string> course;
@@ -44,7 +44,7 @@ std::string replay_of(const Opening& opening, const Frames& frames) {
   return replay_page(gunzip(page_gzip()), segments);
 }
 
-/// A file as a message: its name and what stands in it.
+/// A file as a message: its name and its content.
 std::string file_message(const std::string& name, const std::string& content) {
   FrameWriter to;
   to.begin(Block::file);
@@ -58,12 +58,12 @@ std::string file_message(const std::string& name, const std::string& content) {
 
 }  // namespace
 
-/// Sends the last minute to a client as a file. It is made in a thread of its own: the drive goes on.
+/// Sends the last minute to a client as a file. It is created in its own thread while the drive continues.
 void Session::save(std::uint64_t client, const std::string& what) {
   if (what != "recording" && what != "replay")
     throw std::invalid_argument("what: must be recording or replay");
-  if (history_.empty()) throw std::invalid_argument("there is nothing to save yet");
-  if (saving_.exchange(true)) throw std::invalid_argument("the last file is still being made");
+  if (history_.empty()) throw std::invalid_argument("nothing has been driven yet");
+  if (saving_.exchange(true)) throw std::invalid_argument("the previous file is still being written");
   Frames frames;
   for (const Step& step : history_) frames.push_back(step.frame);
   const sim::WorldOptions world = scenario_.environment->world_options();

@@ -55,7 +55,7 @@ void Simulation::perform(const Edit& edit) {
     evaluation::ClosedLoop& loop;
     sim::World& world;
     void operator()(const AddBody& e) const {
-      if (world.bodies() >= 512) throw std::invalid_argument("bodies: at most 512 are kept");
+      if (world.bodies() >= 512) throw std::invalid_argument("bodies: at most 512 are supported");
       if (e.kind == BodyKind::parked_car)
         world.add_parked_car(e.pose);
       else if (e.kind == BodyKind::disc)
@@ -68,7 +68,7 @@ void Simulation::perform(const Edit& edit) {
     void operator()(const MoveCar& e) const {
       sim::CarState state = world.state(0);
       if (world.track().in_wall({e.pose.x, e.pose.y}))
-        throw std::invalid_argument("car: cannot be put into a wall");
+        throw std::invalid_argument("car: must not overlap a wall");
       state.x = e.pose.x;
       state.y = e.pose.y;
       state.yaw = e.pose.yaw;

@@ -12,7 +12,7 @@ namespace slalom::view {
 
 enum class BodyKind { parked_car = 1, box = 2, disc = 3 };
 
-/// What can be done to a loop between two ticks.
+/// The edits that can be applied to a closed loop between two ticks.
 struct AddBody {
   BodyKind kind = BodyKind::disc;
   maps::Pose pose;
@@ -45,7 +45,7 @@ class Simulation {
 
   /// With `real_time` the command takes effect by what the last update took longer, as on a car.
   void tick(const evaluation::ControlStepCallback& on_step, bool real_time);
-  /// Throws std::invalid_argument on what the world refuses; nothing has happened then.
+  /// Throws std::invalid_argument if the world rejects the edit, which then has no effect.
   void apply(const Edit& edit);
   /// Goes to the state before tick `ticks`; what was done after it is forgotten.
   void seek(int ticks);

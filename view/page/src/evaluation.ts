@@ -1,6 +1,6 @@
 import type { Evaluation, EvaluationLap, State } from "./protocol";
 
-/** A list of an evaluation's laps; a click on a contact shows the two seconds before it. */
+/** A list of an evaluation's laps; a click on a collision shows the two seconds before it. */
 export class EvaluationPane {
   private evaluation?: Evaluation;
   private experiment = 0;
@@ -25,7 +25,7 @@ export class EvaluationPane {
 
   private laps(experiment: number): EvaluationLap[] { return this.evaluation!.laps.filter((l) => l.experiment === experiment); }
 
-  /** The contacts of the chosen experiment, to be drawn and clicked on the map. */
+  /** The collisions of the chosen experiment, which are drawn on the map and can be clicked. */
   marks(): { x: number; y: number; lap: EvaluationLap; contact: number; shown: boolean }[] {
     if (!this.evaluation) return [];
     return this.laps(this.experiment).flatMap((lap) => lap.points.map(([x, y], contact) => ({ x, y, lap, contact, shown: this.shown === `${lap.experiment}/${lap.lap}/${contact}` })));
@@ -37,11 +37,11 @@ export class EvaluationPane {
     const all = this.evaluation;
     if (!all) return;
     const laps = this.laps(this.experiment), contacts = laps.reduce((n, l) => n + l.points.length, 0), finished = laps.filter((l) => l.finished).length;
-    this.root.innerHTML = `<p>${all.folder}: ${all.laps.length} laps on ${all.course}. A click on a contact, here or on the map, drives its lap again and shows the two seconds before it.</p>
+    this.root.innerHTML = `<p>${all.folder}: ${all.laps.length} laps on ${all.course}. Click a collision, here or on the map, to drive its lap again and see the two seconds before it.</p>
       <div class="row"><select id="experiment" aria-label="experiment" style="flex:1;max-width:none"></select></div>
-      <div class="row"><label><input type="checkbox" id="only-contacts"${this.onlyContacts ? " checked" : ""}> only laps with contacts</label></div>
-      <p><b>${laps.length}</b> laps, <b>${finished}</b> finished, <b>${contacts}</b> contacts</p>
-      <table><thead><tr><th>Lap</th><th class="n">Time, s</th><th>Contacts</th></tr></thead><tbody></tbody></table>`;
+      <div class="row"><label><input type="checkbox" id="only-contacts"${this.onlyContacts ? " checked" : ""}> only laps with collisions</label></div>
+      <p><b>${laps.length}</b> laps, <b>${finished}</b> finished, <b>${contacts}</b> collisions</p>
+      <table><thead><tr><th>Lap</th><th class="n">Time, s</th><th>Collisions</th></tr></thead><tbody></tbody></table>`;
     const select = this.root.querySelector<HTMLSelectElement>("#experiment")!;
     select.append(...all.experiments.map((e, i) => new Option(`${e.label} · ${e.scenario}`, String(i), false, i === this.experiment)));
     select.onchange = () => { this.experiment = Number(select.value); this.render(); };
@@ -50,7 +50,7 @@ export class EvaluationPane {
     const body = this.root.querySelector("tbody")!;
     for (const lap of laps) {
       if (this.onlyContacts && !lap.points.length) continue;
-      const row = body.insertRow(), name = row.insertCell(), time = row.insertCell(), touches = row.insertCell();
+      const row = body.insertRow(), name = row.insertCell(), time = row.insertCell(), collisions = row.insertCell();
       const whole = document.createElement("button");
       whole.textContent = String(lap.lap);
       whole.title = "drive this lap from its start";
@@ -64,7 +64,7 @@ export class EvaluationPane {
         button.className = button.dataset.contact === this.shown ? "on" : "";
         button.textContent = `${x.toFixed(1)}, ${y.toFixed(1)} m`;
         button.onclick = () => this.go(lap, i);
-        touches.append(button, " ");
+        collisions.append(button, " ");
       });
     }
     this.changed();

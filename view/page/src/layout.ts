@@ -17,7 +17,7 @@ export function layout(root: HTMLElement) {
   <div class="grow"></div>
   <span class="pill" id="mode"><i></i><span id="mode-text">…</span></span>
   <span class="pill wide" id="connection"><i></i><span id="connection-text">connecting</span></span>
-  <details class="menu" id="save"><summary role="button" title="Take it away (S)">Save</summary><div class="card">
+  <details class="menu" id="save"><summary role="button" title="Save (S)">Save</summary><div class="card">
     <button id="save-picture">Picture<small>of the scene, PNG</small></button>
     <button id="save-replay">Replay<small>a page that opens from disk</small></button>
     <button id="save-recording">Recording<small>MCAP, for Foxglove and Lichtblick</small></button>
@@ -39,13 +39,13 @@ export function layout(root: HTMLElement) {
     <span id="lap-number">lap 1</span><b id="lap-time">–<small>s</small></b>
     <span class="extra">clearance</span><b class="extra" id="clearance">–<small>m</small></b>
     <span class="extra" id="solve-label">planner</span><b class="extra" id="solve">–<small>ms</small></b>
-    <span>contacts</span><b id="contacts">0</b>
+    <span>collisions</span><b id="contacts">0</b>
     <span id="gap-label" hidden>to ghost</span><b id="gap" hidden>–<small>m</small></b>
   </div>
   <div id="ruler" class="numbers wide"><span id="ruler-text"></span><div id="ruler-bar"></div></div>
-  <div id="tools" class="card" role="toolbar" aria-label="touch the world">
-    <button data-tool="disc" title="Click to drop a pole (1)">Pole</button><button data-tool="box" title="Click to drop a box (2)">Box</button>
-    <button data-tool="car" title="Click to drop a parked car (3)">Car</button><button data-tool="pan" title="Clicks only select (4)">Select</button>
+  <div id="tools" class="card" role="toolbar" aria-label="edit the world">
+    <button data-tool="disc" title="Click to place a pole (1)">Pole</button><button data-tool="box" title="Click to place a box (2)">Box</button>
+    <button data-tool="car" title="Click to place a parked car (3)">Car</button><button data-tool="pan" title="Clicks only select (4)">Select</button>
     <span class="gap wide"></span>
     <button id="nudge-left" class="wide" title="Push the car to its left ([)">⇠ Nudge</button><button id="nudge-right" class="wide" title="Push the car to its right (])">Nudge ⇢</button>
     <span class="gap"></span>
@@ -56,12 +56,12 @@ export function layout(root: HTMLElement) {
 <div id="bar">
   <button id="play" title="Space">▶ Play</button>
   <button id="step" title="One tick (.)">+1 tick</button>
-  <button id="fork" title="Let another method or other options drive on from here (K)" hidden>Fork…</button>
+  <button id="fork" title="Continue from here with another method or other options (K)" hidden>Fork…</button>
   <select id="rate" aria-label="speed of time">${[[0.1, "0.1×"], [0.25, "0.25×"], [0.5, "0.5×"], [1, "1×"], [2, "2×"], [4, "4×"], [0, "max"]].map(([v, t]) => `<option value="${v}"${v === 1 ? " selected" : ""}>${t}</option>`).join("")}</select>
   <input id="timeline" type="range" min="0" max="1" step="1" aria-label="the last minute">
   <span class="time numbers" id="time">0.00 s</span>
-  <button id="real-time" class="wide" title="Commands take effect late by what the planner took">Real time</button>
-  <button id="restart" title="From the start again (R)">Restart</button>
+  <button id="real-time" class="wide" title="Commands take effect after the time that the planner needed">Real time</button>
+  <button id="restart" title="Restart from the beginning (R)">Restart</button>
 </div>
 <aside>
   <nav><button data-pane="charts">Charts</button><button data-pane="options">Options</button><button data-pane="laps">Laps</button><button data-pane="evaluation" hidden>Evaluation</button></nav>
@@ -76,12 +76,12 @@ export function layout(root: HTMLElement) {
 }
 
 const keys: [string, string][] = [
-  ["Space", "pause and go on"], [".", "one tick"], [",", "one tick back"], ["R", "from the start again"], ["F", "follow the car, heading up or not"], ["A", "show the whole course"],
-  ["1 2 3 4", "pole, box, parked car, select"], ["[ ]", "push the car to its left or right"], ["Delete", "take the selected obstacle away"], ["Ctrl Z, Ctrl Y", "undo and redo an option"], ["K", "fork from the tick that is shown"], ["S", "save: picture, replay, recording"], ["L", "layers"], ["T", "dark or light"], ["?", "this help"],
+  ["Space", "pause and continue"], [".", "forward by one tick"], [",", "back by one tick"], ["R", "restart from the beginning"], ["F", "follow the car, heading up or not"], ["A", "show the whole course"],
+  ["1 2 3 4", "pole, box, parked car, select"], ["[ ]", "push the car to its left or right"], ["Delete", "remove the selected obstacle"], ["Ctrl Z, Ctrl Y", "undo and redo an option"], ["K", "fork from the displayed tick"], ["S", "save: picture, replay, recording"], ["L", "layers"], ["T", "dark or light"], ["?", "this help"],
 ];
 
 export function help(box: HTMLElement) {
   box.innerHTML = `<h2>Keys and gestures</h2><dl>${keys.map(([k, t]) => `<dt>${k.split(" ").map((p) => `<kbd>${p}</kbd>`).join(" ")}</dt><dd>${t}</dd>`).join("")}
-<dt>Click</dt><dd>drop what is chosen below the scene; an obstacle or the car can be dragged</dd><dt>Right click</dt><dd>take an obstacle away</dd><dt>Drag, wheel, pinch</dt><dd>move and zoom</dd></dl>
+<dt>Click</dt><dd>place what is selected below the scene; an obstacle or the car can be dragged</dd><dt>Right click</dt><dd>remove an obstacle</dd><dt>Drag, wheel, pinch</dt><dd>move and zoom</dd></dl>
 <form method="dialog"><button class="primary">Close</button></form>`;
 }

@@ -1,4 +1,5 @@
 import "./style.css";
+import { applyAddress, writeAddress } from "./address";
 import { Charts } from "./charts";
 import { Connection } from "./connection";
 import { EvaluationPane } from "./evaluation";
@@ -11,6 +12,7 @@ import { Player, recordings } from "./player";
 import { layout, help } from "./layout";
 import { rampCss, themes } from "./palette";
 import type { Frame, Hello, Scene, State, Text } from "./protocol";
+import { copy, toast } from "./toast";
 import { layers, SceneView, terms, type Layer, type Term } from "./scene";
 
 layout(document.getElementById("app")!);
@@ -22,12 +24,13 @@ let frame: Frame | undefined;
 let dirty = true;
 let scrubbing = false;
 
+/** The scenario in the address that is still to be set. */
 const wanted = new URLSearchParams(location.hash.slice(1));
-/** What was chosen before; a page from disk may not be allowed to remember. */
-function remembered(): "dark" | "light" | null {
+/** The theme chosen before. A page opened from disk may not be allowed to store it. */
+function storedTheme(): "dark" | "light" | null {
   try { return localStorage.getItem("slalom-theme") as "dark" | "light" | null; } catch { return null; }
 }
-let themeName: "dark" | "light" = remembered() ?? (matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark");
+let themeName: "dark" | "light" = storedTheme() ?? (matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark");
 const scene = new SceneView(get<HTMLCanvasElement>("scene"), themes[themeName]);
 const charts = new Charts(get("charts"));
 const scalar = (name: string) => (frame && hello ? frame.scalars[hello.scalars.indexOf(name)] : NaN);
@@ -49,7 +52,7 @@ const handlers = {
   file(name: string, content: Uint8Array) { download(name, content as BlobPart, name.endsWith(".html") ? "text/html" : "application/octet-stream"); toast(`Saved ${name}, ${(content.length / 1e6).toFixed(1)} MB.`); },
   status(connected: boolean, attempts: number) {
     get("lost").hidden = connected || attempts === 0;
-    get("lost-text").textContent = `Trying again … (attempt ${attempts}). The drive goes on without this page; nothing is lost but what it showed.`;
+    get("lost-text").textContent = `Reconnecting … (attempt ${attempts}). The drive continues without this page.`;
     get("connection").className = "pill" + (connected ? "" : " bad");
     get("connection-text").textContent = connected ? "connected" : "connection lost";
     if (connected) document.title = "Slalom";
@@ -61,22 +64,6 @@ const send = (command: Record<string, unknown>) => link.send(command);
 const options = new OptionsPane(get("options"), send, copy);
 const fork = new ForkBox(get<HTMLDialogElement>("fork-box"), send);
 const evaluation = new EvaluationPane(get("evaluation"), send, () => { scene.marks = evaluation.marks(); dirty = true; });
-
-function toast(message: string, bad = false) {
-  const box = get("toast");
-  box.textContent = message;
-  box.className = "card" + (bad ? " bad" : "");
-  box.hidden = false;
-  clearTimeout(toastTimer);
-  toastTimer = window.setTimeout(() => (box.hidden = true), bad ? 6000 : 2500);
-}
-let toastTimer = 0;
-
-function copy(text: string, what: string) {
-  const done = navigator.clipboard?.writeText(text);
-  if (done) done.then(() => toast(`Copied as ${what}.`), () => toast(text));
-  else toast(text);
-}
 
 function got(message: Text) {
   if (message.type === "hello") {
@@ -111,28 +98,8 @@ function choose(id: string, value: string) {
 
 let changedOptions: string[] = [];
 
-/** The address holds the scenario: #course=stag&method=mppi&seed=3&set=mppi.samples=500. */
-function obeyAddress(now: State) {
-  const scenario: Record<string, unknown> = {};
-  for (const key of ["course", "method", "config", "seed"] as const) if (wanted.has(key) && wanted.get(key) !== now[key]) scenario[key] = wanted.get(key);
-  for (const key of ["obstacles", "opponents"] as const) if (wanted.has(key) && Number(wanted.get(key)) !== now[key]) scenario[key] = Number(wanted.get(key));
-  const set = wanted.getAll("set"), ghost = wanted.get("against");
-  for (const key of [...wanted.keys()]) wanted.delete(key);
-  if (Object.keys(scenario).length) send({ do: "scenario", ...scenario });
-  for (const each of set) {
-    const equals = each.indexOf("=");
-    if (equals > 0 && !changedOptions.includes(each)) send({ do: "set", key: each.slice(0, equals), value: each.slice(equals + 1) });
-  }
-  if (ghost && ghost !== now.ghost) send({ do: "ghost", method: ghost });
-}
-
 function showAddress() {
-  if (!state || isReplay || wanted.size) return;
-  const words = new URLSearchParams({ course: state.course, method: state.method, config: state.config, seed: state.seed, obstacles: String(state.obstacles) });
-  if (state.opponents) words.set("opponents", String(state.opponents));
-  if (state.ghost) words.set("against", state.ghost);
-  for (const each of changedOptions) words.append("set", each);
-  history.replaceState(null, "", `${location.pathname}${location.search}#${words.toString().replace(/%3D/g, "=").replace(/%5B/g, "[").replace(/%5D/g, "]")}`);
+  if (state && !isReplay && !wanted.size) writeAddress(state, changedOptions);
 }
 
 function showState(next: State) {
@@ -152,18 +119,18 @@ function showState(next: State) {
   get("fork").hidden = !next.paused || isReplay;
   const mode = get("mode");
   mode.className = "pill" + (next.paused ? " warn" : "");
-  get("mode-text").textContent = (isReplay ? "replay" : next.real_time ? "real time" : "lockstep") + (next.paused ? (past && !isReplay ? " · in the past" : " · paused") : next.rate === 0 ? " · as fast as it goes" : next.rate !== 1 ? ` · ${next.rate}×` : "");
-  mode.title = isReplay ? "A recording: it shows what was" : next.real_time ? "Commands take effect by the wall-clock time the planner took, as on a car" : "Time stands still while the planner works: the same seed gives the same drive on any machine";
+  get("mode-text").textContent = (isReplay ? "replay" : next.real_time ? "real time" : "lockstep") + (next.paused ? (past && !isReplay ? " · earlier tick" : " · paused") : next.rate === 0 ? " · maximum speed" : next.rate !== 1 ? ` · ${next.rate}×` : "");
+  mode.title = isReplay ? "A recording of an earlier drive" : next.real_time ? "Commands take effect after the wall-clock time that the planner needed, as on a car" : "Simulated time waits for the planner: the same seed gives the same drive on any machine";
   get<HTMLSelectElement>("rate").value = String(next.rate);
   get("real-time").classList.toggle("on", next.real_time);
   showTimeline();
   const best = Math.min(...next.laps.map((l) => l.time));
   const name = (l: (typeof next.laps)[number]) => l.method + (l.ghost ? " (ghost)" : "");
   get("laps").innerHTML = next.laps.length
-    ? `<table><thead><tr><th>Lap</th><th>Method</th><th class="n">Time, s</th><th class="n">Contacts</th></tr></thead><tbody>${[...next.laps].reverse().map((l) => `<tr class="${l.time === best ? "best" : ""}"><td>${l.lap}</td><td>${name(l)}</td><td class="n">${l.time.toFixed(2)}</td><td class="n">${l.contacts}</td></tr>`).join("")}</tbody></table>`
-    : "<p>No lap is complete yet.</p>";
-  get("about").textContent = `${next.description} ${next.length.toFixed(1)} m, ${next.evaluation === "published" ? "evaluated as the published program" : "true physics"}${next.edited ? ", changed by hand" : ""}.`;
-  if (wanted.size) obeyAddress(next);
+    ? `<table><thead><tr><th>Lap</th><th>Method</th><th class="n">Time, s</th><th class="n">Collisions</th></tr></thead><tbody>${[...next.laps].reverse().map((l) => `<tr class="${l.time === best ? "best" : ""}"><td>${l.lap}</td><td>${name(l)}</td><td class="n">${l.time.toFixed(2)}</td><td class="n">${l.contacts}</td></tr>`).join("")}</tbody></table>`
+    : "<p>No lap has been completed.</p>";
+  get("about").textContent = `${next.description} ${next.length.toFixed(1)} m, ${next.evaluation === "published" ? "evaluation of the published program" : "physical evaluation"}${next.edited ? ", edited" : ""}.`;
+  if (wanted.size) applyAddress(wanted, next, changedOptions, send);
   showAddress();
   evaluation.showState(next);
   get("caption").textContent = isReplay ? `${next.course} · ${next.method} · seed ${next.seed} · ${next.obstacles} obstacles${next.opponents ? ` · ${next.opponents} opponents` : ""}` : "";
@@ -293,13 +260,13 @@ click("restart", () => send({ do: "restart" }));
 click("real-time", () => send({ do: "real_time", on: !state?.real_time }));
 const openFork = () => { if (isReplay || !hello || !state) return; if (!state.paused) send({ do: "pause" }); fork.open(hello, state); };
 click("fork", openFork);
-click("theme", () => { setTheme(themeName === "dark" ? "light" : "dark"); try { localStorage.setItem("slalom-theme", themeName); } catch { /* not allowed to remember */ } });
+click("theme", () => { setTheme(themeName === "dark" ? "light" : "dark"); try { localStorage.setItem("slalom-theme", themeName); } catch { /* storage is not available */ } });
 click("help", () => get<HTMLDialogElement>("help-box").showModal());
 const menu = get<HTMLDetailsElement>("save");
 const save = (id: string, act: () => void) => click(id, () => { menu.open = false; act(); });
 save("save-picture", () => { scene.draw(); void picture(get<HTMLCanvasElement>("scene"), get("stage")).then((blob) => download(`slalom-${state?.course}-${state?.tick}.png`, blob, "image/png")); });
-save("save-replay", () => { if (!isReplay) { toast("Making a replay of the last minute …"); send({ do: "save", what: "replay" }); } else void fetch(location.href).then((r) => r.text()).then((text) => download("slalom-replay.html", text, "text/html"), () => toast("This page is the replay: it lies on your disk.")); });
-save("save-recording", () => { toast("Making a recording of the last minute …"); send({ do: "save", what: "recording" }); });
+save("save-replay", () => { if (!isReplay) { toast("Saving a replay of the last minute …"); send({ do: "save", what: "replay" }); } else void fetch(location.href).then((r) => r.text()).then((text) => download("slalom-replay.html", text, "text/html"), () => toast("This page is the replay; it is already on your disk.")); });
+save("save-recording", () => { toast("Saving a recording of the last minute …"); send({ do: "save", what: "recording" }); });
 save("save-link", () => copy(location.href, "a link"));
 document.addEventListener("pointerdown", (event) => { if (!menu.contains(event.target as Node)) menu.open = false; });
 click("nudge-left", () => send({ do: "nudge", left: 0.15 }));
@@ -363,5 +330,5 @@ setTool(isReplay ? "pan" : "disc");
 showPane("charts");
 requestAnimationFrame(draw);
 
-// What the page knows, for tests and the curious.
+// The state of the page, for tests and for debugging in the console.
 Object.assign(window, { slalom: { get frame() { return frame; }, get state() { return state; }, get hello() { return hello; }, get received() { return link.received; }, replay: isReplay, scalar, scene, send } });

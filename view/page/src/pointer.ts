@@ -9,7 +9,7 @@ interface Setting {
   send(command: Record<string, unknown>): void;
   tool(): Tool;
   redraw(): void;
-  fixed: boolean; // nothing can be touched
+  fixed: boolean; // nothing can be edited
   /** Whether a click at a place of the map frame (m) meant something else. */
   clicked(x: number, y: number): boolean;
 }

@@ -59,7 +59,7 @@ export class SceneView {
   private driven: number[] = [];
   private drivenTicks: number[] = [];
   private bounds: [number, number, number, number] = [-5, -5, 5, 5];
-  marks: Mark[] = []; // contacts of an evaluation
+  marks: Mark[] = []; // collisions of an evaluation
   preview?: { x: number; y: number; kind: number };
 
   constructor(canvas: HTMLCanvasElement, theme: Theme) {

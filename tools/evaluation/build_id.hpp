@@ -7,6 +7,6 @@ namespace slalom::tools {
 /// Names the machine code of this program and of Slalom's shared libraries, if it uses any: their GNU build
 /// ids, shortened. Two programs of the same sources and compiler have the same; "unknown" where there is
 /// none.
-std::string build_identity();
+std::string build_id();
 
 }  // namespace slalom::tools

@@ -1,4 +1,4 @@
-#include "tools/evaluation/build_identity.hpp"
+#include "tools/evaluation/build_id.hpp"
 
 #include <elf.h>
 #include <link.h>
@@ -55,7 +55,7 @@ int visit(dl_phdr_info* module, std::size_t, void* result) {
 
 }  // namespace
 
-std::string build_identity() {
+std::string build_id() {
   std::string text;
   dl_iterate_phdr(visit, &text);
   return text;

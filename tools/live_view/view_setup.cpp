@@ -1,4 +1,4 @@
-#include "tools/live_view/view_words.hpp"
+#include "tools/live_view/view_setup.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 namespace slalom::tools {
 namespace {
 
-/// The configurations that ship.
+/// The configurations that are installed.
 std::vector<std::string> configuration_names() {
   std::vector<std::string> names;
   for (const auto& root : vehicle::configuration_roots(program_folder()))
@@ -57,7 +57,7 @@ std::string further_arguments(const ScenarioArguments& a) {
 }
 
 view::ServerOptions server_options(const std::string& host, std::uint16_t port, const std::string& token) {
-  // What stands for itself in an address (RFC 3986, section 2.3): browsers send all else in another form.
+  // Unreserved characters (RFC 3986, section 2.3): browsers encode all others.
   const auto stands_for_itself = [](unsigned char c) {
     return (c < 128 && std::isalnum(c)) || c == '-' || c == '.' || c == '_' || c == '~';
   };

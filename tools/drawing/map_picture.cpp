@@ -1,0 +1,153 @@
+#include "tools/drawing/map_picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace slalom::tools {
+namespace {
+
+constexpr Colour paper{1, 1, 1, 1};
+constexpr Colour ink{0.13, 0.16, 0.22, 1};
+constexpr Colour faint_ink{0.42, 0.46, 0.54, 1};
+constexpr int band = 150;  // pixels of the band below the map
+
+/// A round length for a scale bar that is at most `longest` m.
+double round_length(double longest) {
+  const double decade = std::pow(10, std::floor(std::log10(longest)));
+  for (const double digit : {5.0, 2.0})
+    if (digit * decade <= longest) return digit * decade;
+  return decade;
+}
+
+std::string number(double value, int digits) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
+  return buffer;
+}
+
+MapView view_of(const maps::OccupancyGrid& map, int long_side) {
+  const double wide = map.width * map.resolution, high = map.height * map.resolution;
+  MapView view;
+  view.scale = long_side / std::max(wide, high);
+  view.height = static_cast<int>(std::ceil(high * view.scale));
+  view.width = std::max(static_cast<int>(std::ceil(wide * view.scale)), 900);
+  view.left = map.origin.x - 0.5 * (view.width / view.scale - wide);
+  view.top = map.origin.y + high;
+  return view;
+}
+
+}  // namespace
+
+MapPicture::MapPicture(const maps::OccupancyGrid& map, int long_side)
+    : view_(view_of(map, long_side)), surface_(view_.width, view_.height + band), pen_(surface_.pen()) {
+  pen_.fill_surface(paper);
+  std::vector<std::uint32_t> cells = map_pixels(map, view_);
+  pen_.image(cells, view_.width);
+}
+
+Pen::Points MapPicture::pixels(const std::vector<maps::Point>& points) const {
+  Pen::Points all;
+  for (const maps::Point& point : points) {
+    const maps::Point at = view_.pixel(point);
+    all.emplace_back(at.x, at.y);
+  }
+  return all;
+}
+
+void MapPicture::line(const std::vector<maps::Point>& points, Colour colour, double width, bool closed,
+                      bool dashed) {
+  pen_.path(pixels(points),
+            {.colour = colour, .width = width, .dash = dashed ? 9.0 : 0.0, .round_caps = !dashed}, closed);
+}
+
+void MapPicture::speed_line(const std::vector<maps::Point>& points, const std::vector<double>& speeds,
+                            double slowest, double fastest, double width, bool closed) {
+  const std::size_t n = points.size();
+  const double span = std::max(fastest - slowest, 1e-9);
+  for (std::size_t i = 0; i + (closed ? 0 : 1) < n; ++i) {
+    const std::size_t next = (i + 1) % n;
+    const double speed = 0.5 * (speeds[i] + speeds[next]);
+    line({points[i], points[next]}, speed_colour((speed - slowest) / span), width, false);
+  }
+}
+
+void MapPicture::polygon(const std::vector<maps::Point>& corners, Colour fill, Colour rim) {
+  pen_.area(pixels(corners), fill, rim, 2);
+}
+
+void MapPicture::disc(const maps::Point& centre, double radius, Colour fill) {
+  const maps::Point at = view_.pixel(centre);
+  pen_.disc(at.x, at.y, radius, fill, paper, 2.5);
+}
+
+void MapPicture::arrow(const maps::Pose& at, double size, Colour fill) {
+  const maps::Point centre = view_.pixel({at.x, at.y});
+  const double along = std::cos(-at.yaw), across = std::sin(-at.yaw);
+  Pen::Points corners;
+  for (const auto& [x, y] :
+       {std::pair{size, 0.0}, {-0.7 * size, 0.75 * size}, {-0.3 * size, 0.0}, {-0.7 * size, -0.75 * size}})
+    corners.emplace_back(centre.x + along * x - across * y, centre.y + across * x + along * y);
+  pen_.area(corners, fill, paper, 2.5);
+}
+
+std::vector<std::string> MapPicture::wrapped(const std::string& words, double size, double width) {
+  static const std::string separator = " \xC2\xB7 ";
+  std::vector<std::string> lines = {""};
+  for (std::size_t begin = 0; begin <= words.size();) {
+    const std::size_t end = std::min(words.find(separator, begin), words.size());
+    const std::string part = words.substr(begin, end - begin);
+    const std::string longer = lines.back().empty() ? part : lines.back() + separator + part;
+    if (lines.back().empty() || pen_.text_width(longer, size) <= width)
+      lines.back() = longer;
+    else
+      lines.push_back(part);
+    begin = end + separator.size();
+  }
+  return lines;
+}
+
+double MapPicture::fitting_size(const std::string& words, double size, double least, double width) {
+  return std::clamp(size * width / std::max(pen_.text_width(words, size, true), 1.0), least, size);
+}
+
+void MapPicture::legend(const std::string& title, const std::string& facts, double slowest, double fastest) {
+  const double margin = 36, base = view_.height;
+  const double bar_width = 260, bar_left = view_.width - margin - bar_width, bar_top = base + 84;
+  // A lap of an evaluation is named by all that was set for it.
+  pen_.text(margin, base + 64, fitting_size(title, 40, 14, bar_left - 3 * margin), title, ink, 0, true);
+
+  const auto lines = wrapped(facts, 22, bar_left - 2 * margin);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    pen_.text(margin, base + (lines.size() == 1 ? 108 : 100) + 30 * static_cast<double>(i), 22, lines[i],
+              faint_ink);
+  for (int k = 0; k < static_cast<int>(bar_width); ++k) {
+    pen_.rectangle(bar_left + k, bar_top, 1.5, 14, speed_colour(k / (bar_width - 1)));
+  }
+  pen_.text(bar_left, bar_top + 38, 20, number(slowest, 1), faint_ink);
+  pen_.text(bar_left + bar_width, bar_top + 38, 20, number(fastest, 1) + " m/s", faint_ink, 1);
+
+  scale_bar(bar_width, view_.width - margin, base + 46);
+}
+
+void MapPicture::scale_bar(double longest, double right, double at) {
+  const double metres = round_length(longest / view_.scale), pixels = metres * view_.scale;
+  pen_.path({{right - pixels, at - 8}, {right - pixels, at}, {right, at}, {right, at - 8}}, ink, 3);
+  pen_.text(right - pixels - 12, at + 2, 20, number(metres, metres < 1 ? 1 : 0) + " m", faint_ink, 1);
+}
+
+void MapPicture::key(const std::string& title, const std::string& facts,
+                     const std::vector<std::pair<std::string, Colour>>& entries) {
+  const double margin = 36, base = view_.height;
+  pen_.text(margin, base + 56, 36, title, ink, 0, true);
+  pen_.text(margin, base + 92, 21, facts, faint_ink);
+  double left = margin;
+  for (const auto& [words, colour] : entries) {
+    pen_.rectangle(left, base + 116, 26, 12, colour);
+    pen_.text(left + 36, base + 129, 20, words, ink);
+    left += 36 + pen_.text_width(words, 20) + 34;
+  }
+  scale_bar(260, view_.width - margin, base + 46);
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/drawing/colour.hpp"
+
+struct _cairo;
+struct _cairo_surface;
+
+/// Drawing with cairo. Lengths are pixels, y points down.
+namespace slalom::tools {
+
+/// How a line is drawn.
+struct Stroke {
+  Colour colour;
+  double width = 1;
+  double dash = 0;  ///< length of dashes and of the gaps between them; 0: solid
+  bool round_caps = false;
+};
+
+/// Draws on a surface, which must outlive it.
+class Pen {
+ public:
+  using Points = std::vector<std::pair<double, double>>;
+
+  explicit Pen(_cairo* cairo) : cairo_(cairo) {}
+
+  void line(double x0, double y0, double x1, double y1, Colour colour, double width, bool dashed = false);
+  /// A line through points, with round corners.
+  void path(const Points& points, Colour colour, double width);
+  void path(const Points& points, const Stroke& stroke, bool closed = false);
+  /// The area that points enclose.
+  void area(const Points& points, Colour fill);
+  /// The same with a rim that has round corners.
+  void area(const Points& points, Colour fill, Colour rim, double rim_width);
+  void rectangle(double x, double y, double width, double height, Colour fill);
+  /// A rectangle with rounded corners; a rim only where `rim_width` > 0.
+  void box(double x, double y, double width, double height, Colour fill, Colour rim = {},
+           double rim_width = 0, double radius = 2);
+  void disc(double x, double y, double radius, Colour fill);
+  void disc(double x, double y, double radius, Colour fill, Colour rim, double rim_width);
+  void diamond(double x, double y, double radius, Colour fill, Colour rim);
+  /// `align`: 0 begins at x, 0.5 is centred, 1 ends there.
+  void text(double x, double y, double size, const std::string& words, Colour colour, double align = 0,
+            bool bold = false);
+  /// How far a text advances.
+  double text_width(const std::string& words, double size, bool bold = false);
+  /// Pixels 0xAARRGGBB, row by row, `width` of them in a row, with the upper left corner at the origin.
+  void image(std::vector<std::uint32_t>& pixels, int width);
+  void fill_surface(Colour colour);
+  /// Draws within a rectangle alone, until `unclip`.
+  void clip(double x, double y, double width, double height);
+  void unclip();
+
+ private:
+  void set(Colour colour);
+  void trace(const Points& points);
+  void set_font(double size, bool bold);
+
+  _cairo* cairo_;
+};
+
+/// An image in memory.
+class Surface {
+ public:
+  /// Pixels; `scale` of them for a unit of length of the pen.
+  Surface(int width, int height, double scale = 1);
+
+  Pen pen() const { return Pen(cairo_.get()); }
+  /// Writes a PNG. Throws IoError.
+  void save(const std::filesystem::path& file) const;
+
+ private:
+  std::unique_ptr<_cairo_surface, void (*)(_cairo_surface*)> surface_;
+  std::unique_ptr<_cairo, void (*)(_cairo*)> cairo_;
+};
+
+}  // namespace slalom::tools

@@ -1,0 +1,88 @@
+// The blocks of a message that describe the world: its bodies, the ghost, the course.
+#include <algorithm>
+#include <limits>
+
+#include "slalom/sim/shapes.hpp"
+#include "view/protocol/frame.hpp"
+#include "view/protocol/frame_writer.hpp"
+
+namespace slalom::view {
+
+double clearance_of(const sim::World& world) {
+  const sim::Box body = world.outline(0);
+  double least = std::numeric_limits<double>::infinity();
+  for (const maps::Point& corner : sim::corners(body))
+    least = std::min(least, world.track().distance_to_wall(corner));
+  for (std::size_t i = 1; i < world.bodies(); ++i) {
+    const auto disc = world.disc(i);
+    least = std::min(least, disc ? sim::signed_gap(body, *disc) : sim::signed_gap(body, world.outline(i)));
+  }
+  return least;
+}
+
+std::string encode_bodies(const sim::World& world) {
+  FrameWriter to;
+  to.begin(Block::bodies);
+  to.put(static_cast<std::uint32_t>(world.bodies()));
+  const sim::Observation seen = world.observe(0);
+  for (std::size_t i = 0; i < world.bodies(); ++i) {
+    const sim::Box box = world.outline(i);
+    const bool is_car = box.length == world.options().car.length && box.width == world.options().car.width;
+    const int kind = i == 0 ? 0 : i < world.cars() ? 4 : world.disc(i) ? 3 : is_car ? 1 : 2;
+    const bool hit = i == 0 ? seen.collides()
+                            : std::find(seen.colliding.begin(), seen.colliding.end(), static_cast<int>(i)) !=
+                                  seen.colliding.end();
+    to.put(static_cast<std::uint16_t>(i));
+    to.put(static_cast<std::uint8_t>(kind));
+    to.put(static_cast<std::uint8_t>(hit));
+    for (const double value : {box.pose.x, box.pose.y, box.pose.yaw, box.length, box.width})
+      to.put_f32(value);
+  }
+  to.end();
+  return to.take_blocks();
+}
+
+std::string encode_ghost(const sim::World& world, std::span<const maps::Pose> plan) {
+  const sim::CarState& car = world.state(0);
+  FrameWriter to;
+  to.begin(Block::ghost);
+  to.put_pose({car.x, car.y, car.yaw});
+  to.put(car.steer);
+  to.put(car.speed);
+  to.put(world.laps(0)->progress() / world.track().lap_path()->length());
+  to.put(world.laps(0)->last_lap_time());
+  to.put(static_cast<std::uint32_t>(plan.size()));
+  to.begin_points({car.x, car.y});
+  for (const maps::Pose& pose : plan) to.put_point({pose.x, pose.y});
+  to.end();
+  return to.take_blocks();
+}
+
+std::string encode_scene(const evaluation::Environment& environment) {
+  const maps::OccupancyGrid& grid = environment.course.map;
+  std::vector<std::uint32_t> runs;  // value in the upper 8 bits, length in the lower 24
+  for (const maps::Occupancy cell : grid.cells) {
+    const auto value = static_cast<std::uint32_t>(cell);
+    if (runs.empty() || runs.back() >> 24 != value || (runs.back() & 0xffffffu) == 0xffffffu)
+      runs.push_back(value << 24);
+    ++runs.back();
+  }
+  FrameWriter to;
+  to.begin(Block::grid);
+  to.put(static_cast<std::uint32_t>(grid.width));
+  to.put(static_cast<std::uint32_t>(grid.height));
+  to.put(grid.resolution);
+  to.put_pose(grid.origin);
+  to.put(static_cast<std::uint32_t>(runs.size()));
+  for (const std::uint32_t run : runs) to.put(run);
+  to.end();
+  to.begin(Block::path);
+  to.put(static_cast<std::uint32_t>(environment.path.size()));
+  to.put(static_cast<std::uint32_t>(environment.course.closed));
+  for (const maps::ReferencePoint& point : environment.path)
+    for (const double value : {point.x, point.y, point.speed}) to.put_f32(value);
+  to.end();
+  return to.take();
+}
+
+}  // namespace slalom::view
