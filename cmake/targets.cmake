@@ -32,3 +32,9 @@ function(slalom_compile_options target)
     target_link_options(${target} PUBLIC -fsanitize=${SLALOM_SANITIZE})
   endif()
 endfunction()
+
+# For targets whose time is spent in the libraries that they call: less optimisation, which takes a third of the
+# compile time away. Applies to optimised builds alone.
+function(slalom_optimise_lightly target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()

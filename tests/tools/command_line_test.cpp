@@ -60,7 +60,7 @@ TEST_F(CommandLine, ChecksItsOutputFilesFirst) {
         "hardware --json ", "bench --json ", "bench --plot ", "explain --plot ", "replay lap.jsonl --html ",
         "identify lap.jsonl --json ", "eval --out e --json ", "tune --set samples=10:20 --out e --json "})
     refuses(arguments + "nodir/x.png", {"slalom: nodir/x.png: cannot be written: No such file"});
-  refuses("explain --json .", {".: cannot be written: is a folder"});
+  refuses("explain --json .", {".: cannot be written: is a directory"});
   EXPECT_EQ(content(folder_ / "kept.json"), "kept");
   EXPECT_FALSE(fs::exists(folder_ / "new.jsonl"));
   EXPECT_FALSE(fs::exists(folder_ / "e"));
@@ -72,8 +72,8 @@ TEST_F(CommandLine, RejectsOneFileForTwoOutputs) {
   refuses("drive --course wren --json a.png --plot ./a.png", {"--json", "--plot", "a.png"}, 2);
   refuses("identify in.jsonl --json in.jsonl", {"recording", "--json", "in.jsonl"}, 2);
   EXPECT_EQ(content(folder_ / "in.jsonl"), "{}\n");
-  refuses("drive --course wren --record -", {"--record", "only --json can go to standard output"}, 2);
-  refuses("explain --plot -", {"--plot", "only --json can go to standard output"}, 2);
+  refuses("drive --course wren --record -", {"--record", "only --json accepts -"}, 2);
+  refuses("explain --plot -", {"--plot", "only --json accepts -"}, 2);
   refuses("explain --plot x.jpg", {"--plot", "x.jpg must end in .png"}, 2);
   EXPECT_FALSE(fs::exists(folder_ / "x.jpg") || fs::exists(folder_ / "same.out"));
   EXPECT_EQ(timed("explain --method mppi --solves 1 --json /dev/null --plot /dev/null").status, 0);
@@ -100,8 +100,8 @@ TEST_F(CommandLine, RejectsContradictoryOptions) {
   refuses("options --yaml --method mppi", {"--method", "--yaml"}, 2);
   refuses("drive --record-times", {"--record-times", "--record"}, 2);
   refuses("bench --methods foo", {"foo", "svg_mppi"});
-  refuses("explain --method all,mppi", {"all stands for every method"});
-  refuses("explain --method mppi,mppi", {"mppi is said twice"});
+  refuses("explain --method all,mppi", {"'all' cannot be combined"});
+  refuses("explain --method mppi,mppi", {"mppi is given twice"});
   refuses("hardware --drivers mppi@default,mppi@default", {"'mppi@default' is given twice"});
   refuses("hardware --tracking-laps 0 --layouts 0", {"--tracking-laps, --layouts"});
 }
@@ -121,7 +121,7 @@ TEST_F(CommandLine, RejectsOptionsOfAMethodThatIsNotUsed) {
 TEST_F(CommandLine, ReproduceRequiresTheCourseAndTheLogsThatAreNamed) {
   refuses("reproduce --course nowhere/berlin --out r", {"nowhere/berlin"});
   const std::string command = "reproduce --course " + wren + " --out /proc/none --published logs";
-  refuses(command, {"--published", "logs is no folder"});
+  refuses(command, {"--published", "logs is not a directory"});
   fs::create_directories(folder_ / "logs/path_tracking");
   refuses(command, {"--published", "logs holds none of the authors' logs"});
   std::ofstream(folder_ / "logs/path_tracking/svg_mppi.csv");
@@ -136,13 +136,13 @@ TEST_F(CommandLine, ReplayIgnoresNoOption) {
   refuses("replay ev --lap -1", {"--lap", "-1 must be in [0, 0]"});
   for (const std::string option : {"--html x.html", "--set mppi.samples=3", "--config default", "--port 0"})
     refuses("replay ev --lap 0 " + option,
-            {option.substr(0, option.find(' ')), "does nothing where a lap of an evaluation is replayed"});
+            {option.substr(0, option.find(' ')), "has no effect where a lap of an evaluation is replayed"});
   std::ofstream(folder_ / "a.mcap");
   for (const std::string option : {"--plot a.png", "--record q.mcap", "--method foo", "--config nosuch",
                                    "--course nosuch", "--lap 0", "--scenario pt", "--set a=1"})
     refuses("replay a.mcap --html q.html " + option,
-            {option.substr(0, option.find(' ')), "does nothing where a recording in MCAP is replayed"});
-  refuses("replay a.bag --plot a.png", {"--plot", "does nothing where a bag is replayed"});
+            {option.substr(0, option.find(' ')), "has no effect where a recording in MCAP is replayed"});
+  refuses("replay a.bag --plot a.png", {"--plot", "has no effect where a bag is replayed"});
   refuses("replay a.bag --record a.jsonl --html a.html", {"--record", "must end in .mcap with --html"});
   refuses("replay a.mcap --html q.html --port 0", {"--port", "--html"}, 2);
   EXPECT_FALSE(fs::exists(folder_ / "x.html"));
@@ -156,15 +156,15 @@ TEST_F(CommandLine, NamesEmptyEvaluations) {
   refuses("compare ev none", {"none", "has no lap of mppi"});
   refuses("compare none ev", {"none", "has no lap of mppi"});
   std::ofstream(folder_ / "ev/settings.json") << "[]";
-  refuses(evaluation("ev") + " --resume", {"ev/settings.json: is no JSON object"});
-  refuses("replay ev --lap 0", {"ev/settings.json: is no JSON object"});
+  refuses(evaluation("ev") + " --resume", {"ev/settings.json: is not a JSON object"});
+  refuses("replay ev --lap 0", {"ev/settings.json: is not a JSON object"});
 }
 
 TEST_F(CommandLine, IdentifyPrintsItsInputs) {
   ASSERT_EQ(timed("drive --course wren --method mppi --set samples=64 --record a.mcap --record-times").status,
             0);
   refuses("identify a.mcap", {"a.mcap", "JSON lines are needed"});
-  refuses("identify .", {".: is a folder"});
+  refuses("identify .", {".: is a directory"});
   std::ofstream(folder_ / "empty.jsonl") << "{\"type\":\"recording\",\"version\":1}\n";
   refuses("identify empty.jsonl", {"empty.jsonl: ", "usable samples"});
 }

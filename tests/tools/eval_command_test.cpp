@@ -217,7 +217,7 @@ TEST_F(EvalCommand, ReplaysALapBitForBitAndComparesTwoRuns) {
   const ProgramRun lap = run("replay one --method svg_mppi --lap 1 --course " SLALOM_COURSES
                              "/wren --plot lap.png --record lap.jsonl");
   EXPECT_EQ(lap.status, 0) << lap.output;
-  EXPECT_TRUE(contains(lap.output, "to the last bit")) << lap.output;
+  EXPECT_TRUE(contains(lap.output, "bit for bit")) << lap.output;
   EXPECT_TRUE(fs::exists(folder_ / "lap.png"));
   EXPECT_GT(count_lines(folder_ / "lap.jsonl"), 50u);
   EXPECT_TRUE(contains(run("replay one --lap 0").output, "must name one of these"));
@@ -252,7 +252,7 @@ TEST_F(EvalCommand, ReplaysALapBitForBitAndComparesTwoRuns) {
     EXPECT_NEAR(all.at(sum).at("first").at("ms_mean").get<double>(),
                 all.at(sum - 4).at("first").at("ms_mean").get<double>(), 1e-12);
   }
-  EXPECT_TRUE(contains(run("compare a c").output, "nor a folder of such"));
+  EXPECT_TRUE(contains(run("compare a c").output, "or a folder of evaluations"));
 }
 
 TEST_F(EvalCommand, ReproduceWithoutBerlinNamesWhatIsMissing) {

@@ -84,7 +84,7 @@ TEST_F(TuneCommand, ResumedAfterAKillItFindsTheSame) {
 
 TEST_F(TuneCommand, RejectsInvalidArguments) {
   const std::string course = "tune --course " SLALOM_COURSES "/wren --out x ";
-  EXPECT_TRUE(contains(complaint(course + "--set samples=12"), "nothing to search"));
+  EXPECT_TRUE(contains(complaint(course + "--set samples=12"), "a list to search"));
   EXPECT_TRUE(contains(complaint(course + "--set sampels=10:20"), "did you mean svg_mppi.samples"));
   EXPECT_TRUE(contains(complaint(course + "--set samples=20:10"), "lo < hi"));
   EXPECT_TRUE(contains(complaint(course + "--set samples=0:10"), "must be in [1"));

@@ -1,0 +1,80 @@
+// JSON values: types, text, order, comparison.
+#include "tools/json/json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <limits>
+
+namespace slalom {
+namespace {
+
+TEST(Json, WritesWhatItReads) {
+  const std::string text =
+      R"({"b":[1,-2,18446744073709551615,0.1,1e+300,true,null],"a":{"":"\u0001 \"x\" \\ é"},"c":[],"d":{}})";
+  const Json json = Json::parse(text);
+  EXPECT_EQ(Json::parse(json.dump()), json);
+  EXPECT_EQ(json.dump(), text);
+  EXPECT_EQ(json.at("b")[2].get<std::uint64_t>(), std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(json.at("b")[1].get<int>(), -2);
+  EXPECT_DOUBLE_EQ(json.at("b")[4].get<double>(), 1e300);
+}
+
+TEST(Json, BracesMakeObjectsAndArrays) {
+  EXPECT_EQ((Json{{"one", 1}, {"two", {1, 2}}}).dump(), R"({"one":1,"two":[1,2]})");
+  EXPECT_EQ((Json{1, "two", 3.0}).dump(), R"([1,"two",3.0])");
+  EXPECT_EQ((Json{{"point", {{"x", 1.5}}}}).dump(), R"({"point":{"x":1.5}})");
+  EXPECT_EQ(Json(std::vector<std::string>{"a", "b"}).dump(), R"(["a","b"])");
+}
+
+TEST(Json, KeepsTheOrderOfMembers) {
+  Json json;
+  json["z"] = 1;
+  json["a"] = 2;
+  json["z"] = 3;
+  EXPECT_EQ(json.dump(), R"({"z":3,"a":2})");
+  json.update({{"a", 5}, {"m", 6}});
+  EXPECT_EQ(json.dump(), R"({"z":3,"a":5,"m":6})");
+  EXPECT_EQ(json.dump(1), "{\n \"z\": 3,\n \"a\": 5,\n \"m\": 6\n}");
+}
+
+TEST(Json, WritesNumbersThatAreNotFiniteAsNull) {
+  EXPECT_EQ(Json(std::numeric_limits<double>::infinity()).dump(), "null");
+  EXPECT_EQ(Json(std::numeric_limits<double>::quiet_NaN()).dump(), "null");
+}
+
+TEST(Json, ReplacesBytesThatAreNotUtf8) {
+  EXPECT_EQ(Json("a\xff"
+                 "b")
+                .dump(),
+            "\"a\xEF\xBF\xBD"
+            "b\"");
+}
+
+TEST(Json, ComparesNumbersByValue) {
+  EXPECT_EQ(Json(1), Json(1u));
+  EXPECT_EQ(Json(1), Json(1.0));
+  EXPECT_NE(Json(-1), Json(std::numeric_limits<std::uint64_t>::max()));
+  EXPECT_NE(Json("1"), Json(1));
+  EXPECT_NE(Json::parse(R"({"a":1,"b":2})"), Json::parse(R"({"b":2,"a":1})"));
+}
+
+TEST(Json, FlattensToPaths) {
+  EXPECT_EQ(Json::parse(R"({"a":{"b":[1,2]},"c":3,"d":[]})").flatten().dump(),
+            R"({"/a/b/0":1,"/a/b/1":2,"/c":3,"/d":[]})");
+}
+
+TEST(Json, RejectsWrongTypesAndMissingKeys) {
+  const Json json = Json::parse(R"({"a":[1],"t":"text"})");
+  EXPECT_THROW(json.at("b"), JsonError);
+  EXPECT_THROW(json.at("a")[1], JsonError);
+  EXPECT_THROW(json.at("t").get<double>(), JsonError);
+  EXPECT_THROW(json.at("a").get<std::string>(), JsonError);
+  EXPECT_THROW(json.at("a").items(), JsonError);
+  EXPECT_THROW(Json::parse("{"), JsonError);
+  EXPECT_TRUE(Json::parse_or_null("{").is_null());
+  EXPECT_EQ(json.find("b"), nullptr);
+}
+
+}  // namespace
+}  // namespace slalom
