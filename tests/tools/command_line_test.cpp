@@ -111,9 +111,9 @@ TEST_F(CommandLine, RejectsOptionsOfAMethodThatIsNotUsed) {
                     tune = "tune --course " + wren + " --method svg_mppi --out e ";
   refuses(eval + "--set svg_mppi.samples=256,512", {"--set", "svg_mppi.samples", "no method that is driven"});
   refuses(tune + "--set mppi.samples=10:20", {"--set", "mppi.samples", "no method that is driven"});
-  refuses(tune + "--set temperature=2:3 --set svg_mppi.temperature=1:2", {"--set", "said twice"});
-  refuses(tune + "--set samples=64 --set samples=10:20", {"--set", "said twice"});
-  refuses(eval + "--set temperature=2,3 --set mppi.temperature=1", {"--set", "said twice"});
+  refuses(tune + "--set temperature=2:3 --set svg_mppi.temperature=1:2", {"--set", "given twice"});
+  refuses(tune + "--set samples=64 --set samples=10:20", {"--set", "given twice"});
+  refuses(eval + "--set temperature=2,3 --set mppi.temperature=1", {"--set", "given twice"});
   refuses(eval + "--set mppi.sampels=3", {"--set: ", "did you mean mppi.samples"});
   EXPECT_FALSE(fs::exists(folder_ / "e"));
 }

@@ -57,8 +57,8 @@ Pen::Points MapPicture::pixels(const std::vector<maps::Point>& points) const {
 
 void MapPicture::line(const std::vector<maps::Point>& points, Colour colour, double width, bool closed,
                       bool dashed) {
-  pen_.path(pixels(points),
-            {.colour = colour, .width = width, .dash = dashed ? 9.0 : 0.0, .round_caps = !dashed}, closed);
+  pen_.stroke(pixels(points),
+              {.colour = colour, .width = width, .dash = dashed ? 9.0 : 0.0, .round_caps = !dashed}, closed);
 }
 
 void MapPicture::speed_line(const std::vector<maps::Point>& points, const std::vector<double>& speeds,

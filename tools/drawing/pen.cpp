@@ -54,18 +54,18 @@ void Pen::trace(const Points& points) {
 }
 
 void Pen::path(const Points& points, Colour colour, double width) {
-  path(points, {.colour = colour, .width = width});
+  stroke(points, {.colour = colour, .width = width});
 }
 
-void Pen::path(const Points& points, const Stroke& stroke, bool closed) {
+void Pen::stroke(const Points& points, const Stroke& line, bool closed) {
   trace(points);
   if (closed) cairo_close_path(cairo_);
-  const double dash[] = {stroke.dash, stroke.dash};
-  cairo_set_dash(cairo_, dash, stroke.dash > 0 ? 2 : 0, 0);
-  cairo_set_line_width(cairo_, stroke.width);
+  const double dash[] = {line.dash, line.dash};
+  cairo_set_dash(cairo_, dash, line.dash > 0 ? 2 : 0, 0);
+  cairo_set_line_width(cairo_, line.width);
   cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
-  cairo_set_line_cap(cairo_, stroke.round_caps ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
-  set(stroke.colour);
+  cairo_set_line_cap(cairo_, line.round_caps ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
+  set(line.colour);
   cairo_stroke(cairo_);
   cairo_set_line_cap(cairo_, CAIRO_LINE_CAP_BUTT);
 }
@@ -79,7 +79,7 @@ void Pen::area(const Points& points, Colour fill) {
 
 void Pen::area(const Points& points, Colour fill, Colour rim, double rim_width) {
   area(points, fill);
-  path(points, {.colour = rim, .width = rim_width}, true);
+  stroke(points, {.colour = rim, .width = rim_width}, true);
 }
 
 void Pen::rectangle(double x, double y, double width, double height, Colour fill) {

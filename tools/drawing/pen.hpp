@@ -9,8 +9,9 @@
 
 #include "tools/drawing/colour.hpp"
 
-struct _cairo;
-struct _cairo_surface;
+// The names that cairo gives to cairo_t and cairo_surface_t.
+struct _cairo;          // NOLINT(bugprone-reserved-identifier)
+struct _cairo_surface;  // NOLINT(bugprone-reserved-identifier)
 
 /// Drawing with cairo. Lengths are pixels, y points down.
 namespace slalom::tools {
@@ -33,7 +34,7 @@ class Pen {
   void line(double x0, double y0, double x1, double y1, Colour colour, double width, bool dashed = false);
   /// A line through points, with round corners.
   void path(const Points& points, Colour colour, double width);
-  void path(const Points& points, const Stroke& stroke, bool closed = false);
+  void stroke(const Points& points, const Stroke& line, bool closed = false);
   /// The area that points enclose.
   void area(const Points& points, Colour fill);
   /// The same with a rim that has round corners.

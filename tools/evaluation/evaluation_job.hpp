@@ -6,13 +6,12 @@
 
 #include "slalom/evaluation/evaluation.hpp"
 #include "slalom/evaluation/results.hpp"
+#include "tools/command_line/command.hpp"
 #include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 
 /// Shared by `eval` and `reproduce`: an evaluation from its arguments to laps.csv and summary.json.
 namespace slalom::tools {
-
-class Command;
 
 struct EvaluationArguments {
   ScenarioArguments scenario;  ///< `set` holds what applies to all experiments

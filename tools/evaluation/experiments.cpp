@@ -76,7 +76,8 @@ void refuse_twice(const std::string& key, const std::string& other, const std::v
   };
   for (const std::string& method : methods)
     if (full(key, method) == full(other, method))
-      throw IoError("--set", 0, "'" + key + "' is said twice; several values: " + key + "=v1,v2,...");
+      throw IoError("--set", 0,
+                    "'" + key + "' is given twice; separate several values by commas: " + key + "=v1,v2,...");
 }
 
 std::vector<Experiment> make_experiments(const std::vector<std::string>& methods,

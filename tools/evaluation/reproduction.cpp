@@ -136,7 +136,7 @@ std::vector<PaperRow> paper_rows() {
                   .log_pt = nominal + "obstacle_avoidance/wo_nominal_solution.csv",
                   .log_oa = nominal + "path_tracking/wo_nominal_solution.csv",
                   .note =
-                      "The paper prints PT 18.18, OA 7.08; the seeds and contacts in the logs show that the "
+                      "The paper prints PT 18.18, OA 7.08; the seeds and collisions in the logs show that the "
                       "two stand in each other's place. Compared is what was driven."});
   rows.push_back({.section = "ablation",
                   .name = "MPPI + NS + AC (SVG-MPPI)",

@@ -85,7 +85,7 @@ TuningJob::TuningJob(TuningArguments arguments)
     courses_.push_back(load_scenario(scenario, arguments_.method));
     for (std::size_t i = 0; i + 1 < courses_.size(); ++i)
       if (courses_[i].environment->course.name == courses_.back().environment->course.name)
-        throw IoError("--course", 0, "'" + courses_.back().environment->course.name + "' stands there twice");
+        throw IoError("--course", 0, "'" + courses_.back().environment->course.name + "' is given twice");
   }
   const auto key_of = [](const std::string& text) { return text.substr(0, text.find('=')); };
   for (std::size_t i = 0; i < arguments_.set.size(); ++i)
@@ -284,7 +284,7 @@ void TuningJob::write_best() const {
     head += "#   " + key + ": " + value + " instead of " + option_text(configuration, key) + "\n";
     vehicle::set_option(configuration, key, value);
   }
-  if (best_.set.empty()) head += "#   nothing better than the configuration as it stands was found\n";
+  if (best_.set.empty()) head += "#   no candidate was better than the initial configuration\n";
   const std::string file = arguments_.evaluation.out + "/best.yaml";
   std::ofstream stream(file, std::ios::binary);
   stream << head << vehicle::to_yaml(configuration);

@@ -9,12 +9,11 @@
 #include "slalom/evaluation/environment.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
+#include "tools/command_line/command.hpp"
 #include "tools/json/json.hpp"
 
 /// The options shared by all commands that drive: course, configuration, evaluation, method.
 namespace slalom::tools {
-
-class Command;
 
 /// The folder of the running program.
 std::filesystem::path program_folder();

@@ -1,11 +1,11 @@
 // Drives the page in a real Chromium: node test/browser.mjs PROGRAM [SCREENSHOT_FOLDER]
-import { spawn } from "node:child_process";
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
+import { startProgram } from "./program.mjs";
 
 const program = process.argv[2], pictures = process.argv[3];
 const browserPath = process.env.SLALOM_CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
@@ -15,18 +15,8 @@ if (!program || !browserPath) {
 }
 
 const folder = mkdtempSync(join(tmpdir(), "slalom-view-"));
+const start = (...args) => startProgram(program, args);
 const serve = (...args) => start("view", "--course", "stag", "--obstacles", "4", "--seed", "3", ...args);
-
-/** Starts the program and waits for its address. */
-async function start(...args) {
-  const child = spawn(program, args, { stdio: ["ignore", "pipe", "inherit"] });
-  const address = await new Promise((resolve, reject) => {
-    let said = "";
-    child.stdout.on("data", (data) => { said += data; const found = said.match(/http:\S+/); if (found) resolve(found[0]); });
-    child.on("exit", () => reject(new Error("slalom view ended: " + said)));
-  });
-  return { child, address, port: new URL(address).port, stop: () => new Promise((done) => { child.removeAllListeners("exit"); child.on("exit", done); child.kill("SIGTERM"); }) };
-}
 
 const browser = await chromium.launch({
   executablePath: browserPath,
@@ -282,7 +272,7 @@ await test("a recording of slalom drive becomes a page", async () => {
   await replay.close();
 });
 
-await test("an evaluation: a click on a contact shows what led to it", async () => {
+await test("an evaluation: a click on a collision shows the seconds before it", async () => {
   const out = join(folder, "evaluation");
   execFileSync(program, ["eval", "--course", "hare", "--methods", "mppi", "--laps", "3", "--obstacles", "6", "--config", "published", "--set", "mppi.samples=24", "--out", out], { stdio: "ignore" });
   const shown = await start("view", "--eval", out, "--port", "0"), look = await open(shown.address);
