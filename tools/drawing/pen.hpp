@@ -34,6 +34,7 @@ class Pen {
   void line(double x0, double y0, double x1, double y1, Colour colour, double width, bool dashed = false);
   /// A line through points, with round corners.
   void path(const Points& points, Colour colour, double width);
+  /// The same with any kind of line; `closed`: back to the first point.
   void stroke(const Points& points, const Stroke& line, bool closed = false);
   /// The area that points enclose.
   void area(const Points& points, Colour fill);

@@ -164,7 +164,7 @@ std::vector<maps::Point> contact_points(const std::string& text) {
 
 ReportFigure contact_map(const Report& report, const maps::OccupancyGrid& map,
                          const std::filesystem::path& folder) {
-  const Evaluation& campaign = report.evaluated.evaluation;
+  const Evaluation& evaluation = report.evaluated.evaluation;
   const auto path = points_of(evaluation.environment->path);
   MapPicture picture(cropped(map, path, 2.5), long_side);
   picture.line(path, path_colour, 2, evaluation.environment->course.closed, true);
