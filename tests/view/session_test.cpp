@@ -222,7 +222,7 @@ TEST_F(ViewSession, RejectsUnknownCommandsAndContinues) {
 
 TEST_F(ViewSession, LoadsOnlyListedCourses) {
   tell({{"do", "scenario"}, {"course", "/etc"}});
-  EXPECT_NE(next("error")["message"].get<std::string>().find("not known"), std::string::npos);
+  EXPECT_NE(next("error")["message"].get<std::string>().find("is unknown"), std::string::npos);
   tell({{"do", "scenario"}, {"course", "eel"}, {"obstacles", 0}, {"seed", "9"}});
   const json state = last_state_ticks();
   EXPECT_EQ(state["course"], "eel");
