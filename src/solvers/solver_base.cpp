@@ -15,11 +15,11 @@ namespace {
 /// The float32 value next to `bound` that is not below (above) it.
 float not_below(double bound) {
   const float f = static_cast<float>(bound);
-  return static_cast<double>(f) < bound ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+  return f < bound ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 float not_above(double bound) {
   const float f = static_cast<float>(bound);
-  return static_cast<double>(f) > bound ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+  return f > bound ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
 }
 
 /// Marks the first sample of a tile that was evaluated, beside its collision.
@@ -74,17 +74,15 @@ SolverBase::SolverBase(int horizon, int inputs, const PerInput& input_min, const
       throw std::invalid_argument("input_min: " + to_text(input_min[input]) +
                                   " is above input_max: " + to_text(input_max[input]));
     }
-    low_[static_cast<std::size_t>(r)] = low;
-    high_[static_cast<std::size_t>(r)] = high;
+    low_[r] = low;
+    high_[r] = high;
   }
 }
 
 std::vector<float> SolverBase::spread(const PerInput& values) const {
-  std::vector<float> rows_of(size());
-  for (std::size_t r = 0; r < rows_of.size(); ++r) {
-    rows_of[r] = static_cast<float>(values[static_cast<int>(r) % inputs_]);
-  }
-  return rows_of;
+  std::vector<float> sequence(size());
+  for (int r = 0; r < rows(); ++r) sequence[r] = static_cast<float>(values[r % inputs_]);
+  return sequence;
 }
 
 void SolverBase::clamp(float* sequence) const noexcept {

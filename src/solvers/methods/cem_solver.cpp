@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "slalom/solvers/cem_options.hpp"
 #include "solvers/sampling/sample_report.hpp"
@@ -9,7 +10,8 @@ namespace slalom {
 
 namespace {
 
-/// `cem`: draw, keep the best share, fit mean and variance to it, again.
+/// `cem`, the cross-entropy method (Rubinstein 1999; Kobilarov 2012): draws samples, fits mean and variance
+/// to the fraction with the lowest costs, and repeats this.
 class CemSolver final : public SolverBase {
  public:
   CemSolver(const CemOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
@@ -20,7 +22,7 @@ class CemSolver final : public SolverBase {
                                     inputs, options.samples)),
         elites_(std::clamp(static_cast<int>(std::lround(options.elite_share * options.samples)), 1,
                            options.samples)),
-        order_(static_cast<std::size_t>(options.samples)),
+        order_(options.samples),
         mean_(size()),
         variance_(size()),
         first_variance_(spread(options.variance)),
@@ -95,34 +97,31 @@ class CemSolver final : public SolverBase {
     std::copy(elite_mean_.begin(), elite_mean_.end(), mean_.begin());
   }
 
-  /// Fits the distribution to the elites, all of equal weight.
+  /// Fits the distribution to the elites, which have equal weights.
   void refit(float& best_cost) noexcept {
     const auto begin = detail::Clock::now();
     const auto costs = samples_.costs();
-    for (std::size_t k = 0; k < order_.size(); ++k) order_[k] = static_cast<int>(k);
-    // Ties go to the smaller index, so that the choice does not depend on the algorithm.
-    const auto better = [&](int a, int b) {
-      const float ca = costs[static_cast<std::size_t>(a)], cb = costs[static_cast<std::size_t>(b)];
-      return ca < cb || (ca == cb && a < b);
-    };
+    std::iota(order_.begin(), order_.end(), 0);
+    // The smaller index wins ties, so that the choice does not depend on the library's algorithm.
+    const auto better = [&](int a, int b) { return costs[a] < costs[b] || (costs[a] == costs[b] && a < b); };
     std::nth_element(order_.begin(), order_.begin() + elites_ - 1, order_.end(), better);
     std::fill(samples_.weights().begin(), samples_.weights().end(), 0.0f);
     int used = 0, best = order_[0];
     for (int i = 0; i < elites_; ++i) {
-      const int k = order_[static_cast<std::size_t>(i)];
-      if (std::isfinite(costs[static_cast<std::size_t>(k)])) ++used;
+      const int k = order_[i];
+      if (std::isfinite(costs[k])) ++used;
       if (better(k, best)) best = k;
     }
     for (int i = 0; i < elites_; ++i) {
-      const auto k = static_cast<std::size_t>(order_[static_cast<std::size_t>(i)]);
-      if (std::isfinite(costs[k])) samples_.weights()[k] = 1.0f / static_cast<float>(used);
+      const int k = order_[i];
+      if (std::isfinite(costs[k])) samples_.weights()[k] = 1.0f / used;
     }
-    if (costs[static_cast<std::size_t>(best)] < best_cost) {
-      best_cost = costs[static_cast<std::size_t>(best)];
-      for (int r = 0; r < rows(); ++r) best_[static_cast<std::size_t>(r)] = samples_.row_view().row(r)[best];
+    if (costs[best] < best_cost) {
+      best_cost = costs[best];
+      samples_.values().get_sample(best, best_);
     }
     samples_.weighted_sums(zero_.data(), sums_.data(), pool());
-    for (std::size_t r = 0; r < size(); ++r) elite_mean_[r] = static_cast<float>(sums_[r]);
+    for (int r = 0; r < rows(); ++r) elite_mean_[r] = static_cast<float>(sums_[r]);
     samples_.weighted_squares(elite_mean_.data(), sums_.data(), pool());
     const float kept = static_cast<float>(options_.smoothing);
     for (std::size_t r = 0; r < size(); ++r) {

@@ -8,21 +8,21 @@
 #include <vector>
 
 /// A Gaussian fitted to points of its density (Guo, "A Simple Algorithm for Fitting a Gaussian Function",
-/// IEEE Signal Processing Magazine 28(5), 2011): ln y = z0 + z1 x + z2 x^2 is fitted by least squares in
-/// which every point counts with weight y^2. Always in double.
+/// IEEE Signal Processing Magazine 28(5), 2011; Honda et al., ICRA 2024, equation (13)):
+/// ln y = z0 + z1 x + z2 x^2 is fitted by least squares with weight y^2 for each point, in double precision.
 namespace slalom::detail {
 
+/// The result of a fit.
 struct GaussianFit {
-  /// z2: -1 / (2 variance) for a Gaussian; 0 where the points do not determine it.
-  double curvature = 0;
-  bool determined = false;
+  double curvature = 0;     ///< z2, which is -1 / (2 variance) for a Gaussian; 0 if undetermined
+  bool determined = false;  ///< whether the points determine the curvature
 };
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
-/// z2 of the normal equations A z = b by QR with column pivoting. A column that is left with less than
-/// rounding error (norm^2 < (eps * largest initial norm)^2 * remaining rows / rows, Eigen 3.4's rule, which
-/// decides in the published program whether a fit counts) is taken for dependent; its coefficient is 0.
+/// Solves the normal equations A z = b for z2 by QR with column pivoting. A column counts as dependent, with
+/// coefficient 0, if only rounding error of it is left: norm^2 < (eps * largest initial norm)^2 * remaining
+/// rows / rows. This is the rule of Eigen 3.4, which the paper's authors use.
 inline GaussianFit solve_normal_equations(Matrix3 a, std::array<double, 3> b) {
   constexpr int n = 3;
   constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -69,7 +69,7 @@ inline GaussianFit solve_normal_equations(Matrix3 a, std::array<double, 3> b) {
     for (int i = k; i < n; ++i) product += v[i] * b[i];
     for (int i = k; i < n; ++i) b[i] -= tau * v[i] * product;
     a[k][k] = beta;
-    // Norms of what is left of the other columns, recomputed where down-dating has lost their digits.
+    // Update the norms of the remaining columns; recompute a norm if the update has lost its digits.
     for (int j = k + 1; j < n; ++j) {
       if (norm[j] == 0) continue;
       const double ratio = std::abs(a[k][j]) / norm[j];
@@ -95,8 +95,7 @@ inline GaussianFit solve_normal_equations(Matrix3 a, std::array<double, 3> b) {
   return {};
 }
 
-/// What the densities of `count` points say, whatever their abscissas: their squares and their logarithms.
-/// Densities below 1e-10 count as 1e-10.
+/// The squares and logarithms of the densities of `count` points. Densities below 1e-10 count as 1e-10.
 inline void fit_weights(const double* density, int count, double* square, double* logarithm) {
   for (int k = 0; k < count; ++k) {
     const double y = std::max(density[k], 1e-10);
@@ -105,7 +104,7 @@ inline void fit_weights(const double* density, int count, double* square, double
   }
 }
 
-/// Fits `count` points, from their abscissas and `fit_weights`.
+/// Fits `count` points, given their abscissas and the results of `fit_weights`.
 inline GaussianFit fit_gaussian(const double* x, const double* square, const double* logarithm, int count) {
   Matrix3 a{};
   std::array<double, 3> b{};
@@ -123,16 +122,16 @@ inline GaussianFit fit_gaussian(const double* x, const double* square, const dou
   return solve_normal_equations(a, b);
 }
 
-/// Fits points of few densities.
+/// Fits points, given their abscissas and densities.
 inline GaussianFit fit_gaussian(const std::vector<double>& x, const std::vector<double>& density) {
   std::vector<double> square(x.size()), logarithm(x.size());
-  const int count = static_cast<int>(x.size());
+  const auto count = static_cast<int>(x.size());
   fit_weights(density.data(), count, square.data(), logarithm.data());
   return fit_gaussian(x.data(), square.data(), logarithm.data(), count);
 }
 
-/// The variance -1 / (2 z2); infinite where the fit says nothing: undetermined, or convex unless the absolute
-/// value of the curvature is taken.
+/// The variance -1 / (2 z2) of a fit. Infinite if the fit is undetermined, or if it is convex and
+/// `absolute_curvature` is false.
 inline double fitted_variance(const GaussianFit& fit, bool absolute_curvature) {
   const double curvature = absolute_curvature ? -std::abs(fit.curvature) : fit.curvature;
   if (!fit.determined || !(curvature < 0)) return std::numeric_limits<double>::infinity();

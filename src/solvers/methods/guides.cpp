@@ -13,11 +13,10 @@ namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
+/// A value for each row, from one for each input.
 std::vector<float> spread(const PerInput& values, int horizon, int inputs) {
-  std::vector<float> rows(static_cast<std::size_t>(horizon) * static_cast<std::size_t>(inputs));
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    rows[r] = static_cast<float>(values[static_cast<int>(r) % inputs]);
-  }
+  std::vector<float> rows;
+  for (int r = 0; r < horizon * inputs; ++r) rows.push_back(static_cast<float>(values[r % inputs]));
   return rows;
 }
 
@@ -29,21 +28,21 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       inputs_(inputs),
       count_(options.guides.count),
       block_(padded(options.guides.gradient_samples + 1)),
-      rows_(low.size()),
+      rows_(options.horizon * inputs),
       low_(low),
       high_(high),
-      theta_(at(count_)),
-      shifted_(at(count_)),
-      guides_(at(count_)),
+      theta_(count_, rows_),
+      shifted_(count_, rows_),
+      guides_(count_, rows_),
       batch_(options.horizon, inputs, count_ * block_),
       ends_(options.horizon, inputs, count_),
-      costs_(static_cast<std::size_t>(count_ * block_)),
+      costs_(count_ * block_),
       totals_(costs_.size()),
       weights_(costs_.size()),
-      end_costs_(static_cast<std::size_t>(padded(count_))),
+      end_costs_(padded(count_)),
       collided_(costs_.size()),
       end_collided_(end_costs_.size()),
-      gradient_(at(count_)),
+      gradient_(count_, rows_),
       deviation_(spread(options.guides.gradient_variance, options.horizon, inputs)),
       inverse_(deviation_),
       step_(spread(options.guides.step, options.horizon, inputs)),
@@ -51,17 +50,17 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       linear_(rows_),
       distance_weight_(rows_),
       solution_(rows_),
-      path_(path_at(options.guides.iterations, 0) * rows_),
-      path_float_(path_.size()),
-      path_costs_(path_at(options.guides.iterations, 0)),
-      made_(static_cast<std::size_t>(count_)),
-      points_(path_costs_.size()),
+      path_(point(options.guides.iterations, 0), rows_),
+      path_float_(point(options.guides.iterations, 0), rows_),
+      path_costs_(point(options.guides.iterations, 0)),
+      made_(count_),
+      fit_points_(path_costs_.size()),
       density_(path_costs_.size()),
       square_(path_costs_.size()),
       logarithm_(path_costs_.size()),
       abscissa_(path_costs_.size()) {
-  for (std::size_t r = 0; r < rows_; ++r) {
-    const double variance = static_cast<double>(deviation_[r]);
+  for (int r = 0; r < rows_; ++r) {
+    const double variance = deviation_[r];
     inverse_[r] = static_cast<float>(inverse_variance(variance, options.published.inverse_variance_offset));
     deviation_[r] = static_cast<float>(std::sqrt(variance));
   }
@@ -70,94 +69,92 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
 void Guides::restart(RandomKey key) noexcept {
   fill_normal(ends_, 0, count_, key);
   for (int g = 0; g < count_; ++g) {
-    for (std::size_t r = 0; r < rows_; ++r) {
-      const float z =
-          ends_.row(0, 0)[r * static_cast<std::size_t>(ends_.stride()) + static_cast<std::size_t>(g)];
-      theta_[at(g) + r] =
-          static_cast<double>(std::clamp(std::sqrt(weight_variance_[r]) * z, low_[r], high_[r]));
-      guides_[at(g) + r] = static_cast<float>(theta_[at(g) + r]);
+    for (int r = 0; r < rows_; ++r) {
+      const float z = ends_[r][g];
+      theta_[g][r] = std::clamp(std::sqrt(weight_variance_[r]) * z, low_[r], high_[r]);
     }
   }
+  round_to_float();
   iterations_ = 0;
   best_ = 0;
 }
 
 void Guides::shift(double steps) noexcept {
   for (int g = 0; g < count_; ++g) {
-    shift_sequence(&theta_[at(g)], options_.horizon, inputs_, steps, &shifted_[at(g)]);
+    shift_sequence(theta_[g], options_.horizon, inputs_, steps, shifted_[g]);
   }
   theta_.swap(shifted_);
-  for (std::size_t i = 0; i < theta_.size(); ++i) guides_[i] = static_cast<float>(theta_[i]);
+  round_to_float();
 }
 
-/// Smooth deviations: straight lines between normal values at knots a third of the horizon apart.
+void Guides::round_to_float() noexcept {
+  std::transform(theta_.values().begin(), theta_.values().end(), guides_.values().begin(),
+                 [](double value) { return static_cast<float>(value); });
+}
+
+/// The deviations are smooth: piecewise linear between normal values at knots a third of the horizon apart.
 void Guides::restart_others(RandomKey key) noexcept {
   if (!options_.guides.restart || count_ == 1) return;
-  std::copy_n(&theta_[at(best_)], rows_, shifted_.begin());
-  std::copy_n(shifted_.begin(), rows_, &theta_[at(0)]);
+  std::copy_n(theta_[best_], rows_, shifted_[0]);
+  std::copy_n(shifted_[0], rows_, theta_[0]);
   best_ = 0;
   fill_normal(ends_, 0, padded(count_), key);
-  const auto knot = [&](int k, int input, int g) { return static_cast<double>(ends_.row(k, input)[g]); };
+  const auto knot = [&](int k, int input, int g) -> double { return ends_.at(k, input, g); };
   for (int g = 1; g < count_; ++g) {
-    for (std::size_t r = 0; r < rows_; ++r) {
-      const int step = static_cast<int>(r) / inputs_, input = static_cast<int>(r) % inputs_;
-      const double place = restart_knots_ * static_cast<double>(step) / options_.horizon;
-      const int k = static_cast<int>(place);
-      const double part = place - k;
-      // A horizon of less than four steps has no fourth knot, and needs none.
+    for (int r = 0; r < rows_; ++r) {
+      const int step = r / inputs_, input = r % inputs_;
+      const double position = static_cast<double>(restart_intervals_ * step) / options_.horizon;
+      const int k = static_cast<int>(position);
+      const double part = position - k;
+      // A horizon of fewer than four steps has no fourth knot and needs none.
       const int next = std::min(k + 1, options_.horizon - 1);
       const double deviation = (1 - part) * knot(k, input, g) + part * knot(next, input, g);
-      theta_[at(g) + r] =
-          std::clamp(theta_[at(0) + r] + std::sqrt(options_.guides.restart_variance[input]) * deviation,
-                     static_cast<double>(low_[r]), static_cast<double>(high_[r]));
+      const double value = theta_[0][r] + std::sqrt(options_.guides.restart_variance[input]) * deviation;
+      theta_[g][r] = std::clamp<double>(value, low_[r], high_[r]);
     }
   }
-  for (std::size_t i = 0; i < theta_.size(); ++i) guides_[i] = static_cast<float>(theta_[i]);
+  round_to_float();
 }
 
 std::span<const float> Guides::best_sequence() const noexcept {
-  return {&guides_[at(best_)], rows_};
+  return std::span<const float>(guides_[best_], rows_);
 }
 
 SequenceList Guides::path() const noexcept {
-  const std::size_t points = path_at(iterations_, 0);
-  return {{path_float_.data(), points * rows_}, static_cast<int>(points)};
+  const int points = point(iterations_, 0);
+  return {{path_float_[0], path_float_[points]}, points};
 }
 
 std::span<const float> Guides::path_costs() const noexcept {
-  return {path_costs_.data(), path_at(iterations_, 0)};
+  return std::span<const float>(path_costs_.data(), point(iterations_, 0));
 }
 
-/// Fills the blocks of the guides with their gradient samples and themselves.
-void Guides::place(RandomKey key, int first, int last) noexcept {
+/// Fills the block of each guide with its gradient samples and the guide itself.
+void Guides::fill_blocks(RandomKey key, int first, int last) noexcept {
   fill_normal(batch_, first * block_, (last - first) * block_, key);
-  const Rows<float> rows{batch_.row(0, 0), batch_.stride(), static_cast<int>(rows_)};
-  const int biased = static_cast<int>((1.0 - options_.zero_mean_share) *
-                                      static_cast<double>(options_.guides.gradient_samples));
+  const Rows<float> rows = rows_of(batch_);
+  const int biased = static_cast<int>((1.0 - options_.zero_mean_share) * options_.guides.gradient_samples);
   for (int g = first; g < last; ++g) {
     const Range block{g * block_, block_};
     kernels().sample(rows, rows,
-                     {&guides_[at(g)], deviation_.data(), low_.data(), high_.data(), block.first + biased},
-                     block);
+                     {guides_[g], deviation_.data(), low_.data(), high_.data(), block.first + biased}, block);
     const int own = block.first + options_.guides.gradient_samples;
-    for (int r = 0; r < rows.rows; ++r) {
-      rows.row(r)[own] = guides_[at(g) + static_cast<std::size_t>(r)];
-    }
+    batch_.set_sample(own, std::span<const float>(guides_[g], rows_));
   }
 }
 
-/// One step of a guide along its gradient, from the costs of its block.
+/// Moves a guide one step along its gradient (equation (9)), given the costs of its block.
 void Guides::step(int g, int iteration) noexcept {
-  const Rows<float> rows{batch_.row(0, 0), batch_.stride(), static_cast<int>(rows_)};
+  const Rows<float> rows = rows_of(batch_);
   const Range block{g * block_, block_};
-  const auto own = static_cast<std::size_t>(block.first + options_.guides.gradient_samples);
-  if (iteration > 0) path_costs_[path_at(iteration - 1, g)] = costs_[own];
+  const int own = block.first + options_.guides.gradient_samples;
+  if (iteration > 0) path_costs_[point(iteration - 1, g)] = costs_[own];
   std::copy_n(costs_.data() + block.first, block_, totals_.data() + block.first);
   SurrogateGradient<float> gradient;
   gradient.temperature = static_cast<float>(options_.guides.gradient_temperature);
   gradient.subtract_minimum = options_.published.subtract_minimum;
   gradient.floor = options_.published.gradient_floor;
-  gradient.centre = &guides_[at(g)];
+  gradient.centre = guides_[g];
   gradient.inverse_variance = inverse_.data();
   if (options_.guides.weight == GuideWeight::importance) gradient.linear = linear_.data();
   if (options_.guides.weight == GuideWeight::proximity) {
@@ -165,24 +162,23 @@ void Guides::step(int g, int iteration) noexcept {
     gradient.distance_weight = distance_weight_.data();
   }
   surrogate_gradient(gradient, rows, block, options_.guides.gradient_samples, totals_.data(), weights_.data(),
-                     &gradient_[at(g)]);
-  double* theta = &theta_[at(g)];
-  for (std::size_t r = 0; r < rows_; ++r) {
-    theta[r] += static_cast<double>(step_[r]) * static_cast<double>(gradient_[at(g) + r]);
-    if (options_.published.clamp_guides) {
-      theta[r] = std::clamp(theta[r], static_cast<double>(low_[r]), static_cast<double>(high_[r]));
-    }
-    if (!(std::abs(theta[r]) < 1e30)) theta[r] = static_cast<double>(solution_[r]);
-    guides_[at(g) + r] = static_cast<float>(theta[r]);
-    path_[path_at(iteration, g) * rows_ + r] = theta[r];
-    path_float_[path_at(iteration, g) * rows_ + r] = guides_[at(g) + r];
+                     gradient_[g]);
+  double* theta = theta_[g];
+  for (int r = 0; r < rows_; ++r) {
+    const double slope = gradient_[g][r];
+    theta[r] += step_[r] * slope;
+    if (options_.published.clamp_guides) theta[r] = std::clamp<double>(theta[r], low_[r], high_[r]);
+    if (!(std::abs(theta[r]) < 1e30)) theta[r] = solution_[r];
+    guides_[g][r] = static_cast<float>(theta[r]);
   }
+  std::copy_n(theta, rows_, path_[point(iteration, g)]);
+  std::copy_n(guides_[g], rows_, path_float_[point(iteration, g)]);
 }
 
-void Guides::move_some(const BatchEvaluator& evaluator, RandomKey key, int first, int last, int iterations,
-                       const Deadline& deadline, int& made) noexcept {
+void Guides::move_guides(const BatchEvaluator& evaluator, RandomKey key, int first, int last, int iterations,
+                         const Deadline& deadline, int& made) noexcept {
   for (int l = 0; l < iterations && !deadline.passed(); ++l) {
-    place({key.seed, key.stream + static_cast<std::uint64_t>(l)}, first, last);
+    fill_blocks({key.seed, key.stream + l}, first, last);
     evaluator.evaluate(batch_, first * block_, (last - first) * block_, costs_.data(), collided_.data());
     kernels().make_finite({first * block_, (last - first) * block_}, costs_.data());
     for (int g = first; g < last; ++g) step(g, l);
@@ -192,60 +188,56 @@ void Guides::move_some(const BatchEvaluator& evaluator, RandomKey key, int first
 
 int Guides::move(const BatchEvaluator& evaluator, RandomKey key, const float* solution, const float* nominal,
                  ThreadPool& pool, const Deadline& deadline) noexcept {
-  for (std::size_t r = 0; r < rows_; ++r) {
+  for (int r = 0; r < rows_; ++r) {
     const double inverse =
-        options_.guides.gradient_temperature * inverse_variance(static_cast<double>(weight_variance_[r]),
-                                                                options_.published.inverse_variance_offset);
+        options_.guides.gradient_temperature *
+        inverse_variance<double>(weight_variance_[r], options_.published.inverse_variance_offset);
+    const double u = solution[r], n = nominal[r];
     solution_[r] = solution[r];
-    linear_[r] =
-        static_cast<float>(inverse * (static_cast<double>(solution[r]) - static_cast<double>(nominal[r])));
+    linear_[r] = static_cast<float>(inverse * (u - n));
     distance_weight_[r] = static_cast<float>(inverse);
   }
   std::fill(path_costs_.begin(), path_costs_.end(), infinite);
   std::fill(made_.begin(), made_.end(), 0);
-  // Guides do not depend on each other, so each thread moves its share all the way.
+  // Guides are independent, so each thread makes all iterations of its guides.
   const int shares = std::min(pool.threads(), count_);
   pool.run(shares, [&](int share) {
-    move_some(evaluator, key, count_ * share / shares, count_ * (share + 1) / shares,
-              options_.guides.iterations, deadline, made_[static_cast<std::size_t>(share)]);
+    move_guides(evaluator, key, count_ * share / shares, count_ * (share + 1) / shares,
+                options_.guides.iterations, deadline, made_[share]);
   });
   iterations_ = *std::min_element(made_.begin(), made_.begin() + shares);
   evaluate_ends(evaluator, iterations_);
   return iterations_;
 }
 
-/// Costs of the guides where they ended, and which of them is the best.
+/// Computes the final costs of the guides and selects the best guide (equation (12)).
 void Guides::evaluate_ends(const BatchEvaluator& evaluator, int iterations) noexcept {
-  for (int g = 0; g < count_; ++g)
-    for (std::size_t r = 0; r < rows_; ++r)
-      ends_.row(0, 0)[r * static_cast<std::size_t>(ends_.stride()) + static_cast<std::size_t>(g)] =
-          guides_[at(g) + r];
+  for (int g = 0; g < count_; ++g) ends_.set_sample(g, std::span<const float>(guides_[g], rows_));
   evaluator.evaluate(ends_, 0, count_, end_costs_.data(), end_collided_.data());
   kernels().make_finite({0, padded(count_)}, end_costs_.data());
   best_ = 0;
   for (int g = 0; g < count_; ++g) {
-    const auto i = static_cast<std::size_t>(g);
-    if (iterations > 0) path_costs_[path_at(iterations - 1, g)] = end_costs_[i];
-    if (end_costs_[i] < end_costs_[static_cast<std::size_t>(best_)]) best_ = g;
+    if (iterations > 0) path_costs_[point(iterations - 1, g)] = end_costs_[g];
+    if (end_costs_[g] < end_costs_[best_]) best_ = g;
   }
-  best_cost_ = end_costs_[static_cast<std::size_t>(best_)];
-  best_collides_ = end_collided_[static_cast<std::size_t>(best_)] != 0;
+  best_cost_ = end_costs_[best_];
+  best_collides_ = end_collided_[best_] != 0;
 }
 
-/// q* at the points of the paths: exp(-S / lambda), times the density round the nominal if asked for,
-/// normalised over the points.
+/// Computes q* (equation (5)) at points of the paths: exp(-S / lambda), multiplied by the density around the
+/// nominal sequence if the fit target is the optimal density, normalised over the points.
 void Guides::densities(std::span<const int> points) noexcept {
   const bool with_prior = options_.published.fit_target == FitTarget::optimal_density;
   const double temperature = with_prior ? options_.temperature : options_.published.fit_temperature;
   double largest = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto point = static_cast<std::size_t>(points[i]);
-    double logarithm = -static_cast<double>(path_costs_[point]) / temperature;
+    const double* theta = path_[points[i]];
+    double logarithm = -path_costs_[points[i]] / temperature;
     if (with_prior) {
-      for (std::size_t r = 0; r < rows_; ++r) {
-        const double difference = path_[point * rows_ + r] - theta_[at(best_) + r];
-        logarithm -= 0.5 * difference * difference * static_cast<double>(distance_weight_[r]) /
-                     options_.guides.gradient_temperature;
+      for (int r = 0; r < rows_; ++r) {
+        const double difference = theta[r] - theta_[best_][r];
+        logarithm -=
+            0.5 * difference * difference * distance_weight_[r] / options_.guides.gradient_temperature;
       }
     }
     density_[i] = logarithm;
@@ -257,26 +249,23 @@ void Guides::densities(std::span<const int> points) noexcept {
 }
 
 void Guides::fit_variance(float* variance) noexcept {
-  std::size_t count = 0;
+  int count = 0;
   for (int l = 0; l < iterations_; ++l)
     for (int g = 0; g < count_; ++g)
-      if (options_.published.fit_all_guides || g == best_) points_[count++] = static_cast<int>(path_at(l, g));
-  const std::span<const int> points(points_.data(), count);
+      if (options_.published.fit_all_guides || g == best_) fit_points_[count++] = point(l, g);
+  const std::span<const int> points(fit_points_.data(), count);
   const bool known = best_cost_ < infinite && count > 0;
   if (known) {
     densities(points);
-    fit_weights(density_.data(), static_cast<int>(count), square_.data(), logarithm_.data());
+    fit_weights(density_.data(), count, square_.data(), logarithm_.data());
   }
-  for (std::size_t r = 0; r < rows_; ++r) {
-    const int input = static_cast<int>(r) % inputs_;
+  for (int r = 0; r < rows_; ++r) {
+    const int input = r % inputs_;
     const double least = options_.variance_min[input], most = options_.variance_max[input];
     double fitted = std::numeric_limits<double>::infinity();
     if (known) {
-      for (std::size_t i = 0; i < count; ++i) {
-        abscissa_[i] = path_[static_cast<std::size_t>(points[i]) * rows_ + r];
-      }
-      const GaussianFit fit =
-          fit_gaussian(abscissa_.data(), square_.data(), logarithm_.data(), static_cast<int>(count));
+      for (int i = 0; i < count; ++i) abscissa_[i] = path_[points[i]][r];
+      const GaussianFit fit = fit_gaussian(abscissa_.data(), square_.data(), logarithm_.data(), count);
       fitted = fitted_variance(fit, options_.published.fit_absolute_curvature);
       if (options_.published.fit_standard_deviation) fitted = std::sqrt(fitted);
     }

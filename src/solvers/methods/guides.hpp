@@ -4,84 +4,91 @@
 #include <vector>
 
 #include "slalom/solvers/svg_mppi_options.hpp"
+#include "solvers/sampling/rows.hpp"
 #include "solvers/sampling/sample_report.hpp"
 
 namespace slalom::detail {
 
-/// The guide particles of SVG-MPPI: few control sequences that follow the surrogate gradient to a mode of the
-/// optimal distribution, theta <- theta + epsilon g (Honda et al., ICRA 2024, section IV-A), and the Gaussian
-/// fitted to the path that led there (section IV-B).
+/// The guide particles of SVG-MPPI (Honda et al., ICRA 2024): a few control sequences that follow the
+/// surrogate gradient to a mode of the optimal distribution, theta <- theta + epsilon g (equations (9) to
+/// (11)), and the Gaussian that is fitted to the path of the best guide (equations (12) and (13)).
 class Guides {
  public:
-  /// `low` and `high` are the bounds [row] and must outlive this.
+  /// `low` and `high` are the bounds [row]. They must outlive this object.
   Guides(const SvgMppiOptions& options, int inputs, std::span<const float> low, std::span<const float> high);
 
   /// Draws new guides from N(0, guide_variance).
   void restart(RandomKey key) noexcept;
-  /// Moves the guides forward in time.
+  /// Shifts the guides forward in time by a number of steps, which may be fractional.
   void shift(double steps) noexcept;
 
-  /// With `restart_guides`, puts the best guide first and lets all others begin anew round it.
+  /// With `restart_guides`, moves the best guide to index 0 and draws all others around it.
   void restart_others(RandomKey key) noexcept;
 
-  /// Moves the guides `guide_iterations` times, each with fresh samples; at most until the deadline. `key`
-  /// starts the streams of the iterations. `solution` (u) and `nominal` (n) are [row]. Returns the iterations
-  /// made.
+  /// Moves the guides `guide_iterations` times, each time with new samples. Stops at the deadline. Iteration
+  /// l uses the random stream `key.stream` + l. `solution` (u) and `nominal` (n) are [row]. Returns the
+  /// number of iterations made.
   int move(const BatchEvaluator& evaluator, RandomKey key, const float* solution, const float* nominal,
            ThreadPool& pool, const Deadline& deadline) noexcept;
 
-  /// The guide of least cost after the last move.
+  /// The index of the guide with the lowest cost after the last move.
   int best() const noexcept { return best_; }
+  /// Whether it collides.
   bool best_collides() const noexcept { return best_collides_; }
-  /// Its cost; infinite if no guide has a finite one.
+  /// Its cost; infinite if no guide has a finite cost.
   float best_cost() const noexcept { return best_cost_; }
   /// Its control sequence [row].
   std::span<const float> best_sequence() const noexcept;
 
-  /// Variances [row] from the paths of the last move.
+  /// Fits the variances [row] to the paths of the last move (equation (13)), within `variance_min` and
+  /// `variance_max`.
   void fit_variance(float* variance) noexcept;
 
-  SequenceList sequences() const noexcept { return {guides_, count_}; }
-  /// All guides after each iteration, [iteration][guide][row], and their costs.
+  /// All guides.
+  SequenceList sequences() const noexcept { return {guides_.values(), count_}; }
+  /// All guides after each iteration of the last move, [iteration][guide][row].
   SequenceList path() const noexcept;
+  /// Their costs [iteration][guide].
   std::span<const float> path_costs() const noexcept;
 
  private:
-  void move_some(const BatchEvaluator& evaluator, RandomKey key, int first, int last, int iterations,
-                 const Deadline& deadline, int& made) noexcept;
-  void place(RandomKey key, int first, int last) noexcept;
+  void move_guides(const BatchEvaluator& evaluator, RandomKey key, int first, int last, int iterations,
+                   const Deadline& deadline, int& made) noexcept;
+  void fill_blocks(RandomKey key, int first, int last) noexcept;
   void step(int guide, int iteration) noexcept;
   void evaluate_ends(const BatchEvaluator& evaluator, int iterations) noexcept;
   void densities(std::span<const int> points) noexcept;
 
-  std::size_t at(int guide) const noexcept { return static_cast<std::size_t>(guide) * rows_; }
-  std::size_t path_at(int iteration, int guide) const noexcept {
-    return (static_cast<std::size_t>(iteration) * static_cast<std::size_t>(count_) +
-            static_cast<std::size_t>(guide));
-  }
+  /// The index of a point of the paths: a guide after an iteration.
+  int point(int iteration, int guide) const noexcept { return iteration * count_ + guide; }
+  /// Copies `theta_` to `guides_`.
+  void round_to_float() noexcept;
 
-  static constexpr int restart_knots_ = 3;  ///< stretches between the knots of a deviation
+  static constexpr int restart_intervals_ = 3;  ///< between the knots of a deviation
 
   SvgMppiOptions options_;
   int inputs_;
   int count_;  ///< guides
   int block_;  ///< samples of a guide's block: its gradient samples, the guide itself, padding
-  std::size_t rows_;
+  int rows_;   ///< values of a control sequence
   std::span<const float> low_, high_;
 
-  std::vector<double> theta_, shifted_;  ///< [guide][row]
-  std::vector<float> guides_;            ///< theta as float32
-  SequenceBatch batch_, ends_;           ///< one block a guide; the guides alone
+  Matrix<double> theta_, shifted_;  ///< [guide][row]
+  Matrix<float> guides_;            ///< theta as float32
+  SequenceBatch batch_;             ///< one block for each guide
+  SequenceBatch ends_;              ///< the guides alone
   AlignedBuffer costs_, totals_, weights_, end_costs_;
   std::vector<std::uint8_t> collided_, end_collided_;
-  std::vector<float> gradient_;                                               ///< [guide][row]
+  Matrix<float> gradient_;                                                    ///< [guide][row]
   std::vector<float> deviation_, inverse_;                                    ///< of gradient samples [row]
   std::vector<float> step_;                                                   ///< epsilon [row]
   std::vector<float> weight_variance_, linear_, distance_weight_, solution_;  ///< [row]
-  std::vector<double> path_;                                                  ///< [iteration][guide][row]
-  std::vector<float> path_float_, path_costs_;
-  std::vector<int> made_, points_;  ///< iterations made [guide]; points of a fit
-  std::vector<double> density_, square_, logarithm_, abscissa_;
+  Matrix<double> path_;                                                       ///< [point][row]
+  Matrix<float> path_float_;                                                  ///< `path_` as float32
+  std::vector<float> path_costs_;                                             ///< [point]
+  std::vector<int> made_;                                                     ///< iterations made [thread]
+  std::vector<int> fit_points_;                                  ///< indices of the fitted points
+  std::vector<double> density_, square_, logarithm_, abscissa_;  ///< [fitted point]
   int iterations_ = 0;
   int best_ = 0;
   bool best_collides_ = false;

@@ -12,12 +12,13 @@ MppiUpdate::MppiUpdate(const Settings& settings, SampleSet samples, const Weight
       samples_(std::move(samples)),
       weighting_(weighting),
       smoother_(std::move(smoother)),
-      deviation_(static_cast<std::size_t>(samples_.rows())),
+      deviation_(samples_.rows()),
       linear_(deviation_.size()),
       zero_(deviation_.size()),
       sums_(deviation_.size()) {}
 
-/// Coefficients of the control term. Coloured samples have the covariance D C D, D their deviations.
+/// Computes the coefficients of the control term. Coloured samples have the covariance D C D, where D holds
+/// their standard deviations and C their correlations.
 void MppiUpdate::set_control_term(double temperature, const float* mean, const float* nominal,
                                   const float* variance) noexcept {
   control_coefficients(temperature, settings_.discount, settings_.inverse_variance_offset, mean, nominal,
@@ -25,15 +26,16 @@ void MppiUpdate::set_control_term(double temperature, const float* mean, const f
   if (!samples_.shape().coloured()) return;
   const double factor = temperature * (1.0 - settings_.discount);
   const auto scaled = [&](std::size_t r, double value) {
-    return deviation_[r] > 0 ? value / static_cast<double>(deviation_[r]) : 0.0;
+    return deviation_[r] > 0 ? value / deviation_[r] : 0.0;
   };
-  for (std::size_t r = 0; r < sums_.size(); ++r) {
-    sums_[r] = scaled(r, static_cast<double>(mean[r]) - static_cast<double>(nominal[r]));
-  }
+  const auto difference = [&](std::size_t r) {
+    const double u = mean[r], n = nominal[r];
+    return u - n;
+  };
+  for (std::size_t r = 0; r < sums_.size(); ++r) sums_[r] = scaled(r, difference(r));
   samples_.shape().whiten_twice(sums_.data());
   for (std::size_t r = 0; r < sums_.size(); ++r) {
-    const double difference = static_cast<double>(mean[r]) - static_cast<double>(nominal[r]);
-    const double offset = deviation_[r] > 0 ? settings_.inverse_variance_offset * difference : 0.0;
+    const double offset = deviation_[r] > 0 ? settings_.inverse_variance_offset * difference(r) : 0.0;
     linear_[r] = static_cast<float>(factor * (scaled(r, sums_[r]) + offset));
   }
 }
@@ -43,7 +45,7 @@ Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const 
                           const Deadline& deadline, float* mean, SolveResult& result) noexcept {
   const std::size_t rows = deviation_.size();
   for (std::size_t r = 0; r < rows; ++r) deviation_[r] = std::sqrt(variance[r]);
-  // Where the temperature is sought, the control term is kept apart, in units of it.
+  // If the temperature is adapted, the control term is stored separately, in units of the temperature.
   const bool seeks = weighting_.seeks();
   set_control_term(seeks ? 1.0 : weighting_.temperature(), mean, nominal, variance);
   const int zero_mean_from = static_cast<int>((1.0 - settings_.zero_mean_share) * samples_.samples());

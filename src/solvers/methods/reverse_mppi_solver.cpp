@@ -18,8 +18,8 @@ struct Gaussian {
   std::vector<float> mean, variance;
 };
 
-/// `reverse_mppi` (Kobayashi and Fukumoto 2022): mirror descent on the reverse KL divergence, with a second
-/// distribution that learns where bad samples lie and thins out the draws there.
+/// `reverse_mppi` (Kobayashi and Fukumoto 2022): mirror descent on the reverse KL divergence. A second
+/// distribution is fitted to bad samples, and fewer samples are drawn where its density is high.
 class ReverseMppiSolver final : public SolverBase {
  public:
   ReverseMppiSolver(const ReverseMppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
@@ -40,12 +40,12 @@ class ReverseMppiSolver final : public SolverBase {
         moment_mean_(size()),
         moment_variance_(size()),
         published_(rows()),
-        own_distance_(static_cast<std::size_t>(inflated_.stride())),
+        own_distance_(inflated_.stride()),
         rejected_distance_(own_distance_.size()),
         keep_(own_distance_.size()),
         resampler_(inflated_.samples(), options.samples),
-        picked_(static_cast<std::size_t>(samples_.stride())),
-        evaluated_(static_cast<std::size_t>(samples_.stride())),
+        picked_(samples_.stride()),
+        evaluated_(samples_.stride()),
         rejected_(evaluated_.size()) {
     for (Gaussian* g : {&now_, &now_rejected_, &start_, &start_rejected_}) {
       g->mean.resize(size());
@@ -114,7 +114,7 @@ class ReverseMppiSolver final : public SolverBase {
     }
   }
 
-  /// Draws the samples of an iteration, thinned out where bad ones were found.
+  /// Draws the samples of an iteration, with rejection near bad samples if `reject_samples` is set.
   void draw(int iteration) noexcept {
     const auto begin = detail::Clock::now();
     for (std::size_t r = 0; r < size(); ++r) deviation_[r] = std::sqrt(now_.variance[r]);
@@ -134,7 +134,7 @@ class ReverseMppiSolver final : public SolverBase {
     result_.times.draw += detail::seconds(begin, detail::Clock::now());
   }
 
-  /// Weights of the inflated samples, in proportion to the probabilities with which they are kept.
+  /// Sets `keep_` to weights of the inflated samples, proportional to the probabilities of keeping them.
   void keep_probabilities() noexcept {
     const detail::Range range{0, inflated_.stride()};
     float* logarithms = own_distance_.data();
@@ -158,7 +158,8 @@ class ReverseMppiSolver final : public SolverBase {
     }
   }
 
-  /// sum of (v - mean)^2 / variance of every inflated sample; returns sum of log variance.
+  /// Sets `squared` to the sum of (v - mean)^2 / variance of each inflated sample. Returns the sum of the
+  /// logarithms of the variances.
   double distances(const Gaussian& g, std::vector<float>& squared) noexcept {
     double logarithm = 0;
     for (std::size_t r = 0; r < size(); ++r) {
@@ -181,7 +182,7 @@ class ReverseMppiSolver final : public SolverBase {
     return statistics;
   }
 
-  /// Moves both distributions; false if no sample has a finite cost.
+  /// Updates both distributions. Returns false if no sample has a finite cost.
   bool update(const detail::BatchStatistics& statistics) noexcept {
     const auto begin = detail::Clock::now();
     if (statistics.finite == 0) return false;
@@ -191,7 +192,7 @@ class ReverseMppiSolver final : public SolverBase {
         static_cast<float>(options_.negative_ratio), static_cast<float>(options_.published.normaliser_offset),
         range, evaluated_.data(), rejected_.data());
     if (!(sums.evaluated > 0)) {  // all costs are equal: no sample is better than another
-      const float equal = 1.0f / static_cast<float>(statistics.finite);
+      const float equal = 1.0f / statistics.finite;
       for (std::size_t k = 0; k < evaluated_.size(); ++k)
         evaluated_[k] = k < samples_.costs().size() && std::isfinite(samples_.totals()[k]) ? equal : 0.0f;
     }
@@ -207,11 +208,12 @@ class ReverseMppiSolver final : public SolverBase {
     return true;
   }
 
-  /// Mirror descent of a distribution towards the moments of weighted samples, of which `list` is the first
-  /// in `sums_`. The squares are taken about the mean of the samples' distribution.
+  /// One step of mirror descent of a distribution towards the moments of weighted samples. `list` is the
+  /// index of their first moment in `sums_`; the second moment is about the mean of the samples'
+  /// distribution.
   void descend(std::size_t list, Gaussian& g) noexcept {
     for (std::size_t r = 0; r < size(); ++r) {
-      const double scale = options_.published.dimensionless_variance ? static_cast<double>(inverse_[r]) : 1.0;
+      const double scale = options_.published.dimensionless_variance ? inverse_[r] : 1.0;
       moment_mean_[r] = static_cast<float>(sums_[r * detail::moments + list]);
       moment_variance_[r] = static_cast<float>(sums_[r * detail::moments + list + 1] * scale);
     }
@@ -232,7 +234,7 @@ class ReverseMppiSolver final : public SolverBase {
     result_.temperature = options_.temperature;
   }
 
-  /// Keeps part of the new distributions for the next solve, and the solution within bounds.
+  /// Mixes the new distributions into those from which the next solve starts, and clamps the solution.
   void store() noexcept {
     const float ratio = static_cast<float>(options_.warm_start);
     for (const auto& [from, to] : {std::pair{&now_, &start_}, std::pair{&now_rejected_, &start_rejected_}}) {

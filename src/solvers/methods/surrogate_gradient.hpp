@@ -8,30 +8,31 @@
 
 namespace slalom::detail {
 
-/// The gradient of log E[w] at a particle theta, estimated from samples v_i ~ N(theta, Sigma_g) without any
-/// derivative of the cost (Lambert et al., "Stein Variational Model Predictive Control", CoRL 2020; Honda et
+/// The gradient of log E[w] at a particle theta, estimated from samples v_i ~ N(theta, Sigma_g) without
+/// derivatives of the cost (Lambert et al., "Stein Variational Model Predictive Control", CoRL 2020; Honda et
 /// al., ICRA 2024, equation (11)):
 ///
 ///     g = sum_i w_i Sigma_g^-1 (v_i - theta) / (sum_i w_i + floor),   w_i = exp(-J_i / lambda)
 ///
-/// J is the cost S plus what the method adds to it. With `subtract_minimum` the weights are taken relative to
-/// the least J, which matters only beside the floor: without it the floor stops a particle whose samples are
-/// all bad. It is applied to weights relative to the minimum in either case, so that nothing underflows.
+/// J is the cost S with the terms that the method adds to it. With `subtract_minimum`, w_i = exp(-(J_i - min
+/// J) / lambda); this makes a difference only if the floor is not 0. Without it, the floor stops a particle
+/// whose samples are all bad. The weights are computed relative to the minimum in both cases, so that they do
+/// not all underflow; the floor is scaled accordingly.
 template <class Real>
 struct SurrogateGradient {
-  Real temperature = 1;  ///< lambda
-  bool subtract_minimum = true;
-  double floor = 0;
+  Real temperature = 1;                    ///< lambda
+  bool subtract_minimum = true;            ///< whether the weights are relative to the lowest J
+  double floor = 0;                        ///< added to the sum of the weights
   const Real* centre = nullptr;            ///< theta [row]
   const Real* inverse_variance = nullptr;  ///< of the samples, [row]
   const Real* linear = nullptr;            ///< J += sum linear[row] v[row]; may be null
   const Real* distance_centre = nullptr;   ///< J += sum distance_weight (v - distance_centre)^2; may be null
-  const Real* distance_weight = nullptr;
+  const Real* distance_weight = nullptr;   ///< [row]
 };
 
-/// Computes g [row] from the samples `block` of `v`, of which the first `samples` count (block.count is a
-/// multiple of the lanes). `totals` holds their costs S and becomes J; `weights` is scratch of its length.
-/// Returns false, with g = 0, if no J is finite.
+/// Computes the gradient g [row] from the first `samples` samples of the range `block` of `v`. `block.count`
+/// is a multiple of the lanes. `totals` holds the costs S and is replaced by J. `weights` is scratch memory
+/// of the same length. Returns false, with g = 0, if no J is finite.
 template <class Real>
 bool surrogate_gradient(const SurrogateGradient<Real>& s, const Rows<Real>& v, Range block, int samples,
                         Real* totals, Real* weights, Real* gradient) noexcept {
@@ -46,16 +47,13 @@ bool surrogate_gradient(const SurrogateGradient<Real>& s, const Rows<Real>& v, R
     std::fill_n(gradient, v.rows, Real(0));
     return false;
   }
-  const double sum =
-      static_cast<double>(k.exponential_weights(totals, totals, least, s.temperature, block, weights).weight);
-  const double floor =
-      s.subtract_minimum
-          ? s.floor
-          : s.floor * std::exp(static_cast<double>(least) / static_cast<double>(s.temperature));
+  const double sum = k.exponential_weights(totals, totals, least, s.temperature, block, weights).weight;
+  const double temperature = s.temperature;
+  const double floor = s.subtract_minimum ? s.floor : s.floor * std::exp(least / temperature);
   k.weighted_sums(v, weights, s.centre, block, gradient);
   for (int r = 0; r < v.rows; ++r) {
-    gradient[r] = static_cast<Real>(static_cast<double>(s.inverse_variance[r]) *
-                                    static_cast<double>(gradient[r]) / (sum + floor));
+    const double moved = gradient[r];
+    gradient[r] = static_cast<Real>(s.inverse_variance[r] * moved / (sum + floor));
   }
   return true;
 }

@@ -5,6 +5,7 @@
 #include "slalom/solvers/sv_mpc_options.hpp"
 #include "solvers/methods/stein.hpp"
 #include "solvers/published/published_stein.hpp"
+#include "solvers/sampling/rows.hpp"
 #include "solvers/sampling/sample_report.hpp"
 
 namespace slalom {
@@ -12,7 +13,7 @@ namespace slalom {
 namespace {
 
 /// `sv_mpc` (Lambert et al., "Stein Variational Model Predictive Control", CoRL 2020): all samples are
-/// particles that SVGD moves towards the posterior of good control sequences, given a Gaussian prior.
+/// particles. SVGD moves them towards the posterior of optimal control sequences for a Gaussian prior.
 class SvMpcSolver final : public SolverBase {
  public:
   SvMpcSolver(const SvMpcOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
@@ -20,11 +21,11 @@ class SvMpcSolver final : public SolverBase {
         options_(options),
         particles_(options.horizon, inputs, options.samples),
         gradient_batch_(options.horizon, inputs, particles_.stride() * options.gradient_samples),
-        exponents_(static_cast<std::size_t>(gradient_batch_.stride())),
+        exponents_(gradient_batch_.stride()),
         collided_(exponents_.size()),
         gradient_(options.horizon, inputs, options.samples),
         phi_(options.horizon, inputs, options.samples),
-        distances_(static_cast<std::size_t>(std::max(options.samples, 2016))),
+        distances_(std::max(options.samples, 2016)),
         solution_(size()),
         mean_(size()),
         variance_(size()),
@@ -38,7 +39,7 @@ class SvMpcSolver final : public SolverBase {
         step_(spread(options.step)),
         limited_step_(step_),
         zero_(size()),
-        column_(size()),
+        particle_(size()),
         shifted_(size()),
         sums_(size()) {
     for (std::size_t r = 0; r < size(); ++r) {
@@ -71,7 +72,7 @@ class SvMpcSolver final : public SolverBase {
     if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
     set_prior();
     int iteration = 0;
-    const Deadline moving = deadline.part(0.8);  // weights and solution need a last evaluation
+    const Deadline moving = deadline.part(0.8);  // weights and solution need a final evaluation
     for (; iteration < options_.iterations && !moving.passed(); ++iteration) move(evaluator, iteration);
     result_.times.guide = detail::seconds(begin, detail::Clock::now());
 
@@ -89,7 +90,7 @@ class SvMpcSolver final : public SolverBase {
       std::fill(particles_.weights().begin(), particles_.weights().end(), 0.0f);
     }
     detail::report_samples(particles_, statistics, sums, result_);
-    if (!usable && statistics.evaluated > 0) draw_particles();  // the old solution is repeated meanwhile
+    if (!usable && statistics.evaluated > 0) draw_particles();  // this solve repeats the last solution
     result_.temperature = options_.temperature;
     result_.iterations = iteration;
     const bool late = iteration < options_.iterations || statistics.evaluated < particles_.samples();
@@ -104,16 +105,13 @@ class SvMpcSolver final : public SolverBase {
   }
 
  private:
-  static constexpr int tile = 128;  ///< particles a task
+  static constexpr int tile = 128;  ///< particles per task
   int tiles() const noexcept { return (particles_.stride() + tile - 1) / tile; }
   detail::Range range(int t) const noexcept {
     return {t * tile, std::min(tile, particles_.stride() - t * tile)};
   }
-  static detail::Rows<float> view(SequenceBatch& batch) noexcept {
-    return {batch.row(0, 0), batch.stride(), batch.steps() * batch.inputs()};
-  }
 
-  /// Particles, and the prior with them, anew around zero.
+  /// Resets the prior and draws the particles around zero.
   void draw_particles() noexcept {
     std::fill(mean_.begin(), mean_.end(), 0.0f);
     std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
@@ -130,14 +128,14 @@ class SvMpcSolver final : public SolverBase {
       std::copy(shifted_.begin(), shifted_.end(), sequence->begin());
     }
     for (int k = 0; k < particles_.samples(); ++k) {
-      for (int r = 0; r < rows(); ++r) column_[static_cast<std::size_t>(r)] = particles_.row_view().row(r)[k];
-      shift_sequence(column_.data(), horizon(), inputs(), steps, shifted_.data());
-      for (int r = 0; r < rows(); ++r)
-        particles_.row_view().row(r)[k] = shifted_[static_cast<std::size_t>(r)];
+      particles_.values().get_sample(k, particle_);
+      shift_sequence(particle_.data(), horizon(), inputs(), steps, shifted_.data());
+      particles_.values().set_sample(k, shifted_);
     }
   }
 
-  /// What depends on the prior: its inverse, and the control terms of gradients and weights.
+  /// Computes what depends on the prior: the inverse of its variances, the step limit, and the control terms
+  /// of gradients and weights.
   void set_prior() noexcept {
     for (std::size_t r = 0; r < size(); ++r) {
       prior_inverse_[r] = detail::inverse_variance(
@@ -162,14 +160,15 @@ class SvMpcSolver final : public SolverBase {
                            : detail::pair_distances(x, count, distances_.data());
     const float h = count > 1 ? detail::bandwidth(distances_.data(), values, count) : 1.0f;
     pool().run(tiles(), [&](int t) {
-      detail::kernels().stein_directions(x, view(gradient_), count, h, range(t), view(phi_));
+      detail::kernels().stein_directions(x, detail::rows_of(gradient_), count, h, range(t),
+                                         detail::rows_of(phi_));
     });
     pool().run(tiles(), [&](int t) { step(range(t)); });
   }
 
   void estimate_gradients(const BatchEvaluator& evaluator, int iteration, detail::Range r) noexcept {
     const int stride = particles_.stride();
-    const detail::Rows<float> x = particles_.row_view(), v = view(gradient_batch_);
+    const detail::Rows<float> x = particles_.row_view(), v = detail::rows_of(gradient_batch_);
     for (int s = 0; s < options_.gradient_samples; ++s)
       fill_normal(gradient_batch_, s * stride + r.first, r.count, key(iteration));
     const int biased = zero_mean_from(options_.gradient_samples, options_.zero_mean_share);
@@ -184,49 +183,43 @@ class SvMpcSolver final : public SolverBase {
                                               static_cast<float>(options_.published.gradient_floor),
                                               linear_.data(),
                                               inverse_.data()};
-    detail::kernels().particle_gradients(how, v, x, r, exponents_.data(), view(gradient_));
+    detail::kernels().particle_gradients(how, v, x, r, exponents_.data(), detail::rows_of(gradient_));
     for (int row = 0; row < rows(); ++row) {
-      const auto i = static_cast<std::size_t>(row);
-      if (!(prior_inverse_[i] > 0)) continue;
-      float* g = view(gradient_).row(row);
+      if (!(prior_inverse_[row] > 0)) continue;
+      float* g = gradient_.data(row);
       for (int k = r.first; k < r.first + r.count; ++k)
         g[k] += options_.published.inverted_prior
-                    ? detail::published_prior_gradient(x.row(row)[k], mean_[i], prior_inverse_[i])
-                    : detail::prior_gradient(x.row(row)[k], mean_[i], prior_inverse_[i]);
+                    ? detail::published_prior_gradient(x.row(row)[k], mean_[row], prior_inverse_[row])
+                    : detail::prior_gradient(x.row(row)[k], mean_[row], prior_inverse_[row]);
     }
   }
 
   void step(detail::Range r) noexcept {
     for (int row = 0; row < rows(); ++row) {
-      const auto i = static_cast<std::size_t>(row);
-      float* x = particles_.row_view().row(row);
-      const float* direction = view(phi_).row(row);
+      float* x = particles_.values().data(row);
+      const float* direction = phi_.data(row);
       const float low_bound =
-          options_.published.clamp_particles ? low()[i] : -std::numeric_limits<float>::infinity();
+          options_.published.clamp_particles ? low()[row] : -std::numeric_limits<float>::infinity();
       const float high_bound =
-          options_.published.clamp_particles ? high()[i] : std::numeric_limits<float>::infinity();
+          options_.published.clamp_particles ? high()[row] : std::numeric_limits<float>::infinity();
       for (int k = r.first; k < r.first + r.count; ++k)
-        x[k] = std::min(std::max(x[k] + limited_step_[i] * direction[k], low_bound), high_bound);
+        x[k] = std::min(std::max(x[k] + limited_step_[row] * direction[k], low_bound), high_bound);
     }
   }
 
   bool finite_particles() noexcept {
     bool finite = true;
     for (int row = 0; row < rows(); ++row) {
-      const float* x = particles_.row_view().row(row);
-      for (int k = 0; k < particles_.samples(); ++k) {
-        finite &= std::abs(x[k]) < 1e18f;  // squares stay finite too
-      }
+      for (const float x : particles_.values()[row]) finite &= std::abs(x) < 1e18f;  // squares are finite too
     }
     return finite;
   }
 
-  /// The solution, and the prior of the next solve.
+  /// Computes the solution and the prior of the next solve.
   void update_solution() noexcept {
     particles_.weighted_squares(mean_.data(), sums_.data(), pool());
     for (std::size_t r = 0; r < size(); ++r) {
-      const double scale =
-          options_.published.dimensionless_variance ? static_cast<double>(prior_inverse_[r]) : 1.0;
+      const double scale = options_.published.dimensionless_variance ? prior_inverse_[r] : 1.0;
       const float least = std::min(least_variance_[r], first_variance_[r]);
       variance_[r] = std::clamp(static_cast<float>(sums_[r] * scale), least, 1e12f);
     }
@@ -234,9 +227,8 @@ class SvMpcSolver final : public SolverBase {
     for (std::size_t r = 0; r < size(); ++r) mean_[r] = static_cast<float>(sums_[r]);
     if (options_.best_particle) {
       const auto weights = particles_.weights();
-      const auto best = static_cast<int>(std::max_element(weights.begin(), weights.end()) - weights.begin());
-      for (int r = 0; r < rows(); ++r)
-        solution_[static_cast<std::size_t>(r)] = particles_.row_view().row(r)[best];
+      const auto best = std::max_element(weights.begin(), weights.end()) - weights.begin();
+      particles_.values().get_sample(static_cast<int>(best), solution_);
     } else {
       std::copy(mean_.begin(), mean_.end(), solution_.begin());
     }
@@ -251,8 +243,8 @@ class SvMpcSolver final : public SolverBase {
   SequenceBatch gradient_, phi_;
   std::vector<float> distances_;
   std::vector<float> solution_, mean_, variance_, first_variance_, least_variance_, deviation_, inverse_,
-      prior_inverse_, linear_, control_, step_, limited_step_, zero_, column_, shifted_;  ///< [row]
-  std::vector<double> sums_;                                                              ///< [row]
+      prior_inverse_, linear_, control_, step_, limited_step_, zero_, particle_, shifted_;  ///< [row]
+  std::vector<double> sums_;                                                                ///< [row]
   SolveResult result_;
 };
 

@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "solvers/kernels/kernels.hpp"
+#include "solvers/sampling/rows.hpp"
 
 /// The rejection of samples in the published program of Honda et al. (ICRA 2024).
 namespace slalom::detail {
@@ -23,32 +23,27 @@ Real published_density(Real x, Real mean, Real variance) noexcept {
 template <class Real>
 class PublishedRejection {
  public:
-  explicit PublishedRejection(int rows) : values_(static_cast<std::size_t>(4 * rows)), rows_(rows) {}
+  explicit PublishedRejection(int rows) : values_(4, rows), rows_(rows) {}
 
   void set(const Real* mean, const Real* variance, const Real* rejected_mean,
            const Real* rejected_variance) noexcept {
     for (int r = 0; r < rows_; ++r) {
-      entry(1, r) = rejected_mean[r];
+      values_[1][r] = rejected_mean[r];
       if (!(variance[r] > 0) || !(rejected_variance[r] > 0)) {  // an input that is not sampled has no say
-        entry(0, r) = 1;
-        entry(2, r) = entry(3, r) = 0;
+        values_[0][r] = 1;
+        values_[2][r] = values_[3][r] = 0;
         continue;
       }
-      entry(0, r) = published_density(rejected_mean[r], mean[r], variance[r]);
-      entry(2, r) = Real(1) / std::sqrt(rejected_variance[r]);
-      entry(3, r) = Real(1) / std::sqrt(Real(2) * std::numbers::pi_v<Real> * rejected_variance[r]);
+      values_[0][r] = published_density(rejected_mean[r], mean[r], variance[r]);
+      values_[2][r] = Real(1) / std::sqrt(rejected_variance[r]);
+      values_[3][r] = Real(1) / std::sqrt(Real(2) * std::numbers::pi_v<Real> * rejected_variance[r]);
     }
   }
-  const Real* base() const noexcept { return values_.data(); }
-  RejectionRows<Real> rows() const noexcept {
-    const Real* v = values_.data();
-    return {v, v + rows_, v + 2 * rows_, v + 3 * rows_};
-  }
+  const Real* base() const noexcept { return values_[0]; }
+  RejectionRows<Real> rows() const noexcept { return {values_[0], values_[1], values_[2], values_[3]}; }
 
  private:
-  Real& entry(int list, int r) noexcept { return values_[static_cast<std::size_t>(list * rows_ + r)]; }
-
-  std::vector<Real> values_;  ///< [base, mean, inverse, scale][row]
+  Matrix<Real> values_;  ///< [base, mean, inverse, scale][row]
   int rows_;
 };
 

@@ -5,29 +5,31 @@
 #include <stdexcept>
 #include <string>
 
+#include "solvers/sampling/rows.hpp"
+
 namespace slalom::detail {
 
 namespace {
 
-/// Longest sequence that is coloured: its factor has 8 MiB.
+/// Longest sequence that can be coloured: its float32 factor takes 8 MiB.
 constexpr int longest = 2048;
 
-/// Where row t of a lower triangular matrix begins.
-constexpr std::size_t triangle(int t) {
-  return static_cast<std::size_t>(t) * static_cast<std::size_t>(t + 1) / 2;
+/// The index of the first entry of row t in a lower triangular matrix.
+constexpr std::ptrdiff_t triangle(std::ptrdiff_t t) {
+  return t * (t + 1) / 2;
 }
 
 /// L of the correlation c(|s - t|), row by row (Cholesky).
 std::vector<double> correlation_factor(const std::vector<double>& correlation) {
-  const int steps = static_cast<int>(correlation.size());
+  const auto steps = static_cast<int>(correlation.size());
   std::vector<double> factor(triangle(steps));
   for (int t = 0; t < steps; ++t) {
     double* row = &factor[triangle(t)];
     for (int s = 0; s <= t; ++s) {
       const double* other = &factor[triangle(s)];
-      double rest = correlation[static_cast<std::size_t>(t - s)];
+      double rest = correlation[t - s];
       for (int i = 0; i < s; ++i) rest -= row[i] * other[i];
-      // Noise of steep spectra is nearly a polynomial: what is left of a step may be below rounding.
+      // With a steep spectrum, noise is nearly a polynomial, and the remainder may be below rounding error.
       row[s] = s < t ? rest / other[s] : std::sqrt(std::max(rest, 1e-14));
     }
   }
@@ -38,13 +40,13 @@ std::vector<double> correlation_factor(const std::vector<double>& correlation) {
 
 std::vector<double> coloured_correlation(double exponent, int steps) {
   const int period = 2 * steps;
-  std::vector<double> power(static_cast<std::size_t>(period)), cosine(power.size());
+  std::vector<double> power(period), cosine(period);
   for (int k = 0; k < period; ++k) {
     const int frequency = std::max(std::min(k, period - k), 1);
-    power[static_cast<std::size_t>(k)] = std::pow(static_cast<double>(frequency), -exponent);
-    cosine[static_cast<std::size_t>(k)] = std::cos(2 * 3.14159265358979323846 * k / period);
+    power[k] = std::pow(frequency, -exponent);
+    cosine[k] = std::cos(2 * 3.14159265358979323846 * k / period);
   }
-  std::vector<double> correlation(static_cast<std::size_t>(steps));
+  std::vector<double> correlation(steps);
   for (std::size_t d = 0; d < correlation.size(); ++d) {
     for (std::size_t k = 0; k < power.size(); ++k) correlation[d] += power[k] * cosine[k * d % power.size()];
   }
@@ -56,7 +58,7 @@ std::vector<double> coloured_correlation(double exponent, int steps) {
 NoiseShape::NoiseShape(const PerInput& exponent, const PerInput& log_normal_spread, int steps, int inputs,
                        int samples)
     : steps_(steps), inputs_(inputs) {
-  factor_.resize(static_cast<std::size_t>(inputs));
+  factor_.resize(inputs);
   factor_float_.resize(factor_.size());
   bool spread = false;
   for (int i = 0; i < inputs; ++i) {
@@ -66,9 +68,8 @@ NoiseShape::NoiseShape(const PerInput& exponent, const PerInput& log_normal_spre
       throw std::invalid_argument("noise_exponent: must be 0 for a horizon above " + std::to_string(longest) +
                                   " steps, which is " + std::to_string(steps));
     }
-    const auto at = static_cast<std::size_t>(i);
-    factor_[at] = correlation_factor(coloured_correlation(exponent[i], steps));
-    factor_float_[at].assign(factor_[at].begin(), factor_[at].end());
+    factor_[i] = correlation_factor(coloured_correlation(exponent[i], steps));
+    factor_float_[i].assign(factor_[i].begin(), factor_[i].end());
     coloured_ = true;
   }
   if (!spread) return;
@@ -78,23 +79,23 @@ NoiseShape::NoiseShape(const PerInput& exponent, const PerInput& log_normal_spre
 }
 
 void NoiseShape::apply(SequenceBatch& z, Range range, RandomKey key) noexcept {
-  const Rows<float> rows{z.row(0, 0), z.stride(), steps_ * inputs_};
+  const Rows<float> rows = rows_of(z);
   if (coloured_) {
     for (int i = 0; i < inputs_; ++i) {
-      const std::vector<float>& factor = factor_float_[static_cast<std::size_t>(i)];
+      const std::vector<float>& factor = factor_float_[i];
       if (!factor.empty()) kernels().colour(rows, factor.data(), i, inputs_, range);
     }
   }
   if (!spread_.empty()) {
-    // A stream of its own: the other half of the seeds.
+    // The complement of the seed gives an independent stream.
     fill_normal(exponents_, range.first, range.count, {~key.seed, key.stream});
-    kernels().spread_log_normal(rows, exponents_.row(0, 0), spread_.data(), range);
+    kernels().spread_log_normal(rows, exponents_.data(), spread_.data(), range);
   }
 }
 
 void NoiseShape::whiten_twice(double* sequence) const noexcept {
   for (int i = 0; i < inputs_; ++i) {
-    const std::vector<double>& factor = factor_[static_cast<std::size_t>(i)];
+    const std::vector<double>& factor = factor_[i];
     if (factor.empty()) continue;
     const auto entry = [&](int t) -> double& { return sequence[t * inputs_ + i]; };
     for (int t = 0; t < steps_; ++t) {

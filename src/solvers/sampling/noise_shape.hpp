@@ -9,34 +9,37 @@
 
 namespace slalom::detail {
 
-/// Shapes the white normal noise of samples, entry z[t] for step t of an input, before it is scaled by their
-/// deviations. Both shapes leave every entry with mean 0 and variance 1, so that Sigma means what it meant.
+/// Shapes the white normal noise of samples before it is scaled by their standard deviations. z[t] is the
+/// entry of an input at step t. With either shape, every entry still has mean 0 and variance 1, so that Sigma
+/// keeps its meaning.
 ///
 /// *Coloured* (Timmer and Koenig 1995; in sampling-based control: Pinneri et al., "Sample-efficient
 /// Cross-Entropy Method for Real-time Planning", CoRL 2020): power 1/f^beta at frequency f, so neighbouring
-/// steps move together. A sequence is the first half of a periodic one of N = 2 T steps, lest its end be tied
-/// to its start; below the lowest frequency 1/N power stays what it is there:
+/// steps are correlated. A sequence is the first half of a periodic one of N = 2 T steps, so that its end is
+/// not correlated with its start. Below the lowest frequency 1/N, the power is constant:
 ///
 ///     c(d) ~ sum_k max(min(k, N - k), 1)^-beta cos(2 pi k d / N),   c(0) = 1,   C[s][t] = c(|s - t|)
 ///     z <- L z   with   L L^T = C, L lower triangular
 ///
 /// *Normal log-normal* (Mohamed, Yin and Liu, "Autonomous Navigation of AGVs in Unknown Cluttered
 /// Environments: log-MPPI Control Strategy", RA-L 2022): z <- z exp(s y - s^2), y standard normal. Its fourth
-/// moment is 3 exp(4 s^2): more samples in the tails at the same variance.
+/// moment is 3 exp(4 s^2): more samples are in the tails at the same variance.
 class NoiseShape {
  public:
-  /// White normal noise, left as it is.
+  /// White normal noise.
   NoiseShape() = default;
-  /// With beta and s per input. Throws std::invalid_argument where a coloured sequence is too long.
+  /// Takes beta and s for each input. Throws std::invalid_argument if a coloured sequence is too long.
   NoiseShape(const PerInput& exponent, const PerInput& log_normal_spread, int steps, int inputs, int samples);
 
+  /// Whether noise is not shaped at all.
   bool plain() const noexcept { return !coloured_ && spread_.empty(); }
+  /// Whether the noise of any input is coloured.
   bool coloured() const noexcept { return coloured_; }
 
-  /// Shapes the samples of a range of `z`, filled with white noise of this key.
+  /// Shapes the samples of a range of `z`, which holds white noise drawn with this key.
   void apply(SequenceBatch& z, Range range, RandomKey key) noexcept;
 
-  /// C^-1 times a sequence [row], in place.
+  /// Multiplies a sequence [row] by C^-1, in place.
   void whiten_twice(double* sequence) const noexcept;
 
  private:
@@ -49,7 +52,7 @@ class NoiseShape {
   SequenceBatch exponents_;                       ///< y
 };
 
-/// c(0) ... c(steps - 1) of noise with power 1/f^exponent.
+/// The correlations c(0) ... c(steps - 1) of noise with power 1/f^exponent.
 std::vector<double> coloured_correlation(double exponent, int steps);
 
 }  // namespace slalom::detail

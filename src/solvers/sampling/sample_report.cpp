@@ -8,7 +8,7 @@ void report_samples(const SampleSet& set, const BatchStatistics& statistics, con
   result.costs = set.costs();
   result.collided = set.collided();
   result.weights = set.weights();
-  result.minimum_cost = static_cast<double>(statistics.minimum_cost);
+  result.minimum_cost = statistics.minimum_cost;
   result.expected_cost = sums.weight > 0 ? sums.cost / sums.weight : 0;
   result.effective_sample_size = sums.squared > 0 ? sums.weight * sums.weight / sums.squared : 0;
   result.collided_share =

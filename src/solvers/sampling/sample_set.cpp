@@ -11,7 +11,7 @@ namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-/// Samples a tile: their values fill about 32 KiB, and rollouts take four packs of them at a time.
+/// Samples per tile. Their values fill about 32 KiB, and rollouts process four packs at a time.
 int tile_size(int rows) {
   constexpr int together = 4 * simd::padding;
   const int fitting = 32768 / (4 * std::max(rows, 1)) / together * together;
@@ -24,24 +24,25 @@ SampleSet::SampleSet(int steps, int inputs, int samples, NoiseShape shape)
     : values_(steps, inputs, samples),
       noise_(steps, inputs, samples),
       shape_(std::move(shape)),
-      costs_(static_cast<std::size_t>(padded(samples))),
-      totals_(static_cast<std::size_t>(padded(samples))),
-      weights_(static_cast<std::size_t>(padded(samples))),
-      terms_(static_cast<std::size_t>(padded(samples))),
-      collided_(static_cast<std::size_t>(padded(samples))),
+      costs_(padded(samples)),
+      totals_(padded(samples)),
+      weights_(padded(samples)),
+      terms_(padded(samples)),
+      collided_(padded(samples)),
       tile_(tile_size(steps * inputs)),
-      statistics_(static_cast<std::size_t>(tiles())),
-      weight_sums_(static_cast<std::size_t>(tiles())),
-      least_(static_cast<std::size_t>(tiles())),
-      row_sums_(static_cast<std::size_t>(tiles()) * static_cast<std::size_t>(steps * inputs)),
-      moment_sums_(row_sums_.size() * moments) {}
+      statistics_(tiles()),
+      weight_sums_(tiles()),
+      least_(tiles()),
+      row_sums_(tiles(), steps * inputs),
+      moment_sums_(tiles(), steps * inputs * moments) {}
 
 Range SampleSet::range(int tile) const noexcept {
   const int first = tile * tile_;
   return {first, std::min(tile_, values_.stride() - first)};
 }
 
-/// Noise from the problem's sampler, or normal values where it has none, in its shape.
+/// Fills a range of samples with noise: values of the problem's sampler, or normal values if it has none,
+/// shaped.
 void SampleSet::fill_noise(const Sampler* sampler, SequenceBatch& to, Range r, RandomKey key) noexcept {
   if (sampler) {
     sampler->fill(to, r.first, r.count, key);
@@ -57,16 +58,16 @@ void SampleSet::prepare(RandomKey key, ThreadPool& pool) noexcept {
   prepared_key_ = key;
 }
 
-/// Brings the costs of a tile, evaluated here or before, in order: infinite where not finite and in the
-/// padding.
+/// Evaluates a tile if `evaluator` is not null, sets its costs to infinity where they are not finite and in
+/// the padding, and computes its totals and statistics.
 void SampleSet::finish_tile(int tile, const BatchEvaluator* evaluator, const float* linear,
                             BatchStatistics& statistics) noexcept {
   const Range r = range(tile);
   const int count = std::min(r.count, samples() - r.first);
   if (evaluator) evaluator->evaluate(values_, r.first, count, costs_.data(), collided_.data());
   for (int i = r.first + count; i < r.first + r.count; ++i) {
-    costs_[static_cast<std::size_t>(i)] = infinite;
-    collided_[static_cast<std::size_t>(i)] = 0;
+    costs_[i] = infinite;
+    collided_[i] = 0;
   }
   const CostStatistics<float> found = kernels().finish(row_view(), linear, r, costs_.data(), totals_.data());
   statistics.minimum_cost = found.least_cost;
@@ -74,8 +75,7 @@ void SampleSet::finish_tile(int tile, const BatchEvaluator* evaluator, const flo
   statistics.finite = found.finite;
   statistics.evaluated = count;
   const std::uint8_t* hit = collided_.data() + r.first;
-  statistics.collided =
-      static_cast<int>(std::count_if(hit, hit + count, [](std::uint8_t h) { return h != 0; }));
+  for (int i = 0; i < count; ++i) statistics.collided += hit[i] != 0;
 }
 
 void SampleSet::skip_tile(int tile, BatchStatistics& statistics) noexcept {
@@ -109,7 +109,7 @@ BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, Ra
       !sampler && prepared_ && prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
   prepared_ = false;
   if (evaluator.whole_batches()) {
-    place(sampler, key, to, ready, pool);
+    draw_all(sampler, key, to, ready, pool);
     return evaluate_whole(evaluator, linear, pool, deadline);
   }
   pool.run(tiles(), [&](int tile) {
@@ -121,30 +121,30 @@ BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, Ra
       const Range r = range(tile);
       if (!ready) fill_noise(sampler, values_, r, key);
       SequenceBatch& from = ready ? noise_ : values_;
-      kernels().sample({from.row(0, 0), from.stride(), rows()}, row_view(), to, r);
+      kernels().sample(rows_of(from), row_view(), to, r);
       const auto drawn = Clock::now();
       finish_tile(tile, &evaluator, linear, statistics);
       statistics.draw_time = seconds(start, drawn);
       statistics.evaluate_time = seconds(drawn, Clock::now());
     }
-    statistics_[static_cast<std::size_t>(tile)] = statistics;
+    statistics_[tile] = statistics;
   });
   return combine();
 }
 
-/// Draws, or takes the noise that is ready, and puts it in its place.
-void SampleSet::place(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to,
-                      bool ready, ThreadPool& pool) noexcept {
+/// Draws the samples, from the prepared noise if `ready`.
+void SampleSet::draw_all(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to,
+                         bool ready, ThreadPool& pool) noexcept {
   pool.run(tiles(), [&](int tile) {
     const Range r = range(tile);
     if (!ready) fill_noise(sampler, values_, r, key);
     SequenceBatch& from = ready ? noise_ : values_;
-    kernels().sample({from.row(0, 0), from.stride(), rows()}, row_view(), to, r);
+    kernels().sample(rows_of(from), row_view(), to, r);
   });
 }
 
 void SampleSet::draw(RandomKey key, const SamplingDistribution<float>& to, ThreadPool& pool) noexcept {
-  place(nullptr, key, to, false, pool);
+  draw_all(nullptr, key, to, false, pool);
 }
 
 BatchStatistics SampleSet::evaluate_whole(const BatchEvaluator& evaluator, const float* linear,
@@ -161,7 +161,7 @@ BatchStatistics SampleSet::evaluate_whole(const BatchEvaluator& evaluator, const
       finish_tile(tile, nullptr, linear, statistics);
     }
     if (tile == 0) statistics.evaluate_time = taken;
-    statistics_[static_cast<std::size_t>(tile)] = statistics;
+    statistics_[tile] = statistics;
   });
   return combine();
 }
@@ -178,7 +178,7 @@ BatchStatistics SampleSet::evaluate(const BatchEvaluator& evaluator, const float
       finish_tile(tile, &evaluator, linear, statistics);
       statistics.evaluate_time = seconds(start, Clock::now());
     }
-    statistics_[static_cast<std::size_t>(tile)] = statistics;
+    statistics_[tile] = statistics;
   });
   return combine();
 }
@@ -196,7 +196,7 @@ float SampleSet::mix_totals(float factor, ThreadPool& pool) noexcept {
     const Range r = range(tile);
     kernels().add_scaled(costs_.data(), factor, terms_.data(), r, totals_.data());
     kernels().make_finite(r, totals_.data());
-    least_[static_cast<std::size_t>(tile)] = kernels().minimum(totals_.data(), r);
+    least_[tile] = kernels().minimum(totals_.data(), r);
   });
   return *std::min_element(least_.begin(), least_.end());
 }
@@ -204,7 +204,7 @@ float SampleSet::mix_totals(float factor, ThreadPool& pool) noexcept {
 WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& pool, float index) noexcept {
   const Kernels<float>& k = kernels();
   pool.run(tiles(), [&](int tile) {
-    WeightSums<float>& sums = weight_sums_[static_cast<std::size_t>(tile)];
+    WeightSums<float>& sums = weight_sums_[tile];
     const float *totals = totals_.data(), *costs = costs_.data();
     sums = index == 1
                ? k.exponential_weights(totals, costs, least, temperature, range(tile), weights_.data())
@@ -212,20 +212,20 @@ WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& 
   });
   WeightSums<double> all;
   for (const WeightSums<float>& sums : weight_sums_) {
-    all.weight += static_cast<double>(sums.weight);
-    all.squared += static_cast<double>(sums.squared);
-    all.cost += static_cast<double>(sums.cost);
+    all.weight += sums.weight;
+    all.squared += sums.squared;
+    all.cost += sums.cost;
   }
   return all;
 }
 
 WeightSums<double> SampleSet::sum_weights() const noexcept {
   WeightSums<double> all;
-  for (std::size_t i = 0; i < count(); ++i) {
-    const double w = static_cast<double>(weights_[i]);
+  for (int i = 0; i < samples(); ++i) {
+    const double w = weights_[i];
     all.weight += w;
     all.squared += w * w;
-    if (w > 0) all.cost += w * static_cast<double>(costs_[i]);
+    if (w > 0) all.cost += w * costs_[i];
   }
   return all;
 }
@@ -235,13 +235,11 @@ void SampleSet::scale_weights(double factor) noexcept {
 }
 
 void SampleSet::sum_rows(RowSums kernel, const float* centre, double* sums, ThreadPool& pool) noexcept {
-  const auto n = static_cast<std::size_t>(rows());
-  pool.run(tiles(), [&](int tile) {
-    kernel(row_view(), weights_.data(), centre, range(tile), &row_sums_[static_cast<std::size_t>(tile) * n]);
-  });
-  std::fill_n(sums, n, 0.0);
-  for (std::size_t tile = 0; tile < static_cast<std::size_t>(tiles()); ++tile)
-    for (std::size_t r = 0; r < n; ++r) sums[r] += static_cast<double>(row_sums_[tile * n + r]);
+  pool.run(tiles(),
+           [&](int tile) { kernel(row_view(), weights_.data(), centre, range(tile), row_sums_[tile]); });
+  std::fill_n(sums, rows(), 0.0);
+  for (int tile = 0; tile < tiles(); ++tile)
+    for (int r = 0; r < rows(); ++r) sums[r] += row_sums_[tile][r];
 }
 
 void SampleSet::weighted_sums(const float* centre, double* sums, ThreadPool& pool) noexcept {
@@ -254,14 +252,13 @@ void SampleSet::weighted_squares(const float* centre, double* sums, ThreadPool& 
 
 void SampleSet::two_moments(const float* first, const float* second, const float* centre, double* sums,
                             ThreadPool& pool) noexcept {
-  const std::size_t n = static_cast<std::size_t>(rows()) * moments;
+  const int count = rows() * moments;
   pool.run(tiles(), [&](int tile) {
-    kernels().two_moments(row_view(), first, second, centre, range(tile),
-                          &moment_sums_[static_cast<std::size_t>(tile) * n]);
+    kernels().two_moments(row_view(), first, second, centre, range(tile), moment_sums_[tile]);
   });
-  std::fill_n(sums, n, 0.0);
-  for (std::size_t tile = 0; tile < static_cast<std::size_t>(tiles()); ++tile)
-    for (std::size_t i = 0; i < n; ++i) sums[i] += static_cast<double>(moment_sums_[tile * n + i]);
+  std::fill_n(sums, count, 0.0);
+  for (int tile = 0; tile < tiles(); ++tile)
+    for (int i = 0; i < count; ++i) sums[i] += moment_sums_[tile][i];
 }
 
 }  // namespace slalom::detail

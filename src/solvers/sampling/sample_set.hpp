@@ -12,29 +12,30 @@
 #include "slalom/solvers/solver_base.hpp"
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/sampling/noise_shape.hpp"
+#include "solvers/sampling/rows.hpp"
 
 namespace slalom::detail {
 
 using Clock = Deadline::Clock;
 
-/// Seconds from one moment to another.
+/// Seconds between two points in time.
 inline double seconds(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
 /// Statistics of a batch of samples.
 struct BatchStatistics {
-  float minimum_total = 0;  ///< least cost with control term; infinite if none is finite
-  float minimum_cost = 0;   ///< least cost without
-  int finite = 0;           ///< samples whose cost is finite
-  int collided = 0;         ///< samples that collide
-  int evaluated = 0;        ///< samples that were drawn and evaluated before the deadline
-  double draw_time = 0;     ///< s, summed over threads
-  double evaluate_time = 0;
+  float minimum_total = 0;   ///< lowest cost with the control term; infinite if none is finite
+  float minimum_cost = 0;    ///< lowest cost without the control term; infinite if none is finite
+  int finite = 0;            ///< samples whose cost is finite
+  int collided = 0;          ///< samples that collide
+  int evaluated = 0;         ///< samples that were drawn and evaluated before the deadline
+  double draw_time = 0;      ///< s, summed over threads
+  double evaluate_time = 0;  ///< s, summed over threads
 };
 
-/// A set of control sequences with their costs and weights. Work is cut into tiles of samples that fit the
-/// first-level cache; tiles are the same for every number of threads, and what they yield is combined in
+/// A set of control sequences with their costs and weights. Work is divided into tiles of samples that fit
+/// the first-level cache. The tiles do not depend on the number of threads, and their results are combined in
 /// their order.
 class SampleSet {
  public:
@@ -42,58 +43,58 @@ class SampleSet {
 
   const NoiseShape& shape() const noexcept { return shape_; }
   int samples() const noexcept { return values_.samples(); }
-  int rows() const noexcept { return values_.steps() * values_.inputs(); }
+  int rows() const noexcept { return values_.rows(); }
   const SequenceBatch& values() const noexcept { return values_; }
   SequenceBatch& values() noexcept { return values_; }
   int stride() const noexcept { return values_.stride(); }
-  Rows<float> row_view() noexcept { return {values_.row(0, 0), values_.stride(), rows()}; }
+  Rows<float> row_view() noexcept { return rows_of(values_); }
 
-  /// Costs [sample]; infinite where the evaluator's was not finite or the sample was not reached in time.
+  /// Costs [sample]; infinite if the evaluator's cost is not finite or the deadline passed before.
   std::span<const float> costs() const noexcept { return {costs_.data(), count()}; }
-  /// Costs with the control term.
+  /// Costs with the control term [sample].
   std::span<const float> totals() const noexcept { return {totals_.data(), count()}; }
   std::span<float> totals() noexcept { return {totals_.data(), count()}; }
   std::span<const std::uint8_t> collided() const noexcept { return {collided_.data(), count()}; }
   std::span<const float> weights() const noexcept { return {weights_.data(), count()}; }
   std::span<float> weights() noexcept { return {weights_.data(), count()}; }
 
-  /// Draws the normal values for `key` ahead.
+  /// Draws the normal values for `key` in advance.
   void prepare(RandomKey key, ThreadPool& pool) noexcept;
 
-  /// Draws samples, evaluates them and adds sum of linear[row] v[row] to their costs. Tiles that begin after
-  /// the deadline are left out.
+  /// Draws and evaluates the samples. Their totals are cost + sum of linear[row] v[row]; `linear` may be
+  /// null. Omits tiles that have not started at the deadline.
   BatchStatistics draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
                                     const SamplingDistribution<float>& to, const float* linear,
                                     ThreadPool& pool, const Deadline& deadline) noexcept;
 
-  /// Draws samples alone.
+  /// Draws the samples without evaluating them.
   void draw(RandomKey key, const SamplingDistribution<float>& to, ThreadPool& pool) noexcept;
 
-  /// Evaluates the values as they are.
+  /// Evaluates the present values.
   BatchStatistics evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
                            const Deadline& deadline) noexcept;
 
-  /// Keeps sum of linear[row] v[row] of every sample for `mix_totals`.
+  /// Stores sum of linear[row] v[row] of each sample for `mix_totals`.
   void keep_terms(const float* linear, ThreadPool& pool) noexcept;
-  /// Sets the totals to cost + factor term; returns the least.
+  /// Sets the totals to cost + factor * term and returns the lowest.
   float mix_totals(float factor, ThreadPool& pool) noexcept;
 
-  /// Sets the weights to exp((least - total) / temperature), or to the q-exponential of an `index` q != 1,
-  /// not normalised, and returns their sums.
+  /// Sets the weights to exp((least - total) / temperature), or with an `index` q != 1 to the q-exponential.
+  /// They are not normalised. Returns their sums.
   WeightSums<double> weigh(float least, float temperature, ThreadPool& pool, float index = 1) noexcept;
 
-  /// The sums of the weights as they are.
+  /// Sums over the present weights.
   WeightSums<double> sum_weights() const noexcept;
 
-  /// Multiplies the weights.
+  /// Multiplies the weights by a factor.
   void scale_weights(double factor) noexcept;
 
-  /// sums[row] = sum of w (v - centre), with w the weights as they are.
+  /// sums[row] = sum of w (v - centre), where w are the present weights.
   void weighted_sums(const float* centre, double* sums, ThreadPool& pool) noexcept;
   /// sums[row] = sum of w (v - centre)^2.
   void weighted_squares(const float* centre, double* sums, ThreadPool& pool) noexcept;
-  /// sums[row * moments ...] of two lists of weights [padded sample]: w v and w (v - centre)^2 of the first,
-  /// then of the second.
+  /// sums[row * moments ...] for two lists of weights [padded sample]: the sums of w v and w (v - centre)^2
+  /// of the first list, then of the second.
   void two_moments(const float* first, const float* second, const float* centre, double* sums,
                    ThreadPool& pool) noexcept;
 
@@ -104,8 +105,8 @@ class SampleSet {
   int tiles() const noexcept { return (values_.stride() + tile_ - 1) / tile_; }
   Range range(int tile) const noexcept;
   void fill_noise(const Sampler* sampler, SequenceBatch& to, Range range, RandomKey key) noexcept;
-  void place(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to, bool ready,
-             ThreadPool& pool) noexcept;
+  void draw_all(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to, bool ready,
+                ThreadPool& pool) noexcept;
   BatchStatistics evaluate_whole(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
                                  const Deadline& deadline) noexcept;
   void finish_tile(int tile, const BatchEvaluator* evaluator, const float* linear,
@@ -125,8 +126,8 @@ class SampleSet {
   std::vector<BatchStatistics> statistics_;     ///< [tile]
   std::vector<WeightSums<float>> weight_sums_;  ///< [tile]
   std::vector<float> least_;                    ///< [tile]
-  std::vector<float> row_sums_;                 ///< [tile][row]
-  std::vector<float> moment_sums_;              ///< [tile][row][moment]
+  Matrix<float> row_sums_;                      ///< [tile][row]
+  Matrix<float> moment_sums_;                   ///< [tile][row][moment]
 };
 
 }  // namespace slalom::detail

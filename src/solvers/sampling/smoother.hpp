@@ -2,22 +2,26 @@
 
 #include <vector>
 
+#include "solvers/sampling/rows.hpp"
+
 namespace slalom::detail {
 
-/// Smooths a control sequence (Savitzky and Golay 1964; in MPPI: Williams et al. 2018): every entry becomes
-/// the value there of the polynomial that fits the entries round it best. At the ends, where the window
-/// cannot be centred, the first or last whole window serves. What is a polynomial of the degree already stays
-/// as it is.
+/// Smooths a control sequence (Savitzky and Golay 1964; in MPPI: Williams et al. 2018): every entry is
+/// replaced by the value of the polynomial that best fits the entries in a window around it. At the ends,
+/// where the window cannot be centred, the first or last complete window is used. A polynomial of the degree
+/// does not change.
 ///
 /// With p_0 ... p_d orthonormal polynomials over a window of w entries, entry e of the fit is
 /// sum_j H[e][j] u[j], H[e][j] = sum_i p_i(e) p_i(j).
 class Smoother {
  public:
-  /// Leaves sequences as they are.
+  /// A smoother that does not change sequences.
   Smoother() = default;
-  /// A window of 2 half_width + 1 entries, or as many as there are, and a polynomial of at most `degree`.
+  /// Fits a polynomial of at most `degree` in a window of 2 half_width + 1 entries, or of all `steps` if they
+  /// are fewer.
   Smoother(int steps, int inputs, int half_width, int degree);
 
+  /// Whether `apply` changes sequences.
   bool active() const noexcept { return window_ > 1; }
 
   /// Smooths a sequence [step][input] in place.
@@ -28,8 +32,8 @@ class Smoother {
   int inputs_ = 0;
   int half_width_ = 0;
   int window_ = 0;            ///< w
-  std::vector<double> fit_;   ///< H [e][j]
-  std::vector<double> from_;  ///< the sequence as it was [row]
+  Matrix<double> fit_;        ///< H [e][j]
+  std::vector<double> from_;  ///< the sequence before smoothing [row]
 };
 
 }  // namespace slalom::detail

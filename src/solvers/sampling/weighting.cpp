@@ -7,11 +7,11 @@ namespace slalom::detail {
 
 namespace {
 
-/// The temperatures within which the search stays, as logarithms: 1e-9 ... 1e12.
+/// The limits of the search, as logarithms of the temperature: 1e-9 ... 1e12.
 constexpr double lowest = -20.7, highest = 27.6;
-/// As near as the effective sample size needs to come, as a logarithm, and the most weighings that may cost.
-constexpr double near_enough = 0.01;
-constexpr int most_trials = 40;
+/// Largest error of the effective sample size, as a logarithm, and the largest number of trials.
+constexpr double tolerance = 0.01;
+constexpr int maximum_trials = 40;
 
 double effective(const WeightSums<double>& sums) {
   return sums.squared > 0 ? sums.weight * sums.weight / sums.squared : 0;
@@ -33,17 +33,18 @@ WeightSums<double> Weighting::seek(SampleSet& samples, ThreadPool& pool) noexcep
   const double wanted = std::max(settings_.share * samples.samples(), 1.0);
   double at = std::clamp(std::log(temperature_), lowest, highest);
   double low = at, high = at, low_error = 0, high_error = 0, stride = 1;
-  bool below = false, above = false;  // whether a temperature that is too low, too high is known
-  int side = 0;                       // on which the last trials were
-  for (int trial = 0; trial < most_trials; ++trial) {
+  bool below = false, above = false;  // whether a temperature that is too low or too high is known
+  int side = 0;                       // the side of the last trial: -1 below, 1 above
+  for (int trial = 0; trial < maximum_trials; ++trial) {
     const WeightSums<double> sums = try_temperature(samples, at, pool);
     const double error = std::log(std::max(effective(sums), 1e-3) / wanted);
-    if (std::abs(error) < near_enough) return sums;
+    if (std::abs(error) < tolerance) return sums;
     (error < 0 ? low : high) = at;
     (error < 0 ? low_error : high_error) = error;
     (error < 0 ? below : above) = true;
     if (below && above) {
-      // The Illinois rule: an end that has stood twice counts half, or false position would creep.
+      // The Illinois rule: the error of an end that remained twice is halved, so that false position
+      // converges quickly.
       const int now = error < 0 ? -1 : 1;
       if (now == side) (error < 0 ? high_error : low_error) /= 2;
       side = now;
