@@ -89,9 +89,9 @@ TEST_F(McapRecording, AReplayHoldsEveryFrameInOrder) {
 
 TEST_F(McapRecording, RejectsOtherAndDamagedFiles) {
   const std::string good = record(false, 3);
-  EXPECT_NE(
-      refusal(file("no recording at all, but long enough to have a head and a foot")).find("not an MCAP recording"),
-      std::string::npos);
+  EXPECT_NE(refusal(file("no recording at all, but long enough to have a head and a foot"))
+                .find("not an MCAP recording"),
+            std::string::npos);
   EXPECT_NE(refusal(file(good.substr(0, good.size() - 100))).find("incomplete"), std::string::npos);
   std::string damaged = good;
   damaged[damaged.size() - 60] = static_cast<char>(damaged[damaged.size() - 60] ^ 1);

@@ -8,13 +8,14 @@
 
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace slalom::testing {
 
-/// A web client of the plainest kind: it says what it is told to say, well-formed or not.
+/// A web client that sends what it is told to send, well-formed or not.
 class WebClient {
  public:
   explicit WebClient(std::uint16_t port, int receive_buffer = 0) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
@@ -64,43 +65,73 @@ class WebClient {
   }
 
   /// A message in one masked frame; `opcode` 1 is text, 2 binary.
-  bool send_message(std::string_view text, unsigned opcode = 1) {
-    std::string frame(1, static_cast<char>(0x80u | opcode));
-    if (text.size() < 126) {
-      frame += static_cast<char>(0x80u | text.size());
-    } else if (text.size() < 65536) {
+  bool send_message(std::string_view text, unsigned opcode = 1) { return send_frame(0x80u | opcode, text); }
+
+  /// A masked frame; `first` is its first byte: 0x80 for the last frame of a message, and the opcode.
+  bool send_frame(unsigned first, std::string_view payload) {
+    std::string frame(1, static_cast<char>(first));
+    if (payload.size() < 126) {
+      frame += static_cast<char>(0x80u | payload.size());
+    } else if (payload.size() < 65536) {
       frame += static_cast<char>(0x80u | 126u);
-      frame += static_cast<char>(text.size() >> 8);
-      frame += static_cast<char>(text.size() & 255);
+      frame += static_cast<char>(payload.size() >> 8);
+      frame += static_cast<char>(payload.size() & 255);
     } else {
       frame += static_cast<char>(0x80u | 127u);
-      for (int shift = 56; shift >= 0; shift -= 8) frame += static_cast<char>(text.size() >> shift & 255);
+      for (int shift = 56; shift >= 0; shift -= 8) frame += static_cast<char>(payload.size() >> shift & 255);
     }
     const char mask[4] = {1, 2, 3, 4};
     frame.append(mask, 4);
-    for (std::size_t i = 0; i < text.size(); ++i) frame += static_cast<char>(text[i] ^ mask[i % 4]);
+    for (std::size_t i = 0; i < payload.size(); ++i) frame += static_cast<char>(payload[i] ^ mask[i % 4]);
     return say(frame);
   }
 
-  /// The next message's payload; pings are passed over. Empty if nothing comes or the connection ends.
-  std::string next_message() {
-    for (;;) {
-      if (!need(2)) return {};
-      const unsigned opcode = byte(0) & 15u;
-      std::size_t length = byte(1) & 127u, head = 2;
-      if (length >= 126) {
-        const std::size_t digits = length == 126 ? 2 : 8;
-        if (!need(2 + digits)) return {};
-        length = 0;
-        for (std::size_t i = 0; i < digits; ++i) length = length << 8 | byte(2 + i);
-        head += digits;
-      }
-      if (!need(head + length)) return {};
-      const std::string payload = received_.substr(head, length);
-      received_.erase(0, head + length);
-      if (opcode == 8) return {};
-      if (opcode <= 2) return payload;
+  struct Frame {
+    unsigned opcode = 0;
+    std::string payload;
+  };
+
+  /// The next frame; nothing if the connection ends or nothing comes.
+  std::optional<Frame> next_frame() {
+    if (!need(2)) return {};
+    const unsigned opcode = byte(0) & 15u;
+    std::size_t length = byte(1) & 127u, head = 2;
+    if (length >= 126) {
+      const std::size_t digits = length == 126 ? 2 : 8;
+      if (!need(2 + digits)) return {};
+      length = 0;
+      for (std::size_t i = 0; i < digits; ++i) length = length << 8 | byte(2 + i);
+      head += digits;
     }
+    if (!need(head + length)) return {};
+    Frame frame{opcode, received_.substr(head, length)};
+    received_.erase(0, head + length);
+    return frame;
+  }
+
+  /// The next message's payload; pings are skipped. Empty if nothing comes or the connection ends.
+  std::string next_message() {
+    while (const auto frame = next_frame()) {
+      if (frame->opcode == 8) return {};
+      if (frame->opcode <= 2) return frame->payload;
+    }
+    return {};
+  }
+
+  /// The code of the close frame with which the server ends the connection; 0 if it ends without one.
+  unsigned close_code() {
+    while (const auto frame = next_frame())
+      if (frame->opcode == 8 && frame->payload.size() >= 2)
+        return static_cast<unsigned char>(frame->payload[0]) * 256u +
+               static_cast<unsigned char>(frame->payload[1]);
+    return 0;
+  }
+
+  /// All that comes until the server closes the connection.
+  std::string rest() {
+    while (more()) {
+    }
+    return received_;
   }
 
  private:

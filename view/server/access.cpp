@@ -1,0 +1,85 @@
+#include "view/server/access.hpp"
+
+#include <string>
+
+namespace slalom::view {
+namespace {
+
+/// Compares in a time that does not depend on how many characters are right.
+bool same_secret(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    difference |= static_cast<unsigned>(static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]));
+  return difference == 0;
+}
+
+/// The value of a key in the query of a target; empty if there is none.
+std::string_view query_value(std::string_view target, std::string_view key) {
+  std::size_t at = target.find('?');
+  while (at != std::string_view::npos) {
+    const std::size_t end = target.find('&', at + 1);
+    const std::string_view pair = target.substr(at + 1, end == std::string_view::npos ? end : end - at - 1);
+    const std::size_t equals = pair.find('=');
+    if (pair.substr(0, equals) == key && equals != std::string_view::npos) return pair.substr(equals + 1);
+    at = end;
+  }
+  return {};
+}
+
+/// A host without its port.
+std::string_view host_name(std::string_view host) {
+  if (!host.empty() && host.front() == '[') return host.substr(0, host.find(']') + 1);
+  return host.substr(0, host.find(':'));
+}
+
+/// If the server can be reached from elsewhere, any name may lead to it, and the token decides.
+bool is_own_host(const ServerState& state, std::string_view host) {
+  const std::string_view name = host_name(host);
+  return !state.loopback || name == "localhost" || name == "127.0.0.1" || name == "[::1]" ||
+         name == state.options.host;
+}
+
+/// A browser always sends an Origin; a client that sends none is not a page of another site.
+bool is_own_origin(std::string_view origin, std::string_view host) {
+  return origin.empty() || origin == "http://" + std::string(host) ||
+         origin == "https://" + std::string(host);
+}
+
+Answer refuse(std::atomic<std::uint64_t>& counter, unsigned status, std::string_view reason) {
+  ++counter;
+  return {status, nullptr, reason};
+}
+
+Answer answer_to_upgrade(ServerState& state, const Request& request) {
+  AtomicCounters& counters = state.counters;
+  if (!is_own_origin(request.origin, request.host))
+    return refuse(counters.refused_origin, 403, "pages of another origin are not served\n");
+  if (state.clients.size() >= state.options.max_clients)
+    return refuse(counters.refused_other, 503, "too many clients\n");
+  return {101};
+}
+
+}  // namespace
+
+Answer answer_to(ServerState& state, const Request& request) {
+  AtomicCounters& counters = state.counters;
+  // A second Host or Origin could hide the one that is checked.
+  if (request.is_ambiguous)
+    return refuse(counters.refused_other, 400, "Host and Origin must not be repeated\n");
+  if (!is_own_host(state, request.host))
+    return refuse(counters.refused_origin, 403, "this host name is not served here\n");
+  const std::string& token = state.options.token;
+  if (!token.empty() && !same_secret(query_value(request.target, "token"), token))
+    return refuse(counters.refused_token, 401, "open the printed address, which contains the token\n");
+  const std::string path(request.target.substr(0, request.target.find('?')));
+  if (request.is_upgrade && path == "/ws") return answer_to_upgrade(state, request);
+  if (request.method != "GET" && request.method != "HEAD")
+    return refuse(counters.refused_other, 405, "only GET and HEAD are supported\n");
+  const auto found = state.resources.find(path);
+  if (request.is_upgrade || found == state.resources.end())
+    return refuse(counters.refused_other, 404, "not found\n");
+  return {200, &found->second};
+}
+
+}  // namespace slalom::view

@@ -1,0 +1,41 @@
+#include "view/server/outgoing_queue.hpp"
+
+#include <utility>
+
+namespace slalom::view {
+namespace {
+
+constexpr std::size_t most_messages = 256;
+constexpr std::size_t most_bytes = 64 << 20;
+
+}  // namespace
+
+bool OutgoingQueue::push(const Message& message) {
+  if (messages_.size() >= most_messages || bytes_ + message.body->size() > most_bytes) return false;
+  bytes_ += message.body->size();
+  messages_.push_back(message);
+  return true;
+}
+
+bool OutgoingQueue::set_frame(const std::shared_ptr<const std::string>& frame) {
+  return std::exchange(frame_, frame) != nullptr;
+}
+
+std::optional<OutgoingQueue::Item> OutgoingQueue::next() {
+  if (!messages_.empty()) {
+    Item item{std::move(messages_.front()), false};
+    messages_.pop_front();
+    bytes_ -= item.message.body->size();
+    return item;
+  }
+  if (!frame_) return std::nullopt;
+  return Item{{std::exchange(frame_, nullptr), true}, true};
+}
+
+void OutgoingQueue::clear() {
+  messages_.clear();
+  bytes_ = 0;
+  frame_ = nullptr;
+}
+
+}  // namespace slalom::view

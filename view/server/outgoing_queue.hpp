@@ -1,0 +1,34 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "view/server/server.hpp"
+
+namespace slalom::view {
+
+/// What is to be sent to one client: messages in order, and after them the newest frame.
+class OutgoingQueue {
+ public:
+  struct Item {
+    Message message;
+    bool is_frame = false;
+  };
+
+  /// False if the message does not fit: 256 messages or 64 MiB are already waiting.
+  bool push(const Message& message);
+  /// Sets the frame to be sent. True if an unsent frame was replaced.
+  bool set_frame(const std::shared_ptr<const std::string>& frame);
+  /// Removes and returns what is to be sent next.
+  std::optional<Item> next();
+  void clear();
+
+ private:
+  std::deque<Message> messages_;
+  std::size_t bytes_ = 0;  ///< of the messages
+  std::shared_ptr<const std::string> frame_;
+};
+
+}  // namespace slalom::view
