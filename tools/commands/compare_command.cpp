@@ -220,7 +220,7 @@ Json json_of(const Match& m) {
   entry["first"] = side(m.result_a);
   entry["second"] = side(m.result_b);
   entry["ms_p"] = std::isfinite(m.ms_p) ? Json(m.ms_p) : Json(nullptr);
-  entry["collision_p"] = m.collision_p;
+  entry["contacts_p"] = m.collision_p;
   entry["success_p"] = m.success_p;
   return entry;
 }

@@ -74,7 +74,7 @@ Json comparison_json(const LogComparison& c, const LapLog& log) {
           {"ms_p", number(c.ms_p)},
           {"collision_rate", number(c.collision_rate)},
           {"collision_rate_ci", interval(c.collision_rate_ci)},
-          {"collision_p", number(c.collision_p)},
+          {"contacts_p", number(c.collision_p)},
           {"collision_rate_difference_ci", interval(c.rate_difference_ci)},
           {"success_rate", static_cast<double>(log.successes) / log.laps},
           {"solve_ms", {{"mean", number(log.solve_ms_mean)}, {"max", number(log.solve_ms_max)}}}};
