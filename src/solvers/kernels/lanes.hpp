@@ -7,11 +7,11 @@
 
 namespace slalom::detail {
 
-/// Stands in the place of an instruction set: kernels that run on `double`, one value at a time, for
-/// reference.
+/// Takes the place of an instruction set for the reference kernels, which compute in `double`, one value at a
+/// time.
 struct Reference {};
 
-/// What a kernel computes with: packs of float32, or `double`.
+/// The type that a kernel computes with: packs of float32, or `double`.
 template <class Target>
 struct PackFor {
   using type = Pack<Target>;
@@ -35,7 +35,7 @@ struct Lanes {
     for (int i = 0; i < F::lanes; ++i) total += value.v[i];
     return total;
   }
-  /// The same by halves: a shorter chain of roundings and of dependent additions.
+  /// Pairwise sum: fewer roundings per value and a shorter chain of dependent additions.
   static SLALOM_INLINE float sum_by_halves(const F& value) {
     float part[F::lanes];
     value.store(part);

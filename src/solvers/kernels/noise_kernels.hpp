@@ -3,10 +3,10 @@
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/kernels/lanes.hpp"
 
-/// Bodies of the kernels that shape noise: see noise_shape.hpp.
+/// Kernels that shape noise: see noise_shape.hpp.
 namespace slalom::detail::kernel {
 
-/// `colour` for the `packs` packs from sample k on, which share every entry of L.
+/// `Colour` for `packs` packs that begin at sample k. They share each loaded entry of L.
 template <int packs, class F>
 SLALOM_INLINE void colour_packs(const Rows<RealOf<F>>& z, const RealOf<F>* factor, int first, int step,
                                 int k) {
@@ -25,7 +25,7 @@ SLALOM_INLINE void colour_packs(const Rows<RealOf<F>>& z, const RealOf<F>* facto
   }
 }
 
-/// z <- L z over the rows first, first + step, ... of one input, from the last backwards, in place.
+/// z <- L z over the rows first, first + step, ... of one input, from the last row to the first, in place.
 struct Colour {
   template <class Target>
   SLALOM_KERNEL static void run(const Rows<RealIn<Target>>& z, const RealIn<Target>* factor, int first,
@@ -39,7 +39,7 @@ struct Colour {
   }
 };
 
-/// z <- z exp(s y - s^2). `y` is laid out like z, `spread` [row] is s.
+/// z <- z exp(s y - s^2). `y` has the layout of z; `spread` [row] is s.
 struct SpreadLogNormal {
   template <class Target>
   SLALOM_KERNEL static void run(const Rows<RealIn<Target>>& z, const RealIn<Target>* y,

@@ -3,10 +3,10 @@
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/kernels/lanes.hpp"
 
-/// Bodies of the kernels that work on sets of particles, one particle a lane.
+/// Kernels on sets of particles, with one particle per lane.
 namespace slalom::detail::kernel {
 
-/// Gradients of particles. Sample s of particle p stands at s * particle_stride + p.
+/// Gradients of particles. The index of sample s of particle p is s * particle_stride + p.
 struct ParticleGradients {
   template <class Target>
   SLALOM_KERNEL static void run(const GradientSettings<RealIn<Target>>& g, const Rows<RealIn<Target>>& v,
@@ -50,8 +50,8 @@ struct ParticleGradients {
   }
 };
 
-/// Normal values to samples round particles: clamp(theta_p + deviation z, low, high), or round zero for the
-/// samples from `zero_mean_from` on.
+/// Makes samples around particles from normal values: clamp(theta_p + deviation z, low, high). Samples from
+/// `zero_mean_from` on are around zero.
 struct SampleAround {
   template <class Target>
   SLALOM_KERNEL static void run(const Rows<RealIn<Target>>& samples, const Rows<RealIn<Target>>& theta,
@@ -73,11 +73,11 @@ struct SampleAround {
   }
 };
 
-/// Kernels below exp of this count as 0 beside the 1 of a particle with itself: subnormal ones would make
-/// every operation on them slow.
+/// Kernel values below exp of this count as 0, which is negligible next to the 1 of a particle with itself.
+/// Operations on subnormal values would be slow.
 constexpr double least_exponent = -70;
 
-/// phi of `packs` packs of particles from `i` on: see `stein_directions`.
+/// phi of `packs` packs of particles that begin at particle i: see `SteinDirections`.
 template <int packs, class F>
 SLALOM_INLINE void stein_block(const Rows<RealOf<F>>& x, const Rows<RealOf<F>>& gradient, int count,
                                RealOf<F> bandwidth, int i, const Rows<RealOf<F>>& phi) {
@@ -91,7 +91,7 @@ SLALOM_INLINE void stein_block(const Rows<RealOf<F>>& x, const Rows<RealOf<F>>& 
   F kernel_sum[packs];
   for (int b = 0; b < packs; ++b) kernel_sum[b] = F(0.0f);
   for (int j = 0; j < count; j += together) {
-    // Where fewer are left, the last one stands in for those that lack, with a kernel of zero.
+    // If fewer than `together` remain, the last particle fills the block with a kernel of 0.
     int other[together];
     for (int q = 0; q < together; ++q) other[q] = j + q < count ? j + q : count - 1;
     F kernel[packs][together];
@@ -134,9 +134,9 @@ SLALOM_INLINE void stein_block(const Rows<RealOf<F>>& x, const Rows<RealOf<F>>& 
   }
 }
 
-/// phi of the particles `range`, from all `count` particles: see stein.hpp. The kernel sum is taken in blocks
-/// of two packs of particles and four others, so that what is loaded serves more than once; with the
-/// repulsion's own part apart, sum_j k (g_j + c x_j) - c x_i sum_j k, a pair and row costs three operations.
+/// phi of the particles `range`, given all `count` particles: see stein.hpp. The sums are computed in blocks
+/// of two packs of particles and four others, so that loaded values are used more than once. With the
+/// repulsion split into sum_j k (g_j + c x_j) - c x_i sum_j k, each pair and row costs three operations.
 struct SteinDirections {
   template <class Target>
   SLALOM_KERNEL static void run(const Rows<RealIn<Target>>& x, const Rows<RealIn<Target>>& gradient,
@@ -151,8 +151,8 @@ struct SteinDirections {
   }
 };
 
-/// -log of the probability p / (p + p_rejected) of keeping a sample, from squared distances to the means in
-/// units of the variances: log(1 + e^x) with x = (own - rejected + offset) / 2. Replaces `own`.
+/// -log of the probability p / (p + p_rejected) of keeping a sample, given the squared distances to the means
+/// in units of the variances: log(1 + e^x) with x = (own - rejected + offset) / 2. Replaces `own`.
 struct RejectionLogarithm {
   template <class Target>
   SLALOM_KERNEL static void run(const RealIn<Target>* rejected, RealIn<Target> offset, Range range,

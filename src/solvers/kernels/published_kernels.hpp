@@ -6,13 +6,13 @@
 /// The kernel of the published program's rejection: see published_rejection.hpp.
 namespace slalom::detail::kernel {
 
-/// A product of many factors as its logarithm, which takes one logarithm for all: what has been multiplied is
-/// kept as a number in [1, 2) and an exponent.
+/// The logarithm of a product of many factors, computed with a single logarithm: the product is stored as a
+/// number in [1, 2) and an exponent.
 template <class F>
 class LongProduct {
  public:
   SLALOM_INLINE void multiply(const F& factor) { product_ = product_ * factor; }
-  /// After at most two factors, or they could overflow.
+  /// Normalises the product. To be called after at most two factors, so that it cannot overflow.
   SLALOM_INLINE void settle() {
     if constexpr (is_pack<F>) {
       using V = typename F::Vector;
@@ -50,7 +50,7 @@ class LongProduct {
 };
 
 /// log of prod over rows of (base + density), the inverse of the published program's probability of keeping a
-/// sample: density = exp((v - mean)^2 / deviation) / sqrt(2 pi variance), base the like at another place.
+/// sample: density = exp((v - mean)^2 / deviation) / sqrt(2 pi variance); for base see `RejectionRows`.
 struct PublishedRejection {
   template <class Target>
   SLALOM_KERNEL static void run(const Rows<RealIn<Target>>& v, const RejectionRows<RealIn<Target>>& d,

@@ -6,7 +6,7 @@
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/kernels/lanes.hpp"
 
-/// Kernels that make samples, weigh them and average them. The comments stand at `Kernels`.
+/// Kernels that make samples, compute weights and average. `Kernels` documents each.
 namespace slalom::detail::kernel {
 
 struct Sample {
@@ -25,7 +25,7 @@ struct Sample {
       for (; k < end && k + L::count <= to.zero_mean_from; k += L::count) {
         L::store(clamp(mean + deviation * L::load(z + k), low, high), v + k);
       }
-      if (k < end && k < to.zero_mean_from) {  // the pack in which the share around zero begins
+      if (k < end && k < to.zero_mean_from) {  // the pack that contains the first sample around zero
         Real centre[L::count];
         for (int i = 0; i < L::count; ++i) centre[i] = k + i < to.zero_mean_from ? to.mean[r] : Real(0);
         L::store(clamp(L::load(centre) + deviation * L::load(z + k), low, high), v + k);
@@ -157,9 +157,9 @@ struct ExponentialWeights {
   }
 };
 
-/// e_q(-x) = [1 - (1 - q) x]_+^(1 / (1 - q)) with x = (total - least) / temperature. The power is taken as
-/// exp(log1p(-(1 - q) x) / (1 - q)); y log(1 + y) / ((1 + y) - 1) is log1p(y) without its loss at small y
-/// (Kahan), so that q near 1 is as good as any.
+/// e_q(-x) = [1 - (1 - q) x]_+^(1 / (1 - q)) with x = (total - least) / temperature. The power is computed as
+/// exp(log1p(-(1 - q) x) / (1 - q)), where log1p(y) = y log(1 + y) / ((1 + y) - 1) is exact for small y
+/// (Kahan), so that the result is accurate for q near 1.
 struct TsallisWeights {
   template <class Target>
   SLALOM_KERNEL static WeightSums<RealIn<Target>> run(const RealIn<Target>* totals,
@@ -214,7 +214,7 @@ struct Scale {
   }
 };
 
-/// Four running sums a row, so that additions need not wait for each other.
+/// Uses four running sums per row, so that additions do not depend on each other.
 template <bool squares, class F>
 SLALOM_INLINE void weighted_powers(const Rows<RealOf<F>>& v, const RealOf<F>* weights,
                                    const RealOf<F>* centre, Range range, RealOf<F>* sums) {

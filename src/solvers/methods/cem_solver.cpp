@@ -121,7 +121,7 @@ class CemSolver final : public SolverBase {
       samples_.values().get_sample(best, best_);
     }
     samples_.weighted_sums(zero_.data(), sums_.data(), pool());
-    for (int r = 0; r < rows(); ++r) elite_mean_[r] = static_cast<float>(sums_[r]);
+    std::copy(sums_.begin(), sums_.end(), elite_mean_.begin());
     samples_.weighted_squares(elite_mean_.data(), sums_.data(), pool());
     const float kept = static_cast<float>(options_.smoothing);
     for (std::size_t r = 0; r < size(); ++r) {

@@ -88,8 +88,7 @@ void Guides::shift(double steps) noexcept {
 }
 
 void Guides::round_to_float() noexcept {
-  std::transform(theta_.values().begin(), theta_.values().end(), guides_.values().begin(),
-                 [](double value) { return static_cast<float>(value); });
+  std::copy(theta_.values().begin(), theta_.values().end(), guides_.values().begin());
 }
 
 /// The deviations are smooth: piecewise linear between normal values at knots a third of the horizon apart.
@@ -169,8 +168,8 @@ void Guides::step(int g, int iteration) noexcept {
     theta[r] += step_[r] * slope;
     if (options_.published.clamp_guides) theta[r] = std::clamp<double>(theta[r], low_[r], high_[r]);
     if (!(std::abs(theta[r]) < 1e30)) theta[r] = solution_[r];
-    guides_[g][r] = static_cast<float>(theta[r]);
   }
+  std::copy_n(theta, rows_, guides_[g]);
   std::copy_n(theta, rows_, path_[point(iteration, g)]);
   std::copy_n(guides_[g], rows_, path_float_[point(iteration, g)]);
 }

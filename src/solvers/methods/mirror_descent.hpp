@@ -4,14 +4,15 @@
 
 namespace slalom::detail {
 
-/// A step of mirror descent on the mean and the standard deviation of independent Gaussians, towards the mean
-/// and the standard deviation of the weighted samples (Kobayashi and Fukumoto, "Real-time Sampling-based
-/// Model Predictive Control based on Reverse Kullback-Leibler Divergence and Its Adaptive Acceleration",
-/// 2022):
+/// One step of mirror descent on the mean m and the standard deviation s of independent Gaussians, towards
+/// the mean m_w and the standard deviation s_w of weighted samples (Kobayashi and Fukumoto, "Real-time
+/// Sampling-based Model Predictive Control based on Reverse Kullback-Leibler Divergence and Its Adaptive
+/// Acceleration", 2022):
 ///
 ///     m' = m - eta (m - m_w),   d = -eta (s - s_w),   s' = (d + sqrt(d^2 + 4 s^2)) / 2
 ///
-/// The root keeps s' positive. All arrays hold `rows` entries; variances are s^2; results may replace inputs.
+/// The root keeps s' positive. `step` is eta. All arrays have `rows` entries; variances are s^2. `mean` and
+/// `variance` are replaced.
 template <class Real>
 void mirror_descent(Real step, const Real* weighted_mean, const Real* weighted_variance, int rows, Real* mean,
                     Real* variance) noexcept {
@@ -24,7 +25,7 @@ void mirror_descent(Real step, const Real* weighted_mean, const Real* weighted_v
   }
 }
 
-/// result = (1 - ratio) from + ratio to; may replace either.
+/// result = (1 - ratio) from + ratio to. `result` may be `from` or `to`.
 template <class Real>
 void interpolate(const Real* from, const Real* to, Real ratio, int rows, Real* result) noexcept {
   for (int r = 0; r < rows; ++r) result[r] = (Real(1) - ratio) * from[r] + ratio * to[r];

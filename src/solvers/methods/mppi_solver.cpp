@@ -8,7 +8,7 @@ namespace slalom {
 
 namespace {
 
-/// `mppi`: the closed-form update once, with zero as the nominal sequence.
+/// `mppi`: one closed-form update with zero as the nominal sequence.
 class MppiSolver final : public SolverBase {
  public:
   MppiSolver(const MppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)

@@ -64,7 +64,7 @@ Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const 
     }
     samples_.scale_weights(1.0 / (sums.weight + settings_.normaliser_offset));
     samples_.weighted_sums(zero_.data(), sums_.data(), pool);
-    for (std::size_t r = 0; r < rows; ++r) mean[r] = static_cast<float>(sums_[r]);
+    std::copy(sums_.begin(), sums_.end(), mean);
     if (smoother_.active()) smoother_.apply(mean);
     for (std::size_t r = 0; r < rows; ++r) mean[r] = std::clamp(mean[r], low[r], high[r]);
   } else {

@@ -15,18 +15,17 @@ namespace slalom::detail {
 ///     w_k = exp(-(J_k - min J) / lambda) / sum,   u <- sum_k w_k v_k
 ///
 /// u is the last solution, n the nominal sequence, S the cost of a rollout; alpha = 0 in the papers. The
-/// parts it is composed of can be others: the noise (NoiseShape), the weights and lambda (Weighting); u may
-/// be smoothed (Smoother).
+/// noise (NoiseShape), the weights and lambda (Weighting) can be replaced, and u can be smoothed (Smoother).
 class MppiUpdate {
  public:
   struct Settings {
     double discount = 0;                 ///< alpha
-    double inverse_variance_offset = 0;  ///< 1/input^2
-    double normaliser_offset = 0;
-    double zero_mean_share = 0;
+    double inverse_variance_offset = 0;  ///< added to 1 / variance, 1/input^2
+    double normaliser_offset = 0;        ///< added to the sum of the weights
+    double zero_mean_share = 0;          ///< fraction of the samples that are drawn around zero
   };
 
-  /// From the options of `mppi` or `svg_mppi`.
+  /// Takes the options of `mppi` or `svg_mppi`.
   template <class Options>
   MppiUpdate(const Options& o, int inputs)
       : MppiUpdate(
@@ -40,10 +39,12 @@ class MppiUpdate {
                 : Smoother()) {}
 
   SampleSet& samples() noexcept { return samples_; }
+  /// Returns to the configured temperature.
   void reset() noexcept { weighting_.reset(); }
 
-  /// Replaces `mean` [row] (u) by the new solution, which is within the bounds. `nominal` and `variance` are
-  /// [row]. Without a single finite cost `mean` stays. Fills the result's statistics and returns its status.
+  /// Replaces `mean` [row] (u) by the new solution, clamped to the bounds. `nominal`, `variance`, `low` and
+  /// `high` are [row]. If no cost is finite, `mean` does not change. Writes the statistics to `result` and
+  /// returns the status.
   Status update(const BatchEvaluator& evaluator, RandomKey key, const float* nominal, const float* variance,
                 const float* low, const float* high, ThreadPool& pool, const Deadline& deadline, float* mean,
                 SolveResult& result) noexcept;

@@ -42,7 +42,7 @@ class Resampler {
     for (int k = 0; k < count; ++k) {
       const auto weight = static_cast<std::int64_t>(weights[k] * unit);
       running += weight;
-      running_[k] = static_cast<double>(running);
+      running_[k] = running;
       const double at = running_[k] * scale - start;
       const int below = static_cast<int>(at);
       mark_[weight > 0 ? begin : wanted] = k;
@@ -59,7 +59,7 @@ class Resampler {
   /// Draws samples independently. A table of cut points makes the search of a sample short.
   void pick_independently(const float* weights, int wanted, RandomStream& random, int* indices) noexcept {
     const auto count = static_cast<int>(running_.size());
-    const auto sum = static_cast<double>(mark_evenly(weights, count, 0, cut_.data()));
+    const double sum = mark_evenly(weights, count, 0, cut_.data());
     for (int k = 0; k < wanted; ++k) {
       const double uniform = random() * 0x1p-32;
       const double at = uniform * sum;

@@ -187,10 +187,9 @@ class ReverseMppiSolver final : public SolverBase {
     const auto begin = detail::Clock::now();
     if (statistics.finite == 0) return false;
     const detail::Range range{0, samples_.stride()};
-    const detail::ReverseSums sums = detail::reverse_weights(
-        samples_.totals().data(), static_cast<float>(options_.temperature),
-        static_cast<float>(options_.negative_ratio), static_cast<float>(options_.published.normaliser_offset),
-        range, evaluated_.data(), rejected_.data());
+    const detail::ReverseSums sums = detail::reverse_weights<float>(
+        samples_.totals().data(), options_.temperature, options_.negative_ratio,
+        options_.published.normaliser_offset, range, evaluated_.data(), rejected_.data());
     if (!(sums.evaluated > 0)) {  // all costs are equal: no sample is better than another
       const float equal = 1.0f / statistics.finite;
       for (std::size_t k = 0; k < evaluated_.size(); ++k)
@@ -198,8 +197,8 @@ class ReverseMppiSolver final : public SolverBase {
     }
     const Gaussian& before = now_;
     for (std::size_t r = 0; r < size(); ++r)
-      inverse_[r] = detail::inverse_variance(before.variance[r],
-                                             static_cast<float>(options_.published.inverse_variance_offset));
+      inverse_[r] =
+          detail::inverse_variance<float>(before.variance[r], options_.published.inverse_variance_offset);
     std::copy(before.mean.begin(), before.mean.end(), shifted_.begin());
     samples_.two_moments(evaluated_.data(), rejected_.data(), shifted_.data(), sums_.data(), pool());
     if (sums.rejected > 0) descend(2, now_rejected_);
@@ -217,8 +216,8 @@ class ReverseMppiSolver final : public SolverBase {
       moment_mean_[r] = static_cast<float>(sums_[r * detail::moments + list]);
       moment_variance_[r] = static_cast<float>(sums_[r * detail::moments + list + 1] * scale);
     }
-    detail::mirror_descent(static_cast<float>(options_.step), moment_mean_.data(), moment_variance_.data(),
-                           rows(), g.mean.data(), g.variance.data());
+    detail::mirror_descent<float>(options_.step, moment_mean_.data(), moment_variance_.data(), rows(),
+                                  g.mean.data(), g.variance.data());
     for (std::size_t r = 0; r < size(); ++r) {
       const float least = std::min(least_variance_[r], first_variance_[r]);
       g.variance[r] = std::clamp(g.variance[r], least, 1e12f);

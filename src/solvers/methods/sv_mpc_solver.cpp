@@ -43,8 +43,7 @@ class SvMpcSolver final : public SolverBase {
         shifted_(size()),
         sums_(size()) {
     for (std::size_t r = 0; r < size(); ++r) {
-      inverse_[r] = detail::inverse_variance(deviation_[r],
-                                             static_cast<float>(options.published.inverse_variance_offset));
+      inverse_[r] = detail::inverse_variance<float>(deviation_[r], options.published.inverse_variance_offset);
       deviation_[r] = std::sqrt(deviation_[r]);
     }
     reset(options.seed);
@@ -138,8 +137,8 @@ class SvMpcSolver final : public SolverBase {
   /// of gradients and weights.
   void set_prior() noexcept {
     for (std::size_t r = 0; r < size(); ++r) {
-      prior_inverse_[r] = detail::inverse_variance(
-          variance_[r], static_cast<float>(options_.published.inverse_variance_offset));
+      prior_inverse_[r] =
+          detail::inverse_variance<float>(variance_[r], options_.published.inverse_variance_offset);
       const float curvature = prior_inverse_[r] + inverse_[r];
       limited_step_[r] =
           options_.limit_step && curvature > 0 ? std::min(step_[r], 1.0f / curvature) : step_[r];
@@ -224,7 +223,7 @@ class SvMpcSolver final : public SolverBase {
       variance_[r] = std::clamp(static_cast<float>(sums_[r] * scale), least, 1e12f);
     }
     particles_.weighted_sums(zero_.data(), sums_.data(), pool());
-    for (std::size_t r = 0; r < size(); ++r) mean_[r] = static_cast<float>(sums_[r]);
+    std::copy(sums_.begin(), sums_.end(), mean_.begin());
     if (options_.best_particle) {
       const auto weights = particles_.weights();
       const auto best = std::max_element(weights.begin(), weights.end()) - weights.begin();

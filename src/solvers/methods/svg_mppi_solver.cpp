@@ -9,8 +9,9 @@ namespace slalom {
 namespace {
 
 /// `svg_mppi` (Honda et al., "Stein Variational Guided Model Predictive Path Integral Control", ICRA 2024):
-/// (a) guides move to modes, (b) the best is the nominal sequence, (c) the variances are fitted to its path,
-/// (d) MPPI with that nominal and those variances.
+/// (a) guides move to modes (equations (9) to (11)), (b) the best guide is the nominal sequence (equation
+/// (12)), (c) the variances are fitted to its path (equation (13)), (d) MPPI uses that nominal sequence and
+/// those variances (equations (7) and (8)).
 class SvgMppiSolver final : public SolverBase {
  public:
   SvgMppiSolver(const SvgMppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
@@ -53,7 +54,7 @@ class SvgMppiSolver final : public SolverBase {
     if (shift_) shift(warm_start_shift(evaluator, request));
 
     guides_.restart_others(key(restarts));
-    // The guides may take half of the time allowed: without samples they are worth nothing.
+    // The guides may use half of the time: without samples, they do not give a solution.
     result_.iterations =
         guides_.move(evaluator, key(gradients), mean_.data(), nominal_.data(), pool(), deadline.part(0.5));
     if (use_nominal_ && guides_.best_cost() < std::numeric_limits<float>::infinity()) {
