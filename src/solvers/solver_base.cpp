@@ -22,7 +22,7 @@ float not_above(double bound) {
   return f > bound ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
 }
 
-/// Marks the first sample of a tile that was evaluated, beside its collision.
+/// Marks the first sample of an evaluated tile, in addition to its collision flag.
 constexpr std::uint8_t evaluated_mark = 2;
 
 template <class Real>

@@ -15,8 +15,10 @@ namespace slalom {
 
 /// An options aggregate of a method, see `SolverOptions`.
 template <class Options>
-concept MethodOptions = std::copy_constructible<Options> && requires {
+concept MethodOptions = requires {
   { Options::method } -> std::convertible_to<const char*>;
+  // Second: for `SolverOptions` itself, this would check the constructor below, and so this concept, again.
+  requires std::copy_constructible<Options>;
 };
 
 /// The options of any one method, so that the command line, configuration files, bindings and tests serve

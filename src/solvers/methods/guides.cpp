@@ -15,8 +15,8 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 
 /// A value for each row, from one for each input.
 std::vector<float> spread(const PerInput& values, int horizon, int inputs) {
-  std::vector<float> rows;
-  for (int r = 0; r < horizon * inputs; ++r) rows.push_back(static_cast<float>(values[r % inputs]));
+  std::vector<float> rows(horizon * inputs);
+  for (int r = 0; r < horizon * inputs; ++r) rows[r] = static_cast<float>(values[r % inputs]);
   return rows;
 }
 

@@ -9,7 +9,7 @@
 /// The rejection of samples in the published program of Honda et al. (ICRA 2024).
 namespace slalom::detail {
 
-/// What the published program takes for a normal density: exp((x - mean)^2 / deviation) / sqrt(2 pi
+/// The published program's density in place of the normal one: exp((x - mean)^2 / deviation) / sqrt(2 pi
 /// variance). Its exponent has the wrong sign and scale, so it grows with the distance.
 template <class Real>
 Real published_density(Real x, Real mean, Real variance) noexcept {
@@ -29,7 +29,7 @@ class PublishedRejection {
            const Real* rejected_variance) noexcept {
     for (int r = 0; r < rows_; ++r) {
       values_[1][r] = rejected_mean[r];
-      if (!(variance[r] > 0) || !(rejected_variance[r] > 0)) {  // an input that is not sampled has no say
+      if (!(variance[r] > 0) || !(rejected_variance[r] > 0)) {  // an input that is not sampled has no effect
         values_[0][r] = 1;
         values_[2][r] = values_[3][r] = 0;
         continue;

@@ -2,7 +2,7 @@
 
 #include "solvers/kernels/kernels.hpp"
 
-/// What the published program of Honda et al. (ICRA 2024) does otherwise in Stein variational MPC.
+/// Where the published program of Honda et al. (ICRA 2024) differs in Stein variational MPC.
 namespace slalom::detail {
 
 /// Squared norms of the particles, from which the program takes its bandwidth. Returns their number.
