@@ -58,53 +58,53 @@ Option& Option::describe(const std::string& help) {
   return *this;
 }
 
-void Command::summary(const std::string& text) {
+void Subcommand::summary(const std::string& text) {
   parser_.description(text);
 }
 
-void Command::footer(const std::string& text) {
+void Subcommand::footer(const std::string& text) {
   parser_.footer(text);
 }
 
-Option Command::option(const std::string& name, std::string& value, const std::string& help) {
+Option Subcommand::option(const std::string& name, std::string& value, const std::string& help) {
   return Option(parser_.add_option(name, value, help));
 }
 
-Option Command::option(const std::string& name, int& value, const std::string& help) {
+Option Subcommand::option(const std::string& name, int& value, const std::string& help) {
   return Option(parser_.add_option(name, value, help));
 }
 
-Option Command::option(const std::string& name, std::uint16_t& value, const std::string& help) {
+Option Subcommand::option(const std::string& name, std::uint16_t& value, const std::string& help) {
   return Option(parser_.add_option(name, value, help));
 }
 
-Option Command::option(const std::string& name, std::uint64_t& value, const std::string& help) {
+Option Subcommand::option(const std::string& name, std::uint64_t& value, const std::string& help) {
   return Option(parser_.add_option(name, value, help));
 }
 
-Option Command::option(const std::string& name, double& value, const std::string& help) {
+Option Subcommand::option(const std::string& name, double& value, const std::string& help) {
   return Option(parser_.add_option(name, value, help));
 }
 
-Option Command::option(const std::string& name, std::optional<double>& value, const std::string& help) {
+Option Subcommand::option(const std::string& name, std::optional<double>& value, const std::string& help) {
   return Option(parser_.add_option(name, value, help));
 }
 
-Option Command::option(const std::string& name, std::vector<std::string>& value, const std::string& help) {
+Option Subcommand::option(const std::string& name, std::vector<std::string>& value, const std::string& help) {
   return Option(parser_.add_option(name, value, help));
 }
 
-Option Command::flag(const std::string& name, bool& value, const std::string& help) {
+Option Subcommand::flag(const std::string& name, bool& value, const std::string& help) {
   return Option(parser_.add_flag(name, value, help));
 }
 
-Option Command::find(const std::string& name) {
+Option Subcommand::find(const std::string& name) {
   CLI::Option* found = parser_.get_option_no_throw(name);
   if (found == nullptr) throw std::invalid_argument("unknown option " + name);
   return Option(found);
 }
 
-bool Command::given(const std::string& name) const {
+bool Subcommand::given(const std::string& name) const {
   return parser_.count(name) > 0;
 }
 
@@ -144,10 +144,10 @@ int parse_and_run(int argc, const char* const* argv, const std::vector<CommandEn
       "slalom"};
   app.set_version_flag("--version", std::string("slalom ") + version());
   app.require_subcommand(1);
-  std::deque<Command> commands;
+  std::deque<Subcommand> commands;
   for (const CommandEntry& entry : entries) {
     CLI::App* parser = app.add_subcommand(entry.name);
-    Command& command = commands.emplace_back(*parser);
+    Subcommand& command = commands.emplace_back(*parser);
     entry.declare(command);
     parser->callback([&command, &exit_status] { exit_status = command.run(); });
   }

@@ -48,12 +48,12 @@ class Option {
 };
 
 /// A sub-command of the program: its options and what it does.
-class Command {
+class Subcommand {
  public:
   /// Declares on `parser`, which belongs to the caller.
-  explicit Command(CLI::App& parser) : parser_(parser) {}
-  Command(const Command&) = delete;
-  Command& operator=(const Command&) = delete;
+  explicit Subcommand(CLI::App& parser) : parser_(parser) {}
+  Subcommand(const Subcommand&) = delete;
+  Subcommand& operator=(const Subcommand&) = delete;
 
   void summary(const std::string& text);
   /// Text below the options in the help.
@@ -87,7 +87,7 @@ class Command {
 /// A command by its name, and the function that declares it.
 struct CommandEntry {
   const char* name;
-  void (*declare)(Command& command);
+  void (*declare)(Subcommand& command);
 };
 
 /// Parses the command line, checks it and runs the command that it names. Prints help, version and errors.

@@ -194,7 +194,7 @@ class Bench {
 
 }  // namespace
 
-void declare_bench(Command& command) {
+void declare_bench(Subcommand& command) {
   command.summary(
       "Measure the speed of rollouts, methods and planner on this machine, relative to scalar code");
   const auto arguments = std::make_shared<Arguments>();

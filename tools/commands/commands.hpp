@@ -7,19 +7,19 @@
 /// The sub-commands of the program. `declare_<name>` is in `<name>_command.cpp`.
 namespace slalom::tools {
 
-void declare_bench(Command& command);
-void declare_compare(Command& command);
-void declare_drive(Command& command);
-void declare_eval(Command& command);
-void declare_explain(Command& command);
-void declare_hardware(Command& command);
-void declare_identify(Command& command);
-void declare_options(Command& command);
-void declare_replay(Command& command);
-void declare_reproduce(Command& command);
-void declare_track(Command& command);
-void declare_tune(Command& command);
-void declare_view(Command& command);
+void declare_bench(Subcommand& command);
+void declare_compare(Subcommand& command);
+void declare_drive(Subcommand& command);
+void declare_eval(Subcommand& command);
+void declare_explain(Subcommand& command);
+void declare_hardware(Subcommand& command);
+void declare_identify(Subcommand& command);
+void declare_options(Subcommand& command);
+void declare_replay(Subcommand& command);
+void declare_reproduce(Subcommand& command);
+void declare_track(Subcommand& command);
+void declare_tune(Subcommand& command);
+void declare_view(Subcommand& command);
 
 /// All of them, in alphabetical order.
 const std::vector<CommandEntry>& all_commands();

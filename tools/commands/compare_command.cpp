@@ -268,7 +268,7 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void declare_compare(Command& command) {
+void declare_compare(Subcommand& command) {
   command.summary("Compare two evaluations, with tests of significance");
   const auto arguments = std::make_shared<Arguments>();
   command.option("first", arguments->first, "Output folder of an evaluation, or a folder of several")

@@ -198,7 +198,7 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void declare_drive(Command& command) {
+void declare_drive(Subcommand& command) {
   command.summary("Drive laps; write results, recordings and pictures");
   const auto arguments = std::make_shared<Arguments>();
   add_scenario_options(command, arguments->scenario);

@@ -43,7 +43,7 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void declare_eval(Command& command) {
+void declare_eval(Subcommand& command) {
   command.summary("Evaluate methods over many laps, with confidence intervals and paired tests");
   const auto arguments = std::make_shared<Arguments>();
   command.option("--methods", arguments->methods, "Separated by commas").comma_separated().show_default();

@@ -120,7 +120,7 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void declare_explain(Command& command) {
+void declare_explain(Subcommand& command) {
   command.summary(
       "Show how methods solve a problem with two homotopy classes: samples, guides, plan, distribution");
   const auto arguments = std::make_shared<Arguments>();

@@ -224,7 +224,7 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void declare_hardware(Command& command) {
+void declare_hardware(Subcommand& command) {
   command.summary(
       "Evaluate laps under the conditions of a real car: noise, slip, localisation, servo mismatch");
   const auto arguments = std::make_shared<Arguments>();

@@ -135,7 +135,7 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void declare_identify(Command& command) {
+void declare_identify(Subcommand& command) {
   command.summary("Estimate steering gain, offset, delay, lag and wheelbase of a car from a recording");
   const auto arguments = std::make_shared<Arguments>();
   command

@@ -86,7 +86,7 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void declare_options(Command& command) {
+void declare_options(Subcommand& command) {
   command.summary("List all options with values, units and ranges");
   const auto arguments = std::make_shared<Arguments>();
   command

@@ -51,7 +51,7 @@ constexpr struct {
               {"--port", bag | recording}};
 
 /// Throws IoError if an option was given that has no effect for this kind.
-void refuse_unheeded(const Command& command, Kind kind) {
+void refuse_unheeded(const Subcommand& command, Kind kind) {
   for (const auto& [option, kinds] : heeded)
     if (command.given(option) && (kinds & kind) == 0)
       throw IoError(option, 0, std::string("has no effect where ") + kind_name(kind) + " is replayed");
@@ -99,13 +99,13 @@ int replay_lap(const Arguments& arguments) {
         "--lap", 0,
         std::to_string(arguments.lap) + " must be in [0, " + std::to_string(experiment.laps - 1) + "]");
   Scenario scenario;
-  const Evaluation evaluation = rebuild_campaign(stored, arguments.course, scenario);
+  const Evaluation evaluation = rebuild_evaluation(stored, arguments.course, scenario);
   LapRunner runner = make_runner(evaluation, index);
   const std::uint64_t seed = lap_seed(evaluation.seed0, arguments.lap, experiment.obstacles);
   std::unique_ptr<Recording> recording;
   if (!arguments.record.empty()) {
     const auto settings = Json::parse(stored.settings);
-    const ScenarioArguments told = campaign_arguments(stored, arguments.course);
+    const ScenarioArguments told = evaluation_arguments(stored, arguments.course);
     recording = make_recording(arguments.record, {.arguments = told,
                                                   .scenario = scenario,
                                                   .method = experiment.method,
@@ -177,7 +177,7 @@ int replay_bag(Arguments& arguments) {
   return replay_recording(arguments.recording);
 }
 
-int run(Arguments& arguments, const Command& command) {
+int run(Arguments& arguments, const Subcommand& command) {
   const Kind kind = std::filesystem::is_directory(arguments.folder) ? lap_of_evaluation
                     : is_bag(arguments.folder)                      ? bag
                                                                     : recording;
@@ -191,7 +191,7 @@ int run(Arguments& arguments, const Command& command) {
 
 }  // namespace
 
-void declare_replay(Command& command) {
+void declare_replay(Subcommand& command) {
   command.summary("Show a recording or bag in the browser, or repeat a lap of an evaluation");
   const auto arguments = std::make_shared<Arguments>();
   command.option("what", arguments->folder, "MCAP recording, ROS 1 bag, or output folder of an evaluation")

@@ -133,7 +133,7 @@ int run(Arguments arguments) {
 
 }  // namespace
 
-void declare_reproduce(Command& command) {
+void declare_reproduce(Subcommand& command) {
   command.summary("Reproduce the simulation section of the paper and compare it with the authors' logs");
   const auto arguments = std::make_shared<Arguments>();
   auto& scenario = arguments->evaluation.scenario;

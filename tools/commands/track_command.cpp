@@ -19,12 +19,12 @@ namespace slalom::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using vehicle::Track;
-using vehicle::TrackOptions;
+using vehicle::GeneratedTrack;
+using vehicle::TrackGeneratorOptions;
 
 struct Arguments {
-  TrackOptions options;
-  std::string character = vehicle::name(TrackOptions{}.character);
+  TrackGeneratorOptions options;
+  std::string character = vehicle::name(TrackGeneratorOptions{}.character);
   std::optional<double> width, top_speed;
   std::string out, name, description, json;
   bool no_picture = false;
@@ -53,8 +53,8 @@ std::string folder_name(const std::string& folder) {
 }
 
 /// The command that makes the same track again, wherever the folder lies: --out is its last part only.
-std::string command_of(const Arguments& arguments, const TrackOptions& options) {
-  const TrackOptions defaults;
+std::string command_of(const Arguments& arguments, const TrackGeneratorOptions& options) {
+  const TrackGeneratorOptions defaults;
   std::string text = "slalom track --seed " + std::to_string(options.seed) + " --length " +
                      short_number(options.length) + " --width " + short_number(options.width) +
                      " --character " + arguments.character;
@@ -72,7 +72,7 @@ std::string command_of(const Arguments& arguments, const TrackOptions& options) 
   return text + " --out " + shell_word(folder);
 }
 
-Json summary_of(const Track& track, const Arguments& arguments, const std::string& command) {
+Json summary_of(const GeneratedTrack& track, const Arguments& arguments, const std::string& command) {
   double slowest = track.raceline.front().speed, fastest = slowest, sharpest = 0;
   for (const auto& point : track.raceline) {
     slowest = std::min(slowest, point.speed);
@@ -99,14 +99,14 @@ Json summary_of(const Track& track, const Arguments& arguments, const std::strin
 }
 
 void run(Arguments arguments) {
-  TrackOptions options = arguments.options;
+  TrackGeneratorOptions options = arguments.options;
   options.character = vehicle::track_character(arguments.character);
   options.width = arguments.width.value_or(vehicle::usual_width(options.character));
   options.limits.top_speed = arguments.top_speed.value_or(vehicle::usual_top_speed(options.character));
   if (arguments.name.empty()) arguments.name = folder_name(arguments.out);
   const std::string command = command_of(arguments, options);
 
-  const Track track = vehicle::generate_track(options);
+  const GeneratedTrack track = vehicle::generate_track(options);
   vehicle::save_track(track, arguments.out, {arguments.name, arguments.description, command});
   if (!arguments.no_picture) draw_track(track, arguments.name, fs::path(arguments.out) / "picture.png");
 
@@ -122,10 +122,10 @@ void run(Arguments arguments) {
 
 }  // namespace
 
-void declare_track(Command& command) {
+void declare_track(Subcommand& command) {
   command.summary("Generate a course: map, raceline with speeds, obstacle path, picture");
   const auto arguments = std::make_shared<Arguments>();
-  TrackOptions& options = arguments->options;
+  TrackGeneratorOptions& options = arguments->options;
   command.option("--out", arguments->out, "Output folder; created if it does not exist").required();
   command.option("--seed", options.seed, "Seed; the same options and seed give the same files")
       .show_default();

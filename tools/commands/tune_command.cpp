@@ -24,7 +24,7 @@ int run(const TuningArguments& arguments) {
 
 }  // namespace
 
-void declare_tune(Command& command) {
+void declare_tune(Subcommand& command) {
   command.summary("Tune options by successive halving over paired seeds; validate on held-out seeds");
   const auto arguments = std::make_shared<TuningArguments>();
   add_method_option(command, arguments->method);

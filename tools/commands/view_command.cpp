@@ -63,7 +63,7 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void declare_view(Command& command) {
+void declare_view(Subcommand& command) {
   command.summary("Drive and serve an interactive page in the browser");
   const auto arguments = std::make_shared<Arguments>();
   arguments->scenario.obstacles = 8;

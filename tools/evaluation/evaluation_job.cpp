@@ -12,7 +12,7 @@
 #include "tools/evaluation/build_id.hpp"
 #include "tools/evaluation/ranks.hpp"
 #include "tools/json/json.hpp"
-#include "tools/terminal/campaign_progress.hpp"
+#include "tools/terminal/evaluation_progress.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -96,7 +96,7 @@ std::string course_hash(const Environment& environment) {
   return text;
 }
 
-void add_evaluation_options(Command& command, EvaluationArguments& a) {
+void add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
   command.option("--course", a.scenario.course, "Course name or folder").show_default();
   command
       .option("--config", a.scenario.config,
@@ -173,8 +173,8 @@ Json Evaluated::summary() const {
           {"comparisons", pairs}};
 }
 
-Evaluation make_campaign(const EvaluationArguments& arguments, const Scenario& scenario,
-                         const std::vector<Experiment>& experiments) {
+Evaluation make_evaluation(const EvaluationArguments& arguments, const Scenario& scenario,
+                           const std::vector<Experiment>& experiments) {
   return {.environment = scenario.environment,
           .configuration = scenario.configuration,
           .experiments = experiments,
@@ -185,8 +185,8 @@ Evaluation make_campaign(const EvaluationArguments& arguments, const Scenario& s
           .any_build = arguments.any_build};
 }
 
-bool drive_campaign(const Evaluation& evaluation, const EvaluationArguments& arguments,
-                    const std::string& title, const std::atomic<bool>& cancel, std::vector<LapRow>& rows) {
+bool drive_evaluation(const Evaluation& evaluation, const EvaluationArguments& arguments,
+                      const std::string& title, const std::atomic<bool>& cancel, std::vector<LapRow>& rows) {
   if (arguments.jobs < 0 || arguments.jobs > 1024)
     throw IoError("--jobs", 0, std::to_string(arguments.jobs) + " must be in [0, 1024]");
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -204,7 +204,7 @@ bool drive_campaign(const Evaluation& evaluation, const EvaluationArguments& arg
   }
   require_object(std::filesystem::path(arguments.out) / "settings.json");
   LapStore store(arguments.out, evaluation, arguments.resume);
-  CampaignProgressBar bar(title);
+  EvaluationProgressBar bar(title);
   EvaluationQueue work(
       evaluation, store, [&](const EvaluationProgress& p) { bar.show(p); }, cancel);
   drive_with_ranks(evaluation, work, jobs, cancel);
@@ -221,9 +221,10 @@ bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Expe
   if (experiments.empty()) throw IoError("--methods", 0, "names no method");
   const Scenario scenario = load_scenario(arguments.scenario, experiments.front().method);
   evaluated.course_folder = scenario.folder;
-  evaluated.evaluation = make_campaign(arguments, scenario, experiments);
+  evaluated.evaluation = make_evaluation(arguments, scenario, experiments);
   const InterruptFlag interrupt;
-  if (!drive_campaign(evaluated.evaluation, arguments, "", interrupt.raised(), evaluated.rows)) return false;
+  if (!drive_evaluation(evaluated.evaluation, arguments, "", interrupt.raised(), evaluated.rows))
+    return false;
   evaluated.results = summarise(evaluated.rows, evaluated.evaluation.experiments);
   return true;
 }

@@ -25,7 +25,7 @@ struct EvaluationArguments {
 
 /// Adds --course, --config, --evaluation, --latency-ms, --seed0, --jobs, --out, --resume, --any-build and
 /// --json.
-void add_evaluation_options(Command& command, EvaluationArguments& arguments);
+void add_evaluation_options(Subcommand& command, EvaluationArguments& arguments);
 
 /// Whether an option affects laps of a method: an option of the method, vehicle, planner or world.
 bool applies_to(const std::string& key, const std::string& method);
@@ -54,17 +54,17 @@ struct Evaluated {
 };
 
 /// All that is driven, with the settings that are kept beside the laps.
-evaluation::Evaluation make_campaign(const EvaluationArguments& arguments, const Scenario& scenario,
-                                     const std::vector<evaluation::Experiment>& experiments);
+evaluation::Evaluation make_evaluation(const EvaluationArguments& arguments, const Scenario& scenario,
+                                       const std::vector<evaluation::Experiment>& experiments);
 
 /// Drives what is still missing in `arguments.out`, with a progress line that begins with `title`. False if
 /// it was interrupted, and under mpirun in all processes but the first, which has the rows.
 /// Throws IoError and what a lap throws.
-bool drive_campaign(const evaluation::Evaluation& evaluation, const EvaluationArguments& arguments,
-                    const std::string& title, const std::atomic<bool>& cancel,
-                    std::vector<evaluation::LapRow>& rows);
+bool drive_evaluation(const evaluation::Evaluation& evaluation, const EvaluationArguments& arguments,
+                      const std::string& title, const std::atomic<bool>& cancel,
+                      std::vector<evaluation::LapRow>& rows);
 
-/// Drives it with a progress line; false (and no summary) where drive_campaign is. Throws what that throws.
+/// Drives it with a progress line; false (and no summary) where drive_evaluation is. Throws what that throws.
 bool run_evaluation(const EvaluationArguments& arguments,
                     const std::vector<evaluation::Experiment>& experiments, Evaluated& evaluated);
 

@@ -88,7 +88,7 @@ int StoredEvaluation::find(const std::string& name, const std::string& scenario)
   throw IoError(folder.string(), 0, "--method and --scenario must name one of these experiments:" + names);
 }
 
-ScenarioArguments campaign_arguments(const StoredEvaluation& stored, const std::string& course) {
+ScenarioArguments evaluation_arguments(const StoredEvaluation& stored, const std::string& course) {
   const fs::path file = stored.folder / "settings.json";
   ScenarioArguments arguments;
   try {
@@ -107,13 +107,13 @@ ScenarioArguments campaign_arguments(const StoredEvaluation& stored, const std::
   return arguments;
 }
 
-evaluation::Evaluation rebuild_campaign(const StoredEvaluation& stored, const std::string& course,
-                                        Scenario& scenario) {
+evaluation::Evaluation rebuild_evaluation(const StoredEvaluation& stored, const std::string& course,
+                                          Scenario& scenario) {
   const fs::path file = stored.folder / "settings.json";
   evaluation::Evaluation evaluation;
   try {
     const auto settings = Json::parse(stored.settings);
-    const ScenarioArguments arguments = campaign_arguments(stored, course);
+    const ScenarioArguments arguments = evaluation_arguments(stored, course);
     scenario = load_scenario(arguments, stored.experiments.front().method);
     if (const auto hash = settings.at("course_hash").get<std::string>();
         hash != course_hash(*scenario.environment))

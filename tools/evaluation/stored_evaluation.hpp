@@ -26,11 +26,11 @@ struct StoredEvaluation {
 StoredEvaluation load_evaluation(const std::filesystem::path& folder);
 
 /// The arguments it was driven with. `course` takes the place of the course's name where that is not empty.
-ScenarioArguments campaign_arguments(const StoredEvaluation& stored, const std::string& course);
+ScenarioArguments evaluation_arguments(const StoredEvaluation& stored, const std::string& course);
 
 /// Restores the evaluation so that its laps can be repeated: course, configuration, all options. `course`
 /// takes the place of the course's name where that is not empty. Throws IoError if the course is another one.
-evaluation::Evaluation rebuild_campaign(const StoredEvaluation& stored, const std::string& course,
-                                        Scenario& scenario);
+evaluation::Evaluation rebuild_evaluation(const StoredEvaluation& stored, const std::string& course,
+                                          Scenario& scenario);
 
 }  // namespace slalom::tools

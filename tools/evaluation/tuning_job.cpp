@@ -167,9 +167,9 @@ bool TuningJob::drive(const std::string& step, const std::vector<Candidate>& can
     // Further than the laps before, in every scenario.
     arguments.seed0 +=
         static_cast<std::uint64_t>(first_lap) * static_cast<std::uint64_t>(arguments_.obstacles + 5);
-    const Evaluation evaluation = make_campaign(arguments, course, experiments);
+    const Evaluation evaluation = make_evaluation(arguments, course, experiments);
     std::vector<LapRow> rows;
-    if (!drive_campaign(evaluation, arguments, step + ", " + course.environment->course.name, cancel, rows))
+    if (!drive_evaluation(evaluation, arguments, step + ", " + course.environment->course.name, cancel, rows))
       return false;
     for (const LapRow& row : rows)
       driven.values[static_cast<std::size_t>(row.experiment) / arguments_.scenarios.size()].push_back(

@@ -50,8 +50,8 @@ void open_evaluation(const std::string& folder, view::SessionOptions& options) {
   const auto stored = std::make_shared<const StoredEvaluation>(load_evaluation(folder));
   Scenario scenario;
   const auto evaluation =
-      std::make_shared<const evaluation::Evaluation>(rebuild_campaign(*stored, "", scenario));
-  const ScenarioArguments arguments = campaign_arguments(*stored, "");
+      std::make_shared<const evaluation::Evaluation>(rebuild_evaluation(*stored, "", scenario));
+  const ScenarioArguments arguments = evaluation_arguments(*stored, "");
   options.evaluation = evaluation_message(*stored, evaluation->environment->course.name);
   options.load_lap = [stored, evaluation, arguments](int experiment, int lap) {
     if (experiment < 0 || experiment >= std::ssize(evaluation->experiments))

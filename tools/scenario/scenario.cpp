@@ -80,7 +80,7 @@ fs::path program_folder() {
   return failed ? fs::current_path() : program.parent_path();
 }
 
-void add_scenario_options(Command& command, ScenarioArguments& a) {
+void add_scenario_options(Subcommand& command, ScenarioArguments& a) {
   command.option("--course", a.course, "Course name or folder").show_default();
   command
       .option("--config", a.config, "Configuration: default, default_speed, published, hardware, or a file")
@@ -110,7 +110,7 @@ void add_scenario_options(Command& command, ScenarioArguments& a) {
       .show_default();
 }
 
-void add_latency_option(Command& command, double& latency_ms) {
+void add_latency_option(Subcommand& command, double& latency_ms) {
   command
       .option("--latency-ms", latency_ms,
               "Delay from a scan to the effect of its command, ms; only with --evaluation true")
@@ -118,7 +118,7 @@ void add_latency_option(Command& command, double& latency_ms) {
       .show_default();
 }
 
-void add_method_option(Command& command, std::string& method) {
+void add_method_option(Subcommand& command, std::string& method) {
   std::string names;
   for (const char* name : solver_names()) names += (names.empty() ? "" : ", ") + std::string(name);
   command.option("--method", method, "One of " + names).show_default();

@@ -33,11 +33,11 @@ struct ScenarioArguments {
 
 /// Adds --course, --config, --evaluation, --set, --start, --obstacles, --opponents, --latency-ms,
 /// --hardware and --threads.
-void add_scenario_options(Command& command, ScenarioArguments& arguments);
+void add_scenario_options(Subcommand& command, ScenarioArguments& arguments);
 /// Adds --latency-ms, in ms.
-void add_latency_option(Command& command, double& latency_ms);
+void add_latency_option(Subcommand& command, double& latency_ms);
 /// Adds --method to `method`, with the names known.
-void add_method_option(Command& command, std::string& method);
+void add_method_option(Subcommand& command, std::string& method);
 
 struct Scenario {
   std::filesystem::path folder;  ///< of the course

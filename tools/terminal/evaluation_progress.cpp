@@ -1,4 +1,4 @@
-#include "tools/terminal/campaign_progress.hpp"
+#include "tools/terminal/evaluation_progress.hpp"
 
 #include <unistd.h>
 
@@ -24,14 +24,14 @@ std::string time_text(double seconds) {
 
 }  // namespace
 
-CampaignProgressBar::CampaignProgressBar(std::string title)
+EvaluationProgressBar::EvaluationProgressBar(std::string title)
     : title_(title.empty() ? "" : title + ": "), terminal_(isatty(STDERR_FILENO) != 0) {}
 
-CampaignProgressBar::~CampaignProgressBar() {
+EvaluationProgressBar::~EvaluationProgressBar() {
   if (terminal_ && tenth_ >= 0) std::fputs("\n", stderr);
 }
 
-void CampaignProgressBar::show(const evaluation::EvaluationProgress& p) {
+void EvaluationProgressBar::show(const evaluation::EvaluationProgress& p) {
   const int total = std::max(1, p.laps_total), tenth = p.laps_done * 10 / total;
   if (terminal_) {
     std::string bar(30, '.');

@@ -8,13 +8,13 @@ namespace slalom::tools {
 
 /// How far an evaluation is, on standard error: a bar with the time left in a terminal; elsewhere a line for
 /// every tenth.
-class CampaignProgressBar {
+class EvaluationProgressBar {
  public:
   /// `title` stands before the bar.
-  explicit CampaignProgressBar(std::string title = "");
-  ~CampaignProgressBar();
-  CampaignProgressBar(const CampaignProgressBar&) = delete;
-  CampaignProgressBar& operator=(const CampaignProgressBar&) = delete;
+  explicit EvaluationProgressBar(std::string title = "");
+  ~EvaluationProgressBar();
+  EvaluationProgressBar(const EvaluationProgressBar&) = delete;
+  EvaluationProgressBar& operator=(const EvaluationProgressBar&) = delete;
 
   void show(const evaluation::EvaluationProgress& progress);
 
