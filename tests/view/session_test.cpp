@@ -66,7 +66,7 @@ class ViewSession : public ::testing::Test {
     tell({{"do", "pause"}});
   }
 
-  /// Sends a command and lets the session obey it.
+  /// Sends a command and lets the session handle it.
   void tell(const json& command) { say(command.dump()); }
   void say(const std::string& text) {
     client_.send_message(text);

@@ -78,7 +78,7 @@ void Session::run(const std::atomic<bool>& stop) {
 }
 
 void Session::turn() {
-  for (const Received& received : server_.take()) obey(received);
+  for (const Received& received : server_.take()) handle(received);
   if (until_due() <= Clock::duration::zero()) tick();
   const auto now = Clock::now();
   if (server_.clients() > 0 && (state_changed_ || now - last_state_ > 4 * state_gap)) {

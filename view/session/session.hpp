@@ -90,19 +90,19 @@ class Session {
   Clock::duration until_due() const;
 
   // Obeying.
-  void obey(const Received& received);
-  void obey(std::uint64_t client, const Json& command);
+  void handle(const Received& received);
+  void handle(std::uint64_t client, const Json& command);
   void edit(const Edit& edit);
   void change(const vehicle::Configuration& configuration, const std::string& method, bool remember);
   void start_ghost(const std::string& method, const vehicle::Configuration& configuration);
   void end_ghost();
   void fork(const Json& command);
-  void obey_lap(const Json& command);
+  void handle_lap(const Json& command);
   int tick_of_contact(int contact);
-  bool obey_transport(const std::string& what, const Json& command);
-  bool obey_edit(const std::string& what, const Json& command);
-  bool obey_options(const std::string& what, const Json& command);
-  void obey_scenario(const Json& command);
+  bool handle_transport(const std::string& what, const Json& command);
+  bool handle_edit(const std::string& what, const Json& command);
+  bool handle_options(const std::string& what, const Json& command);
+  void handle_scenario(const Json& command);
   void save(std::uint64_t client, const std::string& what);
 
   // Telling.

@@ -50,7 +50,7 @@ std::uint64_t count(const std::string& digits) {
 
 }  // namespace
 
-void Session::obey(const Received& received) {
+void Session::handle(const Received& received) {
   if (received.kind == Received::Kind::joined) return greet(received.client);
   if (received.kind == Received::Kind::left) {
     state_changed_ = true;
@@ -62,7 +62,7 @@ void Session::obey(const Received& received) {
     return refuse(received.client, "a command must be a JSON object");
   }
   try {
-    obey(received.client, command);
+    handle(received.client, command);
   } catch (const Malformed& error) {
     ++refused_;
     refuse(received.client, error.what());
@@ -71,20 +71,20 @@ void Session::obey(const Received& received) {
   }
 }
 
-void Session::obey(std::uint64_t client, const Json& command) {
+void Session::handle(std::uint64_t client, const Json& command) {
   const std::string what = text(command, "do");
   state_changed_ = true;
   if (what == "scenario")
-    obey_scenario(command);
+    handle_scenario(command);
   else if (what == "lap")
-    obey_lap(command);
+    handle_lap(command);
   else if (what == "save")
     save(client, text(command, "what"));
-  else if (!obey_transport(what, command) && !obey_edit(what, command) && !obey_options(what, command))
+  else if (!handle_transport(what, command) && !handle_edit(what, command) && !handle_options(what, command))
     throw Malformed("do: '" + what.substr(0, 40) + "' is not a command");
 }
 
-bool Session::obey_transport(const std::string& what, const Json& command) {
+bool Session::handle_transport(const std::string& what, const Json& command) {
   if (what == "pause") {
     paused_ = true;
   } else if (what == "play") {
@@ -117,7 +117,7 @@ bool Session::obey_transport(const std::string& what, const Json& command) {
   return true;
 }
 
-bool Session::obey_edit(const std::string& what, const Json& command) {
+bool Session::handle_edit(const std::string& what, const Json& command) {
   if (what == "add") {
     const std::string kind = text(command, "kind");
     AddBody body{.pose = pose(command)};
@@ -211,7 +211,7 @@ void Session::fork(const Json& command) {
   change(changed, method, !set.empty());
 }
 
-bool Session::obey_options(const std::string& what, const Json& command) {
+bool Session::handle_options(const std::string& what, const Json& command) {
   if (what == "set") {
     vehicle::Configuration changed = configuration_;
     vehicle::set_option(changed, text(command, "key"), text(command, "value"), names_.method);
@@ -241,7 +241,7 @@ bool Session::obey_options(const std::string& what, const Json& command) {
   return true;
 }
 
-void Session::obey_scenario(const Json& command) {
+void Session::handle_scenario(const Json& command) {
   ScenarioNames names = names_;
   if (command.contains("course")) names.course = text(command, "course");
   if (command.contains("method")) names.method = text(command, "method");

@@ -25,15 +25,15 @@ int Session::tick_of_contact(int contact) {
   const evaluation::LapRunner& runner = simulation_->loop().runner();
   const double period = runner.control_period();
   const int most = static_cast<int>(runner.timeout() / period) + 1;
-  const auto touches = [&] { return simulation_->loop().first_collisions(); };
-  while (std::ssize(touches()) <= contact && simulation_->ticks() < most) simulation_->tick({}, false);
-  if (std::ssize(touches()) <= contact)
+  const auto collisions = [&] { return simulation_->loop().first_collisions(); };
+  while (std::ssize(collisions()) <= contact && simulation_->ticks() < most) simulation_->tick({}, false);
+  if (std::ssize(collisions()) <= contact)
     throw std::runtime_error("the repeated lap has no such collision: another version drove the evaluation");
-  return static_cast<int>(touches()[static_cast<std::size_t>(contact)].time / period);
+  return static_cast<int>(collisions()[static_cast<std::size_t>(contact)].time / period);
 }
 
 /// A lap of the evaluation: from its start, or the seconds before one of its collisions.
-void Session::obey_lap(const Json& command) {
+void Session::handle_lap(const Json& command) {
   if (!options_.load_lap) throw std::invalid_argument("lap: no evaluation is open");
   const int experiment = integer(command, "experiment"), lap = integer(command, "lap"),
             contact = command.contains("contact") ? integer(command, "contact") : -1;

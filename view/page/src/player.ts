@@ -19,7 +19,7 @@ function scalarsOf(frame: ArrayBuffer): Float64Array {
   return new Float64Array(frame.slice(12, 12 + new DataView(frame).getUint32(8, true)));
 }
 
-/** Plays a recording: gives the page what a server would have sent, and obeys what concerns time. */
+/** Plays a recording: gives the page what a server would have sent, and handles the commands that concern time. */
 export class Player implements Link {
   received = 0;
   private readonly frames: ArrayBuffer[] = [];
