@@ -26,8 +26,8 @@ void PrintTo(const Case& test, std::ostream* out) {
 
 class TrackProperty : public ::testing::TestWithParam<Case> {
  protected:
-  static TrackOptions options(std::uint64_t seed) {
-    TrackOptions result;
+  static TrackGeneratorOptions options(std::uint64_t seed) {
+    TrackGeneratorOptions result;
     result.seed = seed;
     result.length = GetParam().length;
     result.width = GetParam().width;
@@ -52,7 +52,7 @@ double gap(maps::Point a, maps::Point b) {
 
 TEST_P(TrackProperty, CentreLineIsClosedSmoothAndAsLongAsAsked) {
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    const TrackOptions asked = options(seed);
+    const TrackGeneratorOptions asked = options(seed);
     const auto line = generate_track(asked).centre_line;
     const std::size_t n = line.size();
     double length = 0, turning = 0, sharpest = 0;
@@ -73,7 +73,7 @@ TEST_P(TrackProperty, CentreLineIsClosedSmoothAndAsLongAsAsked) {
 
 TEST_P(TrackProperty, NeitherLineNorWallsIntersect) {
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    const TrackOptions asked = options(seed);
+    const TrackGeneratorOptions asked = options(seed);
     const auto line = generate_track(asked).centre_line;
     const std::size_t n = line.size();
     const double apart = 3.15 * (0.5 * asked.width + 0.45);
@@ -92,7 +92,7 @@ TEST_P(TrackProperty, NeitherLineNorWallsIntersect) {
 
 TEST_P(TrackProperty, RacelineKeepsItsLimits) {
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    const Track track = generate_track(options(seed));
+    const GeneratedTrack track = generate_track(options(seed));
     const SpeedLimits& limits = track.options.limits;
     const auto& rows = track.raceline;
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -112,7 +112,7 @@ TEST_P(TrackProperty, RacelineKeepsItsLimits) {
 
 TEST_P(TrackProperty, EveryWaypointIsFreeWithTheMarginAndTheMapIsSealed) {
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    const Track track = generate_track(options(seed));
+    const GeneratedTrack track = generate_track(options(seed));
     const auto distance = maps::distance_transform(track.map, true);
     const auto clearance = [&](double x, double y) {
       const maps::Point at = maps::inverse_transform(track.map.origin, {x, y});
@@ -137,7 +137,7 @@ TEST_P(TrackProperty, EveryWaypointIsFreeWithTheMarginAndTheMapIsSealed) {
 }
 
 TEST_P(TrackProperty, LoadsBackAsACourse) {
-  const Track track = generate_track(options(3));
+  const GeneratedTrack track = generate_track(options(3));
   const testing::ScopedFolder scoped;
   const auto folder = scoped.path() / "track";
   save_track(track, folder, {"some \"name\"", "a description", "slalom track"});
@@ -165,11 +165,11 @@ INSTANTIATE_TEST_SUITE_P(Tracks, TrackProperty,
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST(TrackGenerator, RepeatsForASeedAndDiffersBetweenSeeds) {
-  TrackOptions options;
+  TrackGeneratorOptions options;
   options.seed = 7;
-  const Track first = generate_track(options), again = generate_track(options);
+  const GeneratedTrack first = generate_track(options), again = generate_track(options);
   options.seed = 8;
-  const Track other = generate_track(options);
+  const GeneratedTrack other = generate_track(options);
   ASSERT_EQ(first.raceline.size(), again.raceline.size());
   for (std::size_t i = 0; i < first.raceline.size(); ++i) {
     ASSERT_EQ(first.raceline[i].x, again.raceline[i].x);
@@ -181,7 +181,7 @@ TEST(TrackGenerator, RepeatsForASeedAndDiffersBetweenSeeds) {
 
 TEST(TrackGenerator, RejectsInvalidOptionsByName) {
   const auto refused = [](const char* key, auto&& change) {
-    TrackOptions options;
+    TrackGeneratorOptions options;
     change(options);
     try {
       generate_track(options);
@@ -190,19 +190,19 @@ TEST(TrackGenerator, RejectsInvalidOptionsByName) {
       EXPECT_EQ(std::string(error.what()).rfind(key, 0), 0u) << error.what();
     }
   };
-  refused("length", [](TrackOptions& o) { o.length = 5; });
-  refused("length", [](TrackOptions& o) { o.length = 1e6; });
-  refused("length", [](TrackOptions& o) { o.length = std::nan(""); });
-  refused("length", [](TrackOptions& o) { o.length = 30, o.width = 4; });
-  refused("width", [](TrackOptions& o) { o.width = 0.4; });
-  refused("width", [](TrackOptions& o) { o.width = -2; });
-  refused("width", [](TrackOptions& o) { o.width = INFINITY; });
-  refused("wall", [](TrackOptions& o) { o.wall = 0; });
-  refused("wall", [](TrackOptions& o) { o.wall = 0.1, o.resolution = 0.08; });
-  refused("wall_margin", [](TrackOptions& o) { o.wall_margin = 1.05; });
-  refused("resolution", [](TrackOptions& o) { o.resolution = 1; });
-  refused("top_speed", [](TrackOptions& o) { o.limits.top_speed = 0; });
-  refused("braking", [](TrackOptions& o) { o.limits.braking = -3; });
+  refused("length", [](TrackGeneratorOptions& o) { o.length = 5; });
+  refused("length", [](TrackGeneratorOptions& o) { o.length = 1e6; });
+  refused("length", [](TrackGeneratorOptions& o) { o.length = std::nan(""); });
+  refused("length", [](TrackGeneratorOptions& o) { o.length = 30, o.width = 4; });
+  refused("width", [](TrackGeneratorOptions& o) { o.width = 0.4; });
+  refused("width", [](TrackGeneratorOptions& o) { o.width = -2; });
+  refused("width", [](TrackGeneratorOptions& o) { o.width = INFINITY; });
+  refused("wall", [](TrackGeneratorOptions& o) { o.wall = 0; });
+  refused("wall", [](TrackGeneratorOptions& o) { o.wall = 0.1, o.resolution = 0.08; });
+  refused("wall_margin", [](TrackGeneratorOptions& o) { o.wall_margin = 1.05; });
+  refused("resolution", [](TrackGeneratorOptions& o) { o.resolution = 1; });
+  refused("top_speed", [](TrackGeneratorOptions& o) { o.limits.top_speed = 0; });
+  refused("braking", [](TrackGeneratorOptions& o) { o.limits.braking = -3; });
   EXPECT_THROW(track_character("furious"), std::invalid_argument);
 }
 

@@ -8,7 +8,8 @@
 
 namespace slalom::tools {
 
-void draw_track(const vehicle::Track& track, const std::string& title, const std::filesystem::path& file) {
+void draw_track(const vehicle::GeneratedTrack& track, const std::string& title,
+                const std::filesystem::path& file) {
   MapPicture picture(track.map);
   std::vector<maps::Point> points;
   std::vector<double> speeds;

@@ -8,6 +8,7 @@
 namespace slalom::tools {
 
 /// Draws a track: map, centre line, raceline coloured by speed, start. Writes a PNG; throws IoError.
-void draw_track(const vehicle::Track& track, const std::string& title, const std::filesystem::path& file);
+void draw_track(const vehicle::GeneratedTrack& track, const std::string& title,
+                const std::filesystem::path& file);
 
 }  // namespace slalom::tools

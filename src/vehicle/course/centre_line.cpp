@@ -115,7 +115,7 @@ Curve evenly(const Curve& path, int count) {
 }
 
 /// The polygon scaled, rounded and smoothed to the given length; empty if a corner cannot be rounded.
-Curve rounded(const Curve& polygon, const std::vector<double>& radii, const TrackOptions& options,
+Curve rounded(const Curve& polygon, const std::vector<double>& radii, const TrackGeneratorOptions& options,
               double smoothing) {
   double scale = options.length / detail::length(polygon);
   Curve path;
@@ -142,7 +142,8 @@ double winding(const std::vector<double>& curvature, double spacing) {
   return sum / (2 * pi);
 }
 
-bool acceptable(const Curve& curve, const TrackOptions& options, double least_winding, double most_winding) {
+bool acceptable(const Curve& curve, const TrackGeneratorOptions& options, double least_winding,
+                double most_winding) {
   const double radius = least_radius(options);
   const auto bends = curvature(curve, 2);
   for (const double k : bends)
@@ -174,12 +175,12 @@ void lay_flat(Curve& curve) {
 
 }  // namespace
 
-double least_radius(const TrackOptions& options) {
+double least_radius(const TrackGeneratorOptions& options) {
   const double half = 0.5 * options.width;
   return std::max(half + options.wall, half - options.wall_margin + turning_radius);
 }
 
-Curve make_centre_line(const TrackOptions& options) {
+Curve make_centre_line(const TrackGeneratorOptions& options) {
   const Style style = style_of(options.character);
   Draw draw(options.seed);
   const double small = std::max(style.small_radius, 1.1 * least_radius(options));

@@ -35,7 +35,7 @@ void write(const fs::path& file, const std::string& text) {
   if (!stream) throw IoError(file.string(), 0, "cannot be written");
 }
 
-std::string raceline_text(const Track& track) {
+std::string raceline_text(const GeneratedTrack& track) {
   std::string text = "# s_m; x_m; y_m; psi_rad; kappa_radpm; vx_mps; ax_mps2\n";
   for (const RacelinePoint& point : track.raceline) {
     for (const double value : {point.arc_length, point.x, point.y, point.yaw, point.curvature, point.speed})
@@ -45,7 +45,7 @@ std::string raceline_text(const Track& track) {
   return text;
 }
 
-std::string course_text(const Track& track, const TrackLabel& label) {
+std::string course_text(const GeneratedTrack& track, const TrackLabel& label) {
   const RacelinePoint& first = track.raceline.front();
   return "# Made by `slalom track`; the command below makes it again.\n"
          "name: " +
@@ -56,7 +56,7 @@ std::string course_text(const Track& track, const TrackLabel& label) {
 
 }  // namespace
 
-void save_track(const Track& track, const fs::path& folder, const TrackLabel& label) {
+void save_track(const GeneratedTrack& track, const fs::path& folder, const TrackLabel& label) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder)) throw IoError(folder.string(), 0, "cannot create the folder");

@@ -27,7 +27,7 @@ void require(bool holds, const char* key, double value, const char* rule) {
     throw std::invalid_argument(std::string(key) + ": " + std::to_string(value) + " must be " + rule);
 }
 
-Curve make_raceline(const Curve& centre_line, const TrackOptions& options) {
+Curve make_raceline(const Curve& centre_line, const TrackGeneratorOptions& options) {
   // A multiple of 16 halves evenly down to the coarsest level.
   const int count = 16 * static_cast<int>(std::ceil(options.length / program_step / 16));
   Curve line = detail::resampled(centre_line, count);
@@ -83,7 +83,7 @@ std::vector<RacelinePoint> with_profile(Curve& line, const SpeedLimits& limits, 
 /// Where cars are parked: along the raceline, moved to one side so that there is room to pass on the other. A
 /// parked car has any heading, is up to 0.1 m off this path, and reaches 0.33 m from its centre.
 std::vector<maps::Point> make_obstacle_path(const Curve& centre_line, const Curve& line,
-                                            const TrackOptions& options) {
+                                            const TrackGeneratorOptions& options) {
   constexpr double reach = 0.43, room = 1.0, off_wall = 0.25, switch_over = 0.1;  // m
   const double half = 0.5 * options.width;
   const double least = std::clamp(room + reach - half, 0.0, half - off_wall);
@@ -158,7 +158,7 @@ double usual_width(TrackCharacter character) noexcept {
   return 2.2;
 }
 
-void validate(const TrackOptions& options) {
+void validate(const TrackGeneratorOptions& options) {
   const auto within = [](double v, double low, double high) { return v >= low && v <= high; };
   require(within(options.length, 20, 1000), "length", options.length, "within 20 and 1000 m");
   require(within(options.width, 1.2, 10), "width", options.width, "within 1.2 and 10 m");
@@ -179,9 +179,9 @@ void validate(const TrackOptions& options) {
   acceleration("braking", options.limits.braking);
 }
 
-Track generate_track(const TrackOptions& options) {
+GeneratedTrack generate_track(const TrackGeneratorOptions& options) {
   validate(options);
-  Track track;
+  GeneratedTrack track;
   track.options = options;
   Curve centre_line = detail::make_centre_line(options);
   Curve line = make_raceline(centre_line, options);

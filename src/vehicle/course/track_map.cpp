@@ -18,7 +18,7 @@ double squared_distance(maps::Point p, maps::Point a, maps::Point b) {
 
 }  // namespace
 
-maps::OccupancyGrid draw_map(const Curve& centre_line, const TrackOptions& options) {
+maps::OccupancyGrid draw_map(const Curve& centre_line, const TrackGeneratorOptions& options) {
   const double half = 0.5 * options.width, reach = half + options.wall, resolution = options.resolution;
   const double inf = std::numeric_limits<double>::infinity();
   maps::Point low{inf, inf}, high{-inf, -inf};

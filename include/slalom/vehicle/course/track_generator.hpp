@@ -20,7 +20,7 @@ const char* name(TrackCharacter character) noexcept;
 TrackCharacter track_character(const std::string& name);
 
 /// Options of a generated track. Ranges are checked by validate().
-struct TrackOptions {
+struct TrackGeneratorOptions {
   std::uint64_t seed = 0;  ///< seed of the random numbers
   double length = 60.0;    ///< of the centre line, m, 20..1000, and at least 16 (width / 2 + wall)
   double width = 2.2;      ///< from wall to wall, m, 1.2..10
@@ -32,7 +32,7 @@ struct TrackOptions {
 };
 
 /// Throws std::invalid_argument that names the option, its value and the rule.
-void validate(const TrackOptions& options);
+void validate(const TrackGeneratorOptions& options);
 
 /// The top speed (m/s) that suits a character: the default of `slalom track`.
 double usual_top_speed(TrackCharacter character) noexcept;
@@ -51,8 +51,8 @@ struct RacelinePoint {
 
 /// A generated track, which is closed. It starts at the first point of the raceline, the origin of the map
 /// frame.
-struct Track {
-  TrackOptions options;                    ///< from which it was generated
+struct GeneratedTrack {
+  TrackGeneratorOptions options;           ///< from which it was generated
   std::vector<maps::Point> centre_line;    ///< equal steps of about 0.1 m
   std::vector<RacelinePoint> raceline;     ///< equal steps of about 0.11 m
   std::vector<maps::Point> obstacle_path;  ///< where a parked car leaves room to pass it on one side
@@ -68,7 +68,7 @@ struct Track {
 /// demands. Walls never meet: for parts less than half a turn apart the bound on the curvature guarantees it
 /// (Schur's comparison theorem), for others every pair of points is checked. Walls follow at half the width.
 /// Throws std::invalid_argument for bad options, or where no track of the length and width is found.
-Track generate_track(const TrackOptions& options);
+GeneratedTrack generate_track(const TrackGeneratorOptions& options);
 
 /// What save_track writes in addition to the geometry.
 struct TrackLabel {
@@ -79,6 +79,6 @@ struct TrackLabel {
 
 /// Writes a course folder: map.yaml, map.png, raceline.csv (`# s_m; x_m; ...`), opp_ref_path.csv,
 /// course.yaml. Creates the folder if it does not exist. Throws IoError.
-void save_track(const Track& track, const std::filesystem::path& folder, const TrackLabel& label);
+void save_track(const GeneratedTrack& track, const std::filesystem::path& folder, const TrackLabel& label);
 
 }  // namespace slalom::vehicle
