@@ -44,7 +44,7 @@ class PublishedRules final : public LapRules {
 
   std::vector<sim::Placement> place_obstacles(const Environment& environment, int obstacles,
                                               std::uint64_t seed, const maps::Point&) const override {
-    return sim::place_as_published(environment.course.obstacle_path, obstacles, seed);
+    return sim::place_at_random(environment.course.obstacle_path, obstacles, seed);
   }
 
   maps::LaserScanView scan(const sim::Observation& seen, const sim::World& world) const noexcept override {
@@ -67,7 +67,7 @@ class PublishedRules final : public LapRules {
     return zone.laps() > 0 && zone.near_start() && progress > 0.5;
   }
   double lap_time(const sim::World& world) const noexcept override { return world.time(); }
-  int collisions(const sim::CollisionLog& log) const noexcept override { return log.published(); }
+  int collisions(const sim::CollisionLog& log) const noexcept override { return log.flag_patterns(); }
 };
 
 }  // namespace

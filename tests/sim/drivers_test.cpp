@@ -68,9 +68,9 @@ TEST(ObstaclePlacement, ApartCarsDoNotOverlapAndLeaveTheStart) {
   }
   EXPECT_THROW(place_apart(path, room, 500, 1, {15.5, 10}), std::runtime_error);
   EXPECT_THROW(place_apart({}, {}, 1, 1, {}), std::invalid_argument);
-  EXPECT_THROW(place_as_published({}, 1, 1), std::invalid_argument);
-  EXPECT_THROW(place_as_published(path, -1, 1), std::invalid_argument);
-  EXPECT_THROW(place_as_published(path, 1, 1, nan), std::invalid_argument);
+  EXPECT_THROW(place_at_random({}, 1, 1), std::invalid_argument);
+  EXPECT_THROW(place_at_random(path, -1, 1), std::invalid_argument);
+  EXPECT_THROW(place_at_random(path, 1, 1, nan), std::invalid_argument);
 }
 
 TEST(Lidar, HokuyoPreset) {

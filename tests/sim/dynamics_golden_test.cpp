@@ -12,8 +12,8 @@ namespace {
 using slalom::testing::Comparison;
 using slalom::testing::GoldenTable;
 
-const DynamicsOptions gym_dynamics{.substeps = 1, .gym = GymDynamics::published()};
-const ActuationOptions gym_actuation{.gym = GymActuation::published()};
+const DynamicsOptions gym_dynamics{.substeps = 1, .gym = GymDynamics::all()};
+const ActuationOptions gym_actuation{.gym = GymActuation::all()};
 
 CarState state_of(const GoldenTable& table, std::size_t row) {
   CarState s{table.real(row, "x"), table.real(row, "y"), table.real(row, "delta"), table.real(row, "v"),
@@ -116,7 +116,7 @@ TEST(GymDynamics, Trajectories) {
     valid_steps[sensitivity.text(row, "case") + sensitivity.text(row, "integrator")] =
         sensitivity.integer(row, "valid_steps");
   Comparison compared("trajectories");
-  PlantOptions options{.dynamics = gym_dynamics, .actuation = gym_actuation, .gym = GymPlant::published()};
+  PlantOptions options{.dynamics = gym_dynamics, .actuation = gym_actuation, .gym = GymPlant::all()};
   Plant plant(CarParameters{}, options, 0.01);
   int valid = 0;
   for (std::size_t row = 0; row < table.rows(); ++row) {

@@ -22,7 +22,7 @@ inline sim::Track gym_track(const std::filesystem::path& folder, const std::stri
 inline sim::LidarOptions gym_lidar() {
   sim::LidarOptions options;
   options.mount = {};
-  options.gym = sim::GymLidar::published();
+  options.gym = sim::GymLidar::all();
   return options;
 }
 

@@ -52,7 +52,7 @@ TEST(GymRules, Vertices) {
   EXPECT_LE(compared.worst(), 1e-9);
 }
 
-TEST(GymRules, PairContacts) {
+TEST(GymRules, PairCollisions) {
   SLALOM_GOLDEN_FOLDER(folder, "simulator");
   const GoldenTable table(folder / "gjk_pairs.csv");
   Comparison compared("gjk_pairs");
@@ -66,7 +66,7 @@ TEST(GymRules, PairContacts) {
   EXPECT_LE(compared.worst(), 1e-9);
 }
 
-TEST(GymRules, ContactsOfMany) {
+TEST(GymRules, CollisionsOfMany) {
   SLALOM_GOLDEN_FOLDER(folder, "simulator");
   const GoldenTable table(folder / "collision_multiple.csv");
   Comparison compared("collision_multiple");
@@ -76,7 +76,7 @@ TEST(GymRules, ContactsOfMany) {
     compared.next_case();
     for (std::size_t i = begin; i < end; ++i) {
       int partner = -1;
-      // The last pair in the order (0,1), (0,2), ..., (1,2), ... that has i in it and touches.
+      // The last pair in the order (0,1), (0,2), ..., (1,2), ... that has i in it and collides.
       for (std::size_t j = begin; j < end; ++j)
         if (j != i && signed_gap(box_of(table, i), box_of(table, j)) <= 0)
           partner = static_cast<int>(j - begin);
@@ -139,7 +139,7 @@ TEST(GymRules, ParkedCars) {
     compared.next_case();
     const int index = table.integer(row, "i");
     const auto cars =
-        place_as_published(path, index + 1, static_cast<std::uint64_t>(table.integer(row, "seed")));
+        place_at_random(path, index + 1, static_cast<std::uint64_t>(table.integer(row, "seed")));
     const Placement& car = cars.at(static_cast<std::size_t>(index));
     EXPECT_EQ(static_cast<int>(car.waypoint), table.integer(row, "waypoint_row"));
     compared.absolute(car.pose.x, table.real(row, "x"));
@@ -153,7 +153,8 @@ TEST(GymRules, ParkedCars) {
 TEST(GymRules, PurePursuit) {
   SLALOM_GOLDEN_FOLDER(folder, "simulator");
   const GoldenTable table(folder / "pure_pursuit.csv");
-  const PurePursuit driver(opponent_path(folder / "maps/berlin/opp_ref_path.csv"), {.gym_compatible = true});
+  const PurePursuit driver(opponent_path(folder / "maps/berlin/opp_ref_path.csv"),
+                           {.gym = GymPurePursuit::all()});
   Comparison compared("pure_pursuit");
   for (std::size_t row = 0; row < table.rows(); ++row) {
     compared.next_case();

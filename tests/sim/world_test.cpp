@@ -98,7 +98,7 @@ TEST(World, StopsAtWallsAndReversesAway) {
   }
   EXPECT_TRUE(contacts.hit_wall());
   EXPECT_EQ(contacts.collisions(), 1);
-  EXPECT_EQ(contacts.published(), 1);
+  EXPECT_EQ(contacts.flag_patterns(), 1);
   // The nose stands at the wall, 7 m from the middle of the ring.
   EXPECT_NEAR(world.state(0).x + 0.29, 17, 0.1);
   for (int i = 0; i < 100; ++i) world.step(std::array{Command{0, -1}});
@@ -139,7 +139,7 @@ TEST(World, ReportsWhichBodiesCollide) {
   EXPECT_TRUE(contacts.hit_wall());
   EXPECT_EQ(contacts.collisions(), 6);
   // Bodies 2 and 3 overlap and are flagged for ever, with and without the others: {2,3}, +1, +disc, +box.
-  EXPECT_EQ(contacts.published(), 4);
+  EXPECT_EQ(contacts.flag_patterns(), 4);
 }
 
 TEST(World, SeesBodiesWhereTheyAre) {
@@ -260,7 +260,6 @@ TEST(World, RejectsInvalidOptions) {
   refuses([](WorldOptions& o) { o.car.friction = nan; });
   refuses([](WorldOptions& o) { o.sectors = 0; });
   refuses([](WorldOptions& o) { o.plant.steering_dead_time = -0.1; });
-  refuses([](WorldOptions& o) { o.body_response = CollisionResponse::gym_zero; });
 }
 
 TEST(Track, RejectsInvalidMaps) {

@@ -23,10 +23,10 @@ class CollisionLog {
   bool hit_wall() const noexcept { return wall_; }                   ///< whether it collided with a wall
   std::span<const int> bodies() const noexcept { return bodies_; }   ///< that it collided with, ascending
   int collision_steps() const noexcept { return collision_steps_; }  ///< steps with any collision
-  /// Number of collisions as the published evaluation (K. Honda et al., proj-svg_mppi) counts them: different
-  /// patterns of the parked cars' collision flags seen while the car collided; a wall alone is the pattern of
-  /// no flag, two cars at once are a pattern of their own.
-  int published() const noexcept { return static_cast<int>(patterns_.size()); }
+  /// Number of different patterns of the fixed bodies' collision flags seen while the car collided: what the
+  /// evaluation of K. Honda et al. (proj-svg_mppi) counts. A wall alone is the pattern of no flag, two bodies
+  /// at once are a pattern of their own.
+  int flag_patterns() const noexcept { return static_cast<int>(patterns_.size()); }
 
  private:
   std::vector<int> bodies_;

@@ -42,7 +42,8 @@ double limit_steer_rate(const CarParameters& car, double steer, double steer_rat
 /// switch_speed.
 double limit_acceleration(const CarParameters& car, double speed, double acceleration) noexcept;
 
-/// d(state)/dt under a limited input; each field is the derivative of the state's field of that name.
+/// d(state)/dt under the input as limit_steer_rate and limit_acceleration cut it; each field is the
+/// derivative of the state's field of that name.
 CarState derivative(const CarParameters& car, const DynamicsOptions& options, const CarState& state,
                     const DriveInput& input) noexcept;
 

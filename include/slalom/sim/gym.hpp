@@ -2,8 +2,8 @@
 
 /// What exists only to reproduce f1tenth_gym, the simulator of the paper's experiments: switches for its
 /// deviations from the physics and geometry that this simulator computes. Each options struct of the layer
-/// that has such switches holds them in a member `gym`; all are off by default. `published()` turns on all
-/// that f1tenth_gym does, and `WorldOptions::gym_compatible()` sets them together.
+/// that has such switches holds them in a member `gym`; all are off by default. `all()` turns on
+/// every switch of a struct, and `WorldOptions::gym_compatible()` sets those of a world together.
 namespace slalom::sim {
 
 /// Deviations of the equations of motion.
@@ -16,7 +16,7 @@ struct GymDynamics {
   /// In reverse the tyres push the wrong way, and yaw rate and slip grow without bound.
   bool reverse = false;
 
-  static constexpr GymDynamics published() { return {true, true, true}; }  ///< all on
+  static constexpr GymDynamics all() { return {true, true, true}; }  ///< all on
 };
 
 /// Deviations of the low-level control.
@@ -26,7 +26,7 @@ struct GymActuation {
   /// Gains follow from the limits of speed and are a fifth of the others at standstill and in reverse.
   bool gains = false;
 
-  static constexpr GymActuation published() { return {true, true}; }  ///< all on
+  static constexpr GymActuation all() { return {true, true}; }  ///< all on
 };
 
 /// Deviations of the car as a whole.
@@ -34,7 +34,7 @@ struct GymPlant {
   /// The yaw is brought to [0, 2 pi] by at most one turn per step; elsewhere it lies in [-pi, pi].
   bool yaw = false;
 
-  static constexpr GymPlant published() { return {true}; }  ///< on
+  static constexpr GymPlant all() { return {true}; }  ///< on
 };
 
 /// Deviations of the laser scanner.
@@ -51,7 +51,7 @@ struct GymLidar {
   /// A car is looked for only in the beams between those nearest to its corners.
   bool window = false;
 
-  static constexpr GymLidar published() { return {true, true, true, true}; }  ///< all on
+  static constexpr GymLidar all() { return {true, true, true, true}; }  ///< all on
 };
 
 /// Deviations of the world.
@@ -60,8 +60,21 @@ struct GymWorld {
   bool wall_collision = false;
   /// reset() makes one step with zero commands.
   bool reset_step = false;
+  /// A car that hits a wall stays where it drove to, and its speed, yaw, yaw rate and slip become 0, so that
+  /// it turns to +x at once. Replaces WorldOptions::wall_response.
+  bool wall_stop = false;
 
-  static constexpr GymWorld published() { return {true, true}; }  ///< all on
+  static constexpr GymWorld all() { return {true, true, true}; }  ///< all on
+};
+
+/// Deviations of the pure pursuit driver.
+struct GymPurePursuit {
+  /// The path is open for the nearest point and closed only for the search ahead, whose segments end 1e-6 m
+  /// off; what is aimed at is the start of the segment found, or of the nearest one with the arc for the
+  /// fixed lookahead; and steering is not bounded.
+  bool waypoint_search = false;
+
+  static constexpr GymPurePursuit all() { return {true}; }  ///< on
 };
 
 }  // namespace slalom::sim

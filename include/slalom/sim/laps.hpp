@@ -32,7 +32,8 @@ class LapPath {
   /// The nearest place of the whole path.
   Place project(const maps::Point& point) const noexcept;
 
-  /// The nearest place among the segments within `reach` (m) of arc either way of segment `near`.
+  /// The nearest place among the segments within `reach` (m) of arc either way of segment `near`,
+  /// which must be less than size().
   Place project_near(const maps::Point& point, std::size_t near, double reach) const noexcept;
 
   /// The pose on the path at an arc length (m, any number of turns), facing along it.
@@ -49,7 +50,7 @@ class LapPath {
 /// where the car started. Times are interpolated within a step.
 class LapTimer {
  public:
-  /// `sectors` >= 1 equal parts of the path get split times. Throws std::invalid_argument otherwise.
+  /// `sectors` equal parts of the path, 1 to 1000, get split times. Throws std::invalid_argument otherwise.
   explicit LapTimer(const LapPath& path, int sectors = 3);
 
   /// Starts at a position and time (s).

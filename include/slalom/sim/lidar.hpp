@@ -57,7 +57,7 @@ class Lidar {
   maps::Pose sensor_pose(const maps::Pose& car) const noexcept;
 
   /// The distances (m) to the walls of the track from a sensor at `sensor`, without noise; padded_beams()
-  /// values.
+  /// values. From outside the map they are 0 with TrackOptions::outside_is_wall, else range_max.
   void scan(const Track& track, const maps::Pose& sensor, std::span<float> ranges) const noexcept;
 
   /// Shortens ranges to a body where it is nearer. Only beams that can hit it are looked at. padded_beams()
@@ -66,7 +66,7 @@ class Lidar {
   /// Shortens ranges (m) to a disc where it is nearer.
   void cast(const maps::Pose& sensor, const Disc& disc, std::span<float> ranges) const noexcept;
 
-  /// The same with LidarOptions::gym_ranges, in float64; one value per beam.
+  /// Like `scan`, with the ranges of f1tenth_gym (GymLidar::ranges) in float64; one value per beam.
   void gym_scan(const Track& track, const maps::Pose& sensor, std::span<double> ranges) const noexcept;
   /// Like `cast`, as in f1tenth_gym.
   void gym_cast(const maps::Pose& sensor, const Box& box, std::span<double> ranges) const noexcept;

@@ -14,12 +14,13 @@ struct Placement {
   std::size_t waypoint = 0;  ///< row of the path
 };
 
-/// Parked cars as the published evaluation places them: car i by a fresh generator seeded with seed + i, at a
-/// waypoint drawn at random, moved by up to `radius` (m; the distance, not the area, is uniform), with any
-/// yaw. The draws are those of numpy, bit for bit. Cars may overlap each other and may close the road. Throws
-/// std::invalid_argument on an empty path, more than 10000 cars, or a radius that is negative or not finite.
-std::vector<Placement> place_as_published(std::span<const maps::Point> path, int cars, std::uint64_t seed,
-                                          double radius = 0.1);
+/// Parked cars at random places of a path, as the evaluation of K. Honda et al. (proj-svg_mppi) draws them:
+/// car i by a fresh generator seeded with seed + i, at a waypoint drawn at random, moved by up to `radius`
+/// (m; the distance, not the area, is uniform), with any yaw. The draws are those of numpy, bit for bit. Cars
+/// may overlap each other and may close the road. Throws std::invalid_argument on an empty path, a number of
+/// cars outside [0, 10000], or a radius outside [0, 1000].
+std::vector<Placement> place_at_random(std::span<const maps::Point> path, int cars, std::uint64_t seed,
+                                       double radius = 0.1);
 
 /// Where place_apart puts cars.
 struct PlacementRules {
@@ -34,8 +35,8 @@ struct PlacementRules {
 
 /// Parked cars that leave the course passable: none overlaps another or is near the start, and a passage
 /// beside each stays open. `room` gives for each waypoint the distance (m) to the nearest wall, or is
-/// empty where this is not known. Throws std::invalid_argument as above, and std::runtime_error if the
-/// attempts do not suffice.
+/// empty where this is not known. Throws std::invalid_argument as place_at_random does and on a `room` of
+/// another size than `path`, and std::runtime_error if the attempts do not suffice.
 std::vector<Placement> place_apart(std::span<const maps::Point> path, std::span<const double> room, int cars,
                                    std::uint64_t seed, const maps::Point& start,
                                    const PlacementRules& rules = {});

@@ -42,7 +42,7 @@ class Plant {
   /// Puts the car somewhere; forgets commands under way.
   void reset(const CarState& state) noexcept;
 
-  /// Moves by one time step. A command that is not finite is none.
+  /// Moves by one time step. With a command that is not finite it coasts.
   void step(const Command& command) noexcept;
 
   /// Moves by one time step without a command.
@@ -51,7 +51,7 @@ class Plant {
   /// Current state.
   const CarState& state() const noexcept { return state_; }
 
-  /// Changes the state, as a contact does; commands under way stay under way.
+  /// Changes the state, as a collision does; commands under way stay under way.
   void set_state(const CarState& state) noexcept { state_ = state; }
 
   /// The steering (as commanded) that took effect in the last step.

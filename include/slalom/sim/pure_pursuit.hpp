@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slalom/maps/pose.hpp"
+#include "slalom/sim/gym.hpp"
 #include "slalom/sim/plant.hpp"
 
 namespace slalom::sim {
@@ -20,13 +21,12 @@ struct PathPoint {
 struct PurePursuitOptions {
   double lookahead = 1.0;     ///< m, distance of the point that is aimed at
   double wheelbase = 0.3302;  ///< m
-  double reacquire = 10.0;    ///< m, farther from the path than this the car is lost
+  /// m, farther from the path than this the car is lost; so it is nearer where no point of the path lies at
+  /// lookahead distance
+  double reacquire = 10.0;
   double lost_speed = 0.5;    ///< m/s, straight ahead while lost
-  double steer_max = 0.4189;  ///< rad, of the command
-  /// f1tenth_gym: the path is open for the nearest point and closed only for the search ahead, whose segments
-  /// end 1e-6 m off; what is aimed at is the start of the segment found, or of the nearest one with the arc
-  /// for the fixed lookahead; and steering is not bounded.
-  bool gym_compatible = false;
+  double steer_max = 0.4189;  ///< rad, largest steering angle of a command, either way
+  GymPurePursuit gym{};       ///< reproduction of f1tenth_gym
 
   /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
   void validate() const;

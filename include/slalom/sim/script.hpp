@@ -9,7 +9,7 @@ namespace slalom::sim {
 /// A driver without feedback: a fixed sequence of commands by time.
 class Script {
  public:
-  /// A command and its duration.
+  /// A command and the time from which it holds.
   struct Line {
     double from = 0;  ///< s, this command holds from here to the next line
     Command command;  ///< the command

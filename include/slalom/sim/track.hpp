@@ -22,8 +22,8 @@ struct TrackOptions {
 /// measured. Expensive to construct, immutable, and shared by any number of worlds and threads.
 class Track {
  public:
-  /// Throws std::invalid_argument on a map of no size, a resolution that is not positive, an origin that is
-  /// not finite, a cell count that does not fit, or no free cell.
+  /// Throws std::invalid_argument on a map of no size or more than 32766 cells along a side, a resolution
+  /// that is not positive, an origin that is not finite, a cell count that does not fit, or no free cell.
   explicit Track(maps::OccupancyGrid grid, std::optional<LapPath> lap_path = {},
                  const TrackOptions& options = {});
 
@@ -36,7 +36,8 @@ class Track {
   /// The options given at construction.
   const TrackOptions& options() const noexcept { return options_; }
 
-  /// Whether a cell is a wall.
+  /// Whether a cell is a wall: column -1 .. width, row -1 .. height. The ring of cells round the map counts
+  /// as wall even where `outside_is_wall` is off.
   bool is_wall(int column, int row) const noexcept { return clearance_at(column, row) < 0; }
 
   /// Whether a point of the map frame lies in a wall.
@@ -47,15 +48,15 @@ class Track {
   bool collides_with_wall(const Box& box) const noexcept;
 
   /// The distance (m) from a point to the nearest wall, with an error of at most one cell; 0 in a
-  /// wall, infinite without any wall.
+  /// wall, infinite without any wall. Outside the map it is 0 with `outside_is_wall`, else infinite.
   double distance_to_wall(const maps::Point& point) const noexcept;
 
   /// A point in cells of the grid: column and row with fractions.
   maps::Point to_cells(const maps::Point& point) const noexcept;
 
   /// One entry per cell and a ring of cells round the map, row by row, `clearance_stride` a row: how far
-  /// (1/64 cell) from any point of this cell there is no wall in any direction; negative in walls, `exit` on
-  /// the ring where the outside is no wall.
+  /// (1/64 cell, at most 500 cells) from any point of this cell there is no wall in any direction; negative
+  /// in walls, `exit` on the ring where the outside is no wall. One more entry at the end has no meaning.
   const std::vector<std::int16_t>& clearance() const noexcept { return clearance_; }
   /// Number of cells from one row of clearances to the next.
   int clearance_stride() const noexcept { return grid_.width + 2; }

@@ -36,8 +36,6 @@ enum class CollisionResponse {
   stop,        ///< it returns to where it was before the step, at rest
   slide,       ///< it loses the speed into the obstacle and keeps the speed along it
   count_only,  ///< nothing: it drives through, and the collision is counted
-  gym_zero,  ///< f1tenth_gym at walls: speed, yaw, yaw rate and slip become 0, so that the car turns to +x at
-             ///< once
 };
 
 /// Options of cars, scanners and collisions.
@@ -47,7 +45,7 @@ struct WorldOptions {
   PlantOptions plant;                                         ///< dynamics and actuators of all cars
   LidarOptions lidar;                                         ///< scanner of all cars
   CollisionResponse wall_response = CollisionResponse::stop;  ///< effect of a wall collision
-  CollisionResponse body_response = CollisionResponse::stop;  ///< at cars, discs and boxes; not gym_zero
+  CollisionResponse body_response = CollisionResponse::stop;  ///< at cars, discs and boxes
   int sectors = 3;                                            ///< parts of a lap with a split time
 
   GymWorld gym{};               ///< reproduction of f1tenth_gym
@@ -72,14 +70,14 @@ struct Observation {
   double time = 0;           ///< s since the reset
   double scan_time = 0;      ///< s since the reset, when `scan` was taken
   maps::LaserScanView scan;  ///< in the frame of `sensor`; where nothing was hit a range is range_max
-  std::span<const double> gym_ranges;  ///< the ranges in float64, with LidarOptions::gym_ranges only
+  std::span<const double> gym_ranges;  ///< the ranges in float64, with LidarOptions::gym.ranges only
   bool wall = false;                   ///< collides with a wall in this step
   std::span<const int> colliding;      ///< bodies that it collides with in this step, ascending
 
   bool collides() const { return wall || !colliding.empty(); }  ///< with a wall or a body
 };
 
-/// Result of a step.
+/// Result of a step; where both errors apply, non_finite_command.
 enum class StepStatus {
   ok,
   missing_command,     ///< fewer commands than cars; the others coasted
@@ -110,18 +108,20 @@ class World {
   /// Takes a parked car, box or disc away; the numbers of later bodies fall by one. Throws as move_body does.
   void remove_body(int body);
 
-  /// Puts a driven car into a state, as it is; commands under way stay under way.
+  /// Puts a driven car into a state without a check for collisions; commands under way stay under way. Throws
+  /// std::invalid_argument on a state that is not finite and std::out_of_range on a car that does not exist.
   void set_state(std::size_t car, const CarState& state);
 
   /// Moves by one time step. Command i is for driven car i; cars without one coast as configured.
   StepStatus step(std::span<const Command> commands) noexcept;
 
   /// Moves by one time step, at whose end the driven cars are in these states, as somebody saw them: for
-  /// replays. Contacts and laps are found, and nothing responds. Throws std::invalid_argument on states that
-  /// are not finite or not as many as driven cars.
+  /// replays. Collisions and laps are found, and nothing responds. Throws std::invalid_argument on states
+  /// that are not finite or not as many as driven cars.
   void follow(std::span<const CarState> states);
 
-  /// Whether a car scans; all driven ones do unless told otherwise.
+  /// Whether a car scans: a new car does, and a car keeps the setting over a reset. Throws std::out_of_range
+  /// on a car that does not exist.
   void set_scanning(std::size_t car, bool scans);
 
   /// Scan and state of a car.
@@ -169,7 +169,7 @@ class World {
     NormalNoise noise;
     NumpyRandom gym_noise{12345};
     std::vector<float> ranges;       ///< padded
-    std::vector<double> gym_ranges;  ///< with LidarOptions::gym_ranges only
+    std::vector<double> gym_ranges;  ///< with LidarOptions::gym.ranges only
     std::vector<int> colliding;
     maps::Pose sensor;
     double scan_time = 0;

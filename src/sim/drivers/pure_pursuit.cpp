@@ -29,7 +29,7 @@ PurePursuit::PurePursuit(std::vector<PathPoint> path, const PurePursuitOptions& 
 
 PurePursuit::Nearest PurePursuit::nearest(const maps::Point& p) const noexcept {
   Nearest best{0, 0, std::numeric_limits<double>::infinity()};
-  const std::size_t segments = options_.gym_compatible ? path_.size() - 1 : path_.size();
+  const std::size_t segments = options_.gym.waypoint_search ? path_.size() - 1 : path_.size();
   for (std::size_t i = 0; i < segments; ++i) {
     const maps::Point a = path_[i].point, b = path_[i + 1 == path_.size() ? 0 : i + 1].point;
     const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
@@ -47,7 +47,7 @@ std::optional<double> PurePursuit::cross_segment(const maps::Point& middle, int 
   const int count = static_cast<int>(path_.size());
   const maps::Point a = path_[static_cast<std::size_t>((row + count) % count)].point;
   maps::Point b = path_[static_cast<std::size_t>((row + 1 + count) % count)].point;
-  if (options_.gym_compatible) b.x += 1e-6, b.y += 1e-6;
+  if (options_.gym.waypoint_search) b.x += 1e-6, b.y += 1e-6;
   const double vx = b.x - a.x, vy = b.y - a.y;
   const double qa = vx * vx + vy * vy;
   const double qb = 2 * (vx * (a.x - middle.x) + vy * (a.y - middle.y));
@@ -57,7 +57,7 @@ std::optional<double> PurePursuit::cross_segment(const maps::Point& middle, int 
   if (discriminant < 0 || qa == 0) return {};
   const double root = std::sqrt(discriminant);
   const double enter = (-qb - root) / (2 * qa), leave = (-qb + root) / (2 * qa);
-  if (options_.gym_compatible && enter >= 0 && enter <= 1 && enter >= least) return enter;
+  if (options_.gym.waypoint_search && enter >= 0 && enter <= 1 && enter >= least) return enter;
   if (leave >= 0 && leave <= 1 && leave >= least) return leave;
   return {};
 }
@@ -65,10 +65,10 @@ std::optional<double> PurePursuit::cross_segment(const maps::Point& middle, int 
 std::optional<PurePursuit::Crossing> PurePursuit::cross_circle(const maps::Point& middle, std::size_t start,
                                                                double along) const noexcept {
   const int first = static_cast<int>(start), count = static_cast<int>(path_.size());
-  const int end = options_.gym_compatible ? count - 1 : count;
+  const int end = options_.gym.waypoint_search ? count - 1 : count;
   for (int row = first; row < end; ++row)
     if (const auto t = cross_segment(middle, row, row == first ? along : 0)) return Crossing{row, *t};
-  for (int row = options_.gym_compatible ? -1 : 0; row < first; ++row)
+  for (int row = options_.gym.waypoint_search ? -1 : 0; row < first; ++row)
     if (const auto t = cross_segment(middle, row, 0)) return Crossing{row, *t};
   return {};
 }
@@ -89,7 +89,7 @@ PurePursuit::Target PurePursuit::target(const maps::Point& position) const noexc
     target.row = crossing->row;
     target.along = crossing->along;
     target.aim = path_[at];
-    if (!options_.gym_compatible) {
+    if (!options_.gym.waypoint_search) {
       const PathPoint &a = path_[at], &b = path_[(at + 1) % count];
       const double t = crossing->along;
       target.aim = {{a.point.x + t * (b.point.x - a.point.x), a.point.y + t * (b.point.y - a.point.y)},
@@ -108,7 +108,7 @@ Command PurePursuit::command(const maps::Pose& pose) const noexcept {
   if (found.mode == Target::Mode::lost) return {0, options_.lost_speed};
   const double dx = found.aim.point.x - pose.x, dy = found.aim.point.y - pose.y;
   const double sideways = -std::sin(pose.yaw) * dx + std::cos(pose.yaw) * dy;
-  if (options_.gym_compatible) {
+  if (options_.gym.waypoint_search) {
     if (std::abs(sideways) < 1e-6) return {0, found.aim.speed};
     const double radius = 1 / (2 * sideways / (options_.lookahead * options_.lookahead));
     return {std::atan(options_.wheelbase / radius), found.aim.speed};

@@ -23,8 +23,8 @@ void check(std::span<const maps::Point> path, int cars, double radius) {
 
 }  // namespace
 
-std::vector<Placement> place_as_published(std::span<const maps::Point> path, int cars, std::uint64_t seed,
-                                          double radius) {
+std::vector<Placement> place_at_random(std::span<const maps::Point> path, int cars, std::uint64_t seed,
+                                       double radius) {
   check(path, cars, radius);
   std::vector<Placement> placed;
   for (int i = 0; i < cars; ++i) {

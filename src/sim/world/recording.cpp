@@ -1,6 +1,7 @@
 #include "slalom/sim/recording.hpp"
 
 #include <charconv>
+#include <span>
 #include <stdexcept>
 
 namespace slalom::sim {
@@ -90,11 +91,14 @@ std::string Recording::to_text() const {
   };
   poses("car", cars);
   poses("parked", parked);
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    if (i % cars.size() == 0) text += "step";
-    write(text, commands[i].steer);
-    write(text, commands[i].speed);
-    if ((i + 1) % cars.size() == 0) text += '\n';
+  const std::size_t steps = cars.empty() ? 0 : commands.size() / cars.size();
+  for (std::size_t step = 0; step < steps; ++step) {
+    text += "step";
+    for (const Command& command : std::span(commands).subspan(step * cars.size(), cars.size())) {
+      write(text, command.steer);
+      write(text, command.speed);
+    }
+    text += '\n';
   }
   return text;
 }

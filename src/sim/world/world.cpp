@@ -19,6 +19,13 @@ void require_finite(const char* name, const maps::Pose& pose) {
     throw std::invalid_argument(std::string(name) + ": x, y and yaw must be finite");
 }
 
+void require_finite(const CarState& state) {
+  require_finite("state", pose_of(state));
+  for (const double value : {state.steer, state.speed, state.yaw_rate, state.slip})
+    if (!std::isfinite(value))
+      throw std::invalid_argument("state: steer, speed, yaw_rate and slip must be finite");
+}
+
 std::shared_ptr<const Track> present(std::shared_ptr<const Track> track) {
   if (!track) throw std::invalid_argument("track: must not be null");
   return track;
@@ -34,26 +41,24 @@ const WorldOptions& validated(const WorldOptions& options) {
 WorldOptions WorldOptions::gym_compatible() {
   WorldOptions o;
   o.plant.dynamics.substeps = 1;
-  o.plant.dynamics.gym = GymDynamics::published();
-  o.plant.actuation.gym = GymActuation::published();
-  o.plant.gym = GymPlant::published();
+  o.plant.dynamics.gym = GymDynamics::all();
+  o.plant.actuation.gym = GymActuation::all();
+  o.plant.gym = GymPlant::all();
   o.lidar.mount = {};
-  o.lidar.gym = GymLidar::published();
-  o.wall_response = CollisionResponse::gym_zero;
+  o.lidar.gym = GymLidar::all();
   o.body_response = CollisionResponse::count_only;
   o.start_anywhere = true;
-  o.gym = GymWorld::published();
+  o.gym = GymWorld::all();
   return o;
 }
 
 void WorldOptions::validate() const {
   detail::require_range("time_step", time_step, 1e-5, 0.1);
   car.validate();
-  plant.actuation.validate();
+  // The plant checks its options when it is made.
+  Plant(car, plant, time_step);
   lidar.validate();
   detail::require_range("sectors", sectors, 1, 1000);
-  if (body_response == CollisionResponse::gym_zero)
-    throw std::invalid_argument("body_response = gym_zero: must be stop, slide or count_only");
   if (gym.wall_collision && lidar.rate > 0 && std::lround(1 / (lidar.rate * time_step)) > 1)
     throw std::invalid_argument("gym.wall_collision: needs a scan in every step, so rate must be 0");
 }
@@ -63,8 +68,6 @@ World::World(const WorldOptions& options, std::shared_ptr<const Track> track)
       track_(present(std::move(track))),
       lidar_(options.lidar),
       time_to_collision_(options.lidar, options.car) {
-  // Refuses what only the plant knows to be wrong here and not at the first reset.
-  Plant(options.car, options.plant, options.time_step);
   if (options.lidar.rate > 0)
     scan_every_ = std::max<std::int64_t>(1, std::lround(1 / (options.lidar.rate * options.time_step)));
 }
@@ -176,7 +179,7 @@ void World::remove_body(int body) {
 }
 
 void World::set_state(std::size_t car, const CarState& state) {
-  require_finite("state", pose_of(state));
+  require_finite(state);
   cars_.at(car).plant.set_state(state);
   cars_[car].before = state;
   boxes_[car].pose = pose_of(state);
@@ -260,7 +263,7 @@ void World::follow(std::span<const CarState> states) {
   if (states.size() != cars_.size())
     throw std::invalid_argument("states: " + std::to_string(states.size()) + " must be as many as cars, " +
                                 std::to_string(cars_.size()));
-  for (const CarState& state : states) require_finite("state", pose_of(state));
+  for (const CarState& state : states) require_finite(state);
   for (std::size_t i = 0; i < cars_.size(); ++i) {
     cars_[i].before = states[i];
     cars_[i].plant.set_state(states[i]);

@@ -29,11 +29,11 @@ void World::find_fixed_partners() noexcept {
   for (std::size_t i = 0; i < fixed_.size(); ++i)
     for (std::size_t j = i + 1; j < fixed_.size(); ++j) {
       // For two discs the enclosing squares are compared, which is sufficient for fixed bodies.
-      const bool touches = fixed_[j].disc_radius > 0 && fixed_[i].disc_radius > 0
+      const bool collide = fixed_[j].disc_radius > 0 && fixed_[i].disc_radius > 0
                                ? signed_gap(fixed_[i].box, fixed_[j].box) <= 0
                            : fixed_[i].disc_radius > 0 ? collides(fixed_[j].box, fixed_[i])
                                                        : collides(fixed_[i].box, fixed_[j]);
-      if (!touches) continue;
+      if (!collide) continue;
       fixed_[i].last_partner = std::max(fixed_[i].last_partner, static_cast<int>(cars_.size() + j));
       fixed_[j].last_partner = std::max(fixed_[j].last_partner, static_cast<int>(cars_.size() + i));
     }
@@ -67,15 +67,16 @@ void World::find_collisions() noexcept {
 void World::respond(std::size_t index) noexcept {
   Car& car = cars_[index];
   const bool at_bodies = !car.colliding.empty() && options_.body_response != CollisionResponse::count_only;
-  const bool at_wall = car.wall && options_.wall_response != CollisionResponse::count_only;
+  const bool zeroes = car.wall && options_.gym.wall_stop;
+  const bool at_wall = zeroes || (car.wall && options_.wall_response != CollisionResponse::count_only);
   if (!at_bodies && !at_wall) return;
   const CarState tried = car.plant.state();
   const CollisionResponse response = at_wall ? options_.wall_response : options_.body_response;
-  CarState state = response == CollisionResponse::gym_zero ? tried : car.before;
+  CarState state = zeroes ? tried : car.before;
   state.steer = tried.steer;
   state.speed = state.yaw_rate = state.slip = 0;
-  if (response == CollisionResponse::gym_zero) state.yaw = 0;
-  if (response == CollisionResponse::slide) slide(index, tried, state);
+  if (zeroes) state.yaw = 0;
+  if (!zeroes && response == CollisionResponse::slide) slide(index, tried, state);
   car.plant.set_state(state);
   boxes_[index].pose = {state.x, state.y, state.yaw};
 }
