@@ -18,7 +18,7 @@ bool arrives(Controller controller) {
   std::copy(Arm::start.begin(), Arm::start.end(), x.angle);
   for (double t = 0; t < 8; t += arm.dt) {
     x = arm.step(x, controller.solve(x, {.elapsed = arm.dt}).inputs[0]);
-    if (arm.touches(arm.posture(x))) return false;
+    if (arm.collides(arm.posture(x))) return false;
     if (arm.distance(arm.posture(x)) < 0.05) return true;
   }
   return false;

@@ -8,7 +8,8 @@
 namespace slalom::problems {
 
 /// An arm of seven joints that reaches past a ball: over it, under it, or drawn in behind it. Its joints turn
-/// about z, y, z, y, z, y, z in turn; with all angles 0 it stands upright. Inputs are the joints' rates.
+/// about z, y, z, y, z, y, z, from the base on; with all angles 0 it stands upright. Inputs are the joints'
+/// rates.
 struct Arm {
   static constexpr int joints = 7;  ///< number
   /// State of the dynamics.
@@ -50,7 +51,7 @@ struct Arm {
   template <class T>
   CostTerms<T, 3> stage_cost(const State<T>& x, const Input<T, joints>& u) const {
     const Posture<T> arm = posture(x);
-    const mask_t<T> hit = touches(arm);
+    const mask_t<T> hit = collides(arm);
     T effort(0);
     for (int i = 0; i < joints; ++i) effort = effort + u[i] * u[i];
     return {{T(dt * 40) * distance(arm), T(dt * 0.05) * effort, select(hit, T(100), T(0))}, hit};
@@ -59,7 +60,7 @@ struct Arm {
   template <class T>
   CostTerms<T, 3> terminal_cost(const State<T>& x) const {
     const Posture<T> arm = posture(x);
-    const mask_t<T> hit = touches(arm);
+    const mask_t<T> hit = collides(arm);
     return {{T(60) * distance(arm), T(0), select(hit, T(100), T(0))}, hit};
   }
 
@@ -83,9 +84,9 @@ struct Arm {
     return sqrt(square(arm.hand.x - T(goal_x)) + square(arm.hand.y - T(goal_y)) +
                 square(arm.hand.z - T(goal_z)));
   }
-  /// Whether a link touches the ball or the ground.
+  /// Whether a link collides with the ball, or the wrist or the hand with the ground.
   template <class T>
-  mask_t<T> touches(const Posture<T>& arm) const {
+  mask_t<T> collides(const Posture<T>& arm) const {
     const Point<T> shoulder{T(0), T(0), T(base)};
     const T reach(ball_radius + thickness), ground(thickness);
     const T nearest = min(min(square_distance(shoulder, arm.elbow), square_distance(arm.elbow, arm.wrist)),

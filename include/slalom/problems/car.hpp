@@ -47,7 +47,8 @@ struct Car {
     return T(0);
   }
 
-  /// Whether the car, taken for 1.8 m wide and 4.5 m long, touches a parked car or the edge of the road.
+  /// Whether the car, 1.8 m wide, 4.5 m long and taken as parallel to the road, collides with a parked car or
+  /// the edge of the road.
   template <class T>
   mask_t<T> hits(const State<T>& x) const {
     mask_t<T> hit = abs(x.y) > T(half_road - 0.9);

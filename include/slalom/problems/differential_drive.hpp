@@ -12,7 +12,7 @@ struct Disc {
   double x, y, radius;  // m
 };
 
-/// A robot with two driven wheels on its way to a goal among discs that it must not touch.
+/// A robot with two driven wheels on its way to a goal among discs that it must avoid.
 struct DifferentialDrive {
   /// State of the dynamics.
   template <class T>

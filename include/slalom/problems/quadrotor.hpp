@@ -47,7 +47,7 @@ struct Quadrotor {
   T distance(const State<T>& x) const {
     return sqrt(square(x.x - T(goal_x)) + square(x.z - T(goal_z)));
   }
-  /// Sum of squared speeds and rates.
+  /// Weighted sum of the squares of speeds, tilt and turning rate.
   template <class T>
   T square_speed(const State<T>& x) const {
     return x.speed_x * x.speed_x + x.speed_z * x.speed_z + x.tilt * x.tilt + T(0.2) * x.rate * x.rate;
