@@ -23,13 +23,13 @@ std::string format(const char* pattern, double value) {
   return text;
 }
 
-/// A p value as one writes it.
+/// A p value in its usual notation.
 std::string p_text(double p) {
   return p < 0.001 ? "p < 0.001" : format("p = %.3f", p);
 }
 
 std::string ratio_text(double ratio) {
-  if (ratio > 2 || ratio < 0.5) return format("MS %.2f times theirs", ratio);
+  if (ratio > 2 || ratio < 0.5) return format("MS %.2f times that of the log", ratio);
   return format(ratio > 1 ? "MS %.1f %% higher" : "MS %.1f %% lower", 100 * std::abs(ratio - 1));
 }
 
@@ -52,8 +52,8 @@ std::string judge(const LogComparison& c, double our_rate) {
                           format("%.1f points)", 100 * c.rate_difference_ci->high);
   }
   if (outside) return "outside: " + text;
-  return "undecided: " + std::to_string(c.our_laps) + " laps beside " + std::to_string(c.laps) +
-         " do not say; " + text;
+  return "undecided: " + std::to_string(c.our_laps) + " laps and " + std::to_string(c.laps) +
+         " in the log are too few or too scattered; " + text;
 }
 
 Json comparison_json(const LogComparison& c, const LapLog& log) {
@@ -97,19 +97,17 @@ std::vector<PaperRow> paper_rows() {
     rows.back().set = {{"mppi.variance", text}};
   }
   rows[1].note =
-      "In the authors' logs, not in the paper's tables. Its figures there are those of covariance 0.1, which "
-      "is most likely what was driven.";
+      "This row is in the authors' logs but not in the paper's tables. Its logged figures are those of "
+      "covariance 0.1, which was most likely driven.";
   rows[3].lockstep = "mppi_cov0.1";
   baseline("Reverse MPPI", "reverse_mppi", "reverse_mppi");
   rows.back().note =
-      "The published program's threads race in the sum of its moments and lose some of them; ours is what "
-      "one "
-      "thread computes (docs/algorithms.md).";
+      "The threads of the published program race when they sum the moments, and some contributions are lost. "
+      "Slalom computes the result of a single thread (docs/algorithms.md).";
   baseline("SV-MPC", "sv_mpc", "sv_mpc");
   rows.back().note =
-      "As published its particles run away until numbers overflow. Contributions that the published "
-      "program's "
-      "threads lose in a race damp this; ours is what one thread computes (docs/algorithms.md).";
+      "In the published program the particles diverge until numbers overflow. Contributions that its threads "
+      "lose in a race damp this. Slalom computes the result of a single thread (docs/algorithms.md).";
   baseline("SVG-MPPI", "svg_mppi", "svg_mppi");
   rows.back().lockstep = "svg_mppi";
 
@@ -129,15 +127,15 @@ std::vector<PaperRow> paper_rows() {
                     .log_oa = sweep + "obstacle_avoidance/cov_" + variance + ".csv"});
   };
   fixed("ablation", "MPPI + nominal sequence (NS)", "0.075");
-  rows.push_back({.section = "ablation",
-                  .name = "MPPI + adaptive covariance (AC)",
-                  .method = "svg_mppi",
-                  .set = {{"svg_mppi.use_nominal", "false"}},
-                  .log_pt = nominal + "obstacle_avoidance/wo_nominal_solution.csv",
-                  .log_oa = nominal + "path_tracking/wo_nominal_solution.csv",
-                  .note =
-                      "The paper prints PT 18.18, OA 7.08; the seeds and collisions in the logs show that the "
-                      "two stand in each other's place. Compared is what was driven."});
+  rows.push_back(
+      {.section = "ablation",
+       .name = "MPPI + adaptive covariance (AC)",
+       .method = "svg_mppi",
+       .set = {{"svg_mppi.use_nominal", "false"}},
+       .log_pt = nominal + "obstacle_avoidance/wo_nominal_solution.csv",
+       .log_oa = nominal + "path_tracking/wo_nominal_solution.csv",
+       .note = "The paper prints PT 18.18, OA 7.08; the seeds and collisions in the logs show that the "
+               "two are swapped. The comparison uses what was driven."});
   rows.push_back({.section = "ablation",
                   .name = "MPPI + NS + AC (SVG-MPPI)",
                   .method = "svg_mppi",
@@ -183,7 +181,7 @@ std::vector<Experiment> paper_experiments(const std::vector<std::string>& sectio
 
 namespace {
 
-/// A folder that was named is meant: without a single log in it it is the wrong one.
+/// A folder that is given must hold at least one of the logs.
 void require_logs(const fs::path& published) {
   if (!fs::is_directory(published))
     throw IoError("--published", 0, published.string() + " is not a directory");
@@ -252,9 +250,9 @@ std::vector<Reference> find_references(const LogFolders& folders, const std::vec
     if (!r.lockstep) continue;
     const std::string lockstep = judge(*r.lockstep, rate);
     r.verdict += lockstep == "inside" && r.published->agreement() == Agreement::outside
-                     ? "; inside the laps of the published program in lockstep, so it is the logs' "
-                       "asynchronous run that differs"
-                     : "; in lockstep " + lockstep;
+                     ? "; inside the laps of the published program in lockstep, so the difference comes "
+                       "from the asynchronous run of the logs"
+                     : "; compared with the lockstep laps: " + lockstep;
   }
   return references;
 }

@@ -9,7 +9,7 @@
 #include "slalom/evaluation/lap_log.hpp"
 #include "tools/json/json.hpp"
 
-/// The simulation section of Honda et al. (ICRA 2024, section VI) as experiments, and what the authors
+/// The simulations of Honda et al. (ICRA 2024, section V-B) as experiments, and what the authors
 /// logged.
 namespace slalom::tools {
 
@@ -27,7 +27,7 @@ struct PaperRow {
 };
 
 /// All rows. The ablations' two files without a nominal sequence are taken for what they hold: in the
-/// authors' repository, and in table II of the paper, the two scenarios stand in each other's place.
+/// authors' repository, and in table II of the paper, the two scenarios are swapped.
 std::vector<PaperRow> paper_rows();
 
 /// The different experiments of the rows of these sections, section by section.

@@ -23,11 +23,11 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
   for (std::size_t i = 0; i < lap.planner_status.size(); ++i)
     if (lap.planner_status[i] > 0)
       status[vehicle::name(static_cast<vehicle::PlannerStatus>(i))] = lap.planner_status[i];
-  Json touches = Json::array(), obstacles = Json::array();
-  for (const auto& touch : lap.first_collisions)
-    touches.push_back({{"time_s", touch.time},
-                       {"pose", pose_json(touch.pose)},
-                       {"body", touch.body < 0 ? Json("wall") : Json(touch.body)}});
+  Json collisions = Json::array(), obstacles = Json::array();
+  for (const auto& collision : lap.first_collisions)
+    collisions.push_back({{"time_s", collision.time},
+                          {"pose", pose_json(collision.pose)},
+                          {"body", collision.body < 0 ? Json("wall") : Json(collision.body)}});
   for (const auto& obstacle : lap.obstacles) obstacles.push_back(pose_json(obstacle));
   return {{"lap", number},
           {"seed", lap.seed},
@@ -51,7 +51,7 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
           {"mean_variance", finite_or_null(lap.mean_variance)},
           {"mean_effective_samples", finite_or_null(lap.mean_effective_samples)},
           {"planner_status", status},
-          {"touches", touches},
+          {"touches", collisions},
           {"obstacles", obstacles}};
 }
 

@@ -175,7 +175,7 @@ std::string tiles(const Report& report) {
   if (!kinds.empty())
     out += tile(std::to_string(kinds["inside"]) + " \xC2\xB7 " + std::to_string(kinds["outside"]) +
                     " \xC2\xB7 " + std::to_string(kinds["undecided"]),
-                "experiments inside, outside, undecided beside the published laps");
+                "experiments inside, outside and undecided, compared with the published laps");
   for (const char* scenario : {"pt", "oa"}) {
     const auto row = std::find_if(report.rows.begin(), report.rows.end(), [&](const ReportRow& r) {
       return report.experiment(r).scenario == scenario && report.experiment(r).method == "svg_mppi" &&
@@ -224,12 +224,13 @@ std::string paired_table(const Report& report) {
             p_value(c.success_p) + "</td></tr>\n";
   }
   if (rows.empty()) return {};
-  return "<section><h2>Lap by lap against SVG-MPPI</h2><p class=\"caption\">The same seeds: the same "
-         "obstacles for "
-         "both. MS by Wilcoxon's signed-rank test, success (finished without collision) by McNemar's.</p>"
+  return "<section><h2>Paired comparison with SVG-MPPI</h2><p class=\"caption\">Both drive the same seeds "
+         "and therefore the same "
+         "obstacles. MS by Wilcoxon's signed-rank test, success (finished without collision) by "
+         "McNemar's.</p>"
          "<div class=\"scroll\"><table><thead><tr><th></th><th></th><th>laps</th><th>MS above "
          "SVG-MPPI</th><th>p</th>"
-         "<th>only SVG-MPPI succeeds</th><th>only this one</th><th>p</th></tr></thead><tbody>\n" +
+         "<th>only SVG-MPPI succeeds</th><th>only this method succeeds</th><th>p</th></tr></thead><tbody>\n" +
          rows + "</tbody></table></div></section>\n";
 }
 
@@ -271,8 +272,8 @@ std::string page(const Report& report, const std::vector<ReportFigure>& figures)
       "ones. "
       "\xE2\x80\x9CInside\xE2\x80\x9D: neither does, and the intervals of the differences are narrower "
       "than half of the published MS and 10 points of the collision rate to either side. "
-      "\xE2\x80\x9CUndecided\xE2\x80\x9D: neither does, but the laps are too few or too scattered to say "
-      "more. Laps that time out count like all others.</p><details><summary>All settings</summary><pre>" +
+      "\xE2\x80\x9CUndecided\xE2\x80\x9D: neither does, but the laps are too few or too scattered to "
+      "decide. Laps that time out count like all others.</p><details><summary>All settings</summary><pre>" +
       escaped(settings.dump(1)) + "</pre></details></section>\n</main></html>\n";
   return html;
 }

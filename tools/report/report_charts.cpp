@@ -109,11 +109,11 @@ RowChart section_chart(const Report& report, const std::string& section) {
   return chart;
 }
 
-/// Computing times, of all laps of a row: the mean over laps, to the longest solve.
+/// Solve times of all laps of a row, from the mean over laps to the maximum.
 RowChart time_chart(const Report& report, const std::string& section) {
   RowChart chart;
-  Panel panel{.title = "One solve",
-              .axis = "ms: mean, reaching to the longest of all",
+  Panel panel{.title = "Solve time",
+              .axis = "ms: mean to maximum",
               .kind = Panel::Kind::spans,
               .ours = {},
               .theirs = {}};
@@ -163,10 +163,10 @@ std::vector<ReportFigure> report_charts(const Report& report, const std::filesys
     figures.push_back(save(draw_chart(time_chart(report, sections.front())),
                            {"compute_times",
                             "",
-                            "Time to compute",
-                            "Wall-clock time of a solve, from its mean to the longest of all laps, "
-                            "logarithmic. It depends on the "
-                            "machine and on what else runs there; every other figure repeats exactly.",
+                            "Solve times",
+                            "Wall-clock time of a solve, from the mean to the maximum over all laps, "
+                            "on a logarithmic axis. It depends on the machine and its load; every other "
+                            "figure repeats exactly.",
                             {},
                             {}},
                            folder));

@@ -198,7 +198,7 @@ ReportFigure contact_map(const Report& report, const maps::OccupancyGrid& map,
        "",
        "Where collisions happen",
        "The car's centre of gravity at every first collision with a body or wall, all laps of all rows. "
-       "Where many lie together the course leaves little room or the turn hides what comes.",
+       "Clusters mark narrow stretches and turns with a short view.",
        {},
        {}},
       folder);
