@@ -47,7 +47,7 @@ struct ThreadPool::Shared {
   alignas(64) std::atomic<std::uint64_t> open{0};
   alignas(64) std::atomic<std::uint32_t> unfinished{0};
   Call call =
-      nullptr;  // these two are published by `open`, and kept until the last task taken from it has ended
+      nullptr;  // these two are released by `open`, and kept until the last task taken from it has ended
   void* context = nullptr;
   std::atomic<bool> quit{false};
   std::vector<std::thread> workers;

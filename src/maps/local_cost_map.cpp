@@ -104,7 +104,7 @@ ScanReport LocalCostMap::mark_scan(const LaserScanView& scan) noexcept {
   report.accepted = true;
   report.beams = static_cast<int>(scan.ranges.size());
   // Points and the box of the body are float32, as the messages are that carry them: a point right on the
-  // box's edge is then dropped or kept as the published program does.
+  // box's edge is then dropped or kept as by that program (proj-svg_mppi).
   const auto laser_x = static_cast<float>(options_.laser.x), laser_y = static_cast<float>(options_.laser.y);
   const auto front = static_cast<float>(options_.footprint.front - options_.body_inset),
              rear = -static_cast<float>(options_.footprint.rear - options_.body_inset);

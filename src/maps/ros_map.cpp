@@ -85,7 +85,7 @@ class Reader {
     for (const auto& entry : root_)
       if (entry.first.IsScalar() && !seen.insert(entry.first.Scalar()).second)
         throw IoError(path_.string(), entry.first.Mark().line + 1,
-                      "the key `" + entry.first.Scalar() + "` is said twice");
+                      "the key `" + entry.first.Scalar() + "` is a duplicate");
   }
 
   std::filesystem::path path_;

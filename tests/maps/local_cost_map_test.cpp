@@ -100,7 +100,7 @@ TEST(LocalCostMap, BadReadingsAreDroppedAndCounted) {
   EXPECT_EQ(map.at(2.2, 0), 100);
 }
 
-TEST(LocalCostMap, KeepsObstaclesThatTouchTheBody) {
+TEST(LocalCostMap, KeepsObstaclesBesideTheBody) {
   const std::vector<float> ranges{0.17F, 0.1F};  // 2.5 cm within the front of the body, and 9.5 cm
   const LaserScanView scan{ranges, 0, 1e-3, 0.05, 30};
   LocalCostMap map, published(published_cost_map());

@@ -178,7 +178,7 @@ TEST(Planner, WithTheAccelerationAsAnInputItIsFastWhereItCanAndSlowsDownInTime) 
   EXPECT_FALSE(blocked) << "a plan that slows down is free all the time";
 }
 
-TEST(Planner, ReversesFromAnObstacleThatItTouches) {
+TEST(Planner, ReversesFromAnObstacleInCollision) {
   for (const bool back_up : {true, false}) {
     PlannerOptions options = careful();
     options.back_up = back_up;

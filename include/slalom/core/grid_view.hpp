@@ -14,7 +14,7 @@ struct GridAxis {
 /// Nearest-cell look-ups in a map of `Layers` float32 values a cell (1, or 4: then one 128-bit load fetches a
 /// cell), from scalar code and from SIMD lanes alike.
 ///
-/// The grid is that of the published program's grid maps: row 0 lies at the largest x, column 0 at the
+/// The grid is that of grid_map 1.6.4 (ROS): row 0 lies at the largest x, column 0 at the
 /// largest y, and the upper edge of the map is inside, the lower one outside. All round lies a ring of cells
 /// that hold the values for "outside", so an index that is out of range, or made from a NaN, is clamped into
 /// the ring and needs no mask. Storage: (rows + 2) x 2^stride_log2 cells, 2^stride_log2 >= columns + 2, the
@@ -25,7 +25,7 @@ class GridView {
   static_assert(Layers == 1 || Layers == 4);
 
   GridView() = default;
-  /// `rows` cells along x and `columns` along y, without the ring; `resolution` m per cell; `center` m.
+  /// `cells` begins with the ring; `rows` along x, `columns` along y, both without it; m per cell; m.
   GridView(const float* cells, int rows, int columns, int stride_log2, double resolution, double center_x,
            double center_y) noexcept
       : cells_(cells),
@@ -43,7 +43,7 @@ class GridView {
         offset_x_(rows_axis_.offset),
         offset_y_(columns_axis_.offset) {}
 
-  /// The cell of row 0 and column 0.
+  /// The first cell of the ring, at row -1 and column -1.
   const float* cells() const noexcept { return cells_; }
   /// Cells along x.
   int rows() const noexcept { return rows_; }
@@ -51,12 +51,12 @@ class GridView {
   int columns() const noexcept { return columns_; }
   /// Edge of a cell, m.
   double resolution() const noexcept { return resolution_; }
-  /// Centre of the grid, m.
+  /// Centre of the grid, x, m.
   double center_x() const noexcept { return center_x_; }
-  /// Centre of the grid, m.
+  /// Centre of the grid, y, m.
   double center_y() const noexcept { return center_y_; }
-  const GridAxis& rows_axis() const noexcept { return rows_axis_; }        ///< x to rows
-  const GridAxis& columns_axis() const noexcept { return columns_axis_; }  ///< y to columns
+  const GridAxis& rows_axis() const noexcept { return rows_axis_; }        ///< x to rows, ring included
+  const GridAxis& columns_axis() const noexcept { return columns_axis_; }  ///< y to columns, the same
 
   /// Whether a storage index lies in the ring.
   bool in_ring(std::ptrdiff_t index) const noexcept {

@@ -28,7 +28,7 @@ struct MaskOf<Pack<Target>> {
 template <class T>
 using mask_t = typename MaskOf<T>::type;
 
-/// True for the types a rollout runs on.
+/// Whether a type is a pack of SIMD lanes.
 template <class T>
 inline constexpr bool is_pack = false;
 /// True for packs.
@@ -55,7 +55,7 @@ template <Scalar T>
 T tan(T x) {
   return std::tan(x);
 }
-/// E^x.
+/// The exponential e^x.
 template <Scalar T>
 T exp(T x) {
   return std::exp(x);
@@ -137,7 +137,7 @@ SLALOM_INLINE T wrap_angle(const T& angle) {
   }
 }
 
-/// X squared.
+/// The square of `x`.
 template <class T>
 SLALOM_INLINE T square(const T& x) {
   return x * x;

@@ -29,7 +29,7 @@ struct OptionEntry {
 /// "flag", "integer", "number", "numbers" (one per input) or "choice".
 const char* type_name(const OptionEntry& entry);
 
-/// A value as a configuration file has it: `true`, `12`, `0.05`, `[0.1, 0.2]`, `.inf`, `published`.
+/// A value as a configuration file has it: `true`, `12`, `0.05`, `[0.1, 0.2]`, `.inf`, `narrow`.
 /// Numbers are written with as few digits as read back to the same value.
 std::string to_text(const OptionValue& value);
 

@@ -39,7 +39,7 @@ class ProblemEvaluator final : public BatchEvaluator, private Sampler {
     for (int i = 0; i < detail::state_size<P>; ++i) state_[i] = static_cast<float>(values[i]);
   }
 
-  /// What was applied before the next rollouts; asked for by problems with `input_rate_max` alone.
+  /// What was applied before the next rollouts. Ignored unless the problem has `input_rate_max`.
   void set_previous_input(const Input<double, P::inputs>& u) noexcept {
     if constexpr (detail::limits_rates<P>) {
       for (int i = 0; i < P::inputs; ++i) state_[detail::state_size<P> + i] = static_cast<float>(u[i]);
@@ -81,7 +81,7 @@ using CostTermsOf = detail::CostTermsOf<P>;
 
 /// The predicted states of one control sequence, `steps` inputs u[step][input]: x[0] = `state` and the
 /// `steps` that follow, in double; where `terms` is given, the parts of its cost. Returns the cost of the
-/// sequence in double, with its collision.
+/// sequence in double, with its collision. Rates are not limited: see hold_input_rates.
 template <Problem P>
 Cost<double> predict(const P& problem, const detail::StateOf<P, double>& state,
                      const Input<double, P::inputs>* u, int steps, detail::StateOf<P, double>* x,

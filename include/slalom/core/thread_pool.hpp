@@ -12,13 +12,13 @@ namespace slalom {
 /// its partial result and combine the slots in order.
 class ThreadPool {
  public:
-  /// `threads` >= 1, the caller's included. Throws std::invalid_argument otherwise.
+  /// `threads` in [1, 1024], the caller's included. Throws std::invalid_argument otherwise.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// That work on a call, the caller among them.
+  /// Number of threads that work on a call, the caller included.
   int threads() const noexcept { return threads_; }
 
   /// Calls `task(i)` for every i in [0, count) and returns when all have ended. No allocation; tasks may not

@@ -14,7 +14,7 @@ namespace slalom::evaluation {
 /// result.
 class ClosedLoop {
  public:
-  /// Throws as LapRunner::run does.
+  /// `runner` must not be null. Throws as LapRunner::run does.
   ClosedLoop(std::shared_ptr<const LapRunner> runner, std::uint64_t seed);
   ~ClosedLoop();
   /// Moves the loop; the source can only be destroyed or assigned to.

@@ -33,7 +33,7 @@ struct Environment {
   std::shared_ptr<const sim::Track>
       track;                               ///< walls with their distance field, and the path that counts laps
   std::vector<maps::ReferencePoint> path;  ///< the waypoints of the course
-  /// m, for each point of the course's obstacle path: the distance to the wall on its wider side.
+  /// m, for each point of the course's obstacle path: the distance to the wall on its wider side, at most 10.
   std::vector<double> obstacle_room;
   maps::Pose start;                        ///< of the centre of gravity, map frame
   double timeout = 0;                      ///< s; 0: three times the lap time of the speed profile

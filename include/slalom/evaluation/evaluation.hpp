@@ -41,7 +41,7 @@ struct EvaluationProgress {
   int laps_total = 0;            ///< of all experiments
   int laps_resumed = 0;          ///< number of those done that an earlier run has driven
   double seconds_left = 0;       ///< estimated
-  const LapRow* last = nullptr;  ///< the lap that ended last; null before the first
+  const LapRow* last = nullptr;  ///< the lap that ended last, valid during the callback
 };
 
 /// A lap to be driven.

@@ -11,7 +11,7 @@
 /// from the model.
 namespace slalom::evaluation {
 
-/// Conditions after the experiment on a car in Honda et al. (ICRA 2024), section VII, as far as it is
+/// Conditions after the experiment on a car in Honda et al. (ICRA 2024), section V-C, as far as it is
 /// described: a Hokuyo UTM-30LX, localisation by a particle filter. Compared with the vehicle problem (0.025
 /// s, 0.1 s) the servo has a longer dead time, a shorter time constant, a wrong gain and an offset.
 struct HardwareConditions {

@@ -91,7 +91,7 @@ struct LapResult {
 class LapRunner {
  public:
   /// Throws std::invalid_argument if `environment` is null, the method is unknown, an option or a setting is
-  /// out of range, or the start is in a wall.
+  /// out of range, or the start is off the map or less than 0.15 m from a wall.
   LapRunner(std::shared_ptr<const Environment> environment, const vehicle::Configuration& configuration,
             std::string method, const LapSettings& settings);
 

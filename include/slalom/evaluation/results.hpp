@@ -10,7 +10,7 @@
 namespace slalom::evaluation {
 
 /// Statistics of the laps of one experiment. Rates are fractions. Every lap counts, whether it finished or
-/// not.
+/// not; without laps all values are 0.
 struct ExperimentResult {
   int experiment = 0;                                   ///< index
   int laps = 0, finished = 0, timeouts = 0;             ///< numbers of laps
@@ -25,14 +25,15 @@ struct ExperimentResult {
   double success_rate = 0;                              ///< finished laps without a collision
   Interval success_rate_ci;                             ///< Wilson
   double lap_time_mean = 0;                             ///< s, of finished laps; NaN without any
-  double solve_ms_mean = 0, solve_ms_p50 = 0, solve_ms_p99 = 0, solve_ms_max = 0;  ///< ms, wall-clock
+  /// ms, wall-clock: means over the laps of each lap's mean, median and 99th percentile; largest of all laps
+  double solve_ms_mean = 0, solve_ms_p50 = 0, solve_ms_p99 = 0, solve_ms_max = 0;
 };
 
 /// Two experiments over the same seeds.
 struct PairedComparison {
   int a = 0, b = 0;                              ///< indices of the experiments
   int laps = 0;                                  ///< pairs
-  double ms_difference = 0;                      ///< mean of a - b
+  double ms_difference = 0;                      ///< mean of a - b; NaN without pairs
   double ms_p = 1;                               ///< Wilcoxon signed-rank test
   int only_a_succeeds = 0, only_b_succeeds = 0;  ///< laps in which only one of them succeeds
   double success_p = 1;                          ///< McNemar test

@@ -10,7 +10,7 @@
 
 namespace slalom::evaluation {
 
-/// The state cost of a control sequence (MS, "mean sequence cost", Honda et al., ICRA 2024, section VI),
+/// The state cost of a control sequence (MS, "mean sequence cost", Honda et al., ICRA 2024, section V-A),
 /// measured in the same way for every method and configuration: cost map, reference field and weights of the
 /// paper's program, 15 states 0.05 s apart. For the configuration `published` it equals the planner's own
 /// costs.

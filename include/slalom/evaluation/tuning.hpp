@@ -23,7 +23,8 @@ struct SearchDimension {
 
   /// The value at the coordinate `place` in [0, 1], as text. Numbers keep five significant digits.
   std::string value(double place) const;
-  /// The coordinate in [0, 1] of a value; of the nearest value in the range if it is outside.
+  /// The coordinate in [0, 1] of a value; of the nearest value in the range if it is outside, of the first
+  /// choice or the lower end if the text is none of the choices or not a number.
   double place(const std::string& value) const;
 };
 
@@ -56,7 +57,8 @@ struct Rung {
 std::vector<Rung> halving(int candidates, int laps);
 /// The number of laps driven in these steps.
 int laps_of(const std::vector<Rung>& rungs);
-/// The largest number of candidates of a round with at most `budget` laps; below 2 if no round is possible.
+/// The largest number of candidates of a round with at most `budget` laps, at most 4096; below 2 if
+/// no round is possible.
 int candidates_for(int budget, int laps);
 
 /// The objective to be minimised: a weighted sum of figures of a lap, for instance "ms", "log_ms + 5

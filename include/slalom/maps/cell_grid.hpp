@@ -23,16 +23,16 @@ struct GridGeometry {
   double length_x() const { return resolution * rows; }     ///< m
   double length_y() const { return resolution * columns; }  ///< m
 
-  /// x (m) of the centres of a row's cells, y (m) of a column's.
+  /// x of the centres of a row's cells, m.
   double cell_x(int row) const { return center_x + 0.5 * length_x() - 0.5 * resolution - resolution * row; }
-  /// Centre of a column, m.
+  /// y of the centres of a column's cells, m.
   double cell_y(int column) const {
     return center_y + 0.5 * length_y() - 0.5 * resolution - resolution * column;
   }
 
-  /// The row of the cells at x (m), the column of those at y (m); -1 outside the map and for NaN.
+  /// The row of the cells at x (m); -1 outside the map and for NaN.
   int row(double x) const { return index(x, center_x, rows); }
-  /// Column of a coordinate (m); may lie outside the grid.
+  /// The column of the cells at y (m); -1 outside the map and for NaN.
   int column(double y) const { return index(y, center_y, columns); }
 
  private:
@@ -60,7 +60,7 @@ class CellGrid {
 
   /// The values of a cell; row -1 .. rows, column -1 .. columns.
   float* at(int row, int column) { return cells_.get() + offset(row, column); }
-  /// The layers of a cell.
+  /// The values of a cell; row -1 .. rows, column -1 .. columns.
   const float* at(int row, int column) const { return cells_.get() + offset(row, column); }
 
   /// The ring's first cell; one row has 2^stride_log2() cells.

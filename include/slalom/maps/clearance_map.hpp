@@ -55,10 +55,10 @@ class ClearanceMap {
   void clear() noexcept;
   /// Adds obstacle points in the robot's frame, m; those off the map by more than the reach do not matter.
   void add(std::span<const ScanPoint> points) noexcept;
-  /// Adds obstacles, body frame.
+  /// Adds obstacle points in the robot's frame, m.
   void add(std::span<const Point> points) noexcept;
 
-  /// The distance at a position in the robot's frame, m; -1 off the map.
+  /// The distance at a position in the robot's frame, m, at most the reach; -1 off the map.
   float at(double x, double y) const noexcept;
 
   /// Position and size of the cells.

@@ -22,7 +22,8 @@ struct DistanceField {
 
 /// Exact Euclidean distance transform in linear time by lower envelopes of parabolas (Felzenszwalb &
 /// Huttenlocher, "Distance Transforms of Sampled Functions", Theory of Computing 8, 2012). Unknown cells
-/// count as obstacles if `unknown_is_obstacle`.
+/// count as obstacles if `unknown_is_obstacle`. Throws std::invalid_argument unless the grid has width x
+/// height cells, at least one.
 DistanceField distance_transform(const OccupancyGrid& grid, bool unknown_is_obstacle);
 
 }  // namespace slalom::maps

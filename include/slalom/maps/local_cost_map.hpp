@@ -42,7 +42,7 @@ struct LocalCostMapOptions {
   /// against the car's side remains visible.
   double body_inset = 0.05;
 
-  PublishedCostMap published{};  ///< only to reproduce the published program
+  PublishedCostMap published{};  ///< only to reproduce the program of K. Honda (proj-svg_mppi)
 
   /// Throws std::invalid_argument naming the field, its value and the rule.
   void validate() const;
@@ -134,7 +134,7 @@ struct ScanPoint {
 /// What was done with the beams of a scan.
 struct ScanReport {
   bool accepted =
-      false;        ///< false: empty, too many beams, or a geometry that is not finite; nothing was added
+      false;        ///< false: empty, too many beams, angles not finite, or not 0 <= range_min < range_max
   int beams = 0;    ///< number of beams of the scan
   int invalid = 0;  ///< NaN, below range_min (so negative), or range_max and more (so infinite)
   int on_body = 0;  ///< dropped because they lie within the footprint
@@ -143,8 +143,8 @@ struct ScanReport {
 
 /// A map of the free ground around the car, in the car's own frame (x ahead, y to the left), made from one
 /// LiDAR scan: a cell holds `occupied` where the car's reference point cannot be without a collision of the
-/// body, else 0. The heading of the body is taken as that of now, whatever the path does; what lies
-/// behind an obstacle is free. After construction nothing allocates.
+/// body, `soft` within the soft margin of that, else 0. The heading of the body is taken as that of now,
+/// whatever the path does; what lies behind an obstacle is free. After construction nothing allocates.
 class LocalCostMap {
  public:
   /// Throws std::invalid_argument where the options break a rule.
@@ -159,7 +159,7 @@ class LocalCostMap {
   /// Adds what a scan, points in the robot's frame (m) or the occupied cells of a grid say; the grid's origin
   /// and the robot's pose are given in the same frame. Points that are not finite are ignored.
   ScanReport add_scan(const LaserScanView& scan) noexcept;
-  /// Adds obstacles, body frame.
+  /// Adds obstacle points in the robot's frame, m.
   void add_points(std::span<const Point> points) noexcept;
   /// Adds the occupied cells of a map, seen from `robot`.
   void add_grid(const OccupancyGrid& obstacles, const Pose& robot) noexcept;
@@ -180,7 +180,7 @@ class LocalCostMap {
   /// The cells, in the robot's frame, for the look-ups of rollouts.
   GridView<1> view() const noexcept { return cells_.view(geometry_); }
 
-  /// The points of the last scan that were used.
+  /// The points of the last scan that were used; none after clear().
   std::span<const ScanPoint> points() const noexcept { return {points_.data(), point_count_}; }
 
  private:

@@ -94,7 +94,7 @@ class ReferenceField {
   /// Index of the path's point nearest to the robot at the last update.
   int nearest() const noexcept { return nearest_; }
 
-  /// How far the last update made the map, m along each axis.
+  /// How far the last update made the map, m along each axis; 0 after one with a box.
   double reach() const noexcept { return reach_; }
 
   /// The window's points of the last update as indices into the path, in the path's order.

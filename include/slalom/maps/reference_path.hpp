@@ -26,7 +26,7 @@ static_assert(sizeof(ReferenceCell) == 16);
 /// What a look-up off a reference map returns.
 struct ReferenceOutside {
   double distance = 20;  ///< m
-  double yaw = 2.0;      ///< rad, the yaw error to assume; the published program's value
+  double yaw = 2.0;      ///< rad, the yaw error to assume; the value of K. Honda's proj-svg_mppi
   double speed = 0;      ///< m/s
 };
 
@@ -45,8 +45,8 @@ void visit_reference_outside(Outside& outside, Visit&& visit) {
             .name = "outside_speed", .unit = "m/s", .help = "speed off the map", .min = -1e3, .max = 1e3});
 }
 
-/// Throws std::invalid_argument, naming the point, unless there are at least 3 points, all finite, the speeds
-/// >= 0.
+/// Throws std::invalid_argument, naming the point, unless there are 3 to 10 million points, all within
+/// 1e6 m of the origin along each axis, with a finite yaw and a finite speed >= 0.
 void check_reference_path(std::span<const ReferencePoint> path);
 
 }  // namespace slalom::maps

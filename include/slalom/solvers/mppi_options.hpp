@@ -28,7 +28,7 @@ struct MppiOptions {
   bool shift_warm_start = true;      ///< move the last solution forward by the elapsed time
   std::uint64_t seed = 0;            ///< seed of the random numbers
   int threads = 1;
-  PublishedMppi published{};  ///< only to reproduce the published program
+  PublishedMppi published{};  ///< only to reproduce the program of proj-svg_mppi
 };
 
 template <class Options, class Visit>

@@ -44,7 +44,7 @@ struct ReverseMppiOptions {
   bool shift_warm_start = true;      ///< move the last solution forward by the elapsed time
   std::uint64_t seed = 0;            ///< seed of the random numbers
   int threads = 1;
-  PublishedReverseMppi published{};  ///< only to reproduce the published program
+  PublishedReverseMppi published{};  ///< only to reproduce the program of proj-svg_mppi
 };
 
 template <class Options, class Visit>

@@ -35,7 +35,7 @@ struct SvMpcOptions {
   bool shift_warm_start = true;      ///< move the particles and the last solution forward by the elapsed time
   std::uint64_t seed = 0;            ///< seed of the random numbers
   int threads = 1;
-  PublishedSvMpc published{};  ///< only to reproduce the published program
+  PublishedSvMpc published{};  ///< only to reproduce the program of proj-svg_mppi
 };
 
 template <class Options, class Visit>

@@ -63,7 +63,7 @@ struct SvgMppiOptions {
   bool shift_warm_start = true;      ///< move guides and last solution forward by the elapsed time
   std::uint64_t seed = 0;            ///< seed of the random numbers
   int threads = 1;
-  PublishedSvgMppi published{};  ///< only to reproduce the published program
+  PublishedSvgMppi published{};  ///< only to reproduce the program of proj-svg_mppi
 };
 
 namespace detail {

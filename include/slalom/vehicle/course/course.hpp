@@ -64,13 +64,13 @@ void cap_speed(Course& course, double max_speed);
 /// speeds at its ends, but at 0.1 m/s at least.
 double profile_time(const Course& course);
 
-/// Throws std::invalid_argument unless `start` is finite, on the map, and at least `clearance` (m) from every
-/// occupied cell.
+/// Throws std::invalid_argument unless `start` is finite, on the map, and at least `clearance` (m) from the
+/// centre of every occupied cell.
 void check_start(const Course& course, const maps::Pose& start, double clearance = 0.15);
 
 /// The folders in which courses are searched by name: SLALOM_COURSES_DIR if set, then, relative to the folder
-/// of the running program, the `courses` of the source tree it was built in and the install's
-/// share/slalom/courses. Only those that exist.
+/// of the running program, a `courses` with known.yaml in that folder or up to four above it (the
+/// source tree it was built in), and the install's share/slalom/courses. Only those that exist.
 std::vector<std::filesystem::path> course_roots(const std::filesystem::path& program_folder);
 
 /// The folder of a course: `name_or_folder` itself if it is a folder, else the first `root/name_or_folder`

@@ -20,7 +20,7 @@ struct SpeedLimits {
 ///
 /// the tyres' force is shared between turning and accelerating. One pass forward and one backward from the
 /// slowest point. Source: Heilmeier et al. 2020 (see raceline.hpp), Sec. 4. Throws std::invalid_argument for
-/// bad limits.
+/// limits or a step that are not finite and above 0.
 std::vector<double> speed_profile(const std::vector<double>& curvature, double step,
                                   const SpeedLimits& limits);
 

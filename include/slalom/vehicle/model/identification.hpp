@@ -52,7 +52,7 @@ struct Identification {
 
 /// Fits the model. A gap of more than 0.2 s between samples, or a decreasing time, begins a new segment.
 /// Throws std::invalid_argument where there are fewer than 200 usable samples or the steering hardly moves;
-/// the message says what is missing.
+/// the message says what is missing. Throws it also on a negative wheelbase or a `least_speed` not above 0.
 Identification identify(std::span<const DrivenSample> samples, const IdentificationOptions& options = {});
 
 }  // namespace slalom::vehicle

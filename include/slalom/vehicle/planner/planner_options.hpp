@@ -23,7 +23,7 @@ struct PlannerOptions {
                             ///< best sample that does not
   bool back_up = true;  ///< with `stop_when_blocked` and `verify_plan`: where the car stands and every plan
                         ///< collides, it reverses a little and tries again
-  published::PlannerOptions published;  ///< to reproduce the published program
+  published::PlannerOptions published;  ///< to reproduce the program of proj-svg_mppi
 };
 
 /// Declares every option by name, unit, help and range.
