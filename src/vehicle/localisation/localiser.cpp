@@ -145,8 +145,8 @@ LocaliserStatus Localiser::Implementation::move(const LocaliserInput& input) noe
     elapsed = input.stamp - stamp;
     motion.step = relative(odometry, input.odometry);
     const double distance = std::hypot(motion.step.x, motion.step.y);
-    const bool jumped = elapsed <= 0 || distance > options.max_speed * elapsed + jump_slack ||
-                        std::abs(motion.step.yaw) > options.max_yaw_rate * elapsed + jump_slack;
+    const bool jumped = elapsed <= 0 || distance > options.motion.max_speed * elapsed + jump_slack ||
+                        std::abs(motion.step.yaw) > options.motion.max_yaw_rate * elapsed + jump_slack;
     if (jumped) {
       const double guess = std::clamp(elapsed, 0.0, longest_guess);
       motion.step = {velocity.x * guess, velocity.y * guess, velocity.yaw * guess};
@@ -160,10 +160,10 @@ LocaliserStatus Localiser::Implementation::move(const LocaliserInput& input) noe
   }
   const double distance = std::hypot(motion.step.x, motion.step.y);
   const double doubt = status == LocaliserStatus::ok ? 1 : 3;
-  motion.along = doubt * (options.along_noise * distance + options.position_noise);
-  motion.across = doubt * (options.across_noise * distance + options.position_noise);
-  motion.turn = doubt * (options.turn_noise * std::abs(motion.step.yaw) + options.drift_noise * distance +
-                         options.yaw_noise);
+  motion.along = doubt * (options.motion.along_noise * distance + options.motion.position_noise);
+  motion.across = doubt * (options.motion.across_noise * distance + options.motion.position_noise);
+  motion.turn = doubt * (options.motion.turn_noise * std::abs(motion.step.yaw) +
+                         options.motion.drift_noise * distance + options.motion.yaw_noise);
   step = motion.step;
   particles.move(motion, next_key());
   output.pose = compose(output.pose, motion.step);
@@ -197,18 +197,18 @@ void Localiser::Implementation::estimate() noexcept {
 /// Weighs the particles by the scan, estimates, and draws anew where that is due (Table 8.3).
 void Localiser::Implementation::use_scan() noexcept {
   output.particles = particles.count();
-  output.effective_samples = particles.weigh(sensor, beams, options.beam_exponent);
+  output.effective_samples = particles.weigh(sensor, beams, options.beam.beam_exponent);
   estimate();
-  slow = slow == 0 ? fit : slow + options.slow_rate * (fit - slow);
-  fast = fast == 0 ? fit : fast + options.fast_rate * (fit - fast);
-  output.resampled = output.effective_samples < options.resample_below * particles.count();
+  slow = slow == 0 ? fit : slow + options.recovery.slow_rate * (fit - slow);
+  fast = fast == 0 ? fit : fast + options.recovery.fast_rate * (fit - fast);
+  output.resampled = output.effective_samples < options.particles.resample_below * particles.count();
   if (output.resampled) particles.resample(next_key());
   look_elsewhere();
 }
 
 /// Searches other places while there is cause to, and moves the particles to one that fits better.
 void Localiser::Implementation::look_elsewhere() noexcept {
-  const bool doubtful = options.recovery_margin * fast < std::max(slow, options.least_fit);
+  const bool doubtful = options.recovery.recovery_margin * fast < std::max(slow, options.recovery.least_fit);
   const bool was_searching = output.searching;
   // A place that this search has found competes with the others on equal terms until the search is over.
   if (doubtful) {
@@ -216,7 +216,7 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   } else if (settled) {
     trust = std::min(trust + std::max(0.0, elapsed), most_trust);
   }
-  if (doubtful) search_until = stamp + options.search_time;
+  if (doubtful) search_until = stamp + options.recovery.search_time;
   output.searching = doubtful || (was_searching && stamp < search_until);
   if (!output.searching) {
     settled = true;
@@ -225,12 +225,13 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   if (!was_searching) search.clear();
 
   const maps::Pose place = relative(origin, output.pose);
-  const double memory = std::exp(-std::max(0.0, elapsed) / options.search_memory);
+  const double memory = std::exp(-std::max(0.0, elapsed) / options.recovery.search_memory);
   const double now = search.log_fit_at(place, sensor, beams);
   place_log_fit = was_searching ? memory * place_log_fit + (1 - memory) * now : now;
   search.update(step, sensor, beams, memory, next_key());
   const detail::Search::Hypothesis* best = search.best();
-  if (!best || best->log_fit < place_log_fit + options.rival_margin * (1 + trust / trust_unit)) return;
+  if (!best || best->log_fit < place_log_fit + options.recovery.rival_margin * (1 + trust / trust_unit))
+    return;
   const double apart = std::hypot(best->pose.x - place.x, best->pose.y - place.y);
   const double turned = std::abs(maps::wrap_angle(best->pose.yaw - place.yaw));
   if (output.share > options.good_share && apart < near_place && turned < near_yaw) return;

@@ -26,10 +26,10 @@ maps::GridGeometry geometry_of(const maps::OccupancyGrid& map, double resolution
 
 /// Probability densities of a reading (1/m), as Tables 6.1 and 6.3 mix them.
 double hit_density(const LocaliserOptions& o) {
-  return o.hit_weight / (o.hit_deviation * std::sqrt(2 * std::numbers::pi));
+  return o.beam.hit_weight / (o.beam.hit_deviation * std::sqrt(2 * std::numbers::pi));
 }
 double random_density(const LocaliserOptions& o) {
-  return o.random_weight / o.range_cap;
+  return o.beam.random_weight / o.range_cap;
 }
 double highest_density(const LocaliserOptions& o) {
   return hit_density(o) + random_density(o);
@@ -66,10 +66,10 @@ void SensorTables::make_field(const maps::OccupancyGrid& map, const LocaliserOpt
   const maps::DistanceField walls = maps::distance_transform(map, false);
   const double hit = hit_density(options), random = random_density(options), most = hit + random;
   const auto log_probability = [&](double distance) {
-    const double off = distance / options.hit_deviation;
+    const double off = distance / options.beam.hit_deviation;
     return static_cast<float>(std::log((hit * std::exp(-0.5 * off * off) + random) / most));
   };
-  explained_from_ = log_probability(explained_within * options.hit_deviation);
+  explained_from_ = log_probability(explained_within * options.beam.hit_deviation);
   field_.fill({log_probability(1e9)});
   place_.fill({log_in_wall});
   for (int row = 0; row < geometry_.rows; ++row) {
@@ -167,13 +167,13 @@ void SensorTables::weigh(const ParticlePoses& particles, const ScanBeams& beams,
   in.range_unit = table_.range_unit;
   in.laser_x = static_cast<float>(options_.laser_x);
   in.laser_y = static_cast<float>(options_.laser_y);
-  in.hit_scale = static_cast<float>(-0.5 / (options_.hit_deviation * options_.hit_deviation));
+  in.hit_scale = static_cast<float>(-0.5 / (options_.beam.hit_deviation * options_.beam.hit_deviation));
   in.hit = static_cast<float>(hit_density(options_) / highest);
   in.random = static_cast<float>(random_density(options_) / highest);
-  in.short_scale = static_cast<float>(options_.short_weight * options_.short_rate / highest);
-  in.short_rate = static_cast<float>(options_.short_rate);
-  in.lost = static_cast<float>(std::log(std::max(1e-3, options_.lost_weight)));
-  in.nothing_from = static_cast<float>(options_.range_cap - options_.hit_deviation);
+  in.short_scale = static_cast<float>(options_.beam.short_weight * options_.beam.short_rate / highest);
+  in.short_rate = static_cast<float>(options_.beam.short_rate);
+  in.lost = static_cast<float>(std::log(std::max(1e-3, options_.beam.lost_weight)));
+  in.nothing_from = static_cast<float>(options_.range_cap - options_.beam.hit_deviation);
   weigh_by_ranges(in);
 }
 
