@@ -76,21 +76,21 @@ struct LocaliserOptions {
   double laser_yaw = 0;    ///< rad
   int scan_readings = 0;   ///< number of readings of a valid scan; 0: any
 
-  int beams = 60;             ///< number used per scan, evenly spaced; 8 .. 1024
-  int least_beams = 12;       ///< a scan with fewer usable readings is not used
-  double range_cap = 12;      ///< m, longer readings are not used
-  LocaliserBeamOptions beam;  ///< probabilities of ranges
-  double table_cell = 0.1;    ///< m, cell of the table of ranges; beam model only
-  int table_angles = 180;     ///< number of angles of the table of ranges; beam model only
+  int beams = 60;               ///< number used per scan, evenly spaced; 8 .. 1024
+  int least_beams = 12;         ///< a scan with fewer usable readings is not used
+  double range_cap = 12;        ///< m, longer readings are not used
+  LocaliserBeamOptions beam{};  ///< probabilities of ranges
+  double table_cell = 0.1;      ///< m, cell of the table of ranges; beam model only
+  int table_angles = 180;       ///< number of angles of the table of ranges; beam model only
 
-  LocaliserMotionOptions motion;      ///< odometry
+  LocaliserMotionOptions motion{};    ///< odometry
   double start_deviation = 0.3;       ///< m, of the particles around a given start
   double start_yaw_deviation = 0.15;  ///< rad, of the particles around a given start
 
-  LocaliserParticleOptions particles;  ///< number of particles and resampling
-  LocaliserRecoveryOptions recovery;   ///< loss of the position and search
-  double good_share = 0.6;             ///< share of the weight near the estimate of a reliable one
-  double good_fit = 0.6;               ///< share of explained beams of a reliable estimate
+  LocaliserParticleOptions particles{};  ///< number of particles and resampling
+  LocaliserRecoveryOptions recovery{};   ///< loss of the position and search
+  double good_share = 0.6;               ///< share of the weight near the estimate of a reliable one
+  double good_fit = 0.6;                 ///< share of explained beams of a reliable estimate
 
   /// Throws std::invalid_argument naming the field, its value and the rule.
   void validate() const;
