@@ -25,8 +25,10 @@ struct ExperimentResult {
   double success_rate = 0;                              ///< finished laps without a collision
   Interval success_rate_ci;                             ///< Wilson
   double lap_time_mean = 0;                             ///< s, of finished laps; NaN without any
-  /// ms, wall-clock: means over the laps of each lap's mean, median and 99th percentile; largest of all laps
-  double solve_ms_mean = 0, solve_ms_p50 = 0, solve_ms_p99 = 0, solve_ms_max = 0;
+  double solve_ms_mean = 0;  ///< ms, wall-clock, mean over the laps of each lap's mean
+  double solve_ms_p50 = 0;   ///< ms, mean over the laps of each lap's median
+  double solve_ms_p99 = 0;   ///< ms, mean over the laps of each lap's 99th percentile
+  double solve_ms_max = 0;   ///< ms, largest of all laps
 };
 
 /// Two experiments over the same seeds.

@@ -17,12 +17,12 @@ namespace slalom {
 /// The moment at which a solve has to end. Without a limit it never reads the clock.
 class Deadline {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Clock = std::chrono::steady_clock;  ///< monotonic
 
   Deadline() = default;
   /// `allowed` seconds after `start`; infinite: no limit.
   Deadline(Clock::time_point start, double allowed);
-  bool passed() const noexcept { return limited_ && Clock::now() >= end_; }
+  bool passed() const noexcept { return limited_ && Clock::now() >= end_; }  ///< whether it is over
   /// A deadline after the fraction `share` of the time.
   Deadline part(double share) const noexcept;
 
@@ -59,8 +59,8 @@ class SolverBase : public Solver {
                    pool ? std::move(pool) : std::make_shared<ThreadPool>(options.threads)) {}
 
   int rows() const noexcept { return horizon_ * inputs_; }  ///< values of a control sequence
-  std::size_t size() const noexcept { return static_cast<std::size_t>(rows()); }
-  ThreadPool& pool() noexcept { return *pool_; }
+  std::size_t size() const noexcept { return static_cast<std::size_t>(rows()); }  ///< the same, unsigned
+  ThreadPool& pool() noexcept { return *pool_; }  ///< the threads that evaluate
 
   /// The random stream of a stage (< 65536) of the present solve.
   RandomKey key(int stage) const noexcept {
@@ -76,9 +76,9 @@ class SolverBase : public Solver {
 
   /// A value per row, [step][input], from one per input.
   std::vector<float> spread(const PerInput& values) const;
-  /// Bounds, [row].
+  /// Lower bounds, [row].
   const std::vector<float>& low() const noexcept { return low_; }
-  const std::vector<float>& high() const noexcept { return high_; }
+  const std::vector<float>& high() const noexcept { return high_; }  ///< upper bounds, [row]
   /// Moves a control sequence [row] into the bounds.
   void clamp(float* sequence) const noexcept;
 
@@ -107,6 +107,7 @@ class SolverBase : public Solver {
 /// A control sequence [step][input] moved forward by `shift` >= 0 steps, by linear interpolation; the last
 /// input is held. `sequence` and `result` must not overlap.
 void shift_sequence(const float* sequence, int steps, int inputs, double shift, float* result) noexcept;
+/// The same in double.
 void shift_sequence(const double* sequence, int steps, int inputs, double shift, double* result) noexcept;
 
 /// The time since the last solve in steps of the evaluator; 0 if the duration of a step is unknown.
