@@ -132,7 +132,7 @@ TEST_F(CommandLine, ReplayIgnoresNoOption) {
   fs::create_directories(folder_ / "ev");
   refuses("replay ev --lap 0", {"ev/settings.json"});
   ASSERT_EQ(timed(evaluation("ev")).status, 0);
-  refuses("replay ev", {"--lap: which lap"});
+  refuses("replay ev", {"--lap: is required"});
   refuses("replay ev --lap -1", {"--lap", "-1 must be in [0, 0]"});
   for (const std::string option : {"--html x.html", "--set mppi.samples=3", "--config default", "--port 0"})
     refuses("replay ev --lap 0 " + option,

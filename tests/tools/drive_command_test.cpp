@@ -133,7 +133,7 @@ TEST_F(DriveCommand, RejectsInvalidArguments) {
   expect_refused("drive --course nowhere", {"nowhere", "known: "});
   expect_refused("drive --config nothing", {"nothing", "known: ", "published"});
   expect_refused("drive --method magic", {"magic", "svg_mppi"});
-  expect_refused("drive --evaluation maybe", {"maybe", "true or published"});
+  expect_refused("drive --evaluation maybe", {"maybe", "must be 'true' or 'published'"});
   expect_refused("drive --set samples", {"--set", "key=value"});
   expect_refused("drive --set sampels=3", {"--set", "sampels", "did you mean svg_mppi.samples?"});
   expect_refused("drive --set samples=0", {"--set", "samples", "'0'", "must be in [1,"});
@@ -163,7 +163,7 @@ TEST_F(DriveCommand, RejectsAStartInAWall) {
           maps::transform(map.origin, {(column + 0.5) * map.resolution, (row + 0.5) * map.resolution});
       return expect_refused(
           "drive --course wren --start " + std::to_string(at.x) + "," + std::to_string(at.y) + ",0",
-          {"start", "in a wall"});
+          {"start", "distance to every wall"});
     }
   FAIL() << "the map has no wall";
 }
