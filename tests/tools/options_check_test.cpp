@@ -65,7 +65,7 @@ int run(const std::vector<const char*>& arguments) {
   values = {};
   std::vector<const char*> all{"slalom"};
   all.insert(all.end(), arguments.begin(), arguments.end());
-  const auto declare = [](Command& command) {
+  const auto declare = [](Subcommand& command) {
     command.summary("For tests");
     command.option("--text", values.text, "A text").show_default();
     command.option("--list", values.list, "A list").comma_separated();
