@@ -1,0 +1,105 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "slalom/solvers/published/published_solvers.hpp"
+#include "slalom/solvers/registry.hpp"
+#include "solvers/problems.hpp"
+#include "solvers/set_option.hpp"
+
+/// What the contract tests share: the option sets that they run over, and the fixture.
+namespace slalom::testing {
+
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
+
+struct OptionSet {
+  std::string name;
+  SolverOptions options;
+
+  friend void PrintTo(const OptionSet& set, std::ostream* out) { *out << set.name; }
+};
+
+/// Whether an option set departs so far from its method that it misses the optimum of a linear-quadratic
+/// problem: the published reverse_mppi and sv_mpc draw every variance towards 1, sv_mpc away from its prior.
+inline bool published_departs(std::string_view set_name) {
+  return set_name == "reverse_mppi_published" || set_name == "sv_mpc_published";
+}
+
+/// Every registered method with its defaults, those of the library with the published options, and variants
+/// of them.
+inline std::vector<OptionSet> option_sets() {
+  std::vector<OptionSet> sets;
+  for (const char* name : solver_names()) sets.push_back({name, solver_options(name)});
+  for (const char* name : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"})
+    sets.push_back({std::string(name) + "_published", published_solver_options(name)});
+  sets.push_back({"svg_mppi_nominal_only", SvgMppiOptions{.adapt_covariance = false}});
+  sets.push_back({"svg_mppi_covariance_only", SvgMppiOptions{.use_nominal = false}});
+  sets.push_back({"svg_mppi_neither", SvgMppiOptions{.use_nominal = false, .adapt_covariance = false}});
+  sets.push_back(
+      {"svg_mppi_five_guides", SvgMppiOptions{.guides = {.count = 5, .weight = GuideWeight::importance}}});
+  sets.push_back({"svg_mppi_pooled_paths",
+                  SvgMppiOptions{.guides = {.count = 3}, .published = {.fit_all_guides = true}}});
+  sets.push_back({"svg_mppi_restarting_guides", SvgMppiOptions{.guides = {.count = 4, .restart = true}}});
+  sets.push_back({"reverse_mppi_without_rejection", ReverseMppiOptions{.reject_samples = false}});
+  sets.push_back({"sv_mpc_best_particle", SvMpcOptions{.best_particle = true}});
+  sets.push_back({"cem_send_best", CemOptions{.send_best = true}});
+  sets.push_back({"mppi_coloured", MppiOptions{.noise = {.exponent = 1.5}}});
+  sets.push_back({"mppi_log_normal", MppiOptions{.noise = {.log_normal_spread = 0.4}}});
+  sets.push_back({"mppi_tsallis_elite", MppiOptions{.weighting = {.tsallis_index = 0.5}}});
+  sets.push_back({"mppi_tsallis_heavy", MppiOptions{.weighting = {.tsallis_index = 1.3}}});
+  sets.push_back({"mppi_target_ess_fraction", MppiOptions{.weighting = {.target_ess_fraction = 0.03}}});
+  sets.push_back({"mppi_smoothed", MppiOptions{.smoothing = {.half_width = 3, .degree = 2}}});
+  sets.push_back(
+      {"svg_mppi_all_parts", SvgMppiOptions{.noise = {.exponent = 1, .log_normal_spread = 0.3},
+                                            .weighting = {.tsallis_index = 0.8, .target_ess_fraction = 0.03},
+                                            .smoothing = {.half_width = 2}}});
+  sets.push_back({"cem_coloured", CemOptions{.noise = {.exponent = 2, .log_normal_spread = 0.2}}});
+  return sets;
+}
+
+class SolverContract : public ::testing::TestWithParam<OptionSet> {
+ protected:
+  /// A solver with changes made to the options by `change(SolverOptions&)`.
+  template <class Change>
+  std::unique_ptr<Solver> make(int inputs, Change change) const {
+    SolverOptions options = GetParam().options;
+    change(options);
+    return make_solver(options, inputs);
+  }
+};
+
+/// Small enough for tests over many option sets.
+inline constexpr auto small = [](SolverOptions& o) {
+  set(o, "horizon", 10);
+  set(o, "samples", std::min(*o.find<int>("samples"), 300));
+  set(o, "input_min", -2);
+  set(o, "input_max", 1);
+};
+
+inline void expect_usable(const SolveResult& result, int values, float low, float high) {
+  ASSERT_EQ(result.inputs.size(), static_cast<std::size_t>(values));
+  for (const float u : result.inputs) {
+    EXPECT_TRUE(std::isfinite(u)) << u;
+    EXPECT_GE(u, low);
+    EXPECT_LE(u, high);
+  }
+}
+
+/// A cost by the first and the last input of a sequence.
+template <class Cost>
+auto simple(int inputs, Cost cost) {
+  return FunctionEvaluator(inputs, [cost](const SequenceBatch& batch, int k) {
+    return std::pair<double, bool>(cost(batch.at(0, 0, k), batch.at(batch.steps() - 1, 0, k), k), false);
+  });
+}
+
+}  // namespace slalom::testing

@@ -1,0 +1,147 @@
+#include "solvers/solver_contract.hpp"
+
+#include <chrono>
+#include <thread>
+
+#include "support/allocations.hpp"
+
+namespace slalom {
+namespace {
+
+using namespace testing;
+
+class SolverRuntimeContract : public SolverContract {};
+
+TEST_P(SolverRuntimeContract, SameBitsForAnyNumberOfThreads) {
+  std::vector<float> expected;
+  for (const int threads : {1, 2, 7, 16}) {
+    const auto solver = make(1, [threads](SolverOptions& o) {
+      set(o, "horizon", 12);
+      set(o, "samples", *o.find<int>("samples") > 600 ? 3000 : 520);
+      set(o, "input_min", -2);
+      set(o, "input_max", 2);
+      set(o, "threads", threads);
+    });
+    ProblemEvaluator evaluator(DoubleIntegrator{});
+    std::vector<float> seen;
+    for (int i = 0; i < 4; ++i) {
+      evaluator.set_state({1.0 - 0.1 * i, 0.3});
+      const auto& result = solver->solve(evaluator, {.elapsed = 0.025});
+      seen.insert(seen.end(), result.inputs.begin(), result.inputs.end());
+      seen.insert(seen.end(), result.weights.begin(), result.weights.end());
+      seen.insert(seen.end(), result.variances.begin(), result.variances.end());
+    }
+    if (threads == 1) expected = seen;
+    EXPECT_EQ(seen, expected) << threads << " threads";
+  }
+}
+
+TEST_P(SolverRuntimeContract, ResetRepeatsAndSeedsDiffer) {
+  const auto solver = make(1, small);
+  ProblemEvaluator evaluator(DoubleIntegrator{});
+  evaluator.set_state({0.4, 0});
+  const auto run = [&](std::uint64_t seed) {
+    solver->reset(seed);
+    std::vector<float> seen;
+    for (int i = 0; i < 3; ++i) {
+      const auto& result = solver->solve(evaluator, {.elapsed = 0.03});
+      seen.insert(seen.end(), result.inputs.begin(), result.inputs.end());
+    }
+    return seen;
+  };
+  const auto first = run(5), other = run(6), again = run(5);
+  EXPECT_EQ(first, again);
+  EXPECT_NE(first, other);
+}
+
+TEST_P(SolverRuntimeContract, PreparedNoiseChangesNothing) {
+  const auto plain = make(1, small), prepared = make(1, small);
+  ProblemEvaluator evaluator(DoubleIntegrator{});
+  evaluator.set_state({0.4, 0});
+  for (int i = 0; i < 3; ++i) {
+    prepared->prepare();
+    const auto a = plain->solve(evaluator, {}).inputs, b = prepared->solve(evaluator, {}).inputs;
+    EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin()));
+  }
+}
+
+TEST_P(SolverRuntimeContract, SolvingAllocatesNothing) {
+  for (const int threads : {1, 3}) {
+    const auto solver = make(2, [threads](SolverOptions& o) {
+      small(o);
+      set(o, "threads", threads);
+    });
+    const auto evaluator = simple(2, [](float a, float b, int k) { return k % 5 ? a + b : std::nan(""); });
+    const auto broken = simple(2, [](float, float, int) { return std::nan(""); });
+    const long before = testing::allocations();
+    for (int i = 0; i < 3; ++i) {
+      solver->prepare();
+      solver->solve(evaluator, {.elapsed = 0.03});
+      solver->solve(broken, {.elapsed = 0.03, .deadline = 1});
+      solver->reset(static_cast<std::uint64_t>(i));
+    }
+    EXPECT_EQ(testing::allocations(), before) << threads << " threads";
+  }
+}
+
+TEST_P(SolverRuntimeContract, DeadlineReturnsTheBestSoFar) {
+  const auto solver = make(1, [](SolverOptions& o) {
+    set(o, "horizon", 10);
+    set(o, "input_min", -2);
+    set(o, "input_max", 1);
+  });
+  const auto quick = simple(1, [](float a, float b, int) { return a + b; });
+  for (int i = 0; i < 2; ++i) solver->solve(quick, {});
+  // A clock of a million hours a call cannot be met: nothing is evaluated, the last plan comes back.
+  const auto& result = solver->solve(quick, {.deadline = 0});
+  EXPECT_EQ(result.status, Status::deadline);
+  expect_usable(result, 10, -2, 1);
+  // Each sample takes long, so the deadline falls into the solve.
+  const auto slow = simple(1, [](float a, float b, int k) {
+    if (k % 64 == 0) std::this_thread::sleep_for(std::chrono::microseconds(300));
+    return a + b;
+  });
+  const auto start = std::chrono::steady_clock::now();
+  const auto& late = solver->solve(slow, {.deadline = 0.001});
+  EXPECT_EQ(late.status, Status::deadline);
+  expect_usable(late, 10, -2, 1);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 2.0);
+  EXPECT_EQ(solver->solve(quick, {.deadline = 60}).status, Status::ok);
+}
+
+TEST_P(SolverRuntimeContract, WarmStartFollowsTheClock) {
+  const auto solver = make(1, [](SolverOptions& o) {
+    small(o);
+    set_if_any(o, "control_cost_discount", 1);
+    set(o, "shift_warm_start", true);
+    set(o, "zero_mean_share", 0);
+    set(o, "variance", 0.2);
+  });
+  // Wants u[t] = 0.1 t at first; broken costs then show the fallback, which is the shifted solution.
+  const auto ramp = FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
+    double cost = 0;
+    for (int t = 0; t < batch.steps(); ++t) {
+      const double error = static_cast<double>(batch.at(t, 0, k)) - 0.1 * t;
+      cost += 100 * error * error;
+    }
+    return std::pair(cost, false);
+  });
+  for (int i = 0; i < 10; ++i) solver->solve(ramp, {});
+  std::vector<float> before(solver->solve(ramp, {}).inputs.begin(), solver->solve(ramp, {}).inputs.end());
+  const auto last = solver->solve(ramp, {}).inputs;
+  before.assign(last.begin(), last.end());
+  const auto broken = simple(1, [](float, float, int) { return std::nan(""); });
+  const auto shifted = solver->solve(broken, {.elapsed = 0.075}).inputs;  // a step and a half
+  if (GetParam().name.starts_with("reverse_mppi") || GetParam().name == "cem_send_best") {
+    GTEST_SKIP() << "starts from another sequence than the one it sends";
+  }
+  for (std::size_t t = 0; t + 2 < before.size(); ++t)
+    EXPECT_NEAR(shifted[t], 0.5f * (before[t + 1] + before[t + 2]), 1e-5f) << t;
+  EXPECT_NEAR(shifted[9], before[9], 1e-6f);
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, SolverRuntimeContract, ::testing::ValuesIn(option_sets()),
+                         [](const auto& set) { return set.param.name; });
+
+}  // namespace
+}  // namespace slalom
