@@ -4,6 +4,7 @@
 // copies of the last plan the best is the next plan.
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -67,7 +68,8 @@ class PredictiveSampling final : public slalom::SolverBase {
 
   const slalom::SolveResult& solve(const slalom::BatchEvaluator& evaluator,
                                    const slalom::SolveRequest& request) noexcept override {
-    const slalom::Deadline deadline(slalom::Deadline::Clock::now(), request.deadline);
+    const auto start = slalom::Deadline::Clock::now();
+    const slalom::Deadline deadline(start, request.deadline);
     const double shift = slalom::warm_start_shift(evaluator, request);
     slalom::shift_sequence(plan_.data(), horizon(), inputs(), shift,
                            shifted_.data());  // holds the last input
@@ -87,6 +89,7 @@ class PredictiveSampling final : public slalom::SolverBase {
     result_.status = outcome.status();
     result_.inputs = result_.mean = plan_;
     result_.minimum_cost = static_cast<double>(costs_[outcome.best]);
+    result_.times.total = std::chrono::duration<double>(slalom::Deadline::Clock::now() - start).count();
     return result_;
   }
 

@@ -68,7 +68,7 @@ const std::vector<Spoiled>& cases() {
        {"raceline.csv:1:", "ref_v", "twice"}},
       {"map_key_twice",
        file("map.yaml", "image: map.png\nresolution: 0.1\norigin: [-5, -5, 0]\nresolution: 0.2\n"),
-       {"map.yaml:4:", "`resolution`", "twice"}},
+       {"map.yaml:4:", "`resolution`", "duplicate"}},
       {"no_rows", rows(""), {"raceline.csv", "0 waypoints", "at least 3"}},
       {"two_rows", rows("0;0;0;0;0;1;0\n0;1;0;0;0;1;0\n"), {"2 waypoints", "at least 3"}},
       {"two_rows_and_the_first_again",
