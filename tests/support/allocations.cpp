@@ -10,7 +10,8 @@ std::atomic<long> calls{0};
 
 }  // namespace
 
-// Not inlined: where the compiler sees malloc and free at a call of new and delete, it warns that they do not match.
+// Not inlined: where the compiler sees malloc and free at a call of new and delete, it warns that they do not
+// match.
 __attribute__((noinline)) void* operator new(std::size_t size) {
   ++calls;
   if (void* memory = std::malloc(size ? size : 1)) return memory;

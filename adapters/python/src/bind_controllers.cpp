@@ -47,8 +47,7 @@ void bind_method(py::module_& module, const py::object& controller, const std::s
 void bind_controllers(py::module_& module) {
   bind_plan(module);
   py::class_<Controller> base(module, "Controller", "Base class of all controllers.");
-  base
-      .def(py::init([](const std::string& method, const AnyProblem& problem, const py::kwargs& keywords) {
+  base.def(py::init([](const std::string& method, const AnyProblem& problem, const py::kwargs& keywords) {
              SolverOptions options = solver_options(method);
              set_from_keywords(options, keywords, method);
              return std::make_unique<Controller>(problem, options);
