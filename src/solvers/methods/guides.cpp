@@ -178,7 +178,10 @@ void Guides::move_guides(const BatchEvaluator& evaluator, RandomKey key, int fir
                          const Deadline& deadline, int& made) noexcept {
   for (int l = 0; l < iterations && !deadline.passed(); ++l) {
     fill_blocks({key.seed, key.stream + l}, first, last);
-    evaluator.evaluate(batch_, first * block_, (last - first) * block_, costs_.data(), collided_.data());
+    // One guide at a time: the borders of what is evaluated together must not depend on the threads, since a
+    // compiler may fuse products and sums differently at the end of a range.
+    for (int g = first; g < last; ++g)
+      evaluator.evaluate(batch_, g * block_, block_, costs_.data(), collided_.data());
     kernels().make_finite({first * block_, (last - first) * block_}, costs_.data());
     for (int g = first; g < last; ++g) step(g, l);
     made = l + 1;
