@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <concepts>
 
 #include "slalom/vehicle/model/model_options.hpp"
@@ -82,7 +84,13 @@ class PathTracking {
   /// A state as the planner needs it.
   PredictedState predicted(const State<double>& s) const noexcept {
     const maps::Point local = maps::inverse_transform(obstacles_.robot(), {s.x, s.y});
-    return {{s.x, s.y, s.yaw}, s.speed, s.steer, {local.x, local.y, s.yaw - obstacles_.robot().yaw}};
+    PredictedState made{
+        {s.x, s.y, s.yaw}, s.speed, s.steer, {local.x, local.y, s.yaw - obstacles_.robot().yaw}};
+    if constexpr (requires { s.lateral; }) {
+      made.yaw_rate = s.yaw_rate;
+      made.slip = std::asin(std::clamp(s.lateral / std::max(std::abs(s.speed), 0.25), -1.0, 1.0));
+    }
+    return made;
   }
 
   /// What the maps hold at a state.
@@ -122,7 +130,10 @@ class PathTracking {
   template <class T>
   SLALOM_INLINE Cost<T> with_speed(const Cost<T>& cost, const State<T>& s,
                                    const Surroundings<T>& seen) const {
-    if constexpr (plans_speed) {
+    if constexpr (requires { motion_.grip_cost(s); }) {
+      const Cost<T> timed = cost_.with_time_lost(cost, s.yaw, s.speed, seen);
+      return {timed.value + motion_.grip_cost(s), timed.collided};
+    } else if constexpr (plans_speed) {
       return cost_.with_speed(cost, s.speed, seen);
     } else {
       return cost;

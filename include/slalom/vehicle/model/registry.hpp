@@ -6,6 +6,7 @@
 
 #include "slalom/vehicle/model/kinematic.hpp"
 #include "slalom/vehicle/model/path_tracking.hpp"
+#include "slalom/vehicle/model/single_track.hpp"
 #include "slalom/vehicle/published/path_tracking.hpp"
 
 /// Every vehicle model that `vehicle.model` can name. A new one is a header with a motion model (see
@@ -27,6 +28,7 @@ struct ModelList {
 /// The first one is the default.
 using VehicleModels = ModelList<PathTracking<Kinematic>,              //
                                 PathTracking<KinematicAcceleration>,  //
+                                PathTracking<SingleTrack>,            //
                                 published::Model>;
 
 }  // namespace slalom::vehicle

@@ -49,6 +49,16 @@ class TrackingCost {
   SLALOM_INLINE Cost<T> with_speed(const Cost<T>& cost, const T& speed, const Surroundings<T>& seen) const {
     return {cost.value + T(speed_weight_) * square(max(seen.speed - speed, T(0))), cost.collided};
   }
+  /// `cost` with the time that is lost in a step at this yaw (rad) and speed (m/s), as a share of the step's:
+  /// the share by which the progress along the path is below the path's speed.
+  template <class T>
+  SLALOM_INLINE Cost<T> with_time_lost(const Cost<T>& cost, const T& yaw, const T& speed,
+                                       const Surroundings<T>& seen) const {
+    const T error = wrap_angle(yaw - seen.yaw);
+    const T along = max(T(1) - T(0.45) * square(error), T(-1));
+    const T lost = (seen.speed - speed * along) / max(seen.speed, T(0.5));
+    return {cost.value + T(speed_weight_) * max(lost, T(0)), cost.collided};
+  }
 
   /// The part of the cost of a state, the last one or another, that collisions make.
   double collision_part(const Surroundings<double>& seen, bool last) const {

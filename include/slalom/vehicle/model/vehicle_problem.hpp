@@ -10,20 +10,23 @@
 /// What the planner asks of a vehicle problem, so that it can drive any of them.
 namespace slalom::vehicle {
 
-/// Where a rollout starts: what odometry and steering observer say. A model with further states (yaw rate,
-/// slip) derives them from these.
+/// Where a rollout starts: what odometry and observers say.
 struct VehicleStart {
-  maps::Pose pose;   ///< of the rear axle, map frame
-  double speed = 0;  ///< m/s
-  double steer = 0;  ///< rad, of the wheels
+  maps::Pose pose;      ///< of the rear axle, map frame
+  double speed = 0;     ///< m/s
+  double steer = 0;     ///< rad, of the wheels
+  double yaw_rate = 0;  ///< rad/s
+  double slip = 0;      ///< rad, from the body's axis to the direction of travel of the centre of gravity
 };
 
 /// A predicted state.
 struct PredictedState {
-  maps::Pose pose;   ///< of the rear axle, map frame
-  double speed = 0;  ///< m/s
-  double steer = 0;  ///< rad, of the wheels
-  maps::Pose local;  ///< where the body is looked up, in the frame of the robot at the time of the scan
+  maps::Pose pose;      ///< of the rear axle, map frame
+  double speed = 0;     ///< m/s
+  double steer = 0;     ///< rad, of the wheels
+  maps::Pose local;     ///< where the body is looked up, in the frame of the robot at the time of the scan
+  double yaw_rate = 0;  ///< rad/s; 0 where the model has none
+  double slip = 0;      ///< rad; 0 where the model has none
 };
 
 /// The maps that rollouts look up; they must outlive their use.

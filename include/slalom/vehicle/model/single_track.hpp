@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+
+#include "slalom/vehicle/model/single_track_dynamics.hpp"
+#include "slalom/vehicle/model/vehicle_problem.hpp"
+
+namespace slalom::vehicle {
+
+/// The single-track model with slipping tyres as a motion model; steering and acceleration are the inputs.
+/// Of the acceleration no more takes effect than motor, brakes and the grip that turning leaves allow, and
+/// the path's speed is a limit.
+class SingleTrack {
+ public:
+  template <class T>
+  using State = SingleTrackState<T>;   ///< state of the dynamics
+  using Options = SingleTrackOptions;  ///< the model's own options
+
+  static constexpr const char* name = "single_track";  ///< name in configurations
+  /// Description, in one line.
+  static constexpr const char* help =
+      "single-track model with slipping tyres; steering and acceleration are the inputs";
+  static constexpr int inputs = 2;                                      ///< inputs of a step
+  static constexpr std::array input_names{"steering", "acceleration"};  ///< names of the inputs
+
+  /// With the options of the car. Throws std::invalid_argument where `hold_first_input` is set, which this
+  /// model does not have.
+  explicit SingleTrack(const PathTrackingOptions& options, const Options& own = {});
+
+  /// The state at the start.
+  State<double> start(const VehicleStart& start, double reference_speed) const noexcept;
+
+  /// The friction between tyres and road that rollouts assume.
+  void set_friction(double friction) noexcept { friction_ = friction; }
+
+  /// The dynamics.
+  const SingleTrackDynamics& dynamics() const noexcept { return dynamics_; }
+
+  /// The acceleration (m/s^2) that takes effect where `wanted` is asked for on a path of this reference speed
+  /// (m/s).
+  template <class T>
+  SLALOM_INLINE T limited(const State<T>& s, const T& reference_speed, const T& wanted) const {
+    const T friction = T(friction_), to_speed = T(inverse_time_step_);
+    const T braking = dynamics_.braking_limit(s, friction);
+    const T driving = min(dynamics_.driving_limit(s.speed), braking);
+    const T asked = min(wanted, (reference_speed - s.speed) * to_speed);
+    return max(clamp(asked, -braking, driving), (T(slowest_) - s.speed) * to_speed);
+  }
+
+  /// The state after a step; `reference_speed` (m/s) is that of the path.
+  template <class T>
+  SLALOM_INLINE State<T> step(const State<T>& s, const T& reference_speed, const Input<T, 2>& u, int) const {
+    return dynamics_.advance(s, u[0], limited(s, reference_speed, u[1]), T(friction_), T(time_step_));
+  }
+
+  /// The cost of grip that a state needs beyond the usable share.
+  template <class T>
+  SLALOM_INLINE T grip_cost(const State<T>& s) const {
+    const T excess = max(dynamics_.lateral_grip(s, T(friction_)) - T(usable_grip_), T(0));
+    return T(grip_weight_) * square(excess);
+  }
+
+ private:
+  SingleTrackDynamics dynamics_;
+  Coefficient friction_;
+  Coefficient time_step_, inverse_time_step_;
+  Coefficient slowest_;  ///< m/s
+  Coefficient usable_grip_, grip_weight_;
+};
+
+}  // namespace slalom::vehicle
