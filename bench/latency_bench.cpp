@@ -20,7 +20,7 @@
 
 #include "bench/workload/reference_workload.hpp"
 #include "bench/workload/statistics.hpp"
-#include "slalom/core/dispatch.hpp"
+#include "slalom/core/instruction_set.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
 
 namespace slalom::tools {

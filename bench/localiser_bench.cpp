@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "slalom/core/dispatch.hpp"
+#include "slalom/core/instruction_set.hpp"
 #include "vehicle/localiser_drive.hpp"
 
 namespace slalom::vehicle {

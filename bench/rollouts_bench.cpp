@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/workload/reference_workload.hpp"
-#include "slalom/core/dispatch.hpp"
+#include "slalom/core/instruction_set.hpp"
 
 /// Rollouts of the vehicle problem on every instruction set and of the yardstick: ns_per_step on one core.
 namespace slalom::tools {

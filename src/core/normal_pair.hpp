@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slalom/core/math.hpp"
+#include "slalom/core/simd_operations.hpp"
 
 namespace slalom::detail {
 

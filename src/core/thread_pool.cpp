@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "slalom/core/simd.hpp"
+#include "slalom/core/instruction_set.hpp"
 
 namespace slalom {
 
@@ -16,7 +16,7 @@ namespace {
 
 void pause() noexcept {
 #if SLALOM_X86
-  _mm_pause();
+  __builtin_ia32_pause();
 #elif defined(__aarch64__)
   asm volatile("yield");
 #endif

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <new>
 
-#include "slalom/core/dispatch.hpp"
+#include "slalom/core/instruction_set.hpp"
 #include "slalom/core/version.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/evaluation/ranks.hpp"

@@ -6,7 +6,7 @@
 
 #include "bench/workload/measurements.hpp"
 #include "bench/workload/peak.hpp"
-#include "slalom/core/dispatch.hpp"
+#include "slalom/core/instruction_set.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/bench_plot.hpp"
 #include "tools/json/json.hpp"

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <thread>
 
-#include "slalom/core/dispatch.hpp"
 #include "slalom/core/error.hpp"
+#include "slalom/core/instruction_set.hpp"
 #include "slalom/core/version.hpp"
 #include "tools/command_line/command.hpp"
 #include "tools/evaluation/build_id.hpp"

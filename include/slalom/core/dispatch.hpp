@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slalom/core/simd.hpp"
+#include "slalom/core/simd_operations.hpp"
 
 /// The one mechanism by which batch loops run at the full width of the processor.
 ///
@@ -31,18 +31,6 @@ namespace slalom::simd {
 
 /// On the function template `run` of a kernel.
 #define SLALOM_KERNEL SLALOM_INLINE_CALLS
-
-/// The name of an instruction set, as `SLALOM_TARGET` takes it: "generic" (on AArch64 "neon"), "sse4",
-/// "avx2", "avx512".
-const char* name(Target target) noexcept;
-
-/// Whether this processor (and operating system) runs the instruction set.
-bool supported(Target target) noexcept;
-
-/// The instruction set that kernels use: the widest supported one, or the one named by the environment
-/// variable `SLALOM_TARGET`, read once. Throws std::invalid_argument if the variable names no instruction
-/// set, or one that this processor lacks.
-Target active_target();
 
 namespace detail {
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slalom/core/math.hpp"
+#include "slalom/core/simd_operations.hpp"
 
 /// Packs of float64 values, half as many lanes as a `Pack` has, for the few loops that need the precision.
 /// What packs of float32 have and these lack can be added when it is needed.

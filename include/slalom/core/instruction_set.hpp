@@ -2,11 +2,11 @@
 
 #include <cstdint>
 
-/// The instruction sets that kernels are compiled for, as tags and as function attributes.
+/// The instruction sets that kernels are compiled for, as tags and as function attributes, and the one in
+/// use.
 
 #if defined(__x86_64__) || defined(__i386__)
 #define SLALOM_X86 1
-#include <immintrin.h>
 #else
 #define SLALOM_X86 0
 #endif
@@ -76,6 +76,18 @@ namespace slalom::simd {
 
 /// The instruction sets a batch loop is compiled for.
 enum class Target : std::uint8_t { generic, sse4, avx2, avx512 };
+
+/// The name of an instruction set, as `SLALOM_TARGET` takes it: "generic" (on AArch64 "neon"), "sse4",
+/// "avx2", "avx512".
+const char* name(Target target) noexcept;
+
+/// Whether this processor (and operating system) runs the instruction set.
+bool supported(Target target) noexcept;
+
+/// The instruction set that kernels use: the widest supported one, or the one named by the environment
+/// variable `SLALOM_TARGET`, read once. Throws std::invalid_argument if the variable names no instruction
+/// set, or one that this processor lacks.
+Target active_target();
 
 /// Tags of the instruction sets: the `lanes` of a pack, and whether products and sums are fused, that is,
 /// rounded once. `Generic` uses what the build's baseline has (SSE2 on x86-64, NEON on AArch64).

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "slalom/core/simd_operations.hpp"
+#include <type_traits>
+
+#include "slalom/core/simd.hpp"
 
 /// Mathematics on packs: the functions of math.hpp, lane by lane. Accuracy: math.hpp.
 namespace slalom {

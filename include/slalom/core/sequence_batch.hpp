@@ -5,7 +5,7 @@
 #include <new>
 #include <span>
 
-#include "slalom/core/simd.hpp"
+#include "slalom/core/instruction_set.hpp"
 
 namespace slalom {
 

@@ -14,7 +14,9 @@
 /// set's target attribute, and everything it calls is inlined there; the vectors then become whole registers
 /// of the set. So a user's problem runs at full width without any compiler flag, and one binary serves every
 /// processor. Only where compilers do not find the right instruction (clamped conversions, square roots,
-/// look-ups) does a pack call a function that is compiled for one instruction set.
+/// look-ups) does a pack call a function that is compiled for one instruction set. Those are in
+/// simd_operations.hpp, with the large header of intrinsics: include dispatch.hpp where a kernel runs, and
+/// this header where packs are only named.
 ///
 /// Packs have a user-defined copy constructor on purpose: where a call is not inlined (unoptimised builds)
 /// they are passed by reference in memory, so the calling convention does not depend on the instruction set.
@@ -50,7 +52,7 @@ template <class T>
 struct MaskVector<Unfused<T>> : MaskVector<T> {};
 
 /// One value in all lanes. x - 0 is x for every x, and so folds to a broadcast. But g++ builds a vector wider
-/// than the baseline's lane by lane, unless it is told the instruction.
+/// than the baseline's lane by lane, unless it is told the instruction (simd_operations.hpp).
 template <class T>
 struct Broadcast {
   static void of(float value, typename VectorTypes<T::lanes>::Float& r) {
@@ -59,17 +61,9 @@ struct Broadcast {
 };
 #if SLALOM_X86
 template <>
-struct Broadcast<Avx2> {
-  SLALOM_ISA_AVX2 static void of(float value, VectorTypes<8>::Float& r) {
-    r = reinterpret_cast<VectorTypes<8>::Float>(_mm256_set1_ps(value));
-  }
-};
+struct Broadcast<Avx2>;
 template <>
-struct Broadcast<Avx512> {
-  SLALOM_ISA_AVX512 static void of(float value, VectorTypes<16>::Float& r) {
-    r = reinterpret_cast<VectorTypes<16>::Float>(_mm512_set1_ps(value));
-  }
-};
+struct Broadcast<Avx512>;
 #endif
 template <class T>
 struct Broadcast<Unfused<T>> : Broadcast<T> {};

@@ -4,12 +4,33 @@
 
 #if defined(__aarch64__)
 #include <arm_neon.h>
+#elif SLALOM_X86
+#include <immintrin.h>
 #endif
 
 /// The few pack operations for which the compilers need to be told the instruction, one struct per
 /// instruction set. All take and return through references, so that their calling convention is the same
 /// everywhere.
 namespace slalom::simd {
+
+namespace detail {
+
+#if SLALOM_X86
+template <>
+struct Broadcast<Avx2> {
+  SLALOM_ISA_AVX2 static void of(float value, VectorTypes<8>::Float& r) {
+    r = reinterpret_cast<VectorTypes<8>::Float>(_mm256_set1_ps(value));
+  }
+};
+template <>
+struct Broadcast<Avx512> {
+  SLALOM_ISA_AVX512 static void of(float value, VectorTypes<16>::Float& r) {
+    r = reinterpret_cast<VectorTypes<16>::Float>(_mm512_set1_ps(value));
+  }
+};
+#endif
+
+}  // namespace detail
 
 /// Portable forms; what each instruction set does not override.
 template <class T>

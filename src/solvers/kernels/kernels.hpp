@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "slalom/core/dispatch.hpp"
+#include "slalom/core/instruction_set.hpp"
 
 /// The inner loops of the solvers over batches [row][sample], row = step * inputs + input. Each is a kernel
 /// (see core/dispatch.hpp) in weight_kernels.hpp, noise_kernels.hpp or particle_kernels.hpp. It is compiled

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "slalom/core/batch_evaluator.hpp"
-#include "slalom/core/dispatch.hpp"
+#include "slalom/core/instruction_set.hpp"
 #include "slalom/vehicle/model/vehicle_options.hpp"
 #include "slalom/vehicle/model/vehicle_problem.hpp"
 
