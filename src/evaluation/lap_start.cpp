@@ -1,4 +1,4 @@
-// The start of a lap: the world of its settings, and where obstacles and opponents stand.
+// The start of a lap: its world, and the positions of obstacles and opponents.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,7 +23,7 @@ std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t lap_seed) const
                            "; the course may be too narrow to pass a parked car");
 }
 
-/// At equal distances along the course, moved forward where something else stands.
+/// At equal distances along the course. A position less than 1 m from another car is moved forward.
 std::vector<maps::Pose> LapRunner::place_opponents(const std::vector<maps::Pose>& obstacles) const {
   const sim::LapPath& path = *environment_->track->lap_path();
   const double begin = path.project({start_.x, start_.y}).arc;

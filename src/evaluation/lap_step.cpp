@@ -52,7 +52,7 @@ void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, 
   const vehicle::PlannerOutput& output = lap.planner->update(
       {scan, localised ? odometry : vehicle::Odometry{{unknown, unknown, unknown}, odometry.speed}});
 
-  // Where the planner's cost map is built with the options of the meter's, it is not built twice.
+  // If the planner's cost map has the options of the meter's, it is not computed twice.
   lap.meter.observe(scan, odometry.pose,
                     configuration_.planner.published.maps ? &lap.planner->cost_map() : nullptr);
   const SequenceCostMeter::Cost cost = lap.meter.planned(output);

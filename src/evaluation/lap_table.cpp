@@ -16,7 +16,7 @@ namespace slalom::evaluation {
 
 namespace {
 
-/// Names every column after `lap` once, for header, writing and reading.
+/// Visits every column after `lap` with its name and field, in order, for the header, writing and reading.
 template <class Row, class Visit>
 void visit_columns(Row& r, Visit&& visit) {
   visit("seed", r.seed);
@@ -83,8 +83,8 @@ void parse_cell(const std::string& text, const char* column, Field& field) {
       throw std::invalid_argument(std::string(column) + ": '" + text + "' must be a number");
     }
     if constexpr (std::is_floating_point_v<Field>) {
-      // Without a wall the clearance is infinite. Any other value must be finite, since means are computed of
-      // it.
+      // Without a wall the clearance is infinite. All other values must be finite, since their means are
+      // computed.
       const bool may_be_infinite =
           std::string_view(column) == "minimum_clearance" && std::isinf(field) && field > 0;
       if (!std::isfinite(field) && !may_be_infinite)
@@ -93,16 +93,16 @@ void parse_cell(const std::string& text, const char* column, Field& field) {
   }
 }
 
-constexpr std::size_t identity_columns = 4;
+constexpr std::size_t identity_columns = 4;  // method, scenario, set, lap
 
 /// The message about an invalid header.
 std::string header_error(const std::string& line) {
-  const auto there = split(line), ours = split(csv_header());
-  for (const std::string& column : there)
-    if (std::find(ours.begin(), ours.end(), column) == ours.end())
+  const auto found = split(line), expected = split(csv_header());
+  for (const std::string& column : found)
+    if (std::find(expected.begin(), expected.end(), column) == expected.end())
       return "column '" + column + "' is unknown to this version";
-  for (const std::string& column : ours)
-    if (std::find(there.begin(), there.end(), column) == there.end())
+  for (const std::string& column : expected)
+    if (std::find(found.begin(), found.end(), column) == found.end())
       return "column " + column + " is missing";
   return "the columns must be in this order: " + csv_header();
 }
@@ -203,7 +203,7 @@ LapRow parse_line(const std::string& line, const std::vector<Experiment>& experi
   std::size_t columns = identity_columns;
   visit_columns(row, [&](const char*, auto&) { ++columns; });
   if (cells.size() != columns) {
-    throw std::invalid_argument("has " + std::to_string(cells.size()) + " columns, not " +
+    throw std::invalid_argument("has " + std::to_string(cells.size()) + " columns, must have " +
                                 std::to_string(columns));
   }
   const auto found = std::find_if(experiments.begin(), experiments.end(), [&](const Experiment& e) {

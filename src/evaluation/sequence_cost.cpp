@@ -17,7 +17,8 @@ using vehicle::PredictedState;
 using vehicle::VehicleModel;
 using vehicle::VehicleOptions;
 using Problem = vehicle::published::TwoTrajectories;
-using Ruler = std::array<PredictedState, SequenceCostMeter::states>;
+/// The states that a cost is summed over, 0.05 s apart.
+using MeasuredStates = std::array<PredictedState, SequenceCostMeter::states>;
 
 constexpr int steps = SequenceCostMeter::states - 1;
 
@@ -31,26 +32,28 @@ maps::Pose between(const maps::Pose& a, const maps::Pose& b, double part) {
   return {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y), a.yaw + part * maps::wrap_angle(b.yaw - a.yaw)};
 }
 
-/// States 0.05 s apart, interpolated from states `spacing` (s) apart that cover the time.
-Ruler resampled(std::span<const PredictedState> predicted, double spacing) {
-  Ruler ruler;
+/// States 0.05 s apart, interpolated from states `spacing` (s) apart. Beyond the last one it is repeated.
+MeasuredStates resampled(std::span<const PredictedState> predicted, double spacing) {
+  MeasuredStates result;
   for (int k = 0; k <= steps; ++k) {
     const double at = k * SequenceCostMeter::time_step / spacing, whole = std::floor(at + 1e-9);
     const double part = std::max(at - whole, 0.0);
     const auto i = std::min(static_cast<std::size_t>(whole), predicted.size() - 1);
-    ruler[static_cast<std::size_t>(k)] = predicted[i];
+    PredictedState& state = result[static_cast<std::size_t>(k)];
+    state = predicted[i];
     if (part < 1e-9 || i + 1 >= predicted.size()) continue;
-    ruler[static_cast<std::size_t>(k)].pose = between(predicted[i].pose, predicted[i + 1].pose, part);
-    ruler[static_cast<std::size_t>(k)].local = between(predicted[i].local, predicted[i + 1].local, part);
+    state.pose = between(predicted[i].pose, predicted[i + 1].pose, part);
+    state.local = between(predicted[i].local, predicted[i + 1].local, part);
   }
-  return ruler;
+  return result;
 }
 
 }  // namespace
 
 struct SequenceCostMeter::Implementation {
   VehicleOptions model;
-  Problem ruler{vehicle::published::vehicle_options(), vehicle::published::ModelOptions::published()};
+  /// Has the weights and costs of the paper's program.
+  Problem problem{vehicle::published::vehicle_options(), vehicle::published::ModelOptions::published()};
   maps::LocalCostMap cost_map{cost_map_options()};
   maps::ReferenceField field;
   std::unique_ptr<VehicleModel> own, published;
@@ -73,13 +76,14 @@ struct SequenceCostMeter::Implementation {
 
   Cost cost_of(const PredictedState& predicted, bool last) const {
     const auto s = Problem::standing_at(predicted);
-    const auto seen = ruler.look_up(s);
-    const double collision = ruler.collision_part(seen, last);
-    const auto both = last ? ruler.terminal_cost(s, seen) : ruler.stage_cost(s, seen, Input<double, 1>{});
+    const auto seen = problem.look_up(s);
+    const double collision = problem.collision_part(seen, last);
+    const auto both = last ? problem.terminal_cost(s, seen) : problem.stage_cost(s, seen, Input<double, 1>{});
     return {both.value - collision, collision};
   }
 
-  /// Updates the field where these states are, unless it is up to date there.
+  /// Updates the field where these states are and `margin` (m) around them, unless it is up to date at the
+  /// states.
   void make_field(std::span<const PredictedState> sequence, double margin) noexcept {
     if (everywhere) return;
     maps::Point from{robot.x, robot.y}, to{robot.x, robot.y};
@@ -103,7 +107,7 @@ struct SequenceCostMeter::Implementation {
            });
   }
 
-  Cost cost_of(const Ruler& sequence) noexcept {
+  Cost cost_of(const MeasuredStates& sequence) noexcept {
     make_field(sequence, 0.2);
     Cost sum;
     for (int k = 0; k <= steps; ++k) {
@@ -114,8 +118,8 @@ struct SequenceCostMeter::Implementation {
     return sum;
   }
 
-  /// The first `used` inputs of each step of the planner's sequence, resampled to `spacing` (s); the last one
-  /// is held.
+  /// The first `used` inputs of each step of the planner's sequence, at `count` steps `spacing` (s) apart;
+  /// the inputs of the last step are held.
   std::span<const float> held(const vehicle::PlannerOutput& output, int used, std::size_t count,
                               double spacing) {
     const auto width = static_cast<std::size_t>(output.inputs_per_step),
@@ -128,8 +132,10 @@ struct SequenceCostMeter::Implementation {
     return {inputs.data(), count * taken};
   }
 
-  Ruler predict(VehicleModel& rollout, const vehicle::PlannerOutput& output, std::span<const float> sequence,
-                double spacing) {
+  /// The states that `rollout` predicts for `sequence`, whose steps last `spacing` (s), from the first state
+  /// of the planner's own prediction.
+  MeasuredStates predict(VehicleModel& rollout, const vehicle::PlannerOutput& output,
+                         std::span<const float> sequence, double spacing) {
     const PredictedState& first = output.predicted.front();
     const std::size_t count = sequence.size() / static_cast<std::size_t>(rollout.inputs());
     const std::span<PredictedState> reached(states.data(), count + 1);
@@ -163,7 +169,7 @@ void SequenceCostMeter::observe(const maps::LaserScanView& scan, const maps::Pos
   m.high = {robot.x + about_the_car, robot.y + about_the_car};
   m.everywhere = false;
   m.field.update({robot.x, robot.y}, m.low, m.high);
-  m.ruler.set_maps({m.field.view(), m.obstacles, robot});
+  m.problem.set_maps({m.field.view(), m.obstacles, robot});
 }
 
 SequenceCostMeter::Cost SequenceCostMeter::planned(const vehicle::PlannerOutput& output) noexcept {

@@ -3,8 +3,8 @@
 #include "slalom/core/math.hpp"
 #include "slalom/core/simd_operations.hpp"
 
-/// Packs of float64 values, half as many lanes as a `Pack` has, for the few loops that need the precision.
-/// What packs of float32 have and these lack can be added when it is needed.
+/// Packs of float64 values, with half as many lanes as a `Pack`, for the few loops that need the precision.
+/// They have only the operations that these loops use.
 namespace slalom::simd {
 
 namespace detail {
@@ -29,7 +29,8 @@ struct DoubleMaskVector<Unfused<T>> : DoubleMaskVector<T> {};
 
 }  // namespace detail
 
-/// Operations for which compilers need to be told the instruction, as in simd_operations.hpp.
+/// Portable implementations of the operations for which compilers need to be told the instruction, as in
+/// simd_operations.hpp.
 template <class T>
 struct PortableDoubleOperations {
   using D = typename detail::DoubleVectorTypes<T::lanes>::Double;  ///< vector of float64 values
@@ -44,7 +45,7 @@ struct PortableDoubleOperations {
   static void less_or_equal(const D& a, const D& b, L& r) { r = a <= b; }
   /// `a` in lanes where the condition is true, else `b`.
   static void select(const L& condition, const D& a, const D& b, D& r) { r = condition ? a : b; }
-  /// Whether any lane is true.
+  /// Whether any lane is set.
   static bool any(const L& mask) {
     std::int64_t all = 0;
     for (int i = 0; i < T::lanes / 2; ++i) all |= mask[i];
@@ -56,6 +57,7 @@ struct PortableDoubleOperations {
   }
 };
 
+/// The operations of each instruction set.
 template <class T>
 struct DoubleOperations : PortableDoubleOperations<T> {};
 
@@ -83,7 +85,7 @@ struct DoubleOperations<Avx512> : PortableDoubleOperations<Avx512> {
   SLALOM_ISA_AVX512 static void select(const std::uint8_t& condition, const D& a, const D& b, D& r) {
     r = (D)_mm512_mask_blend_pd(condition, (__m512d)b, (__m512d)a);
   }
-  /// Whether any lane is true.
+  /// Whether any lane is set.
   static bool any(const std::uint8_t& mask) { return mask != 0; }
   SLALOM_ISA_AVX512 static void gather(const double* from, const I& index, D& r) {
     r = (D)_mm512_mask_i32gather_pd(_mm512_setzero_pd(), 0xff, (__m256i)index, from, 8);
@@ -204,12 +206,12 @@ SLALOM_INLINE_CALLS DoublePack<T> select(const DoubleMask<T>& condition, const D
   DoubleOperations<T>::select(condition.v, a.v, b.v, r.v);
   return r;
 }
-/// Whether a lane is set.
+/// Whether any lane is set.
 template <class T>
 SLALOM_INLINE_CALLS bool any(const DoubleMask<T>& mask) {
   return DoubleOperations<T>::any(mask.v);
 }
-/// The integers towards zero; |x| < 2^31.
+/// Rounded towards zero to integers; |x| < 2^31.
 template <class T>
 SLALOM_INLINE typename DoublePack<T>::Int truncate(const DoublePack<T>& x) {
   return __builtin_convertvector(x.v, typename DoublePack<T>::Int);

@@ -9,9 +9,10 @@
 /// Mathematics that a problem may use, written once for `float`, `double` and packs of SIMD lanes: call these
 /// by their unqualified or `slalom::` names instead of those in `std`.
 ///
-/// Accuracy on packs, against double: sin, cos, exp, log, atan within 3 units in the last place or 2e-7,
-/// whichever is larger (angles up to 8000 rad); tan the quotient of sin and cos. Polynomials: S. L. Moshier's
-/// Cephes library (expf, logf, atanf); sin and cos our own.
+/// Accuracy on packs, compared with double: sin, cos, exp, log, atan within 3 units in the last place or
+/// 2e-7, whichever is larger (angles up to 8000 rad; exp up to 88.3); tan is the quotient of sin and cos. The
+/// polynomials of exp, log and atan are those of S. L. Moshier's Cephes library (expf, logf, atanf); those of
+/// sin and cos were made for Slalom.
 namespace slalom {
 
 /// The truth value that goes with a scalar type: `bool`, or one per lane.
@@ -112,13 +113,13 @@ void sin_cos(T x, T& s, T& c) {
   c = std::cos(x);
 }
 
-/// Sine and cosine of an angle within half a turn, rad.
+/// Sine and cosine of an angle in [-pi/2, pi/2], rad.
 template <Scalar T>
 void sin_cos_half_turn(T x, T& s, T& c) {
   sin_cos(x, s, c);
 }
 
-// --- for either
+// --- scalars and packs
 // ----------------------------------------------------------------------------------------------------
 /// `x`, limited to the bounds.
 template <class T>

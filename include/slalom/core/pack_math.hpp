@@ -38,14 +38,14 @@ SLALOM_INLINE_CALLS Pack<Target> sqrt(const Pack<Target>& x) {
   simd::Operations<Target>::sqrt(x.v, r.v);
   return r;
 }
-/// 1/sqrt(x), within 2 units in the last place; x > 0.
+/// 1/sqrt(x), within 4 units in the last place; x > 0. Its bits depend on the instruction set.
 template <class Target>
 SLALOM_INLINE_CALLS Pack<Target> reciprocal_sqrt(const Pack<Target>& x) {
   Pack<Target> r;
   simd::Operations<Target>::reciprocal_sqrt(x.v, r.v);
   return r;
 }
-/// Nearest integer in each lane.
+/// Nearest integer in each lane, ties to even; |x| < 2^22.
 template <class Target>
 SLALOM_INLINE_CALLS Pack<Target> round(const Pack<Target>& x) {
   Pack<Target> r;
@@ -59,26 +59,26 @@ SLALOM_INLINE Pack<Target> abs(const Pack<Target>& x) {
   return Pack<Target>(reinterpret_cast<typename Pack<Target>::Vector>(reinterpret_cast<I>(x.v) & 0x7fffffff));
 }
 
-/// Whether a lane is set.
+/// Whether any lane is set.
 template <class Target>
 SLALOM_INLINE_CALLS bool any(const simd::Mask<Target>& mask) {
   return simd::Operations<Target>::any(mask.v);
 }
-/// The integers towards zero; |x| < 2^31.
+/// Rounded towards zero to integers; |x| < 2^31.
 template <class Target>
 SLALOM_INLINE simd::IntPack<Target> truncate(const Pack<Target>& x) {
   using I = typename simd::IntPack<Target>::Vector;
   return simd::IntPack<Target>(__builtin_convertvector(x.v, I));
 }
-/// The integers as float32, rounded.
+/// Integers to float32, rounded to nearest.
 template <class Target>
 SLALOM_INLINE Pack<Target> to_float(const simd::IntPack<Target>& x) {
   return Pack<Target>(__builtin_convertvector(x.v, typename Pack<Target>::Vector));
 }
 
-/// The product rounded to the nearest integer, for products below 2^22: adding 1.5 * 2^23 pushes the fraction
-/// out, and leaves the integer in the low bits of the sum (`bits`, to be used modulo a power of two up to
-/// 2^22). Cheaper than a rounding instruction and a conversion.
+/// The product rounded to the nearest integer, for products within 2^22: adding 1.5 * 2^23 rounds the
+/// fraction away and leaves the integer in the low bits of the sum (`bits`, to be used modulo a power of two
+/// up to 2^22). This is cheaper than a rounding instruction and a conversion.
 template <class Target>
 SLALOM_INLINE Pack<Target> rounded_product(const Pack<Target>& x, float factor,
                                            typename simd::IntPack<Target>::Vector& bits) {
@@ -89,8 +89,9 @@ SLALOM_INLINE Pack<Target> rounded_product(const Pack<Target>& x, float factor,
   return sum - magic;
 }
 
-/// Sine and cosine of an angle in [-pi/2, pi/2], such as a steering angle: cheaper, for want of a reduction.
-/// Polynomials through the Chebyshev nodes of the squared angle, weighted towards its end.
+/// Sine and cosine of an angle in [-pi/2, pi/2], such as a steering angle. This is cheaper than `sin_cos`,
+/// since the angle needs no reduction. The polynomials interpolate at Chebyshev nodes of the squared angle,
+/// weighted towards the end of its range.
 template <class Target>
 SLALOM_INLINE void sin_cos_half_turn(const Pack<Target>& x, Pack<Target>& s, Pack<Target>& c) {
   using F = Pack<Target>;
@@ -102,8 +103,8 @@ SLALOM_INLINE void sin_cos_half_turn(const Pack<Target>& x, Pack<Target>& s, Pac
       x2 * x2 *
           (F(4.16666647e-2f) + x2 * (F(-1.38887578e-3f) + x2 * (F(2.4781316e-5f) + x2 * F(-2.64315039e-7f))));
 }
-/// Sine and cosine together: reduced to half a turn, which costs a longer polynomial and saves the choice
-/// between the two that a quarter needs.
+/// Sine and cosine together. The angle is reduced to [-pi/2, pi/2]: this needs longer polynomials than a
+/// reduction to [-pi/4, pi/4], but no exchange of sine and cosine.
 template <class Target>
 SLALOM_INLINE void sin_cos(const Pack<Target>& x, Pack<Target>& s, Pack<Target>& c) {
   using F = Pack<Target>;
@@ -147,7 +148,7 @@ SLALOM_INLINE Pack<Target> tan(const Pack<Target>& x) {
   return s / c;
 }
 
-/// e^x; 0 below -87.3, infinite above 88.7.
+/// e^x; 0 below -87.3, e^88.3 between 88.3 and 88.7, infinite above 88.7.
 template <class Target>
 SLALOM_INLINE Pack<Target> exp(const Pack<Target>& x) {
   using F = Pack<Target>;

@@ -13,10 +13,10 @@
 /// instruction set. A kernel (dispatch.hpp) is compiled once per instruction set, into one function with that
 /// set's target attribute, and everything it calls is inlined there; the vectors then become whole registers
 /// of the set. So a user's problem runs at full width without any compiler flag, and one binary serves every
-/// processor. Only where compilers do not find the right instruction (clamped conversions, square roots,
-/// look-ups) does a pack call a function that is compiled for one instruction set. Those are in
-/// simd_operations.hpp, with the large header of intrinsics: include dispatch.hpp where a kernel runs, and
-/// this header where packs are only named.
+/// processor. Only where compilers do not find the right instruction (minimum and maximum, comparisons,
+/// rounding, square roots, look-ups) does a pack call a function that is compiled for one instruction set.
+/// Those are in simd_operations.hpp, with the large header of intrinsics: include dispatch.hpp where a kernel
+/// runs, and this header where packs are only named.
 ///
 /// Packs have a user-defined copy constructor on purpose: where a call is not inlined (unoptimised builds)
 /// they are passed by reference in memory, so the calling convention does not depend on the instruction set.
@@ -38,7 +38,7 @@ inline constexpr bool rounds_products = false;
 template <class T>
 inline constexpr bool rounds_products<Unfused<T>> = true;
 
-/// What comparisons of packs yield: all bits of a lane set where true.
+/// The result of a comparison of packs: all bits of a lane are 1 if it is true, else 0.
 template <class T>
 struct MaskVector {
   using type = typename VectorTypes<T::lanes>::Int;
@@ -75,10 +75,10 @@ template <class T>
 struct Mask {
   using Vector = typename detail::MaskVector<T>::type;      ///< vector type of the compiler
   static constexpr bool bits = std::is_integral_v<Vector>;  ///< one bit per lane
-  Vector v;                                                 ///< all bits of a lane set where true
+  Vector v;  ///< with `bits` one bit per lane, else all bits of a lane 1 where true and 0 where false
 
   Mask() = default;
-  /// From lanes with all bits 1 or all bits 0.
+  /// From a vector in this form.
   SLALOM_INLINE Mask(const Vector& vector) : v(vector) {}
   /// Copies.
   SLALOM_INLINE Mask(const Mask& other) : v(other.v) {}
@@ -106,7 +106,7 @@ struct Mask {
   }
   /// Applies to each lane.
   SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(static_cast<Vector>(~a.v)); }
-  /// Of one lane.
+  /// The value of one lane.
   bool operator[](int lane) const {
     if constexpr (bits) {
       return ((v >> lane) & 1) != 0;
@@ -194,7 +194,7 @@ struct Pack {
   }
   /// Writes the lanes.
   SLALOM_INLINE void store(float* to) const { std::memcpy(to, &v, sizeof v); }
-  float operator[](int lane) const { return v[lane]; }  ///< of a lane
+  float operator[](int lane) const { return v[lane]; }  ///< value of one lane
 
   /// Applies to each lane.
   SLALOM_INLINE friend Pack operator+(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v + b.v); }

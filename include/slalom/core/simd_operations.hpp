@@ -9,8 +9,8 @@
 #endif
 
 /// The few pack operations for which the compilers need to be told the instruction, one struct per
-/// instruction set. All take and return through references, so that their calling convention is the same
-/// everywhere.
+/// instruction set. Packs are passed and returned by reference, so that the calling convention does not
+/// depend on the instruction set.
 namespace slalom::simd {
 
 namespace detail {
@@ -32,7 +32,7 @@ struct Broadcast<Avx512> {
 
 }  // namespace detail
 
-/// Portable forms; what each instruction set does not override.
+/// Portable implementations of the operations, for those that an instruction set does not override.
 template <class T>
 struct PortableOperations {
   using F = typename Pack<T>::Vector;
@@ -41,13 +41,14 @@ struct PortableOperations {
 
   static void min(const F& a, const F& b, F& r) { r = a < b ? a : b; }
   static void max(const F& a, const F& b, F& r) { r = a > b ? a : b; }
-  /// a - b c; where Target::fused with one rounding, whatever the compiler makes of other products and sums.
+  /// a - b c, rounded once on AVX2, AVX-512 and NEON and twice elsewhere, whichever products and sums the
+  /// compiler fuses.
   static void subtract_product(const F& a, const F& b, const F& c, F& r) { r = a - b * c; }
   static void less(const F& a, const F& b, I& r) { r = a < b; }
   static void less_or_equal(const F& a, const F& b, I& r) { r = a <= b; }
   static void less(const I& a, const I& b, I& r) { r = a < b; }
   static void equal(const I& a, const I& b, I& r) { r = a == b; }
-  /// Whether a lane is set.
+  /// Whether any lane is set.
   static bool any(const I& mask) {
     std::int32_t all = 0;
     for (int i = 0; i < lanes; ++i) all |= mask[i];
@@ -55,7 +56,7 @@ struct PortableOperations {
   }
   /// `a` where all bits of the condition are set, `b` where none is.
   static void select(const I& condition, const F& a, const F& b, F& r) { r = condition ? a : b; }
-  /// 1 or 0 a lane.
+  /// Writes one byte for each lane: 1 if it is set, else 0.
   static void store_mask(const I& mask, std::uint8_t* to) {
     for (int i = 0; i < lanes; ++i) to[i] = mask[i] != 0;
   }
@@ -127,14 +128,14 @@ struct Operations<Generic> : PortableOperations<Generic> {};
 
 #if SLALOM_X86
 namespace detail {
-/// Whether this processor's AVX-512 gathers of 64 bits beat as many loads; set before main begins. Results do
-/// not depend on it.
+/// Whether the AVX-512 gathers of 64 bits are faster than loads on this processor; set before main begins.
+/// Results do not depend on it.
 extern const bool gathers_are_fast;
-/// Bytes 3 2 1 0, 7 6 5 4, ...: the order of a shuffle that reverses those of each 32-bit lane.
+/// Bytes 3 2 1 0, 7 6 5 4, ...: the order of a shuffle that reverses the bytes of each 32-bit lane.
 inline constexpr __m128i reversed_bytes = {0x0405060700010203, 0x0c0d0e0f08090a0b};
 }  // namespace detail
 
-/// Joins two vectors, for instance of 4 lanes each into one of 8.
+/// The lanes of two vectors with these indices, as one vector.
 #define SLALOM_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 
 template <>
@@ -185,7 +186,7 @@ struct Operations<Avx2> : PortableOperations<Avx2> {
   SLALOM_ISA_AVX2 static void round(const F& a, F& r) {
     r = (F)_mm256_round_ps((__m256)a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
   }
-  /// By a count a lane, which takes one step of the processor where a common count takes two.
+  /// With a count for each lane: one micro-operation, where a count for all lanes takes two.
   SLALOM_ISA_AVX2 static void shift_left(I& a, int count) {
     a = (I)_mm256_sllv_epi32((__m256i)a, _mm256_set1_epi32(count));
   }
@@ -203,7 +204,7 @@ struct Operations<Avx2> : PortableOperations<Avx2> {
   SLALOM_ISA_AVX2 static void gather_cells(const float* from, const I& index, F& r0, F& r1, F& r2, F& r3) {
     alignas(32) std::int32_t at[8];
     *reinterpret_cast<I*>(at) = index << 2;
-    __asm__("" : "+m"(at));  // or g++ extracts the lanes one by one from the register, which is slower
+    __asm__("" : "+m"(at));  // otherwise g++ extracts each lane from the register, which is slower
     F row[4];
     for (int k = 0; k < 4; ++k) {
       row[k] = (F)SLALOM_SHUFFLE(_mm_loadu_ps(from + at[k]), _mm_loadu_ps(from + at[k + 4]), 0, 1, 2, 3, 4, 5,
@@ -287,8 +288,8 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
   }
 
  private:
-  /// Two values of a cell at a time by gathers of 64 bits. For 16 lanes of four values this took about 10 ns
-  /// on a Xeon of 2023, the loads below 15 ns.
+  /// Two values of a cell at a time by gathers of 64 bits. For 16 cells this took about 10 ns on a Xeon of
+  /// 2023; `load_cells` took 15 ns.
   SLALOM_ISA_AVX512 SLALOM_INLINE static void gather_halves(const float* from, const I& index, F& r0, F& r1,
                                                             F& r2, F& r3) {
     constexpr __mmask8 half = 0xff;
@@ -309,12 +310,12 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
   /// Four 128-bit loads a register, then a 4 x 4 transpose in every 128-bit block.
   SLALOM_ISA_AVX512 SLALOM_INLINE static void load_cells(const float* from, const I& index, F& r0, F& r1,
                                                          F& r2, F& r3) {
-    // Stored in halves: loads of single values are served late by a store of 512 bits.
+    // Stored in halves: a store of 512 bits is forwarded slowly to loads of single values.
     alignas(64) std::int32_t at[16];
     const __m512i scaled = (__m512i)(index << 2);
     _mm256_store_si256(reinterpret_cast<__m256i*>(at), _mm512_maskz_extracti64x4_epi64(0xff, scaled, 0));
     _mm256_store_si256(reinterpret_cast<__m256i*>(at + 8), _mm512_maskz_extracti64x4_epi64(0xff, scaled, 1));
-    __asm__("" : "+m"(at));  // or g++ extracts the lanes one by one from the register, which is slower
+    __asm__("" : "+m"(at));  // otherwise g++ extracts each lane from the register, which is slower
     F row[4];
     for (int k = 0; k < 4; ++k) {
       __m512 v = _mm512_zextps128_ps512(_mm_loadu_ps(from + at[k]));

@@ -24,7 +24,7 @@ namespace slalom::evaluation {
 constexpr std::uint64_t lap_seed(std::uint64_t seed0, int lap, int obstacles) {
   return seed0 + static_cast<std::uint64_t>(lap) * static_cast<std::uint64_t>(obstacles + 5);
 }
-/// The seed of the solver's random numbers in a lap.
+/// The seed of the solver's random numbers in a lap: a hash of the lap's seed and the name of the method.
 std::uint64_t solver_seed(std::uint64_t lap_seed, std::string_view method);
 
 /// The first collision with a body or a wall.
@@ -34,16 +34,18 @@ struct Collision {
   int body = -1;    ///< index of the body, -1 for a wall
 };
 
-/// A control step after the planner's update and before its command takes effect. The references are valid
+/// A control step after the planner's update and before its command is applied. The references are valid
 /// until the callback returns.
 struct ControlStep {
-  int step = 0;                       ///< control steps since the start
-  double time = 0;                    ///< s
-  double progress = 0;                ///< of the lap, 0 ... 1
-  int collisions = 0;                 ///< so far, as the protocol counts them
-  const sim::Observation& seen;       ///< the true state of the car
-  const maps::LaserScanView& scan;    ///< input of the planner
-  const vehicle::Odometry& odometry;  ///< input of the planner; the true one while the car is not localised
+  int step = 0;                     ///< index of the control step, from 0
+  double time = 0;                  ///< s
+  double progress = 0;              ///< of the lap, 0 ... 1
+  int collisions = 0;               ///< so far, as the protocol counts them
+  const sim::Observation& seen;     ///< the true state of the car
+  const maps::LaserScanView& scan;  ///< input of the planner
+  /// Input of the planner. While the car is not localised, the planner gets a pose of NaN; this is the true
+  /// one.
+  const vehicle::Odometry& odometry;
   const vehicle::PlannerOutput& output;  ///< output of the planner
   const vehicle::Planner& planner;       ///< after the update
   const sim::World& world;               ///< the simulated world
@@ -61,9 +63,9 @@ struct LapResult {
   int collisions = 0;             ///< as the protocol counts them
   int collided_bodies = 0;        ///< number of different bodies hit, all walls as one
   bool wall = false;              ///< whether the car hit a wall
-  double time = 0;                ///< s, of the lap; where it is not finished, until it ended
+  double time = 0;                ///< s, of the lap; if it was not finished, until it ended
   int steps = 0;                  ///< control steps
-  double state_cost = 0;          ///< mean, of distance and heading
+  double state_cost = 0;          ///< mean, of distance and yaw error
   double collision_cost = 0;      ///< mean
   double mean_sequence_cost = 0;  ///< MS = state_cost + collision_cost
   double published_model_cost =
@@ -71,23 +73,27 @@ struct LapResult {
   double driven_cost = 0;  ///< MS of the states that the car reached; with `additional_costs`
   double input_error = 0;  ///< mean of the sum of |steering| over the control sequence, rad
   double mean_speed = 0;   ///< m/s
-  double mean_path_distance = 0;            ///< m, of the rear axle
-  double max_path_distance = 0;             ///< m
-  double least_clearance = 0;               ///< m from the body to wall or obstacle, negative in a collision
-  double mean_variance = 0;                 ///< of the steering in the solver's distribution, rad^2
-  double mean_effective_samples = 0;        ///< mean of the solver's effective sample size
-  std::array<int, 7> planner_status{};      ///< control steps by vehicle::PlannerStatus
+  double mean_path_distance = 0;  ///< m, of the rear axle
+  double max_path_distance = 0;   ///< m
+  /// m, the least over the control steps: from the corners of the car to a wall (0 in a wall, with the error
+  /// of Track::distance_to_wall) and from its outline to other bodies (negative in a collision). Infinite if
+  /// there is neither.
+  double least_clearance = 0;
+  double mean_variance = 0;             ///< of the steering in the solver's distribution, rad^2; over solves
+  double mean_effective_samples = 0;    ///< mean of the solver's effective sample size over solves
+  std::array<int, 7> planner_status{};  ///< control steps by vehicle::PlannerStatus
   std::vector<Collision> first_collisions;  ///< one for each body hit and one for walls, in order of time
-  std::vector<maps::Pose> obstacles;        ///< the parked cars
+  std::vector<maps::Pose> obstacles;        ///< the parked cars, centres of gravity
   int impassable = 0;                       ///< number of obstacles in impassable_obstacles
   std::vector<float> solve_ms;              ///< wall-clock time of each solve
   std::vector<float> tick_ms;               ///< wall-clock time of each planner update
   LocalisationRecord localisation;          ///< with LapSettings::hardware
 };
 
-/// Drives laps of one configuration and method, each independent of the others: world, planner and solver
-/// start anew, all random numbers follow from the seed of the lap, and runners share only the environment. So
-/// laps can be driven in any order, by any number of runners in parallel, with the same results bit for bit.
+/// Drives laps of one configuration and method. Each lap is independent of the others: world, planner and
+/// solver are reset, all random numbers follow from the seed of the lap, and runners share only the
+/// environment. So laps can be driven in any order, by any number of runners in parallel, with the same
+/// results bit for bit.
 class LapRunner {
  public:
   /// Throws std::invalid_argument if `environment` is null, the method is unknown, an option or a setting is
@@ -101,7 +107,7 @@ class LapRunner {
   LapResult run(std::uint64_t seed, const ControlStepCallback& on_step = {},
                 const std::atomic<bool>* cancel = nullptr);
 
-  double timeout() const noexcept { return timeout_; }         ///< s
+  double timeout() const noexcept { return timeout_; }         ///< s, after which a lap is stopped
   double control_period() const noexcept;                      ///< s of simulated time per command
   const maps::Pose& start() const noexcept { return start_; }  ///< of the centre of gravity
   const Environment& environment() const noexcept { return *environment_; }  ///< where laps are driven

@@ -29,10 +29,9 @@ struct Experiment {
 };
 
 /// A row of `laps.csv`: one lap of one experiment. Columns whose names contain `calculation_time`, or begin
-/// with `solve_`, `deadline_` or `wall_`, hold wall-clock times (ms, but `wall_time` s); all others repeat
-/// exactly.
+/// with `solve_` or `wall_`, hold wall-clock times (ms, but `wall_time` s); all others repeat exactly.
 struct LapRow {
-  int experiment = 0;      ///< index
+  int experiment = 0;      ///< index into the experiments of the evaluation
   int lap = 0;             ///< from 0
   std::uint64_t seed = 0;  ///< seed of the random numbers
   bool success = false;    ///< finished without a collision
@@ -40,22 +39,22 @@ struct LapRow {
   bool timeout = false;    ///< stopped after the timeout of the lap
   bool finished = false;   ///< whether the lap was finished in time
   double state_cost = 0, collision_cost = 0, input_error = 0;  ///< means over the control steps
-  double mean_calculation_time = 0, max_calculation_time = 0, min_calculation_time = 0;  ///< ms
-  double lap_time = 0;                                                                   ///< s
-  int steps = 0;                                                                         ///< control steps
+  double mean_calculation_time = 0, max_calculation_time = 0, min_calculation_time = 0;  ///< ms, of a solve
+  double lap_time = 0;           ///< s; of a lap that did not finish, until it ended
+  int steps = 0;                 ///< control steps
   int collided_bodies = 0;       ///< different bodies hit, all walls as one; column `contacts`
   bool wall = false;             ///< whether the car hit a wall
   int impassable = 0;            ///< number of obstacles in impassable_obstacles
-  double minimum_clearance = 0;  ///< m
+  double minimum_clearance = 0;  ///< m, LapResult::least_clearance
   double mean_speed = 0;         ///< m/s
   double mean_path_distance = 0, max_path_distance = 0;  ///< m
-  double mean_variance = 0, mean_effective_samples = 0;  ///< of the solver, means over the control steps
+  double mean_variance = 0, mean_effective_samples = 0;  ///< of the solver, means over its solves
   double ms_published_model = 0, ms_driven = 0;  ///< LapResult::published_model_cost, LapResult::driven_cost
   int blocked_steps = 0;                         ///< control steps in which every plan collided
   int degenerate_steps = 0;                      ///< control steps without usable weights
-  std::string contact_points;                    ///< of first collisions: "x:y" in m, separated by spaces
-  double solve_p50 = 0, solve_p99 = 0;           ///< ms
-  double wall_time = 0;                          ///< s, to compute the lap
+  std::string contact_points;  ///< "x:y" in m, the car's position at its first collision with each body
+  double solve_p50 = 0, solve_p99 = 0;  ///< ms
+  double wall_time = 0;                 ///< s, to compute the lap
 
   /// MS = state_cost + collision_cost
   double mean_sequence_cost() const { return state_cost + collision_cost; }
@@ -70,12 +69,14 @@ std::string csv_header();
 /// A row of laps.csv without line end. Numbers read back to the same bits.
 std::string csv_line(const LapRow& row, const std::vector<Experiment>& experiments);
 
-/// Parses such a line. Throws std::invalid_argument naming the column, its value and the rule.
+/// Parses such a line. Throws std::invalid_argument naming the column, its value and the rule, or what else
+/// is wrong with the line.
 LapRow parse_line(const std::string& line, const std::vector<Experiment>& experiments);
 
-/// Reads rows. Throws IoError with file and line if a line is not a row of one of the experiments, a lap is
-/// duplicate, or, where `seed0` is given, its seed is not that of the lap. With `accept_truncated` an
-/// incomplete last line (a run was killed while it wrote) is ignored, and so is a missing header.
+/// Reads rows. Throws IoError with file and line if the file cannot be read, the header is another one, a
+/// line is not a row of one of the experiments, a lap is duplicate, or, where `seed0` is given, its seed is
+/// not that of the lap. With `accept_truncated` an incomplete last line (the program was killed while it
+/// wrote) is ignored, and so is a missing header of an otherwise empty file.
 std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vector<Experiment>& experiments,
                               bool accept_truncated, std::optional<std::uint64_t> seed0 = {});
 

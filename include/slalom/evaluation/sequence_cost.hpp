@@ -10,25 +10,25 @@
 
 namespace slalom::evaluation {
 
-/// The state cost of a control sequence (MS, "mean sequence cost", Honda et al., ICRA 2024, section V-A),
-/// measured in the same way for every method and configuration: cost map, reference field and weights of the
-/// paper's program, 15 states 0.05 s apart. For the configuration `published` it equals the planner's own
-/// costs.
+/// The cost of a control sequence in states and collisions (its mean over a lap is the MS, "mean sequence
+/// cost", Honda et al., ICRA 2024, section V-A), computed in the same way for every method and configuration:
+/// cost map, reference field and weights of the paper's program, 15 states 0.05 s apart. For the
+/// configuration `published` it equals the planner's own costs.
 class SequenceCostMeter {
  public:
   static constexpr int states = 15;          ///< that a cost is summed over
   static constexpr double time_step = 0.05;  ///< s
 
-  /// A cost in its parts.
+  /// A cost and its two terms.
   struct Cost {
-    double state = 0;      ///< of the distance to the path and the heading error
+    double state = 0;      ///< of the distance to the path and the yaw error
     double collision = 0;  ///< of walls and obstacles
     /// Their sum.
     double total() const { return state + collision; }
   };
 
-  /// `model` has the options of the planner's vehicle problem. Throws std::invalid_argument if the path is
-  /// invalid.
+  /// `model` has the options of the planner's vehicle model, which predicts states in `planned`. Throws
+  /// std::invalid_argument if the path or an option is invalid.
   SequenceCostMeter(std::span<const maps::ReferencePoint> path, const vehicle::VehicleOptions& model);
   ~SequenceCostMeter();
   /// Moves the meter; the source can only be destroyed or assigned to.
@@ -36,8 +36,9 @@ class SequenceCostMeter {
   /// Moves the meter; the source can only be destroyed or assigned to.
   SequenceCostMeter& operator=(SequenceCostMeter&&) noexcept;
 
-  /// Makes the maps from a scan taken with the rear axle at `robot` (map frame). `made` is the cost map of
-  /// this scan if the caller has one with the same options; it must stay valid until the next call.
+  /// Computes the maps from a scan taken with the rear axle at `robot` (map frame). If the caller has a cost
+  /// map of this scan with the options of the paper's program, it can pass it as `made`. `scan` is then not
+  /// used, and `made` must stay valid until the next call.
   void observe(const maps::LaserScanView& scan, const maps::Pose& robot,
                const maps::LocalCostMap* made = nullptr) noexcept;
 
@@ -45,13 +46,15 @@ class SequenceCostMeter {
   /// s and cut at 15 states; a shorter sequence is extended by its last input. Without a sequence: present().
   Cost planned(const vehicle::PlannerOutput& output) noexcept;
 
-  /// The cost of the states that the model of the paper's program predicts for that sequence.
+  /// The cost of the states that the model of the paper's program predicts for the steering of that sequence,
+  /// resampled to 0.05 s. Without a sequence: present().
   Cost published_model(const vehicle::PlannerOutput& output) noexcept;
 
-  /// The cost of the present state, 15 times. Its mean over a lap is the cost of the driven trajectory.
+  /// 15 times the stage cost of the pose given to `observe`. Its mean over a lap is the cost of the driven
+  /// trajectory.
   Cost present() const noexcept;
 
-  /// m, from the car's rear axle to the path.
+  /// m, from the cell of the reference field with the rear axle to the nearest point of the path.
   double path_distance() const noexcept;
 
  private:

@@ -17,7 +17,7 @@ struct ReferencePoint {
 /// What a look-up in a reference map returns: one 16-byte cell, so that one load fetches it.
 struct ReferenceCell {
   float distance;  ///< m to the path
-  float yaw;       ///< rad, of the path's nearest point
+  float yaw;       ///< rad, yaw of the path's nearest point
   float speed;     ///< m/s there
   float outside;   ///< 1 off the map (then `yaw` is the yaw ERROR to assume), else 0
 };
@@ -26,11 +26,11 @@ static_assert(sizeof(ReferenceCell) == 16);
 /// What a look-up off a reference map returns.
 struct ReferenceOutside {
   double distance = 20;  ///< m
-  double yaw = 2.0;      ///< rad, the yaw error to assume; the value of K. Honda's proj-svg_mppi
+  double yaw = 2.0;      ///< rad, the yaw error to assume; the value of the paper's program (proj-svg_mppi)
   double speed = 0;      ///< m/s
 };
 
-/// Declares what `outside` holds, for the visit_options of the maps that have one.
+/// Declares the fields of `outside`, for the visit_options of the maps that have one.
 template <class Outside, class Visit>
 void visit_reference_outside(Outside& outside, Visit&& visit) {
   visit(outside.distance, Declaration{.name = "outside_distance",
@@ -39,7 +39,8 @@ void visit_reference_outside(Outside& outside, Visit&& visit) {
                                       .min = -1e30,
                                       .max = 1e30});
   visit(outside.yaw,
-        Declaration{.name = "outside_yaw", .unit = "rad", .help = "yaw off the map", .min = -7, .max = 7});
+        Declaration{
+            .name = "outside_yaw", .unit = "rad", .help = "yaw error off the map", .min = -7, .max = 7});
   visit(outside.speed,
         Declaration{
             .name = "outside_speed", .unit = "m/s", .help = "speed off the map", .min = -1e3, .max = 1e3});

@@ -2,14 +2,15 @@
 
 /// What exists only to reproduce f1tenth_gym, the simulator of the paper's experiments: switches for its
 /// deviations from the physics and geometry that this simulator computes. Each options struct of the layer
-/// that has such switches holds them in a member `gym`; all are off by default. `all()` turns on
-/// every switch of a struct, and `WorldOptions::gym_compatible()` sets those of a world together.
+/// that has such switches holds them in a member `gym`; all are off by default. `all()` turns on every switch
+/// of a struct. `WorldOptions::gym_compatible()` turns on those of a world, and sets the other options in
+/// which its world differs.
 namespace slalom::sim {
 
 /// Deviations of the equations of motion.
 struct GymDynamics {
-  /// Below 0.5 m/s the car moves along its axis, the slip stays frozen and the yaw rate is integrated beside
-  /// the yaw that is really driven.
+  /// Below 0.5 m/s the car moves along its axis, the slip angle does not change, and the yaw rate of the
+  /// state differs from the rate at which the yaw changes.
   bool low_speed = false;
   /// The last move towards the steering's limit may pass it by steer_rate_max * time step.
   bool steer_overshoot = false;
@@ -23,7 +24,8 @@ struct GymDynamics {
 struct GymActuation {
   /// The steering moves at full rate or not at all, so that it chatters about its target.
   bool steering = false;
-  /// Gains follow from the limits of speed and are a fifth of the others at standstill and in reverse.
+  /// The gains of the speed control follow from the limits of speed. At standstill and in reverse they are a
+  /// fifth of those forwards.
   bool gains = false;
 
   static constexpr GymActuation all() { return {true, true}; }  ///< all on
@@ -45,10 +47,11 @@ struct GymLidar {
   bool ranges = false;
   /// Directions are taken from a table of 2000 (step 2 pi / 1999), up to 0.003 rad off.
   bool directions = false;
-  /// Noise is numpy's default_rng(12345), begun anew at each reset, the same for every car; it is added after
-  /// the cut at range_max and before other cars are seen, which stay without noise.
+  /// Noise is that of numpy's default_rng(12345), seeded again at each reset, and the same for every car. It
+  /// is added after ranges are limited to range_max and before other cars are scanned, so ranges to them have
+  /// no noise.
   bool noise = false;
-  /// A car is looked for only in the beams between those nearest to its corners.
+  /// Only the beams between those nearest to a car's corners are tested for it.
   bool window = false;
 
   static constexpr GymLidar all() { return {true, true, true, true}; }  ///< all on
@@ -60,8 +63,8 @@ struct GymWorld {
   bool wall_collision = false;
   /// reset() makes one step with zero commands.
   bool reset_step = false;
-  /// A car that hits a wall stays where it drove to, and its speed, yaw, yaw rate and slip become 0, so that
-  /// it turns to +x at once. Replaces WorldOptions::wall_response.
+  /// A car that hits a wall stays at its new position, and its speed, yaw, yaw rate and slip become 0, so it
+  /// turns to +x at once. Replaces WorldOptions::wall_response.
   bool wall_stop = false;
 
   static constexpr GymWorld all() { return {true, true, true}; }  ///< all on
@@ -69,9 +72,10 @@ struct GymWorld {
 
 /// Deviations of the pure pursuit driver.
 struct GymPurePursuit {
-  /// The path is open for the nearest point and closed only for the search ahead, whose segments end 1e-6 m
-  /// off; what is aimed at is the start of the segment found, or of the nearest one with the arc for the
-  /// fixed lookahead; and steering is not bounded.
+  /// The nearest point is searched on an open path and the target on a closed one, whose segments are shifted
+  /// by 1e-6 m at their ends. The target is the start of the segment found, or of the nearest segment if the
+  /// path is further away than the lookahead. The steering is that for an arc with the fixed lookahead as its
+  /// chord, and is not bounded.
   bool waypoint_search = false;
 
   static constexpr GymPurePursuit all() { return {true}; }  ///< on

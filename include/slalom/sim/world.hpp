@@ -22,13 +22,13 @@
 ///     auto track = std::make_shared<const Track>(maps::load_ros_map("map.yaml"), LapPath(points));
 ///     World world({}, track);
 ///     world.reset(seed, start_poses, parked_poses);
-///     while (world.laps(0).laps() < 3) {
+///     while (world.laps(0)->laps() < 3) {
 ///       const Observation seen = world.observe(0);
 ///       world.step(std::array{Command{steer, speed}});
 ///     }
 ///
-/// A world is a value: a copy goes the same way as its original. Its walls are shared with all others of the
-/// track; so thousands run in parallel threads, each thread with worlds of its own.
+/// A world is a value: a copy behaves as its original does. All worlds of a track share its walls. So
+/// thousands can run in parallel threads, each thread with worlds of its own.
 namespace slalom::sim {
 
 /// What a collision does to a driven car.
@@ -51,8 +51,10 @@ struct WorldOptions {
   GymWorld gym{};               ///< reproduction of f1tenth_gym
   bool start_anywhere = false;  ///< cars may start in walls and in each other, as those of f1tenth_gym may
 
-  /// All gym switches together: the world of f1tenth_gym. Load its map with MapRule::grey_threshold and give
-  /// the track TrackOptions::outside_is_wall = false.
+  /// The options with which a world behaves as that of f1tenth_gym: all `gym` switches, one integration step
+  /// per time step, LiDAR at the centre of gravity, cars that drive through each other, and starts anywhere.
+  /// Load the map with MapRule::grey_threshold and construct the track with TrackOptions::outside_is_wall =
+  /// false.
   static WorldOptions gym_compatible();
 
   /// Throws std::invalid_argument naming the field, its value and the rule it breaks.

@@ -18,49 +18,50 @@ using Parameters = std::array<double, parameters>;
 using Normal = std::array<std::array<double, parameters>, parameters>;
 
 constexpr double longest_gap = 0.2;  // s
-constexpr double settling = 0.5;  // s at the beginning of a segment, in which the wheels' angle is not known
+constexpr double settling = 0.5;     // s at the beginning of a segment, while the wheels' angle is not known
 constexpr double longest_delay = 0.3;  // s
 constexpr int least_samples = 200;
-constexpr double steps[parameters] = {1e-4, 1e-5, 1e-4, 1e-4, 1e-4, 1e-5};  // of the differences
+constexpr double steps[parameters] = {1e-4, 1e-5, 1e-4, 1e-4, 1e-4, 1e-5};  // of the central differences
 
-/// The change of yaw from a sample to the next.
+/// The change of yaw from one sample to the next.
 struct Turn {
   double begin = 0, end = 0;  ///< s
   double turned = 0;          ///< rad
-  double speed = 0;           ///< m/s
-  std::size_t sample = 0;
-  bool first = false;  ///< of a segment
-  bool counts = false;
+  double speed = 0;           ///< m/s, mean of the two samples
+  std::size_t sample = 0;     ///< index of the first of the two
+  bool first = false;         ///< of a segment
+  bool counts = false;        ///< whether the fit uses it
 };
 
 std::vector<Turn> turns_of(std::span<const DrivenSample> samples, double least_speed) {
   std::vector<Turn> turns;
-  double piece_begin = 0;
-  bool fresh = true;
+  double segment_begin = 0;
+  bool first = true;
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
     const DrivenSample &a = samples[i], &b = samples[i + 1];
     const double dt = b.time - a.time;
     const double all =
         a.time + b.time + a.yaw + b.yaw + a.speed + b.speed + a.steer_command + a.x + b.x + a.y + b.y;
     if (!std::isfinite(all) || dt <= 0 || dt > longest_gap) {
-      fresh = true;
+      first = true;
       continue;
     }
-    Turn t{a.time, b.time, maps::wrap_angle(b.yaw - a.yaw), 0.5 * (a.speed + b.speed), i, fresh, false};
-    if (fresh) piece_begin = a.time;
-    fresh = false;
-    t.counts = std::abs(t.speed) >= least_speed && a.time - piece_begin >= settling;
+    Turn t{a.time, b.time, maps::wrap_angle(b.yaw - a.yaw), 0.5 * (a.speed + b.speed), i, first, false};
+    if (first) segment_begin = a.time;
+    first = false;
+    t.counts = std::abs(t.speed) >= least_speed && a.time - segment_begin >= settling;
     turns.push_back(t);
   }
   return turns;
 }
 
-/// The predicted changes of yaw minus the measured ones, one per change that is used.
+/// The model of a drive with given parameters.
 class Model {
  public:
   Model(std::span<const DrivenSample> samples, const std::vector<Turn>& turns)
       : samples_(samples), turns_(turns) {}
 
+  /// The predicted changes of yaw minus the measured ones, one for each change that is used.
   void residuals(const Parameters& p, std::vector<double>& out) const {
     out.clear();
     double steer = 0;
@@ -84,7 +85,8 @@ class Model {
   }
 
  private:
-  /// Lets the wheels follow `target` for `dt`; the integral of the steering's tangent by Simpson's rule.
+  /// Moves the wheels towards `target` for `dt` (s). Returns the integral of the tangent of their angle, by
+  /// Simpson's rule.
   static double run(double& steer, double target, double lag, double dt) {
     const double half = std::exp(-0.5 * dt / lag);
     const double middle = target + (steer - target) * half, end = target + (steer - target) * half * half;
@@ -113,7 +115,7 @@ Parameters within_bounds(Parameters p) {
   return p;
 }
 
-/// Solves a x = b for the free parameters; empty if a is singular.
+/// Solves a x = b for the parameters sought, the others being 0; empty if a is singular.
 std::optional<Parameters> solve(Normal a, Parameters b, const std::array<bool, parameters>& sought) {
   for (int i = 0; i < parameters; ++i) {
     if (sought[static_cast<std::size_t>(i)]) continue;
@@ -234,18 +236,19 @@ void require_enough(std::span<const DrivenSample> samples, const std::vector<Tur
 
 double speed_scale(std::span<const DrivenSample> samples, const std::vector<Turn>& turns) {
   double by_pose = 0, by_speed = 0;
-  // Over one second at a time, since the noise of single poses lengthens the distance.
+  // Over up to 0.25 s at a time, since the noise of single poses lengthens the distance. The chord is shorter
+  // than the path in a curve, so stretches that begin with a turn of 0.05 rad or more are not used.
   for (std::size_t i = 0; i < turns.size();) {
-    double way = 0;
+    double distance = 0;
     std::size_t j = i;
     while (j < turns.size() && !(j > i && turns[j].first) && turns[j].end - turns[i].begin < 0.25) {
-      way += std::abs(turns[j].speed) * (turns[j].end - turns[j].begin);
+      distance += std::abs(turns[j].speed) * (turns[j].end - turns[j].begin);
       ++j;
     }
     if (j > i && turns[i].counts && std::abs(turns[i].turned) < 0.05) {
       const DrivenSample &a = samples[turns[i].sample], &b = samples[turns[j - 1].sample + 1];
       by_pose += std::hypot(b.x - a.x, b.y - a.y);
-      by_speed += way;
+      by_speed += distance;
     }
     i = std::max(j, i + 1);
   }
