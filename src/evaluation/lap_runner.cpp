@@ -6,6 +6,7 @@
 #include "evaluation/lap_in_progress.hpp"
 #include "evaluation/lap_rules.hpp"
 #include "slalom/core/option_access.hpp"
+#include "slalom/vehicle/course/course_check.hpp"
 
 namespace slalom::evaluation {
 namespace {
@@ -65,6 +66,10 @@ LapRunner::LapRunner(std::shared_ptr<const Environment> environment,
   capped.closed = course.closed;
   for (vehicle::Waypoint& point : capped.waypoints) point.speed *= settings.speed_scale;
   vehicle::cap_speed(capped, configuration_.planner.max_speed);
+  if (const auto& planner = configuration_.planner; planner.profile_friction > 0)
+    vehicle::make_feasible(capped, vehicle::grip_limits(planner.profile_friction, planner.max_speed,
+                                                        configuration_.vehicle.max_acceleration,
+                                                        configuration_.vehicle.max_deceleration));
   timeout_ = environment_->timeout > 0 ? environment_->timeout : timeout_laps * vehicle::profile_time(capped);
   if (!course.closed && rules.finishes_open_courses())
     open_length_ =

@@ -255,6 +255,25 @@ TEST_F(EvalCommand, ReplaysALapBitForBitAndComparesTwoRuns) {
   EXPECT_TRUE(contains(run("compare a c").output, "or a folder of evaluations"));
 }
 
+TEST_F(EvalCommand, RemembersTheFolderOfACourseThatHasNoKnownName) {
+  fs::copy(SLALOM_COURSES "/wren", folder_ / "elsewhere");
+  const std::string drive = "--methods mppi --set mppi.samples=64 --laps 1 --scenario pt --out one ";
+  ASSERT_EQ(run("eval --course elsewhere " + drive).status, 0);
+  const auto settings = nlohmann::json::parse(content(folder_ / "one/settings.json"));
+  EXPECT_EQ(settings.at("course_folder"), fs::canonical(folder_ / "elsewhere").string());
+  const ProgramRun lap = run("replay one --lap 0");
+  EXPECT_EQ(lap.status, 0) << lap.output;
+  EXPECT_TRUE(contains(lap.output, "bit for bit")) << lap.output;
+
+  ASSERT_EQ(run("drive --course elsewhere --json lap.json --set svg_mppi.samples=64").status, 0);
+  const auto driven = nlohmann::json::parse(content(folder_ / "lap.json"));
+  EXPECT_EQ(driven.at("settings").at("course_folder"), settings.at("course_folder"));
+  // A course with a known name is found by it on any machine.
+  ASSERT_EQ(run("drive --course wren --json wren.json --set svg_mppi.samples=64").status, 0);
+  EXPECT_FALSE(
+      nlohmann::json::parse(content(folder_ / "wren.json")).at("settings").contains("course_folder"));
+}
+
 TEST_F(EvalCommand, ReproduceWithoutBerlinNamesWhatIsMissing) {
   const ProgramRun r =
       run("reproduce --course " SLALOM_COURSES

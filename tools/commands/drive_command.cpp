@@ -53,8 +53,7 @@ class DriveJob {
 
   /// The exit status.
   int run() {
-    for (const auto& note : scenario_.environment->course.notes)
-      std::fprintf(words_, "note: %s: %s\n", scenario_.environment->course.name.c_str(), note.c_str());
+    print_notes(words_, scenario_);
     std::fprintf(words_, "%s on %s, configuration %s, evaluation %s, %d obstacles, seed %llu\n",
                  arguments_.method.c_str(), scenario_.environment->course.name.c_str(),
                  arguments_.scenario.config.c_str(), arguments_.scenario.evaluation.c_str(),

@@ -33,16 +33,19 @@ Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
                     {"obstacles", e.obstacles},
                     {"laps", e.laps}});
   }
-  return {{"version", version()},
-          {"instruction_set", simd::name(simd::active_target())},
-          {"course", scenario.environment->course.name},
-          {"course_hash", course_hash(*scenario.environment)},
-          {"config", arguments.scenario.config},
-          {"evaluation", arguments.scenario.evaluation},
-          {"latency_ms", arguments.scenario.latency_ms},
-          {"seed0", arguments.seed0},
-          {"experiments", list},
-          {"options", options}};
+  Json settings{{"version", version()},
+                {"instruction_set", simd::name(simd::active_target())},
+                {"course", scenario.environment->course.name},
+                {"course_hash", course_hash(*scenario.environment)},
+                {"config", arguments.scenario.config},
+                {"evaluation", arguments.scenario.evaluation},
+                {"latency_ms", arguments.scenario.latency_ms},
+                {"seed0", arguments.seed0},
+                {"experiments", list},
+                {"options", options}};
+  if (const std::string folder = folder_without_name(scenario); !folder.empty())
+    settings["course_folder"] = folder;
+  return settings;
 }
 
 /// Rejects settings that are JSON but not an object. The store itself rejects a text that is not JSON.
@@ -220,6 +223,7 @@ bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Expe
                     Evaluated& evaluated) {
   if (experiments.empty()) throw IoError("--methods", 0, "names no method");
   const Scenario scenario = load_scenario(arguments.scenario, experiments.front().method);
+  print_notes(stderr, scenario);
   evaluated.course_folder = scenario.folder;
   evaluated.evaluation = make_evaluation(arguments, scenario, experiments);
   const InterruptFlag interrupt;

@@ -44,6 +44,14 @@ std::string option_text(const Json& value) {
   return text + "]";
 }
 
+/// The course's folder where it was kept and is still there, else its name.
+std::string stored_course(const Json& settings) {
+  if (settings.contains("course_folder"))
+    if (const auto folder = settings.at("course_folder").get<std::string>(); fs::is_directory(folder))
+      return folder;
+  return settings.at("course").get<std::string>();
+}
+
 }  // namespace
 
 StoredEvaluation load_evaluation(const fs::path& folder) {
@@ -93,7 +101,7 @@ ScenarioArguments evaluation_arguments(const StoredEvaluation& stored, const std
   ScenarioArguments arguments;
   try {
     const auto settings = Json::parse(stored.settings);
-    arguments.course = course.empty() ? settings.at("course").get<std::string>() : course;
+    arguments.course = course.empty() ? stored_course(settings) : course;
     arguments.config = settings.at("config").get<std::string>();
     arguments.evaluation = settings.at("evaluation").get<std::string>();
     arguments.latency_ms = settings.at("latency_ms").get<double>();

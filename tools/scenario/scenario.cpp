@@ -7,6 +7,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/option_access.hpp"
+#include "slalom/vehicle/course/course_check.hpp"
 #include "tools/command_line/command.hpp"
 #include "tools/json/json.hpp"
 
@@ -49,6 +50,28 @@ maps::Pose parse_pose(const std::string& text) {
     at = stopped + 1;
   }
   return {values[0], values[1], values[2]};
+}
+
+/// What the course's files lack, and where its line and profile ask for more than the car can.
+std::vector<std::string> notes_on(const vehicle::Course& course,
+                                  const vehicle::Configuration& configuration) {
+  std::vector<std::string> notes = course.notes;
+  const vehicle::PlannerOptions& planner = configuration.planner;
+  const vehicle::PathTrackingOptions& car = configuration.vehicle;
+  const bool lowered = planner.profile_friction > 0;
+  const double friction = lowered ? planner.profile_friction : sim::CarParameters{}.friction;
+  vehicle::CourseCheckOptions options;
+  options.half_width = car.body.width / 2;
+  options.margin = car.body.margin;
+  options.limits =
+      vehicle::grip_limits(friction, planner.max_speed, car.max_acceleration, car.max_deceleration);
+  const vehicle::CourseCheck check = vehicle::check_course(course, options);
+  for (std::string& sentence : sentences(check, options)) notes.push_back(std::move(sentence));
+  if (!check.grip.stretches.empty())
+    notes.push_back(lowered ? "planner.profile_friction lowers the profile to what the car can"
+                            : "--set planner.profile_friction=" + to_text(friction) +
+                                  " lowers the profile to what the car can");
+  return notes;
 }
 
 /// Every --set: of the configuration, or of the world.
@@ -148,7 +171,19 @@ Scenario load_scenario(const ScenarioArguments& arguments, const std::string& me
   scenario.lap.threads = arguments.threads;
   apply_settings(arguments.set, method, scenario.configuration, scenario.lap);
   if (!arguments.start.empty()) scenario.lap.start = parse_pose(arguments.start);
+  scenario.notes = notes_on(scenario.environment->course, scenario.configuration);
   return scenario;
+}
+
+std::string folder_without_name(const Scenario& scenario) {
+  for (const fs::path& root : vehicle::course_roots(program_folder()))
+    if (std::error_code failed; fs::equivalent(scenario.folder.parent_path(), root, failed)) return {};
+  return fs::weakly_canonical(scenario.folder).string();
+}
+
+void print_notes(std::FILE* out, const Scenario& scenario) {
+  for (const std::string& note : scenario.notes)
+    std::fprintf(out, "note: %s: %s\n", scenario.environment->course.name.c_str(), note.c_str());
 }
 
 Json options_json(const vehicle::Configuration& configuration, const std::string& method) {
@@ -179,6 +214,8 @@ Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario,
   for (const OptionEntry& entry : list_options(scenario.lap))
     settings["options"]["world"][entry.declaration.name] = value_json(entry.value);
   if (arguments.hardware) settings["hardware"] = true;
+  if (const std::string folder = folder_without_name(scenario); !folder.empty())
+    settings["course_folder"] = folder;
   return settings;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -44,7 +45,15 @@ struct Scenario {
   std::shared_ptr<const evaluation::Environment> environment;
   vehicle::Configuration configuration;
   evaluation::LapSettings lap;
+  std::vector<std::string> notes;  ///< about the course, one sentence each: what its files and its line lack
 };
+
+/// The absolute folder of a course that is in none of the folders where courses are searched by name; else
+/// empty. Results name it, so that a replay finds the course again.
+std::string folder_without_name(const Scenario& scenario);
+
+/// Prints the notes, one a line.
+void print_notes(std::FILE* out, const Scenario& scenario);
 
 /// One --set, of the configuration or of the world. Throws IoError, with --set as the file.
 void apply_setting(const std::string& key, const std::string& value, const std::string& method,

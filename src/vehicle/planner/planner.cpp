@@ -7,6 +7,7 @@
 
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/reference_field.hpp"
+#include "slalom/vehicle/course/course_check.hpp"
 #include "vehicle/planner/back_up.hpp"
 #include "vehicle/planner/command_history.hpp"
 
@@ -43,9 +44,14 @@ maps::ReferenceFieldOptions field_options(const PlannerOptions& options) {
   return options.published.maps ? maps::published_reference_field() : maps::ReferenceFieldOptions{};
 }
 
-std::vector<maps::ReferencePoint> capped(std::span<const maps::ReferencePoint> path, double max_speed) {
+/// The path with the speeds that the options allow.
+std::vector<maps::ReferencePoint> limited(std::span<const maps::ReferencePoint> path,
+                                          const PlannerOptions& options, const VehicleTraits& traits) {
   std::vector<maps::ReferencePoint> made(path.begin(), path.end());
-  for (auto& point : made) point.speed = std::min(point.speed, max_speed);
+  for (auto& point : made) point.speed = std::min(point.speed, options.max_speed);
+  if (options.profile_friction > 0)
+    make_feasible(made, grip_limits(options.profile_friction, options.max_speed, traits.max_acceleration,
+                                    traits.max_deceleration));
   return made;
 }
 
@@ -83,7 +89,7 @@ struct Planner::Implementation {
         solver(std::move(s)),
         cost_map(cost_map_options(o, traits)),
         clearance_map(clearance_options(traits)),
-        field(capped(path, o.max_speed), field_options(o)),
+        field(limited(path, o, traits), field_options(o)),
         history(o.control_period, delay_of(o, traits), o.observer_time_constant, traits.wheelbase),
         states(static_cast<std::size_t>(solver->horizon()) + 1),
         candidate_states(states.size()),

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
+
+#include "slalom/maps/pose.hpp"
 
 namespace slalom::vehicle {
 
@@ -11,6 +15,10 @@ struct SpeedLimits {
   double acceleration = 3.0;          ///< m/s^2
   double braking = 3.0;               ///< m/s^2
 };
+
+/// The limits of a car on ground of this friction coefficient: no acceleration above `friction` g, and none
+/// above what motor (`acceleration`) and brakes (`braking`, both m/s^2) allow.
+SpeedLimits grip_limits(double friction, double top_speed, double acceleration, double braking);
 
 /// The highest speeds (m/s) along a closed path of the given curvatures (1/m), points `step` m apart, such
 /// that
@@ -23,5 +31,26 @@ struct SpeedLimits {
 /// limits or a step that are not finite and above 0.
 std::vector<double> speed_profile(const std::vector<double>& curvature, double step,
                                   const SpeedLimits& limits);
+
+/// The same for a path that has a profile already: the highest speeds (m/s), nowhere above `speed`, that obey
+/// the rules above. `speed` and `curvature` have one entry per point, and `step[i]` is the way (m) from point
+/// i to the next, from the last to the first; that of an open path is not used. Throws std::invalid_argument
+/// for limits that are not finite and above 0, and for sizes that differ.
+std::vector<double> feasible_speeds(std::span<const double> speed, std::span<const double> curvature,
+                                    std::span<const double> step, bool closed, const SpeedLimits& limits);
+
+/// A path as a polyline: what its profile depends on.
+struct PathGeometry {
+  bool closed = true;             ///< goes on from the last point to the first
+  std::vector<double> step;       ///< m, from each point to the next, from the last to the first
+  std::vector<double> curvature;  ///< 1/m at each point, > 0 to the left
+};
+
+/// Steps and curvatures of a path. The curvature is the change of direction between the chords of at least
+/// `arm` (m) before and after the point, over their mean length, so that rounded coordinates and uneven steps
+/// do not show. Without `closed` a path is closed if its ends are at most three of its longest steps apart.
+/// Successive points must differ.
+PathGeometry path_geometry(std::span<const maps::Point> points, std::optional<bool> closed = {},
+                           double arm = 0.4);
 
 }  // namespace slalom::vehicle

@@ -11,14 +11,16 @@ struct PlannerOptions {
   double latency = 0;                   ///< s, from the scan to the moment when a command reaches the car
   double observer_time_constant = 0.1;  ///< s, of the lag in the steering observer
   double max_speed = 100;               ///< m/s, upper bound of the path's speeds
-  double steer_limit = 0.4189;          ///< rad, bound of the steering commands, to either side
-  double laser_x = 0.275;               ///< m, of the laser ahead of the rear axle
-  double laser_y = 0;                   ///< m, to the left
-  double laser_yaw = 0;                 ///< rad
-  double speed_lookahead = 0;           ///< s, the commanded speed is that of the path this far ahead, or of
-                                        ///< the plan where the acceleration is an input
-  double deadline = 0;                  ///< s, time limit of a solve; 0: none
-  bool stop_when_blocked = true;        ///< brake when every plan collides
+  double profile_friction = 0;    ///< the path's speeds are lowered until they ask for no more than this
+                                  ///< coefficient of friction allows; 0: they stay
+  double steer_limit = 0.4189;    ///< rad, bound of the steering commands, to either side
+  double laser_x = 0.275;         ///< m, of the laser ahead of the rear axle
+  double laser_y = 0;             ///< m, to the left
+  double laser_yaw = 0;           ///< rad
+  double speed_lookahead = 0;     ///< s, the commanded speed is that of the path this far ahead, or of
+                                  ///< the plan where the acceleration is an input
+  double deadline = 0;            ///< s, time limit of a solve; 0: none
+  bool stop_when_blocked = true;  ///< brake when every plan collides
   bool verify_plan = true;  ///< if the solution collides, send the cheapest of nominal sequence, guides and
                             ///< best sample that does not
   bool back_up = true;  ///< with `stop_when_blocked` and `verify_plan`: where the car stands and every plan
@@ -50,6 +52,11 @@ void visit_options(Options& o, Visit&& visit) {
                                  .help = "upper bound of the path's speeds",
                                  .min = 0.01,
                                  .max = 100});
+  visit(o.profile_friction, Declaration{.name = "profile_friction",
+                                        .help = "the path's speeds are lowered until they ask for no more "
+                                                "than this coefficient of friction allows; 0: they stay",
+                                        .min = 0,
+                                        .max = 3});
   visit(o.steer_limit, Declaration{.name = "steer_limit",
                                    .unit = "rad",
                                    .help = "bound of the steering commands, to either side",

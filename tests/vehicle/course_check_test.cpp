@@ -1,0 +1,115 @@
+// Checks of a course's line and profile: known answers on circles and straights between walls.
+#include "slalom/vehicle/course/course_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace slalom::vehicle {
+namespace {
+
+constexpr double pi = 3.141592653589793;
+
+/// A circle of `radius` (m) at `speed` (m/s) in a free square map of 20 m.
+Course circle(double radius, double speed) {
+  Course course;
+  course.map = {200, 200, 0.1, {-10, -10, 0}, {}};
+  course.map.cells.assign(40000, maps::Occupancy::free);
+  for (int i = 0; i < 200; ++i) {
+    const double angle = 2 * pi * i / 200;
+    course.waypoints.push_back({radius * std::cos(angle), radius * std::sin(angle), 0, speed, 0});
+  }
+  complete_course(course);
+  return course;
+}
+
+TEST(PathGeometry, GivesTheCurvatureOfACircleWithItsSign) {
+  std::vector<maps::Point> points;
+  for (int i = 0; i < 100; ++i)
+    points.push_back({4 * std::cos(-2 * pi * i / 100), 4 * std::sin(-2 * pi * i / 100)});
+  const PathGeometry path = path_geometry(points);
+  EXPECT_TRUE(path.closed);
+  for (const double k : path.curvature) EXPECT_NEAR(k, -0.25, 1e-3);
+}
+
+TEST(PathGeometry, DoesNotShowRoundedCoordinates) {
+  // To 1 mm, at steps of 0.1 m: their second differences would give an error of 0.1 / m.
+  std::vector<maps::Point> points;
+  for (int i = 0; i < 500; ++i) {
+    const double angle = 2 * pi * i / 500;
+    points.push_back({std::round(8000 * std::cos(angle)) / 1000, std::round(8000 * std::sin(angle)) / 1000});
+  }
+  for (const double k : path_geometry(points).curvature) EXPECT_NEAR(k, 0.125, 0.02);
+}
+
+TEST(PathGeometry, IsOpenWhereTheEndsAreApart) {
+  std::vector<maps::Point> points;
+  for (int i = 0; i < 50; ++i) points.push_back({0.2 * i, 0});
+  const PathGeometry path = path_geometry(points);
+  EXPECT_FALSE(path.closed);
+  for (const double k : path.curvature) EXPECT_EQ(k, 0);
+}
+
+TEST(CourseCheck, FindsNothingOnASlowCircleInTheOpen) {
+  const CourseCheckOptions options;
+  const CourseCheck check = check_course(circle(4, 4), options);  // v^2 / r = 4 m/s^2
+  EXPECT_TRUE(check.grip.stretches.empty());
+  EXPECT_TRUE(check.walls.stretches.empty());
+  EXPECT_TRUE(sentences(check, options).empty());
+  EXPECT_NEAR(check.most_acceleration, 4, 0.05);
+}
+
+TEST(CourseCheck, FindsAProfileThatAsksForTooMuchGrip) {
+  Course course = circle(4, 4);
+  for (int i = 50; i < 100; ++i) course.waypoints[static_cast<std::size_t>(i)].speed = 6;  // 9 m/s^2
+  const CourseCheckOptions options{.limits = {20, 5, 100, 100}};
+  const CourseCheck check = check_course(course, options);
+  ASSERT_EQ(check.grip.stretches.size(), 1u);
+  EXPECT_NEAR(check.grip.share, 0.25, 0.01);
+  EXPECT_NEAR(check.grip.stretches[0].begin, course.length * 0.245, 0.2);
+  EXPECT_NEAR(check.grip.stretches[0].end, course.length * 0.5, 0.2);
+  // Between the two speeds it also asks for (36 - 16) / (2 0.126 m) along the line.
+  EXPECT_NEAR(check.grip.stretches[0].value, std::hypot(9, 20 / (2 * course.length / 200)), 1);
+  const auto said = sentences(check, options);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("25.5 % of its length"), std::string::npos) << said[0];
+}
+
+TEST(CourseCheck, FindsALineThatIsTooNearAWall) {
+  Course course = circle(4, 1);
+  // A wall whose nearer side is 0.1 m outside the circle at its rightmost point.
+  for (int y = 98; y <= 101; ++y) course.map.at(141, y) = maps::Occupancy::occupied;
+  const CourseCheckOptions options{.half_width = 0.15, .margin = 0.05, .limits = {}};
+  const CourseCheck check = check_course(course, options);
+  ASSERT_FALSE(check.walls.stretches.empty());
+  EXPECT_NEAR(check.least_distance, 0.1, 0.01);
+  EXPECT_NEAR(check.walls.stretches[0].worst.x, 4, 0.05);
+  EXPECT_LT(check.walls.share, 0.05);
+  EXPECT_TRUE(
+      check_course(course, {.half_width = 0.05, .margin = 0.04, .limits = {}}).walls.stretches.empty());
+}
+
+TEST(CourseCheck, AProfileMadeFeasiblePassesTheCheckAndIsNowhereFaster) {
+  Course course = circle(4, 4);
+  for (int i = 50; i < 100; ++i) course.waypoints[static_cast<std::size_t>(i)].speed = 6;
+  const Course before = course;
+  const CourseCheckOptions options{.limits = {20, 5, 3, 4}};
+  make_feasible(course, options.limits);
+  EXPECT_TRUE(check_course(course, options).grip.stretches.empty());
+  for (std::size_t i = 0; i < course.waypoints.size(); ++i)
+    EXPECT_LE(course.waypoints[i].speed, before.waypoints[i].speed);
+  EXPECT_NEAR(course.waypoints[75].speed, std::sqrt(5 * 4.0), 0.02);
+  EXPECT_EQ(course.waypoints[20].speed, 4);
+}
+
+TEST(CourseCheck, AnOpenPathNeedsNoSpeedForItsMissingStretch) {
+  std::vector<maps::ReferencePoint> path;
+  for (int i = 0; i < 100; ++i) path.push_back({0.2 * i, 0, 0, i < 50 ? 2.0 : 8.0});
+  make_feasible(path, {10, 9, 3, 3});
+  EXPECT_EQ(path[0].speed, 2);
+  EXPECT_NEAR(path[60].speed * path[60].speed, 4 + 2 * 3 * 0.2 * 11, 1e-9);
+  EXPECT_GT(path[99].speed, 7.5);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle
