@@ -61,7 +61,7 @@ struct Option {
 };
 using Changes = std::vector<std::pair<std::string, std::string>>;  ///< names and values as text
 
-/// The result of an update of the planner.
+/// The result of an update of the planner. Steering and speed are always finite and within their limits.
 struct Command {
   double steer = 0;              ///< rad
   double speed = 0;              ///< m/s
@@ -69,6 +69,7 @@ struct Command {
   std::string status;            ///< name of the planner's status
   double effective_samples = 0;  ///< effective sample size of the solver
   double update_time = 0;        ///< s, wall-clock
+  int corrections = 0;           ///< values that the planner's final check changed; 0 in normal operation
   /// Terms of the mean sequence cost and the sum of |steering| (rad) over the control sequence.
   double state_cost = 0, collision_cost = 0, input_error = 0;
 };

@@ -76,7 +76,7 @@ Pose Planner::laser() const {
 
 Command Planner::update(const Scan& scan, const Pose& at, double speed) {
   hidden_->predicted.clear();
-  if (!hidden_->planner) return {0, 0, false, "no path", 0, 0, 0, 0, 0};
+  if (!hidden_->planner) return {.status = "no path"};
   const auto& out = hidden_->planner->update({view(scan), {pose(at), speed}});
   for (const auto& state : out.predicted) hidden_->predicted.push_back(plain(state.pose));
   Command command;
@@ -86,10 +86,7 @@ Command Planner::update(const Scan& scan, const Pose& at, double speed) {
   command.collision_cost = out.collision_cost;
   for (const float input : out.inputs) command.input_error += std::abs(static_cast<double>(input));
   if (out.solve) command.effective_samples = out.solve->effective_sample_size;
-  if (!std::isfinite(out.command.steer) || !std::isfinite(out.command.speed)) {
-    command.status = "the command is not finite";
-    return command;
-  }
+  command.corrections = out.corrections;
   command.steer = out.command.steer;
   command.speed = out.command.speed;
   command.ok = out.status == PlannerStatus::ok || out.status == PlannerStatus::fallback_plan ||

@@ -68,6 +68,7 @@ void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, 
   lap.sums.path_distance += path_distance;
   LapResult& result = lap.result;
   result.max_path_distance = std::max(result.max_path_distance, path_distance);
+  result.corrections += output.corrections;
   ++result.planner_status[static_cast<std::size_t>(output.status)];
   result.tick_ms.push_back(static_cast<float>(1e3 * output.tick_time));
   if (output.solve) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "slalom/core/option_access.hpp"
+#include "slalom/solvers/option_groups.hpp"
 
 namespace slalom {
 
@@ -20,6 +21,13 @@ float not_below(double bound) {
 float not_above(double bound) {
   const float f = static_cast<float>(bound);
   return f > bound ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+
+/// Throws unless `bound` is finite and not so large that sums of its squares overflow, or `none`.
+void require_bound(const char* option, double bound, double none) {
+  if (bound == none || std::abs(bound) <= detail::finite) return;
+  throw std::invalid_argument(std::string(option) + ": " + to_text(bound) + " must be in [-1e12, 1e12], or " +
+                              (none < 0 ? "-inf" : "inf") + " where there is no bound");
 }
 
 /// Marks the first sample of an evaluated tile, in addition to its collision flag.
@@ -69,7 +77,11 @@ SolverBase::SolverBase(int horizon, int inputs, const PerInput& input_min, const
     : horizon_(horizon), inputs_(inputs), pool_(std::move(pool)), seed_(seed), low_(size()), high_(size()) {
   for (int r = 0; r < rows(); ++r) {
     const int input = r % inputs;
-    const float low = not_below(input_min[input]), high = not_above(input_max[input]);
+    require_bound("input_min", input_min[input], -std::numeric_limits<double>::infinity());
+    require_bound("input_max", input_max[input], std::numeric_limits<double>::infinity());
+    float low = not_below(input_min[input]), high = not_above(input_max[input]);
+    if (low > high && input_min[input] <= input_max[input])  // equal bounds between two float32 values
+      low = high = static_cast<float>(input_min[input]);
     if (!(low <= high)) {
       throw std::invalid_argument("input_min: " + to_text(input_min[input]) +
                                   " is above input_max: " + to_text(input_max[input]));

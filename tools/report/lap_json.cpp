@@ -51,6 +51,7 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
           {"mean_variance", finite_or_null(lap.mean_variance)},
           {"mean_effective_samples", finite_or_null(lap.mean_effective_samples)},
           {"planner_status", status},
+          {"corrections", lap.corrections},
           {"touches", collisions},
           {"obstacles", obstacles}};
 }

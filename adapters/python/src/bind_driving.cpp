@@ -223,11 +223,13 @@ void bind_planner(py::module_& module) {
             all["speed"] = output->command.speed;
             all["predicted"] = predicted;
             all["tick_time"] = output->tick_time;
+            all["corrections"] = output->corrections;
             return all;
           },
           py::arg("ranges"), py::kw_only(), py::arg("angle_min"), py::arg("angle_increment"),
           py::arg("range_min") = 0.0, py::arg("range_max"), py::arg("pose"), py::arg("speed"),
-          "`pose`: (x, y, yaw) of the rear axle. Returns status, steer (rad), speed (m/s), predicted [n, 4].")
+          "`pose`: (x, y, yaw) of the rear axle. Returns status, steer (rad), speed (m/s), predicted [n, 4], "
+          "tick_time (s) and corrections, the number of values that the final check changed.")
       .def("reset", &vehicle::Planner::reset, py::arg("seed") = 0,
            "Discards all state and starts the random numbers from `seed`.");
   module.def(

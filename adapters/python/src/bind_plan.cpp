@@ -103,6 +103,11 @@ void bind_plan(py::module_& module) {
           },
           "the parts of the plan's cost by name; they sum to it")
       .def_property_readonly(
+          "corrections", [](const Plan& p) { return p.controller().corrections(); },
+          "values that the final check changed: inputs that were not within the bounds, and a cost that was "
+          "not "
+          "finite once it has been read; 0 in normal operation")
+      .def_property_readonly(
           "nominal", [](const Plan& p) { return sequence(p, p.result().nominal); },
           "float32 [horizon, inputs]; svg_mppi: the best guide")
       .def_property_readonly(

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "slalom/core/final_check.hpp"
 
 namespace slalom::python {
 
@@ -21,12 +24,17 @@ class Controller::Busy {
 
 namespace {
 
-/// The options with their bounds narrowed to those of the problem.
+/// The options with their bounds narrowed to those of the problem. Throws std::invalid_argument if the
+/// problem has a bound that is not a number.
 SolverOptions within_bounds(const AnyProblem& problem, SolverOptions options) {
   const auto narrow = [&](PerInput& option, auto&& pick) {
     if (!option.fits(problem.inputs())) return;  // the solver reports the error
     std::vector<double> values;
-    for (int i = 0; i < problem.inputs(); ++i) values.push_back(pick(option[i], i));
+    for (int i = 0; i < problem.inputs(); ++i) {
+      if (std::isnan(problem.input_min(i)) || std::isnan(problem.input_max(i)))
+        throw std::invalid_argument("Problem.input_min, Problem.input_max: nan must be a number");
+      values.push_back(pick(option[i], i));
+    }
     const bool equal = std::all_of(values.begin(), values.end(), [&](double v) { return v == values[0]; });
     option = equal ? PerInput(values[0]) : PerInput(values);
   };
@@ -37,15 +45,35 @@ SolverOptions within_bounds(const AnyProblem& problem, SolverOptions options) {
   return options;
 }
 
+/// The bounds of every input, once the solver has checked them.
+InputBounds bounds_of(const SolverOptions& options, int inputs) {
+  InputBounds bounds(inputs);
+  for (int i = 0; i < inputs; ++i) {
+    bounds.low[static_cast<std::size_t>(i)] = (*options.find<PerInput>("input_min"))[i];
+    bounds.high[static_cast<std::size_t>(i)] = (*options.find<PerInput>("input_max"))[i];
+  }
+  return bounds;
+}
+
 }  // namespace
 
 Controller::Controller(const AnyProblem& problem, const SolverOptions& options)
     : problem_(problem.clone()),
       options_(within_bounds(problem, options)),
       solver_(make_solver(options_, problem.inputs())),
+      bounds_(bounds_of(options_, problem.inputs())),
       state_(static_cast<std::size_t>(problem.states())),
       inputs_(static_cast<std::size_t>(solver_->horizon() * solver_->inputs())),
-      previous_(static_cast<std::size_t>(problem.inputs())) {}
+      previous_(static_cast<std::size_t>(problem.inputs())) {
+  rest();
+}
+
+/// The state before the first solve: every input at the value in its bounds that is nearest to 0.
+void Controller::rest() {
+  for (std::size_t i = 0; i < previous_.size(); ++i) previous_[i] = bounds_.nearest(i, 0);
+  for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i] = previous_[i % previous_.size()];
+  previous_known_ = true;
+}
 
 /// Sets the previous input to that of the last plan, `elapsed` (s) after it was made, unless the caller has
 /// set it.
@@ -61,8 +89,11 @@ void Controller::set_previous_input(std::vector<double> input) {
   if (input.size() != previous_.size())
     throw std::invalid_argument("input: has " + std::to_string(input.size()) + " values, must have " +
                                 std::to_string(previous_.size()));
+  for (const double value : input)
+    if (!std::isfinite(value))
+      throw std::invalid_argument("input: " + std::to_string(value) + " must be finite");
   const Busy busy(busy_);
-  previous_ = std::move(input);
+  for (std::size_t i = 0; i < input.size(); ++i) previous_[i] = bounds_.nearest(i, input[i]);
   previous_known_ = true;
 }
 
@@ -72,6 +103,7 @@ void Controller::solve(py::handle owner, std::vector<double> state, const SolveR
                                 std::to_string(problem_->states()));
   const Busy busy(busy_);
   ++solves_;
+  corrections_ = 0;
   if (!std::all_of(state.begin(), state.end(), [](double v) { return std::isfinite(v); })) {
     status_ = Status::non_finite_state;
     return;
@@ -88,6 +120,10 @@ void Controller::solve(py::handle owner, std::vector<double> state, const SolveR
   }
   std::copy(result_.inputs.begin(), result_.inputs.end(), inputs_.begin());
   problem_->hold_rates(previous_, inputs_);
+  std::vector<double> before = previous_;
+  const auto any = [](std::size_t) { return std::numeric_limits<double>::infinity(); };  // rates hold by now
+  for (std::size_t at = 0; at < inputs_.size(); at += before.size())
+    corrections_ += check_inputs(std::span(inputs_).subspan(at, before.size()), before, bounds_, any);
   status_ = result_.status;
   problem_->finish();
 }
@@ -96,8 +132,7 @@ void Controller::reset(std::uint64_t seed) {
   const Busy busy(busy_);
   ++solves_;
   solver_->reset(seed);
-  std::fill(previous_.begin(), previous_.end(), 0.0);
-  previous_known_ = true;
+  rest();
 }
 
 void Controller::prepare() {
@@ -107,7 +142,13 @@ void Controller::prepare() {
 }
 
 Prediction& Controller::prediction() {
-  if (!prediction_) prediction_ = problem_->predict(state_, inputs_);
+  if (!prediction_) {
+    prediction_ = problem_->predict(state_, inputs_);
+    int changed = check_cost(prediction_->cost);
+    for (auto& [name, value] : prediction_->terms) changed += check_cost(value);
+    corrections_ += changed;
+    if (changed > 0) status_ = Status::degenerate;
+  }
   return *prediction_;
 }
 

@@ -5,6 +5,7 @@
 
 #include "keywords.hpp"
 #include "problem.hpp"
+#include "slalom/core/final_check.hpp"
 #include "slalom/solvers/registry.hpp"
 
 namespace slalom::python {
@@ -25,7 +26,10 @@ class Controller {
   const Solver& solver() const noexcept { return *solver_; }
   const SolverOptions& options() const noexcept { return options_; }
   const SolveResult& result() const noexcept { return result_; }
+  /// Of the last solve. A cost that is not finite shows when the prediction is first asked for.
   Status status() const noexcept { return status_; }
+  /// The number of values that the final check changed in the last solve.
+  int corrections() const noexcept { return corrections_; }
   /// The number of solves, which tells whether a plan is the last one.
   std::uint64_t solves() const noexcept { return solves_; }
   /// The plan's inputs in double, [step][input].
@@ -37,12 +41,15 @@ class Controller {
   class Busy;
 
   void update_previous_input(double elapsed);
+  void rest();
 
   std::unique_ptr<AnyProblem> problem_;
   SolverOptions options_;
   std::unique_ptr<Solver> solver_;
+  InputBounds bounds_;
   SolveResult result_;
   Status status_ = Status::ok;
+  int corrections_ = 0;
   std::uint64_t solves_ = 0;
   std::vector<double> state_, inputs_, previous_;
   bool previous_known_ = true;  ///< whether `previous_` has been set for the next solve

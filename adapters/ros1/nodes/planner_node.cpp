@@ -43,7 +43,7 @@ bool is_closed(const std::vector<slalom_bridge::Waypoint>& path) {
 
 /// Statistics since the last report.
 struct Second {
-  int plans = 0, stops = 0, late = 0;
+  int plans = 0, stops = 0, late = 0, corrections = 0;
   double slowest = 0, least_samples = 1e300;
   std::string why;
 };
@@ -209,6 +209,7 @@ class PlannerNode {
     ++second_.plans;
     second_.late += command.update_time > planner_.control_period();
     second_.slowest = std::max(second_.slowest, command.update_time);
+    second_.corrections += command.corrections;
     second_.least_samples = std::min(second_.least_samples, command.effective_samples);
     if (!command.ok) {
       second_.why = command.status;
@@ -272,6 +273,7 @@ class PlannerNode {
     diagnostics_.add("plans", second_.plans);
     diagnostics_.add("stops", second_.stops);
     diagnostics_.add("deadlines missed", second_.late);
+    diagnostics_.add("values corrected", second_.corrections);
     diagnostics_.add("slowest update, ms", 1e3 * second_.slowest);
     diagnostics_.add("deadline, ms", 1e3 * planner_.control_period());
     if (second_.plans > 0) diagnostics_.add("least effective sample size", second_.least_samples);

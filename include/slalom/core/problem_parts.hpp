@@ -3,9 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <utility>
 
+#include "slalom/core/final_check.hpp"
 #include "slalom/core/problem.hpp"
 
 /// What a problem may say of itself besides its dynamics and costs: names of its cost terms, bounds of its
@@ -132,6 +135,33 @@ template <class P>
 double largest_input(const P& problem, int input) noexcept {
   if constexpr (has_input_max<P>) return entry(problem.input_max, input);
   return std::numeric_limits<double>::infinity();
+}
+
+/// The bounds that a problem states. Throws std::invalid_argument if one of them is not a number, or if a
+/// rate or the duration of a step is not a number or is negative. That `low` is at most `high` is left to the
+/// solver, which knows all bounds.
+template <class P>
+InputBounds stated_bounds(const P& problem) {
+  const auto require = [](bool holds, const char* what, double value, const char* rule) {
+    if (!holds)
+      throw std::invalid_argument("problem" + std::string(what) + ": " + std::to_string(value) + " must be " +
+                                  rule);
+  };
+  InputBounds bounds(P::inputs);
+  for (int i = 0; i < P::inputs; ++i) {
+    const double low = least_input(problem, i), high = largest_input(problem, i);
+    require(!std::isnan(low), ".input_min", low, "a number");
+    require(!std::isnan(high), ".input_max", high, "a number");
+    if constexpr (limits_rates<P>) {
+      const double rate = entry(problem.input_rate_max, i);
+      require(rate >= 0, ".input_rate_max", rate, "at least 0");
+    }
+    bounds.low[static_cast<std::size_t>(i)] = low;
+    bounds.high[static_cast<std::size_t>(i)] = high;
+  }
+  const double step = time_step_of(problem);
+  require(step >= 0 && std::isfinite(step), ": duration of a step", step, "finite and at least 0");
+  return bounds;
 }
 
 /// How far an input may move in a step.

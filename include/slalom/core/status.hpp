@@ -7,7 +7,8 @@ enum class Status {
   ok,                ///< solved as asked
   deadline,          ///< stopped at the deadline; the result is the best found until then
   all_collided,      ///< every sample collided; the result is the method's answer all the same
-  degenerate,        ///< no usable weights (infinite or NaN costs); the result is the fallback of the method
+  degenerate,        ///< infinite or NaN costs: no usable weights, and the result is the fallback of the
+                     ///< method; or the plan has no finite cost
   non_finite_state,  ///< the state given is not finite; nothing was solved, the result repeats the last plan
 };
 

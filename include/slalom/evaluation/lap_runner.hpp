@@ -82,6 +82,7 @@ struct LapResult {
   double mean_variance = 0;             ///< of the steering in the solver's distribution, rad^2; over solves
   double mean_effective_samples = 0;    ///< mean of the solver's effective sample size over solves
   std::array<int, 7> planner_status{};  ///< control steps by vehicle::PlannerStatus
+  int corrections = 0;                  ///< values that the planner's final check changed
   std::vector<Collision> first_collisions;  ///< one for each body hit and one for walls, in order of time
   std::vector<maps::Pose> obstacles;        ///< the parked cars, centres of gravity
   int impassable = 0;                       ///< number of obstacles in impassable_obstacles

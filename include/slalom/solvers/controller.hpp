@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "slalom/core/final_check.hpp"
 #include "slalom/core/problem_check.hpp"
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/solvers/registry.hpp"
@@ -85,6 +86,10 @@ struct Plan {
   bool collided = false;                 ///< whether the plan collides
   std::span<const CostTerm> cost_terms;  ///< the parts of the cost, which sum to it
   const SolveResult& stats;              ///< samples, weights, guides, times ...
+  /// Values that the final check changed in this solve: inputs of the solver that were not within bounds or
+  /// rates, costs and states that were not finite, and values given to `set_previous_input` that could not be
+  /// taken. 0 in normal operation.
+  int corrections = 0;
 };
 
 /// A problem, or an evaluator of one's own (`StateEvaluator`), and a solver that solves it over and over:
@@ -93,7 +98,9 @@ struct Plan {
 ///     const auto plan = controller.solve(x, {.elapsed = 0.02, .deadline = 0.002});
 ///     if (plan.status == slalom::Status::ok) apply(plan.inputs[0]);
 ///
-/// Construction allocates and may throw std::invalid_argument; `solve` does neither.
+/// Construction allocates and may throw std::invalid_argument; `solve` does neither. Whatever enters, the
+/// inputs of a plan are finite, within the bounds and within the rates, and its cost and states are finite
+/// (final_check.hpp).
 template <class P>
 class Controller {
   using Controlled = detail::Controlled<P>;
@@ -105,23 +112,27 @@ class Controller {
   using Inputs = Input<double, input_count>;         ///< inputs of a step
 
   /// With the options of any method, within the bounds that the problem states for its inputs. Throws
-  /// std::invalid_argument that names the option, its value and the rule. The threads are the controller's
-  /// own unless a pool is given to share.
+  /// std::invalid_argument that names the option, its value and the rule, or what the problem says of its
+  /// inputs. The threads are the controller's own unless a pool is given to share.
   Controller(P problem, const SolverOptions& options, std::shared_ptr<ThreadPool> pool = nullptr)
       : evaluator_(std::move(problem)),
-        solver_(make_solver(within_bounds(evaluator_, options), input_count, std::move(pool))) {
+        bounds_(bounds_of(evaluator_, &options)),
+        solver_(make_solver(within_bounds(options), input_count, std::move(pool))) {
     allocate();
   }
 
-  /// With a solver of one's own, which keeps its own bounds. Throws std::invalid_argument if the solver is
-  /// null or made for another number of inputs.
+  /// With a solver of one's own, which keeps its own bounds; those of the problem hold besides. Throws
+  /// std::invalid_argument if the solver is null or made for another number of inputs.
   Controller(P problem, std::unique_ptr<Solver> solver)
-      : evaluator_(std::move(problem)), solver_(checked(std::move(solver))) {
+      : evaluator_(std::move(problem)),
+        bounds_(bounds_of(evaluator_, nullptr)),
+        solver_(checked(std::move(solver))) {
     allocate();
   }
 
   /// The plan from state `x`. If the state is not finite nothing is solved and the last plan is repeated.
   Plan<P> solve(const State& x, const SolveRequest& request = {}) noexcept {
+    corrections_ = 0;
     if (!finite(x)) return plan(Status::non_finite_state);
     evaluator_.set_state(x);
     if constexpr (Controlled::uses_previous_input) {
@@ -132,14 +143,19 @@ class Controller {
     const float* value = result_->inputs.data();
     for (Inputs& input : inputs_)
       for (int i = 0; i < input_count; ++i) input[i] = static_cast<double>(*value++);
+    if constexpr (!StateEvaluator<P> && Controlled::uses_previous_input)
+      hold_input_rates(evaluator_.problem(), previous_, inputs_.data(), solver_->horizon());
+    check_plan_inputs();
     predict_plan(x);
-    return plan(result_->status);
+    return plan(check_prediction(x) ? result_->status : Status::degenerate);
   }
 
   /// What was applied before the next solve, for a problem with `input_rate_max`. Without this call it is
-  /// taken to be what the last plan had for that time (0 before the first).
+  /// taken to be what the last plan had for that time (before the first, the value within the bounds that is
+  /// nearest to 0). A value outside the bounds is moved into them; of one that is not finite nothing is
+  /// taken.
   void set_previous_input(const Inputs& u) noexcept {
-    previous_ = u;
+    given_ = u;
     told_ = true;
   }
 
@@ -157,8 +173,7 @@ class Controller {
   /// Returns to the state after construction, with random numbers from `seed`.
   void reset(std::uint64_t seed) noexcept {
     solver_->reset(seed);
-    previous_ = {};
-    told_ = true;
+    rest();
   }
   /// Draws the noise of the next solve ahead, outside its deadline.
   void prepare() noexcept { solver_->prepare(); }
@@ -173,30 +188,37 @@ class Controller {
     return solver;
   }
 
-  /// The options with their bounds narrowed to the problem's.
-  static SolverOptions within_bounds(const Evaluator& evaluator, SolverOptions options) {
+  /// The bounds that the problem states, narrowed by those of the options.
+  static InputBounds bounds_of(const Evaluator& evaluator, const SolverOptions* options) {
+    InputBounds bounds;
     if constexpr (!StateEvaluator<P>) {
-      const P& problem = evaluator.problem();
-      if constexpr (detail::has_input_min<P>)
-        narrow(*options.find<PerInput>("input_min"),
-               [&](double bound, int i) { return std::max(bound, detail::least_input(problem, i)); });
-      if constexpr (detail::has_input_max<P>)
-        narrow(*options.find<PerInput>("input_max"),
-               [&](double bound, int i) { return std::min(bound, detail::largest_input(problem, i)); });
+      bounds = detail::stated_bounds(evaluator.problem());
+    } else {
+      bounds = InputBounds(input_count);
     }
-    return options;
+    if (!options) return bounds;
+    const PerInput &low = *options->find<PerInput>("input_min"),
+                   &high = *options->find<PerInput>("input_max");
+    for (int i = 0; i < input_count; ++i) {  // what does not fit, the solver's own check reports
+      const auto at = static_cast<std::size_t>(i);
+      if (low.fits(input_count)) bounds.low[at] = std::max(low[i], bounds.low[at]);
+      if (high.fits(input_count)) bounds.high[at] = std::min(high[i], bounds.high[at]);
+    }
+    return bounds;
   }
-  template <class Narrowed>
-  static void narrow(PerInput& bound, Narrowed&& narrowed) {
-    if (!bound.fits(input_count)) return;  // the solver's own check reports it
-    std::vector<double> values;
-    for (int i = 0; i < input_count; ++i) values.push_back(narrowed(bound[i], i));
-    bound = values;
+
+  /// The options with their bounds narrowed to the problem's.
+  SolverOptions within_bounds(SolverOptions options) const {
+    PerInput &low = *options.find<PerInput>("input_min"), &high = *options.find<PerInput>("input_max");
+    if (low.fits(input_count)) low = bounds_.low;
+    if (high.fits(input_count)) high = bounds_.high;
+    return options;
   }
 
   void allocate() {
     const auto steps = static_cast<std::size_t>(solver_->horizon());
     inputs_.resize(steps);
+    rest();
     if constexpr (Controlled::predicts) {
       states_.resize(steps + 1);
     } else {
@@ -206,18 +228,54 @@ class Controller {
     }
   }
 
-  /// Cost of the inputs, held within the problem's rates, and the states that they lead to.
+  /// The state of the inputs before the first solve: at the values nearest to 0.
+  void rest() noexcept {
+    for (int i = 0; i < input_count; ++i) previous_[i] = bounds_.nearest(static_cast<std::size_t>(i), 0);
+    std::fill(inputs_.begin(), inputs_.end(), previous_);
+    given_ = previous_;
+    told_ = true;
+  }
+
+  /// The final check of the inputs.
+  void check_plan_inputs() noexcept {
+    Inputs before = previous_;
+    const auto reach = [this]([[maybe_unused]] std::size_t input) {
+      if constexpr (StateEvaluator<P>) {
+        return std::numeric_limits<double>::infinity();
+      } else {
+        return detail::input_step(evaluator_.problem(), static_cast<int>(input));
+      }
+    };
+    for (Inputs& u : inputs_) corrections_ += check_inputs(u.value, before.value, bounds_, reach);
+  }
+
+  /// The final check of cost and states: those that are not finite become the largest double and the state
+  /// before. Returns whether there was none.
+  bool check_prediction(const State& x) noexcept {
+    int changed = check_cost(cost_.value);
+    for (CostTerm& term : terms_) changed += check_cost(term.value);
+    const State* last = &x;
+    for (State& state : states_) {
+      if (!finite(state)) state = *last, ++changed;
+      last = &state;
+    }
+    corrections_ += changed;
+    return changed == 0;
+  }
+
+  /// Cost of the inputs and the states that they lead to.
   void predict_plan(const State& x) noexcept {
     const int steps = solver_->horizon();
     if constexpr (!StateEvaluator<P>) {
-      if constexpr (detail::limits_rates<P>)
-        hold_input_rates(evaluator_.problem(), previous_, inputs_.data(), steps);
       cost_ = predict(evaluator_.problem(), x, inputs_.data(), steps, states_.data(), &terms_);
     } else {
       if constexpr (Controlled::predicts) {
         cost_ = evaluator_.predict(x, inputs_.data(), steps, states_.data());
       } else {
-        alone_.set_sample(0, result_->inputs);
+        for (int row = 0; row < alone_.rows(); ++row) {
+          const Inputs& u = inputs_[static_cast<std::size_t>(row / input_count)];
+          alone_.data(row)[0] = static_cast<float>(u[row % input_count]);
+        }
         evaluator_.evaluate(alone_, 0, 1, alone_cost_.data(), alone_collided_.data());
         cost_ = {static_cast<double>(alone_cost_[0]), alone_collided_[0] != 0};
       }
@@ -228,16 +286,22 @@ class Controller {
   Plan<P> plan(Status status) const noexcept {
     static const SolveResult nothing{};
     const SolveResult& stats = result_ ? *result_ : nothing;
-    return {status, inputs_, states_, cost_.value, cost_.collided, terms_, stats};
+    return {status, inputs_, states_, cost_.value, cost_.collided, terms_, stats, corrections_};
   }
 
-  /// The input that the last plan had for `elapsed` (s) after it was made: what is being applied.
+  /// What is being applied: what was told, or the input that the last plan had for `elapsed` (s) after it
+  /// was made.
   void recall_input(double elapsed) noexcept {
-    if (std::exchange(told_, false)) return;
     const double step = evaluator_.time_step();
     const double last = static_cast<double>(inputs_.size() - 1);
     const double now = step > 0 && elapsed > step ? std::min(std::round(elapsed / step) - 1, last) : 0;
     previous_ = inputs_[static_cast<std::size_t>(now)];
+    if (!std::exchange(told_, false)) return;
+    for (int i = 0; i < input_count; ++i) {
+      const double value = bounds_.nearest(static_cast<std::size_t>(i), given_[i]);
+      if (std::isfinite(given_[i])) previous_[i] = value;
+      corrections_ += value != given_[i];
+    }
   }
 
   static bool finite(const State& x) noexcept {
@@ -247,13 +311,16 @@ class Controller {
   }
 
   Evaluator evaluator_;
+  InputBounds bounds_;
   std::unique_ptr<Solver> solver_;
   std::vector<Inputs> inputs_;
   std::vector<State> states_;
   Cost<double> cost_{0.0, false};
   decltype(Controlled::cost_terms()) terms_ = Controlled::cost_terms();
-  Inputs previous_{};
-  bool told_ = true;  ///< what was applied before the next solve is in `previous_`
+  Inputs previous_{};    ///< applied before the last solve; within the bounds
+  Inputs given_{};       ///< by set_previous_input
+  bool told_ = true;     ///< what was applied before the next solve is in `given_`
+  int corrections_ = 0;  ///< of the final check, in the last solve
   const SolveResult* result_ = nullptr;
   SequenceBatch alone_;  ///< the plan as a batch of one, for an evaluator that does not predict
   AlignedBuffer alone_cost_;

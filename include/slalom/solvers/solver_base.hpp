@@ -51,8 +51,8 @@ class SolverBase : public Solver {
 
  protected:
   /// `Options` has the fields `horizon`, `input_min`, `input_max`, `seed` and `threads`. The solver has
-  /// threads of its own unless a pool is given. Throws std::invalid_argument if the bounds hold no float32
-  /// value.
+  /// threads of its own unless a pool is given. Bounds that hold no float32 value are rounded to the nearest.
+  /// Throws std::invalid_argument if a lower bound is above an upper one, or finite and larger than 1e12.
   template <class Options>
   SolverBase(const Options& options, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options.horizon, inputs, options.input_min, options.input_max, options.seed,

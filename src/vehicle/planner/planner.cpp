@@ -10,6 +10,7 @@
 #include "slalom/vehicle/course/course_check.hpp"
 #include "vehicle/planner/back_up.hpp"
 #include "vehicle/planner/command_history.hpp"
+#include "vehicle/planner/final_check.hpp"
 
 namespace slalom::vehicle {
 
@@ -55,9 +56,10 @@ std::vector<maps::ReferencePoint> limited(std::span<const maps::ReferencePoint> 
   return made;
 }
 
-bool finite(const Odometry& o) {
-  return std::isfinite(o.pose.x) && std::isfinite(o.pose.y) && std::isfinite(o.pose.yaw) &&
-         std::isfinite(o.speed);
+/// Whether odometry is a number and as large as that of a car may be.
+bool plausible(const Odometry& o) {
+  return std::abs(o.pose.x) <= Odometry::furthest && std::abs(o.pose.y) <= Odometry::furthest &&
+         std::abs(o.pose.yaw) <= Odometry::furthest && std::abs(o.speed) <= Odometry::fastest;
 }
 
 /// From sending a command to its first effect, s.
@@ -77,6 +79,7 @@ struct Planner::Implementation {
   maps::ReferenceField field;
   CommandHistory history;
   BackUp back_up;
+  bool brakes = false;  ///< this update brakes: the command must not be faster than the car
   std::vector<PredictedState> states, candidate_states;
   std::vector<float> candidate;
   PlannerOutput output;
@@ -97,6 +100,7 @@ struct Planner::Implementation {
 
   /// Without a plan: keeps the wheels' angle and stops.
   void stop(PlannerStatus status) noexcept {
+    brakes = true;
     output.status = status;
     output.command = {history.steer(), 0};
     output.inputs = {};
@@ -150,9 +154,17 @@ struct Planner::Implementation {
     } else if (too_near && speed < 2 * creep) {
       output.command.speed = std::min(output.command.speed, creep);
     } else if (cost.collided && !too_near) {
+      brakes = true;
       output.command.speed = std::max(0.0, speed - 2 * traits.max_deceleration * options.control_period);
     }
     if (cost.collided) output.status = PlannerStatus::blocked;
+  }
+
+  /// The final check of the output.
+  void check(const Odometry& odometry) noexcept {
+    const double now = std::isfinite(odometry.speed) ? std::max(odometry.speed, 0.0) : 0;
+    const double fastest = brakes ? std::min(now, options.max_speed) : options.max_speed;
+    detail::check_output(output, {options.steer_limit, fastest, -BackUp::speed}, history.steer());
   }
 
   double horizon_time() const noexcept { return traits.time_step * solver->horizon(); }
@@ -242,15 +254,17 @@ const PlannerOutput& Planner::update(const PlannerInput& input) noexcept {
     p.clearance_map.add(input.obstacles);
   }
   out.steer_estimate = p.history.steer();
+  p.brakes = false;
   const bool blind = !out.scan.accepted || out.scan.invalid == out.scan.beams;
   const bool seen_free = out.scan.accepted && input.scan.ranges.size() > 1 && !blind;
-  if (!finite(input.odometry)) {
+  if (!plausible(input.odometry)) {
     p.stop(PlannerStatus::bad_odometry);
   } else if (!seen_free) {
     p.stop(PlannerStatus::bad_scan);
   } else {
     p.plan(input.odometry);
   }
+  p.check(input.odometry);
   p.history.send(out.command.steer);
   out.tick_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;

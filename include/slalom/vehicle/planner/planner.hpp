@@ -24,8 +24,10 @@ namespace slalom::vehicle {
 
 /// Pose (of the rear axle, map frame) and speed (m/s) as odometry or localisation gives them.
 struct Odometry {
-  maps::Pose pose;   ///< m, m, rad, in the map frame
-  double speed = 0;  ///< m/s
+  static constexpr double furthest = 1e6;  ///< m and rad, largest magnitude that a planner takes as a pose
+  static constexpr double fastest = 200;   ///< m/s, largest magnitude that a planner takes as a speed
+  maps::Pose pose;                         ///< m, m, rad, in the map frame
+  double speed = 0;                        ///< m/s
 };
 
 /// The reason for a command.
@@ -34,9 +36,10 @@ enum class PlannerStatus {
   blocked,            ///< every plan collides: braking, or reversing
   fallback_plan,      ///< the solution collided; another sequence, which does not, was sent
   bad_scan,           ///< empty, or of an invalid geometry: braking
-  bad_odometry,       ///< not finite: braking
+  bad_odometry,       ///< not finite, or larger than `Odometry` allows: braking
   off_course,         ///< further from the path than the reference field reaches: braking
-  solver_degenerate,  ///< the solver had no usable weights; the sequence that it falls back to was sent
+  solver_degenerate,  ///< no usable weights or no finite cost; the sequence that the solver falls back to was
+                      ///< sent
 };
 /// The name of a status, as results have it.
 constexpr const char* name(PlannerStatus status) noexcept {
@@ -66,20 +69,23 @@ struct PlannerInput {
   std::span<const maps::Point> obstacles{};  ///< further obstacle points, robot frame, m
 };
 
-/// The outcome of an update. Spans stay valid until the next one.
+/// The outcome of an update. Spans stay valid until the next one. Whatever enters, the command is finite,
+/// within `steer_limit` and `max_speed`, and where the planner brakes it is not faster than the car.
 struct PlannerOutput {
   PlannerStatus status = PlannerStatus::ok;  ///< result of the update
   Command command;                           ///< to send now
   std::span<const float> inputs;  ///< [step][input], the sequence that is sent: steering in rad, and with
                                   ///< two inputs acceleration in m/s^2; empty where none is
   int inputs_per_step = 1;        ///< number of inputs of a step
-  std::span<const PredictedState> predicted;  ///< horizon + 1 states of the sequence that is sent
-  double state_cost = 0;                      ///< of the predicted states without collisions
-  double collision_cost = 0;                  ///< of the predicted states
-  double steer_estimate = 0;                  ///< rad, of the steering observer
-  const SolveResult* solve = nullptr;         ///< of the solver; null where nothing was solved
-  maps::ScanReport scan;                      ///< how many beams were used and why others were not
-  double tick_time = 0;                       ///< s of wall clock for the whole update
+  /// horizon + 1 states of the sequence that is sent; empty where none is, or where its cost is not finite
+  std::span<const PredictedState> predicted;
+  double state_cost = 0;               ///< of the predicted states without collisions
+  double collision_cost = 0;           ///< of the predicted states
+  double steer_estimate = 0;           ///< rad, of the steering observer
+  const SolveResult* solve = nullptr;  ///< of the solver; null where nothing was solved
+  maps::ScanReport scan;               ///< how many beams were used and why others were not
+  double tick_time = 0;                ///< s of wall clock for the whole update
+  int corrections = 0;                 ///< values that the final check changed; 0 in normal operation
 };
 
 /// The car's planner. After construction an update neither allocates nor throws.

@@ -1,0 +1,172 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "slalom/slalom.hpp"
+#include "solvers/problems.hpp"
+
+/// What leaves a controller is finite, within the bounds and within the rates, whatever enters it.
+namespace slalom {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// The double integrator with a limit of its input's rate.
+struct RateLimited : testing::DoubleIntegrator {
+  double input_rate_max = 0.5;  // 1/s
+};
+
+const RateLimited::State<double> start{1, 0};
+
+/// Checks a plan of one input against its bounds and its rate; `previous` was applied before it.
+template <class Plan>
+void expect_valid(const Plan& plan, double low, double high, double reach, double previous) {
+  for (const auto& u : plan.inputs) {
+    ASSERT_TRUE(std::isfinite(u[0]));
+    EXPECT_GE(u[0], low);
+    EXPECT_LE(u[0], high);
+    EXPECT_LE(std::abs(u[0] - previous), reach * (1 + 1e-12));
+    previous = u[0];
+  }
+  EXPECT_TRUE(std::isfinite(plan.cost));
+  for (const CostTerm& term : plan.cost_terms) EXPECT_TRUE(std::isfinite(term.value)) << term.name;
+  for (const auto& x : plan.states) EXPECT_TRUE(std::isfinite(x.position) && std::isfinite(x.speed));
+}
+
+TEST(FinalCheck, ARateLimitStartsFromWithinTheBounds) {
+  Mppi controller{RateLimited{}, {.horizon = 10, .samples = 64, .input_min = 0.5, .input_max = 1}};
+  expect_valid(controller.solve(start), 0.5, 1, 0.05, 0.5);
+}
+
+TEST(FinalCheck, APreviousInputOutsideTheBoundsIsMovedIntoThem) {
+  Mppi controller{RateLimited{}, {.horizon = 10, .samples = 64, .input_min = 0.5, .input_max = 1}};
+  controller.set_previous_input({{5}});
+  expect_valid(controller.solve(start), 0.5, 1, 0.05, 1);
+  controller.set_previous_input({{-infinite}});
+  const auto plan = controller.solve(start);
+  expect_valid(plan, 0.5, 1, 1, plan.inputs[0][0]);
+}
+
+TEST(FinalCheck, APreviousInputThatIsNoNumberIsNotTaken) {
+  Mppi controller{RateLimited{}, {.horizon = 10, .samples = 64, .input_min = 0.5, .input_max = 1}};
+  const double before = controller.solve(start).inputs[0][0];
+  controller.set_previous_input({{nan}});
+  const auto plan = controller.solve(start);
+  expect_valid(plan, 0.5, 1, 0.05, before);
+  EXPECT_GT(plan.corrections, 0);
+  EXPECT_EQ(controller.solve(start).corrections, 0);
+}
+
+TEST(FinalCheck, TheAnswerBeforeTheFirstSolveIsWithinTheBounds) {
+  Mppi controller{RateLimited{}, {.horizon = 4, .samples = 64, .input_min = 0.5, .input_max = 1}};
+  const auto plan = controller.solve({nan, 0});
+  EXPECT_EQ(plan.status, Status::non_finite_state);
+  expect_valid(plan, 0.5, 1, 0, 0.5);
+  controller.solve(start);
+  controller.reset(1);
+  expect_valid(controller.solve({nan, 0}), 0.5, 1, 0, 0.5);
+}
+
+TEST(FinalCheck, ASolverOfOnesOwnIsHeldWithinTheProblemsBounds) {
+  struct Bounded : testing::DoubleIntegrator {
+    double input_min = -1, input_max = 1;
+  };
+  Controller controller{Bounded{},
+                        make_solver(MppiOptions{.samples = 64, .input_min = 3, .input_max = 4}, 1)};
+  const auto plan = controller.solve({1, 0});
+  expect_valid(plan, -1, 1, 2, plan.inputs[0][0]);
+  EXPECT_EQ(plan.corrections, 30);
+}
+
+TEST(FinalCheck, ACostThatIsNotFiniteIsNotOk) {
+  Mppi controller{testing::DoubleIntegrator{},
+                  {.horizon = 8, .samples = 64, .input_min = -1, .input_max = 1}};
+  for (const double far : {1e30, 1e200, 1.7e308}) {
+    const auto plan = controller.solve({far, far});
+    EXPECT_EQ(plan.status, Status::degenerate) << far;
+    expect_valid(plan, -1, 1, 2, plan.inputs[0][0]);
+  }
+  EXPECT_EQ(controller.solve(start).status, Status::ok);
+}
+
+TEST(FinalCheck, AParameterThatChangesToNonsenseStopsTheInputs) {
+  Mppi controller{RateLimited{}, {.horizon = 8, .samples = 64, .input_min = -1, .input_max = 1}};
+  const double before = controller.solve(start).inputs[0][0];
+  for (const double rate : {nan, -1.0, -infinite}) {
+    controller.problem().input_rate_max = rate;
+    controller.set_previous_input({{before}});
+    expect_valid(controller.solve(start), -1, 1, 0, before);
+  }
+}
+
+template <class Make>
+std::string error_of(Make&& make) {
+  try {
+    make();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FinalCheck, BoundsThatNoInputCanKeepAreRefused) {
+  for (const char* method : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
+    const auto error = [&](double low, double high) {
+      SolverOptions options = solver_options(method);
+      *options.find<PerInput>("input_min") = low;
+      *options.find<PerInput>("input_max") = high;
+      return error_of([&] { Controller(testing::DoubleIntegrator{}, options); });
+    };
+    for (const double far : {1e13, 1e30, 1e300}) {
+      EXPECT_NE(error(-far, 1).find("input_min: "), std::string::npos) << method << far;
+      EXPECT_NE(error(-1, far).find("input_max: "), std::string::npos) << method << far;
+    }
+    EXPECT_NE(error(nan, 1), "") << method;
+    EXPECT_NE(error(infinite, infinite), "") << method;
+    EXPECT_NE(error(-infinite, -infinite), "") << method;
+    EXPECT_EQ(error(-infinite, infinite), "") << method;
+    EXPECT_EQ(error(0.5, 0.5), "") << method;  // equal bounds are legal
+    EXPECT_EQ(error(-1e12, 1e12), "") << method;
+  }
+}
+
+TEST(FinalCheck, WhatAProblemSaysOfItsInputsIsValidated) {
+  struct Bounded : testing::DoubleIntegrator {
+    double input_min = -1, input_max = 1, input_rate_max = 1;
+  };
+  const auto error = [&](const Bounded& problem) { return error_of([&] { Mppi controller(problem, {}); }); };
+  EXPECT_EQ(error({}), "");
+  EXPECT_NE(error({{}, nan, 1, 1}).find("problem.input_min: nan"), std::string::npos);
+  EXPECT_NE(error({{}, -1, nan, 1}).find("problem.input_max: nan"), std::string::npos);
+  EXPECT_NE(error({{}, 2, 1, 1}).find("input_min: 2 is above input_max: 1"), std::string::npos);
+  EXPECT_NE(error({{}, -1, 1, nan}).find("problem.input_rate_max: nan"), std::string::npos);
+  EXPECT_NE(error({{}, -1, 1, -2}).find("problem.input_rate_max: -2"), std::string::npos);
+  EXPECT_EQ(error({{}, -1, 1, 0}), "");
+  EXPECT_NE(error({{.dt = nan}, -1, 1, 1}).find("problem: duration of a step"), std::string::npos);
+  EXPECT_NE(error({{.dt = -0.1}, -1, 1, 1}).find("problem: duration of a step"), std::string::npos);
+}
+
+TEST(FinalCheck, BoundsAtTheLimitGiveFiniteInputs) {
+  for (const char* method : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
+    for (const auto& [low, high] :
+         {std::pair(9e11, 1e12), std::pair(-1e12, 1e12), std::pair(-1e12, -1e12), std::pair(0.1, 0.1)}) {
+      SolverOptions options = solver_options(method);
+      *options.find<PerInput>("input_min") = low;
+      *options.find<PerInput>("input_max") = high;
+      *options.find<int>("samples") = 64;
+      Controller controller{testing::DoubleIntegrator{}, options};
+      for (int i = 0; i < 4; ++i) {
+        const auto plan = controller.solve({1, 0}, {.elapsed = 0.1});
+        EXPECT_EQ(plan.corrections, 0) << method << ' ' << low << ' ' << high;
+        for (const auto& u : plan.inputs) ASSERT_TRUE(u[0] >= low && u[0] <= high) << method << ' ' << u[0];
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace slalom

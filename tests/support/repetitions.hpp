@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdlib>
+
+namespace slalom::testing {
+
+/// How often a property is tried: the environment's SLALOM_CALLS, or `otherwise`.
+inline long repetitions(long otherwise) {
+  const char* set = std::getenv("SLALOM_CALLS");
+  return set ? std::atol(set) : otherwise;
+}
+
+}  // namespace slalom::testing
