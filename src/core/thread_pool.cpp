@@ -67,7 +67,7 @@ struct ThreadPool::Shared {
 
 ThreadPool::ThreadPool(int threads) : threads_(threads) {
   if (threads < 1 || threads > 1024) {
-    throw std::invalid_argument("threads: " + std::to_string(threads) + " is not in [1, 1024]");
+    throw std::invalid_argument("threads: " + std::to_string(threads) + " must be in [1, 1024]");
   }
   if (threads == 1) return;
   shared_ = std::make_unique<Shared>();

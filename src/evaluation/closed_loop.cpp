@@ -20,9 +20,9 @@ void ClosedLoop::step(const ControlStepCallback& on_step, double extra_latency) 
 
 void ClosedLoop::change_controller(std::shared_ptr<const LapRunner> runner) {
   if (runner->environment_ != runner_->environment_)
-    throw std::invalid_argument("runner: must have the environment of the present one");
+    throw std::invalid_argument("runner: must have the same environment as the current runner");
   if (runner->control_period() != runner_->control_period())
-    throw std::invalid_argument("runner: must have the control period of the present one");
+    throw std::invalid_argument("runner: must have the same control period as the current runner");
   auto planner = runner->make_planner();
   SequenceCostMeter meter(runner->environment_->path, runner->configuration_.vehicle);
   planner->reset(solver_seed(seed_, runner->method_));

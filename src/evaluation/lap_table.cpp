@@ -226,8 +226,8 @@ void check_seed(const LapRow& row, const Experiment& experiment, std::uint64_t s
   const std::uint64_t seed = lap_seed(seed0, row.lap, experiment.obstacles);
   if (row.seed == seed) return;
   throw std::invalid_argument("seed: " + std::to_string(row.seed) + " must be " + std::to_string(seed) +
-                              ", that of lap " + std::to_string(row.lap) + " from seed0 " +
-                              std::to_string(seed0) + " with " + std::to_string(experiment.obstacles) +
+                              ", the seed of lap " + std::to_string(row.lap) + " with seed0 " +
+                              std::to_string(seed0) + " and " + std::to_string(experiment.obstacles) +
                               " obstacles");
 }
 

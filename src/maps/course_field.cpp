@@ -21,7 +21,7 @@ GridGeometry geometry_of(std::span<const ReferencePoint> path, const CourseField
   const double rows = std::ceil((east->x - west->x + margin) / options.resolution);
   const double columns = std::ceil((north->y - south->y + margin) / options.resolution);
   detail::require(rows * columns <= std::int64_t{1} << 26, "course field: number of cells", rows * columns,
-                  "at most 2^26; take a coarser resolution or a narrower corridor");
+                  "at most 2^26; use a coarser resolution or a narrower corridor");
   return {static_cast<int>(rows), static_cast<int>(columns), options.resolution, 0.5 * (west->x + east->x),
           0.5 * (south->y + north->y)};
 }

@@ -35,7 +35,7 @@ class Reader {
   explicit Reader(const std::filesystem::path& path) : path_(path) {
     std::ifstream stream(path);
     if (!stream || std::filesystem::is_directory(path)) {
-      throw IoError(path.string(), 0, "the map's yaml file does not exist or cannot be read");
+      throw IoError(path.string(), 0, "the map's YAML file does not exist or cannot be read");
     }
     std::vector<YAML::Node> documents;
     try {
@@ -44,9 +44,10 @@ class Reader {
       throw IoError(path.string(), error.mark.line + 1, "invalid YAML: " + error.msg);
     }
     if (documents.size() > 1)
-      throw IoError(path.string(), documents[1].Mark().line + 1, "a second yaml document: must be only one");
+      throw IoError(path.string(), documents[1].Mark().line + 1,
+                    "must have only one YAML document, this is a second one");
     if (!documents.empty()) root_ = documents[0];
-    if (!root_.IsMap()) throw IoError(path.string(), 1, "a map's yaml file must hold `key: value` pairs");
+    if (!root_.IsMap()) throw IoError(path.string(), 1, "a map's YAML file must hold `key: value` pairs");
     refuse_repeated_keys();
   }
 
@@ -243,7 +244,7 @@ void save_ros_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_f
   std::ofstream stream(yaml_file);
   stream << yaml.c_str() << '\n';
   stream.flush();
-  if (!stream) throw IoError(yaml_file.string(), 0, "the map's yaml file cannot be written");
+  if (!stream) throw IoError(yaml_file.string(), 0, "the map's YAML file cannot be written");
 }
 
 }  // namespace slalom::maps

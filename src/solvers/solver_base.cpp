@@ -83,8 +83,8 @@ SolverBase::SolverBase(int horizon, int inputs, const PerInput& input_min, const
     if (low > high && input_min[input] <= input_max[input])  // equal bounds between two float32 values
       low = high = static_cast<float>(input_min[input]);
     if (!(low <= high)) {
-      throw std::invalid_argument("input_min: " + to_text(input_min[input]) +
-                                  " is above input_max: " + to_text(input_max[input]));
+      throw std::invalid_argument("input_min: " + to_text(input_min[input]) + " must be at most input_max, " +
+                                  to_text(input_max[input]));
     }
     low_[r] = low;
     high_[r] = high;

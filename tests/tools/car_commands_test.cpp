@@ -93,7 +93,8 @@ TEST_F(IdentifyCommand, FindsTheServoOfASimulatedCar) {
 
   const auto free = program("identify lap.jsonl --json free.json");
   ASSERT_EQ(free.status, 0) << free.output;
-  EXPECT_NE(free.output.find("does not tell gain and wheelbase apart"), std::string::npos) << free.output;
+  EXPECT_NE(free.output.find("determines only the ratio of gain and wheelbase"), std::string::npos)
+      << free.output;
   EXPECT_EQ(free.output.find("front_length"), std::string::npos) << free.output;
   const json sought = json::parse(content(folder_ / "free.json"));
   const double ratio =
@@ -104,9 +105,9 @@ TEST_F(IdentifyCommand, FindsTheServoOfASimulatedCar) {
 TEST_F(IdentifyCommand, RejectsInvalidInput) {
   expect_refused("identify nothing.jsonl", {"nothing.jsonl", "cannot be read"});
   std::ofstream(folder_ / "text.jsonl") << "hello\n";
-  expect_refused("identify text.jsonl", {"text.jsonl:1", "is not a record"});
+  expect_refused("identify text.jsonl", {"text.jsonl:1", "must be a record"});
   std::ofstream(folder_ / "other.jsonl") << "{\"type\":\"tick\"}\n";
-  expect_refused("identify other.jsonl", {"other.jsonl:1", "is not the beginning of a recording"});
+  expect_refused("identify other.jsonl", {"other.jsonl:1", "must be the first line of a recording"});
   std::ofstream(folder_ / "torn.jsonl")
       << "{\"type\":\"recording\",\"version\":1}\n{\"type\":\"tick\",\"time\":0}\n";
   expect_refused("identify torn.jsonl", {"torn.jsonl:2", "odometry"});

@@ -83,7 +83,7 @@ TEST_F(CommandLine, RejectsEmptyNegativeAndUndefinedValues) {
   for (const std::string arguments :
        {"drive --json ''", "drive --plot ''", "drive --record ''", "drive --start ''", "view --token ''",
         "track --out ''", "eval --methods '' --out e", "compare '' ''"})
-    refuses(arguments, {"the value is empty"}, 2);
+    refuses(arguments, {"the value must not be empty"}, 2);
   for (const std::string arguments : {"drive --seed -1", "explain --seed -1", "track --out t --seed -1",
                                       "view --seed -1", "drive --seed 99999999999999999999"})
     refuses(arguments, {"--seed", "must be a whole number from 0"}, 2);
@@ -109,8 +109,9 @@ TEST_F(CommandLine, RejectsContradictoryOptions) {
 TEST_F(CommandLine, RejectsOptionsOfAMethodThatIsNotUsed) {
   const std::string eval = "eval --course " + wren + " --methods mppi --out e ",
                     tune = "tune --course " + wren + " --method svg_mppi --out e ";
-  refuses(eval + "--set svg_mppi.samples=256,512", {"--set", "svg_mppi.samples", "no method that is driven"});
-  refuses(tune + "--set mppi.samples=10:20", {"--set", "mppi.samples", "no method that is driven"});
+  refuses(eval + "--set svg_mppi.samples=256,512",
+          {"--set", "svg_mppi.samples", "must be an option of a method"});
+  refuses(tune + "--set mppi.samples=10:20", {"--set", "mppi.samples", "must be an option of a method"});
   refuses(tune + "--set temperature=2:3 --set svg_mppi.temperature=1:2", {"--set", "given twice"});
   refuses(tune + "--set samples=64 --set samples=10:20", {"--set", "given twice"});
   refuses(eval + "--set temperature=2,3 --set mppi.temperature=1", {"--set", "given twice"});
@@ -123,7 +124,7 @@ TEST_F(CommandLine, ReproduceRequiresTheCourseAndTheLogsThatAreNamed) {
   const std::string command = "reproduce --course " + wren + " --out /proc/none --published logs";
   refuses(command, {"--published", "logs is not a directory"});
   fs::create_directories(folder_ / "logs/path_tracking");
-  refuses(command, {"--published", "logs holds none of the authors' logs"});
+  refuses(command, {"--published", "logs contains none of the authors' logs"});
   std::ofstream(folder_ / "logs/path_tracking/svg_mppi.csv");
   refuses(command, {"slalom: /proc/none"});
 }
@@ -136,13 +137,13 @@ TEST_F(CommandLine, ReplayIgnoresNoOption) {
   refuses("replay ev --lap -1", {"--lap", "-1 must be in [0, 0]"});
   for (const std::string option : {"--html x.html", "--set mppi.samples=3", "--config default", "--port 0"})
     refuses("replay ev --lap 0 " + option,
-            {option.substr(0, option.find(' ')), "has no effect where a lap of an evaluation is replayed"});
+            {option.substr(0, option.find(' ')), "has no effect when a lap of an evaluation is replayed"});
   std::ofstream(folder_ / "a.mcap");
   for (const std::string option : {"--plot a.png", "--record q.mcap", "--method foo", "--config nosuch",
                                    "--course nosuch", "--lap 0", "--scenario pt", "--set a=1"})
     refuses("replay a.mcap --html q.html " + option,
-            {option.substr(0, option.find(' ')), "has no effect where a recording in MCAP is replayed"});
-  refuses("replay a.bag --plot a.png", {"--plot", "has no effect where a bag is replayed"});
+            {option.substr(0, option.find(' ')), "has no effect when a recording in MCAP is replayed"});
+  refuses("replay a.bag --plot a.png", {"--plot", "has no effect when a bag is replayed"});
   refuses("replay a.bag --record a.jsonl --html a.html", {"--record", "must end in .mcap with --html"});
   refuses("replay a.mcap --html q.html --port 0", {"--port", "--html"}, 2);
   EXPECT_FALSE(fs::exists(folder_ / "x.html"));
@@ -163,7 +164,7 @@ TEST_F(CommandLine, NamesEmptyEvaluations) {
 TEST_F(CommandLine, IdentifyPrintsItsInputs) {
   ASSERT_EQ(timed("drive --course wren --method mppi --set samples=64 --record a.mcap --record-times").status,
             0);
-  refuses("identify a.mcap", {"a.mcap", "JSON lines are needed"});
+  refuses("identify a.mcap", {"a.mcap", "must be JSON lines"});
   refuses("identify .", {".: is a directory"});
   std::ofstream(folder_ / "empty.jsonl") << "{\"type\":\"recording\",\"version\":1}\n";
   refuses("identify empty.jsonl", {"empty.jsonl: ", "usable samples"});

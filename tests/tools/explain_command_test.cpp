@@ -63,7 +63,7 @@ TEST(ExplainCommand, NamesMistakes) {
     EXPECT_NE(run.status, 0) << arguments;
     return run.output;
   };
-  EXPECT_NE(refusal("--method newton").find("is not one of all, mppi"), std::string::npos);
+  EXPECT_NE(refusal("--method newton").find("must be one of all, mppi"), std::string::npos);
   EXPECT_NE(refusal("--set temprature=2").find("did you mean temperature?"), std::string::npos);
   EXPECT_NE(refusal("--set samples=0").find("must be in"), std::string::npos);
   EXPECT_NE(refusal("--set problem.radius=1").find("problem."), std::string::npos);

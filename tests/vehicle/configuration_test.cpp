@@ -181,7 +181,7 @@ TEST(ConfigurationKey, IsNamedWhereAMethodRejectsIt) {
     make_solver(c, "mppi", 1);
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_EQ(std::string(error.what()), "mppi.input_min: 1 is above input_max: -1");
+    EXPECT_EQ(std::string(error.what()), "mppi.input_min: 1 must be at most input_max, -1");
   }
 }
 

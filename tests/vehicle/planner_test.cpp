@@ -307,7 +307,7 @@ TEST(Planner, RejectsInvalidArguments) {
   EXPECT_EQ(refusal(careful(), car(), lane(), nullptr), "planner: solver must not be null");
   EXPECT_EQ(refusal(careful(), nullptr, lane(), solver(1)), "planner: model must not be null");
   EXPECT_EQ(refusal(careful(), car(), lane(), solver(2)),
-            "planner: solver has 2 inputs per step, must have 1, as the vehicle model");
+            "planner: solver has 2 inputs per step, must have 1, like the vehicle model");
   PlannerOptions slow = careful();
   slow.latency = 0.9;
   EXPECT_EQ(refusal(slow, car(), lane(), solver(1)),

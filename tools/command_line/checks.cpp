@@ -26,7 +26,7 @@ constexpr const char* outputs[] = {"--json", "--record", "--plot", "--html"};
 
 void check_value(const GivenOption& option, const std::string& value) {
   // An empty value usually comes from an unset shell variable.
-  if (value.empty()) throw CommandLineError(option.name, "the value is empty");
+  if (value.empty()) throw CommandLineError(option.name, "the value must not be empty");
   if (option.type == GivenOption::Type::natural_number) {
     errno = 0;
     std::strtoull(value.c_str(), nullptr, 0);

@@ -140,7 +140,8 @@ void check(const CLI::App& command) {
 int parse_and_run(int argc, const char* const* argv, const std::vector<CommandEntry>& entries) {
   int exit_status = 0;
   CLI::App app{
-      "Slalom: sampling-based stochastic optimal control that commits to one good way round an obstacle",
+      "Slalom: real-time sampling-based stochastic optimal control; drives, evaluates and shows 1/10-scale "
+      "cars",
       "slalom"};
   app.set_version_flag("--version", std::string("slalom ") + version());
   app.require_subcommand(1);
@@ -172,7 +173,7 @@ int run_guarded(int argc, const char* const* argv, const std::vector<CommandEntr
   try {
     return parse_and_run(argc, argv, commands);
   } catch (const std::bad_alloc&) {
-    return report_error("not enough memory for this number of samples or this horizon");
+    return report_error("not enough memory; use fewer samples or a shorter horizon");
   } catch (const std::exception& error) {
     return report_error(error.what());
   }

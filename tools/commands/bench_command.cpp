@@ -31,7 +31,8 @@ std::string processor() {
   return "unknown";
 }
 
-/// `reference` is the published configuration with one trajectory a rollout, whatever files say else.
+/// The given configuration. Without one, the workload `reference`: the configuration `published` with one
+/// trajectory per rollout.
 vehicle::Configuration configuration_of(const Arguments& arguments) {
   ScenarioArguments scenario;
   scenario.config = arguments.config.empty() ? "published" : arguments.config;
@@ -101,7 +102,7 @@ class Bench {
     json_["peak_gflops"] = peak;
     json_["share_of_peak"] = rate / peak;
     std::fprintf(words_,
-                 "yardstick %.1f ns a step, rollouts %.3f ns: %.1f times faster (least times: %.1f); %.0f "
+                 "yardstick %.1f ns a step, rollouts %.3f ns: %.1f times faster (minimum times: %.1f); %.0f "
                  "GFLOP/s, %.0f %% of this core's %.0f\n",
                  speed.yardstick.p50, speed.rollout.p50, speed.yardstick.p50 / speed.rollout.p50,
                  speed.yardstick.min / speed.rollout.min, rate, 100 * rate / peak, peak);
@@ -131,7 +132,7 @@ class Bench {
     const TickSpeed speed = measure_tick(configuration_, arguments_.seconds);
     json_["tick_ms"] = speed.tick.p50;
     json_["tick"] = {{"whole_ms", json_of(speed.tick)}, {"without_solve_ms", json_of(speed.round_solver)}};
-    std::fprintf(words_, "planner's tick %.3f ms (p99 %.3f), without the solve %.3f ms\n", speed.tick.p50,
+    std::fprintf(words_, "planner update %.3f ms (p99 %.3f), without the solve %.3f ms\n", speed.tick.p50,
                  speed.tick.p99, speed.round_solver.p50);
   }
 
@@ -199,8 +200,8 @@ void declare_bench(Subcommand& command) {
       "Measure the speed of rollouts, methods and planner on this machine, relative to scalar code");
   const auto arguments = std::make_shared<Arguments>();
   command.option("--config", arguments->config,
-                 "Configuration to measure; by default the fixed workload: the published methods and "
-                 "problem, one trajectory a rollout");
+                 "Configuration to measure [fixed workload: the methods and the vehicle problem of the "
+                 "configuration published, with one trajectory per rollout]");
   command.option("--set", arguments->set, "section.option=value; may be repeated").repeatable();
   command.option("--methods", arguments->methods, "Methods to measure, separated by commas [all]")
       .comma_separated();

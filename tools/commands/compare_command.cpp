@@ -36,7 +36,7 @@ Side side_of(const StoredEvaluation& stored, std::size_t experiment) {
   return side;
 }
 
-/// An experiment of both.
+/// An experiment of both evaluations.
 struct Match {
   std::string place;  ///< the evaluation's name, where folders of several are compared
   std::string name;
@@ -96,7 +96,7 @@ Match match(const std::string& place, Side a, Side b, bool paired) {
   return m;
 }
 
-/// All laps of one name and scenario put together, over the places where both sides drove pairs of laps.
+/// For each name and scenario, the comparison of the laps of all places where they are paired.
 std::vector<Match> together(const std::vector<Match>& matches) {
   std::vector<Match> sums;
   std::vector<bool> taken(matches.size());
@@ -111,7 +111,7 @@ std::vector<Match> together(const std::vector<Match>& matches) {
           other.a.experiment.obstacles != a.experiment.obstacles)
         continue;
       taken[j] = true;
-      // Laps are numbered on, so that a pair stays a pair.
+      // The laps of each place get numbers of their own, so that pairs remain pairs.
       for (auto [from, to] : {std::pair{&other.a, &a}, std::pair{&other.b, &b}}) {
         for (LapRow row : from->rows) {
           row.lap += places * 1'000'000;
@@ -183,7 +183,7 @@ std::vector<Match> match_all(const std::string& place, const StoredEvaluation& a
     }
   };
   with(true);
-  // Two evaluations of one thing each under two names are still meant to be compared.
+  // Evaluations without a common experiment are compared experiment by experiment of the same scenario.
   if (matches.empty()) with(false);
   return matches;
 }
@@ -243,7 +243,7 @@ int run(const Arguments& arguments) {
         if (side->rows.empty())
           throw IoError(stored->folder.string(), 0,
                         "has no lap of " + side->experiment.label() + ", " + side->experiment.scenario +
-                            "; they have nothing in common to compare");
+                            "; both folders must have laps of the experiments that are compared");
     }
     matches.insert(matches.end(), found.begin(), found.end());
     for (const auto* e : {&a, &b})
@@ -275,7 +275,8 @@ void declare_compare(Subcommand& command) {
       .required();
   command
       .option("second", arguments->second,
-              "The same of another; in folders of several, those of equal name are compared")
+              "Output folder of the other evaluation, or a folder of several; evaluations of equal name are "
+              "compared")
       .required();
   command.option("--json", arguments->json, "Write the comparison to this file, or to standard output: -");
   command.action([arguments] { return run(*arguments); });

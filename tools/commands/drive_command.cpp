@@ -166,7 +166,7 @@ class DriveJob {
         "obstacles, seed %llu",
         outcome(lap), lap.time, lap.mean_speed, lap.collisions, lap.collisions == 1 ? "" : "s",
         lap.mean_sequence_cost, scenario_.lap.obstacles, static_cast<unsigned long long>(lap.seed));
-    // The world of the published evaluation takes unknown ground for free; a picture should not.
+    // The published evaluation treats unknown cells as free; the picture shows them as unknown.
     const auto map = vehicle::load_course(scenario_.folder).map;
     draw_lap({.map = map,
               .path = scenario_.environment->path,
@@ -212,7 +212,7 @@ void declare_drive(Subcommand& command) {
       "Record every control step to this file: MCAP if its name ends in .mcap, otherwise JSON lines");
   command
       .flag("--record-times", arguments->record_times,
-            "Record wall-clock times, too, which differ from run to run; only in MCAP")
+            "Also record wall-clock times, which differ from run to run; only in MCAP")
       .needs(record);
   command.option("--plot", arguments->plot, "Write a picture of the last lap to this PNG");
   command.action([arguments] { return run(*arguments); });

@@ -46,8 +46,11 @@ int run(const Arguments& arguments) {
 void declare_eval(Subcommand& command) {
   command.summary("Evaluate methods over many laps, with confidence intervals and paired tests");
   const auto arguments = std::make_shared<Arguments>();
-  command.option("--methods", arguments->methods, "Separated by commas").comma_separated().show_default();
-  command.option("--scenario", arguments->scenarios, "pt: path tracking, oa: among obstacles; or both: pt,oa")
+  command.option("--methods", arguments->methods, "Methods, separated by commas")
+      .comma_separated()
+      .show_default();
+  command
+      .option("--scenario", arguments->scenarios, "pt: path tracking, oa: obstacle avoidance; or both: pt,oa")
       .comma_separated()
       .show_default();
   command.option("--laps", arguments->laps, "Number of laps of each method in each scenario").show_default();
@@ -56,11 +59,11 @@ void declare_eval(Subcommand& command) {
       .show_default();
   command
       .option("--set", arguments->sweeps,
-              "key=v1,v2,...: one experiment for each value (and each combination if the option is "
-              "repeated); options of the simulated world, such as world.friction, can be varied, too: see "
-              "slalom options")
+              "key=v1,v2,...: one experiment for each value, and for each combination of values if --set is "
+              "repeated. Options of the simulated world, such as world.friction, can be varied, too; slalom "
+              "options lists them")
       .repeatable();
-  command.flag("--report", arguments->report, "Write report.html and its figures, too");
+  command.flag("--report", arguments->report, "Also write report.html and its figures");
   add_evaluation_options(command, arguments->evaluation);
   command.action([arguments] { return run(*arguments); });
 }

@@ -20,7 +20,7 @@ struct Arguments {
   int solves = 10;
 };
 
-/// The methods asked for, in the order asked; `all` are all.
+/// The methods of these names in this order; `all` stands for all methods.
 std::vector<ExplainedMethod> chosen(const std::vector<std::string>& names) {
   const std::vector<ExplainedMethod> known = explained_methods();
   if (names == std::vector<std::string>{"all"}) return known;
@@ -32,7 +32,7 @@ std::vector<ExplainedMethod> chosen(const std::vector<std::string>& names) {
       std::string all = "all";
       for (const ExplainedMethod& m : known) all += ", " + m.name;
       if (name == "all") throw std::invalid_argument("--method: 'all' cannot be combined with other methods");
-      throw std::invalid_argument("--method: " + name + " is not one of " + all);
+      throw std::invalid_argument("--method: " + name + " must be one of " + all);
     }
     if (std::count(names.begin(), names.end(), name) > 1)
       throw std::invalid_argument("--method: " + name + " is given twice");
@@ -64,7 +64,7 @@ void apply(const std::string& word, std::vector<ExplainedMethod>& methods, probl
   }
   if (found) return;
   const std::string near = nearest_name(key, names);
-  throw std::invalid_argument("--set " + key + ": is not an option of the methods shown" +
+  throw std::invalid_argument("--set " + key + ": must be an option of one of the methods shown" +
                               (near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
@@ -122,12 +122,12 @@ void run(const Arguments& arguments) {
 
 void declare_explain(Subcommand& command) {
   command.summary(
-      "Show how methods solve a problem with two homotopy classes: samples, guides, plan, distribution");
+      "Show how methods solve a problem with two equally good ways: samples, guides, plan, distribution");
   const auto arguments = std::make_shared<Arguments>();
   command
       .option("--method", arguments->methods,
-              "Separated by commas: mppi, svg_mppi, svg_mppi_nominal, svg_mppi_covariance, reverse_mppi, "
-              "sv_mpc, cem; or all")
+              "Methods, separated by commas: mppi, svg_mppi, svg_mppi_nominal, svg_mppi_covariance, "
+              "reverse_mppi, sv_mpc, cem; or all")
       .comma_separated()
       .show_default();
   command

@@ -46,7 +46,7 @@ Driver make_driver(const std::string& text, const Arguments& arguments) {
   scenario.config = at == std::string::npos ? "hardware" : text.substr(at + 1);
   scenario.set = arguments.set;
   driver.configuration = load_configuration(scenario, driver.method);
-  // All know the latency: it is a property of the computer that can be measured at rest.
+  // Every driver's planner knows the latency, since it can be measured without driving.
   driver.configuration.planner.latency = 1e-3 * arguments.latency_ms;
   return driver;
 }

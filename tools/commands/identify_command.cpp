@@ -47,19 +47,18 @@ std::vector<vehicle::DrivenSample> read_recording(const std::string& file) {
     // The magic bytes of an MCAP file.
     if (number == 1 && line.rfind("\x89MCAP", 0) == 0)
       throw IoError(file, 0,
-                    "is an MCAP recording; JSON lines are needed: use slalom drive --record with a name that "
-                    "does not end "
-                    "in .mcap");
+                    "is an MCAP recording; must be JSON lines, which slalom drive --record writes to a file "
+                    "whose name does not end in .mcap");
     try {
       const Json record = Json::parse(line);
       const auto type = record.at("type").get<std::string>();
-      if (number == 1 && type != "recording") throw IoError(file, 1, "is not the beginning of a recording");
+      if (number == 1 && type != "recording") throw IoError(file, 1, "must be the first line of a recording");
       if (type != "tick") continue;
       samples.push_back({record.at("time").get<double>(), entry(record, "odometry", 0),
                          entry(record, "odometry", 1), entry(record, "odometry", 2),
                          entry(record, "odometry", 3), entry(record, "command", 0)});
     } catch (const JsonError& error) {
-      throw IoError(file, number, std::string("is not a record: ") + error.what());
+      throw IoError(file, number, std::string("must be a record of a recording: ") + error.what());
     }
   }
   return samples;
@@ -79,13 +78,13 @@ void advise(std::FILE* out, const Identification& found) {
   const double ratio = found.steering_gain.value / found.wheelbase.value;
   const bool wheelbase_known = found.wheelbase.deviation < 0.1 * found.wheelbase.value;
   if (!wheelbase_known)
-    std::fprintf(
-        out,
-        "This drive does not tell gain and wheelbase apart: gain over wheelbase is %.3f /m. Measure the "
-        "wheelbase and give it with --wheelbase.\n\n",
-        ratio);
+    std::fprintf(out,
+                 "This drive determines only the ratio of gain and wheelbase, %.3f 1/m. Measure the "
+                 "wheelbase and give "
+                 "it with --wheelbase.\n\n",
+                 ratio);
   std::fprintf(out,
-               "For a configuration file (correct gain and offset where the servo is driven):\n"
+               "For a configuration file (correct gain and offset in the servo driver):\n"
                "vehicle:\n  steer_time_constant: %.3f\n  dead_time: %.3f\n",
                found.time_constant.value, found.delay.value);
   if (wheelbase_known)

@@ -26,7 +26,7 @@ struct Arguments {
   std::string folder, method, scenario, course, plot, record, config = "default";
   std::vector<std::string> set;
   int lap = 0;
-  bool lap_said = false;
+  bool lap_given = false;
 };
 
 /// What can be replayed; each kind has its own options.
@@ -38,26 +38,26 @@ constexpr const char* kind_name(Kind kind) {
 constexpr struct {
   const char* option;
   int kinds;
-} heeded[] = {{"--lap", lap_of_evaluation},
-              {"--scenario", lap_of_evaluation},
-              {"--plot", lap_of_evaluation},
-              {"--method", lap_of_evaluation | bag},
-              {"--course", lap_of_evaluation | bag},
-              {"--record", lap_of_evaluation | bag},
-              {"--config", bag},
-              {"--set", bag},
-              {"--html", bag | recording},
-              {"--host", bag | recording},
-              {"--port", bag | recording}};
+} applicable[] = {{"--lap", lap_of_evaluation},
+                  {"--scenario", lap_of_evaluation},
+                  {"--plot", lap_of_evaluation},
+                  {"--method", lap_of_evaluation | bag},
+                  {"--course", lap_of_evaluation | bag},
+                  {"--record", lap_of_evaluation | bag},
+                  {"--config", bag},
+                  {"--set", bag},
+                  {"--html", bag | recording},
+                  {"--host", bag | recording},
+                  {"--port", bag | recording}};
 
 /// Throws IoError if an option was given that has no effect for this kind.
-void refuse_unheeded(const Subcommand& command, Kind kind) {
-  for (const auto& [option, kinds] : heeded)
+void reject_inapplicable(const Subcommand& command, Kind kind) {
+  for (const auto& [option, kinds] : applicable)
     if (command.given(option) && (kinds & kind) == 0)
-      throw IoError(option, 0, std::string("has no effect where ") + kind_name(kind) + " is replayed");
+      throw IoError(option, 0, std::string("has no effect when ") + kind_name(kind) + " is replayed");
 }
 
-/// Whether two rows of the same lap agree in all that repeats.
+/// Whether two rows of the same lap agree, except for wall-clock times.
 bool same_lap(LapRow a, const LapRow& b, const std::vector<Experiment>& experiments) {
   a.mean_calculation_time = b.mean_calculation_time;
   a.max_calculation_time = b.max_calculation_time;
@@ -88,10 +88,10 @@ void plot(const Arguments& arguments, const Scenario& scenario, const LapRunner&
            arguments.plot);
 }
 
-/// The exit status: 0 only if the lap is the one that was kept.
+/// Drives the lap again. The exit status: 1 if it differs from the lap of the evaluation.
 int replay_lap(const Arguments& arguments) {
   const StoredEvaluation stored = load_evaluation(arguments.folder);
-  if (!arguments.lap_said) throw IoError("--lap", 0, "is required to replay a lap of an evaluation");
+  if (!arguments.lap_given) throw IoError("--lap", 0, "is required to replay a lap of an evaluation");
   const int index = stored.find(arguments.method, arguments.scenario);
   const Experiment& experiment = stored.experiments[static_cast<std::size_t>(index)];
   if (arguments.lap < 0 || arguments.lap >= experiment.laps)
@@ -142,13 +142,13 @@ int replay_lap(const Arguments& arguments) {
     return 0;
   }
   const bool same = same_lap(now, *kept, stored.experiments);
-  std::printf(
-      same ? "identical to the lap of the evaluation, bit for bit\n"
-           : "NOT identical to the lap of the evaluation, which another version or instruction set drove\n");
+  std::printf(same ? "identical to the lap of the evaluation, bit for bit\n"
+                   : "NOT identical to the lap of the evaluation, which was driven by another version or "
+                     "instruction set\n");
   return same ? 0 : 1;
 }
 
-/// A file that is gone when it goes out of scope.
+/// The name of a file that is removed at the end of the scope.
 struct TemporaryFile {
   std::string name = std::filesystem::temp_directory_path() /
                      ("slalom_replay_" + std::to_string(std::random_device{}()) + ".mcap");
@@ -158,7 +158,7 @@ struct TemporaryFile {
   }
 };
 
-/// Converts a bag to a recording, which is kept with --record, written as a page with --html, or else shown.
+/// Converts a bag to a recording: to the file of --record, to a page with --html, or else to be shown.
 int replay_bag(Arguments& arguments) {
   if (!arguments.record.empty() && !arguments.recording.html.empty() &&
       std::filesystem::path(arguments.record).extension() != ".mcap")
@@ -181,8 +181,8 @@ int run(Arguments& arguments, const Subcommand& command) {
   const Kind kind = std::filesystem::is_directory(arguments.folder) ? lap_of_evaluation
                     : is_bag(arguments.folder)                      ? bag
                                                                     : recording;
-  refuse_unheeded(command, kind);
-  arguments.lap_said = command.given("--lap");
+  reject_inapplicable(command, kind);
+  arguments.lap_given = command.given("--lap");
   if (kind == lap_of_evaluation) return replay_lap(arguments);
   if (kind == bag) return replay_bag(arguments);
   arguments.recording.file = arguments.folder;

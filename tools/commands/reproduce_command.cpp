@@ -15,14 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* our_course = "stag";
+constexpr const char* fallback_course = "stag";
 
 struct Arguments {
   EvaluationArguments evaluation;
   std::string published;
   std::vector<std::string> sections{"baseline", "ablation", "sweep"};
   int laps_pt = 30, laps_oa = 100, obstacles = 5;
-  bool quick = false, course_said = false;
+  bool quick = false, course_given = false;
 };
 
 struct CloseFile {
@@ -30,18 +30,18 @@ struct CloseFile {
 };
 using UniqueFile = std::unique_ptr<std::FILE, CloseFile>;
 
-/// Berlin cannot come with the program; without it, and where no course was named, a course of ours shows
-/// that everything works.
-std::string course_or_ours(const Arguments& arguments, std::FILE* words) {
+/// The course given. The default, Berlin, is not part of this repository; if it is not found, the command
+/// runs on another course.
+std::string course_or_fallback(const Arguments& arguments, std::FILE* words) {
   const std::string& course = arguments.evaluation.scenario.course;
   try {
     vehicle::find_course(course, vehicle::course_roots(program_folder()));
     return course;
   } catch (const IoError&) {
-    if (arguments.course_said) throw;
-    std::fprintf(words, "note: there is no course '%s'; driving on '%s', a course of ours, instead.\n",
-                 course.c_str(), our_course);
-    return our_course;
+    if (arguments.course_given) throw;
+    std::fprintf(words, "note: the course '%s' was not found; driving on '%s' of this repository instead\n",
+                 course.c_str(), fallback_course);
+    return fallback_course;
   }
 }
 
@@ -104,14 +104,14 @@ int run(Arguments arguments) {
   const UniqueFile nowhere(rank() > 0 ? std::fopen("/dev/null", "w") : nullptr);
   std::FILE* words = nowhere ? nowhere.get() : arguments.evaluation.json == "-" ? stderr : stdout;
   const auto tenth = [&](int laps) { return arguments.quick ? (laps + 9) / 10 : laps; };
-  arguments.evaluation.scenario.course = course_or_ours(arguments, words);
+  arguments.evaluation.scenario.course = course_or_fallback(arguments, words);
   const auto experiments = paper_experiments(arguments.sections, tenth(arguments.laps_pt),
                                              tenth(arguments.laps_oa), arguments.obstacles);
   const LogFolders folders =
       find_logs(arguments.published, fs::path(arguments.evaluation.scenario.course).filename().string());
   for (const std::string& note : folders.notes) std::fprintf(words, "note: %s\n", note.c_str());
   std::fflush(words);
-  // Fail on an unreadable log now, not after hours of driving.
+  // Reports an unreadable log now, not after hours of driving.
   find_references(folders, experiments, {});
 
   Evaluated evaluated;
@@ -122,7 +122,7 @@ int run(Arguments arguments) {
   summary["notes"] = folders.notes;
   const std::string file = arguments.evaluation.out + "/summary.json";
   write_json(summary, file);
-  Report report{"The paper's simulation section, driven again", evaluated, {}, references, folders.notes};
+  Report report{"Reproduction of the paper's simulation section", evaluated, {}, references, folders.notes};
   for (const std::string& section : arguments.sections) add_report_rows(section, report);
   write_report(report, arguments.evaluation.out);
   for (const std::string& section : arguments.sections) print_section(section, evaluated, references, words);
@@ -151,7 +151,7 @@ void declare_reproduce(Subcommand& command) {
   command.flag("--quick", arguments->quick, "Drive a tenth of the laps");
   command.option("--set", scenario.set, "section.option=value, for all rows; may be repeated").repeatable();
   command.action([arguments, &command] {
-    arguments->course_said = command.given("--course");
+    arguments->course_given = command.given("--course");
     return run(*arguments);
   });
 }

@@ -52,7 +52,7 @@ std::string folder_name(const std::string& folder) {
   return (path.has_filename() ? path.filename() : path.parent_path().filename()).string();
 }
 
-/// The command that makes the same track again, wherever the folder lies: --out is its last part only.
+/// The command that generates the same track again. --out has only the last part of the path of the folder.
 std::string command_of(const Arguments& arguments, const TrackGeneratorOptions& options) {
   const TrackGeneratorOptions defaults;
   std::string text = "slalom track --seed " + std::to_string(options.seed) + " --length " +

@@ -13,7 +13,8 @@ namespace {
 int run(const TuningArguments& arguments) {
   if (rank_count() > 1)
     throw IoError("mpirun", 0, "slalom tune runs in one process; use --jobs instead of mpirun");
-  make_experiments({arguments.method}, arguments.scenarios, 1, arguments.obstacles, {});  // refuses bad words
+  make_experiments({arguments.method}, arguments.scenarios, 1, arguments.obstacles,
+                   {});  // throws on an unknown method or scenario
   std::FILE* words = arguments.evaluation.json == "-" ? stderr : stdout;
   TuningJob job(arguments);
   const InterruptFlag interrupt;
@@ -54,7 +55,7 @@ void declare_tune(Subcommand& command) {
       .show_default();
   command
       .option("--rounds", arguments->rounds,
-              "Number of rounds; each further one searches a box of half the width around the best candidate")
+              "Number of rounds; each further round searches ranges half as wide around the best candidate")
       .show_default();
   command
       .option("--held-out", arguments->held_out,

@@ -107,7 +107,7 @@ void add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
       .show_default();
   command
       .option("--evaluation", a.scenario.evaluation,
-              "true: physical evaluation; published: as the program of the paper counted")
+              "true: physically correct world; published: world, clock and counting of the paper's program")
       .show_default();
   add_latency_option(command, a.scenario.latency_ms);
   command.option("--seed0", a.seed0, "Seed of lap 0; lap k has seed0 + k (obstacles + 5)").show_default();
@@ -221,7 +221,7 @@ bool drive_evaluation(const Evaluation& evaluation, const EvaluationArguments& a
 
 bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Experiment>& experiments,
                     Evaluated& evaluated) {
-  if (experiments.empty()) throw IoError("--methods", 0, "names no method");
+  if (experiments.empty()) throw IoError("--methods", 0, "must name at least one method");
   const Scenario scenario = load_scenario(arguments.scenario, experiments.front().method);
   print_notes(stderr, scenario);
   evaluated.course_folder = scenario.folder;

@@ -67,7 +67,7 @@ void require_driven(const std::string& key, const std::vector<std::string>& meth
     if (applies_to(key, method)) return;
     names += (names.empty() ? "" : ", ") + method;
   }
-  throw IoError("--set", 0, "'" + key + "' is an option of no method that is driven (" + names + ")");
+  throw IoError("--set", 0, "'" + key + "' must be an option of a method in this evaluation (" + names + ")");
 }
 
 void refuse_twice(const std::string& key, const std::string& other, const std::vector<std::string>& methods) {
@@ -111,7 +111,8 @@ std::vector<Experiment> make_experiments(const std::vector<std::string>& methods
   std::set<std::string> seen;
   for (const Experiment& e : experiments)
     if (!seen.insert(e.label() + ", " + e.scenario).second)
-      throw IoError("--methods, --scenario, --set", 0, "say '" + e.label() + ", " + e.scenario + "' twice");
+      throw IoError("--methods, --scenario, --set", 0,
+                    "specify the experiment '" + e.label() + ", " + e.scenario + "' twice");
   return experiments;
 }
 

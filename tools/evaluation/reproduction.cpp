@@ -102,12 +102,13 @@ std::vector<PaperRow> paper_rows() {
   rows[3].lockstep = "mppi_cov0.1";
   baseline("Reverse MPPI", "reverse_mppi", "reverse_mppi");
   rows.back().note =
-      "The threads of the published program race when they sum the moments, and some contributions are lost. "
-      "Slalom computes the result of a single thread (docs/algorithms.md).";
+      "The paper's program sums the moments in several threads with a data race, so some contributions are "
+      "lost. Slalom computes the result of a single thread (docs/algorithms.md).";
   baseline("SV-MPC", "sv_mpc", "sv_mpc");
   rows.back().note =
-      "In the published program the particles diverge until numbers overflow. Contributions that its threads "
-      "lose in a race damp this. Slalom computes the result of a single thread (docs/algorithms.md).";
+      "In the paper's program the particles diverge until numbers overflow. A data race, in which "
+      "contributions "
+      "are lost, damps this. Slalom computes the result of a single thread (docs/algorithms.md).";
   baseline("SVG-MPPI", "svg_mppi", "svg_mppi");
   rows.back().lockstep = "svg_mppi";
 
@@ -188,7 +189,7 @@ void require_logs(const fs::path& published) {
   for (const PaperRow& row : paper_rows())
     if (fs::is_regular_file(published / row.log_pt) || fs::is_regular_file(published / row.log_oa)) return;
   throw IoError("--published", 0,
-                published.string() + " holds none of the authors' logs (src/eval/log of " + authors + ")");
+                published.string() + " contains none of the authors' logs (src/eval/log of " + authors + ")");
 }
 
 }  // namespace
@@ -196,13 +197,13 @@ void require_logs(const fs::path& published) {
 LogFolders find_logs(const std::string& published, const std::string& course) {
   LogFolders folders;
   if (!published.empty()) require_logs(published);
-  const std::string where = std::string("The authors publish map and logs at ") + authors + ".";
+  const std::string where = std::string("The authors provide map and logs at ") + authors + ".";
   if (course != logs_course)
     folders.notes.push_back("The paper's laps were driven on Berlin; these are laps of " + course +
                             ", so nothing is compared. " + where);
   if (published.empty()) {
-    folders.notes.push_back("No logs of the authors: --published names their folder (src/eval/log there). " +
-                            where);
+    folders.notes.push_back(
+        "No logs of the authors were given; --published names their folder (src/eval/log). " + where);
   } else if (course == logs_course) {
     folders.published = published;
     const fs::path beside = fs::weakly_canonical(published).parent_path() / "lockstep";
@@ -230,7 +231,7 @@ std::vector<Reference> find_references(const LogFolders& folders, const std::vec
       comparison = compare_with_log(ours, e.obstacles, *log);
     };
     if (row == paper.end() || folders.published.empty()) {
-      r.verdict = "not compared: no published laps of this course";
+      r.verdict = "not compared: the authors have no laps on this course";
       continue;
     }
     look(folders.published / row->log(e.scenario), r.log, r.published);
@@ -249,10 +250,11 @@ std::vector<Reference> find_references(const LogFolders& folders, const std::vec
     r.verdict = judge(*r.published, rate);
     if (!r.lockstep) continue;
     const std::string lockstep = judge(*r.lockstep, rate);
-    r.verdict += lockstep == "inside" && r.published->agreement() == Agreement::outside
-                     ? "; inside the laps of the published program in lockstep, so the difference comes "
-                       "from the asynchronous run of the logs"
-                     : "; compared with the lockstep laps: " + lockstep;
+    r.verdict +=
+        lockstep == "inside" && r.published->agreement() == Agreement::outside
+            ? "; inside the laps of the paper's program in lockstep, so the difference comes from the "
+              "asynchronous runs behind the logs"
+            : "; compared with the lockstep laps: " + lockstep;
   }
   return references;
 }

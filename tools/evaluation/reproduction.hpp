@@ -19,9 +19,9 @@ struct PaperRow {
   std::string name = {};     ///< as the paper has it
   std::string method = {};
   std::vector<std::pair<std::string, std::string>> set = {};
-  std::string log_pt = {}, log_oa = {};  ///< below the folder of published logs
+  std::string log_pt = {}, log_oa = {};  ///< below the folder of the authors' logs
   std::string lockstep = {};  ///< "svg_mppi": svg_mppi_pt.csv, svg_mppi_oa.csv of the lockstep logs
-  std::string note = {};      ///< what one has to know about the published figure
+  std::string note = {};      ///< a remark on the authors' figure
 
   const std::string& log(const std::string& scenario) const { return scenario == "pt" ? log_pt : log_oa; }
 };
@@ -51,8 +51,8 @@ struct LogFolders {
   std::vector<std::string> notes;             ///< for people: what is missing and where to get it
 };
 
-/// Looks for the published logs in `published` and for a folder `lockstep` beside it. Only laps of the
-/// course they were driven on can be compared with them. Throws IoError where `published` is not empty and
+/// Looks for the authors' logs in `published` and for a folder `lockstep` beside it. They can be compared
+/// only with laps of the course on which they were driven. Throws IoError where `published` is not empty and
 /// holds no log.
 LogFolders find_logs(const std::string& published, const std::string& course);
 

@@ -59,7 +59,8 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
   stored.folder = folder;
   const fs::path file = folder / "settings.json";
   std::ifstream stream(file);
-  if (!stream) throw IoError(file.string(), 0, "cannot be read: is this the --out of slalom eval?");
+  if (!stream)
+    throw IoError(file.string(), 0, "cannot be read; the folder must be the output folder of slalom eval");
   stored.settings.assign(std::istreambuf_iterator<char>(stream), {});
   std::uint64_t seed0 = 0;
   try {

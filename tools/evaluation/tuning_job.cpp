@@ -78,7 +78,7 @@ TuningJob::TuningJob(TuningArguments arguments)
         "at least one must name a range or a list to search: key=lo:hi, key=lo:hi:log or key=v1,v2,...");
   arguments_.evaluation.scenario.set = fixed;
   const auto names = split(arguments_.evaluation.scenario.course);
-  if (names.empty()) throw IoError("--course", 0, "names no course");
+  if (names.empty()) throw IoError("--course", 0, "must name at least one course");
   for (const std::string& name : names) {
     ScenarioArguments scenario = arguments_.evaluation.scenario;
     scenario.course = name;
@@ -106,7 +106,7 @@ TuningJob::TuningJob(TuningArguments arguments)
   if (candidates < 2)
     throw IoError("--budget", 0,
                   std::to_string(arguments_.budget) + " must be at least " + std::to_string(least) +
-                      " with so many rounds, laps, scenarios and courses");
+                      " for these numbers of rounds, laps, scenarios and courses");
   rungs_ = halving(candidates, arguments_.laps);
 }
 

@@ -55,9 +55,9 @@ void open_evaluation(const std::string& folder, view::SessionOptions& options) {
   options.evaluation = evaluation_message(*stored, evaluation->environment->course.name);
   options.load_lap = [stored, evaluation, arguments](int experiment, int lap) {
     if (experiment < 0 || experiment >= std::ssize(evaluation->experiments))
-      throw std::invalid_argument("experiment: no such experiment");
+      throw std::invalid_argument("experiment: must be one of this evaluation");
     const evaluation::Experiment& e = evaluation->experiments[static_cast<std::size_t>(experiment)];
-    if (lap < 0 || lap >= e.laps) throw std::invalid_argument("lap: no such lap");
+    if (lap < 0 || lap >= e.laps) throw std::invalid_argument("lap: must be a lap of the experiment");
     const evaluation::LapRunner runner = make_runner(*evaluation, experiment);
     view::LoadedLap loaded;
     loaded.names = {.course = arguments.course,

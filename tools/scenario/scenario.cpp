@@ -110,7 +110,7 @@ void add_scenario_options(Subcommand& command, ScenarioArguments& a) {
       .show_default();
   command
       .option("--evaluation", a.evaluation,
-              "true: physical evaluation; published: as the program of the paper counted")
+              "true: physically correct world; published: world, clock and counting of the paper's program")
       .show_default();
   command
       .option("--set", a.set,

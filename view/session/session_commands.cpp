@@ -141,7 +141,8 @@ bool Session::handle_edit(const std::string& what, const Json& command) {
   } else if (what == "nudge") {
     const sim::CarState& car = simulation_->loop().world().state(0);
     const double aside = number(command, "left", 0), turn = number(command, "turn", 0);
-    if (std::abs(aside) > 2 || std::abs(turn) > 3.2) throw Malformed("nudge: at most 2 m and 3.2 rad");
+    if (std::abs(aside) > 2 || std::abs(turn) > 3.2)
+      throw Malformed("nudge: must be at most 2 m and 3.2 rad");
     edit(MoveCar{{car.x - aside * std::sin(car.yaw), car.y + aside * std::cos(car.yaw), car.yaw + turn}});
   } else {
     return false;

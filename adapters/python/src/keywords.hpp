@@ -74,8 +74,8 @@ void set_from_keywords(Options& options, const py::kwargs& keywords, const std::
     });
     if (found) continue;
     const std::string nearest = nearest_name(name, names);
-    throw py::type_error(where + ": there is no option '" + name + "'" +
-                         (nearest.empty() ? "" : "; is '" + nearest + "' meant?"));
+    throw py::type_error(where + ": unknown option '" + name + "'" +
+                         (nearest.empty() ? "" : "; did you mean '" + nearest + "'?"));
   }
 }
 

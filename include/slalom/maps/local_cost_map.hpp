@@ -120,9 +120,9 @@ void visit_options(Options& options, Visit&& visit) {
                                         .max = 10});
   visit(options.published.half_open_inflation,
         Declaration{.name = "half_open_inflation",
-                    .help = "published: inflate by whole cells, one less to one side"});
+                    .help = "paper's program: inflate by whole cells, by one cell less to one side"});
   visit(options.published.forget_points_outside,
-        Declaration{.name = "forget_points_outside", .help = "published: ignore points off the map"});
+        Declaration{.name = "forget_points_outside", .help = "paper's program: ignore points off the map"});
 }
 
 /// A point in the robot's frame: m.

@@ -47,13 +47,12 @@ void visit_sampling_options(Options& o, Visit&& visit) {
                                .min = 1,
                                .max = 4194304});
   if constexpr (requires { o.temperature; }) {
-    visit(o.temperature,
-          Declaration{
-              .name = "temperature",
-              .symbol = "lambda",
-              .help = "cost difference at which a weight falls by e: small picks the best, large averages",
-              .min = 1e-6,
-              .max = finite});
+    visit(o.temperature, Declaration{.name = "temperature",
+                                     .symbol = "lambda",
+                                     .help = "cost difference at which a weight falls by a factor of e: a "
+                                             "small value selects the best sample, a large one averages",
+                                     .min = 1e-6,
+                                     .max = finite});
   }
   visit(o.variance, Declaration{.name = "variance",
                                 .symbol = "Sigma",
@@ -98,19 +97,16 @@ void visit_weighting_options(Options& o, Visit&& visit) {
   visit(o.tsallis_index,
         Declaration{.name = "tsallis_index",
                     .symbol = "q",
-                    .help =
-                        "weights are the q-exponential of -cost / temperature: 1 is exp; below 1 costs above "
-                        "temperature / (1 - q) count nothing, above 1 tails are heavy",
+                    .help = "weights are the q-exponential of -cost / temperature: 1 is exp; below 1, costs "
+                            "above temperature / (1 - q) have weight 0; above 1, weights fall more slowly",
                     .min = -20,
                     .max = 3});
-  visit(
-      o.target_ess_fraction,
-      Declaration{.name = "target_ess_fraction",
-                  .help = "effective sample size, as a fraction of the samples, for which the temperature is "
-                          "searched in every solve; 0: the temperature is as set",
-                  .min = 0,
-                  .max = 1,
-                  .formerly = "effective_share"});
+  visit(o.target_ess_fraction, Declaration{.name = "target_ess_fraction",
+                                           .help = "effective sample size, as a fraction of the samples, for "
+                                                   "which every solve searches the temperature; 0: off",
+                                           .min = 0,
+                                           .max = 1,
+                                           .formerly = "effective_share"});
 }
 
 template <class Options, class Visit>

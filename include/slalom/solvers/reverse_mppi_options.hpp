@@ -36,7 +36,7 @@ struct ReverseMppiOptions {
   bool reject_samples = true;   ///< draw more samples and keep those away from bad ones
   double inflation = 2;         ///< samples drawn for each one that is kept
   Resampling resampling = Resampling::systematic;
-  double warm_start = 0.5;       ///< share of the new distribution in the start of the next solve
+  double warm_start = 0.5;       ///< share of the new distribution in the initial one of the next solve
   PerInput variance_min = 1e-4;  ///< least variance, input^2
 
   double control_cost_discount = 0;  ///< alpha: the control term is multiplied by 1 - alpha
@@ -56,7 +56,7 @@ void visit_options(Options& o, Visit&& visit) {
             .name = "iterations", .help = "updates of the distribution in a solve", .min = 1, .max = 10000});
   visit(o.step, Declaration{.name = "step",
                             .symbol = "eta",
-                            .help = "step of the mirror descent: 1 takes the weighted mean",
+                            .help = "step size of the mirror descent; 1 takes the weighted mean",
                             .min = 0,
                             .max = 2});
   visit(
@@ -69,11 +69,12 @@ void visit_options(Options& o, Visit&& visit) {
         Declaration{
             .name = "inflation", .help = "samples drawn for each one that is kept", .min = 1, .max = 100});
   visit(o.resampling,
-        Declaration{.name = "resampling", .help = "how samples are picked by their probability"});
-  visit(o.warm_start, Declaration{.name = "warm_start",
-                                  .help = "share of the new distribution in the start of the next solve",
-                                  .min = 0,
-                                  .max = 1});
+        Declaration{.name = "resampling", .help = "how samples are selected by their probability"});
+  visit(o.warm_start,
+        Declaration{.name = "warm_start",
+                    .help = "share of the new distribution in the initial one of the next solve",
+                    .min = 0,
+                    .max = 1});
   visit(o.variance_min, Declaration{.name = "variance_min",
                                     .unit = "input^2",
                                     .help = "least variance",

@@ -49,8 +49,9 @@ struct SvgMppiOptions {
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
 
-  GuideOptions guides{};    ///< the guide particles
-  bool use_nominal = true;  ///< the best guide is the nominal sequence (NS), equation (12); otherwise zero is
+  GuideOptions guides{};  ///< the guide particles
+  bool use_nominal =
+      true;  ///< use the best guide as the nominal sequence (NS), equation (12); otherwise zero is
   bool adapt_covariance = true;  ///< fit the variances to the best guide's path (AC), equation (13)
   PerInput variance_min = 0.01;  ///< least adapted variance, input^2
   PerInput variance_max = 1;     ///< largest adapted variance, input^2
@@ -74,7 +75,7 @@ void visit_guide_options(Options& o, Visit&& visit) {
         Declaration{.name = "guides", .symbol = "K_g", .help = "guide particles", .min = 1, .max = 1024});
   visit(o.iterations, Declaration{.name = "guide_iterations",
                                   .symbol = "L",
-                                  .help = "steps the guides are moved in a solve",
+                                  .help = "number of steps by which the guides move in a solve",
                                   .min = 1,
                                   .max = 1000});
   visit(o.step, Declaration{.name = "guide_step",
@@ -87,7 +88,7 @@ void visit_guide_options(Options& o, Visit&& visit) {
   visit(o.variance, Declaration{.name = "guide_variance",
                                 .symbol = "Sigma",
                                 .unit = "input^2",
-                                .help = "spread of the first guides, and the variance in their weights",
+                                .help = "variance of the initial guides, and the variance in their weights",
                                 .min = 0,
                                 .max = finite});
   visit(o.gradient_samples, Declaration{.name = "gradient_samples",
@@ -106,21 +107,24 @@ void visit_guide_options(Options& o, Visit&& visit) {
                                             .help = "temperature of the weights of the gradient",
                                             .min = 1e-6,
                                             .max = finite});
-  visit(o.weight, Declaration{.name = "guide_weight", .help = "what the gradient's weights are made of"});
-  visit(o.restart,
-        Declaration{
-            .name = "restart_guides",
-            .help = "all guides but the best start again in every solve, at smooth deviations from it"});
+  visit(o.weight,
+        Declaration{.name = "guide_weight", .help = "how the weights of the gradient are computed"});
+  visit(
+      o.restart,
+      Declaration{
+          .name = "restart_guides",
+          .help = "all guides but the best restart in every solve, at smooth deviations from the best one"});
   visit(o.restart_variance, Declaration{.name = "restart_variance",
                                         .unit = "input^2",
-                                        .help = "variance of the deviations at which guides start again",
+                                        .help = "variance of the deviations at which guides restart",
                                         .min = 0,
                                         .max = finite});
 }
 
 template <class Options, class Visit>
 void visit_variance_options(Options& o, Visit&& visit) {
-  visit(o.use_nominal, Declaration{.name = "use_nominal", .help = "the best guide is the nominal sequence"});
+  visit(o.use_nominal,
+        Declaration{.name = "use_nominal", .help = "use the best guide as the nominal sequence"});
   visit(o.adapt_covariance,
         Declaration{.name = "adapt_covariance", .help = "fit the variances to the path of the best guide"});
   visit(o.variance_min, Declaration{.name = "variance_min",

@@ -51,7 +51,8 @@ std::vector<Placement> place_apart(std::span<const maps::Point> path, std::span<
   for (int attempt = 0; static_cast<int>(placed.size()) < cars; ++attempt) {
     if (attempt == rules.attempts)
       throw std::runtime_error("only " + std::to_string(placed.size()) + " of " + std::to_string(cars) +
-                               " parked cars found a place in " + std::to_string(rules.attempts) + " draws");
+                               " parked cars could be placed in " + std::to_string(rules.attempts) +
+                               " draws");
     const std::size_t row = random.below(static_cast<std::uint32_t>(path.size()));
     const double distance = rules.radius * std::sqrt(random.uniform(0, 1));
     const double direction = random.uniform(-pi, pi);

@@ -70,7 +70,7 @@ struct GradientSettings {
   const Real* inverse_variance = nullptr;  ///< [row]
 };
 
-/// The densities in the published program's rejection, [row].
+/// The densities by which the paper's program rejects samples, [row].
 template <class Real>
 struct RejectionRows {
   const Real* base = nullptr;  ///< density at the rejected mean
@@ -141,7 +141,7 @@ struct Kernels {
   /// Replaces `evaluated` and `rejected` by the positive and the negative part of
   /// evaluated / falling - rejected / growing. Returns their sums as `weight` and `squared`.
   WeightSums<Real> (*split_weights)(Real falling, Real growing, Range range, Real* evaluated, Real* rejected);
-  /// -log of the probabilities of keeping samples in the published program.
+  /// -log of the probabilities with which the paper's program keeps samples.
   void (*published_rejection)(const Rows<Real>& v, const RejectionRows<Real>& densities, Range range,
                               Real* logarithms);
   /// The same for normal densities, given squared distances in units of the variances. Replaces `own`.

@@ -121,7 +121,8 @@ SolverOptions published_solver_options(std::string_view method) {
   if (method == ReverseMppiOptions::method) return published_reverse_mppi();
   if (method == SvMpcOptions::method) return published_sv_mpc();
   if (method == CemOptions::method) return published_cem();
-  throw std::invalid_argument("method: no published options of '" + std::string(method) + "'");
+  throw std::invalid_argument("method: '" + std::string(method) +
+                              "' must be a method of the paper's program");
 }
 
 }  // namespace slalom

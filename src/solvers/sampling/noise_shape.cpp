@@ -66,7 +66,7 @@ NoiseShape::NoiseShape(const PerInput& exponent, const PerInput& log_normal_spre
     if (!(exponent[i] > 0)) continue;
     if (steps > longest) {
       throw std::invalid_argument("noise_exponent: must be 0 for a horizon above " + std::to_string(longest) +
-                                  " steps, which is " + std::to_string(steps));
+                                  " steps; the horizon is " + std::to_string(steps));
     }
     factor_[i] = correlation_factor(coloured_correlation(exponent[i], steps));
     factor_float_[i].assign(factor_[i].begin(), factor_[i].end());

@@ -181,7 +181,7 @@ std::vector<fs::path> configuration_roots(const fs::path& program_folder) {
 
 fs::path find_configuration(const std::string& name_or_file, const std::vector<fs::path>& roots) {
   if (name_or_file.empty())
-    throw IoError("config", 0, "must be a file or the name of a configuration, is empty");
+    throw IoError("config", 0, "is empty; must be a file or the name of a configuration");
   if (fs::is_regular_file(name_or_file)) return name_or_file;
   std::set<std::string> known;
   std::string searched, names;

@@ -203,7 +203,7 @@ Curve make_centre_line(const TrackGeneratorOptions& options) {
   }
   throw std::invalid_argument("length: no track of " + std::to_string(options.length) +
                               " m was found for a width of " + std::to_string(options.width) +
-                              " m; it must be longer or narrower");
+                              " m; use a greater length or a smaller width");
 }
 
 }  // namespace slalom::vehicle::detail

@@ -93,7 +93,7 @@ Columns optimised_line_columns(const std::filesystem::path& file, const Line& he
   for (const char* name : {"opt_x", "opt_y", "ref_v"})
     if (std::count(names.begin(), names.end(), name) > 1)
       throw IoError(file.string(), header.number,
-                    "column " + std::string(name) + ": stands twice in '" + header.text + "'");
+                    "column " + std::string(name) + ": occurs twice in '" + header.text + "'");
   Columns columns;
   columns.count = names.size();
   columns.speed = static_cast<std::size_t>(speed - names.begin());
@@ -155,7 +155,7 @@ std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm 
   if (!waypoints.empty() && std::none_of(waypoints.begin(), waypoints.end(), drives))
     throw IoError(
         file.string(), lines.front(),
-        "column " + std::string(columns.speed_name) + ": 0 in every row; one at least must be above 0");
+        "column " + std::string(columns.speed_name) + ": 0 in every row; at least one must be above 0");
   return waypoints;
 }
 

@@ -45,7 +45,7 @@ std::vector<std::string> course_names(const std::vector<fs::path>& roots) {
 
 fs::path find_course(const std::string& name_or_folder, const std::vector<fs::path>& roots) {
   if (name_or_folder.empty())
-    throw IoError("course", 0, "must be a folder or the name of a course, is empty");
+    throw IoError("course", 0, "is empty; must be a folder or the name of a course");
   if (fs::is_directory(name_or_folder)) return name_or_folder;
   for (const auto& root : roots)
     if (fs::is_directory(root / name_or_folder)) return root / name_or_folder;

@@ -91,8 +91,9 @@ CourseFile read_course_file(const std::filesystem::path& file) {
     } else if (key == "closed") {
       result.closed = value.flag();
     } else {
-      throw IoError(file.string(), entry.first.Mark().line + 1,
-                    "key " + key + ": is none of name, description, command, start, timeout, closed");
+      throw IoError(
+          file.string(), entry.first.Mark().line + 1,
+          "key " + key + ": unknown key; must be one of name, description, command, start, timeout, closed");
     }
   }
   return result;

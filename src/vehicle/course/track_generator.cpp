@@ -168,7 +168,7 @@ void validate(const TrackGeneratorOptions& options) {
   require(within(options.wall_margin, 0.3, 0.5 * options.width - 0.1), "wall_margin", options.wall_margin,
           "at least 0.3 m and leave 0.1 m to either side of the centre line");
   require(options.length >= 16 * (0.5 * options.width + options.wall), "length", options.length,
-          "at least 16 times half the width and the wall, or the track cannot close on itself");
+          "at least 16 (width / 2 + wall); a shorter track cannot be closed");
   require(within(options.limits.top_speed, 0.5, 20), "top_speed", options.limits.top_speed,
           "within 0.5 and 20 m/s");
   const auto acceleration = [&](const char* key, double value) {

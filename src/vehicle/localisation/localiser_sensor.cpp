@@ -106,10 +106,9 @@ void SensorTables::make_ranges(const maps::OccupancyGrid& map, const LocaliserOp
   }
   const std::size_t angles = static_cast<std::size_t>(table_.angles);
   if (origins.size() * angles > most_entries) {
-    throw std::invalid_argument(
-        "localiser.table_cell: " + std::to_string(options.table_cell) +
-        ": the table of ranges would have more than 2^27 entries; take a larger cell, "
-        "fewer table_angles or the likelihood field");
+    throw std::invalid_argument("localiser.table_cell: " + std::to_string(options.table_cell) +
+                                ": the table of ranges would have more than 2^27 entries; use a larger cell, "
+                                "fewer table_angles or the likelihood field");
   }
   table_.pairs.assign(origins.size() * angles, 0);
   std::vector<std::uint32_t> ranges(angles);

@@ -230,8 +230,8 @@ void require_enough(std::span<const DrivenSample> samples, const std::vector<Tur
     throw std::invalid_argument("identify: " + std::to_string(used) + " usable samples, must be at least " +
                                 std::to_string(least_samples) + "; drive for longer");
   if (high - low < 0.1)
-    throw std::invalid_argument("identify: the steering moves by " + std::to_string(high - low) +
-                                " rad, must be at least 0.1; drive curves to both sides");
+    throw std::invalid_argument("identify: the steering commands span " + std::to_string(high - low) +
+                                " rad, must span at least 0.1 rad; drive curves to both sides");
 }
 
 double speed_scale(std::span<const DrivenSample> samples, const std::vector<Turn>& turns) {

@@ -233,7 +233,7 @@ Planner::Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> mo
   if (solver->inputs() != model->inputs()) {
     throw std::invalid_argument("planner: solver has " + std::to_string(solver->inputs()) +
                                 " inputs per step, must have " + std::to_string(model->inputs()) +
-                                ", as the vehicle model");
+                                ", like the vehicle model");
   }
   implementation_ = std::make_unique<Implementation>(options, std::move(model), path, std::move(solver));
 }

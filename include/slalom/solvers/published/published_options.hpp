@@ -100,12 +100,12 @@ void visit_published_offsets(Published& p, Visit&& visit) {
   visit(p.inverse_variance_offset,
         Declaration{.name = "inverse_variance_offset",
                     .unit = "1/input^2",
-                    .help = "added to the inverse of every variance; published: 1e-4",
+                    .help = "added to the inverse of every variance; paper's program: 1e-4",
                     .min = 0,
                     .max = 1e12});
   visit(p.normaliser_offset,
         Declaration{.name = "normaliser_offset",
-                    .help = "added to the sum of the weights before dividing by it; published: 1e-10",
+                    .help = "added to the sum of the weights before dividing by it; paper's program: 1e-10",
                     .min = 0,
                     .max = 1});
 }
@@ -113,19 +113,21 @@ void visit_published_offsets(Published& p, Visit&& visit) {
 template <class Published, class Visit>
 void visit_published_gradient(Published& p, Visit&& visit) {
   visit(p.subtract_minimum,
-        Declaration{.name = "subtract_minimum",
-                    .help = "weights of a gradient relative to its best sample; published: false"});
-  visit(p.gradient_floor, Declaration{.name = "gradient_floor",
-                                      .help = "added to the sum of a gradient's weights; published: 1e-10",
-                                      .min = 0,
-                                      .max = 1});
+        Declaration{
+            .name = "subtract_minimum",
+            .help = "compute the weights of a gradient relative to its best sample; paper's program: false"});
+  visit(p.gradient_floor,
+        Declaration{.name = "gradient_floor",
+                    .help = "added to the sum of a gradient's weights; paper's program: 1e-10",
+                    .min = 0,
+                    .max = 1});
 }
 
 template <class Published, class Visit>
 void visit_published_variance(Published& p, Visit&& visit) {
   visit(p.dimensionless_variance,
         Declaration{.name = "dimensionless_variance",
-                    .help = "measure new variances in units of the old; published: true"});
+                    .help = "compute new variances relative to the old ones; paper's program: true"});
 }
 
 }  // namespace detail
@@ -142,23 +144,25 @@ void visit_options(Options& p, Visit&& visit) {
   detail::visit_published_offsets(p, visit);
   detail::visit_published_gradient(p, visit);
   visit(p.clamp_guides,
-        Declaration{.name = "clamp_guides", .help = "keep guides within the bounds; published: false"});
+        Declaration{.name = "clamp_guides", .help = "keep guides within the bounds; paper's program: false"});
   visit(p.fit_target, Declaration{.name = "fit_target",
                                   .symbol = "q*",
-                                  .help = "what the Gaussian is fitted to; published: state_cost"});
+                                  .help = "what the Gaussian is fitted to; paper's program: state_cost"});
   visit(p.fit_temperature, Declaration{.name = "fit_temperature",
                                        .symbol = "lambda",
                                        .help = "temperature of the fit to state costs",
                                        .min = 1e-6,
                                        .max = 1e12});
-  visit(p.fit_all_guides, Declaration{.name = "fit_all_guides",
-                                      .help = "fit to the paths of all guides together; published: true"});
+  visit(p.fit_all_guides,
+        Declaration{.name = "fit_all_guides",
+                    .help = "fit to the paths of all guides together; paper's program: true"});
   visit(p.fit_standard_deviation,
         Declaration{.name = "fit_standard_deviation",
-                    .help = "take the fitted standard deviation for the variance; published: true"});
-  visit(p.fit_absolute_curvature,
-        Declaration{.name = "fit_absolute_curvature",
-                    .help = "take convex fits for concave ones of the same curvature; published: true"});
+                    .help = "use the fitted standard deviation as the variance; paper's program: true"});
+  visit(
+      p.fit_absolute_curvature,
+      Declaration{.name = "fit_absolute_curvature",
+                  .help = "treat convex fits as concave ones of the same curvature; paper's program: true"});
 }
 
 template <class Options, class Visit>
@@ -166,7 +170,7 @@ requires is_options_of<Options, PublishedReverseMppi>
 void visit_options(Options& p, Visit&& visit) {
   detail::visit_published_offsets(p, visit);
   visit(p.rejection, Declaration{.name = "rejection",
-                                 .help = "densities by which samples are rejected; published: published"});
+                                 .help = "densities used to reject samples; paper's program: published"});
   detail::visit_published_variance(p, visit);
 }
 
@@ -175,18 +179,21 @@ requires is_options_of<Options, PublishedSvMpc>
 void visit_options(Options& p, Visit&& visit) {
   detail::visit_published_offsets(p, visit);
   detail::visit_published_gradient(p, visit);
-  visit(p.gradient_control_term,
-        Declaration{.name = "gradient_control_term",
-                    .help = "count the control term in gradients, beside the prior; published: true"});
+  visit(
+      p.gradient_control_term,
+      Declaration{
+          .name = "gradient_control_term",
+          .help = "include the control term in gradients, in addition to the prior; paper's program: true"});
   visit(p.bandwidth,
-        Declaration{.name = "bandwidth",
-                    .symbol = "h",
-                    .help = "what the kernel's bandwidth is taken from; published: squared_norms"});
+        Declaration{
+            .name = "bandwidth",
+            .symbol = "h",
+            .help = "values from which the kernel's bandwidth is computed; paper's program: squared_norms"});
   visit(p.inverted_prior,
         Declaration{.name = "inverted_prior",
-                    .help = "gradient of the prior with wrong sign and scale; published: true"});
-  visit(p.clamp_particles,
-        Declaration{.name = "clamp_particles", .help = "keep particles within the bounds; published: false"});
+                    .help = "gradient of the prior with wrong sign and scale; paper's program: true"});
+  visit(p.clamp_particles, Declaration{.name = "clamp_particles",
+                                       .help = "keep particles within the bounds; paper's program: false"});
   detail::visit_published_variance(p, visit);
 }
 

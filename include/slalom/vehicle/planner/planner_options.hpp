@@ -91,9 +91,8 @@ void visit_options(Options& o, Visit&& visit) {
                                    .help = "if the solution collides, send another sequence that does not"});
   visit(o.back_up, Declaration{.name = "back_up",
                                .help = "reverse a little where the car stands and every plan collides"});
-  visit(o.published.maps,
-        Declaration{.name = "published_maps",
-                    .help = "cost map and reference field as the published program makes them"});
+  visit(o.published.maps, Declaration{.name = "published_maps",
+                                      .help = "cost map and reference field as in the paper's program"});
 }
 
 }  // namespace slalom::vehicle

@@ -182,7 +182,7 @@ class TwoTrajectories : public OneTrajectory {
 struct Model {
   static constexpr const char* name = "published";  ///< name in configurations
   /// Description, in one line.
-  static constexpr const char* help = "the vehicle problem of the published program";
+  static constexpr const char* help = "the vehicle problem of the paper's program";
   static constexpr int inputs = OneTrajectory::inputs;  ///< inputs of a step
   static constexpr std::array input_names{"steering"};  ///< names of the inputs
   using Options = ModelOptions;                         ///< the model's own options
