@@ -142,7 +142,7 @@ TEST(FinalCheck, WhatAProblemSaysOfItsInputsIsValidated) {
   EXPECT_EQ(error({}), "");
   EXPECT_NE(error({{}, nan, 1, 1}).find("problem.input_min: nan"), std::string::npos);
   EXPECT_NE(error({{}, -1, nan, 1}).find("problem.input_max: nan"), std::string::npos);
-  EXPECT_NE(error({{}, 2, 1, 1}).find("input_min: 2 is above input_max: 1"), std::string::npos);
+  EXPECT_NE(error({{}, 2, 1, 1}).find("input_min: 2 must be at most input_max, 1"), std::string::npos);
   EXPECT_NE(error({{}, -1, 1, nan}).find("problem.input_rate_max: nan"), std::string::npos);
   EXPECT_NE(error({{}, -1, 1, -2}).find("problem.input_rate_max: -2"), std::string::npos);
   EXPECT_EQ(error({{}, -1, 1, 0}), "");

@@ -39,7 +39,7 @@ def test_every_option_is_a_keyword_with_its_default():
 
 
 def test_mistakes_name_the_option_the_value_and_the_rule():
-    with pytest.raises(ValueError, match=r"mppi.samples: 0 is not in \[1, "):
+    with pytest.raises(ValueError, match=r"mppi.samples: 0 must be in \[1, "):
         slalom.Mppi(slalom.Pendulum(), samples=0)
     with pytest.raises(TypeError, match="unknown option 'sample'; did you mean 'samples'"):
         slalom.Mppi(slalom.Pendulum(), sample=10)

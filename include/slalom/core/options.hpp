@@ -108,7 +108,7 @@ inline void check(std::string_view where, const Declaration& d, double value) {
 }  // namespace detail
 
 /// Checks every option against its declared range and every per-input option against the number of inputs (0:
-/// any). Throws std::invalid_argument, for instance "svg_mppi.samples: 0 is not in [1, 1000000]".
+/// any). Throws std::invalid_argument, for instance "svg_mppi.samples: 0 must be in [1, 1000000]".
 template <class Options>
 void validate_options(const Options& options, std::string_view where, int inputs = 0) {
   visit_options(options, [&](const auto& field, const Declaration& declaration) {
