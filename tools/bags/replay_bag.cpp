@@ -183,12 +183,10 @@ void record_bag(const BagReplay& replay) {
   const LapResult lap = follower.run([&](const ControlStep& tick) { recording->add(tick); });
   recording->end_lap(lap, 1);
   recording->close();
-  std::printf("%zu scans over %.1f s, %d left out for want of a pose, a speed or a command\n",
+  std::printf("%zu scans over %.1f s; %d more were omitted, since a pose, a speed or a command was missing\n",
               drive.ticks.size(), drive.ticks.back().time, drive.left_out);
-  std::printf(
-      "what %s would have commanded differs from what was commanded by %.4f rad and %.3f m/s "
-      "(root mean square)\n",
-      replay.method.c_str(), follower.steer_difference(), follower.speed_difference());
+  std::printf("the commands of %s differ from those in the bag by %.4f rad and %.3f m/s (root mean square)\n",
+              replay.method.c_str(), follower.steer_difference(), follower.speed_difference());
 }
 
 }  // namespace slalom::tools

@@ -212,7 +212,7 @@ bool drive_evaluation(const Evaluation& evaluation, const EvaluationArguments& a
       evaluation, store, [&](const EvaluationProgress& p) { bar.show(p); }, cancel);
   drive_with_ranks(evaluation, work, jobs, cancel);
   if (!work.finish()) {
-    std::fprintf(stderr, "interrupted after %zu laps; --resume goes on\n", store.rows().size());
+    std::fprintf(stderr, "interrupted after %zu laps; --resume continues\n", store.rows().size());
     return false;
   }
   rows = store.rows();
@@ -259,8 +259,8 @@ void print_results(const Evaluated& evaluated, std::FILE* out) {
     laps += (laps.empty() ? "" : ", ") + std::to_string(row.lap);
   }
   if (impassable > 0)
-    std::fprintf(out, "%d obstacles leave no way that a car of this width could take, in laps %s\n",
-                 impassable, laps.c_str());
+    std::fprintf(out, "a car of this width cannot pass %d of the obstacles, in laps %s\n", impassable,
+                 laps.c_str());
 }
 
 }  // namespace slalom::tools

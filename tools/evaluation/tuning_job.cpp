@@ -260,10 +260,10 @@ bool TuningJob::hold_out(const std::atomic<bool>& cancel, std::FILE* words) {
                          {"difference_ci", {interval.low, interval.high}},
                          {"wilcoxon_p", p},
                          {"results", driven.results}};
-  std::fprintf(words, "\nheld-out seeds, %zu lap%s each: %s\n  as it stands %.4g\n", start.size(),
+  std::fprintf(words, "\nheld-out seeds, %zu lap%s each: %s\n  initial    %.4g\n", start.size(),
                start.size() == 1 ? "" : "s", arguments_.objective.c_str(), mean(start));
   if (!best_.set.empty())
-    std::fprintf(words, "  best found   %.4g, difference %.4g (95 %%: %.4g to %.4g), Wilcoxon p = %.3g\n",
+    std::fprintf(words, "  best found %.4g, difference %.4g (95 %%: %.4g to %.4g), Wilcoxon p = %.3g\n",
                  mean(best), mean(differences), interval.low, interval.high, p);
   for (const auto& r : driven.results)
     std::fprintf(
@@ -271,7 +271,7 @@ bool TuningJob::hold_out(const std::atomic<bool>& cancel, std::FILE* words) {
         r["course"].get<std::string>().c_str(), r["scenario"].get<std::string>().c_str(),
         r["ms_mean"].get<double>(), r["ms_ci"][0].get<double>(), r["ms_ci"][1].get<double>(),
         r["contacts"].get<int>(), 100 * r["success_rate"].get<double>(), r["solve_ms_p50"].get<double>(),
-        r["set"].get<std::string>().empty() ? "as it stands" : "best found");
+        r["set"].get<std::string>().empty() ? "initial" : "best found");
   return true;
 }
 
