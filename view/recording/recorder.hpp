@@ -29,7 +29,7 @@ class Recorder {
  public:
   Recorder(std::ostream& stream, RecorderOptions options);
 
-  /// The times of what comes now begin anew; they follow on those before.
+  /// Begins another drive, whose times start at 0 again; it is recorded after the previous one.
   void begin_drive();
   /// A text message as the page gets it: hello, options, state.
   void add_text(std::string_view json);

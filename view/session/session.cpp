@@ -43,7 +43,7 @@ void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
   tell_options();
 }
 
-/// From the start, with the same seed; a ghost begins anew beside it.
+/// Restarts the drive with the same seed, and the ghost with it.
 void Session::restart() {
   simulation_.emplace(make_runner(configuration_, names_.method), names_.seed);
   if (ghost_) {

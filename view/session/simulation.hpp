@@ -33,7 +33,7 @@ struct ChangeDriver {
 };
 using Edit = std::variant<AddBody, MoveBody, RemoveBody, MoveCar, ChangeDriver>;
 
-/// A loop with the log of its edits. Going back drives the loop anew from its start with the same seed and
+/// A loop with the log of its edits. To go back, it is driven again from its start with the same seed and
 /// edits: everything is deterministic, so this is exact, and no state of solvers needs to be copied.
 class Simulation {
  public:

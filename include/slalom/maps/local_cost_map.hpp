@@ -141,16 +141,16 @@ struct ScanReport {
   int used = 0;     ///< number of beams that gave a point
 };
 
-/// A map of the free ground around the car, in the car's own frame (x ahead, y to the left), made from one
-/// LiDAR scan: a cell holds `occupied` where the car's reference point cannot be without a collision of the
-/// body, `soft` within the soft margin of that, else 0. The heading of the body is taken as that of now,
-/// whatever the path does; what lies behind an obstacle is free. After construction nothing allocates.
+/// A map of the free ground around the car, in the car's own frame (x ahead, y to the left), from one LiDAR
+/// scan: a cell holds `occupied` where the body would collide if the car's reference point were there, `soft`
+/// within the soft margin of these cells, else 0. The body is assumed to keep its present heading, and the
+/// ground behind an obstacle to be free. After construction nothing allocates.
 class LocalCostMap {
  public:
   /// Throws std::invalid_argument where the options break a rule.
   explicit LocalCostMap(const LocalCostMapOptions& options = {});
 
-  /// Makes the map anew from a scan. A scan that is not accepted leaves an empty map: look at the report.
+  /// Computes the map from a scan. After a scan that is not accepted the map is empty; see the report.
   ScanReport update(const LaserScanView& scan) noexcept;
 
   /// Marks all cells free.

@@ -55,9 +55,9 @@ void visit_options(Options& options, Visit&& visit) {
 
 /// A map centred on the robot, parallel to the map frame, that holds for every cell the distance to the
 /// nearest of a window of the path's points, with that point's yaw and speed. The window begins at the point
-/// nearest to the robot (of the whole path) and wraps at the path's end. It is made anew by every update,
-/// because its cells move with the robot; CourseField, which stays where it is, is cheaper and more exact
-/// where the whole course may be one map.
+/// nearest to the robot (of the whole path) and wraps at the path's end. Each update computes the map again,
+/// because its cells move with the robot. CourseField does not move; it is cheaper and more exact if one map
+/// can hold the whole course.
 ///
 /// The nearest points are exact in double arithmetic: along a row of cells the squared distances are
 /// parabolas of which the lower envelope is built (as for the distance transform). After construction nothing
@@ -67,14 +67,14 @@ class ReferenceField {
   /// Throws std::invalid_argument where the path or the options break a rule.
   explicit ReferenceField(std::span<const ReferencePoint> path, const ReferenceFieldOptions& options = {});
 
-  /// Makes the map anew around a position (m). With a finite `reach` only cells within it (m, along each
-  /// axis) are made; the others keep what they held and must not be looked up: a rollout gets no further than
-  /// its duration times its largest speed. With `seconds` the reach is at least 1 m more than a rollout gets
-  /// in that time at the largest speed that the map will hold. False, with nothing changed, if the position
+  /// Computes the map around a position (m). With a finite `reach` only the cells within it (m, along each
+  /// axis) are computed; the others keep their values and must not be looked up. A rollout reaches at most
+  /// its duration times its largest speed. With `seconds` the reach is at least 1 m more than the distance
+  /// driven in that time at the largest speed in the map. Returns false and changes nothing if the position
   /// is not finite.
   bool update(const Point& robot, double reach = std::numeric_limits<double>::infinity(),
               double seconds = 0) noexcept;
-  /// The same with the cells of a box, from `low` to `high` in the map frame (m), made and no others.
+  /// The same, but computes only the cells of the box from `low` to `high` (m, map frame).
   bool update(const Point& robot, const Point& low, const Point& high) noexcept;
 
   /// The cell at a position, m.

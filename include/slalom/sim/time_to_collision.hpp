@@ -8,16 +8,16 @@
 
 namespace slalom::sim {
 
-/// f1tenth_gym's test for a wall hit: a beam whose range, less the way to the car's outline, is used up in
-/// less than 5 ms at the present speed. The outline is taken (l_f + l_r) / 2 ahead and behind instead of half
-/// a length, a range inside it ahead of the car does not count, and at speed the car moves farther per step
-/// than the test looks. Exact collisions come from Track::collides_with_wall.
+/// f1tenth_gym's test for a wall hit: at the present speed, the car would cover the range of a beam, less the
+/// distance to the car's outline, in less than 5 ms. The outline is assumed (l_f + l_r) / 2 ahead and behind
+/// instead of half a length, ranges within it ahead of the car do not count, and a fast car moves further in
+/// a step than the test covers. Track::collides_with_wall computes exact collisions.
 class TimeToCollision {
  public:
   /// Computed for a scanner on a car.
   TimeToCollision(const LidarOptions& lidar, const CarParameters& car);
 
-  /// The first beam that says so, -1 if none does.
+  /// The first beam with a time to collision below the limit, -1 if there is none.
   int first_hit(std::span<const double> ranges, double speed) const noexcept;
   /// The first beam with a time to collision below the limit, or -1.
   int first_hit(std::span<const float> ranges, double speed) const noexcept;

@@ -92,9 +92,9 @@ class World {
   /// Throws std::invalid_argument on a missing track or options out of range.
   World(const WorldOptions& options, std::shared_ptr<const Track> track);
 
-  /// Begins anew: driven cars at rest at `cars`, parked ones at `parked`, all else removed. Throws
-  /// std::invalid_argument on poses that are not finite and on a driven car that starts in a wall or in
-  /// another body.
+  /// Starts again with driven cars at rest at `cars` and parked ones at `parked`, without other bodies.
+  /// Throws std::invalid_argument on poses that are not finite and on a driven car that starts in a wall or
+  /// in another body.
   void reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::span<const maps::Pose> parked = {});
 
   /// Places something that does not move; the number of the body. Throws std::invalid_argument on sizes that

@@ -75,7 +75,7 @@ class Solver {
   /// bounds.
   virtual const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept = 0;
 
-  /// Forgets everything and starts the random numbers anew.
+  /// Forgets the last solution and all other state, and restarts the random numbers from `seed`.
   virtual void reset(std::uint64_t seed) noexcept = 0;
 
   /// Draws the noise of the next solve ahead, so that it costs nothing inside the deadline; the results do

@@ -9,12 +9,12 @@
 
 namespace slalom {
 
-/// What the weights of the guides' gradient are made of, besides the cost S of a sample v; u is the last
-/// solution, n the last nominal sequence.
+/// The costs in the weights of the guides' gradient; S is the cost of a sample v, u the last solution, n the
+/// last nominal sequence.
 enum class GuideWeight {
   state_cost,  ///< S alone
-  importance,  ///< and (u - n)^T Sigma^-1 v, the control term of the paper's equation (8)
-  proximity,   ///< and (u - v)^T Sigma^-1 (u - v), the distance to the last solution
+  importance,  ///< S and (u - n)^T Sigma^-1 v, the control term of the paper's equation (8)
+  proximity,   ///< S and (u - v)^T Sigma^-1 (u - v), the distance to the last solution
 };
 inline const char* const* enum_names(GuideWeight) {
   static constexpr const char* const names[] = {"state_cost", "importance", "proximity", nullptr};
@@ -24,15 +24,15 @@ inline const char* const* enum_names(GuideWeight) {
 /// The guide particles of `svg_mppi`, which follow the surrogate gradient, equation (11), to a mode.
 struct GuideOptions {
   int count = 1;                      ///< K_g
-  int iterations = 10;                ///< L, steps that the guides are moved in a solve
+  int iterations = 10;                ///< L, number of steps by which the guides move in a solve
   PerInput step = 0.125;              ///< epsilon, input^2
-  PerInput variance = 1;              ///< input^2, spread of the first guides, and Sigma of their weights
+  PerInput variance = 1;              ///< input^2, of the initial guides, and Sigma of their weights
   int gradient_samples = 100;         ///< N, for the gradient of a guide
   PerInput gradient_variance = 0.25;  ///< Sigma_g, input^2
   double gradient_temperature = 1;    ///< lambda of the weights of the gradient
   GuideWeight weight = GuideWeight::state_cost;
-  /// In every solve the best guide goes on and all others start again at smooth deviations from it: they
-  /// search for other modes, and the best is kept until another is better. Otherwise all go on.
+  /// In every solve all guides but the best restart at smooth deviations from the best one: they search for
+  /// other modes, and the best is kept until another is better. Otherwise all guides continue.
   bool restart = false;
   PerInput restart_variance = 0.1;  ///< input^2, of those deviations
 };

@@ -194,7 +194,7 @@ void Localiser::Implementation::estimate() noexcept {
   }
 }
 
-/// Weighs the particles by the scan, estimates, and draws anew where that is due (Table 8.3).
+/// Weights the particles by the scan, computes the estimate, and resamples if necessary (Table 8.3).
 void Localiser::Implementation::use_scan() noexcept {
   output.particles = particles.count();
   output.effective_samples = particles.weigh(sensor, beams, options.beam.beam_exponent);

@@ -51,7 +51,7 @@ class Particles {
   /// after that.
   double weigh(const SensorTables& sensor, const ScanBeams& beams, double exponent) noexcept;
 
-  /// Draws anew by weight, as many as the spread asks for.
+  /// Draws particles by weight; their number depends on the spread.
   void resample(RandomKey key) noexcept;
 
   struct Estimate {

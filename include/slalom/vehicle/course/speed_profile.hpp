@@ -41,7 +41,7 @@ std::vector<double> feasible_speeds(std::span<const double> speed, std::span<con
 
 /// A path as a polyline: what its profile depends on.
 struct PathGeometry {
-  bool closed = true;             ///< goes on from the last point to the first
+  bool closed = true;             ///< whether the first point follows the last one
   std::vector<double> step;       ///< m, from each point to the next, from the last to the first
   std::vector<double> curvature;  ///< 1/m at each point, > 0 to the left
 };

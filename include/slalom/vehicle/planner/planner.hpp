@@ -69,7 +69,7 @@ struct PlannerInput {
   std::span<const maps::Point> obstacles{};  ///< further obstacle points, robot frame, m
 };
 
-/// The outcome of an update. Spans stay valid until the next one. Whatever enters, the command is finite,
+/// The outcome of an update. Spans stay valid until the next one. For any input the command is finite,
 /// within `steer_limit` and `max_speed`, and where the planner brakes it is not faster than the car.
 struct PlannerOutput {
   PlannerStatus status = PlannerStatus::ok;  ///< result of the update
@@ -91,9 +91,9 @@ struct PlannerOutput {
 /// The car's planner. After construction an update neither allocates nor throws.
 class Planner {
  public:
-  /// Drives `model` along `path` (as ReferenceField takes it: after its last point the path goes on with its
-  /// first) with `solver`. Throws std::invalid_argument where an option is out of range, the path is not
-  /// valid, model or solver is null, or the solver has another number of inputs than the model.
+  /// Drives `model` along `path` (as for ReferenceField: the first point of the path follows its last one)
+  /// with `solver`. Throws std::invalid_argument where an option is out of range, the path is not valid,
+  /// model or solver is null, or the solver has another number of inputs than the model.
   Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
           std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver);
   ~Planner();
