@@ -1,8 +1,8 @@
 #!/bin/sh
 # Drives the page in Chromium, or reads recordings with other programs: browser_test.sh PAGE_FOLDER TEST PROGRAM.
-# Needs Node and what `npm install` brings; without, it ends with 77: skipped.
+# Needs Node 18 or later and the packages that `script/bootstrap` installs; without, it ends with 77: skipped.
 set -eu
 cd "$1"
 command -v node >/dev/null || { echo "skipped: node is not installed"; exit 77; }
-[ -d node_modules/playwright-core ] || { echo "skipped: run npm install in view/page first"; exit 77; }
+[ -d node_modules/playwright-core ] || { echo "skipped: run script/bootstrap first"; exit 77; }
 exec node "test/$2" "$3"

@@ -7,5 +7,5 @@ listed=$(grep -c '  src/' built/sources.sha256)
 there=$(find src -type f | wc -l)
 [ "$listed" -eq "$there" ] || { echo "src has $there files, the page was built from $listed"; exit 1; }
 size=$(wc -c <built/index.html.gz)
-[ "$size" -le 150000 ] || { echo "the page has $size bytes compressed; at most 150000 are allowed"; exit 1; }
+[ "$size" -le 120000 ] || { echo "the page has $size bytes compressed; at most 120000 are allowed"; exit 1; }
 echo "the page was built from its $there sources, $size bytes compressed"

@@ -134,6 +134,69 @@ TEST(ViewServer, AClientThatNeverReadsLosesFramesAndDelaysNobody) {
   EXPECT_EQ(server.clients(), 2);
 }
 
+/// Acknowledges the frames shown so far.
+void acknowledge(WebClient& client, unsigned frames) {
+  const char count[4] = {static_cast<char>(frames & 255u), static_cast<char>(frames >> 8u)};
+  client.send_message({count, sizeof count}, 2);
+}
+
+TEST(ViewServer, SendsTwoFramesUntilOneIsAcknowledgedAndMessagesOvertakeTheRest) {
+  Server server({}, page);
+  WebClient client(server.port());
+  client.get("/ws", true);
+  until([&] { return server.clients() == 1; });
+  acknowledge(client, 0);
+  client.send_message("after the acknowledgement");
+  until([&] { return server.counters().messages == 1; });
+
+  const auto publish = [&](const char* frame, std::uint64_t dropped) {
+    server.publish(std::make_shared<const std::string>(frame));
+    // The server's thread has this frame once the message after it has arrived.
+    server.broadcast({std::make_shared<const std::string>("message"), false});
+    while (client.next_message() != "message") {
+    }
+    EXPECT_EQ(server.counters().frames_dropped, dropped) << frame;
+  };
+  server.publish(std::make_shared<const std::string>("first"));
+  EXPECT_EQ(client.next_message(), "first");
+  server.publish(std::make_shared<const std::string>("second"));
+  EXPECT_EQ(client.next_message(), "second");
+  publish("third", 0);
+  publish("fourth", 1);
+  publish("fifth", 2);
+  EXPECT_EQ(server.counters().frames_sent, 2u);
+
+  acknowledge(client, 1);
+  EXPECT_EQ(client.next_message(), "fifth") << "the newest frame, without those between";
+  EXPECT_EQ(server.counters().refused_other, 0u);
+}
+
+TEST(ViewServer, AFrameForOneClientCanBeAcknowledged) {
+  Server server({}, page);
+  WebClient client(server.port());
+  client.get("/ws", true);
+  until([&] { return server.clients() == 1; });
+  acknowledge(client, 0);
+  server.publish(server.take().at(0).client, std::make_shared<const std::string>("greeting"));
+  EXPECT_EQ(client.next_message(), "greeting");
+  acknowledge(client, 1);
+  client.send_message("after the acknowledgement");
+  until([&] { return server.counters().messages == 1; });
+  EXPECT_EQ(server.counters().refused_other, 0u);
+}
+
+TEST(ViewServer, RefusesImpossibleAcknowledgements) {
+  Server server({}, page);
+  WebClient client(server.port());
+  client.get("/ws", true);
+  until([&] { return server.clients() == 1; });
+  acknowledge(client, 1);  // nothing has been sent
+  acknowledge(client, 0);
+  acknowledge(client, 0);  // not new
+  client.send_message("12345", 2);
+  until([&] { return server.counters().refused_other == 3; });
+}
+
 TEST(ViewServer, RejectsClientsAboveItsLimit) {
   Server server({.max_clients = 2}, page);
   WebClient a(server.port()), b(server.port());

@@ -36,4 +36,11 @@ void Clients::offer(const std::shared_ptr<const std::string>& frame) {
   for (const auto& [id, client] : all) client->offer(frame);
 }
 
+void Clients::offer(std::uint64_t id, const std::shared_ptr<const std::string>& frame) {
+  const auto found = clients_.find(id);
+  if (found == clients_.end()) return;
+  const auto client = found->second;
+  client->offer(frame);
+}
+
 }  // namespace slalom::view

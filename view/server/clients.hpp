@@ -32,6 +32,8 @@ class Clients {
   void send(std::uint64_t id, const Message& message);
   void broadcast(const Message& message);
   void offer(const std::shared_ptr<const std::string>& frame);
+  /// Offers a frame to one client; nothing happens if it has left.
+  void offer(std::uint64_t id, const std::shared_ptr<const std::string>& frame);
 
  private:
   std::map<std::uint64_t, std::shared_ptr<Client>> clients_;

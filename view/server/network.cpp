@@ -21,6 +21,7 @@
 #include <thread>
 
 #include "view/server/access.hpp"
+#include "view/server/frame_flow.hpp"
 #include "view/server/outgoing_queue.hpp"
 #include "view/server/rate_limit.hpp"
 
@@ -114,6 +115,8 @@ class WebSocketClient final : public Client, public std::enable_shared_from_this
   }
 
   void got_message() {
+    // Acknowledgements do not count as messages: there are never more of them than frames.
+    if (socket_.got_binary() && acknowledge()) return write_next();
     if (!rate_.allow())
       ++state_.counters.refused_rate;
     else if (!socket_.got_text())
@@ -122,11 +125,22 @@ class WebSocketClient final : public Client, public std::enable_shared_from_this
       state_.inbox.deliver({Received::Kind::message, id_, beast::buffers_to_string(buffer_.data())});
   }
 
+  /// True if the message is a valid acknowledgement: the number of frames shown so far, little-endian.
+  bool acknowledge() {
+    const auto bytes = buffer_.cdata();
+    if (bytes.size() != 4) return false;
+    const auto* digits = static_cast<const unsigned char*>(bytes.data());
+    std::uint32_t frames = 0;
+    for (int i = 3; i >= 0; --i) frames = frames << 8 | digits[i];
+    return flow_.acknowledge(frames);
+  }
+
   void write_next() {
     if (is_writing_ || !is_open_) return;
-    auto item = queue_.next();
+    auto item = queue_.next(flow_.may_send());
     if (!item) return;
     is_writing_ = true;
+    if (item->is_frame) flow_.count_sent();  // it may be acknowledged before the handler below is called
     socket_.binary(item->message.binary);
     const auto bytes = asio::buffer(*item->message.body);
     // The handler keeps the message until it is sent.
@@ -154,6 +168,7 @@ class WebSocketClient final : public Client, public std::enable_shared_from_this
   http::request<http::empty_body> request_;
   beast::flat_buffer buffer_;
   OutgoingQueue queue_;
+  FrameFlow flow_;
   bool is_writing_ = false;
   bool is_open_ = false;
 };

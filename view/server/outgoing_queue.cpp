@@ -21,14 +21,14 @@ bool OutgoingQueue::set_frame(const std::shared_ptr<const std::string>& frame) {
   return std::exchange(frame_, frame) != nullptr;
 }
 
-std::optional<OutgoingQueue::Item> OutgoingQueue::next() {
+std::optional<OutgoingQueue::Item> OutgoingQueue::next(bool frame_may_go) {
   if (!messages_.empty()) {
     Item item{std::move(messages_.front()), false};
     messages_.pop_front();
     bytes_ -= item.message.body->size();
     return item;
   }
-  if (!frame_) return std::nullopt;
+  if (!frame_ || !frame_may_go) return std::nullopt;
   return Item{{std::exchange(frame_, nullptr), true}, true};
 }
 

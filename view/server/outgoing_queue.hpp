@@ -21,8 +21,9 @@ class OutgoingQueue {
   bool push(const Message& message);
   /// Sets the frame to be sent. True if an unsent frame was replaced.
   bool set_frame(const std::shared_ptr<const std::string>& frame);
-  /// Removes and returns what is to be sent next.
-  std::optional<Item> next();
+  /// Removes and returns what is to be sent next: a message, or the frame if there is none and
+  /// `frame_may_go`.
+  std::optional<Item> next(bool frame_may_go);
   void clear();
 
  private:

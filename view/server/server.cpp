@@ -47,6 +47,12 @@ void Server::publish(std::shared_ptr<const std::string> frame) {
   if (!is_posted) implementation_->network.post([i = implementation_.get()] { i->offer_frame(); });
 }
 
+void Server::publish(std::uint64_t client, std::shared_ptr<const std::string> frame) {
+  implementation_->network.post([i = implementation_.get(), client, frame = std::move(frame)] {
+    i->state.clients.offer(client, frame);
+  });
+}
+
 void Server::send(std::uint64_t client, Message message) {
   implementation_->network.post([i = implementation_.get(), client, message = std::move(message)] {
     i->state.clients.send(client, message);

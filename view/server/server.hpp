@@ -16,8 +16,9 @@
 ///     }
 ///
 /// Publishing never waits for clients: each client has at most one pending frame, which a newer frame
-/// replaces. Messages that must not be lost are sent in order with `send` and `broadcast`; a client with too
-/// many pending messages is disconnected.
+/// replaces. A client that acknowledges frames (see FrameFlow) has at most two frames under way. Messages
+/// overtake pending frames. Messages that must not be lost are sent in order with `send` and `broadcast`; a
+/// client with too many pending messages is disconnected.
 namespace slalom::view {
 
 struct ServerOptions {
@@ -77,6 +78,8 @@ class Server {
 
   /// Sends a frame to every client that is ready for it; a newer frame replaces a pending one.
   void publish(std::shared_ptr<const std::string> frame);
+  /// Sends a frame to one client, likewise.
+  void publish(std::uint64_t client, std::shared_ptr<const std::string> frame);
   /// Sends in order, to one client or to all.
   void send(std::uint64_t client, Message message);
   void broadcast(Message message);

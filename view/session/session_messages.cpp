@@ -19,7 +19,7 @@ void Session::greet(std::uint64_t client) {
   if (!history_.empty()) {
     const auto at =
         viewed_ >= 0 ? static_cast<std::size_t>(viewed_ - history_.front().tick) : history_.size() - 1;
-    server_.send(client, {history_[at].frame, true});
+    server_.publish(client, history_[at].frame);
   }
   state_changed_ = true;
 }

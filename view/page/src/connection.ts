@@ -7,6 +7,8 @@ export class Connection implements Link {
   private attempts = 0;
   private timer = 0;
   received = 0;
+  private arrived = 0; // frames of this socket
+  private acknowledged = 0; // of these
 
   constructor(private readonly handlers: Handlers) { this.open(); }
 
@@ -14,6 +16,20 @@ export class Connection implements Link {
 
   send(command: Record<string, unknown>) {
     if (this.connected) this.socket!.send(JSON.stringify(command));
+  }
+
+  get waiting() { return this.arrived - this.acknowledged; }
+
+  /** Acknowledges the frames: the server has at most two under way that are not acknowledged. */
+  drawn() {
+    if (this.connected && this.waiting > 0) this.acknowledge(this.arrived);
+  }
+
+  private acknowledge(frames: number) {
+    this.acknowledged = frames;
+    const message = new DataView(new ArrayBuffer(4));
+    message.setUint32(0, frames, true);
+    this.socket!.send(message);
   }
 
   private open() {
@@ -25,7 +41,7 @@ export class Connection implements Link {
     const socket = new WebSocket(address);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
-    socket.onopen = () => { this.attempts = 0; this.handlers.status(true, 0); };
+    socket.onopen = () => { this.attempts = 0; this.arrived = 0; this.acknowledge(0); this.handlers.status(true, 0); };
     socket.onmessage = (event) => this.got(event.data);
     socket.onclose = () => {
       this.attempts += 1;
@@ -40,6 +56,6 @@ export class Connection implements Link {
     const message = decode(data);
     if (message.file) this.handlers.file(message.file.name, message.file.content);
     else if (message.scene) this.handlers.scene(message.scene);
-    else if (message.frame) { this.received += 1; this.handlers.frame(message.frame); }
+    else if (message.frame) { this.received += 1; this.arrived += 1; this.handlers.frame(message.frame); }
   }
 }

@@ -14,5 +14,8 @@ export interface Handlers {
 /** Where the page gets its messages from and sends its commands to. */
 export interface Link {
   send(command: Record<string, unknown>): void;
+  /** Tells that what was received has been drawn. */
+  drawn(): void;
   readonly received: number; // frames
+  readonly waiting: number; // frames received and not yet drawn
 }

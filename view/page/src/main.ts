@@ -211,6 +211,7 @@ function draw() {
     get("scale-low").textContent = low.toPrecision(3);
     get("scale-high").textContent = high.toPrecision(3);
   }
+  link.drawn();
   requestAnimationFrame(draw);
 }
 
@@ -331,4 +332,4 @@ showPane("charts");
 requestAnimationFrame(draw);
 
 // The state of the page, for tests and for debugging in the console.
-Object.assign(window, { slalom: { get frame() { return frame; }, get state() { return state; }, get hello() { return hello; }, get received() { return link.received; }, replay: isReplay, scalar, scene, send } });
+Object.assign(window, { slalom: { get frame() { return frame; }, get state() { return state; }, get hello() { return hello; }, get received() { return link.received; }, get waiting() { return link.waiting; }, replay: isReplay, scalar, scene, send } });

@@ -22,6 +22,7 @@ function scalarsOf(frame: ArrayBuffer): Float64Array {
 /** Plays a recording: gives the page what a server would have sent, and handles the commands that concern time. */
 export class Player implements Link {
   received = 0;
+  readonly waiting = 0;
   private readonly frames: ArrayBuffer[] = [];
   private readonly states: { from: number; state: State }[] = []; // each holds from this frame on
   private at = 0; // frames, with a share of the next
@@ -94,6 +95,8 @@ export class Player implements Link {
     this.show();
     requestAnimationFrame((then) => this.turn(then));
   }
+
+  drawn() { /* frames come from this page */ }
 
   send(command: Record<string, unknown>) {
     const end = this.frames.length - 1;

@@ -1,0 +1,38 @@
+// Builds the page into one compressed file, which the program contains; `--check` compares instead of writing.
+import { createHash } from "node:crypto";
+import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { build } from "esbuild";
+import { gzipSync } from "fflate";
+
+const most = 120_000; // bytes, compressed
+const bundle = await build({ entryPoints: ["src/main.ts"], outdir: "dist", bundle: true, minify: true, write: false, format: "esm", target: "es2022", charset: "utf8", legalComments: "none" });
+const built = (ending) => bundle.outputFiles.find((file) => file.path.endsWith(ending)).text.trim();
+
+const entry = '<script type="module" src="/src/main.ts"></script>';
+const source = readFileSync("index.html", "utf8");
+if (!source.includes(entry)) throw new Error(`index.html must contain ${entry}`);
+const html = source
+  .replace(entry, () => `<script type="module">${built(".js").replace(/<\/script/g, "<\\/script")}</script>`)
+  .replace("</head>", () => `<style>${built(".css")}</style></head>`);
+mkdirSync("dist", { recursive: true });
+writeFileSync("dist/index.html", html);
+
+const packed = Buffer.from(gzipSync(Buffer.from(html), { level: 9, mtime: "1980-01-01" }));
+if (packed.length > most) {
+  console.error(`The page has ${packed.length} bytes compressed; at most ${most} are allowed.`);
+  process.exit(1);
+}
+// The sources of the page in the form of sha256sum: tests compare them without Node.
+const sources = ["index.html", "package.json", "package-lock.json", "tsconfig.json", "build.mjs", ...readdirSync("src").sort().map((name) => "src/" + name)];
+const sums = sources.map((name) => `${createHash("sha256").update(readFileSync(name)).digest("hex")}  ${name}\n`).join("");
+if (process.argv.includes("--check")) {
+  if (!packed.equals(readFileSync("built/index.html.gz")) || sums !== readFileSync("built/sources.sha256", "utf8")) {
+    console.error("view/page/built/index.html.gz does not match its sources: run npm run build and commit the result.");
+    process.exit(1);
+  }
+  console.log(`The page matches its sources: ${packed.length} bytes compressed.`);
+} else {
+  writeFileSync("built/index.html.gz", packed);
+  writeFileSync("built/sources.sha256", sums);
+  console.log(`built/index.html.gz: ${packed.length} bytes`);
+}

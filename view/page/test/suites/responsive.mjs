@@ -1,0 +1,36 @@
+// A slow browser: the page follows the server, and commands do not wait behind frames.
+import assert from "node:assert/strict";
+
+const slowdown = 6; // of the browser's processor
+const most_lag = 0.3; // s of simulated time between the tick shown and the tick at which the server pauses
+const most_waiting = 2; // frames
+const draws = 3; // that may pass between a tick on the server and its picture: two frames under way, and the click
+
+export default async function (h) {
+  await h.test("a slow browser pauses at the tick that it shows, and frames do not pile up", async () => {
+    const page = await h.open(h.server.address), tools = await page.context().newCDPSession(page);
+    await h.until(() => window.slalom?.frame && slalom.state, undefined, page);
+    await tools.send("Emulation.setCPUThrottlingRate", { rate: slowdown });
+    for (let attempt = 0; attempt < 2; ++attempt) {
+      await page.evaluate(() => { slalom.send({ do: "play" }); Object.assign(window, { from: slalom.received, waiting: 0, longest: 0, last: performance.now() }); });
+      // Long enough that frames would pile up: the server makes 40 ticks a second.
+      await h.until(() => {
+        const now = performance.now();
+        longest = Math.max(longest, now - last);
+        last = now;
+        waiting = Math.max(waiting, slalom.waiting);
+        return slalom.received > from + 10;
+      }, undefined, page);
+      const tick = await page.evaluate(() => { const shown = slalom.scalar("tick"); document.getElementById("play").click(); return shown; });
+      await h.until(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"), undefined, page);
+      const seen = await page.evaluate(() => ({ tick: slalom.state.tick, period: slalom.state.control_period, longest: longest / 1000, waiting }));
+      const lag = (seen.tick - tick) * seen.period;
+      console.log(`      paused ${lag.toFixed(2)} s after the tick shown; a draw takes up to ${seen.longest.toFixed(2)} s`);
+      assert.ok(seen.waiting <= most_waiting, `${seen.waiting} frames waited in the page`);
+      assert.ok(lag <= most_lag + draws * seen.longest, `the server paused ${lag.toFixed(2)} s after the tick shown`);
+    }
+    await tools.send("Emulation.setCPUThrottlingRate", { rate: 1 });
+    await page.close();
+    await h.send({ do: "play" });
+  });
+}
