@@ -115,6 +115,11 @@ bool ReferenceField::update(const Point& robot, const Point& low, const Point& h
   return true;
 }
 
+void ReferenceField::set_speeds(std::span<const double> speeds) noexcept {
+  if (speeds.size() != path_.size()) return;
+  for (std::size_t i = 0; i < speeds.size(); ++i) path_[i].speed = speeds[i];
+}
+
 ReferenceCell ReferenceField::at(double x, double y) const noexcept {
   const int row = geometry_.row(x), column = geometry_.column(y);
   const float* cell = row < 0 || column < 0 ? cells_.data() : cells_.at(row, column);

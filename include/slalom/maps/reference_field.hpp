@@ -77,6 +77,10 @@ class ReferenceField {
   /// The same, but computes only the cells of the box from `low` to `high` (m, map frame).
   bool update(const Point& robot, const Point& low, const Point& high) noexcept;
 
+  /// Changes the speeds (m/s, one for each point of the path) from the next update on; no other number of
+  /// them has an effect.
+  void set_speeds(std::span<const double> speeds) noexcept;
+
   /// The cell at a position, m.
   ReferenceCell at(double x, double y) const noexcept;
 

@@ -48,6 +48,7 @@ VehicleTraits traits_of(const PathTrackingOptions& options, bool plans_speed) {
   VehicleTraits traits;
   traits.time_step = options.time_step;
   traits.wheelbase = options.wheelbase();
+  traits.rear_length = options.rear_length;
   traits.dead_time = options.hold_first_input ? 0 : options.dead_time;
   traits.max_acceleration = options.max_acceleration;
   traits.max_deceleration = options.max_deceleration;

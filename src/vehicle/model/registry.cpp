@@ -72,6 +72,15 @@ std::string input_names(const VehicleOptions& options) {
   });
 }
 
+VehicleStart VehicleModel::advance(const VehicleStart& start, const Command&, double) const noexcept {
+  return start;
+}
+Command VehicleModel::command(std::span<const float> inputs, double speed, double) const noexcept {
+  return {static_cast<double>(inputs[0]), speed};
+}
+void VehicleModel::set_friction(double) noexcept {}
+void VehicleModel::set_slowest(double) noexcept {}
+
 std::unique_ptr<VehicleModel> make_vehicle_model(const VehicleOptions& options, simd::Target target) {
   validate_options(options, "vehicle");
   check_own_options(options);

@@ -1,5 +1,6 @@
 #include "slalom/vehicle/model/single_track.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -7,8 +8,9 @@ namespace slalom::vehicle {
 
 namespace {
 
-constexpr double gravity = 9.81;    // m/s^2
-constexpr double tyre_shape = 1.5;  // C of Pacejka's curve
+constexpr double gravity = 9.81;          // m/s^2
+constexpr double tyre_shape = 1.5;        // C of Pacejka's curve
+constexpr double longest_piece = 0.0125;  // s, of a prediction by commands
 
 }  // namespace
 
@@ -27,24 +29,42 @@ SingleTrackDynamics::SingleTrackDynamics(const PathTrackingOptions& car, const S
       speed_coupling_(saturating_ ? 0.0 : 1.0),
       steer_rate_(own.steer_rate),
       steer_share_(1 - std::exp(-car.time_step / car.steer_time_constant)),
+      steer_time_constant_(car.steer_time_constant),
       max_deceleration_(car.max_deceleration),
       max_power_(car.max_acceleration * own.switch_speed),
       switch_speed_(own.switch_speed),
       usable_acceleration_(own.usable_grip * gravity),
       inverse_gravity_(1 / gravity) {}
 
+double slip_of(const SingleTrackState<double>& s) noexcept {
+  const double along = std::copysign(std::max(std::abs(s.speed), 0.1), s.speed);
+  return std::asin(std::clamp(s.lateral / along, -1.0, 1.0));
+}
+
+double SingleTrackDynamics::lagged(double steer, double command, double dt) const noexcept {
+  return steer + (command - steer) * (1 - std::exp(-dt / steer_time_constant_));
+}
+
 SingleTrack::SingleTrack(const PathTrackingOptions& options, const Options& own)
     : dynamics_(options, own),
+      own_(own),
       friction_(own.friction),
       time_step_(options.time_step),
       inverse_time_step_(1 / options.time_step),
-      slowest_(0.0),
+      squared_half_steer_speed_(own.half_steer_speed * own.half_steer_speed),
+      max_deceleration_(options.max_deceleration),
       usable_grip_(own.usable_grip),
       grip_weight_(own.grip_weight) {
   if (options.hold_first_input)
     throw std::invalid_argument(
         "vehicle.hold_first_input: must be false with vehicle.model 'single_track', whose start the planner "
         "predicts by the dead time");
+}
+
+void SingleTrack::complete(VehicleTraits& traits) const noexcept {
+  traits.friction = own_.friction;
+  traits.usable_grip = own_.usable_grip;
+  traits.switch_speed = own_.switch_speed;
 }
 
 SingleTrack::State<double> SingleTrack::start(const VehicleStart& start, double) const noexcept {
@@ -55,6 +75,28 @@ SingleTrack::State<double> SingleTrack::start(const VehicleStart& start, double)
           start.steer,
           start.yaw_rate,
           start.speed * std::sin(start.slip)};
+}
+
+VehicleStart SingleTrack::advance(const VehicleStart& start, const Command& command,
+                                  double duration) const noexcept {
+  State<double> s = this->start(start, 0);
+  const int pieces = static_cast<int>(std::ceil(duration / longest_piece - 1e-9));
+  const double dt = duration / pieces, friction = double(friction_);
+  for (int i = 0; i < pieces; ++i) {
+    double acceleration = 0;
+    if (std::isfinite(command.speed)) {
+      const double error = command.speed - s.speed;
+      acceleration = (error * s.speed >= 0 ? own_.speed_gain : own_.brake_gain) * error;
+      acceleration = std::clamp(acceleration, -double(max_deceleration_), dynamics_.driving_limit(s.speed));
+    }
+    s = dynamics_.advance(s, dynamics_.lagged(s.steer, command.steer, dt), acceleration, friction, dt);
+  }
+  return {{s.x, s.y, s.yaw}, s.speed, s.steer, s.yaw_rate, slip_of(s)};
+}
+
+double SingleTrack::commanded_speed(double speed, double acceleration, double period) const noexcept {
+  const double gain = acceleration * speed >= 0 ? own_.speed_gain : own_.brake_gain;
+  return speed + acceleration * period / (1 - std::exp(-gain * period));
 }
 
 }  // namespace slalom::vehicle

@@ -10,7 +10,9 @@
 #include "slalom/vehicle/course/course_check.hpp"
 #include "vehicle/planner/back_up.hpp"
 #include "vehicle/planner/command_history.hpp"
+#include "vehicle/planner/feasible_speeds.hpp"
 #include "vehicle/planner/final_check.hpp"
+#include "vehicle/planner/state_observer.hpp"
 
 namespace slalom::vehicle {
 
@@ -18,6 +20,8 @@ namespace {
 
 using detail::BackUp;
 using detail::CommandHistory;
+using detail::FeasibleSpeeds;
+using detail::StateObserver;
 
 maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const VehicleTraits& traits) {
   maps::LocalCostMapOptions made;
@@ -35,14 +39,38 @@ maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const 
   return made;
 }
 
-maps::ClearanceMapOptions clearance_options(const VehicleTraits& traits) {
+/// With a map as long as a plan for a car with slipping tyres, whose plans are longer.
+maps::ClearanceMapOptions clearance_options(const VehicleTraits& traits, double reach) {
+  constexpr double behind = 3, widest = 8;  // m
   maps::ClearanceMapOptions made;
   if (traits.obstacle_map == ObstacleMap::clearance) made.reach = traits.clearance_reach;
+  if (traits.friction > 0) {
+    made.length_x = reach + behind;
+    made.center_x = 0.5 * (reach - behind);
+    made.length_y = 2 * std::min(reach, widest);
+  }
   return made;
 }
 
-maps::ReferenceFieldOptions field_options(const PlannerOptions& options) {
-  return options.published.maps ? maps::published_reference_field() : maps::ReferenceFieldOptions{};
+maps::ReferenceFieldOptions field_options(const PlannerOptions& options, const VehicleTraits& traits,
+                                          double reach) {
+  if (options.published.maps) return maps::published_reference_field();
+  maps::ReferenceFieldOptions made;
+  if (traits.friction > 0) {
+    made.length_x = made.length_y = 2 * reach + 1;
+    made.spacing = std::max(made.spacing, (reach + 1) / 200);
+    made.points = static_cast<int>((reach + 1) / made.spacing);
+  }
+  return made;
+}
+
+/// m, how far a plan of this duration (s) can get.
+double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
+                  double duration) {
+  constexpr double least = 6, most = 30;
+  double fastest = 0;
+  for (const maps::ReferencePoint& point : path) fastest = std::max(fastest, point.speed);
+  return std::clamp(std::min(fastest, options.max_speed) * duration + 1.5, least, most);
 }
 
 /// The path with the speeds that the options allow.
@@ -62,6 +90,8 @@ bool plausible(const Odometry& o) {
          std::abs(o.pose.yaw) <= Odometry::furthest && std::abs(o.speed) <= Odometry::fastest;
 }
 
+constexpr double gravity = 9.81;  // m/s^2
+
 /// From sending a command to its first effect, s.
 double delay_of(const PlannerOptions& options, const VehicleTraits& traits) {
   return options.latency + traits.dead_time;
@@ -75,8 +105,11 @@ struct Planner::Implementation {
   VehicleTraits traits;
   std::unique_ptr<Solver> solver;
   maps::LocalCostMap cost_map;
+  double reach;  ///< m, of plans
   maps::ClearanceMap clearance_map;
   maps::ReferenceField field;
+  FeasibleSpeeds speeds;
+  StateObserver observer;  ///< of models with tyres that slip; others have `history`
   CommandHistory history;
   BackUp back_up;
   bool brakes = false;  ///< this update brakes: the command must not be faster than the car
@@ -91,18 +124,45 @@ struct Planner::Implementation {
         traits(model->traits()),
         solver(std::move(s)),
         cost_map(cost_map_options(o, traits)),
-        clearance_map(clearance_options(traits)),
-        field(limited(path, o, traits), field_options(o)),
+        reach(plan_reach(path, o, traits.time_step * solver->horizon())),
+        clearance_map(clearance_options(traits, reach)),
+        field(limited(path, o, traits), field_options(o, traits, reach)),
+        speeds(limited(path, o, traits)),
+        observer(o.control_period, o.latency, traits.dead_time),
         history(o.control_period, delay_of(o, traits), o.observer_time_constant, traits.wheelbase),
         states(static_cast<std::size_t>(solver->horizon()) + 1),
         candidate_states(states.size()),
-        candidate(static_cast<std::size_t>(solver->horizon()) * static_cast<std::size_t>(solver->inputs())) {}
+        candidate(static_cast<std::size_t>(solver->horizon()) * static_cast<std::size_t>(solver->inputs())) {
+    if (model->has_dynamics()) set_friction(traits.friction);
+  }
+
+  /// Plans for ground of this friction.
+  void set_friction(double friction) noexcept {
+    model->set_friction(friction);
+    speeds.update({friction * gravity * traits.usable_grip, traits.max_acceleration, traits.max_deceleration,
+                   traits.switch_speed});
+    field.set_speeds(speeds.speeds());
+  }
+
+  /// Where plans begin: the car when the next command takes effect.
+  VehicleStart start_of_plan(const Odometry& odometry) noexcept {
+    if (!model->has_dynamics()) return history.lead_ahead({odometry.pose, odometry.speed, history.steer()});
+    observer.update(*model, odometry.pose, odometry.speed);
+    return observer.ahead(*model);
+  }
+  double steer_estimate() const noexcept {
+    return model->has_dynamics() ? observer.now().steer : history.steer();
+  }
+  void send(const Command& command) noexcept {
+    history.send(command.steer);
+    observer.send(command);
+  }
 
   /// Without a plan: keeps the wheels' angle and stops.
   void stop(PlannerStatus status) noexcept {
     brakes = true;
     output.status = status;
-    output.command = {history.steer(), 0};
+    output.command = {steer_estimate(), 0};
     output.inputs = {};
     output.predicted = {};
     output.solve = nullptr;
@@ -110,9 +170,8 @@ struct Planner::Implementation {
   }
 
   void plan(const Odometry& odometry) noexcept {
-    const VehicleStart now{odometry.pose, odometry.speed, history.steer()};
-    const VehicleStart start = history.lead_ahead(now);
-    const bool jumps = traits.unlimited_acceleration;
+    const VehicleStart start = start_of_plan(odometry);
+    const bool jumps = traits.unlimited_acceleration || model->has_dynamics();
     const double furthest =
         std::max(std::abs(odometry.speed), 1.0) + (jumps ? 0 : traits.max_acceleration * horizon_time());
     field.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? horizon_time() : 0);
@@ -138,9 +197,10 @@ struct Planner::Implementation {
     output.predicted = states;
     output.state_cost = cost.state;
     output.collision_cost = cost.collision;
-    output.command.steer =
-        std::clamp(static_cast<double>(sent[0]), -options.steer_limit, options.steer_limit);
-    output.command.speed = command_speed(here.speed);
+    output.command = model->has_dynamics()
+                         ? model->command(sent, observer.speed_ahead(*model), options.control_period)
+                         : Command{static_cast<double>(sent[0]), command_speed(here.speed)};
+    output.command.steer = std::clamp(output.command.steer, -options.steer_limit, options.steer_limit);
     if (options.verify_plan && options.stop_when_blocked) slow_down(cost, odometry.speed);
   }
 
@@ -164,7 +224,7 @@ struct Planner::Implementation {
   void check(const Odometry& odometry) noexcept {
     const double now = std::isfinite(odometry.speed) ? std::max(odometry.speed, 0.0) : 0;
     const double fastest = brakes ? std::min(now, options.max_speed) : options.max_speed;
-    detail::check_output(output, {options.steer_limit, fastest, -BackUp::speed}, history.steer());
+    detail::check_output(output, {options.steer_limit, fastest, -BackUp::speed}, steer_estimate());
   }
 
   double horizon_time() const noexcept { return traits.time_step * solver->horizon(); }
@@ -253,7 +313,7 @@ const PlannerOutput& Planner::update(const PlannerInput& input) noexcept {
     p.clearance_map.add(p.cost_map.points());
     p.clearance_map.add(input.obstacles);
   }
-  out.steer_estimate = p.history.steer();
+  out.steer_estimate = p.steer_estimate();
   p.brakes = false;
   const bool blind = !out.scan.accepted || out.scan.invalid == out.scan.beams;
   const bool seen_free = out.scan.accepted && input.scan.ranges.size() > 1 && !blind;
@@ -265,13 +325,14 @@ const PlannerOutput& Planner::update(const PlannerInput& input) noexcept {
     p.plan(input.odometry);
   }
   p.check(input.odometry);
-  p.history.send(out.command.steer);
+  p.send(out.command);
   out.tick_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }
 
 void Planner::reset(std::uint64_t seed) noexcept {
   implementation_->history.reset();
+  implementation_->observer.reset();
   implementation_->back_up.reset();
   implementation_->solver->reset(seed);
   implementation_->cost_map.clear();

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <concepts>
 
 #include "slalom/vehicle/model/model_options.hpp"
@@ -68,7 +66,15 @@ class PathTracking {
   const PathTrackingOptions& options() const { return options_; }
   double time_step() const { return options_.time_step; }  ///< s
   /// What the planner needs to know of the model.
-  VehicleTraits traits() const { return traits_of(options_, plans_speed); }
+  VehicleTraits traits() const {
+    VehicleTraits traits = traits_of(options_, plans_speed);
+    if constexpr (requires { motion_.complete(traits); }) motion_.complete(traits);
+    return traits;
+  }
+  /// The motion model.
+  Motion& motion() noexcept { return motion_; }
+  /// The motion model.
+  const Motion& motion() const noexcept { return motion_; }
 
   /// Sets the maps that rollouts look up.
   void set_maps(const VehicleMaps& maps) noexcept {
@@ -86,9 +92,9 @@ class PathTracking {
     const maps::Point local = maps::inverse_transform(obstacles_.robot(), {s.x, s.y});
     PredictedState made{
         {s.x, s.y, s.yaw}, s.speed, s.steer, {local.x, local.y, s.yaw - obstacles_.robot().yaw}};
-    if constexpr (requires { s.lateral; }) {
+    if constexpr (requires { slip_of(s); }) {
       made.yaw_rate = s.yaw_rate;
-      made.slip = std::asin(std::clamp(s.lateral / std::max(std::abs(s.speed), 0.25), -1.0, 1.0));
+      made.slip = slip_of(s);
     }
     return made;
   }

@@ -15,6 +15,12 @@ template <VehicleProblem P>
 class ProblemModel final : public VehicleModel {
   using State = typename ProblemEvaluator<P>::State;  ///< the problem's state in double
 
+  /// Whether the problem has a motion model with tyres that slip.
+  static constexpr bool dynamic = requires(const P& p, State s) {
+    p.motion().advance(VehicleStart{}, Command{}, 0.1);
+    p.motion().limited(s, 1.0, 1.0);
+  };
+
  public:
   /// A vehicle model of `problem`, whose rollouts use the instruction set `target`.
   explicit ProblemModel(P problem, simd::Target target = simd::active_target())
@@ -38,6 +44,34 @@ class ProblemModel final : public VehicleModel {
     const auto seen = slalom::detail::look_up<P, double>(problem, start_);
     return slalom::detail::stage_cost<P, double>(problem, start_, seen, Input<double, P::inputs>{}, 0)
         .collided;
+  }
+
+  bool has_dynamics() const noexcept override { return dynamic; }
+  VehicleStart advance(const VehicleStart& start, const Command& command,
+                       double duration) const noexcept override {
+    if constexpr (dynamic) {
+      return evaluator_.problem().motion().advance(start, command, duration);
+    } else {
+      return VehicleModel::advance(start, command, duration);
+    }
+  }
+  Command command(std::span<const float> inputs, double speed, double period) const noexcept override {
+    if constexpr (dynamic) {
+      const P& problem = evaluator_.problem();
+      const auto seen = slalom::detail::look_up<P, double>(problem, start_);
+      const double steering = static_cast<double>(inputs[0]), wanted = static_cast<double>(inputs[1]);
+      const double acceleration = problem.motion().limited(start_, seen.speed, wanted);
+      return {problem.motion().steering(start_, steering),
+              problem.motion().commanded_speed(speed, acceleration, period)};
+    } else {
+      return VehicleModel::command(inputs, speed, period);
+    }
+  }
+  void set_friction([[maybe_unused]] double friction) noexcept override {
+    if constexpr (dynamic) evaluator_.problem().motion().set_friction(friction);
+  }
+  void set_slowest([[maybe_unused]] double speed) noexcept override {
+    if constexpr (dynamic) evaluator_.problem().motion().set_slowest(speed);
   }
 
   PredictedCost predict(std::span<const float> inputs,

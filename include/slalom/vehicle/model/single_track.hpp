@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "slalom/maps/command.hpp"
 #include "slalom/vehicle/model/single_track_dynamics.hpp"
 #include "slalom/vehicle/model/vehicle_problem.hpp"
 
@@ -30,12 +31,33 @@ class SingleTrack {
   /// The state at the start.
   State<double> start(const VehicleStart& start, double reference_speed) const noexcept;
 
+  /// Adds what the planner needs to know of tyres and motor.
+  void complete(VehicleTraits& traits) const noexcept;
+
   /// The friction between tyres and road that rollouts assume.
   void set_friction(double friction) noexcept { friction_ = friction; }
+
+  /// The car `duration` (s) later, where this command acts all the time; with a speed that is not finite it
+  /// rolls.
+  VehicleStart advance(const VehicleStart& start, const Command& command, double duration) const noexcept;
+
+  /// The speed (m/s) to command at `speed` (m/s), so that the car's speed control brings about this mean
+  /// acceleration (m/s^2) over `period` (s).
+  double commanded_speed(double speed, double acceleration, double period) const noexcept;
+
+  /// Lowest speed of rollouts, m/s: 0 where the car drives forwards, negative where it may reverse.
+  void set_slowest(double speed) noexcept { slowest_ = speed; }
 
   /// The dynamics.
   const SingleTrackDynamics& dynamics() const noexcept { return dynamics_; }
 
+  /// The steering command (rad) of an input: the whole of it at a standstill, half of it at
+  /// `half_steer_speed`. So the same input turns the car about as much at any speed, where the angles that
+  /// the tyres can use fall with its square.
+  template <class T>
+  SLALOM_INLINE T steering(const State<T>& s, const T& input) const {
+    return input * (T(squared_half_steer_speed_) / (T(squared_half_steer_speed_) + square(s.speed)));
+  }
   /// The acceleration (m/s^2) that takes effect where `wanted` is asked for on a path of this reference speed
   /// (m/s).
   template <class T>
@@ -50,7 +72,8 @@ class SingleTrack {
   /// The state after a step; `reference_speed` (m/s) is that of the path.
   template <class T>
   SLALOM_INLINE State<T> step(const State<T>& s, const T& reference_speed, const Input<T, 2>& u, int) const {
-    return dynamics_.advance(s, u[0], limited(s, reference_speed, u[1]), T(friction_), T(time_step_));
+    return dynamics_.advance(s, dynamics_.lagged(s.steer, steering(s, u[0])),
+                             limited(s, reference_speed, u[1]), T(friction_), T(time_step_));
   }
 
   /// The cost of grip that a state needs beyond the usable share.
@@ -62,9 +85,12 @@ class SingleTrack {
 
  private:
   SingleTrackDynamics dynamics_;
+  Options own_;
   Coefficient friction_;
   Coefficient time_step_, inverse_time_step_;
-  Coefficient slowest_;  ///< m/s
+  Coefficient squared_half_steer_speed_;
+  Coefficient slowest_{};  ///< m/s
+  Coefficient max_deceleration_;
   Coefficient usable_grip_, grip_weight_;
 };
 

@@ -17,6 +17,9 @@ struct SingleTrackState {
   T lateral;    ///< v_y, m/s, sideways velocity of the centre of gravity in the body's frame; v sin(slip)
 };
 
+/// The slip angle of a state, rad, from the body's axis to the direction of travel of the centre of gravity.
+double slip_of(const SingleTrackState<double>& s) noexcept;
+
 /// Single-track ("bicycle") dynamics with slipping tyres, for steps as long as a prediction's, at any speed:
 ///
 ///     v_y' = F_f + F_r - v r          F_f = K_f (sign(v) delta - (v_y + l_f r) / |v|)
@@ -62,14 +65,22 @@ class SingleTrackDynamics {
     return abs(s.speed * s.yaw_rate) * (T(inverse_gravity_) / friction);
   }
 
-  /// The state after `dt` (s) in which this steering command (rad) acts with this acceleration (m/s^2, within
-  /// the limits of motor, brakes and tyres) on ground of this friction.
+  /// The wheels' angle (rad) after a step of the prediction, as the steering's lag would have it.
   template <class T>
-  SLALOM_INLINE SingleTrackState<T> advance(const SingleTrackState<T>& s, const T& steering,
+  SLALOM_INLINE T lagged(const T& steer, const T& command) const {
+    return steer + (command - steer) * T(steer_share_);
+  }
+  /// The same after `dt` (s).
+  double lagged(double steer, double command, double dt) const noexcept;
+
+  /// The state after `dt` (s) in which the wheels turn towards this angle (rad), no faster than their rate,
+  /// with this acceleration (m/s^2, within the limits of motor, brakes and tyres) on ground of this friction.
+  template <class T>
+  SLALOM_INLINE SingleTrackState<T> advance(const SingleTrackState<T>& s, const T& angle,
                                             const T& acceleration, const T& friction, const T& dt) const {
     SingleTrackState<T> next;
     const T reach = T(steer_rate_) * dt;
-    const T turned = clamp((steering - s.steer) * T(steer_share_), -reach, reach);
+    const T turned = clamp(angle - s.steer, -reach, reach);
     next.steer = s.steer + turned;
 
     const T half = T(0.5) * dt, middle_speed = s.speed + half * acceleration;
@@ -156,6 +167,7 @@ class SingleTrackDynamics {
   Coefficient front_sharpness_, rear_sharpness_;  ///< C_S / C
   Coefficient speed_coupling_;                    ///< 1 where the source's linear model turns the force
   Coefficient steer_rate_, steer_share_;
+  double steer_time_constant_;
   Coefficient max_deceleration_, max_power_, switch_speed_;
   Coefficient usable_acceleration_;  ///< over the friction
   Coefficient inverse_gravity_;

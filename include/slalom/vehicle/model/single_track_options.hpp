@@ -25,6 +25,7 @@ struct SingleTrackOptions {
   double mass = 3.74;              ///< m, kg
   double inertia = 0.04712;        ///< I_z, kg m^2, about the vertical axis
   double steer_rate = 3.2;         ///< rad/s, at which the wheels turn at most
+  double half_steer_speed = 5;     ///< m/s, at which the input steers half as much as at a standstill
   double switch_speed = 7.319;     ///< m/s, above it the motor's power limits the acceleration
   double speed_gain = 4.755;       ///< 1/s, acceleration per error of speed of the car's own speed control
   double brake_gain = 19.02;       ///< 1/s, the same when braking
@@ -57,6 +58,8 @@ void visit_options(Options& o, Visit&& visit) {
   number(o.inertia, "inertia", "I_z", "kg m^2", "model `single_track`: about the vertical axis", 1e-6, 1e6);
   number(o.steer_rate, "steer_rate", "", "rad/s", "model `single_track`: rate of the wheels' angle at most",
          1e-2, 100);
+  number(o.half_steer_speed, "half_steer_speed", "", "m/s",
+         "model `single_track`: speed at which an input steers half as much as at a standstill", 0.1, 1000);
   number(o.switch_speed, "switch_speed", "", "m/s",
          "model `single_track`: speed above which the motor's power limits the acceleration", 0.1, 100);
   number(o.speed_gain, "speed_gain", "", "1/s",

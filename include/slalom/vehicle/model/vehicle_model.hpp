@@ -5,6 +5,7 @@
 
 #include "slalom/core/batch_evaluator.hpp"
 #include "slalom/core/instruction_set.hpp"
+#include "slalom/maps/command.hpp"
 #include "slalom/vehicle/model/vehicle_options.hpp"
 #include "slalom/vehicle/model/vehicle_problem.hpp"
 
@@ -34,6 +35,20 @@ class VehicleModel {
   virtual const BatchEvaluator& evaluator() const noexcept = 0;
   /// Whether the start itself collides.
   virtual bool start_collides() const noexcept = 0;
+  /// Whether the model predicts the car by its tyres and speed control: whether the next four functions mean
+  /// anything.
+  virtual bool has_dynamics() const noexcept { return false; }
+  /// The car `duration` (s) after `start`, where this command acts; with a speed that is not finite it rolls.
+  virtual VehicleStart advance(const VehicleStart& start, const Command& command,
+                               double duration) const noexcept;
+  /// The command for `period` (s) to a car at `speed` (m/s) by which the sequence begins; `inputs` as in
+  /// `predict`.
+  virtual Command command(std::span<const float> inputs, double speed, double period) const noexcept;
+  /// The friction that predictions assume from now on.
+  virtual void set_friction(double friction) noexcept;
+  /// The lowest speed of predictions from now on, m/s: negative where the car may reverse.
+  virtual void set_slowest(double speed) noexcept;
+
   /// The states (one more than steps) of one control sequence, [step][input], and its cost. A car that
   /// collides at the start must be able to leave, so the states before the first free one do not count as a
   /// collision.

@@ -46,6 +46,7 @@ enum class ObstacleMap {
 struct VehicleTraits {
   double time_step = 0;         ///< s, of the prediction, > 0
   double wheelbase = 0;         ///< m, > 0
+  double rear_length = 0;       ///< m, centre of gravity to rear axle
   double dead_time = 0;         ///< s, of the steering, which the planner compensates; 0 if the model does
   double max_acceleration = 0;  ///< m/s^2, of the predicted speed
   double max_deceleration = 0;  ///< m/s^2, with which the car brakes
@@ -56,6 +57,11 @@ struct VehicleTraits {
   ObstacleMap obstacle_map = ObstacleMap::inflated;  ///< what the map of obstacles holds
   double clearance_reach = 0;                        ///< m
   BodyOptions body;                                  ///< by which obstacles are inflated
+  /// Where the model has tyres that slip: the friction (> 0) that its options give and the share of it that
+  /// plans may use. The planner then predicts the start with the model, and lowers the path's speeds to what
+  /// the car can do.
+  double friction = 0, usable_grip = 0;
+  double switch_speed = 0;  ///< m/s, with tyres that slip: above it the motor's power is the limit
 };
 
 /// The traits of models that take these options as they are.

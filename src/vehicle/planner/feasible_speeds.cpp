@@ -1,0 +1,54 @@
+#include "vehicle/planner/feasible_speeds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "slalom/vehicle/course/speed_profile.hpp"
+
+namespace slalom::vehicle::detail {
+
+FeasibleSpeeds::FeasibleSpeeds(std::span<const maps::ReferencePoint> path) {
+  std::vector<maps::Point> points;
+  for (const maps::ReferencePoint& point : path) {
+    points.push_back({point.x, point.y});
+    own_.push_back(point.speed);
+  }
+  PathGeometry geometry = path_geometry(points);
+  curvature_ = std::move(geometry.curvature);
+  for (double& each : curvature_) each = std::abs(each);
+  gap_ = std::move(geometry.step);
+  if (!geometry.closed) gap_.back() = 0;
+  speed_ = own_;
+}
+
+void FeasibleSpeeds::update(const DrivingLimits& limits) noexcept {
+  const std::size_t n = speed_.size();
+  for (std::size_t i = 0; i < n; ++i)
+    speed_[i] = std::min(own_[i], std::sqrt(limits.grip / std::max(curvature_[i], 1e-6)));
+  // The tyres' force is shared between turning and accelerating.
+  const auto left = [&](std::size_t i) {
+    const double turning = speed_[i] * speed_[i] * curvature_[i];
+    return std::sqrt(std::max(limits.grip * limits.grip - turning * turning, 0.0));
+  };
+  const auto reach = [&](std::size_t from, std::size_t to, double gap, double strength) {
+    const double a = std::min(strength, left(from));
+    speed_[to] = std::min(speed_[to], std::sqrt(speed_[from] * speed_[from] + 2 * a * gap));
+  };
+  // The slowest point keeps its speed, so one round from it is exact.
+  const auto slowest =
+      static_cast<std::size_t>(std::min_element(speed_.begin(), speed_.end()) - speed_.begin());
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t from = (slowest + k) % n, to = (from + 1) % n;
+    if (!(gap_[from] > 0)) continue;
+    const double power =
+        limits.acceleration * std::min(1.0, limits.switch_speed / std::max(speed_[from], 0.1));
+    reach(from, to, gap_[from], power);
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t from = (slowest + n - k) % n, to = (from + n - 1) % n;
+    if (gap_[to] > 0) reach(from, to, gap_[to], limits.braking);
+  }
+}
+
+}  // namespace slalom::vehicle::detail

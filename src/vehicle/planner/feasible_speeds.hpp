@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "slalom/maps/reference_path.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// What a car can do on a ground.
+struct DrivingLimits {
+  double grip = 9;          ///< m/s^2, of the tyres in any direction
+  double acceleration = 9;  ///< m/s^2, of the motor below `switch_speed`
+  double braking = 9;       ///< m/s^2
+  double switch_speed = 7;  ///< m/s, above it the motor's power is the limit
+};
+
+/// The highest speeds along a path that a car can drive, no higher than the path's own:
+///
+///     v^2 |k| <= grip,   -braking <= dv/dt <= acceleration,   (v^2 k)^2 + (dv/dt)^2 <= grip^2
+///
+/// by a pass forward and one backward (Heilmeier et al. 2020, Sec. 4; see speed_profile). At every point they
+/// are slow enough for all that follows. Where feasible_speeds is computed once, this follows the
+/// friction while the car drives.
+class FeasibleSpeeds {
+ public:
+  explicit FeasibleSpeeds(std::span<const maps::ReferencePoint> path);
+
+  /// Computes the speeds. Allocates nothing.
+  void update(const DrivingLimits& limits) noexcept;
+
+  /// m/s, a point each; those of the path before the first update.
+  std::span<const double> speeds() const noexcept { return speed_; }
+
+ private:
+  std::vector<double> own_, speed_;  ///< m/s
+  std::vector<double> curvature_;    ///< 1/m
+  std::vector<double> gap_;          ///< m, from each point to the next; 0 where the path is not joined
+};
+
+}  // namespace slalom::vehicle::detail
