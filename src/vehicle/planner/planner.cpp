@@ -12,66 +12,14 @@
 #include "vehicle/planner/command_history.hpp"
 #include "vehicle/planner/feasible_speeds.hpp"
 #include "vehicle/planner/final_check.hpp"
+#include "vehicle/planner/map_options.hpp"
 #include "vehicle/planner/state_observer.hpp"
 
 namespace slalom::vehicle {
 
 namespace {
 
-using detail::BackUp;
-using detail::CommandHistory;
-using detail::FeasibleSpeeds;
-using detail::StateObserver;
-
-maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const VehicleTraits& traits) {
-  maps::LocalCostMapOptions made;
-  if (options.published.maps) {
-    made = maps::published_cost_map();
-  } else {
-    const BodyOptions& body = traits.body;
-    made.footprint = {body.front, body.rear, body.width / 2, body.width / 2};
-    made.margin = body.margin;
-    made.soft_margin = body.soft_margin;
-    made.soft = body.soft_cost;
-  }
-  made.laser = {options.laser_x, options.laser_y, options.laser_yaw};
-  made.outside = -1;  // so that the problem can tell "off the map" from "occupied"
-  return made;
-}
-
-/// With a map as long as a plan for a car with slipping tyres, whose plans are longer.
-maps::ClearanceMapOptions clearance_options(const VehicleTraits& traits, double reach) {
-  constexpr double behind = 3, widest = 8;  // m
-  maps::ClearanceMapOptions made;
-  if (traits.obstacle_map == ObstacleMap::clearance) made.reach = traits.clearance_reach;
-  if (traits.friction > 0) {
-    made.length_x = reach + behind;
-    made.center_x = 0.5 * (reach - behind);
-    made.length_y = 2 * std::min(reach, widest);
-  }
-  return made;
-}
-
-maps::ReferenceFieldOptions field_options(const PlannerOptions& options, const VehicleTraits& traits,
-                                          double reach) {
-  if (options.published.maps) return maps::published_reference_field();
-  maps::ReferenceFieldOptions made;
-  if (traits.friction > 0) {
-    made.length_x = made.length_y = 2 * reach + 1;
-    made.spacing = std::max(made.spacing, (reach + 1) / 200);
-    made.points = static_cast<int>((reach + 1) / made.spacing);
-  }
-  return made;
-}
-
-/// m, how far a plan of this duration (s) can get.
-double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
-                  double duration) {
-  constexpr double least = 6, most = 30;
-  double fastest = 0;
-  for (const maps::ReferencePoint& point : path) fastest = std::max(fastest, point.speed);
-  return std::clamp(std::min(fastest, options.max_speed) * duration + 1.5, least, most);
-}
+using namespace detail;
 
 /// The path with the speeds that the options allow.
 std::vector<maps::ReferencePoint> limited(std::span<const maps::ReferencePoint> path,

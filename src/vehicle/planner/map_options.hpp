@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+
+#include "slalom/maps/clearance_map.hpp"
+#include "slalom/maps/local_cost_map.hpp"
+#include "slalom/maps/reference_field.hpp"
+#include "slalom/vehicle/model/vehicle_problem.hpp"
+#include "slalom/vehicle/planner/planner_options.hpp"
+
+/// The options of the planner's maps.
+namespace slalom::vehicle::detail {
+
+/// m, how far a plan of this duration (s) can get.
+double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options, double duration);
+
+maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const VehicleTraits& traits);
+
+/// As long as a plan (`reach`, m) for a car with slipping tyres, whose plans are longer.
+maps::ClearanceMapOptions clearance_options(const VehicleTraits& traits, double reach);
+
+/// As large as a plan's reach (m) for a car with slipping tyres.
+maps::ReferenceFieldOptions field_options(const PlannerOptions& options, const VehicleTraits& traits,
+                                          double reach);
+
+}  // namespace slalom::vehicle::detail
