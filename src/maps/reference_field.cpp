@@ -31,8 +31,8 @@ void check_reference_path(std::span<const ReferencePoint> path) {
         detail::require(false, ("reference path: point " + std::to_string(i) + ": " + field).c_str(), value,
                         rule);
     };
-    check("x", path[i].x, std::abs(path[i].x) <= 1e6, "finite, within 1e6 m");
-    check("y", path[i].y, std::abs(path[i].y) <= 1e6, "finite, within 1e6 m");
+    check("x", path[i].x, std::abs(path[i].x) <= 1e7, "finite, within 1e7 m");
+    check("y", path[i].y, std::abs(path[i].y) <= 1e7, "finite, within 1e7 m");
     check("yaw", path[i].yaw, std::isfinite(path[i].yaw), "finite");
     check("speed", path[i].speed, std::isfinite(path[i].speed) && path[i].speed >= 0,
           "finite and not negative");

@@ -41,6 +41,8 @@ inline std::vector<OptionSet> option_sets() {
   for (const char* name : solver_names()) sets.push_back({name, solver_options(name)});
   for (const char* name : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"})
     sets.push_back({std::string(name) + "_published", published_solver_options(name)});
+  for (OptionSet& s : sets)  // the published sv_mpc promises no bounds
+    if (bool* const clamp = s.options.find<bool>("clamp_solution")) *clamp = true;
   sets.push_back({"svg_mppi_nominal_only", SvgMppiOptions{.adapt_covariance = false}});
   sets.push_back({"svg_mppi_covariance_only", SvgMppiOptions{.use_nominal = false}});
   sets.push_back({"svg_mppi_neither", SvgMppiOptions{.use_nominal = false, .adapt_covariance = false}});

@@ -143,5 +143,27 @@ TEST_P(SolverRuntimeContract, WarmStartFollowsTheClock) {
 INSTANTIATE_TEST_SUITE_P(Solvers, SolverRuntimeContract, ::testing::ValuesIn(option_sets()),
                          [](const auto& set) { return set.param.name; });
 
+/// The published program does not clamp what its particles send.
+TEST(SvMpc, OnlyTheUnclampedSolutionLeavesTheBounds) {
+  const auto furthest = [](bool clamp) {
+    SvMpcOptions options = published_sv_mpc();
+    options.published.clamp_solution = clamp;
+    const auto solver = make_solver(options, 1);
+    EXPECT_EQ(solver->keeps_bounds(), clamp);
+    const auto evaluator = FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
+      return std::pair(-100.0 * static_cast<double>(batch.at(0, 0, k)), false);
+    });
+    float most = 0;
+    for (int i = 0; i < 20; ++i)
+      for (const float u : solver->solve(evaluator, {}).inputs) {
+        EXPECT_TRUE(std::isfinite(u));
+        most = std::max(most, std::abs(u));
+      }
+    return most;
+  };
+  EXPECT_LE(furthest(true), 0.45f);
+  EXPECT_GT(furthest(false), 0.45f);
+}
+
 }  // namespace
 }  // namespace slalom

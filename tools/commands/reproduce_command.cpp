@@ -48,8 +48,8 @@ std::string course_or_fallback(const Arguments& arguments, std::FILE* words) {
 /// The rows of a section beside the authors' results.
 void print_section(const std::string& section, const Evaluated& evaluated,
                    const std::vector<Reference>& references, std::FILE* out) {
-  std::fprintf(out, "\n%s\n%-32s %-2s %5s  %-26s %-26s %-22s %-22s %s\n", section.c_str(), "", "", "laps",
-               "MS (95 %)", "published MS", "collision rate, %", "published", "verdict");
+  std::fprintf(out, "\n%s\n%-32s %-2s %5s  %-26s %-26s %-9s %-22s %-22s %s\n", section.c_str(), "", "",
+               "laps", "MS (95 %)", "published MS", "released", "collision rate, %", "published", "verdict");
   const auto cell = [](double value, const evaluation::Interval& i, double scale, int digits) {
     char text[80];
     std::snprintf(text, sizeof text, "%.*f (%.*f - %.*f)", digits, scale * value, digits, scale * i.low,
@@ -64,9 +64,12 @@ void print_section(const std::string& section, const Evaluated& evaluated,
         const auto& e = evaluated.evaluation.experiments[index];
         if (e.scenario != scenario || !drives(e, row)) continue;
         const auto& theirs = references[index].published;
-        std::fprintf(out, "%-32s %-2s %5d  %-26s %-26s %-22s %-22s %s\n", row.name.c_str(), scenario, r.laps,
-                     cell(r.ms_mean, r.ms_ci, 1, 3).c_str(),
-                     theirs ? cell(theirs->ms_mean, theirs->ms_ci, 1, 3).c_str() : "-",
+        char released[16] = "-";
+        if (references[index].released)
+          std::snprintf(released, sizeof released, "%.3g", references[index].released->ms_mean);
+        std::fprintf(out, "%-32s %-2s %5d  %-26s %-26s %-9s %-22s %-22s %s\n", row.name.c_str(), scenario,
+                     r.laps, cell(r.ms_mean, r.ms_ci, 1, 3).c_str(),
+                     theirs ? cell(theirs->ms_mean, theirs->ms_ci, 1, 3).c_str() : "-", released,
                      r.collision_rate ? cell(*r.collision_rate, *r.collision_rate_ci, 100, 1).c_str() : "-",
                      theirs && theirs->collision_rate
                          ? cell(*theirs->collision_rate, *theirs->collision_rate_ci, 100, 1).c_str()

@@ -21,6 +21,7 @@ struct PaperRow {
   std::vector<std::pair<std::string, std::string>> set = {};
   std::string log_pt = {}, log_oa = {};  ///< below the folder of the authors' logs
   std::string lockstep = {};  ///< "svg_mppi": svg_mppi_pt.csv, svg_mppi_oa.csv of the lockstep logs
+  std::string released = {};  ///< row of paper_program_laps
   std::string note = {};      ///< a remark on the authors' figure
 
   const std::string& log(const std::string& scenario) const { return scenario == "pt" ? log_pt : log_oa; }
@@ -37,13 +38,28 @@ std::vector<evaluation::Experiment> paper_experiments(const std::vector<std::str
 /// Whether an experiment is that of a row.
 bool drives(const evaluation::Experiment& experiment, const PaperRow& row);
 
-/// Reference results of an experiment: logs of the authors and of a lockstep run.
+/// What a verdict begins with; figures and reasons follow after a colon.
+namespace verdicts {
+inline constexpr const char* log = "agrees with the log";  ///< no significant difference
+/// A significant difference from the log, and none from the paper's program in this simulator.
+inline constexpr const char* released = "agrees with the paper's program, not with the log";
+inline constexpr const char* neither = "disagrees with both";
+/// A significant difference from the log; the paper's program has no laps of the row.
+inline constexpr const char* not_log = "disagrees with the log";
+inline constexpr const char* none = "not compared";
+}  // namespace verdicts
+
+/// Reference results of an experiment: logs of the authors, of the paper's program in this simulator, and of
+/// a lockstep run.
 struct Reference {
-  std::optional<evaluation::LapLog> log, lockstep_log;
-  std::optional<evaluation::LogComparison> published, lockstep;
-  std::string verdict;  ///< "inside", "outside: ...", "undecided: ..." or "not compared: ..."
+  std::optional<evaluation::LapLog> log, released_log, lockstep_log;
+  std::optional<evaluation::LogComparison> published, released, lockstep;
+  std::string verdict;  ///< one of `verdicts`, and figures
   std::string note;     ///< why, where it is known
 };
+
+/// The verdict on `published`, `released` and `lockstep`; `collision_rate` is that of the measured laps.
+std::string verdict_of(const Reference& reference, double collision_rate);
 
 /// Folders of logs, and which logs are missing.
 struct LogFolders {
@@ -61,7 +77,7 @@ std::vector<Reference> find_references(const LogFolders& folders,
                                        const std::vector<evaluation::Experiment>& experiments,
                                        const std::vector<evaluation::LapRow>& rows);
 
-/// `published`, `lockstep`, `verdict` and `note` of an entry of a summary's results.
+/// `published`, `paper_program`, `lockstep`, `verdict` and `note` of an entry of a summary's results.
 void add_reference(Json& result, const Reference& reference);
 
 }  // namespace slalom::tools

@@ -104,8 +104,10 @@ std::pair<std::string, std::string> verdict_parts(const std::string& verdict) {
 }
 
 std::string pill(const std::string& kind) {
-  const bool coloured = kind == "inside" || kind == "outside";
-  return "<span class=\"pill " + (coloured ? kind : std::string()) + "\">" + escaped(kind) + "</span>";
+  const std::string colour = kind == verdicts::log                                    ? "inside"
+                             : kind == verdicts::neither || kind == verdicts::not_log ? "outside"
+                                                                                      : "";
+  return "<span class=\"pill " + colour + "\">" + escaped(kind) + "</span>";
 }
 
 const char* heading(const std::string& section) {
@@ -131,8 +133,10 @@ std::string table(const Report& report, const std::string& section, const std::s
     const std::string none = "<td>\xE2\x80\x93</td>";
     if (compared)
       rows += reference ? "<td>" + with_interval(reference->published->ms_mean, reference->published->ms_ci) +
+                              "</td><td>" +
+                              (reference->released ? number(reference->released->ms_mean) : "\xE2\x80\x93") +
                               "</td>"
-                        : none;
+                        : none + none;
     if (obstacles) rows += "<td>" + rate_cell(r.collision_rate, r.collision_rate_ci) + "</td>";
     if (compared && obstacles)
       rows += reference ? "<td>" +
@@ -144,11 +148,11 @@ std::string table(const Report& report, const std::string& section, const std::s
             "</td><td>" + std::to_string(r.timeouts) + "</td>";
     if (compared) rows += "<td class=\"words\">" + pill(kind) + "</td>";
     rows += "</tr>\n";
-    if (!why.empty()) rows += "<tr class=\"why\"><td colspan=\"10\">" + escaped(why) + "</td></tr>\n";
+    if (!why.empty()) rows += "<tr class=\"why\"><td colspan=\"11\">" + escaped(why) + "</td></tr>\n";
   }
   if (rows.empty()) return {};
   std::string head = "<th></th><th>laps</th><th>MS (95 %)</th>";
-  if (compared) head += "<th>published MS</th>";
+  if (compared) head += "<th>published MS</th><th>paper's program, MS</th>";
   if (obstacles) head += "<th>collision rate, %</th>";
   if (compared && obstacles) head += "<th>published, %</th>";
   head += "<th>success, %</th><th>lap, s</th><th>timeouts</th>";
@@ -173,9 +177,11 @@ std::string tiles(const Report& report) {
   for (const Reference& r : report.references)
     if (r.published) ++kinds[verdict_parts(r.verdict).first];
   if (!kinds.empty())
-    out += tile(std::to_string(kinds["inside"]) + " \xC2\xB7 " + std::to_string(kinds["outside"]) +
-                    " \xC2\xB7 " + std::to_string(kinds["undecided"]),
-                "experiments inside, outside and undecided, compared with the published laps");
+    out +=
+        tile(std::to_string(kinds[verdicts::log]) + " \xC2\xB7 " + std::to_string(kinds[verdicts::released]) +
+                 " \xC2\xB7 " + std::to_string(kinds[verdicts::neither] + kinds[verdicts::not_log]),
+             "experiments that agree with the published log, with the paper's program but not the log, and "
+             "with neither");
   for (const char* scenario : {"pt", "oa"}) {
     const auto row = std::find_if(report.rows.begin(), report.rows.end(), [&](const ReportRow& r) {
       return report.experiment(r).scenario == scenario && report.experiment(r).method == "svg_mppi" &&

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "slalom/core/math.hpp"
@@ -19,6 +21,10 @@ struct GridAxis {
 /// that hold the values for "outside", so an index that is out of range, or made from a NaN, is clamped into
 /// the ring and needs no mask. Storage: (rows + 2) x 2^stride_log2 cells, 2^stride_log2 >= columns + 2, the
 /// ring included.
+///
+/// Lanes are float32, which at 1e6 m resolves 0.06 m. So rollouts look up a view that is `relative_to` a
+/// point near the robot, and their positions are relative to it. That point itself then falls into the same
+/// cell in lanes as in double, even where it lies on the edge between two cells.
 template <int Layers>
 class GridView {
  public:
@@ -35,13 +41,17 @@ class GridView {
         resolution_(resolution),
         center_x_(center_x),
         center_y_(center_y),
-        rows_axis_{-1.0 / resolution, (center_x + 0.5 * resolution * rows) / resolution + 1.0},
-        columns_axis_{-1.0 / resolution, (center_y + 0.5 * resolution * columns) / resolution + 1.0},
         last_row_(rows + 1),
-        last_column_(columns + 1),
-        scale_(rows_axis_.scale),
-        offset_x_(rows_axis_.offset),
-        offset_y_(columns_axis_.offset) {}
+        last_column_(columns + 1) {
+    set_origin(0, 0);
+  }
+
+  /// The same cells for look-ups at positions relative to (x, y), m.
+  GridView relative_to(double x, double y) const noexcept {
+    GridView view = *this;
+    view.set_origin(origin_x_ + x, origin_y_ + y);
+    return view;
+  }
 
   /// The first cell of the ring, at row -1 and column -1.
   const float* cells() const noexcept { return cells_; }
@@ -51,9 +61,9 @@ class GridView {
   int columns() const noexcept { return columns_; }
   /// Edge of a cell, m.
   double resolution() const noexcept { return resolution_; }
-  /// Centre of the grid, x, m.
+  /// Centre of the grid, x, m, in the frame of the map whatever the view is relative to.
   double center_x() const noexcept { return center_x_; }
-  /// Centre of the grid, y, m.
+  /// Centre of the grid, y, m, in the frame of the map.
   double center_y() const noexcept { return center_y_; }
   const GridAxis& rows_axis() const noexcept { return rows_axis_; }        ///< x to rows, ring included
   const GridAxis& columns_axis() const noexcept { return columns_axis_; }  ///< y to columns, the same
@@ -67,7 +77,8 @@ class GridView {
   /// The storage index of the cell at (x, y), in the ring for positions outside.
   template <Scalar T>
   std::ptrdiff_t index(T x, T y) const {
-    const int row = axis_index(x, center_x_, rows_), column = axis_index(y, center_y_, columns_);
+    const int row = axis_index(x + static_cast<T>(origin_x_), center_x_, rows_),
+              column = axis_index(y + static_cast<T>(origin_y_), center_y_, columns_);
     return row == 0 || column == 0 ? 0 : (static_cast<std::ptrdiff_t>(row) << stride_log2_) + column;
   }
   /// Cell indices of positions, one for each lane.
@@ -87,6 +98,26 @@ class GridView {
   }
 
  private:
+  void set_origin(double x, double y) noexcept {
+    origin_x_ = x;
+    origin_y_ = y;
+    rows_axis_ = axis(x, center_x_, rows_);
+    columns_axis_ = axis(y, center_y_, columns_);
+    scale_ = rows_axis_.scale;
+    offset_x_ = rows_axis_.offset;
+    offset_y_ = columns_axis_.offset;
+  }
+  /// For positions relative to `origin`. Where the origin lies on an edge between cells, `axis_index` decides
+  /// in double; the offset, which is the origin's position in cells, is moved by one float32 to agree.
+  GridAxis axis(double origin, double center, int count) const noexcept {
+    const double offset = ((center - origin) + 0.5 * resolution_ * count) / resolution_ + 1.0;
+    const int cell = axis_index(origin, center, count);
+    if (cell == 0) return {-1.0 / resolution_, offset};
+    const float rounded = static_cast<float>(offset), first = static_cast<float>(cell),
+                last = std::nextafter(static_cast<float>(cell + 1), 0.0f);
+    if (rounded >= first && rounded <= last) return {-1.0 / resolution_, offset};
+    return {-1.0 / resolution_, static_cast<double>(std::clamp(rounded, first, last))};
+  }
   /// Index along one axis, 1 ... count inside, 0 outside. In double this is exactly the order of operations
   /// of grid_map 1.6.4 (getIndexFromPosition and its inside test).
   template <Scalar T>
@@ -117,6 +148,8 @@ class GridView {
   double resolution_ = 1;
   double center_x_ = 0;
   double center_y_ = 0;
+  double origin_x_ = 0;  ///< m, what positions are relative to
+  double origin_y_ = 0;
   GridAxis rows_axis_, columns_axis_;
   int last_row_ = 1, last_column_ = 1;  ///< of the ring; kept to be broadcast from memory
   Coefficient scale_, offset_x_, offset_y_;

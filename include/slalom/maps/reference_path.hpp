@@ -47,7 +47,7 @@ void visit_reference_outside(Outside& outside, Visit&& visit) {
 }
 
 /// Throws std::invalid_argument, naming the point, unless there are 3 to 10 million points, all within
-/// 1e6 m of the origin along each axis, with a finite yaw and a finite speed >= 0.
+/// 1e7 m of the origin along each axis, with a finite yaw and a finite speed >= 0.
 void check_reference_path(std::span<const ReferencePoint> path);
 
 }  // namespace slalom::maps

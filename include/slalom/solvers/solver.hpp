@@ -71,8 +71,12 @@ class Solver {
   /// Number of inputs of a step.
   virtual int inputs() const noexcept = 0;
 
-  /// Solves from the evaluator's current state. Whatever happens, the result's inputs are finite and within
-  /// bounds.
+  /// Whether the inputs of every result are within the bounds. False only for `sv_mpc` as published, whose
+  /// program does not clamp what it sends (`PublishedSvMpc::clamp_solution`).
+  virtual bool keeps_bounds() const noexcept { return true; }
+
+  /// Solves from the evaluator's current state. Whatever happens, the result's inputs are finite and, if the
+  /// solver `keeps_bounds`, within the bounds.
   virtual const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept = 0;
 
   /// Forgets the last solution and all other state, and restarts the random numbers from `seed`.

@@ -50,6 +50,7 @@ class SvMpcSolver final : public SolverBase {
   }
 
   const char* name() const noexcept override { return SvMpcOptions::method; }
+  bool keeps_bounds() const noexcept override { return options_.published.clamp_solution; }
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
@@ -231,7 +232,7 @@ class SvMpcSolver final : public SolverBase {
     } else {
       std::copy(mean_.begin(), mean_.end(), solution_.begin());
     }
-    clamp(solution_.data());
+    if (options_.published.clamp_solution) clamp(solution_.data());
   }
 
   SvMpcOptions options_;

@@ -101,6 +101,7 @@ SvMpcOptions published_sv_mpc() {
                         .subtract_minimum = false,
                         .gradient_floor = 1e-10,
                         .clamp_particles = false,
+                        .clamp_solution = false,
                         .dimensionless_variance = true}};
 }
 

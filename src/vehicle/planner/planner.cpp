@@ -12,6 +12,7 @@
 #include "vehicle/planner/command_history.hpp"
 #include "vehicle/planner/feasible_speeds.hpp"
 #include "vehicle/planner/final_check.hpp"
+#include "vehicle/planner/local_frame.hpp"
 #include "vehicle/planner/map_options.hpp"
 #include "vehicle/planner/state_observer.hpp"
 
@@ -35,7 +36,7 @@ std::vector<maps::ReferencePoint> limited(std::span<const maps::ReferencePoint> 
 /// Whether odometry is a number and as large as that of a car may be.
 bool plausible(const Odometry& o) {
   return std::abs(o.pose.x) <= Odometry::furthest && std::abs(o.pose.y) <= Odometry::furthest &&
-         std::abs(o.pose.yaw) <= Odometry::furthest && std::abs(o.speed) <= Odometry::fastest;
+         std::abs(o.pose.yaw) <= Odometry::most_turned && std::abs(o.speed) <= Odometry::fastest;
 }
 
 constexpr double gravity = 9.81;  // m/s^2
@@ -49,6 +50,7 @@ double delay_of(const PlannerOptions& options, const VehicleTraits& traits) {
 
 struct Planner::Implementation {
   PlannerOptions options;
+  maps::Point origin;  ///< of the frame that all below works in, in the map frame
   std::unique_ptr<VehicleModel> model;
   VehicleTraits traits;
   std::unique_ptr<Solver> solver;
@@ -60,7 +62,8 @@ struct Planner::Implementation {
   StateObserver observer;  ///< of models with tyres that slip; others have `history`
   CommandHistory history;
   BackUp back_up;
-  bool brakes = false;  ///< this update brakes: the command must not be faster than the car
+  double planned_steer = 0;  ///< rad, before it was limited
+  bool brakes = false;       ///< this update brakes: the command must not be faster than the car
   std::vector<PredictedState> states, candidate_states;
   std::vector<float> candidate;
   PlannerOutput output;
@@ -68,14 +71,15 @@ struct Planner::Implementation {
   Implementation(const PlannerOptions& o, std::unique_ptr<VehicleModel> m,
                  std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> s)
       : options(o),
+        origin(detail::grid_origin(path)),
         model(std::move(m)),
         traits(model->traits()),
         solver(std::move(s)),
         cost_map(cost_map_options(o, traits)),
         reach(plan_reach(path, o, traits.time_step * solver->horizon())),
         clearance_map(clearance_options(traits, reach)),
-        field(limited(path, o, traits), field_options(o, traits, reach)),
-        speeds(limited(path, o, traits)),
+        field(limited(detail::relative(path, origin), o, traits), field_options(o, traits, reach)),
+        speeds(limited(detail::relative(path, origin), o, traits)),
         observer(o.control_period, o.latency, traits.dead_time),
         history(o.control_period, delay_of(o, traits), o.observer_time_constant, traits.wheelbase),
         states(static_cast<std::size_t>(solver->horizon()) + 1),
@@ -102,7 +106,7 @@ struct Planner::Implementation {
     return model->has_dynamics() ? observer.now().steer : history.steer();
   }
   void send(const Command& command) noexcept {
-    history.send(command.steer);
+    history.send(observed_steer(command));
     observer.send(command);
   }
 
@@ -117,7 +121,9 @@ struct Planner::Implementation {
     output.state_cost = output.collision_cost = 0;
   }
 
-  void plan(const Odometry& odometry) noexcept {
+  void plan(Odometry odometry) noexcept {
+    odometry.pose.x -= origin.x;
+    odometry.pose.y -= origin.y;
     const VehicleStart start = start_of_plan(odometry);
     const bool jumps = traits.unlimited_acceleration || model->has_dynamics();
     const double furthest =
@@ -148,8 +154,17 @@ struct Planner::Implementation {
     output.command = model->has_dynamics()
                          ? model->command(sent, observer.speed_ahead(*model), options.control_period)
                          : Command{static_cast<double>(sent[0]), command_speed(here.speed)};
-    output.command.steer = std::clamp(output.command.steer, -options.steer_limit, options.steer_limit);
+    planned_steer = without_turns(output.command.steer);
+    output.command.steer = std::clamp(planned_steer, -options.steer_limit, options.steer_limit);
     if (options.verify_plan && options.stop_when_blocked) slow_down(cost, odometry.speed);
+    to_map_frame(states);
+  }
+
+  void to_map_frame(std::span<PredictedState> predicted) const noexcept {
+    for (PredictedState& state : predicted) {
+      state.pose.x += origin.x;
+      state.pose.y += origin.y;
+    }
   }
 
   /// Brakes where every plan collides. Where the start itself collides, braking does not help: the car
@@ -173,6 +188,20 @@ struct Planner::Implementation {
     const double now = std::isfinite(odometry.speed) ? std::max(odometry.speed, 0.0) : 0;
     const double fastest = brakes ? std::min(now, options.max_speed) : options.max_speed;
     detail::check_output(output, {options.steer_limit, fastest, -BackUp::speed}, steer_estimate());
+  }
+
+  /// The paper's program sends the planned angle less whole turns, as a float32.
+  double without_turns(double angle) const noexcept {
+    if (!options.published.wrap_steer) return angle;
+    return static_cast<double>(static_cast<float>(std::atan2(std::sin(angle), std::cos(angle))));
+  }
+
+  /// The angle that the observer follows: that of the command. The paper's program does not limit it; if only
+  /// the limit made the difference, it is that of the plan.
+  double observed_steer(const Command& command) const noexcept {
+    if (!options.published.wrap_steer || output.inputs.empty()) return command.steer;
+    const double limited_steer = std::clamp(planned_steer, -options.steer_limit, options.steer_limit);
+    return command.steer == limited_steer ? planned_steer : command.steer;
   }
 
   double horizon_time() const noexcept { return traits.time_step * solver->horizon(); }
@@ -243,6 +272,7 @@ Planner::Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> mo
                                 " inputs per step, must have " + std::to_string(model->inputs()) +
                                 ", like the vehicle model");
   }
+  maps::check_reference_path(path);
   implementation_ = std::make_unique<Implementation>(options, std::move(model), path, std::move(solver));
 }
 
@@ -289,7 +319,10 @@ void Planner::reset(std::uint64_t seed) noexcept {
 
 PredictedCost Planner::predict(std::span<const float> inputs,
                                std::span<PredictedState> states) const noexcept {
-  return implementation_->model->predict(inputs, states);
+  const PredictedCost cost = implementation_->model->predict(inputs, states);
+  const auto steps = inputs.size() / static_cast<std::size_t>(implementation_->model->inputs());
+  implementation_->to_map_frame(states.first(steps + 1));
+  return cost;
 }
 
 const Solver& Planner::solver() const noexcept {

@@ -80,6 +80,7 @@ vehicle::PlannerOptions planner_options() {
   options.verify_plan = false;
   options.back_up = false;
   options.published.maps = true;
+  options.published.wrap_steer = true;
   return options;
 }
 

@@ -88,6 +88,9 @@ struct PublishedSvMpc {
   bool subtract_minimum = true;  ///< as in `PublishedSvgMppi`; program: false
   double gradient_floor = 0;     ///< as in `PublishedSvgMppi`; program: 1e-10
   bool clamp_particles = true;   ///< keep particles within the bounds; program: false
+  /// Keep the sequence that is returned within the bounds. Program: false; then it may leave them as far as
+  /// the particles do, and `Solver::keeps_bounds` is false.
+  bool clamp_solution = true;
   /// Measure the prior's new variances in units of the old, but use them as variances all the same. Program:
   /// true.
   bool dimensionless_variance = false;
@@ -194,6 +197,9 @@ void visit_options(Options& p, Visit&& visit) {
                     .help = "gradient of the prior with wrong sign and scale; paper's program: true"});
   visit(p.clamp_particles, Declaration{.name = "clamp_particles",
                                        .help = "keep particles within the bounds; paper's program: false"});
+  visit(p.clamp_solution,
+        Declaration{.name = "clamp_solution",
+                    .help = "keep the returned sequence within the bounds; paper's program: false"});
   detail::visit_published_variance(p, visit);
 }
 

@@ -8,7 +8,9 @@
 
 namespace slalom::vehicle {
 
-/// Any vehicle problem as a vehicle model.
+/// Any vehicle problem as a vehicle model. Maps, start and predicted poses are in the map frame. The problem
+/// itself runs in a parallel frame that begins at the start's position, which is subtracted in double:
+/// float32 rollouts are as exact at UTM coordinates (5e6 m) as near the origin.
 ///
 ///     Planner planner(options, std::make_unique<ProblemModel<MyProblem>>(MyProblem{}), path, solver);
 template <VehicleProblem P>
@@ -30,10 +32,15 @@ class ProblemModel final : public VehicleModel {
   /// What the planner needs to know of the model.
   VehicleTraits traits() const noexcept override { return evaluator_.problem().traits(); }
   /// Sets the maps that rollouts look up.
-  void set_maps(const VehicleMaps& maps) noexcept override { evaluator_.problem().set_maps(maps); }
+  void set_maps(const VehicleMaps& maps) noexcept override {
+    maps_ = maps;
+    evaluator_.problem().set_maps(maps_.relative_to(origin_));
+  }
 
   void set_start(const VehicleStart& start, double reference_speed) noexcept override {
-    start_ = evaluator_.problem().start(start, reference_speed);
+    origin_ = {start.pose.x, start.pose.y};
+    evaluator_.problem().set_maps(maps_.relative_to(origin_));
+    start_ = evaluator_.problem().start({{0, 0, start.pose.yaw}, start.speed, start.steer}, reference_speed);
     evaluator_.set_state(start_);
   }
 
@@ -83,6 +90,8 @@ class ProblemModel final : public VehicleModel {
     const std::size_t steps = inputs.size() / P::inputs;
     for (std::size_t k = 0; k <= steps; ++k) {
       states[k] = problem.predicted(s);
+      states[k].pose.x += origin_.x;
+      states[k].pose.y += origin_.y;
       const auto seen = slalom::detail::look_up<P, double>(problem, s);
       const bool last = k == steps;
       Input<double, P::inputs> u{};
@@ -105,6 +114,8 @@ class ProblemModel final : public VehicleModel {
 
  private:
   ProblemEvaluator<P> evaluator_;
+  VehicleMaps maps_;
+  maps::Point origin_;  ///< of the problem's frame, in the map frame
   State start_{};
 };
 

@@ -34,6 +34,14 @@ struct VehicleMaps {
   GridView<4> reference;  ///< {distance to the path in m, yaw in rad, speed in m/s, 1 off the map}, map frame
   GridView<1> obstacles;  ///< as VehicleTraits::obstacle_map says, robot's frame; its ring is negative
   maps::Pose robot;       ///< the robot's frame, in the map frame
+
+  /// The same maps in a frame that is parallel to the map frame and begins at `origin` (m). Rollouts in
+  /// float32 need it: at 1e6 m from the origin of their frame a float32 resolves 0.06 m.
+  VehicleMaps relative_to(const maps::Point& origin) const noexcept {
+    return {reference.relative_to(origin.x, origin.y),
+            obstacles,
+            {robot.x - origin.x, robot.y - origin.y, robot.yaw}};
+  }
 };
 
 /// What the map of obstacles holds.
@@ -77,7 +85,8 @@ VehicleTraits traits_of(const PathTrackingOptions& options, bool plans_speed);
 ///  - `collision_part(seen, last)`, `distance_part(seen, last)`: the parts of a state's cost that collisions
 ///    and the distance to the path make, of what `look_up` returned and for the last state of a sequence;
 ///  - `traits()`.
-/// The layout of the state is the problem's own.
+/// The layout of the state is the problem's own. `ProblemModel` gives it maps and start in a frame that
+/// begins at the start's position, so "map frame" means that one in a problem.
 template <class P>
 concept VehicleProblem = Problem<P> && requires(P& p, const P& c, const slalom::detail::StateOf<P, double>& x,
                                                 const VehicleMaps& maps, const VehicleStart& start) {

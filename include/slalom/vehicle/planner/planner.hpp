@@ -24,10 +24,11 @@ namespace slalom::vehicle {
 
 /// Pose (of the rear axle, map frame) and speed (m/s) as odometry or localisation gives them.
 struct Odometry {
-  static constexpr double furthest = 1e6;  ///< m and rad, largest magnitude that a planner takes as a pose
-  static constexpr double fastest = 200;   ///< m/s, largest magnitude that a planner takes as a speed
-  maps::Pose pose;                         ///< m, m, rad, in the map frame
-  double speed = 0;                        ///< m/s
+  static constexpr double furthest = 1e7;     ///< m, largest magnitude that a planner takes as a coordinate
+  static constexpr double most_turned = 1e6;  ///< rad, largest magnitude that a planner takes as a yaw
+  static constexpr double fastest = 200;      ///< m/s, largest magnitude that a planner takes as a speed
+  maps::Pose pose;                            ///< m, m, rad, in the map frame
+  double speed = 0;                           ///< m/s
 };
 
 /// The reason for a command.

@@ -93,6 +93,9 @@ void visit_options(Options& o, Visit&& visit) {
                                .help = "reverse a little where the car stands and every plan collides"});
   visit(o.published.maps, Declaration{.name = "published_maps",
                                       .help = "cost map and reference field as in the paper's program"});
+  visit(o.published.wrap_steer,
+        Declaration{.name = "wrap_steer",
+                    .help = "subtract whole turns from the planned steering angle; paper's program: true"});
 }
 
 }  // namespace slalom::vehicle

@@ -23,6 +23,10 @@ class Bicycle {
     T sin_steer, cos_steer, sin_yaw, cos_yaw;
     sin_cos_half_turn(slip_from_command_ ? command : steer, sin_steer, cos_steer);
     sin_cos(yaw, sin_yaw, cos_yaw);
+    if constexpr (!is_pack<T>) {
+      // A published sv_mpc may send any angle; tan and atan see it less half turns.
+      if (cos_steer < 0) sin_steer = -sin_steer, cos_steer = -cos_steer;
+    }
     if (model_ == BicycleModel::published) {
       // sin and cos of b = atan(ratio tan(steer)), without the inverse function.
       const T opposite = T(slip_ratio_) * sin_steer;

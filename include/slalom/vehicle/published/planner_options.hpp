@@ -5,6 +5,10 @@ namespace slalom::vehicle::published {
 /// What the planner does as the published program of Honda et al. (ICRA 2024) does it.
 struct PlannerOptions {
   bool maps = false;  ///< cost map and reference field as in the paper's program
+  /// Subtract whole turns from the planned steering angle, and limit only the command to `steer_limit`: the
+  /// observer follows the angle itself. It matters where a method leaves its bounds (`clamp_solution`). The
+  /// paper's program sends the angle without a limit; its simulator stops the wheels at 0.4189 rad.
+  bool wrap_steer = false;
 
   /// Whether all values are equal.
   bool operator==(const PlannerOptions&) const = default;
