@@ -50,7 +50,11 @@ inline std::vector<OptionSet> option_sets() {
       {"svg_mppi_five_guides", SvgMppiOptions{.guides = {.count = 5, .weight = GuideWeight::importance}}});
   sets.push_back({"svg_mppi_pooled_paths",
                   SvgMppiOptions{.guides = {.count = 3}, .published = {.fit_all_guides = true}}});
-  sets.push_back({"svg_mppi_restarting_guides", SvgMppiOptions{.guides = {.count = 4, .restart = true}}});
+  sets.push_back(
+      {"svg_mppi_around_solution", SvgMppiOptions{.guides = {.count = 1,
+                                                             .gradient_samples = 100,
+                                                             .restart = false,
+                                                             .sample_around = SampleCentre::solution}}});
   sets.push_back({"reverse_mppi_without_rejection", ReverseMppiOptions{.reject_samples = false}});
   sets.push_back({"sv_mpc_best_particle", SvMpcOptions{.best_particle = true}});
   sets.push_back({"cem_send_best", CemOptions{.send_best = true}});

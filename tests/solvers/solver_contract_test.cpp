@@ -110,6 +110,7 @@ TEST_P(SolverContract, ZeroNoiseKeepsTheSolution) {
       set(o, "variance_max", 0);
     }
     set_if_any(o, "gradient_variance", 0);
+    set_if_any(o, "restart_variance", 0);
   });
   const auto evaluator = simple(1, [](float a, float b, int) { return a + b; });
   for (int i = 0; i < 3; ++i) {

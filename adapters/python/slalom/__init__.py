@@ -12,4 +12,10 @@ from . import _slalom
 from ._slalom import *  # noqa: F401,F403
 from ._slalom import __version__
 
-__all__ = [name for name in dir(_slalom) if not name.startswith("_")] + ["__version__"]
+
+
+class FewSamplesWarning(RuntimeWarning):
+    """The effective sample size of a controller stays below 3, so its plans follow single samples."""
+
+
+__all__ = [name for name in dir(_slalom) if not name.startswith("_")] + ["FewSamplesWarning", "__version__"]

@@ -138,6 +138,12 @@ void bind_plan(py::module_& module) {
           "effective_sample_size", [](const Plan& p) { return p.result().effective_sample_size; },
           "1 / sum of squared weights")
       .def_property_readonly(
+          "few_samples_solves", [](const Plan& p) { return p.result().few_samples_solves; },
+          "solves in a row, with this one, whose effective sample size was below 3")
+      .def_property_readonly(
+          "has_few_samples", [](const Plan& p) { return p.result().has_few_samples(); },
+          "whether there were 20 or more of them; a FewSamplesWarning says so once")
+      .def_property_readonly(
           "collided_share", [](const Plan& p) { return p.result().collided_share; },
           "fraction of the samples that collide, 0 ... 1")
       .def_property_readonly(

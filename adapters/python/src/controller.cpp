@@ -55,6 +55,17 @@ InputBounds bounds_of(const SolverOptions& options, int inputs) {
   return bounds;
 }
 
+/// Warns with slalom.FewSamplesWarning. Throws if the program's warning filter turns it into an error.
+void warn_of_few_samples() {
+  const py::object category = py::module_::import("slalom").attr("FewSamplesWarning");
+  const std::string text = "the effective sample size was below " +
+                           std::to_string(static_cast<int>(SolveResult::few_samples)) + " in " +
+                           std::to_string(SolveResult::few_samples_patience) +
+                           " solves in a row, so plans follow single samples: raise temperature, reduce the "
+                           "variances, or set target_ess_fraction";
+  if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 }  // namespace
 
 Controller::Controller(const AnyProblem& problem, const SolverOptions& options)
@@ -126,6 +137,7 @@ void Controller::solve(py::handle owner, std::vector<double> state, const SolveR
     corrections_ += check_inputs(std::span(inputs_).subspan(at, before.size()), before, bounds_, any);
   status_ = result_.status;
   problem_->finish();
+  if (result_.few_samples_solves == SolveResult::few_samples_patience) warn_of_few_samples();
 }
 
 void Controller::reset(std::uint64_t seed) {

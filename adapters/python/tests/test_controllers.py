@@ -1,4 +1,5 @@
 import threading
+import warnings
 
 import numpy as np
 import pytest
@@ -251,3 +252,18 @@ def test_everything_public_says_what_it_is():
             if not member.startswith("_") and (not own or own.endswith(("-> None", "-> object")) and "\n" not in own):
                 silent.append(f"{name}.{member}")
     assert not silent
+
+
+def test_plans_that_follow_single_samples_are_reported_once():
+    cold = slalom.Mppi(linear(), horizon=10, samples=64, temperature=1e-6)
+    with pytest.warns(slalom.FewSamplesWarning, match="raise temperature") as caught:
+        for solve in range(1, 31):
+            plan = cold.solve([1.0, 0.0])
+            assert plan.few_samples_solves == solve and plan.has_few_samples == (solve >= 20)
+    assert len(caught) == 1
+
+    warm = slalom.Mppi(linear(), horizon=10, samples=64, temperature=100)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for _ in range(30):
+            assert warm.solve([1.0, 0.0]).few_samples_solves == 0

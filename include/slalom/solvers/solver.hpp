@@ -37,6 +37,11 @@ struct SequenceList {
 
 /// The outcome of a solve. Its spans point into the solver and stay valid until the next solve or reset.
 struct SolveResult {
+  /// With a smaller effective sample size, a plan is hardly more than the best sample.
+  static constexpr double few_samples = 3;
+  /// Solves in a row with few samples after which `has_few_samples` reports it.
+  static constexpr int few_samples_patience = 20;
+
   Status status = Status::ok;        ///< how the solve ended
   std::span<const float> inputs;     ///< the control sequence to apply, [step][input]
   std::span<const float> nominal;    ///< the nominal sequence (svg_mppi: the best guide), [step][input]
@@ -53,10 +58,15 @@ struct SolveResult {
   double minimum_cost = 0;           ///< the least cost of a sample
   double expected_cost = 0;          ///< weighted mean of the samples' costs
   double effective_sample_size = 0;  ///< 1 / sum of squared weights
+  int few_samples_solves = 0;        ///< solves in a row, with this one, below `few_samples`
   double collided_share = 0;         ///< of the samples, 0 ... 1
   double temperature = 0;            ///< lambda in use
   int iterations = 0;                ///< guide or distribution updates made
   StageTimes times;                  ///< times of the stages
+
+  /// Whether the effective sample size stays below `few_samples`: the plans then follow single samples. A
+  /// larger temperature, smaller variances or `target_ess_fraction` raise it.
+  bool has_few_samples() const noexcept { return few_samples_solves >= few_samples_patience; }
 };
 
 /// A method that solves any problem behind the seam of `BatchEvaluator`. After construction nothing here

@@ -21,20 +21,34 @@ inline const char* const* enum_names(GuideWeight) {
   return names;
 }
 
+/// The sequence around which `svg_mppi` draws its samples. docs/algorithms.md derives both forms.
+enum class SampleCentre {
+  /// The nominal sequence: the weights need no control term. The last solution joins the guides.
+  nominal,
+  /// The last solution, as in the paper: the weights correct for the distance to the nominal sequence.
+  solution,
+};
+inline const char* const* enum_names(SampleCentre) {
+  static constexpr const char* const names[] = {"nominal", "solution", nullptr};
+  return names;
+}
+
 /// The guide particles of `svg_mppi`, which follow the surrogate gradient, equation (11), to a mode.
 struct GuideOptions {
-  int count = 1;                      ///< K_g
+  int count = 4;                      ///< K_g
   int iterations = 10;                ///< L, number of steps by which the guides move in a solve
   PerInput step = 0.125;              ///< epsilon, input^2
   PerInput variance = 1;              ///< input^2, of the initial guides, and Sigma of their weights
-  int gradient_samples = 100;         ///< N, for the gradient of a guide
+  int gradient_samples = 25;          ///< N, for the gradient of a guide
   PerInput gradient_variance = 0.25;  ///< Sigma_g, input^2
   double gradient_temperature = 1;    ///< lambda of the weights of the gradient
   GuideWeight weight = GuideWeight::state_cost;
   /// In every solve all guides but the best restart at smooth deviations from the best one: they search for
   /// other modes, and the best is kept until another is better. Otherwise all guides continue.
-  bool restart = false;
-  PerInput restart_variance = 0.1;  ///< input^2, of those deviations
+  bool restart = true;
+  PerInput restart_variance = 1;  ///< input^2, of those deviations
+  /// Mean of the samples. Without the nominal sequence (`use_nominal`) it is the last solution.
+  SampleCentre sample_around = SampleCentre::nominal;
 };
 
 /// Options of `svg_mppi`: Stein variational guided MPPI (Honda et al., ICRA 2024), whose equations are cited
@@ -119,6 +133,10 @@ void visit_guide_options(Options& o, Visit&& visit) {
                                         .help = "variance of the deviations at which guides restart",
                                         .min = 0,
                                         .max = finite});
+  visit(
+      o.sample_around,
+      Declaration{.name = "sample_around",
+                  .help = "mean of the samples: the nominal sequence, or the last solution as in the paper"});
 }
 
 template <class Options, class Visit>

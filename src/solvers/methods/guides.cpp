@@ -35,11 +35,11 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       shifted_(count_, rows_),
       guides_(count_, rows_),
       batch_(options.horizon, inputs, count_ * block_),
-      ends_(options.horizon, inputs, count_),
+      ends_(options.horizon, inputs, count_ + 1),
       costs_(count_ * block_),
       totals_(costs_.size()),
       weights_(costs_.size()),
-      end_costs_(padded(count_)),
+      end_costs_(padded(count_ + 1)),
       collided_(costs_.size()),
       end_collided_(end_costs_.size()),
       gradient_(count_, rows_),
@@ -89,6 +89,21 @@ void Guides::shift(double steps) noexcept {
 
 void Guides::round_to_float() noexcept {
   std::copy(theta_.values().begin(), theta_.values().end(), guides_.values().begin());
+}
+
+void Guides::take_in(const BatchEvaluator& evaluator, const float* solution) noexcept {
+  for (int g = 0; g < count_; ++g) ends_.set_sample(g, std::span<const float>(guides_[g], rows_));
+  ends_.set_sample(count_, std::span<const float>(solution, rows_));
+  evaluator.evaluate(ends_, 0, count_ + 1, end_costs_.data(), end_collided_.data());
+  kernels().make_finite({0, padded(count_ + 1)}, end_costs_.data());
+  const auto first = end_costs_.data(), last = first + count_;
+  const int worst = static_cast<int>(std::max_element(first, last) - first);
+  if (end_costs_[count_] < end_costs_[worst]) {
+    std::copy_n(solution, rows_, theta_[worst]);
+    std::copy_n(solution, rows_, guides_[worst]);
+    end_costs_[worst] = end_costs_[count_];
+  }
+  best_ = static_cast<int>(std::min_element(first, last) - first);
 }
 
 /// The deviations are smooth: piecewise linear between normal values at knots a third of the horizon apart.

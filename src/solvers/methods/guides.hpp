@@ -22,6 +22,10 @@ class Guides {
   /// Shifts the guides forward in time by a number of steps, which may be fractional.
   void shift(double steps) noexcept;
 
+  /// Computes the guides' costs from the present state, and lets a solution [row] take the place of the worst
+  /// guide if it costs less.
+  void take_in(const BatchEvaluator& evaluator, const float* solution) noexcept;
+
   /// With `restart_guides`, moves the best guide to index 0 and draws all others around it.
   void restart_others(RandomKey key) noexcept;
 
@@ -76,7 +80,7 @@ class Guides {
   Matrix<double> theta_, shifted_;  ///< [guide][row]
   Matrix<float> guides_;            ///< theta as float32
   SequenceBatch batch_;             ///< one block for each guide
-  SequenceBatch ends_;              ///< the guides alone
+  SequenceBatch ends_;              ///< the guides alone, and place for one more
   AlignedBuffer costs_, totals_, weights_, end_costs_;
   std::vector<std::uint8_t> collided_, end_collided_;
   Matrix<float> gradient_;                                                    ///< [guide][row]

@@ -11,13 +11,15 @@ namespace {
 /// `svg_mppi` (Honda et al., "Stein Variational Guided Model Predictive Path Integral Control", ICRA 2024):
 /// (a) guides move to modes (equations (9) to (11)), (b) the best guide is the nominal sequence (equation
 /// (12)), (c) the variances are fitted to its path (equation (13)), (d) MPPI uses that nominal sequence and
-/// those variances (equations (7) and (8)).
+/// those variances (equations (7) and (8)). Where the samples are drawn around the nominal sequence, (7) has
+/// no control term.
 class SvgMppiSolver final : public SolverBase {
  public:
   SvgMppiSolver(const SvgMppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options, inputs, std::move(pool)),
         shift_(options.shift_warm_start),
         use_nominal_(options.use_nominal),
+        around_nominal_(options.use_nominal && options.guides.sample_around == SampleCentre::nominal),
         adapt_covariance_(options.adapt_covariance),
         guides_(options, inputs, low(), high()),
         update_(options, inputs),
@@ -53,13 +55,17 @@ class SvgMppiSolver final : public SolverBase {
     result_.times = {};
     if (shift_) shift(warm_start_shift(evaluator, request));
 
+    if (around_nominal_) guides_.take_in(evaluator, mean_.data());
     guides_.restart_others(key(restarts));
     // The guides may use half of the time: without samples, they do not give a solution.
     result_.iterations =
         guides_.move(evaluator, key(gradients), mean_.data(), nominal_.data(), pool(), deadline.part(0.5));
     if (use_nominal_ && guides_.best_cost() < std::numeric_limits<float>::infinity()) {
       std::copy_n(guides_.best_sequence().data(), size(), nominal_.data());
+    } else if (around_nominal_) {
+      nominal_ = mean_;
     }
+    if (around_nominal_) mean_ = nominal_;
     if (adapt_covariance_) guides_.fit_variance(variance_.data());
     result_.times.guide = detail::seconds(start, detail::Clock::now());
 
@@ -85,7 +91,7 @@ class SvgMppiSolver final : public SolverBase {
     guides_.shift(steps);
   }
 
-  bool shift_, use_nominal_, adapt_covariance_;
+  bool shift_, use_nominal_, around_nominal_, adapt_covariance_;
   detail::Guides guides_;
   detail::MppiUpdate update_;
   std::vector<float> mean_, shifted_, nominal_, variance_, fixed_variance_;  ///< [row]

@@ -23,6 +23,9 @@ let state: State | undefined;
 let frame: Frame | undefined;
 let dirty = true;
 let scrubbing = false;
+/** The limits of SolveResult::has_few_samples, and how many frames in a row were below the first. */
+const FEW_SAMPLES = 3, FEW_FRAMES = 20;
+let fewFrames = 0;
 
 /** The scenario in the address that is still to be set. */
 const wanted = new URLSearchParams(location.hash.slice(1));
@@ -163,7 +166,10 @@ function showFrame() {
   get("solve").hidden = get("solve-label").hidden = !Number.isFinite(scalar("tick_ms"));
   get("contacts").textContent = n("contacts", 0);
   const label = get("label");
-  label.textContent = `${hello.methods[scalar("method")] ?? ""}${status && status !== "ok" ? " · " + status.replace(/_/g, " ") : ""}`;
+  fewFrames = scalar("effective_samples") < FEW_SAMPLES ? fewFrames + 1 : 0;
+  const few = fewFrames >= FEW_FRAMES;
+  label.textContent = `${hello.methods[scalar("method")] ?? ""}${status && status !== "ok" ? " · " + status.replace(/_/g, " ") : ""}${few ? " · few samples" : ""}`;
+  label.title = few ? `The effective sample size stays below ${FEW_SAMPLES}: raise the temperature or reduce the variances.` : "";
   label.classList.toggle("blocked", status === "blocked");
   const ghost = frame.ghost;
   get("gap").hidden = get("gap-label").hidden = !ghost;

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "slalom/slalom.hpp"
+
+/// Control problems with a criterion of success, solved in closed loop by any method.
+namespace slalom::suite {
+
+/// What a state of a closed loop means.
+enum class Verdict { running, failed, solved };
+
+/// The outcome of some runs.
+struct Outcome {
+  int solved = 0;                              ///< runs
+  std::vector<double> effective_sample_sizes;  ///< of every solve
+};
+
+/// A task: a problem, what is known of its inputs, and closed-loop runs.
+struct Task {
+  std::string name;
+  bool several_ways = false;      ///< whether there are ways between which an average fails
+  int horizon = 0;                ///< steps
+  std::vector<double> deviation;  ///< standard deviation that samples should have, one for each input
+  std::vector<double> low, high;  ///< bounds of the inputs
+  /// Runs the closed loop for the seeds `first` ... `first + count - 1`.
+  std::function<Outcome(const SolverOptions& options, std::uint64_t first, int count)> run;
+};
+
+/// Closed-loop runs of a controller of problem P from `start`. `judge(problem, x, k)` gives the verdict on
+/// the state after step k; a run of `steps` steps without a verdict has failed. `change(problem, x, k)`, if
+/// given, changes the problem before the solve of step k.
+template <class P, class Judge, class Change = std::nullptr_t>
+auto closed_loop(const P& problem, const typename P::template State<double>& start, int steps, Judge judge,
+                 Change change = nullptr) {
+  return [=](const SolverOptions& options, std::uint64_t first, int count) {
+    Outcome outcome;
+    Controller<P> controller(problem, options);
+    for (int run = 0; run < count; ++run) {
+      controller.reset(first + static_cast<std::uint64_t>(run));
+      controller.problem() = problem;
+      auto x = start;
+      Verdict verdict = Verdict::running;
+      for (int k = 0; k < steps && verdict == Verdict::running; ++k) {
+        if constexpr (!std::is_same_v<Change, std::nullptr_t>) change(controller.problem(), x, k);
+        const auto plan = controller.solve(x, {.elapsed = problem.dt});
+        outcome.effective_sample_sizes.push_back(plan.stats.effective_sample_size);
+        x = slalom::detail::step<P, double>(controller.problem(), x, NoLookUp{}, plan.inputs[0], 0);
+        verdict = judge(controller.problem(), x, k);
+      }
+      outcome.solved += verdict == Verdict::solved;
+    }
+    return outcome;
+  };
+}
+
+/// Adds the problems of the examples.
+void add_example_tasks(std::vector<Task>& tasks);
+/// Adds robots that move in a plane.
+void add_plane_tasks(std::vector<Task>& tasks);
+/// Adds vehicles and arms in narrow places.
+void add_narrow_tasks(std::vector<Task>& tasks);
+
+}  // namespace slalom::suite

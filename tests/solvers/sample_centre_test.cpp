@@ -1,0 +1,107 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "slalom/solvers/mppi_options.hpp"
+#include "slalom/solvers/registry.hpp"
+#include "slalom/solvers/svg_mppi_options.hpp"
+#include "solvers/problems.hpp"
+
+/// Where `svg_mppi` draws its samples: docs/algorithms.md, "Where the samples are drawn".
+namespace slalom {
+namespace {
+
+constexpr int steps = 8;
+constexpr double stiffness = 0.5, wanted = 3, temperature = 0.4;
+
+/// The cost 0.5 stiffness (v - wanted)^2, summed over the steps.
+auto spring() {
+  return testing::FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
+    double cost = 0;
+    for (int t = 0; t < batch.steps(); ++t) {
+      const double error = static_cast<double>(batch.at(t, 0, k)) - wanted;
+      cost += 0.5 * stiffness * error * error;
+    }
+    return std::pair(cost, false);
+  });
+}
+
+SvgMppiOptions options(SampleCentre centre) {
+  SvgMppiOptions o;
+  o.horizon = steps;
+  o.samples = 60000;
+  o.temperature = temperature;
+  o.variance_min = o.variance_max = 0.09;
+  o.guides = {.count = 1,
+              .iterations = 3,
+              .step = 0.01,
+              .variance = 0.09,
+              .gradient_samples = 40,
+              .gradient_variance = 0.09,
+              .gradient_temperature = temperature,
+              .restart = false,
+              .sample_around = centre};
+  return o;
+}
+
+TEST(SampleCentre, BothFormsEstimateTheMeanOfTheSameDistribution) {
+  // q*(v) ~ exp(-S(v) / lambda) N(v | n, Sigma) is a Gaussian here, whose mean is known.
+  for (const SampleCentre centre : {SampleCentre::nominal, SampleCentre::solution}) {
+    const auto solver = make_solver(options(centre), 1);
+    const auto evaluator = spring();
+    for (int i = 0; i < 60; ++i) solver->solve(evaluator, {});
+    const SolveResult& result = solver->solve(evaluator, {});
+    ASSERT_GT(result.effective_sample_size, 1000);
+    for (std::size_t t = 0; t < steps; ++t) {
+      const double n = result.nominal[t], precision = 1 / static_cast<double>(result.variances[t]);
+      const double mean =
+          (n * precision + stiffness * wanted / temperature) / (precision + stiffness / temperature);
+      EXPECT_NEAR(result.inputs[t], mean, 0.03) << t;
+    }
+  }
+}
+
+TEST(SampleCentre, SamplesKeepTheirWeightsFarFromTheLastSolution) {
+  // In the first solve the last solution is 0, and guides that take large steps are ten deviations away.
+  SvgMppiOptions o = options(SampleCentre::nominal);
+  o.samples = 1024;
+  o.guides.iterations = 40;
+  o.guides.step = 0.09;
+  const double around_nominal = make_solver(o, 1)->solve(spring(), {}).effective_sample_size;
+  o.guides.sample_around = SampleCentre::solution;
+  const double around_solution = make_solver(o, 1)->solve(spring(), {}).effective_sample_size;
+  EXPECT_GT(around_nominal, 500);
+  EXPECT_LT(around_solution, 5);
+}
+
+TEST(SampleCentre, TheLastSolutionJoinsTheGuides) {
+  // Guides that cannot move by themselves still follow the samples to the minimum.
+  SvgMppiOptions o = options(SampleCentre::nominal);
+  o.samples = 2000;
+  o.guides.step = 0;
+  const auto solver = make_solver(o, 1);
+  const auto evaluator = spring();
+  for (int i = 0; i < 100; ++i) solver->solve(evaluator, {});
+  for (const float n : solver->solve(evaluator, {}).nominal) EXPECT_NEAR(n, wanted, 0.25);
+}
+
+TEST(FewSamples, AreReportedWhenTheyStay) {
+  MppiOptions o{.horizon = steps, .samples = 256, .temperature = 1e-6, .control_cost_discount = 1};
+  const auto solver = make_solver(o, 1);
+  const auto evaluator = spring();
+  for (int i = 1; i < SolveResult::few_samples_patience; ++i) {
+    const SolveResult& result = solver->solve(evaluator, {});
+    EXPECT_EQ(result.few_samples_solves, i);
+    EXPECT_FALSE(result.has_few_samples());
+  }
+  EXPECT_TRUE(solver->solve(evaluator, {}).has_few_samples());
+  const auto flat =
+      testing::FunctionEvaluator(1, [](const SequenceBatch&, int) { return std::pair(0.0, false); });
+  EXPECT_FALSE(solver->solve(flat, {}).has_few_samples());
+  solver->solve(evaluator, {});
+  solver->reset(1);
+  EXPECT_EQ(solver->solve(evaluator, {}).few_samples_solves, 1);
+}
+
+}  // namespace
+}  // namespace slalom
