@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "slalom/core/pack_math.hpp"
+#include "slalom/core/pack_functions.hpp"
 
 /// Mathematics that a problem may use, written once for `float`, `double` and packs of SIMD lanes: call these
 /// by their unqualified or `slalom::` names instead of those in `std`.
@@ -12,7 +12,9 @@
 /// Accuracy on packs, compared with double: sin, cos, exp, log, atan within 3 units in the last place or
 /// 2e-7, whichever is larger (angles up to 8000 rad; exp up to 88.3); tan is the quotient of sin and cos. The
 /// polynomials of exp, log and atan are those of S. L. Moshier's Cephes library (expf, logf, atanf); those of
-/// sin and cos were made for Slalom.
+/// sin and cos were made for Slalom. In units in the last place: cbrt, hypot 2; tanh, exp2 3; asin, acos,
+/// atan2, sinh, cosh (|x| < 80), log1p 4; pow 4 + |y log x|; fmod one of the dividend; floor, ceil, sign,
+/// copysign exact (floor, ceil: |x| < 2^22).
 namespace slalom {
 
 /// The truth value that goes with a scalar type: `bool`, or one per lane.
@@ -106,6 +108,99 @@ template <Scalar T>
 T select(bool condition, T a, std::type_identity_t<T> b) {
   return condition ? a : b;
 }
+/// Hyperbolic tangent.
+template <Scalar T>
+T tanh(T x) {
+  return std::tanh(x);
+}
+/// Hyperbolic sine.
+template <Scalar T>
+T sinh(T x) {
+  return std::sinh(x);
+}
+/// Hyperbolic cosine.
+template <Scalar T>
+T cosh(T x) {
+  return std::cosh(x);
+}
+/// Arc sine, rad.
+template <Scalar T>
+T asin(T x) {
+  return std::asin(x);
+}
+/// Arc cosine, rad.
+template <Scalar T>
+T acos(T x) {
+  return std::acos(x);
+}
+/// Cube root.
+template <Scalar T>
+T cbrt(T x) {
+  return std::cbrt(x);
+}
+/// 2^x.
+template <Scalar T>
+T exp2(T x) {
+  return std::exp2(x);
+}
+/// log(1 + x), accurate near 0 as well.
+template <Scalar T>
+T log1p(T x) {
+  return std::log1p(x);
+}
+/// The largest integer that is not above x.
+template <Scalar T>
+T floor(T x) {
+  return std::floor(x);
+}
+/// The smallest integer that is not below x.
+template <Scalar T>
+T ceil(T x) {
+  return std::ceil(x);
+}
+/// The angle of the vector (x, y), rad.
+template <Scalar T>
+T atan2(T y, std::type_identity_t<T> x) {
+  return std::atan2(y, x);
+}
+/// x^y.
+template <Scalar T>
+T pow(T x, std::type_identity_t<T> y) {
+  return std::pow(x, y);
+}
+/// The length of (x, y).
+template <Scalar T>
+T hypot(T x, std::type_identity_t<T> y) {
+  return std::hypot(x, y);
+}
+/// The remainder of x / y with the sign of x.
+template <Scalar T>
+T fmod(T x, std::type_identity_t<T> y) {
+  return std::fmod(x, y);
+}
+/// `magnitude` with the sign of `sign`.
+template <Scalar T>
+T copysign(T magnitude, std::type_identity_t<T> sign) {
+  return std::copysign(magnitude, sign);
+}
+/// a b + c, rounded once.
+template <Scalar T>
+T fma(T a, std::type_identity_t<T> b, std::type_identity_t<T> c) {
+  return std::fma(a, b, c);
+}
+/// -1, 0 or 1.
+template <Scalar T>
+T sign(T x) {
+  return static_cast<T>((x > T(0)) - (x < T(0)));
+}
+/// Whether the condition holds; of packs, in any lane.
+inline bool any(bool condition) {
+  return condition;
+}
+/// Whether the condition holds; of packs, in all lanes.
+inline bool all(bool condition) {
+  return condition;
+}
 /// Sine and cosine of an angle, rad.
 template <Scalar T>
 void sin_cos(T x, T& s, T& c) {
@@ -136,6 +231,12 @@ SLALOM_INLINE T wrap_angle(const T& angle) {
   } else {
     return angle - round(angle * T(0.15915494309189535)) * T(6.283185307179586);
   }
+}
+
+/// a where t = 0, b where t = 1, on a line between and beyond.
+template <class T>
+SLALOM_INLINE T lerp(const T& a, const std::type_identity_t<T>& b, const std::type_identity_t<T>& t) {
+  return a + t * (b - a);
 }
 
 /// The square of `x`.

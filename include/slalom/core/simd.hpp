@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
@@ -106,6 +107,19 @@ struct Mask {
   }
   /// Applies to each lane.
   SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(static_cast<Vector>(~a.v)); }
+  /// Applies to each lane; both operands are evaluated.
+  SLALOM_INLINE friend Mask operator&&(const Mask& a, const Mask& b) { return a & b; }
+  /// Applies to each lane; both operands are evaluated.
+  SLALOM_INLINE friend Mask operator||(const Mask& a, const Mask& b) { return a | b; }
+  /// Refuses `if (x > 0)`, `x > 0 ? a : b` and `while (x > 0)` of packs, with words.
+  template <std::same_as<bool> Bool>
+  explicit operator Bool() const {
+    static_assert(
+        sizeof(Bool) == 0,
+        "slalom: this condition differs from lane to lane: write slalom::select(condition, a, b), or "
+        "slalom::any(condition) or slalom::all(condition) where one answer for all lanes will do");
+    return false;
+  }
   /// The value of one lane.
   bool operator[](int lane) const {
     if constexpr (bits) {
@@ -159,6 +173,10 @@ struct IntPack {
   }
 };
 
+/// What may stand beside a pack for the same value in all lanes.
+template <class N>
+concept Number = std::same_as<N, int> || std::same_as<N, float> || std::same_as<N, double>;
+
 /// A pack of float32 values: arithmetic like a float's, lane by lane.
 template <class T>
 struct Pack {
@@ -195,6 +213,15 @@ struct Pack {
   /// Writes the lanes.
   SLALOM_INLINE void store(float* to) const { std::memcpy(to, &v, sizeof v); }
   float operator[](int lane) const { return v[lane]; }  ///< value of one lane
+  /// Refuses what takes one number, such as `std::sin(x)` and `double y = x`, with words.
+  template <std::same_as<double> Double>
+  operator Double() const {
+    static_assert(sizeof(Double) == 0,
+                  "slalom: T holds a number for each lane and is no double: write slalom::sin(x), "
+                  "slalom::exp(x) and so on "
+                  "in place of std::sin(x), and T for the type of variables");
+    return 0;
+  }
 
   /// Applies to each lane.
   SLALOM_INLINE friend Pack operator+(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v + b.v); }
@@ -239,6 +266,32 @@ struct Pack {
   SLALOM_INLINE_CALLS friend Mask<T> operator>(const Pack& a, const Pack& b) { return b < a; }
   /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator>=(const Pack& a, const Pack& b) { return b <= a; }
+  /// Applies to each lane.
+  SLALOM_INLINE_CALLS friend Mask<T> operator==(const Pack& a, const Pack& b) { return (a <= b) & (b <= a); }
+  /// Applies to each lane.
+  SLALOM_INLINE_CALLS friend Mask<T> operator!=(const Pack& a, const Pack& b) { return !(a == b); }
+
+/// An operator of a pack and a number, which stands for the same value in all lanes.
+#define SLALOM_MIXED_OPERATOR(Result, op)                             \
+  template <Number N>                                                 \
+  SLALOM_INLINE_CALLS friend Result operator op(const Pack& a, N b) { \
+    return a op Pack(b);                                              \
+  }                                                                   \
+  template <Number N>                                                 \
+  SLALOM_INLINE_CALLS friend Result operator op(N a, const Pack& b) { \
+    return Pack(a) op b;                                              \
+  }
+  SLALOM_MIXED_OPERATOR(Pack, +)
+  SLALOM_MIXED_OPERATOR(Pack, -)
+  SLALOM_MIXED_OPERATOR(Pack, *)
+  SLALOM_MIXED_OPERATOR(Pack, /)
+  SLALOM_MIXED_OPERATOR(Mask<T>, <)
+  SLALOM_MIXED_OPERATOR(Mask<T>, <=)
+  SLALOM_MIXED_OPERATOR(Mask<T>, >)
+  SLALOM_MIXED_OPERATOR(Mask<T>, >=)
+  SLALOM_MIXED_OPERATOR(Mask<T>, ==)
+  SLALOM_MIXED_OPERATOR(Mask<T>, !=)
+#undef SLALOM_MIXED_OPERATOR
 };
 
 }  // namespace slalom::simd
