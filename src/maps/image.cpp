@@ -10,6 +10,7 @@
 
 #include "png_io.hpp"
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -71,9 +72,11 @@ class PgmReader {
   std::size_t position_ = 2;  // behind the magic number
 };
 
+/// A pixel takes two bytes, or in text up to six.
+constexpr std::uint64_t most_pgm_bytes = 6 * static_cast<std::uint64_t>(max_image_pixels) + (1 << 16);
+
 GreyImage read_pgm(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  const std::string bytes = read_file(path, most_pgm_bytes);
   PgmReader reader(path, bytes);
   const std::int64_t width = reader.number("the width", max_image_side + 1);
   const std::int64_t height = reader.number("the height", max_image_side + 1);
@@ -118,10 +121,10 @@ void detail::check_image_size(const std::filesystem::path& path, std::int64_t wi
 }
 
 GreyImage load_image(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path))  // opening a pipe would wait for its other end
+    throw IoError(path.string(), 0, "the image does not exist or cannot be read: it must be a regular file");
   std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path)) {
-    throw IoError(path.string(), 0, "the image does not exist or cannot be read");
-  }
+  if (!stream) throw IoError(path.string(), 0, "the image does not exist or cannot be read");
   std::array<char, 2> magic{};
   stream.read(magic.data(), magic.size());
   if (magic[0] == 'P' && (magic[1] == '2' || magic[1] == '5')) return read_pgm(path);

@@ -11,6 +11,9 @@
 namespace slalom::maps::detail {
 namespace {
 
+/// An interlaced image is decoded as a whole, with up to four bytes a pixel.
+constexpr std::size_t max_interlaced_pixels = std::size_t{1} << 24;
+
 struct Closer {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
@@ -23,6 +26,7 @@ struct Session {
   png_infop info = nullptr;
   char message[128] = "";
   std::size_t width = 0, height = 0, channels = 0;
+  int passes = 1;  ///< above 1 where the image is interlaced
   std::vector<std::uint8_t> bytes;
   std::vector<png_bytep> rows;
 };
@@ -42,7 +46,7 @@ bool read_header(Session& session, std::FILE* file) {
   png_read_info(session.png, session.info);
   png_set_expand(session.png);    // palette to RGB, less than 8 bits to 8, transparency to alpha
   png_set_scale_16(session.png);  // 16 bits to 8, without gamma
-  png_set_interlace_handling(session.png);
+  session.passes = png_set_interlace_handling(session.png);
   png_read_update_info(session.png, session.info);
   session.width = png_get_image_width(session.png, session.info);
   session.height = png_get_image_height(session.png, session.info);
@@ -50,9 +54,21 @@ bool read_header(Session& session, std::FILE* file) {
   return true;
 }
 
+/// Reads the next row; an interlaced image, as a whole.
 bool read_rows(Session& session) {
   if (setjmp(png_jmpbuf(session.png))) return false;
+  png_read_rows(session.png, session.rows.data(), nullptr, static_cast<png_uint_32>(session.rows.size()));
+  return true;
+}
+
+bool read_interlaced(Session& session) {
+  if (setjmp(png_jmpbuf(session.png))) return false;
   png_read_image(session.png, session.rows.data());
+  return true;
+}
+
+bool read_end(Session& session) {
+  if (setjmp(png_jmpbuf(session.png))) return false;
   png_read_end(session.png, nullptr);
   return true;
 }
@@ -68,25 +84,45 @@ bool write_all(Session& session, std::FILE* file) {
   return true;
 }
 
-void point_rows(Session& session) {
-  session.rows.resize(session.height);
-  for (std::size_t y = 0; y < session.height; ++y) {
+/// Room for `rows` rows.
+void point_rows(Session& session, std::size_t rows) {
+  session.rows.resize(rows);
+  for (std::size_t y = 0; y < rows; ++y) {
     session.rows[y] = &session.bytes[y * session.width * session.channels];
   }
 }
 
-GreyImage average_channels(const Session& session) {
-  GreyImage image{static_cast<int>(session.width), static_cast<int>(session.height), {}, {}};
-  const std::size_t pixels = session.width * session.height;
+/// Adds the pixels of the session's rows: the mean of their colours, and their opacity.
+void append_pixels(const Session& session, GreyImage& image) {
   const std::size_t colours = session.channels >= 3 ? 3 : 1;
-  image.grey.resize(pixels);
-  if (session.channels > colours) image.opacity.resize(pixels);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const std::uint8_t* pixel = &session.bytes[i * session.channels];
+  for (std::size_t at = 0; at < session.bytes.size(); at += session.channels) {
+    const std::uint8_t* pixel = &session.bytes[at];
     const unsigned sum = colours == 3 ? (pixel[0] + pixel[1] + pixel[2] + 1u) / 3u : pixel[0];
-    image.grey[i] = static_cast<std::uint8_t>(sum);
-    if (session.channels > colours) image.opacity[i] = pixel[colours];
+    image.grey.push_back(static_cast<std::uint8_t>(sum));
+    if (session.channels > colours) image.opacity.push_back(pixel[colours]);
   }
+}
+
+/// All pixels, in memory of the size of the image that is returned and, unless it is interlaced, one row.
+GreyImage read_pixels(Session& session, const std::filesystem::path& path) {
+  GreyImage image{static_cast<int>(session.width), static_cast<int>(session.height), {}, {}};
+  const bool interlaced = session.passes > 1;
+  if (interlaced && session.width * session.height > max_interlaced_pixels)
+    throw IoError(path.string(), 0,
+                  "the PNG is interlaced and has more than " + std::to_string(max_interlaced_pixels) +
+                      " pixels; save it without interlacing");
+  const std::size_t rows = interlaced ? session.height : 1;
+  session.bytes.resize(session.width * session.channels * rows);
+  point_rows(session, rows);
+  image.grey.reserve(session.width * session.height);
+  if (session.channels == 2 || session.channels == 4) image.opacity.reserve(session.width * session.height);
+  bool whole = true;
+  for (std::size_t y = 0; whole && y < session.height; y += rows) {
+    whole = interlaced ? read_interlaced(session) : read_rows(session);
+    if (whole) append_pixels(session, image);
+  }
+  if (!whole || !read_end(session))
+    throw IoError(path.string(), 0, std::string("the PNG is truncated or corrupt: ") + session.message);
   return image;
 }
 
@@ -105,12 +141,7 @@ GreyImage read_png(const std::filesystem::path& path) {
     throw IoError(path.string(), 0, std::string("the PNG cannot be read: ") + session.message);
   }
   check_image_size(path, static_cast<std::int64_t>(session.width), static_cast<std::int64_t>(session.height));
-  session.bytes.resize(session.width * session.height * session.channels);
-  point_rows(session);
-  if (!read_rows(session)) {
-    throw IoError(path.string(), 0, std::string("the PNG is truncated or corrupt: ") + session.message);
-  }
-  return average_channels(session);
+  return read_pixels(session, path);
 }
 
 void write_png(const GreyImage& image, const std::filesystem::path& path) {
@@ -126,7 +157,7 @@ void write_png(const GreyImage& image, const std::filesystem::path& path) {
   session.height = image.height;
   session.channels = 1;
   session.bytes = image.grey;
-  point_rows(session);
+  point_rows(session, session.height);
   if (!session.info || !write_all(session, file.get()) || std::fclose(file.release()) != 0) {
     throw IoError(path.string(), 0, std::string("the PNG cannot be written: ") + session.message);
   }

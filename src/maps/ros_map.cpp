@@ -7,9 +7,9 @@
 #include <cmath>
 #include <fstream>
 #include <optional>
-#include <set>
 #include <stdexcept>
 
+#include "maps/yaml_file.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/maps/image.hpp"
 
@@ -33,22 +33,8 @@ struct Header {
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& path) : path_(path) {
-    std::ifstream stream(path);
-    if (!stream || std::filesystem::is_directory(path)) {
-      throw IoError(path.string(), 0, "the map's YAML file does not exist or cannot be read");
-    }
-    std::vector<YAML::Node> documents;
-    try {
-      documents = YAML::LoadAll(stream);
-    } catch (const YAML::Exception& error) {
-      throw IoError(path.string(), error.mark.line + 1, "invalid YAML: " + error.msg);
-    }
-    if (documents.size() > 1)
-      throw IoError(path.string(), documents[1].Mark().line + 1,
-                    "must have only one YAML document, this is a second one");
-    if (!documents.empty()) root_ = documents[0];
+    root_ = detail::load_yaml(path);
     if (!root_.IsMap()) throw IoError(path.string(), 1, "a map's YAML file must hold `key: value` pairs");
-    refuse_repeated_keys();
   }
 
   std::optional<YAML::Node> find(const char* key) const {
@@ -80,15 +66,6 @@ class Reader {
   }
 
  private:
-  /// yaml-cpp lets one of them win without a word.
-  void refuse_repeated_keys() const {
-    std::set<std::string> seen;
-    for (const auto& entry : root_)
-      if (entry.first.IsScalar() && !seen.insert(entry.first.Scalar()).second)
-        throw IoError(path_.string(), entry.first.Mark().line + 1,
-                      "the key `" + entry.first.Scalar() + "` is a duplicate");
-  }
-
   std::filesystem::path path_;
   YAML::Node root_;
 };

@@ -1,6 +1,8 @@
 #include "slalom/maps/ros_map.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <zlib.h>
 
 #include <cstdlib>
 #include <stdexcept>
@@ -108,7 +110,7 @@ TEST_F(RosMap, BadYamlIsNamed) {
   write("map.pgm", pgm);
   expect_error(folder_ / "absent.yaml", 0, "does not exist");
   expect_error(folder_, 0, "does not exist or cannot be read");
-  expect_error(map("image: [\n"), 2, "invalid YAML");
+  expect_error(map("image: [\n"), 2, "is not YAML");
   expect_error(map("just words\n"), 1, "key: value");
   expect_error(map(""), 1, "key: value");
   const std::string image = "image: map.pgm\n";
@@ -125,9 +127,50 @@ TEST_F(RosMap, BadYamlIsNamed) {
   }
   expect_error(map("resolution: 0.05\norigin: [0, 0, 0]\n" + thresholds), 0, "`image` is missing");
   expect_error(map(image + "resolution: 0.05\norigin: [a, b, 0]\n" + thresholds), 3, "`origin: [a, b, 0]`");
-  expect_error(map(geometry + thresholds + "resolution: 0.1\n"), 7, "`resolution` is a duplicate");
-  expect_error(map(geometry + thresholds + "---\nnegate: 1\n"), 8, "must have only one YAML document");
+  expect_error(map(geometry + thresholds + "resolution: 0.1\n"), 7, "key resolution: duplicate key");
+  expect_error(map(geometry + thresholds + "---\nnegate: 1\n"), 8, "only one YAML document");
   expect_error(map("image: [a]\nresolution: 0.05\norigin: [0, 0, 0]\n" + thresholds), 1, "a file name");
+}
+
+TEST_F(RosMap, YamlWithoutEndIsRefused) {
+  write("map.pgm", pgm);
+  expect_error(map(","), 1, "only one YAML document");
+  expect_error(map(geometry + thresholds + "more: &more\n  within: *more\n"), 7, "anchors and aliases");
+  expect_error(map(geometry + thresholds + "a: &a [1]\nb: [*a, *a]\n"), 7, "anchors and aliases");
+  expect_error(map("a: " + std::string(33, '[') + std::string(33, ']')), 1, "deeper than 32 levels");
+  expect_error(map("a: " + std::string(5000, '[')), 1, "deeper than 32 levels");
+  expect_error(map("a: " + std::string(2 << 20, ' ')), 0, "at most 1048576 are read");
+}
+
+TEST_F(RosMap, OnlyRegularFilesAreRead) {
+  const Path pipe = folder_ / "map.pgm";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  expect_error(map(geometry + thresholds), 0, "regular file");
+  expect_error(pipe, 0, "regular file");
+}
+
+/// A PNG of a size whose pixels, all transparent, compress to a thousandth.
+TEST_F(RosMap, AnImageThatGrowsWithoutLimitIsRefused) {
+  const auto number = [](std::uint32_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
+    return bytes;
+  };
+  const auto chunk = [&](const std::string& content) {
+    const auto sum =
+        ::crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()));
+    return number(static_cast<std::uint32_t>(content.size()) - 4) + content +
+           number(static_cast<std::uint32_t>(sum));
+  };
+  const auto header = [&](std::uint32_t side, char interlace) {
+    return std::string("\x89PNG\r\n\x1a\n") +
+           chunk("IHDR" + number(side) + number(side) + std::string("\x08\x06\0\0", 4) + interlace) +
+           chunk("IDAT");
+  };
+  write("map.pgm", header(11585, 0));
+  expect_error(map(geometry + thresholds), 0, "all pixels at most 67108864");
+  write("map.pgm", header(8000, 1));
+  expect_error(map(geometry + thresholds), 0, "interlaced and has more than 16777216 pixels");
 }
 
 TEST_F(RosMap, BadThresholdsAreNamed) {

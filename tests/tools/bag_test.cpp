@@ -52,6 +52,20 @@ TEST_F(Bag, RejectsFilesThatAreNotReadable) {
   expect_error(BagWriter().bytes("lz4"), {"a.bag", "lz4", "rosbag decompress"});
 }
 
+/// Every chunk holds the next, up to a depth that exceeds any stack.
+TEST_F(Bag, RejectsChunksWithinChunks) {
+  const std::string header = Wire().text("op=\x05").text("compression=none").bytes();
+  const int depth = 100000;
+  const std::size_t each = 8 + header.size();
+  std::string bytes = "#ROSBAG V2.0\n";
+  for (int i = 1; i <= depth; ++i)
+    bytes += Wire()
+                 .text(header)
+                 .put(static_cast<std::uint32_t>(each * static_cast<std::size_t>(depth - i)))
+                 .bytes();
+  expect_error(bytes, {"a.bag", "a chunk is within a chunk"});
+}
+
 TEST_F(Bag, RejectsMissingTopicsAndWrongMessages) {
   expect_error(BagWriter().bytes(), {"a.bag", "/scan"});
   BagWriter other;

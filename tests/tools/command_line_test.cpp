@@ -1,5 +1,6 @@
 // What every command refuses alike: nothing that was asked for is passed over, and no result is lost unsaid.
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "tools/evaluation_folder.hpp"
 
@@ -152,13 +153,23 @@ TEST_F(CommandLine, ReplayIgnoresNoOption) {
 TEST_F(CommandLine, NamesEmptyEvaluations) {
   ASSERT_EQ(timed(evaluation("ev")).status, 0);
   fs::copy(folder_ / "ev", folder_ / "none");
-  const std::string table = content(folder_ / "ev/laps.csv");
+  const std::string table = content(folder_ / "ev/laps.csv"),
+                    settings = content(folder_ / "ev/settings.json");
   std::ofstream(folder_ / "none/laps.csv") << table.substr(0, table.find('\n') + 1);
   refuses("compare ev none", {"none", "has no lap of mppi"});
   refuses("compare none ev", {"none", "has no lap of mppi"});
   std::ofstream(folder_ / "ev/settings.json") << "[]";
   refuses(evaluation("ev") + " --resume", {"ev/settings.json: is not a JSON object"});
   refuses("replay ev --lap 0", {"ev/settings.json: is not a JSON object"});
+  const auto changed = [&](const std::string& pattern, const std::string& to) {
+    std::ofstream(folder_ / "ev/settings.json") << std::regex_replace(settings, std::regex(pattern), to);
+  };
+  changed(R"re("experiments": \[[^]]*\])re", R"("experiments": [])");
+  refuses("view --eval ev", {"ev/settings.json: is invalid: experiments: must be at least one"});
+  changed(R"re("laps": \d+)re", R"("laps": 4294967298)");
+  refuses("view --eval ev", {"ev/settings.json: is invalid: 4294967298 must be a whole number"});
+  changed(R"re("seed0": \d+)re", R"("seed0": 1e30)");
+  refuses("compare ev ev", {"ev/settings.json: is invalid: 1e+30 must be a whole number"});
 }
 
 TEST_F(CommandLine, IdentifyPrintsItsInputs) {

@@ -64,6 +64,31 @@ TEST(Json, FlattensToPaths) {
             R"({"/a/b/0":1,"/a/b/1":2,"/c":3,"/d":[]})");
 }
 
+TEST(Json, RefusesDeepNesting) {
+  const auto nested = [](int depth) {
+    return std::string(static_cast<std::size_t>(depth), '[') +
+           std::string(static_cast<std::size_t>(depth), ']');
+  };
+  EXPECT_TRUE(Json::parse(nested(64)).is_array());
+  EXPECT_THROW(Json::parse(nested(66)), JsonError);
+  EXPECT_THROW(Json::parse(nested(1000000)), JsonError);
+  EXPECT_TRUE(Json::parse_or_null(nested(1000000)).is_null());
+}
+
+TEST(Json, WholeNumbersAreNotCutToFit) {
+  const Json json = Json::parse(R"([4294967298, 1e30, 2.5, -1, 7.0, 0, 2147483647])");
+  EXPECT_THROW(json[0].get<int>(), JsonError);
+  EXPECT_EQ(json[0].get<std::uint64_t>(), 4294967298U);
+  for (const std::size_t i : {1, 2}) {
+    EXPECT_THROW(json[i].get<int>(), JsonError) << i;
+    EXPECT_THROW(json[i].get<std::uint64_t>(), JsonError) << i;
+  }
+  EXPECT_EQ(json[3].get<int>(), -1);
+  EXPECT_THROW(json[3].get<std::uint64_t>(), JsonError);
+  EXPECT_EQ(json[4].get<int>(), 7);
+  EXPECT_EQ(json[6].get<int>(), 2147483647);
+}
+
 TEST(Json, RejectsWrongTypesAndMissingKeys) {
   const Json json = Json::parse(R"({"a":[1],"t":"text"})");
   EXPECT_THROW(json.at("b"), JsonError);

@@ -2,14 +2,15 @@
 
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <map>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 
 namespace slalom::tools {
 namespace {
 
+constexpr std::uint64_t most_bytes = std::uint64_t{1} << 32;
 constexpr std::string_view magic = "#ROSBAG V2.0\n";
 
 enum class Op : unsigned char { message = 2, bag = 3, index = 4, chunk = 5, chunk_info = 6, connection = 7 };
@@ -64,12 +65,14 @@ class Reader {
   Reader(const std::string& file, const std::function<void(const BagMessage&)>& take)
       : file_(file), take_(take) {}
 
-  void records(std::string_view bytes) {
+  /// The records of the file, or of a chunk, which holds no further chunk.
+  void records(std::string_view bytes, bool in_chunk = false) {
     for (Bytes rest(bytes, file_); !rest.done();) {
       const Fields fields = fields_of(rest.block(), file_);
       const std::string_view data = rest.block();
       switch (static_cast<Op>(field(fields, "op", 1)[0])) {
         case Op::chunk:
+          if (in_chunk) throw IoError(file_, 0, "is damaged: a chunk is within a chunk");
           chunk(fields, data);
           break;
         case Op::connection:
@@ -98,7 +101,7 @@ class Reader {
     if (compression != "none")
       throw IoError(file_, 0,
                     "is compressed with " + std::string(compression) + ": `rosbag decompress " + file_ + "`");
-    records(data);
+    records(data, true);
   }
 
   void connection(const Fields& fields, std::string_view data) {
@@ -125,12 +128,7 @@ bool is_bag(const std::string& file) {
 }
 
 void read_bag(const std::string& file, const std::function<void(const BagMessage&)>& take) {
-  std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) throw IoError(file, 0, "cannot be read");
-  std::string bytes(static_cast<std::size_t>(stream.tellg()), '\0');
-  stream.seekg(0);
-  if (!stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
-    throw IoError(file, 0, "cannot be read");
+  const std::string bytes = read_file(file, most_bytes);
   if (bytes.compare(0, magic.size(), magic) != 0) throw IoError(file, 0, "is not a ROS 1 bag (format 2.0)");
   Reader(file, take).records(std::string_view(bytes).substr(magic.size()));
 }

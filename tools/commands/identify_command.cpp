@@ -35,15 +35,31 @@ std::vector<vehicle::DrivenSample> read_bag_samples(const std::string& file) {
   return samples;
 }
 
+/// The next line, of at most `most_line` bytes, without its end; false at the end of the file.
+bool next_line(std::istream& stream, std::string& line, const std::string& file, int number) {
+  constexpr std::size_t most_line = std::size_t{1} << 22;
+  line.clear();
+  for (int c = stream.get(); c != std::istream::traits_type::eof(); c = stream.get()) {
+    if (c == '\n') return true;
+    if (line.size() == most_line)
+      throw IoError(file, number,
+                    "is longer than " + std::to_string(most_line) + " bytes: it is not a record");
+    line += static_cast<char>(c);
+  }
+  return !line.empty();
+}
+
 /// The ticks of a bag or a recording (docs/recording.md). Throws IoError with file and line.
 std::vector<vehicle::DrivenSample> read_recording(const std::string& file) {
   if (std::filesystem::is_directory(file)) throw IoError(file, 0, "is a directory; a recording is a file");
   if (is_bag(file)) return read_bag_samples(file);
+  if (!std::filesystem::is_regular_file(file))
+    throw IoError(file, 0, "cannot be read: it must be a regular file");
   std::ifstream stream(file);
   if (!stream) throw IoError(file, 0, "cannot be read");
   std::vector<vehicle::DrivenSample> samples;
   std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
+  for (int number = 1; next_line(stream, line, file, number); ++number) {
     // The magic bytes of an MCAP file.
     if (number == 1 && line.rfind("\x89MCAP", 0) == 0)
       throw IoError(file, 0,

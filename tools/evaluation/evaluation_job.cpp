@@ -7,6 +7,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/instruction_set.hpp"
+#include "slalom/core/read_file.hpp"
 #include "slalom/core/version.hpp"
 #include "tools/command_line/command.hpp"
 #include "tools/evaluation/build_id.hpp"
@@ -50,10 +51,8 @@ Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
 
 /// Rejects settings that are JSON but not an object. The store itself rejects a text that is not JSON.
 void require_object(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) return;
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  const Json there = Json::parse_or_null(text);
+  if (!std::filesystem::exists(file)) return;
+  const Json there = Json::parse_or_null(read_file(file, Json::most_bytes));
   if (!there.is_null() && !there.is_object()) throw IoError(file.string(), 0, "is not a JSON object");
 }
 

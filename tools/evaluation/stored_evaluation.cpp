@@ -1,9 +1,9 @@
 #include "tools/evaluation/stored_evaluation.hpp"
 
 #include <algorithm>
-#include <fstream>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/json/json.hpp"
 
@@ -44,6 +44,15 @@ std::string option_text(const Json& value) {
   return text + "]";
 }
 
+/// A whole number in [least, most].
+int count_of(const Json& experiment, const char* key, int least, int most) {
+  const int count = experiment.at(key).get<int>();
+  if (count < least || count > most)
+    throw JsonError(std::string(key) + ": " + std::to_string(count) + " must be in [" +
+                    std::to_string(least) + ", " + std::to_string(most) + "]");
+  return count;
+}
+
 /// The course's folder where it was kept and is still there, else its name.
 std::string stored_course(const Json& settings) {
   if (settings.contains("course_folder"))
@@ -58,19 +67,20 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
   StoredEvaluation stored;
   stored.folder = folder;
   const fs::path file = folder / "settings.json";
-  std::ifstream stream(file);
-  if (!stream)
+  if (!fs::exists(file))
     throw IoError(file.string(), 0, "cannot be read; the folder must be the output folder of slalom eval");
-  stored.settings.assign(std::istreambuf_iterator<char>(stream), {});
+  stored.settings = read_file(file, Json::most_bytes);
   std::uint64_t seed0 = 0;
   try {
     const auto settings = Json::parse(stored.settings);
     if (!settings.is_object()) throw IoError(file.string(), 0, "is not a JSON object");
     for (const auto& e : settings.at("experiments")) {
-      stored.experiments.push_back(
-          {e.at("method").get<std::string>(), parse_set(e.at("set").get<std::string>()),
-           e.at("scenario").get<std::string>(), e.at("obstacles").get<int>(), e.at("laps").get<int>()});
+      stored.experiments.push_back({e.at("method").get<std::string>(),
+                                    parse_set(e.at("set").get<std::string>()),
+                                    e.at("scenario").get<std::string>(), count_of(e, "obstacles", 0, 1000),
+                                    count_of(e, "laps", 1, 1000000)});
     }
+    if (stored.experiments.empty()) throw JsonError("experiments: must be at least one");
     seed0 = settings.at("seed0").get<std::uint64_t>();
   } catch (const JsonError& error) {
     throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/results.hpp"
 #include "tools/json/json.hpp"
 #include "tools/terminal/json_output.hpp"
@@ -141,9 +142,7 @@ void TuningJob::keep_plan() const {
                   "contains a search; continue it with --resume, or use another folder");
   Json there;
   try {
-    std::ifstream stream(file);
-    there =
-        Json::parse(std::string(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()));
+    there = Json::parse(read_file(file, Json::most_bytes));
   } catch (const JsonError& failure) {
     throw IoError(file.string(), 0, std::string("is not JSON: ") + failure.what());
   }

@@ -1,6 +1,8 @@
 #include "tools/json/json.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -86,7 +88,34 @@ struct JsonText {
     if (a.type_ == Type::integer && a.integer_ < 0)
       return b.type_ == Type::integer && a.integer_ == b.integer_;
     if (b.type_ == Type::integer && b.integer_ < 0) return false;
-    return a.get<std::uint64_t>() == b.get<std::uint64_t>();
+    return number<std::uint64_t>(a) == number<std::uint64_t>(b);
+  }
+
+  /// A text as nlohmann's value. Throws JsonError where it is nested too deep: the conversions recurse.
+  static Value parse(std::string_view text) {
+    const auto bounded = [](int depth, Value::parse_event_t, Value&) {
+      if (depth > Json::deepest)
+        throw JsonError("must not nest deeper than " + std::to_string(Json::deepest) + " levels");
+      return true;
+    };
+    return Value::parse(text, bounded);
+  }
+
+  /// A whole number that `Number` can hold.
+  template <class Number>
+  static Number whole(const Json& json) {
+    using Type = Json::Type;
+    const bool fits = json.type_ == Type::integer   ? std::in_range<Number>(json.integer_)
+                      : json.type_ == Type::natural ? std::in_range<Number>(json.natural_)
+                      : json.type_ == Type::real
+                          ? json.real_ == std::trunc(json.real_) && std::abs(json.real_) <= 0x1p53 &&
+                                std::in_range<Number>(static_cast<std::int64_t>(json.real_))
+                          : throw JsonError("must be a number");
+    if (!fits)
+      throw JsonError(json.dump() + " must be a whole number in [" +
+                      std::to_string(std::numeric_limits<Number>::min()) + ", " +
+                      std::to_string(std::numeric_limits<Number>::max()) + "]");
+    return number<Number>(json);
   }
 
   template <class Number>
@@ -159,7 +188,7 @@ Json Json::object() {
 
 Json Json::parse(std::string_view text) {
   try {
-    return JsonText::from(JsonText::Value::parse(text));
+    return JsonText::from(JsonText::parse(text));
   } catch (const nlohmann::json::exception& error) {
     // The library's messages begin with its name in brackets, which says nothing to a user.
     const std::string message = error.what();
@@ -169,8 +198,11 @@ Json Json::parse(std::string_view text) {
 }
 
 Json Json::parse_or_null(std::string_view text) {
-  const auto parsed = JsonText::Value::parse(text, nullptr, false);
-  return parsed.is_discarded() ? Json() : JsonText::from(parsed);
+  try {
+    return parse(text);
+  } catch (const JsonError&) {
+    return {};
+  }
 }
 
 std::string Json::dump(int indent) const {
@@ -185,12 +217,12 @@ bool Json::get<bool>() const {
 
 template <>
 int Json::get<int>() const {
-  return JsonText::number<int>(*this);
+  return JsonText::whole<int>(*this);
 }
 
 template <>
 std::uint64_t Json::get<std::uint64_t>() const {
-  return JsonText::number<std::uint64_t>(*this);
+  return JsonText::whole<std::uint64_t>(*this);
 }
 
 template <>

@@ -53,9 +53,12 @@ class Json {
   static Json array(std::initializer_list<Json> elements);
   static Json object();
 
-  /// Throws JsonError.
+  static constexpr int deepest = 64;                       ///< levels of arrays and objects that are parsed
+  static constexpr std::uint64_t most_bytes = 1ULL << 24;  ///< of a JSON file that is read
+
+  /// Throws JsonError if the text is not JSON or nests deeper than `deepest`.
   static Json parse(std::string_view text);
-  /// Null if the text is not JSON.
+  /// Null where `parse` throws.
   static Json parse_or_null(std::string_view text);
 
   /// The text, in one line, or with `indent` spaces per level. Bytes that are not UTF-8 become U+FFFD.

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 #include "slalom/core/error.hpp"
@@ -11,6 +12,7 @@
 namespace slalom::view::mcap {
 namespace {
 
+constexpr std::uint64_t most_summary = std::uint64_t{1} << 26;  // bytes
 constexpr std::uint64_t footer_size = 1 + 8 + 20;
 
 /// Reads a record's content from its beginning.
@@ -45,8 +47,9 @@ std::uint32_t crc(std::string_view bytes) {
 
 class File {
  public:
-  explicit File(const std::string& name) : name_(name), stream_(name, std::ios::binary | std::ios::ate) {
-    if (!stream_) throw IoError(name, 0, "cannot be read");
+  explicit File(const std::string& name) : name_(name) {
+    if (std::filesystem::is_regular_file(name)) stream_.open(name, std::ios::binary | std::ios::ate);
+    if (!stream_.is_open()) throw IoError(name, 0, "cannot be read: it must be a regular file");
     size_ = static_cast<std::uint64_t>(stream_.tellg());
     if (size_ < 2 * magic.size() + footer_size || read(0, magic.size()) != magic)
       throw IoError(name, 0, "is not an MCAP recording");
@@ -76,6 +79,10 @@ class File {
     reader.get<std::uint64_t>();
     const auto sum = reader.get<std::uint32_t>();
     if (start == 0 || start > at) throw IoError(name_, 0, "has no index");
+    if (at - start > most_summary)
+      throw IoError(name_, 0,
+                    "has an index of " + std::to_string(at - start) + " bytes; at most " +
+                        std::to_string(most_summary) + " are read");
     const std::string bytes = read(start, at + footer_size - 4 - start);
     if (sum != 0 && crc(bytes) != sum) throw IoError(name_, 0, "is damaged: its index has a wrong checksum");
     return bytes.substr(0, at - start);
@@ -113,14 +120,17 @@ std::vector<Attachment> read_attachments(const std::string& name, std::string_vi
   File file(name);
   const std::string summary = file.summary();
   std::vector<Attachment> found;
+  std::uint64_t end = 0;  // of the attachment before: each is read once, so all fit into the file's size
   for (Reader reader(summary, name); !reader.done();) {
     const auto op = reader.get<std::uint8_t>();
     Reader content(reader.take(reader.get<std::uint64_t>()), name);
     if (op != static_cast<std::uint8_t>(Op::attachment_index)) continue;
     const auto offset = content.get<std::uint64_t>(), length = content.get<std::uint64_t>();
     content.take(24);  // times and size
-    if (content.text().compare(0, prefix.size(), prefix) == 0)
-      found.push_back(attachment_at(file, offset, length));
+    if (content.text().compare(0, prefix.size(), prefix) != 0) continue;
+    if (offset < end) throw IoError(name, 0, "is damaged: its index repeats an attachment");
+    end = offset + length;
+    found.push_back(attachment_at(file, offset, length));
   }
   return found;
 }

@@ -22,7 +22,7 @@ struct GreyImage {
 
 /// Most pixels along one side, and in all, of an image that is read or written.
 inline constexpr int max_image_side = 32768;
-inline constexpr std::int64_t max_image_pixels = std::int64_t{1} << 27;  ///< larger images are rejected
+inline constexpr std::int64_t max_image_pixels = std::int64_t{1} << 26;  ///< larger images are rejected
 
 /// Reads a PNG (grey, palette, RGB, with or without alpha, 1 to 16 bits) or a PGM (P2, P5), told apart by
 /// their first bytes. Colours are averaged, as map_server does. Throws IoError.

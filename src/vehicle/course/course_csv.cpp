@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <string>
 #include <string_view>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
 
+constexpr std::uint64_t most_bytes = std::uint64_t{1} << 26;
 constexpr int raceline_columns = 7;
 const char* const raceline_header = "s_m;x_m;y_m;psi_rad;kappa_radpm;vx_mps;ax_mps2";
 
@@ -38,15 +40,13 @@ struct Line {
 };
 
 std::vector<Line> read_lines(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw IoError(file.string(), 0, "cannot be opened");
+  std::istringstream stream(read_file(file, most_bytes));
   std::vector<Line> lines;
   std::string text;
   for (int number = 1; std::getline(stream, text); ++number) {
     if (number == 1 && text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3);
     if (const auto content = trimmed(text); !content.empty()) lines.push_back({number, std::string(content)});
   }
-  if (stream.bad()) throw IoError(file.string(), 0, "cannot be read");
   return lines;
 }
 

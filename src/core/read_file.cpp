@@ -1,0 +1,30 @@
+#include "slalom/core/read_file.hpp"
+
+#include <fstream>
+
+#include "slalom/core/error.hpp"
+
+namespace slalom {
+
+std::string read_file(const std::filesystem::path& file, std::uint64_t most) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status) || std::filesystem::is_directory(status))
+    throw IoError(file.string(), 0, "does not exist or cannot be read");
+  if (!std::filesystem::is_regular_file(status))
+    throw IoError(file.string(), 0, "must be a regular file, not a pipe or device");
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  if (!stream) throw IoError(file.string(), 0, "does not exist or cannot be read");
+  const auto size = static_cast<std::uint64_t>(stream.tellg());
+  if (size > most) {
+    throw IoError(file.string(), 0,
+                  "has " + std::to_string(size) + " bytes; at most " + std::to_string(most) + " are read");
+  }
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  stream.seekg(0);
+  if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
+    throw IoError(file.string(), 0, "does not exist or cannot be read");
+  return bytes;
+}
+
+}  // namespace slalom
