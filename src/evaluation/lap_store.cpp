@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "evaluation/folder_lock.hpp"
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/evaluation.hpp"
 
 namespace slalom::evaluation {
@@ -32,7 +33,16 @@ void write_all(int descriptor, const std::string& text, const fs::path& file) {
   }
 }
 
-/// Replaces a file atomically.
+/// Makes the entries of a folder survive a loss of power.
+void sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) throw_system(folder, "cannot be opened");
+  const int failed = ::fsync(descriptor);
+  ::close(descriptor);
+  if (failed != 0 && errno != EINVAL) throw_system(folder, "cannot be written");  // EINVAL: cannot be synced
+}
+
+/// Replaces a file atomically; once this returns, it survives a loss of power.
 void replace_file(const fs::path& file, const std::string& text) {
   const fs::path next = file.string() + ".new";
   const int descriptor = ::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
@@ -46,12 +56,25 @@ void replace_file(const fs::path& file, const std::string& text) {
   }
   ::close(descriptor);
   if (::rename(next.c_str(), file.c_str()) != 0) throw_system(file, "cannot be written");
+  sync_folder(file.parent_path());
 }
 
-std::string read_text(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw IoError(file.string(), 0, "cannot be read");
-  return {std::istreambuf_iterator<char>(stream), {}};
+constexpr const char* checksum_key = "checksum";
+
+/// The 64-bit FNV-1a hash of the settings, written with their keys in order.
+std::string checksum_of(const nlohmann::ordered_json& settings) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char c : settings.dump()) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  char digits[20];
+  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash));
+  return digits;
+}
+
+/// The rows as a table with checksums.
+std::string table_text(const std::vector<LapRow>& rows, const std::vector<Experiment>& experiments) {
+  std::string text = checked_header() + "\n";
+  for (const LapRow& row : rows) text += checked_line(csv_line(row, experiments)) + "\n";
+  return text;
 }
 
 /// "key: 1 stored, 2 requested; ..." for every value that differs.
@@ -78,13 +101,18 @@ std::string differences(const nlohmann::json& stored, const nlohmann::json& requ
 std::string check_settings(const fs::path& file, const std::string& requested) {
   nlohmann::json stored;
   try {
-    stored = nlohmann::json::parse(read_text(file));
+    const std::string text = read_file(file, std::uint64_t{1} << 24);
+    stored = nlohmann::json::parse(text);
+    verify_checksum(text);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(file.string(), 0, error.what());
   } catch (const nlohmann::json::exception& error) {
     throw IoError(file.string(), 0, std::string("is not JSON: ") + error.what());
   }
   std::string build;
   if (stored.contains("build") && stored["build"].is_string()) build = stored["build"];
   stored.erase("build");
+  stored.erase(checksum_key);
   const std::string differing = differences(stored, nlohmann::json::parse(requested));
   if (!differing.empty())
     throw IoError(file.string(), 0, "the folder contains an evaluation with other settings: " + differing);
@@ -92,10 +120,9 @@ std::string check_settings(const fs::path& file, const std::string& requested) {
 }
 
 std::string with_build(const std::string& settings, const std::string& build) {
-  if (build.empty()) return settings;
   auto json = nlohmann::ordered_json::parse(settings);
-  json["build"] = build;
-  return json.dump(2);
+  if (!build.empty()) json["build"] = build;
+  return with_checksum(json.dump());
 }
 
 bool is_table_order(const LapRow& a, const LapRow& b) {
@@ -119,11 +146,32 @@ void check_complete(const fs::path& table, const std::vector<LapRow>& sorted,
 
 }  // namespace
 
+std::string with_checksum(const std::string& settings) {
+  auto json = nlohmann::ordered_json::parse(settings);
+  json.erase(checksum_key);
+  json[checksum_key] = checksum_of(json);
+  return json.dump(2);
+}
+
+bool verify_checksum(const std::string& stored_settings) {
+  auto json = nlohmann::ordered_json::parse(stored_settings, nullptr, false);
+  if (!json.is_object()) throw std::invalid_argument("is not a JSON object");
+  const auto found = json.find(checksum_key);
+  if (found == json.end()) return false;
+  const auto stored = *found;
+  json.erase(checksum_key);
+  if (stored != checksum_of(json))
+    throw std::invalid_argument(
+        "key checksum: is not that of the settings: the file is damaged or was edited");
+  return true;
+}
+
 LapStore::LapStore(const fs::path& folder, const Evaluation& evaluation, bool resume)
     : folder_(folder), experiments_(evaluation.experiments) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw IoError(folder.string(), 0, "cannot create directory: " + error.message());
+  lock_ = std::make_unique<detail::FolderLock>(folder);
   const fs::path settings = folder / settings_name, journal = folder / journal_name,
                  table = folder / table_name;
   const bool has_laps = fs::exists(journal) || fs::exists(table);
@@ -146,16 +194,13 @@ LapStore::LapStore(const fs::path& folder, const Evaluation& evaluation, bool re
     replace_file(settings, with_build(evaluation.settings, evaluation.build));
   }
   if (fs::exists(table)) {
-    rows_ = read_rows(table, experiments_, false, evaluation.seed0);
+    rows_ = read_rows(table, experiments_, false, evaluation.seed0, &checked_);
     std::sort(rows_.begin(), rows_.end(), is_table_order);
     check_complete(table, rows_, experiments_);
     return;
   }
-  if (fs::exists(journal)) rows_ = read_rows(journal, experiments_, true, evaluation.seed0);
-  // Rewritten, so that a truncated line is removed.
-  std::string text = csv_header() + "\n";
-  for (const LapRow& row : rows_) text += csv_line(row, experiments_) + "\n";
-  replace_file(journal, text);
+  if (fs::exists(journal)) rows_ = read_rows(journal, experiments_, true, evaluation.seed0, &checked_);
+  replace_file(journal, table_text(rows_, experiments_));  // without a truncated line
   journal_ = ::open(journal.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (journal_ < 0) throw_system(journal, "cannot be written");
 }
@@ -174,16 +219,14 @@ LapStore::~LapStore() {
 }
 
 void LapStore::add(const LapRow& row) {
-  write_all(journal_, csv_line(row, experiments_) + "\n", folder_ / journal_name);
+  write_all(journal_, checked_line(csv_line(row, experiments_)) + "\n", folder_ / journal_name);
   rows_.push_back(row);
 }
 
 void LapStore::complete() {
   if (journal_ < 0) return;
   std::sort(rows_.begin(), rows_.end(), is_table_order);
-  std::string text = csv_header() + "\n";
-  for (const LapRow& row : rows_) text += csv_line(row, experiments_) + "\n";
-  replace_file(folder_ / table_name, text);
+  replace_file(folder_ / table_name, table_text(rows_, experiments_));
   ::close(journal_);
   journal_ = -1;
   fs::remove(folder_ / journal_name);

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
+#include <cstdio>
 #include <numeric>
 #include <set>
 #include <sstream>
 #include <type_traits>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 
 namespace slalom::evaluation {
 
@@ -49,6 +49,14 @@ void visit_columns(Row& r, Visit&& visit) {
   visit("solve_p50", r.solve_p50);
   visit("solve_p99", r.solve_p99);
   visit("wall_time", r.wall_time);
+}
+
+constexpr const char* checksum_column = "checksum";
+
+std::uint32_t row_hash(std::string_view line) {
+  std::uint32_t hash = 2166136261U;
+  for (const char c : line) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+  return hash;
 }
 
 template <class Number>
@@ -99,7 +107,7 @@ constexpr std::size_t identity_columns = 4;  // method, scenario, set, lap
 std::string header_error(const std::string& line) {
   const auto found = split(line), expected = split(csv_header());
   for (const std::string& column : found)
-    if (std::find(expected.begin(), expected.end(), column) == expected.end())
+    if (column != checksum_column && std::find(expected.begin(), expected.end(), column) == expected.end())
       return "column '" + column + "' is unknown to this version";
   for (const std::string& column : expected)
     if (std::find(found.begin(), found.end(), column) == found.end())
@@ -197,6 +205,16 @@ std::string csv_line(const LapRow& row, const std::vector<Experiment>& experimen
   return line;
 }
 
+std::string checked_line(const std::string& line) {
+  char digits[10];
+  std::snprintf(digits, sizeof digits, ",%08x", static_cast<unsigned>(row_hash(line)));
+  return line + digits;
+}
+
+std::string checked_header() {
+  return csv_header() + "," + checksum_column;
+}
+
 LapRow parse_line(const std::string& line, const std::vector<Experiment>& experiments) {
   const auto cells = split(line);
   LapRow row;
@@ -222,6 +240,15 @@ LapRow parse_line(const std::string& line, const std::vector<Experiment>& experi
 
 namespace {
 
+/// The line without its checksum. Throws std::invalid_argument if that is not the checksum of the line.
+std::string without_checksum(const std::string& line) {
+  const auto comma = line.rfind(',');
+  const std::string row = line.substr(0, comma);
+  if (comma == std::string::npos || checked_line(row) != line)
+    throw std::invalid_argument("checksum: the row is damaged: it is not the row that was written");
+  return row;
+}
+
 void check_seed(const LapRow& row, const Experiment& experiment, std::uint64_t seed0) {
   const std::uint64_t seed = lap_seed(seed0, row.lap, experiment.obstacles);
   if (row.seed == seed) return;
@@ -234,10 +261,10 @@ void check_seed(const LapRow& row, const Experiment& experiment, std::uint64_t s
 }  // namespace
 
 std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vector<Experiment>& experiments,
-                              bool accept_truncated, std::optional<std::uint64_t> seed0) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw IoError(file.string(), 0, "cannot be read");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+                              bool accept_truncated, std::optional<std::uint64_t> seed0, bool* checked) {
+  constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
+  const std::string text = read_file(file, most_bytes);
+  bool has_checksums = false;
   std::vector<LapRow> rows;
   std::set<std::pair<int, int>> seen;
   int number = 0;
@@ -250,11 +277,12 @@ std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vect
     if (!complete && accept_truncated) break;
     if (!complete) throw IoError(file.string(), number, "is truncated");
     if (number == 1) {
-      if (line != csv_header()) throw IoError(file.string(), 1, header_error(line));
+      has_checksums = line == checked_header();
+      if (!has_checksums && line != csv_header()) throw IoError(file.string(), 1, header_error(line));
       continue;
     }
     try {
-      LapRow row = parse_line(line, experiments);
+      LapRow row = parse_line(has_checksums ? without_checksum(line) : line, experiments);
       if (!seen.insert({row.experiment, row.lap}).second) throw std::invalid_argument("duplicate lap");
       if (seed0) check_seed(row, experiments[static_cast<std::size_t>(row.experiment)], *seed0);
       rows.push_back(std::move(row));
@@ -262,6 +290,7 @@ std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vect
       throw IoError(file.string(), number, error.what());
     }
   }
+  if (checked) *checked = has_checksums || number == 0;
   if (number == 0 && !accept_truncated) throw IoError(file.string(), 1, "the header is missing");
   return rows;
 }

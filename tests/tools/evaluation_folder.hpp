@@ -36,8 +36,9 @@ inline std::string repeatable(const fs::path& file) {
     const auto parts = cells(line);
     if (kept.empty()) {
       for (const auto& name : parts)
-        kept.push_back(!contains(name, "calculation_time") && name.rfind("solve_", 0) != 0 &&
-                       name.rfind("deadline_", 0) != 0 && name.rfind("wall_", 0) != 0);
+        kept.push_back(!contains(name, "calculation_time") && name != "checksum" &&
+                       name.rfind("solve_", 0) != 0 && name.rfind("deadline_", 0) != 0 &&
+                       name.rfind("wall_", 0) != 0);
     }
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (kept.at(i)) text += parts[i] + ",";

@@ -11,6 +11,7 @@
 #include "view/recording/encodings.hpp"
 #include "view/recording/mcap_bytes.hpp"
 #include "view/recording/mcap_reader.hpp"
+#include "view/recording/mcap_repair.hpp"
 #include "view/recording/recorder.hpp"
 #include "view/recording/replay.hpp"
 
@@ -88,12 +89,68 @@ TEST_F(McapRecording, AReplayHoldsEveryFrameInOrder) {
   EXPECT_EQ(frames, 12);
 }
 
+/// A recording may end anywhere: its program was killed, or the disk was full.
+TEST_F(McapRecording, OneThatWasCutOpensUpToItsLastWholeRecord) {
+  const std::string good = record(false, 900);
+  const auto whole = load_replay(file(good));
+  ASSERT_EQ(whole.size(), 3u);
+  std::size_t most = 0;
+  for (std::size_t size = good.size() - 1; size > 0; size -= std::min<std::size_t>(size, good.size() / 97)) {
+    const std::string cut = file(good.substr(0, size));
+    std::ostringstream out;
+    std::uint64_t lost = 0;
+    std::vector<std::string> segments;
+    try {
+      segments = load_replay(cut, &lost);
+    } catch (const IoError&) {
+      continue;  // no segment is whole
+    }
+    EXPECT_LE(lost, size);
+    ASSERT_LE(segments.size(), whole.size());
+    EXPECT_TRUE(std::equal(segments.begin(), segments.end(), whole.begin()));
+    most = std::max(most, segments.size());
+    EXPECT_EQ(mcap::repair(cut, out).attachments, segments.size());
+    EXPECT_EQ(load_replay(write("repaired.mcap", out.str()).string()), segments);
+  }
+  EXPECT_EQ(most, 3u);
+}
+
+TEST_F(McapRecording, RepairOfAWholeRecordingChangesNothing) {
+  const std::string good = record(true, 12);
+  std::ostringstream out;
+  const mcap::Repaired done = mcap::repair(file(good), out);
+  EXPECT_EQ(out.str(), good);
+  EXPECT_EQ(done.lost, 0u);
+  EXPECT_GT(done.messages, 12u * 5);
+}
+
+TEST_F(McapRecording, RepairStopsAtDamage) {
+  const std::string good = record(false, 900);
+  const mcap::Repaired whole = [&] {
+    std::ostringstream out;
+    return mcap::repair(file(good), out);
+  }();
+  for (std::size_t at = 200; at < good.size(); at += good.size() / 53) {
+    std::string damaged = good;
+    damaged[at] = static_cast<char>(damaged[at] ^ 4);
+    std::ostringstream out;
+    try {
+      const mcap::Repaired done = mcap::repair(file(damaged), out);
+      EXPECT_LE(done.messages, whole.messages);
+    } catch (const IoError&) {
+      continue;  // nothing is whole
+    }
+    EXPECT_NO_THROW(mcap::repair(write("repaired.mcap", out.str()).string(), out));
+  }
+}
+
 TEST_F(McapRecording, RejectsOtherAndDamagedFiles) {
   const std::string good = record(false, 3);
   EXPECT_NE(refusal(file("no recording at all, but long enough to have a head and a foot"))
                 .find("not an MCAP recording"),
             std::string::npos);
   EXPECT_NE(refusal(file(good.substr(0, good.size() - 100))).find("incomplete"), std::string::npos);
+  EXPECT_NE(refusal(file(good.substr(0, 20))).find("incomplete"), std::string::npos);
   std::string damaged = good;
   damaged[damaged.size() - 60] = static_cast<char>(damaged[damaged.size() - 60] ^ 1);
   EXPECT_NE(refusal(file(damaged)).find("checksum"), std::string::npos);

@@ -13,8 +13,8 @@
 
 namespace slalom::tools {
 
-Option& Option::required() {
-  parsed_->required();
+Option& Option::required(bool needed) {
+  parsed_->required(needed);
   return *this;
 }
 
@@ -150,7 +150,13 @@ int parse_and_run(int argc, const char* const* argv, const std::vector<CommandEn
     CLI::App* parser = app.add_subcommand(entry.name);
     Subcommand& command = commands.emplace_back(*parser);
     entry.declare(command);
-    parser->callback([&command, &exit_status] { exit_status = command.run(); });
+    parser->callback([&command, &exit_status] {
+      try {
+        exit_status = command.run();
+      } catch (const CommandLineError& error) {
+        throw CLI::ValidationError(error.option, error.rule);
+      }
+    });
   }
   app.parse_complete_callback([&app] {
     for (const CLI::App* command : app.get_subcommands()) check(*command);

@@ -28,7 +28,7 @@ class Option {
  public:
   explicit Option(CLI::Option* parsed) : parsed_(parsed) {}
 
-  Option& required();
+  Option& required(bool needed = true);
   /// The help shows the variable's value at this moment as the default.
   Option& show_default();
   /// Values outside [least, most] are rejected.

@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "tools/commands/commands.hpp"
+#include "tools/evaluation/evaluation_check.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/evaluation/ranks.hpp"
 #include "tools/json/json.hpp"
@@ -16,9 +17,13 @@ struct Arguments {
   int laps = 20;
   int obstacles = 5;
   bool report = false;
+  std::string check;
+  int again = 3;
 };
 
 int run(const Arguments& arguments) {
+  if (!arguments.check.empty()) return check_evaluation(arguments.check, arguments.again);
+  if (arguments.evaluation.out.empty()) throw CommandLineError("--out", "is required");
   const auto experiments = make_experiments(arguments.methods, arguments.scenarios, arguments.laps,
                                             arguments.obstacles, arguments.sweeps);
   Evaluated evaluated;
@@ -65,6 +70,14 @@ void declare_eval(Subcommand& command) {
       .repeatable();
   command.flag("--report", arguments->report, "Also write report.html and its figures");
   add_evaluation_options(command, arguments->evaluation);
+  const Option check =
+      command.option("--check", arguments->check,
+                     "Verify this folder of an evaluation instead: checksums, seeds, and that laps repeat");
+  command.option("--again", arguments->again, "With --check: number of laps that are driven again")
+      .range(0, 1000000)
+      .show_default()
+      .needs(check);
+  command.find("--out").required(false).excludes(check);
   command.action([arguments] { return run(*arguments); });
 }
 

@@ -47,6 +47,7 @@ constexpr struct {
                   {"--config", bag},
                   {"--set", bag},
                   {"--html", bag | recording},
+                  {"--repair", recording},
                   {"--host", bag | recording},
                   {"--port", bag | recording}};
 
@@ -55,17 +56,6 @@ void reject_inapplicable(const Subcommand& command, Kind kind) {
   for (const auto& [option, kinds] : applicable)
     if (command.given(option) && (kinds & kind) == 0)
       throw IoError(option, 0, std::string("has no effect when ") + kind_name(kind) + " is replayed");
-}
-
-/// Whether two rows of the same lap agree, except for wall-clock times.
-bool same_lap(LapRow a, const LapRow& b, const std::vector<Experiment>& experiments) {
-  a.mean_calculation_time = b.mean_calculation_time;
-  a.max_calculation_time = b.max_calculation_time;
-  a.min_calculation_time = b.min_calculation_time;
-  a.solve_p50 = b.solve_p50;
-  a.solve_p99 = b.solve_p99;
-  a.wall_time = b.wall_time;
-  return csv_line(a, experiments) == csv_line(b, experiments);
 }
 
 void plot(const Arguments& arguments, const Scenario& scenario, const LapRunner& runner,
@@ -216,7 +206,11 @@ void declare_replay(Subcommand& command) {
   const Option record =
       command.option("--record", arguments->record,
                      "Record to this file: MCAP if its name ends in .mcap, otherwise JSON lines");
-  for (Option served : {host, port}) served.excludes(html).excludes(record);
+  const Option repair = command.option(
+      "--repair", arguments->recording.repair,
+      "Recording that was cut: write what is whole of it to this file, as a finished recording");
+  for (Option served : {host, port}) served.excludes(html).excludes(record).excludes(repair);
+  command.find("--html").excludes(repair);
   command.action([arguments, &command] { return run(*arguments, command); });
 }
 

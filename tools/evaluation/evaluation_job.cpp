@@ -12,6 +12,7 @@
 #include "tools/command_line/command.hpp"
 #include "tools/evaluation/build_id.hpp"
 #include "tools/evaluation/ranks.hpp"
+#include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/json/json.hpp"
 #include "tools/terminal/evaluation_progress.hpp"
 #include "tools/terminal/interrupt.hpp"
@@ -206,6 +207,7 @@ bool drive_evaluation(const Evaluation& evaluation, const EvaluationArguments& a
   }
   require_object(std::filesystem::path(arguments.out) / "settings.json");
   LapStore store(arguments.out, evaluation, arguments.resume);
+  if (!store.checked()) print_unchecked(arguments.out);
   EvaluationProgressBar bar(title);
   EvaluationQueue work(
       evaluation, store, [&](const EvaluationProgress& p) { bar.show(p); }, cancel);

@@ -1,6 +1,7 @@
 #include "tools/evaluation/stored_evaluation.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
@@ -63,6 +64,11 @@ std::string stored_course(const Json& settings) {
 
 }  // namespace
 
+void print_unchecked(const fs::path& folder) {
+  std::fprintf(stderr, "note: %s has no checksums, since an earlier version wrote it: damage may not show\n",
+               folder.c_str());
+}
+
 StoredEvaluation load_evaluation(const fs::path& folder) {
   StoredEvaluation stored;
   stored.folder = folder;
@@ -70,10 +76,11 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
   if (!fs::exists(file))
     throw IoError(file.string(), 0, "cannot be read; the folder must be the output folder of slalom eval");
   stored.settings = read_file(file, Json::most_bytes);
+  bool settings_checked = false;
   std::uint64_t seed0 = 0;
   try {
     const auto settings = Json::parse(stored.settings);
-    if (!settings.is_object()) throw IoError(file.string(), 0, "is not a JSON object");
+    settings_checked = evaluation::verify_checksum(stored.settings);
     for (const auto& e : settings.at("experiments")) {
       stored.experiments.push_back({e.at("method").get<std::string>(),
                                     parse_set(e.at("set").get<std::string>()),
@@ -84,12 +91,27 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
     seed0 = settings.at("seed0").get<std::uint64_t>();
   } catch (const JsonError& error) {
     throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());
+  } catch (const std::invalid_argument& error) {
+    throw IoError(file.string(), 0, error.what());
   }
   const fs::path table = folder / "laps.csv", journal = folder / "laps.journal.csv";
   stored.complete = fs::exists(table);
-  stored.rows = stored.complete ? evaluation::read_rows(table, stored.experiments, false, seed0)
-                                : evaluation::read_rows(journal, stored.experiments, true, seed0);
+  stored.rows = stored.complete
+                    ? evaluation::read_rows(table, stored.experiments, false, seed0, &stored.checked)
+                    : evaluation::read_rows(journal, stored.experiments, true, seed0, &stored.checked);
+  stored.checked = stored.checked && settings_checked;
+  if (!stored.checked) print_unchecked(folder);
   return stored;
+}
+
+bool same_lap(evaluation::LapRow a, const evaluation::LapRow& b, const std::vector<Experiment>& experiments) {
+  a.mean_calculation_time = b.mean_calculation_time;
+  a.max_calculation_time = b.max_calculation_time;
+  a.min_calculation_time = b.min_calculation_time;
+  a.solve_p50 = b.solve_p50;
+  a.solve_p99 = b.solve_p99;
+  a.wall_time = b.wall_time;
+  return evaluation::csv_line(a, experiments) == evaluation::csv_line(b, experiments);
 }
 
 int StoredEvaluation::find(const std::string& name, const std::string& scenario) const {

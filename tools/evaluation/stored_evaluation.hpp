@@ -16,14 +16,22 @@ struct StoredEvaluation {
   std::vector<evaluation::Experiment> experiments;
   std::vector<evaluation::LapRow> rows;  ///< of a run that is not done: those it has so far
   bool complete = false;
+  bool checked = false;  ///< whether settings and rows have checksums; those of earlier versions have not
 
   /// The experiment so named: by its label (method and options) or, where only one has it, by its method; an
   /// empty scenario fits any. Throws IoError naming those there are.
   int find(const std::string& name, const std::string& scenario) const;
 };
 
-/// Throws IoError if the folder does not contain a valid evaluation.
+/// Throws IoError if the folder does not contain a valid evaluation. Prints a note if it has no checksums.
 StoredEvaluation load_evaluation(const std::filesystem::path& folder);
+
+/// Prints the note that the laps of a folder have no checksums.
+void print_unchecked(const std::filesystem::path& folder);
+
+/// Whether two rows of the same lap agree, except for wall-clock times.
+bool same_lap(evaluation::LapRow a, const evaluation::LapRow& b,
+              const std::vector<evaluation::Experiment>& experiments);
 
 /// The arguments it was driven with. `course` takes the place of the course's name where that is not empty.
 ScenarioArguments evaluation_arguments(const StoredEvaluation& stored, const std::string& course);

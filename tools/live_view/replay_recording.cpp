@@ -2,21 +2,48 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 #include "slalom/core/error.hpp"
 #include "tools/live_view/view_setup.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "view/recording/encodings.hpp"
+#include "view/recording/mcap_repair.hpp"
 #include "view/recording/replay.hpp"
 #include "view/server/page_data.hpp"
 #include "view/server/server.hpp"
 
 namespace slalom::tools {
 
+namespace {
+
+int repair_recording(const ReplayArguments& arguments) {
+  if (std::filesystem::exists(arguments.repair))
+    throw IoError(arguments.repair, 0, "exists; --repair writes a new file");
+  std::ofstream stream(arguments.repair, std::ios::binary);
+  if (!stream) throw IoError(arguments.repair, 0, "cannot be written");
+  const auto done = view::mcap::repair(arguments.file, stream);
+  stream.close();
+  if (!stream) throw IoError(arguments.repair, 0, "cannot be written completely; the disk may be full");
+  std::printf("%s: %llu messages and %llu segments of the page; %llu bytes of %s were lost\n",
+              arguments.repair.c_str(), static_cast<unsigned long long>(done.messages),
+              static_cast<unsigned long long>(done.attachments), static_cast<unsigned long long>(done.lost),
+              arguments.file.c_str());
+  return 0;
+}
+
+}  // namespace
+
 int replay_recording(const ReplayArguments& arguments) {
+  if (!arguments.repair.empty()) return repair_recording(arguments);
+  std::uint64_t lost = 0;
   const std::string page =
-      view::replay_page(view::gunzip(view::page_gzip()), view::load_replay(arguments.file));
+      view::replay_page(view::gunzip(view::page_gzip()), view::load_replay(arguments.file, &lost));
+  if (lost > 0)
+    std::fprintf(stderr,
+                 "note: %s was cut: its last %llu bytes cannot be read; --repair FILE writes the rest out\n",
+                 arguments.file.c_str(), static_cast<unsigned long long>(lost));
   if (!arguments.html.empty()) {
     std::ofstream stream(arguments.html, std::ios::binary);
     stream << page;

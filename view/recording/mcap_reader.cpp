@@ -2,48 +2,18 @@
 
 #include <zlib.h>
 
-#include <cstring>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "slalom/core/error.hpp"
-#include "view/recording/mcap_bytes.hpp"
 
 namespace slalom::view::mcap {
 namespace {
 
+constexpr std::uint64_t most_record = std::uint64_t{1} << 30;   // bytes
 constexpr std::uint64_t most_summary = std::uint64_t{1} << 26;  // bytes
 constexpr std::uint64_t footer_size = 1 + 8 + 20;
-
-/// Reads a record's content from its beginning.
-class Reader {
- public:
-  Reader(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file) {}
-
-  template <class T>
-  T get() {
-    T value{};
-    std::memcpy(&value, take(sizeof value).data(), sizeof value);
-    return value;
-  }
-  std::string text() { return std::string(take(get<std::uint32_t>())); }
-  std::string_view take(std::uint64_t count) {
-    if (count > bytes_.size() - at_) throw IoError(file_, 0, "is damaged: a record ends too soon");
-    at_ += count;
-    return bytes_.substr(at_ - count, count);
-  }
-  bool done() const { return at_ == bytes_.size(); }
-
- private:
-  std::string_view bytes_;
-  const std::string& file_;
-  std::size_t at_ = 0;
-};
-
-std::uint32_t crc(std::string_view bytes) {
-  return static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
-}
 
 class File {
  public:
@@ -51,11 +21,15 @@ class File {
     if (std::filesystem::is_regular_file(name)) stream_.open(name, std::ios::binary | std::ios::ate);
     if (!stream_.is_open()) throw IoError(name, 0, "cannot be read: it must be a regular file");
     size_ = static_cast<std::uint64_t>(stream_.tellg());
-    if (size_ < 2 * magic.size() + footer_size || read(0, magic.size()) != magic)
+    if (size_ < magic.size() || read(0, magic.size()) != magic)
       throw IoError(name, 0, "is not an MCAP recording");
-    if (read(size_ - magic.size(), magic.size()) != magic)
-      throw IoError(name, 0, "is incomplete: the recording was not finished");
   }
+
+  /// Whether the file has an end: otherwise it was cut.
+  bool finished() {
+    return size_ >= 2 * magic.size() + footer_size && read(size_ - magic.size(), magic.size()) == magic;
+  }
+  std::uint64_t size() const { return size_; }
 
   std::string read(std::uint64_t offset, std::uint64_t length) {
     if (offset > size_ || length > size_ - offset)
@@ -101,23 +75,87 @@ Attachment attachment_at(File& file, std::uint64_t offset, std::uint64_t length)
   Reader head(record, file.name());
   if (head.get<std::uint8_t>() != static_cast<std::uint8_t>(Op::attachment))
     throw IoError(file.name(), 0, "is damaged: an index does not point to an attachment");
-  const std::string_view content = head.take(head.get<std::uint64_t>());
-  Reader reader(content, file.name());
-  reader.take(16);  // times
+  return parse_attachment(head.take(head.get<std::uint64_t>()), file.name());
+}
+
+/// The records of a file, one after another, without any index.
+class Records {
+ public:
+  explicit Records(File& file) : file_(file) {}
+
+  /// Reads the next record; false if it is not whole.
+  bool next() {
+    constexpr std::uint64_t head = 1 + 8;
+    if (file_.size() - at_ < head) return false;
+    const std::string bytes = file_.read(at_, head);
+    Reader reader(bytes, file_.name());
+    op_ = static_cast<Op>(reader.get<std::uint8_t>());
+    const auto length = reader.get<std::uint64_t>();
+    if (length > std::min(most_record, file_.size() - at_ - head)) return false;
+    content_ = file_.read(at_ + head, length);
+    at_ += head + length;
+    return true;
+  }
+  Op op() const { return op_; }
+  std::string_view content() const { return content_; }
+  std::uint64_t at() const { return at_; }
+
+ private:
+  File& file_;
+  std::uint64_t at_ = magic.size();
+  Op op_ = Op::header;
+  std::string content_;
+};
+
+}  // namespace
+
+std::uint32_t crc(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
+
+Attachment parse_attachment(std::string_view content, const std::string& file) {
+  Reader reader(content, file);
   Attachment attachment;
+  attachment.time = reader.get<std::uint64_t>();
+  reader.get<std::uint64_t>();  // when it was made
   attachment.name = reader.text();
   attachment.media_type = reader.text();
   attachment.data = reader.take(reader.get<std::uint64_t>());
   const auto sum = reader.get<std::uint32_t>();
   if (sum != 0 && crc(content.substr(0, content.size() - 4)) != sum)
-    throw IoError(file.name(), 0, "is damaged: " + attachment.name + " has a wrong checksum");
+    throw IoError(file, 0, "is damaged: " + attachment.name + " has a wrong checksum");
   return attachment;
 }
 
-}  // namespace
-
-std::vector<Attachment> read_attachments(const std::string& name, std::string_view prefix) {
+std::uint64_t scan(const std::string& name, const std::function<void(Op, std::string_view)>& take) {
   File file(name);
+  std::uint64_t whole = magic.size();
+  try {
+    for (Records records(file); records.next(); whole = records.at()) {
+      if (records.op() == Op::data_end) return 0;
+      take(records.op(), records.content());
+    }
+  } catch (const IoError&) {
+    if (whole == magic.size()) throw;  // not even a header
+  }
+  return file.size() - whole;
+}
+
+std::vector<Attachment> read_attachments(const std::string& name, std::string_view prefix,
+                                         std::uint64_t* lost) {
+  File file(name);
+  if (lost) *lost = 0;
+  if (!file.finished()) {
+    if (!lost) throw IoError(name, 0, "is incomplete: the recording was not finished");
+    std::vector<Attachment> found;
+    *lost = scan(name, [&](Op op, std::string_view content) {
+      if (op != Op::attachment) return;
+      Attachment each = parse_attachment(content, name);
+      if (each.name.compare(0, prefix.size(), prefix) == 0) found.push_back(std::move(each));
+    });
+    return found;
+  }
   const std::string summary = file.summary();
   std::vector<Attachment> found;
   std::uint64_t end = 0;  // of the attachment before: each is read once, so all fit into the file's size

@@ -41,9 +41,9 @@ std::string replay_page(std::string page, const std::vector<std::string>& segmen
   return page.insert(end == std::string::npos ? page.size() : end, data);
 }
 
-std::vector<std::string> load_replay(const std::string& file) {
+std::vector<std::string> load_replay(const std::string& file, std::uint64_t* lost) {
   std::vector<std::string> segments;
-  for (mcap::Attachment& each : mcap::read_attachments(file, "replay/"))
+  for (mcap::Attachment& each : mcap::read_attachments(file, "replay/", lost))
     segments.push_back(std::move(each.data));
   if (segments.empty())
     throw IoError(file, 0, "contains nothing to replay; recordings of slalom drive and slalom view do");

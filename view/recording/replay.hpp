@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -34,7 +35,8 @@ class ReplaySegments {
 /// The page with a replay inside: one file that needs no server. `page`: the page's HTML.
 std::string replay_page(std::string page, const std::vector<std::string>& segments);
 
-/// The segments of an MCAP recording. Throws IoError if it is not one.
-std::vector<std::string> load_replay(const std::string& file);
+/// The segments of an MCAP recording. Of one that was cut: those that are whole, and `lost` receives the
+/// number of bytes that are not. Throws IoError if it is not a recording, or cut without `lost`.
+std::vector<std::string> load_replay(const std::string& file, std::uint64_t* lost = nullptr);
 
 }  // namespace slalom::view

@@ -63,13 +63,24 @@ class LapQueue {
 /// which thread drives which lap.
 void drive_laps(const Evaluation& evaluation, LapQueue& queue, int jobs, const std::atomic<bool>& cancel);
 
+namespace detail {
+class FolderLock;
+}
+
+/// The settings of an evaluation, as JSON text, with their checksum.
+std::string with_checksum(const std::string& settings);
+/// Whether stored settings have a checksum. Throws std::invalid_argument if it is not that of the settings,
+/// or if they are not a JSON object.
+bool verify_checksum(const std::string& stored_settings);
+
 /// Stores the laps of an evaluation in a folder: `settings.json`, `laps.csv` when all laps are there, and
 /// until then a journal to which each lap is appended when it ends. A run may be killed at any time; a later
-/// run with `resume` continues it, and no finished lap is driven twice.
+/// run with `resume` continues it, and no finished lap is driven twice. Settings and rows have checksums. The
+/// file `lock` keeps other stores out of the folder.
 class LapStore {
  public:
   /// Opens or makes `folder`. The evaluation must outlive the store. Throws IoError
-  /// - if the folder cannot be written,
+  /// - if the folder cannot be written, or is in use by another store (the message names its process),
   /// - if it contains laps and `resume` is false,
   /// - if it contains an evaluation with other settings (the message names the differences),
   /// - if its laps are corrupt, have other seeds, or are missing in laps.csv,
@@ -81,6 +92,8 @@ class LapStore {
 
   /// The laps driven so far.
   const std::vector<LapRow>& rows() const noexcept { return rows_; }
+  /// Whether the laps that were there had checksums; those of earlier versions had not.
+  bool checked() const noexcept { return checked_; }
   /// Appends a lap to the journal. It survives the end of the process once this returns. Throws IoError if it
   /// cannot be written.
   void add(const LapRow& row);
@@ -92,7 +105,9 @@ class LapStore {
   void check_build(const Evaluation& evaluation, const std::string& stored_build) const;
 
   std::filesystem::path folder_;
+  std::unique_ptr<detail::FolderLock> lock_;
   const std::vector<Experiment>& experiments_;
+  bool checked_ = true;
   std::vector<LapRow> rows_;
   int journal_ = -1;  ///< file descriptor
 };

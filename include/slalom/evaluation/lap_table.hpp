@@ -69,15 +69,23 @@ std::string csv_header();
 /// A row of laps.csv without line end. Numbers read back to the same bits.
 std::string csv_line(const LapRow& row, const std::vector<Experiment>& experiments);
 
-/// Parses such a line. Throws std::invalid_argument naming the column, its value and the rule, or what else
-/// is wrong with the line.
+/// A line of a table that is stored: the line, a comma, and its checksum, which is the 32-bit FNV-1a hash of
+/// the bytes before the comma in eight hexadecimal digits. It tells every change of a single byte.
+std::string checked_line(const std::string& line);
+/// The header of such a table: csv_header() and the column `checksum`.
+std::string checked_header();
+
+/// Parses a line of csv_line. Throws std::invalid_argument naming the column, its value and the rule, or what
+/// else is wrong with the line.
 LapRow parse_line(const std::string& line, const std::vector<Experiment>& experiments);
 
-/// Reads rows. Throws IoError with file and line if the file cannot be read, the header is another one, a
-/// line is not a row of one of the experiments, a lap is duplicate, or, where `seed0` is given, its seed is
-/// not that of the lap. With `accept_truncated` an incomplete last line (the program was killed while it
-/// wrote) is ignored, and so is a missing header of an otherwise empty file.
+/// Reads rows, with or without the column `checksum`; `checked` receives whether the table has it. Throws
+/// IoError with file and line if a checksum is not that of its row, and if the file cannot be read, the
+/// header is another one, a line is not a row of one of the experiments, a lap is duplicate, or, where
+/// `seed0` is given, its seed is not that of the lap. With `accept_truncated` an incomplete last line (the
+/// program was killed while it wrote) is ignored, and so is a missing header of an otherwise empty file.
 std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vector<Experiment>& experiments,
-                              bool accept_truncated, std::optional<std::uint64_t> seed0 = {});
+                              bool accept_truncated, std::optional<std::uint64_t> seed0 = {},
+                              bool* checked = nullptr);
 
 }  // namespace slalom::evaluation

@@ -1,0 +1,153 @@
+// What is stored survives: damage shows, two stores do not mix, folders are synced.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "slalom/core/error.hpp"
+#include "slalom/evaluation/evaluation.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace {
+int synced_folders = 0;
+}
+
+/// Counts the folders that are synced, in place of the function of the C library.
+extern "C" int fsync(int descriptor) {
+  struct stat about {};
+  if (::fstat(descriptor, &about) == 0 && S_ISDIR(about.st_mode)) ++synced_folders;
+  return static_cast<int>(::syscall(SYS_fsync, descriptor));
+}
+
+namespace slalom::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StoredLaps : public testing::TemporaryFolder {
+ protected:
+  StoredLaps() {
+    evaluation_.experiments = {{"mppi", {}, "oa", 5, 3}};
+    evaluation_.settings = R"({"course": "wren", "latency_ms": 0.1, "seed0": 0})";
+  }
+
+  LapRow row(int lap) const {
+    LapRow r;
+    r.lap = lap;
+    r.seed = lap_seed(0, lap, 5);
+    r.state_cost = 1.0 / (lap + 3);
+    r.contact_points = "1.250:-3.000";
+    r.wall_time = 0.125;
+    return r;
+  }
+  /// Stores all laps, with a table at the end or with the journal only.
+  void store(bool complete) {
+    LapStore store(folder_, evaluation_, false);
+    for (int lap = 0; lap < 3; ++lap) store.add(row(lap));
+    if (complete) store.complete();
+  }
+  std::string text(const fs::path& file) const {
+    std::ifstream stream(folder_ / file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  /// Reads the text as a table; the lines of its rows, or what is wrong.
+  std::string read(const std::string& bytes, bool journal, bool* checked = nullptr) const {
+    try {
+      std::string lines;
+      const fs::path file = write("damaged.csv", bytes);
+      for (const LapRow& each : read_rows(file, evaluation_.experiments, journal, 0, checked))
+        lines += csv_line(each, evaluation_.experiments) + "\n";
+      return lines;
+    } catch (const IoError& error) {
+      return error.what();
+    }
+  }
+
+  Evaluation evaluation_;
+};
+
+TEST_F(StoredLaps, EverySingleBitThatChangesShows) {
+  for (const bool journal : {false, true}) {
+    fs::remove_all(folder_);
+    store(!journal);
+    const std::string whole = text(journal ? "laps.journal.csv" : "laps.csv"), rows = read(whole, journal);
+    ASSERT_EQ(std::count(rows.begin(), rows.end(), '\n'), 3);
+    // A journal may lose its last line: it could have been cut, and the lap is driven again.
+    const std::string without_last = rows.substr(0, rows.rfind('\n', rows.size() - 2) + 1);
+    int accepted = 0;
+    for (std::size_t at = 0; at < whole.size(); ++at)
+      for (int bit = 0; bit < 8; ++bit) {
+        std::string damaged = whole;
+        damaged[at] = static_cast<char>(damaged[at] ^ 1 << bit);
+        const std::string seen = read(damaged, journal);
+        if (journal && seen == without_last) continue;
+        accepted += seen.find("damaged.csv:") == std::string::npos;
+      }
+    EXPECT_EQ(accepted, 0) << "of " << 8 * whole.size() << " flips";
+  }
+}
+
+TEST_F(StoredLaps, TablesOfEarlierVersionsAreReadAndToldApart) {
+  store(true);
+  bool checked = false;
+  const std::string whole = text("laps.csv"), rows = read(whole, false, &checked);
+  EXPECT_TRUE(checked);
+  EXPECT_EQ(read(csv_header() + "\n" + rows, false, &checked), rows);
+  EXPECT_FALSE(checked);
+  std::ofstream(folder_ / "laps.csv", std::ios::binary) << csv_header() + "\n" + rows;
+  EXPECT_FALSE(LapStore(folder_, evaluation_, true).checked());
+}
+
+TEST_F(StoredLaps, SettingsThatWereChangedShow) {
+  store(true);
+  const std::string settings = text("settings.json");
+  EXPECT_TRUE(verify_checksum(settings));
+  EXPECT_FALSE(verify_checksum(evaluation_.settings)) << "of an earlier version";
+  const auto meaning = nlohmann::ordered_json::parse(settings);
+  for (std::size_t at = 0; at < settings.size(); ++at)
+    for (int bit = 0; bit < 8; ++bit) {
+      std::string damaged = settings;
+      damaged[at] = static_cast<char>(damaged[at] ^ 1 << bit);
+      try {
+        if (verify_checksum(damaged)) {
+          EXPECT_EQ(nlohmann::ordered_json::parse(damaged), meaning);
+        } else {
+          ADD_FAILURE() << "byte " << at << " bit " << bit << " hides the checksum";
+        }
+      } catch (const std::invalid_argument&) {
+      }
+    }
+}
+
+TEST_F(StoredLaps, AFolderHasOneStoreAtATime) {
+  {
+    LapStore first(folder_, evaluation_, false);
+    first.add(row(0));
+    try {
+      LapStore(folder_, evaluation_, true);
+      ADD_FAILURE() << "the second store got in";
+    } catch (const IoError& error) {
+      EXPECT_NE(std::string(error.what()).find("is in use by process " + std::to_string(::getpid())),
+                std::string::npos)
+          << error.what();
+    }
+    first.add(row(1));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "lock"));
+  EXPECT_EQ(LapStore(folder_, evaluation_, true).rows().size(), 2u);
+}
+
+TEST_F(StoredLaps, EntriesOfTheFolderAreSynced) {
+  synced_folders = 0;
+  LapStore store(folder_, evaluation_, false);
+  EXPECT_EQ(synced_folders, 2) << "settings and journal";
+  for (int lap = 0; lap < 3; ++lap) store.add(row(lap));
+  store.complete();
+  EXPECT_EQ(synced_folders, 3) << "and the table, before the journal is removed";
+}
+
+}  // namespace
+}  // namespace slalom::evaluation
