@@ -97,26 +97,32 @@ std::string differences(const nlohmann::json& stored, const nlohmann::json& requ
   return text;
 }
 
-/// The build that drove the stored laps; "" if it is unknown.
-std::string check_settings(const fs::path& file, const std::string& requested) {
+/// What settings.json says besides the settings.
+struct StoredSettings {
+  std::string build;     ///< that drove the laps; "" if it is unknown
+  bool checked = false;  ///< whether they have a checksum
+};
+
+/// Throws IoError if the stored settings are damaged or others than those requested.
+StoredSettings check_settings(const fs::path& file, const std::string& requested) {
   nlohmann::json stored;
+  StoredSettings result;
   try {
     const std::string text = read_file(file, std::uint64_t{1} << 24);
     stored = nlohmann::json::parse(text);
-    verify_checksum(text);
+    result.checked = verify_checksum(text);
   } catch (const std::invalid_argument& error) {
     throw IoError(file.string(), 0, error.what());
   } catch (const nlohmann::json::exception& error) {
     throw IoError(file.string(), 0, std::string("is not JSON: ") + error.what());
   }
-  std::string build;
-  if (stored.contains("build") && stored["build"].is_string()) build = stored["build"];
+  if (stored.contains("build") && stored["build"].is_string()) result.build = stored["build"];
   stored.erase("build");
   stored.erase(checksum_key);
   const std::string differing = differences(stored, nlohmann::json::parse(requested));
   if (!differing.empty())
     throw IoError(file.string(), 0, "the folder contains an evaluation with other settings: " + differing);
-  return build;
+  return result;
 }
 
 std::string with_build(const std::string& settings, const std::string& build) {
@@ -142,6 +148,13 @@ void check_complete(const fs::path& table, const std::vector<LapRow>& sorted,
                         ": is missing; rename the file to " + journal_name + " to continue the evaluation");
     }
   }
+}
+
+/// Whether both the settings and the laps have checksums. Throws IoError where only the laps have them.
+bool all_checked(const fs::path& settings, bool settings_checked, bool laps_checked, bool has_laps) {
+  if (laps_checked && !settings_checked && has_laps)
+    throw IoError(settings.string(), 0, "has no checksum, but the laps have: it is damaged or was replaced");
+  return laps_checked && settings_checked;
 }
 
 }  // namespace
@@ -174,6 +187,8 @@ LapStore::LapStore(const fs::path& folder, const Evaluation& evaluation, bool re
   lock_ = std::make_unique<detail::FolderLock>(folder);
   const fs::path settings = folder / settings_name, journal = folder / journal_name,
                  table = folder / table_name;
+  std::string settings_to_write;
+  bool settings_checked = true;
   const bool has_laps = fs::exists(journal) || fs::exists(table);
   if (has_laps && !resume) {
     throw IoError(folder.string(), 0,
@@ -182,14 +197,13 @@ LapStore::LapStore(const fs::path& folder, const Evaluation& evaluation, bool re
   if (has_laps && !fs::exists(settings))
     throw IoError(settings.string(), 0, "is missing, but the folder contains laps");
   if (has_laps) {
-    const std::string stored_build = check_settings(settings, evaluation.settings);
+    const auto [stored_build, checked] = check_settings(settings, evaluation.settings);
+    settings_checked = checked;
     const bool same = stored_build.ends_with(evaluation.build);
-    if (!fs::exists(table) && !same) {
-      check_build(evaluation, stored_build);
-      replace_file(settings,
-                   with_build(evaluation.settings,
-                              (stored_build.empty() ? "unknown" : stored_build) + " " + evaluation.build));
-    }
+    if (!same && !fs::exists(table)) check_build(evaluation, stored_build);
+    const std::string builds =
+        same ? stored_build : (stored_build.empty() ? "unknown" : stored_build) + " " + evaluation.build;
+    if (!fs::exists(table) && !(same && checked)) settings_to_write = with_build(evaluation.settings, builds);
   } else {
     replace_file(settings, with_build(evaluation.settings, evaluation.build));
   }
@@ -197,9 +211,12 @@ LapStore::LapStore(const fs::path& folder, const Evaluation& evaluation, bool re
     rows_ = read_rows(table, experiments_, false, evaluation.seed0, &checked_);
     std::sort(rows_.begin(), rows_.end(), is_table_order);
     check_complete(table, rows_, experiments_);
+    checked_ = all_checked(settings, settings_checked, checked_, !rows_.empty());
     return;
   }
   if (fs::exists(journal)) rows_ = read_rows(journal, experiments_, true, evaluation.seed0, &checked_);
+  checked_ = all_checked(settings, settings_checked, checked_, !rows_.empty());
+  if (!settings_to_write.empty()) replace_file(settings, settings_to_write);
   replace_file(journal, table_text(rows_, experiments_));  // without a truncated line
   journal_ = ::open(journal.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (journal_ < 0) throw_system(journal, "cannot be written");

@@ -7,11 +7,12 @@
 #include <cmath>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
-#include "maps/yaml_file.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/maps/image.hpp"
+#include "slalom/maps/yaml_text.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -33,8 +34,9 @@ struct Header {
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& path) : path_(path) {
-    root_ = detail::load_yaml(path);
+    root_ = YAML::Load(yaml_text(path));
     if (!root_.IsMap()) throw IoError(path.string(), 1, "a map's YAML file must hold `key: value` pairs");
+    refuse_repeated_keys();
   }
 
   std::optional<YAML::Node> find(const char* key) const {
@@ -66,6 +68,15 @@ class Reader {
   }
 
  private:
+  /// yaml-cpp keeps one of them without an error.
+  void refuse_repeated_keys() const {
+    std::set<std::string> seen;
+    for (const auto& entry : root_)
+      if (entry.first.IsScalar() && !seen.insert(entry.first.Scalar()).second)
+        throw IoError(path_.string(), entry.first.Mark().line + 1,
+                      "the key `" + entry.first.Scalar() + "` is a duplicate");
+  }
+
   std::filesystem::path path_;
   YAML::Node root_;
 };

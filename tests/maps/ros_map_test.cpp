@@ -127,7 +127,7 @@ TEST_F(RosMap, BadYamlIsNamed) {
   }
   expect_error(map("resolution: 0.05\norigin: [0, 0, 0]\n" + thresholds), 0, "`image` is missing");
   expect_error(map(image + "resolution: 0.05\norigin: [a, b, 0]\n" + thresholds), 3, "`origin: [a, b, 0]`");
-  expect_error(map(geometry + thresholds + "resolution: 0.1\n"), 7, "key resolution: duplicate key");
+  expect_error(map(geometry + thresholds + "resolution: 0.1\n"), 7, "`resolution` is a duplicate");
   expect_error(map(geometry + thresholds + "---\nnegate: 1\n"), 8, "only one YAML document");
   expect_error(map("image: [a]\nresolution: 0.05\norigin: [0, 0, 0]\n" + thresholds), 1, "a file name");
 }

@@ -97,7 +97,7 @@ const std::vector<Spoiled>& cases() {
       {"obstacle_none", file("opp_ref_path.csv", "\n"), {"opp_ref_path.csv", "at least one point"}},
       {"course_syntax", file("course.yaml", "name: x\nstart: {x: 1\n"), {"course.yaml", "YAML"}},
       {"course_list", file("course.yaml", "- 1\n"), {"course.yaml:1:", "map of keys"}},
-      {"course_key", file("course.yaml", "name: x\nstrat: 1\n"), {"course.yaml:2:", "strat", "none of"}},
+      {"course_key", file("course.yaml", "name: x\nstrat: 1\n"), {"course.yaml:2:", "strat", "unknown key"}},
       {"course_key_twice",
        file("course.yaml", "closed: true\nname: x\nclosed: false\n"),
        {"course.yaml:3:", "closed", "duplicate key"}},

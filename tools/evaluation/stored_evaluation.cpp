@@ -99,6 +99,8 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
   stored.rows = stored.complete
                     ? evaluation::read_rows(table, stored.experiments, false, seed0, &stored.checked)
                     : evaluation::read_rows(journal, stored.experiments, true, seed0, &stored.checked);
+  if (stored.checked && !settings_checked && !stored.rows.empty())
+    throw IoError(file.string(), 0, "has no checksum, but the laps have: it is damaged or was replaced");
   stored.checked = stored.checked && settings_checked;
   if (!stored.checked) print_unchecked(folder);
   return stored;

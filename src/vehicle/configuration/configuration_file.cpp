@@ -3,9 +3,9 @@
 #include <map>
 #include <set>
 
-#include "maps/yaml_file.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
+#include "vehicle/yaml_file.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -25,10 +25,10 @@ int line_of(const YAML::Node& node) {
 /// An option's value as text: a scalar, or a list of scalars as "[a, b]".
 std::string text_of(const fs::path& file, const std::string& key, const YAML::Node& value) {
   if (value.IsScalar()) return value.Scalar();
-  if (!value.IsSequence()) maps::detail::throw_at(file, value, key, "must have a value, or a list of values");
+  if (!value.IsSequence()) detail::throw_at(file, value, key, "must have a value, or a list of values");
   std::string text;
   for (const YAML::Node& each : value) {
-    if (!each.IsScalar()) maps::detail::throw_at(file, each, key, "must be a list of plain values");
+    if (!each.IsScalar()) detail::throw_at(file, each, key, "must be a list of plain values");
     text += (text.empty() ? "[" : ", ") + each.Scalar();
   }
   return text.empty() ? "[]" : text + "]";
@@ -47,7 +47,7 @@ void read_option(Configuration& configuration, const fs::path& file, const std::
   if (value.IsNull()) throw IoError(file.string(), line_of(at), "key " + key + ": must have a value");
   const std::string text = text_of(file, key, value);
   if (value.IsScalar() && value.Tag() == "!" && !is_choice(configuration, key))
-    maps::detail::throw_at(file, value, key, "must not be quoted");
+    detail::throw_at(file, value, key, "must not be quoted");
   try {
     set_option(configuration, key, text);
   } catch (const std::invalid_argument& error) {
@@ -58,10 +58,10 @@ void read_option(Configuration& configuration, const fs::path& file, const std::
 void read_section(Configuration& configuration, const fs::path& file, const std::string& section,
                   const YAML::Node& options, Lines& lines) {
   if (options.IsNull()) return;
-  if (!options.IsMap()) maps::detail::throw_at(file, options, section, "must be a map of options to values");
+  if (!options.IsMap()) detail::throw_at(file, options, section, "must be a map of options to values");
   for (const auto& entry : options) {
     if (!entry.first.IsScalar())
-      maps::detail::throw_at(file, entry.first, section, "must have plain words as keys");
+      detail::throw_at(file, entry.first, section, "must have plain words as keys");
     const std::string key = section + "." + entry.first.Scalar();
     read_option(configuration, file, key, entry.first, entry.second);
     lines[key] = line_of(entry.first);
@@ -131,15 +131,14 @@ fs::path find_base(const fs::path& file, const YAML::Node& base, const std::vect
 }
 
 Configuration load_deep(const fs::path& file, const std::vector<fs::path>& roots, int depth) {
-  const YAML::Node root = maps::detail::load_yaml(file);
+  const YAML::Node root = detail::load_yaml(file);
   Configuration configuration;
   if (root.IsNull()) return configuration;
   if (!root.IsMap()) throw IoError(file.string(), line_of(root), "must be a map of sections");
   if (const YAML::Node base = root["base"]) {
-    if (!base.IsScalar())
-      maps::detail::throw_at(file, base, "base", "must be the name or file of a configuration");
+    if (!base.IsScalar()) detail::throw_at(file, base, "base", "must be the name or file of a configuration");
     if (depth == deepest_base)
-      maps::detail::throw_at(file, base, "base", "must not form a cycle or a chain of more than 8 files");
+      detail::throw_at(file, base, "base", "must not form a cycle or a chain of more than 8 files");
     configuration = load_deep(find_base(file, base, roots), roots, depth + 1);
   }
   Lines lines;

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "maps/yaml_file.hpp"
 #include "slalom/core/error.hpp"
+#include "vehicle/yaml_file.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
@@ -14,9 +14,7 @@ class Value {
   Value(const std::filesystem::path& file, std::string key, YAML::Node node)
       : file_(file), key_(std::move(key)), node_(std::move(node)) {}
 
-  [[noreturn]] void reject(const std::string& rule) const {
-    maps::detail::throw_at(file_, node_, key_, rule);
-  }
+  [[noreturn]] void reject(const std::string& rule) const { detail::throw_at(file_, node_, key_, rule); }
 
   double number() const {
     double value = 0;
@@ -69,7 +67,7 @@ class Value {
 }  // namespace
 
 CourseFile read_course_file(const std::filesystem::path& file) {
-  const YAML::Node root = maps::detail::load_yaml(file);
+  const YAML::Node root = load_yaml(file);
   CourseFile result;
   if (root.IsNull()) return result;
   if (!root.IsMap()) throw IoError(file.string(), root.Mark().line + 1, "must be a map of keys to values");
@@ -102,7 +100,7 @@ CourseFile read_course_file(const std::filesystem::path& file) {
 }
 
 std::optional<KnownCourse> read_known_course(const std::filesystem::path& file, const std::string& name) {
-  const YAML::Node root = maps::detail::load_yaml(file);
+  const YAML::Node root = load_yaml(file);
   if (!root.IsMap()) throw IoError(file.string(), 0, "must be a map of course names to {start, timeout}");
   const YAML::Node node = root[name];
   if (!node) return std::nullopt;
@@ -113,7 +111,7 @@ std::optional<KnownCourse> read_known_course(const std::filesystem::path& file, 
 
 bool may_be_map(const std::filesystem::path& file) {
   try {
-    const YAML::Node root = maps::detail::load_yaml(file);
+    const YAML::Node root = load_yaml(file);
     return !root.IsMap() || root["image"];
   } catch (const IoError&) {
     return true;

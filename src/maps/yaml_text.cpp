@@ -1,15 +1,15 @@
-#include "maps/yaml_file.hpp"
+#include "slalom/maps/yaml_text.hpp"
 
 #include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
 
-#include <set>
 #include <sstream>
 #include <string_view>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 
-namespace slalom::maps::detail {
+namespace slalom::maps {
 namespace {
 
 /// Refuses what yaml-cpp would follow without end, before any node is made: aliases, deep nesting, and
@@ -19,7 +19,7 @@ class Limiter final : public YAML::EventHandler {
   explicit Limiter(const std::string& file) : file_(file) {}
 
   void OnDocumentStart(const YAML::Mark& at) override {
-    if (++documents_ > 1) fail(at, "must have only one YAML document, this is a second one");
+    if (++documents_ > 2) refuse_document(at);
   }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& at, YAML::anchor_t anchor) override { check(at, anchor); }
@@ -46,7 +46,12 @@ class Limiter final : public YAML::EventHandler {
   [[noreturn]] void refuse_alias(const YAML::Mark& at) const {
     fail(at, "must not have anchors and aliases (& and *): write the value out");
   }
+  [[noreturn]] void refuse_document(const YAML::Mark& at) const {
+    fail(at, "must have only one YAML document, this is a second one");
+  }
+  /// Every node comes here first. A second document is told at its first node.
   void check(const YAML::Mark& at, YAML::anchor_t anchor) const {
+    if (documents_ > 1) refuse_document(at);
     if (anchor != 0) refuse_alias(at);
   }
   void enter(const YAML::Mark& at, YAML::anchor_t anchor) {
@@ -59,20 +64,6 @@ class Limiter final : public YAML::EventHandler {
   int documents_ = 0, depth_ = 0;
 };
 
-/// yaml-cpp accepts duplicate keys and keeps one of them.
-void check_repeated_keys(const std::filesystem::path& file, const YAML::Node& map,
-                         const std::string& prefix) {
-  if (!map.IsMap()) return;
-  std::set<std::string> seen;
-  for (const auto& entry : map) {
-    if (!entry.first.IsScalar()) continue;
-    const std::string key = prefix + entry.first.Scalar();
-    if (!seen.insert(key).second)
-      throw IoError(file.string(), entry.first.Mark().line + 1, "key " + key + ": duplicate key");
-    check_repeated_keys(file, entry.second, key + ".");
-  }
-}
-
 /// yaml-cpp does not mention that a tab must not indent.
 std::string tab_hint(const std::string& text, int line) {
   std::istringstream stream(text);
@@ -84,28 +75,20 @@ std::string tab_hint(const std::string& text, int line) {
 
 }  // namespace
 
-YAML::Node load_yaml(const std::filesystem::path& file) {
+std::string yaml_text(const std::filesystem::path& file) {
   const std::string text = read_file(file, YamlLimits::bytes), name = file.string();
-  YAML::Node document;
   try {
-    std::istringstream checked(text);
-    YAML::Parser parser(checked);
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
     Limiter limiter(name);
     while (parser.HandleNextDocument(limiter)) {
     }
-    document = YAML::Load(text);
+    YAML::Load(text);  // finds what only building the nodes shows
   } catch (const YAML::Exception& error) {
     const int line = error.mark.line + 1;
     throw IoError(name, line, "is not YAML: " + error.msg + tab_hint(text, line));
   }
-  check_repeated_keys(file, document, "");
-  return document;
+  return text;
 }
 
-void throw_at(const std::filesystem::path& file, const YAML::Node& at, const std::string& key,
-              const std::string& rule) {
-  const std::string value = at.IsScalar() && !at.Scalar().empty() ? "'" + at.Scalar() + "' " : "";
-  throw IoError(file.string(), at.Mark().line + 1, "key " + key + ": " + value + rule);
-}
-
-}  // namespace slalom::maps::detail
+}  // namespace slalom::maps

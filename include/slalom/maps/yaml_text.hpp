@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace slalom::maps {
+
+/// What a YAML file may be, at most.
+struct YamlLimits {
+  static constexpr std::uint64_t bytes = 1 << 20;  ///< of the file
+  static constexpr int depth = 32;                 ///< of nested maps and lists
+};
+
+/// The text of a YAML file of one document, which can be parsed in bounded time and memory. Throws IoError if
+/// the file cannot be read, exceeds YamlLimits, is not YAML, or holds more than one document, an anchor or an
+/// alias.
+std::string yaml_text(const std::filesystem::path& file);
+
+}  // namespace slalom::maps
