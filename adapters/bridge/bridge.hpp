@@ -70,8 +70,29 @@ struct Command {
   double effective_samples = 0;  ///< effective sample size of the solver
   double update_time = 0;        ///< s, wall-clock
   int corrections = 0;           ///< values that the planner's final check changed; 0 in normal operation
+  /// What is known of the car and the ground where the vehicle model's tyres slip; else a friction of 0.
+  double friction = 0, friction_deviation = 0, cautious_friction = 0, confidence = 0;
+  double steering_gain = 1, delay = 0;  ///< the latter in s
+  double yaw_rate = 0, slip = 0;        ///< rad/s, rad, of the observer
   /// Terms of the mean sequence cost and the sum of |steering| (rad) over the control sequence.
   double state_cost = 0, collision_cost = 0, input_error = 0;
+};
+
+/// The samples of an inertial measurement unit since the last update: base frame, x ahead, y to the left.
+class ImuSamples {
+ public:
+  /// rad/s, m/s^2. Samples that are not finite are ignored.
+  void add(double yaw_rate, double forward, double leftward);
+  /// The number of samples since the last `clear`.
+  int count() const { return count_; }
+  double yaw_rate() const { return yaw_rate_ / count_; }  ///< rad/s, mean; needs a sample
+  double forward() const { return forward_ / count_; }    ///< m/s^2, mean; needs a sample
+  double leftward() const { return leftward_ / count_; }  ///< m/s^2, mean; needs a sample
+  void clear() { *this = {}; }
+
+ private:
+  double yaw_rate_ = 0, forward_ = 0, leftward_ = 0;
+  int count_ = 0;
 };
 
 /// Computes a command from a scan and the pose of the rear axle (map frame).
@@ -88,8 +109,9 @@ class Planner {
   double control_period() const;                     ///< s
   Pose laser() const;                                ///< pose relative to the rear axle, from the options
 
-  /// `speed` in m/s. Does not throw.
-  Command update(const Scan& scan, const Pose& pose, double speed);
+  /// `speed` in m/s. `imu` has the samples since the last update; none where there is no unit. Does not
+  /// throw.
+  Command update(const Scan& scan, const Pose& pose, double speed, const ImuSamples& imu = {});
   /// The predicted states of the last control sequence, map frame; empty if there is none.
   const std::vector<Pose>& predicted() const;
 

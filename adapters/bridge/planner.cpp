@@ -74,14 +74,32 @@ Pose Planner::laser() const {
   return {o.laser_x, o.laser_y, o.laser_yaw};
 }
 
-Command Planner::update(const Scan& scan, const Pose& at, double speed) {
+void ImuSamples::add(double yaw_rate, double forward, double leftward) {
+  if (!std::isfinite(yaw_rate + forward + leftward)) return;
+  yaw_rate_ += yaw_rate;
+  forward_ += forward;
+  leftward_ += leftward;
+  ++count_;
+}
+
+Command Planner::update(const Scan& scan, const Pose& at, double speed, const ImuSamples& imu) {
   hidden_->predicted.clear();
   if (!hidden_->planner) return {.status = "no path"};
-  const auto& out = hidden_->planner->update({view(scan), {pose(at), speed}});
+  slalom::vehicle::PlannerInput input{.scan = view(scan), .odometry = {.pose = pose(at), .speed = speed}};
+  if (imu.count() > 0) input.imu = slalom::ImuReading{imu.yaw_rate(), imu.forward(), imu.leftward()};
+  const auto& out = hidden_->planner->update(input);
   for (const auto& state : out.predicted) hidden_->predicted.push_back(plain(state.pose));
   Command command;
   command.status = slalom::vehicle::name(out.status);
   command.update_time = out.tick_time;
+  command.friction = out.parameters.friction;
+  command.friction_deviation = out.parameters.friction_deviation;
+  command.cautious_friction = out.parameters.cautious_friction;
+  command.confidence = out.parameters.confidence;
+  command.steering_gain = out.parameters.steering_gain;
+  command.delay = out.parameters.delay;
+  command.yaw_rate = out.yaw_rate_estimate;
+  command.slip = out.slip_estimate;
   command.state_cost = out.state_cost;
   command.collision_cost = out.collision_cost;
   for (const float input : out.inputs) command.input_error += std::abs(static_cast<double>(input));

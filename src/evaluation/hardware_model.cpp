@@ -9,6 +9,10 @@ sim::WheelOdometryOptions seeded(sim::WheelOdometryOptions options, std::uint64_
   options.seed = seed;
   return options;
 }
+sim::ImuOptions seeded(sim::ImuOptions options, std::uint64_t seed) {
+  options.seed = seed;
+  return options;
+}
 vehicle::LocaliserOptions seeded(vehicle::LocaliserOptions options, std::uint64_t seed) {
   options.seed = seed;
   return options;
@@ -21,8 +25,10 @@ HardwareModel::HardwareModel(const HardwareConditions& conditions, const maps::O
     : conditions_(conditions),
       car_(car),
       wheels_(car, seeded(conditions.wheels, seed)),
+      imu_(seeded(conditions.inertial, ~seed)),
       localiser_(map, seeded(conditions.localiser, seed)) {
   wheels_.reset(state);
+  imu_.reset(state);
   localiser_.start_at(sim::rear_axle(car, state));
 }
 
@@ -49,7 +55,16 @@ std::optional<vehicle::Odometry> HardwareModel::sense(const sim::Observation& se
   const maps::Pose truth = sim::rear_axle(car_, state);
   record_.error.push_back(static_cast<float>(std::hypot(out.pose.x - truth.x, out.pose.y - truth.y)));
   record_.yaw_error.push_back(static_cast<float>(std::abs(maps::wrap_angle(out.pose.yaw - truth.yaw))));
-  return vehicle::Odometry{out.pose, wheels_.speed()};
+  return vehicle::Odometry{
+      .pose = out.pose,
+      .speed = wheels_.speed(),
+      .position_deviation = std::sqrt(0.5 * (out.covariance[0][0] + out.covariance[1][1])),
+      .yaw_deviation = std::sqrt(out.covariance[2][2])};
+}
+
+std::optional<ImuReading> HardwareModel::read_imu() noexcept {
+  if (!conditions_.imu) return std::nullopt;
+  return imu_.read();
 }
 
 Command HardwareModel::servo(const Command& command, double time_step) noexcept {

@@ -23,8 +23,13 @@ class HardwareModel {
   std::optional<vehicle::Odometry> sense(const sim::Observation& seen, const sim::CarState& state);
   /// The command after the servo, in a step of `time_step` (s).
   Command servo(const Command& command, double time_step) noexcept;
-  /// Updates the wheel odometry; to be called after each step of `time_step` (s).
-  void moved(const sim::CarState& state, double time_step) noexcept { wheels_.update(state, time_step); }
+  /// Updates wheel odometry and inertial measurement unit; to be called after each step of `time_step` (s).
+  void moved(const sim::CarState& state, double time_step) noexcept {
+    wheels_.update(state, time_step);
+    imu_.update(state, time_step);
+  }
+  /// The reading of the inertial measurement unit since the last call, if the car has one.
+  std::optional<ImuReading> read_imu() noexcept;
 
   /// Errors of the localisation so far.
   const LocalisationRecord& record() const noexcept { return record_; }
@@ -33,6 +38,7 @@ class HardwareModel {
   HardwareConditions conditions_;
   sim::CarParameters car_;
   sim::WheelOdometry wheels_;
+  sim::Imu imu_;
   vehicle::Localiser localiser_;
   LocalisationRecord record_;
   double steer_ = 0;     ///< rad, of the servo

@@ -28,6 +28,7 @@ void check(const LapSettings& settings, const LapRules& rules, bool closed) {
   if (settings.hardware) {
     validate_options(*settings.hardware, "hardware");
     settings.hardware->wheels.validate();
+    settings.hardware->inertial.validate();
     settings.hardware->localiser.validate();
   }
   require(settings.opponents == 0 || closed, "opponents: must be 0 on courses that are not closed");

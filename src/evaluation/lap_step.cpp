@@ -34,6 +34,17 @@ double mean_variance(const SolveResult& solve, std::size_t inputs) {
   return sum / static_cast<double>(solve.variances.size() / inputs);
 }
 
+/// Compares the planner's observers with the truth.
+void record_estimate(EstimationRecord& record, const vehicle::PlannerOutput& output,
+                     const sim::Observation& seen) {
+  if (output.parameters.friction == 0) return;
+  record.yaw_rate_error.push_back(static_cast<float>(std::abs(output.yaw_rate_estimate - seen.yaw_rate)));
+  record.slip_error.push_back(static_cast<float>(std::abs(output.slip_estimate - seen.slip)));
+  record.speed_error.push_back(static_cast<float>(std::abs(output.speed_estimate - seen.speed)));
+  record.last = output.parameters;
+  if (record.informed_time < 0 && output.parameters.confidence >= 0.5) record.informed_time = seen.time;
+}
+
 }  // namespace
 
 void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, double extra_latency) const {
@@ -50,7 +61,10 @@ void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, 
   // Without a pose the planner gets NaN and stops; the cost is still measured at the true pose.
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const vehicle::PlannerOutput& output = lap.planner->update(
-      {scan, localised ? odometry : vehicle::Odometry{{unknown, unknown, unknown}, odometry.speed}});
+      {.scan = scan,
+       .odometry = localised ? odometry : vehicle::Odometry{{unknown, unknown, unknown}, odometry.speed},
+       .imu = lap.hardware ? lap.hardware->read_imu() : std::nullopt});
+  if (localised) record_estimate(lap.result.estimation, output, seen);
 
   // If the planner's cost map has the options of the meter's, it is not computed twice.
   lap.meter.observe(scan, odometry.pose,

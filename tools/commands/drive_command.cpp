@@ -111,7 +111,21 @@ class DriveJob {
         laps_.size(), outcome(lap), lap.time, lap.steps, lap.collisions, lap.collisions == 1 ? "" : "s",
         lap.mean_sequence_cost, lap.state_cost, lap.collision_cost, lap.mean_speed,
         times.empty() ? 0.0 : percentile(times, 0.5), times.empty() ? 0.0 : percentile(times, 0.99));
+    if (!lap.estimation.slip_error.empty()) say_estimates(lap.estimation);
     std::fflush(words_);
+  }
+
+  void say_estimates(const evaluation::EstimationRecord& record) const {
+    const vehicle::ParameterEstimate& last = record.last;
+    std::fprintf(
+        words_,
+        "  friction %.3f +- %.3f, plans rely on %.3f; steering gain %.3f +- %.3f, delay %.3f +- %.3f s; "
+        "confidence %.2f\n  error of yaw rate %.3f rad/s, slip %.4f rad, speed %.3f m/s (root mean "
+        "square)\n",
+        last.friction, last.friction_deviation, last.cautious_friction, last.steering_gain,
+        last.steering_gain_deviation, last.delay, last.delay_deviation, last.confidence,
+        root_mean_square(record.yaw_rate_error), root_mean_square(record.slip_error),
+        root_mean_square(record.speed_error));
   }
 
   Json summary() const {

@@ -69,6 +69,14 @@ void JsonRecording::add(const evaluation::ControlStep& tick) {
   list("command", std::initializer_list<double>{output.command.steer, output.command.speed});
   line_ += ",\"steer_estimate\":";
   number(output.steer_estimate);
+  if (output.parameters.friction > 0) {
+    const vehicle::ParameterEstimate& p = output.parameters;
+    list("state_estimate", std::initializer_list<double>{output.speed_estimate, output.yaw_rate_estimate,
+                                                         output.slip_estimate});
+    list("parameter_estimate",
+         std::initializer_list<double>{p.friction, p.friction_deviation, p.cautious_friction, p.steering_gain,
+                                       p.steering_gain_deviation, p.delay, p.delay_deviation, p.confidence});
+  }
   list("inputs", output.inputs);
   line_ += ",\"predicted\":[";
   for (std::size_t k = 0; k < output.predicted.size(); ++k) {

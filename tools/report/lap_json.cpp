@@ -18,6 +18,28 @@ Json finite_or_null(double value) {
 
 }  // namespace
 
+Json estimation_json(const evaluation::EstimationRecord& record) {
+  const vehicle::ParameterEstimate& last = record.last;
+  return {{"friction", last.friction},
+          {"friction_deviation", last.friction_deviation},
+          {"cautious_friction", last.cautious_friction},
+          {"steering_gain", last.steering_gain},
+          {"steering_gain_deviation", last.steering_gain_deviation},
+          {"delay_s", last.delay},
+          {"delay_deviation_s", last.delay_deviation},
+          {"confidence", last.confidence},
+          {"informed_time_s", record.informed_time < 0 ? Json(nullptr) : Json(record.informed_time)},
+          {"yaw_rate_rms", root_mean_square(record.yaw_rate_error)},
+          {"slip_rms", root_mean_square(record.slip_error)},
+          {"speed_rms", root_mean_square(record.speed_error)}};
+}
+
+double root_mean_square(const std::vector<float>& values) {
+  double sum = 0;
+  for (const float each : values) sum += static_cast<double>(each) * static_cast<double>(each);
+  return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
 Json lap_json(const evaluation::LapResult& lap, int number) {
   Json status = Json::object();
   for (std::size_t i = 0; i < lap.planner_status.size(); ++i)
@@ -29,31 +51,33 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
                           {"pose", pose_json(collision.pose)},
                           {"body", collision.body < 0 ? Json("wall") : Json(collision.body)}});
   for (const auto& obstacle : lap.obstacles) obstacles.push_back(pose_json(obstacle));
-  return {{"lap", number},
-          {"seed", lap.seed},
-          {"finished", lap.finished},
-          {"timeout", lap.timeout},
-          {"interrupted", lap.cancelled},
-          {"contacts", lap.collisions},
-          {"bodies_touched", lap.collided_bodies},
-          {"wall_touched", lap.wall},
-          {"time_s", lap.time},
-          {"steps", lap.steps},
-          {"state_cost", finite_or_null(lap.state_cost)},
-          {"collision_cost", finite_or_null(lap.collision_cost)},
-          {"mean_sequence_cost", finite_or_null(lap.mean_sequence_cost)},
-          {"input_error", finite_or_null(lap.input_error)},
-          {"mean_speed", finite_or_null(lap.mean_speed)},
-          {"mean_path_distance", finite_or_null(lap.mean_path_distance)},
-          {"max_path_distance", finite_or_null(lap.max_path_distance)},
-          {"least_clearance", finite_or_null(lap.least_clearance)},
-          {"impassable", lap.impassable},
-          {"mean_variance", finite_or_null(lap.mean_variance)},
-          {"mean_effective_samples", finite_or_null(lap.mean_effective_samples)},
-          {"planner_status", status},
-          {"corrections", lap.corrections},
-          {"touches", collisions},
-          {"obstacles", obstacles}};
+  Json json{{"lap", number},
+            {"seed", lap.seed},
+            {"finished", lap.finished},
+            {"timeout", lap.timeout},
+            {"interrupted", lap.cancelled},
+            {"contacts", lap.collisions},
+            {"bodies_touched", lap.collided_bodies},
+            {"wall_touched", lap.wall},
+            {"time_s", lap.time},
+            {"steps", lap.steps},
+            {"state_cost", finite_or_null(lap.state_cost)},
+            {"collision_cost", finite_or_null(lap.collision_cost)},
+            {"mean_sequence_cost", finite_or_null(lap.mean_sequence_cost)},
+            {"input_error", finite_or_null(lap.input_error)},
+            {"mean_speed", finite_or_null(lap.mean_speed)},
+            {"mean_path_distance", finite_or_null(lap.mean_path_distance)},
+            {"max_path_distance", finite_or_null(lap.max_path_distance)},
+            {"least_clearance", finite_or_null(lap.least_clearance)},
+            {"impassable", lap.impassable},
+            {"mean_variance", finite_or_null(lap.mean_variance)},
+            {"mean_effective_samples", finite_or_null(lap.mean_effective_samples)},
+            {"planner_status", status},
+            {"corrections", lap.corrections},
+            {"touches", collisions},
+            {"obstacles", obstacles}};
+  if (!lap.estimation.slip_error.empty()) json["estimation"] = estimation_json(lap.estimation);
+  return json;
 }
 
 double percentile(const std::vector<float>& sorted, double share) {

@@ -10,6 +10,9 @@ namespace slalom::tools {
 /// A lap as results have it. Nothing in it depends on the clock of the wall.
 Json lap_json(const evaluation::LapResult& lap, int number);
 
+/// sqrt(mean of squares); 0 without values.
+double root_mean_square(const std::vector<float>& values);
+
 /// Percentiles by nearest rank of wall-clock times, ms; null without any.
 Json times_json(std::vector<float> milliseconds);
 

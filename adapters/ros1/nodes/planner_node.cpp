@@ -6,6 +6,7 @@
 #include <mppi_metrics_msgs/MPPIMetrics.h>
 #include <nav_msgs/Odometry.h>
 #include <nav_msgs/Path.h>
+#include <sensor_msgs/Imu.h>
 #include <std_msgs/Float32.h>
 #include <tf2_ros/transform_listener.h>
 #include <visualization_msgs/MarkerArray.h>
@@ -74,6 +75,7 @@ class PlannerNode {
     }
     scan_in_ = node_.subscribe("scan", 5, &PlannerNode::hear_scan, this, at_once);
     odometry_in_ = node_.subscribe("odom", 5, &PlannerNode::hear_odometry, this, at_once);
+    imu_in_ = node_.subscribe("imu", 50, &PlannerNode::hear_imu, this, at_once);
     drive_in_ = node_.subscribe("drive", 10, &PlannerNode::hear_drive, this, at_once);
     goal_in_ = node_.subscribe("goal_speed", 1, &PlannerNode::hear_goal_speed, this);
     if (course.empty())
@@ -103,6 +105,7 @@ class PlannerNode {
     buffer_.clear();
     scan_.reset();
     odometry_.reset();
+    imu_.clear();
     new_scan_ = false;
     watch_.forget();
   }
@@ -120,6 +123,10 @@ class PlannerNode {
     if (!std::isfinite(m->twist.twist.linear.x))
       return watch_.report("the speed of the odometry is not finite");
     odometry_ = m;
+  }
+  /// A unit that is mounted along the axes of the base frame.
+  void hear_imu(const sensor_msgs::Imu::ConstPtr& m) {
+    imu_.add(m->angular_velocity.z, m->linear_acceleration.x, m->linear_acceleration.y);
   }
   void hear_drive(const ros::MessageEvent<Drive const>& event) {
     if (event.getPublisherName() != ros::this_node::getName())
@@ -205,7 +212,9 @@ class PlannerNode {
     if (!placed) return stop("input");
     if (stopped_by_goal_) return stop("goal speed is 0");
     if (!scanned) return;  // the scan is slightly late; the last command remains valid
-    const Command command = planner_.update(scan_of(*scan_), pose, odometry_->twist.twist.linear.x);
+    const Command command = planner_.update(scan_of(*scan_), pose, odometry_->twist.twist.linear.x, imu_);
+    imu_.clear();
+    known_ = command;
     ++second_.plans;
     second_.late += command.update_time > planner_.control_period();
     second_.slowest = std::max(second_.slowest, command.update_time);
@@ -276,6 +285,15 @@ class PlannerNode {
     diagnostics_.add("values corrected", second_.corrections);
     diagnostics_.add("slowest update, ms", 1e3 * second_.slowest);
     diagnostics_.add("deadline, ms", 1e3 * planner_.control_period());
+    if (known_.friction > 0) {
+      diagnostics_.add("friction", known_.friction);
+      diagnostics_.add("friction, standard deviation", known_.friction_deviation);
+      diagnostics_.add("friction that plans rely on", known_.cautious_friction);
+      diagnostics_.add("confidence of the friction", known_.confidence);
+      diagnostics_.add("steering gain", known_.steering_gain);
+      diagnostics_.add("steering delay, ms", 1e3 * known_.delay);
+      diagnostics_.add("slip angle, rad", known_.slip);
+    }
     if (second_.plans > 0) diagnostics_.add("least effective sample size", second_.least_samples);
     const int level = second_.stops > 0 || second_.plans == 0    ? 2
                       : second_.late > 0 || !second_.why.empty() ? 1
@@ -293,9 +311,11 @@ class PlannerNode {
   std::unique_ptr<DynamicParameters> parameters_;
   std::string base_, map_;
   ros::Publisher drive_out_, metrics_out_, markers_out_, path_out_;
-  ros::Subscriber scan_in_, odometry_in_, drive_in_, goal_in_, waypoints_in_;
+  ros::Subscriber scan_in_, odometry_in_, imu_in_, drive_in_, goal_in_, waypoints_in_;
   sensor_msgs::LaserScan::ConstPtr scan_;
   nav_msgs::Odometry::ConstPtr odometry_;
+  slalom_bridge::ImuSamples imu_;
+  Command known_;  ///< of the last plan
   bool new_scan_ = false, stopped_by_goal_ = false;
   double last_steer_ = 0, sent_ = 0, scan_heard_ = 0;
   ThrottledLog log_;

@@ -21,6 +21,7 @@ namespace {
 using slalom_bridge::Pose;
 using Drive = ackermann_msgs_msg_dds__AckermannDriveStamped_;
 using Grid = nav_msgs_msg_dds__OccupancyGrid_;
+using Imu = sensor_msgs_msg_dds__Imu_;
 using LaserScan = sensor_msgs_msg_dds__LaserScan_;
 using Odometry = nav_msgs_msg_dds__Odometry_;
 using Stamp = builtin_interfaces_msg_dds__Time_;
@@ -68,6 +69,7 @@ class Driver {
     tf_out_ = node_.writer(&tf2_msgs_msg_dds__TFMessage__desc, "tf", Quality::reliable);
     scan_in_ = node_.reader(&sensor_msgs_msg_dds__LaserScan__desc, "scan", Quality::sensor_data);
     odometry_in_ = node_.reader(&nav_msgs_msg_dds__Odometry__desc, "odom", Quality::reliable);
+    imu_in_ = node_.reader(&sensor_msgs_msg_dds__Imu__desc, "imu", Quality::sensor_data);
     if (a.map_from_topic)
       map_in_ = node_.reader(&nav_msgs_msg_dds__OccupancyGrid__desc, "map", Quality::latched);
     node_.announce();
@@ -78,6 +80,10 @@ class Driver {
       dds_sleepfor(DDS_MSECS(1));
       if (map_in_ > 0) take_all<Grid>(map_in_, [&](const Grid& m) { hear_map(m); });
       take_all<Odometry>(odometry_in_, [&](const Odometry& m) { hear_odometry(m); });
+      // A unit that is mounted along the axes of the base frame.
+      take_all<Imu>(imu_in_, [&](const Imu& m) {
+        imu_.add(m.angular_velocity.z, m.linear_acceleration.x, m.linear_acceleration.y);
+      });
       take_all<LaserScan>(scan_in_, [&](const LaserScan& m) { hear_scan(m); });
       if (steady() - sent_ < 1.6 * planner_.control_period()) continue;
       if (last_scan_ == 0 || now() - last_scan_ > most_age) fault("no scan");
@@ -160,13 +166,26 @@ class Driver {
     if (seen.usable) send_transform(seen.odometry_frame, m.header.stamp);
     if (!seen.usable && stamp - placed_ > 0.1) return stop();
     if (seen.usable) placed_ = stamp;
-    const auto command = planner_.update(scan, seen.pose, speed_);
+    const auto command = planner_.update(scan, seen.pose, speed_, imu_);
+    imu_.clear();
+    report(command);
     if (!command.ok && steady() - said_ >= 1) {
       std::fprintf(stderr, "braking: %s\n", command.status.c_str());
       said_ = steady();
     }
     steer_ = command.steer;
     send(command.steer, command.speed);
+  }
+
+  /// Once in ten seconds, what is known of car and ground.
+  void report(const slalom_bridge::Command& command) {
+    if (command.friction == 0 || steady() - reported_ < 10) return;
+    reported_ = steady();
+    std::fprintf(
+        stderr,
+        "friction %.2f +- %.2f (plans rely on %.2f, confidence %.2f), steering gain %.2f, delay %.0f ms\n",
+        command.friction, command.friction_deviation, command.cautious_friction, command.confidence,
+        command.steering_gain, 1e3 * command.delay);
   }
 
   void send(double steer, double speed) {
@@ -197,7 +216,9 @@ class Driver {
   Node node_;
   slalom_bridge::Planner planner_;
   slalom_bridge::Localiser localiser_;
-  dds_entity_t drive_out_ = 0, tf_out_ = 0, scan_in_ = 0, odometry_in_ = 0, map_in_ = 0;
+  dds_entity_t drive_out_ = 0, tf_out_ = 0, scan_in_ = 0, odometry_in_ = 0, map_in_ = 0, imu_in_ = 0;
+  slalom_bridge::ImuSamples imu_;
+  double reported_ = 0;
   std::string base_ = "base_link", map_ = "map", odom_ = "odom", why_;
   Pose start_, odometry_;
   double speed_ = 0, steer_ = 0, last_scan_ = 0, last_odometry_ = 0, placed_ = 0, sent_ = 0, said_ = 0,

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "slalom/core/options.hpp"
+#include "slalom/sim/imu.hpp"
 #include "slalom/sim/wheel_odometry.hpp"
 #include "slalom/vehicle/localisation/localiser_options.hpp"
 
@@ -24,12 +25,14 @@ struct HardwareConditions {
   double speed_gain = 3.0;               ///< 1/s, acceleration / speed error
   double acceleration_max = 6.0;         ///< m/s^2, also of braking
   double longest_blind =
-      0.1;  ///< s without localisation for which odometry alone is used; then the car stops
-  sim::WheelOdometryOptions wheels;     ///< errors of the wheel odometry; its seed is that of the lap
+      0.1;          ///< s without localisation for which odometry alone is used; then the car stops
+  bool imu = true;  ///< the planner gets the readings of an inertial measurement unit
+  sim::WheelOdometryOptions wheels;  ///< errors of the wheel odometry; its seed is that of the lap
+  sim::ImuOptions inertial;          ///< errors of the inertial measurement unit; its seed is that of the lap
   vehicle::LocaliserOptions localiser;  ///< its seed is that of the lap
 };
 
-/// Declares the options above; those of `wheels` and `localiser` are declared with their structs.
+/// Declares the options above; those of `wheels`, `inertial` and `localiser` are declared with their structs.
 template <class Options, class Visit>
 requires is_options_of<Options, HardwareConditions>
 void visit_options(Options& o, Visit&& visit) {
@@ -47,6 +50,7 @@ void visit_options(Options& o, Visit&& visit) {
         Declaration{"acceleration_max", "", "m/s^2", "largest acceleration, also of braking", 0.1, 100});
   visit(o.longest_blind,
         Declaration{"longest_blind", "", "s", "without localisation before the car stops", 0, 10});
+  visit(o.imu, Declaration{.name = "imu", .help = "an inertial measurement unit for the planner"});
 }
 
 /// Errors of the localisation in a lap.

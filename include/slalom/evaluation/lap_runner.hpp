@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "slalom/evaluation/environment.hpp"
+#include "slalom/evaluation/estimation_record.hpp"
 #include "slalom/evaluation/lap_settings.hpp"
 #include "slalom/evaluation/sequence_cost.hpp"
 #include "slalom/sim/world.hpp"
@@ -89,6 +90,7 @@ struct LapResult {
   std::vector<float> solve_ms;              ///< wall-clock time of each solve
   std::vector<float> tick_ms;               ///< wall-clock time of each planner update
   LocalisationRecord localisation;          ///< with LapSettings::hardware
+  EstimationRecord estimation;              ///< with vehicle models whose tyres slip
 };
 
 /// Drives laps of one configuration and method. Each lap is independent of the others: world, planner and

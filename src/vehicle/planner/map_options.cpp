@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "slalom/vehicle/course/course_check.hpp"
+
 namespace slalom::vehicle::detail {
 
 double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
@@ -49,6 +51,16 @@ maps::ReferenceFieldOptions field_options(const PlannerOptions& options, const V
     made.spacing = std::max(made.spacing, (reach + 1) / 200);
     made.points = static_cast<int>((reach + 1) / made.spacing);
   }
+  return made;
+}
+
+std::vector<maps::ReferencePoint> limited_path(std::span<const maps::ReferencePoint> path,
+                                               const PlannerOptions& options, const VehicleTraits& traits) {
+  std::vector<maps::ReferencePoint> made(path.begin(), path.end());
+  for (auto& point : made) point.speed = std::min(point.speed, options.max_speed);
+  if (options.profile_friction > 0)
+    make_feasible(made, grip_limits(options.profile_friction, options.max_speed, traits.max_acceleration,
+                                    traits.max_deceleration));
   return made;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/local_cost_map.hpp"
@@ -8,8 +9,12 @@
 #include "slalom/vehicle/model/vehicle_problem.hpp"
 #include "slalom/vehicle/planner/planner_options.hpp"
 
-/// The options of the planner's maps.
+/// The options of the planner's maps, and its path.
 namespace slalom::vehicle::detail {
+
+/// The path with the speeds that the options allow.
+std::vector<maps::ReferencePoint> limited_path(std::span<const maps::ReferencePoint> path,
+                                               const PlannerOptions& options, const VehicleTraits& traits);
 
 /// m, how far a plan of this duration (s) can get.
 double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options, double duration);

@@ -35,7 +35,8 @@ class ObstacleMemory {
     }
   }
 
-  /// The points that the scan of a laser there, robot's frame, does not reach, in the robot's frame at `pose`.
+  /// The points that the scan of a laser there, robot's frame, does not reach, in the robot's frame at
+  /// `pose`.
   std::span<const maps::Point> blind_points(const maps::Pose& pose, const maps::Pose& laser,
                                             const maps::LaserScanView& view) noexcept {
     blind_.clear();
@@ -44,8 +45,7 @@ class ObstacleMemory {
     for (const Scan& scan : scans_) {
       for (std::size_t i = 0; i < scan.count; ++i) {
         const maps::Point point = maps::inverse_transform(pose, scan.points[i]);
-        const double angle =
-            maps::wrap_angle(std::atan2(point.y - laser.y, point.x - laser.x) - laser.yaw);
+        const double angle = maps::wrap_angle(std::atan2(point.y - laser.y, point.x - laser.x) - laser.yaw);
         const bool near = std::abs(point.x) < reach && std::abs(point.y) < reach;
         if (near && (angle < first || angle > last)) blind_.push_back(point);
       }

@@ -7,31 +7,19 @@
 
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/reference_field.hpp"
-#include "slalom/vehicle/course/course_check.hpp"
 #include "vehicle/planner/back_up.hpp"
+#include "vehicle/planner/car_estimator.hpp"
 #include "vehicle/planner/command_history.hpp"
 #include "vehicle/planner/feasible_speeds.hpp"
 #include "vehicle/planner/final_check.hpp"
 #include "vehicle/planner/local_frame.hpp"
 #include "vehicle/planner/map_options.hpp"
-#include "vehicle/planner/state_observer.hpp"
 
 namespace slalom::vehicle {
 
 namespace {
 
 using namespace detail;
-
-/// The path with the speeds that the options allow.
-std::vector<maps::ReferencePoint> limited(std::span<const maps::ReferencePoint> path,
-                                          const PlannerOptions& options, const VehicleTraits& traits) {
-  std::vector<maps::ReferencePoint> made(path.begin(), path.end());
-  for (auto& point : made) point.speed = std::min(point.speed, options.max_speed);
-  if (options.profile_friction > 0)
-    make_feasible(made, grip_limits(options.profile_friction, options.max_speed, traits.max_acceleration,
-                                    traits.max_deceleration));
-  return made;
-}
 
 /// Whether odometry is a number and as large as that of a car may be.
 bool plausible(const Odometry& o) {
@@ -59,11 +47,13 @@ struct Planner::Implementation {
   maps::ClearanceMap clearance_map;
   maps::ReferenceField field;
   FeasibleSpeeds speeds;
-  StateObserver observer;  ///< of models with tyres that slip; others have `history`
+  CarEstimator car;  ///< of models with tyres that slip; others have `history`
   CommandHistory history;
   BackUp back_up;
   double planned_steer = 0;  ///< rad, before it was limited
   bool brakes = false;       ///< this update brakes: the command must not be faster than the car
+  double path_friction = 0;  ///< of the path's speeds
+  double speed_ahead = 0;    ///< m/s, when the next command takes effect
   std::vector<PredictedState> states, candidate_states;
   std::vector<float> candidate;
   PlannerOutput output;
@@ -78,9 +68,9 @@ struct Planner::Implementation {
         cost_map(cost_map_options(o, traits)),
         reach(plan_reach(path, o, traits.time_step * solver->horizon())),
         clearance_map(clearance_options(traits, reach)),
-        field(limited(detail::relative(path, origin), o, traits), field_options(o, traits, reach)),
-        speeds(limited(detail::relative(path, origin), o, traits)),
-        observer(o.control_period, o.latency, traits.dead_time),
+        field(limited_path(detail::relative(path, origin), o, traits), field_options(o, traits, reach)),
+        speeds(limited_path(detail::relative(path, origin), o, traits)),
+        car(o, *model),
         history(o.control_period, delay_of(o, traits), o.observer_time_constant, traits.wheelbase),
         states(static_cast<std::size_t>(solver->horizon()) + 1),
         candidate_states(states.size()),
@@ -88,26 +78,40 @@ struct Planner::Implementation {
     if (model->has_dynamics()) set_friction(traits.friction);
   }
 
-  /// Plans for ground of this friction.
+  /// Plans for ground of this friction. The path's speeds follow in steps of 2 %.
   void set_friction(double friction) noexcept {
     model->set_friction(friction);
+    if (std::abs(friction - path_friction) <= 0.02 * path_friction) return;
+    path_friction = friction;
     speeds.update({friction * gravity * traits.usable_grip, traits.max_acceleration, traits.max_deceleration,
                    traits.switch_speed});
     field.set_speeds(speeds.speeds());
   }
 
+  void forget_car() noexcept {
+    car.reset();
+    path_friction = 0;
+    if (model->has_dynamics()) set_friction(traits.friction);
+  }
+
   /// Where plans begin: the car when the next command takes effect.
-  VehicleStart start_of_plan(const Odometry& odometry) noexcept {
+  VehicleStart start_of_plan(const PlannerInput& input) noexcept {
+    const Odometry& odometry = input.odometry;
     if (!model->has_dynamics()) return history.lead_ahead({odometry.pose, odometry.speed, history.steer()});
-    observer.update(*model, odometry.pose, odometry.speed);
-    return observer.ahead(*model);
+    car.update(*model, {odometry.pose, odometry.speed, odometry.position_deviation, odometry.yaw_deviation,
+                        input.imu});
+    const VehicleStart start = car.state().ahead(*model);
+    speed_ahead = car.state().speed_ahead(*model);
+    set_friction(car.cautious_friction());
+    return start;
   }
   double steer_estimate() const noexcept {
-    return model->has_dynamics() ? observer.now().steer : history.steer();
+    return model->has_dynamics() ? car.state().now().steer : history.steer();
   }
-  void send(const Command& command) noexcept {
-    history.send(observed_steer(command));
-    observer.send(command);
+  /// Records the command that is sent; with the steering gain of the car where that is known.
+  void send() noexcept {
+    history.send(observed_steer(output.command));
+    if (model->has_dynamics()) output.command = car.send(output.command, options.steer_limit);
   }
 
   /// Without a plan: keeps the wheels' angle and stops.
@@ -121,10 +125,11 @@ struct Planner::Implementation {
     output.state_cost = output.collision_cost = 0;
   }
 
-  void plan(Odometry odometry) noexcept {
+  void plan(PlannerInput input) noexcept {
+    Odometry& odometry = input.odometry;
     odometry.pose.x -= origin.x;
     odometry.pose.y -= origin.y;
-    const VehicleStart start = start_of_plan(odometry);
+    const VehicleStart start = start_of_plan(input);
     const bool jumps = traits.unlimited_acceleration || model->has_dynamics();
     const double furthest =
         std::max(std::abs(odometry.speed), 1.0) + (jumps ? 0 : traits.max_acceleration * horizon_time());
@@ -151,9 +156,8 @@ struct Planner::Implementation {
     output.predicted = states;
     output.state_cost = cost.state;
     output.collision_cost = cost.collision;
-    output.command = model->has_dynamics()
-                         ? model->command(sent, observer.speed_ahead(*model), options.control_period)
-                         : Command{static_cast<double>(sent[0]), command_speed(here.speed)};
+    output.command = model->has_dynamics() ? model->command(sent, speed_ahead, options.control_period)
+                                           : Command{static_cast<double>(sent[0]), command_speed(here.speed)};
     planned_steer = without_turns(output.command.steer);
     output.command.steer = std::clamp(planned_steer, -options.steer_limit, options.steer_limit);
     if (options.verify_plan && options.stop_when_blocked) slow_down(cost, odometry.speed);
@@ -300,17 +304,18 @@ const PlannerOutput& Planner::update(const PlannerInput& input) noexcept {
   } else if (!seen_free) {
     p.stop(PlannerStatus::bad_scan);
   } else {
-    p.plan(input.odometry);
+    p.plan(input);
   }
   p.check(input.odometry);
-  p.send(out.command);
+  if (p.model->has_dynamics()) p.car.publish(out);
+  p.send();
   out.tick_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }
 
 void Planner::reset(std::uint64_t seed) noexcept {
   implementation_->history.reset();
-  implementation_->observer.reset();
+  implementation_->forget_car();
   implementation_->back_up.reset();
   implementation_->solver->reset(seed);
   implementation_->cost_map.clear();

@@ -30,13 +30,13 @@ class Recovery {
   }
 
  private:
-  static constexpr double progress = 0.5;    ///< m, that counts as getting on
-  static constexpr double patience = 3;      ///< s without progress
-  static constexpr double standing = 0.15;   ///< m/s, a slower car stands
-  static constexpr double stand_still = 0.7;  ///< s of standing
+  static constexpr double progress = 0.5;                 ///< m, that counts as getting on
+  static constexpr double patience = 3;                   ///< s without progress
+  static constexpr double standing = 0.15;                ///< m/s, a slower car stands
+  static constexpr double stand_still = 0.7;              ///< s of standing
   static constexpr double shortest = 0.8, longest = 3.0;  ///< m to reverse
-  static constexpr double slowest_try = 5;   ///< s of reversing at most
-  static constexpr double relief = 4;        ///< m of progress after which the dead end is left
+  static constexpr double slowest_try = 5;                ///< s of reversing at most
+  static constexpr double relief = 4;                     ///< m of progress after which the dead end is left
 
   void watch(double ahead, double arc, double speed_now, double period) noexcept {
     if (std::abs(ahead) > 10) furthest_ = arc, ahead = 0;  // put somewhere else
@@ -64,11 +64,11 @@ class Recovery {
   }
 
   bool started_ = false, reversing_ = false;
-  double furthest_ = 0;         ///< m along the course
+  double furthest_ = 0;                                               ///< m along the course
   double since_progress_ = 0, standing_for_ = 0, reversing_for_ = 0;  ///< s
-  double driven_ = 0;           ///< m in reverse
-  double left_behind_ = 0;      ///< m of progress since it reversed
-  double distance_ = shortest;  ///< m to reverse next time
+  double driven_ = 0;                                                 ///< m in reverse
+  double left_behind_ = 0;                                            ///< m of progress since it reversed
+  double distance_ = shortest;                                        ///< m to reverse next time
 };
 
 }  // namespace slalom::vehicle::detail

@@ -54,6 +54,13 @@ class ProblemModel final : public VehicleModel {
   }
 
   bool has_dynamics() const noexcept override { return dynamic; }
+  const SingleTrackDynamics* dynamics() const noexcept override {
+    if constexpr (dynamic) {
+      return &evaluator_.problem().motion().dynamics();
+    } else {
+      return nullptr;
+    }
+  }
   VehicleStart advance(const VehicleStart& start, const Command& command,
                        double duration) const noexcept override {
     if constexpr (dynamic) {

@@ -6,6 +6,7 @@
 #include "slalom/core/batch_evaluator.hpp"
 #include "slalom/core/instruction_set.hpp"
 #include "slalom/maps/command.hpp"
+#include "slalom/vehicle/model/single_track_dynamics.hpp"
 #include "slalom/vehicle/model/vehicle_options.hpp"
 #include "slalom/vehicle/model/vehicle_problem.hpp"
 
@@ -38,6 +39,8 @@ class VehicleModel {
   /// Whether the model predicts the car by its tyres and speed control: whether the next four functions mean
   /// anything.
   virtual bool has_dynamics() const noexcept { return false; }
+  /// The dynamics of a car whose tyres slip; null where they do not.
+  virtual const SingleTrackDynamics* dynamics() const noexcept { return nullptr; }
   /// The car `duration` (s) after `start`, where this command acts; with a speed that is not finite it rolls.
   virtual VehicleStart advance(const VehicleStart& start, const Command& command,
                                double duration) const noexcept;

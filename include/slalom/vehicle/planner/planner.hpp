@@ -1,15 +1,18 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "slalom/maps/command.hpp"
+#include "slalom/maps/imu_reading.hpp"
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/solvers/solver.hpp"
+#include "slalom/vehicle/estimation/parameter_estimator.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
 #include "slalom/vehicle/planner/planner_options.hpp"
 
@@ -29,6 +32,8 @@ struct Odometry {
   static constexpr double fastest = 200;      ///< m/s, largest magnitude that a planner takes as a speed
   maps::Pose pose;                            ///< m, m, rad, in the map frame
   double speed = 0;                           ///< m/s
+  double position_deviation = 0;  ///< m, standard deviation of the position along each axis; 0: not known
+  double yaw_deviation = 0;       ///< rad, standard deviation of the yaw; 0: not known
 };
 
 /// The reason for a command.
@@ -68,6 +73,8 @@ struct PlannerInput {
   maps::LaserScanView scan;                  ///< the scan, body frame
   Odometry odometry;                         ///< at the time of the scan
   std::span<const maps::Point> obstacles{};  ///< further obstacle points, robot frame, m
+  std::optional<ImuReading> imu{};  ///< mean since the last update, where there is a unit; it is used
+                                    ///< with models whose tyres slip
 };
 
 /// The outcome of an update. Spans stay valid until the next one. For any input the command is finite,
@@ -83,6 +90,10 @@ struct PlannerOutput {
   double state_cost = 0;               ///< of the predicted states without collisions
   double collision_cost = 0;           ///< of the predicted states
   double steer_estimate = 0;           ///< rad, of the steering observer
+  double speed_estimate = 0;           ///< m/s, of the observer; 0 where tyres do not slip
+  double yaw_rate_estimate = 0;        ///< rad/s, of the observer; 0 where tyres do not slip
+  double slip_estimate = 0;            ///< rad, of the observer; 0 where tyres do not slip
+  ParameterEstimate parameters;        ///< of car and ground; a friction of 0 where tyres do not slip
   const SolveResult* solve = nullptr;  ///< of the solver; null where nothing was solved
   maps::ScanReport scan;               ///< how many beams were used and why others were not
   double tick_time = 0;                ///< s of wall clock for the whole update

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slalom/core/options.hpp"
+#include "slalom/vehicle/estimation/estimation_options.hpp"
 #include "slalom/vehicle/published/planner_options.hpp"
 
 namespace slalom::vehicle {
@@ -25,6 +26,7 @@ struct PlannerOptions {
                             ///< best sample that does not
   bool back_up = true;  ///< with `stop_when_blocked` and `verify_plan`: where the car stands and every plan
                         ///< collides, it reverses a little and tries again
+  EstimationOptions estimation;         ///< of state, car and ground, for models whose tyres slip
   published::PlannerOptions published;  ///< to reproduce the program of proj-svg_mppi
 };
 
@@ -91,6 +93,7 @@ void visit_options(Options& o, Visit&& visit) {
                                    .help = "if the solution collides, send another sequence that does not"});
   visit(o.back_up, Declaration{.name = "back_up",
                                .help = "reverse a little where the car stands and every plan collides"});
+  visit_options(o.estimation, visit);
   visit(o.published.maps, Declaration{.name = "published_maps",
                                       .help = "cost map and reference field as in the paper's program"});
   visit(o.published.wrap_steer,

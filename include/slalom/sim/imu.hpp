@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+
+#include "slalom/core/options.hpp"
+#include "slalom/core/random.hpp"
+#include "slalom/maps/imu_reading.hpp"
+#include "slalom/sim/car.hpp"
+
+namespace slalom::sim {
+
+/// Errors of an inertial measurement unit. The biases are constant for a drive and drawn at its start.
+struct ImuOptions {
+  std::uint64_t seed = 0;            ///< seed of the random numbers
+  double gyro_bias = 0.01;           ///< rad/s, standard deviation over drives
+  double gyro_noise = 0.02;          ///< rad/s, standard deviation of a sample
+  double accelerometer_bias = 0.1;   ///< m/s^2, standard deviation over drives, of each axis
+  double accelerometer_noise = 0.5;  ///< m/s^2, standard deviation of a sample, with the car's vibration
+
+  /// Throws std::invalid_argument naming the field, its value and the rule.
+  void validate() const;
+};
+
+template <class Options, class Visit>
+requires is_options_of<Options, ImuOptions>
+void visit_options(Options& o, Visit&& visit) {
+  const auto number = [&](auto& field, const char* name, const char* unit, const char* help) {
+    visit(field, Declaration{.name = name, .unit = unit, .help = help, .min = 0, .max = 10});
+  };
+  visit(o.seed, Declaration{.name = "seed", .help = "of the errors"});
+  number(o.gyro_bias, "gyro_bias", "rad/s", "of the yaw rate, standard deviation over drives");
+  number(o.gyro_noise, "gyro_noise", "rad/s", "of a sample");
+  number(o.accelerometer_bias, "accelerometer_bias", "m/s^2", "of each axis, standard deviation over drives");
+  number(o.accelerometer_noise, "accelerometer_noise", "m/s^2", "of a sample");
+}
+
+/// An inertial measurement unit at the car's centre of gravity. It takes a sample in each step.
+class Imu {
+ public:
+  /// Throws std::invalid_argument on options out of range.
+  explicit Imu(const ImuOptions& options = {});
+
+  /// Begins a drive with the car in this state; draws the biases.
+  void reset(const CarState& state) noexcept;
+
+  /// To be called after each step of `time_step` (s) with the state reached. A time step that is not above 0
+  /// and a state that is not finite change nothing.
+  void update(const CarState& state, double time_step) noexcept;
+
+  /// The mean of the samples since the last call, or the last reading where there is none.
+  ImuReading read() noexcept;
+
+ private:
+  ImuOptions options_;
+  RandomStream random_;
+  ImuReading bias_, sum_, last_;
+  CarState before_;
+  int samples_ = 0;
+};
+
+}  // namespace slalom::sim

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "slalom/maps/pose.hpp"
+#include "slalom/vehicle/estimation/estimation_options.hpp"
+#include "slalom/vehicle/model/single_track_dynamics.hpp"
+
+namespace slalom::vehicle {
+
+/// What a drive so far says about the car and the ground.
+struct ParameterEstimate {
+  double friction = 0;                 ///< mean
+  double friction_deviation = 0;       ///< standard deviation
+  double cautious_friction = 0;        ///< what a plan should rely on, see ParameterEstimator
+  double steering_gain = 1;            ///< angle of the wheels / commanded angle, mean
+  double steering_gain_deviation = 0;  ///< standard deviation
+  double delay = 0;                    ///< s, from sending a steering command to its first effect, mean
+  double delay_deviation = 0;          ///< s, standard deviation
+  double confidence = 0;  ///< 0 .. 1, share of the prior variance of the logarithm of the friction that the
+                          ///< drive has removed: 0 without turning
+};
+
+/// How the car moved, one control period after the last.
+struct MeasuredMotion {
+  maps::Pose pose;      ///< of the rear axle, map frame
+  double speed = 0;     ///< m/s
+  double yaw_rate = 0;  ///< rad/s, of the observer
+  double slip = 0;      ///< rad, of the observer
+};
+
+namespace detail {
+/// Mean and standard deviation of a distribution.
+struct Moments {
+  double mean = 0, deviation = 0;
+};
+}  // namespace detail
+
+/// Friction, steering gain and steering delay of a car while it drives.
+///
+/// Each combination of values on a grid is a hypothesis. In every control period the dynamics predict, for
+/// all hypotheses at once in SIMD lanes, the last `window` seconds from the measured state at their begin,
+/// with the commands that were sent, delayed and scaled by the hypothesis, and with the measured speed. The
+/// logarithm of a hypothesis' weight falls by
+///
+///     (period / window) / 2 * ((lateral error / lateral_noise)^2 + (yaw error / yaw_noise)^2)
+///
+/// of the predicted pose at the end (the factor, since successive windows overlap), and errors beyond five
+/// deviations count as five, so that a collision or a jump of the localisation decides nothing. What was
+/// learned is forgotten within `memory` seconds of turning: on a straight line, where nothing can be learned
+/// about the tyres, nothing is forgotten either. Prior: independent normal distributions around the given
+/// values, of the friction's logarithm.
+///
+/// The means are those of the posterior; before the first turn they are the given values.
+/// `cautious_friction` is the `friction_quantile` of the posterior, shifted as far as needed to be the given
+/// friction before the first turn, and never above the given friction.
+///
+/// An update takes no time that depends on data, and neither allocates nor throws.
+class ParameterEstimator {
+ public:
+  static constexpr int frictions = 16;       ///< geometric, 0.25 .. 1.5
+  static constexpr int gains = 5;            ///< 0.85 .. 1.15
+  static constexpr int delays = 9;           ///< 0 .. 0.2 s
+  static constexpr int longest_window = 40;  ///< control periods
+
+  /// `friction` and `delay` (s) are those that were given, `period` (s) is the control period.
+  ParameterEstimator(const SingleTrackDynamics& dynamics, const EstimationOptions& options, double friction,
+                     double delay, double period);
+
+  /// Forgets everything.
+  void reset() noexcept;
+
+  /// Records the steering command (rad) that is sent now.
+  void send(double steer) noexcept;
+
+  /// Learns from the motion of the last control period.
+  const ParameterEstimate& update(const MeasuredMotion& now) noexcept;
+
+  /// The estimate of now.
+  const ParameterEstimate& estimate() const noexcept { return estimate_; }
+
+  /// The friction of a grid point, 0 .. frictions - 1.
+  static double friction_at(int i) noexcept;
+
+ private:
+  static constexpr int kept = 64;  ///< control periods of history
+  static constexpr int hypotheses = delays * gains * frictions;
+
+  struct Moment {
+    MeasuredMotion motion;
+    std::array<double, delays> angle{};  ///< rad, of the wheels at gain 1, for each delay
+  };
+
+  const Moment& ago(int periods) const noexcept;
+  void turn_wheels(Moment& next) const noexcept;
+  void weigh() noexcept;
+  void summarise() noexcept;
+  double log_quantile(const std::array<double, frictions>& shares) const noexcept;
+  bool continues() const noexcept;
+
+  SingleTrackDynamics dynamics_;
+  EstimationOptions options_;
+  double friction_, delay_, period_;
+  int window_;  ///< control periods
+  std::array<Moment, kept> history_;
+  std::array<double, kept> sent_{};
+  int newest_ = 0, moments_ = 0;
+  std::vector<double> log_prior_;  ///< logarithms of weights, [delay][gain][friction]
+  std::vector<double> evidence_;   ///< logarithms of likelihoods
+  std::vector<float> lateral_error_, yaw_error_;
+  /// Of the prior alone.
+  struct {
+    detail::Moments logarithm, gain, delay;  ///< of the friction's logarithm, the gain and the delay, s
+    double quantile = 0;                     ///< of the friction's logarithm
+  } prior_;
+  ParameterEstimate estimate_;
+};
+
+}  // namespace slalom::vehicle

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "slalom/maps/imu_reading.hpp"
+#include "slalom/vehicle/estimation/estimation_options.hpp"
+#include "slalom/vehicle/model/vehicle_model.hpp"
+
+namespace slalom::vehicle {
+
+/// What sensors say of the car at one moment.
+struct ObserverInput {
+  maps::Pose pose;                  ///< of the rear axle, map frame
+  double speed = 0;                 ///< m/s
+  double position_deviation = 0;    ///< m, standard deviation of the position along each axis
+  double yaw_deviation = 0;         ///< rad, standard deviation of the yaw
+  std::optional<ImuReading> imu{};  ///< mean over the last control period
+};
+
+/// The state of a car whose tyres slip, from pose, speed and, where there is one, an inertial measurement
+/// unit: an extended Kalman filter over pose, speed, yaw rate, sideways velocity and the gyro's bias
+/// (S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics" (2005), Table 3.3). The vehicle model and the
+/// commands sent predict the state, and accelerometers share in the prediction of speed and sideways velocity
+/// by the inverse of their variances. Derivatives are differences.
+///
+/// Commands are sent once per control period; a speed takes effect after `latency`, a steering angle
+/// `dead_time` later. Below 0.5 m/s, after a missed period and after a jump of the pose by more than 0.5 m or
+/// 0.5 rad the filter begins anew as a car whose tyres do not slip. An update neither allocates nor throws.
+class StateObserver {
+ public:
+  /// All times in s; latency and dead time together at most 32 periods.
+  StateObserver(const ObserverOptions& options, double period, double latency, double dead_time);
+
+  /// Forgets everything.
+  void reset() noexcept;
+
+  /// Takes the measurements of one control period after the last.
+  void update(const VehicleModel& model, const ObserverInput& input) noexcept;
+
+  /// Records the command that is sent now; for the next update.
+  void send(const Command& command) noexcept;
+
+  /// From now on the steering reacts `dead_time` (s) after `latency`.
+  void set_dead_time(double dead_time) noexcept { delay_ = latency_ + dead_time; }
+
+  /// The state at the time of the measurements.
+  const VehicleStart& now() const noexcept { return now_; }
+  /// The standard deviation of yaw rate (rad/s) and sideways velocity (m/s), as the filter has it.
+  double yaw_rate_deviation() const noexcept;
+  /// The standard deviation of the sideways velocity (m/s), as the filter has it.
+  double lateral_deviation() const noexcept;
+
+  /// The state when the next command takes effect on the steering.
+  VehicleStart ahead(const VehicleModel& model) const noexcept;
+  /// The speed (m/s) when the next command takes effect on it.
+  double speed_ahead(const VehicleModel& model) const noexcept;
+
+ private:
+  static constexpr int size = 7;  ///< x, y, yaw, speed, yaw rate, sideways velocity, bias of the gyro
+  using Vector = std::array<double, size>;
+  using Matrix = std::array<Vector, size>;
+
+  void begin(const VehicleModel& model, const ObserverInput& input) noexcept;
+  void predict(const VehicleModel& model, const std::optional<ImuReading>& imu) noexcept;
+  void correct(const Vector& row, double difference, double variance) noexcept;
+  void move(const VehicleModel& model, VehicleStart& car, double begin, double end) const noexcept;
+  Vector moved(const VehicleModel& model, const Vector& from, double& steer) const noexcept;
+  const Command& acting(double time, double delay) const noexcept;
+
+  ObserverOptions options_;
+  double period_, latency_, delay_;
+  std::array<Command, 36> sent_;
+  VehicleStart now_;
+  Vector state_{};
+  Matrix covariance_{};
+  int sent_since_ = 0;  ///< commands since the last update
+  bool known_ = false;
+};
+
+}  // namespace slalom::vehicle

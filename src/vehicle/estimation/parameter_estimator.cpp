@@ -1,0 +1,244 @@
+#include "slalom/vehicle/estimation/parameter_estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vehicle/estimation/hypothesis_bank.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+constexpr double lowest_friction = 0.25, highest_friction = 1.5;
+constexpr double lowest_gain = 0.85, highest_gain = 1.15;
+constexpr double longest_delay = 0.2;  // s
+constexpr double slowest = 1.0;        // m/s, below it tyres hardly slip
+constexpr double turning = 3.0;        // m/s^2, lateral acceleration from which on all is learned anew
+constexpr double farthest = 0.5;       // m or rad between poses: a jump of the localisation
+constexpr double largest_error = 5;    // deviations
+
+double ratio() noexcept {
+  return std::log(highest_friction / lowest_friction) / (ParameterEstimator::frictions - 1);
+}
+double gain_at(int i) noexcept {
+  return lowest_gain + (highest_gain - lowest_gain) * i / (ParameterEstimator::gains - 1);
+}
+double delay_at(int i) noexcept {
+  return longest_delay * i / (ParameterEstimator::delays - 1);
+}
+double square_of(double value) noexcept {
+  return value * value;
+}
+
+/// Mean and deviation of a value over a marginal distribution on a grid of steps `step`, where a grid point
+/// stands for a step about it.
+template <std::size_t n, class At>
+detail::Moments moments(const std::array<double, n>& share, double step, At&& at) noexcept {
+  detail::Moments made;
+  for (std::size_t i = 0; i < n; ++i) made.mean += share[i] * at(static_cast<int>(i));
+  double variance = step * step / 12;
+  for (std::size_t i = 0; i < n; ++i) variance += share[i] * square_of(at(static_cast<int>(i)) - made.mean);
+  made.deviation = std::sqrt(variance);
+  return made;
+}
+
+}  // namespace
+
+double ParameterEstimator::friction_at(int i) noexcept {
+  return lowest_friction * std::exp(ratio() * i);
+}
+
+ParameterEstimator::ParameterEstimator(const SingleTrackDynamics& dynamics, const EstimationOptions& options,
+                                       double friction, double delay, double period)
+    : dynamics_(dynamics),
+      options_(options),
+      friction_(friction),
+      delay_(delay),
+      period_(period),
+      window_(std::clamp(static_cast<int>(std::lround(options.window / period)), 2, longest_window)),
+      log_prior_(hypotheses),
+      evidence_(hypotheses),
+      lateral_error_(hypotheses),
+      yaw_error_(hypotheses) {
+  std::size_t at = 0;
+  for (int d = 0; d < delays; ++d)
+    for (int g = 0; g < gains; ++g)
+      for (int f = 0; f < frictions; ++f)
+        log_prior_[at++] =
+            -0.5 * (square_of((delay_at(d) - delay_) / options_.delay_spread) +
+                    square_of((gain_at(g) - 1) / options_.gain_spread) +
+                    square_of(std::log(friction_at(f) / friction_) / options_.friction_spread));
+  reset();
+}
+
+void ParameterEstimator::reset() noexcept {
+  history_.fill({});
+  sent_.fill(0);
+  newest_ = moments_ = 0;
+  std::fill(evidence_.begin(), evidence_.end(), 0.0);
+  summarise();
+}
+
+void ParameterEstimator::send(double steer) noexcept {
+  for (std::size_t i = sent_.size() - 1; i > 0; --i) sent_[i] = sent_[i - 1];
+  sent_[0] = steer;
+}
+
+const ParameterEstimator::Moment& ParameterEstimator::ago(int periods) const noexcept {
+  return history_[static_cast<std::size_t>((newest_ + kept - periods) % kept)];
+}
+
+/// The wheels' angle one period later: the commands that act in it, each for its part. The newest command was
+/// sent at the begin of the period.
+void ParameterEstimator::turn_wheels(Moment& next) const noexcept {
+  const auto sent = [&](int i) { return sent_[static_cast<std::size_t>(std::min(i, kept - 1))]; };
+  for (int d = 0; d < delays; ++d) {
+    const double periods = delay_at(d) / period_;
+    const int whole = static_cast<int>(periods + 1e-6);
+    const double older_share = std::max(0.0, periods - whole);
+    double angle = ago(0).angle[static_cast<std::size_t>(d)];
+    angle = dynamics_.lagged(angle, sent(whole + 1), older_share * period_);
+    angle = dynamics_.lagged(angle, sent(whole), (1 - older_share) * period_);
+    next.angle[static_cast<std::size_t>(d)] = angle;
+  }
+}
+
+bool ParameterEstimator::continues() const noexcept {
+  for (int k = 0; k < window_; ++k) {
+    const MeasuredMotion &after = ago(k).motion, &before = ago(k + 1).motion;
+    const double moved = std::hypot(after.pose.x - before.pose.x, after.pose.y - before.pose.y);
+    if (before.speed < slowest || after.speed < slowest ||
+        std::abs(moved - before.speed * period_) > farthest ||
+        std::abs(maps::wrap_angle(after.pose.yaw - before.pose.yaw)) > farthest)
+      return false;
+  }
+  return true;
+}
+
+const ParameterEstimate& ParameterEstimator::update(const MeasuredMotion& now) noexcept {
+  Moment next;
+  next.motion = now;
+  turn_wheels(next);
+  newest_ = (newest_ + 1) % kept;
+  history_[static_cast<std::size_t>(newest_)] = next;
+  moments_ = std::min(moments_ + 1, kept);
+  if (moments_ > window_ + 2 && continues()) {
+    weigh();
+    summarise();
+  }
+  return estimate_;
+}
+
+void ParameterEstimator::weigh() noexcept {
+  std::array<float, (longest_window + 1) * delays> angles;
+  std::array<float, longest_window + 1> speed, acceleration;
+  std::array<float, gains> gain;
+  std::array<float, frictions> friction;
+  double used = 0;
+  for (int k = 0; k <= window_; ++k) {
+    const Moment& moment = ago(window_ - k);
+    for (int d = 0; d < delays; ++d)
+      angles[static_cast<std::size_t>(k * delays + d)] =
+          static_cast<float>(moment.angle[static_cast<std::size_t>(d)]);
+    speed[static_cast<std::size_t>(k)] = static_cast<float>(moment.motion.speed);
+    used += square_of(moment.motion.speed * moment.motion.yaw_rate) / (window_ + 1);
+    if (k == window_) break;
+    const int before = window_ - k + 1, after = std::max(window_ - k - 2, 0);
+    acceleration[static_cast<std::size_t>(k)] = static_cast<float>(std::clamp(
+        (ago(after).motion.speed - ago(before).motion.speed) / ((before - after) * period_), -15.0, 15.0));
+  }
+  for (int g = 0; g < gains; ++g) gain[static_cast<std::size_t>(g)] = static_cast<float>(gain_at(g));
+  for (int f = 0; f < frictions; ++f)
+    friction[static_cast<std::size_t>(f)] = static_cast<float>(friction_at(f));
+  const MeasuredMotion &begin = ago(window_).motion, &end = ago(0).motion;
+  const maps::Point moved = maps::inverse_transform(begin.pose, {end.pose.x, end.pose.y});
+  detail::predict_all({.dynamics = &dynamics_,
+                       .steps = window_,
+                       .period = static_cast<float>(period_),
+                       .delays = delays,
+                       .gains = gains,
+                       .frictions = frictions,
+                       .angles = angles.data(),
+                       .gain = gain.data(),
+                       .friction = friction.data(),
+                       .speed = speed.data(),
+                       .acceleration = acceleration.data(),
+                       .yaw_rate = static_cast<float>(begin.yaw_rate),
+                       .lateral = static_cast<float>(begin.speed * std::sin(begin.slip)),
+                       .x = static_cast<float>(moved.x),
+                       .y = static_cast<float>(moved.y),
+                       .yaw = static_cast<float>(maps::wrap_angle(end.pose.yaw - begin.pose.yaw)),
+                       .lateral_error = lateral_error_.data(),
+                       .yaw_error = yaw_error_.data()});
+  const double share = 0.5 / window_, most = square_of(largest_error);
+  const double remembered = std::exp(-period_ / options_.memory * std::min(1.0, used / square_of(turning)));
+  double best = -INFINITY;
+  for (std::size_t i = 0; i < evidence_.size(); ++i) {
+    const double aside = square_of(lateral_error_[i] / options_.lateral_noise);
+    const double turned = square_of(yaw_error_[i] / options_.yaw_noise);
+    // An error that is not a number, of a prediction that diverges, counts as the largest.
+    const double error = (aside < most ? aside : most) + (turned < most ? turned : most);
+    evidence_[i] = remembered * evidence_[i] - share * error;
+    best = std::max(best, evidence_[i]);
+  }
+  for (double& each : evidence_) each -= best;
+}
+
+/// The quantile of the friction's logarithm; the density is constant in the step about a grid point.
+double ParameterEstimator::log_quantile(const std::array<double, frictions>& shares) const noexcept {
+  double below = 0;
+  for (int f = 0; f < frictions; ++f) {
+    const double share = shares[static_cast<std::size_t>(f)];
+    if (below + share >= options_.friction_quantile)
+      return std::log(friction_at(f)) + ratio() * ((options_.friction_quantile - below) / share - 0.5);
+    below += share;
+  }
+  return std::log(highest_friction);
+}
+
+void ParameterEstimator::summarise() noexcept {
+  std::array<double, frictions> of_friction{};
+  std::array<double, gains> of_gain{};
+  std::array<double, delays> of_delay{};
+  double best = -INFINITY, total = 0;
+  for (std::size_t i = 0; i < log_prior_.size(); ++i) best = std::max(best, log_prior_[i] + evidence_[i]);
+  std::size_t at = 0;
+  for (std::size_t d = 0; d < delays; ++d)
+    for (std::size_t g = 0; g < gains; ++g)
+      for (std::size_t f = 0; f < frictions; ++f, ++at) {
+        const double weight = std::exp(log_prior_[at] + evidence_[at] - best);
+        of_friction[f] += weight;
+        of_gain[g] += weight;
+        of_delay[d] += weight;
+        total += weight;
+      }
+  for (double& each : of_friction) each /= total;
+  for (double& each : of_gain) each /= total;
+  for (double& each : of_delay) each /= total;
+
+  using detail::Moments;
+  const Moments logarithm = moments(of_friction, ratio(), [](int i) { return std::log(friction_at(i)); });
+  const Moments gain = moments(of_gain, (highest_gain - lowest_gain) / (gains - 1), gain_at);
+  const Moments delay = moments(of_delay, longest_delay / (delays - 1), delay_at);
+  const double quantile = log_quantile(of_friction);
+  if (moments_ == 0) prior_ = {logarithm, gain, delay, quantile};
+  // A grid cuts the prior, whose mean is then not the given value. What has been learned replaces the given
+  // value, not the mean of the cut prior.
+  const auto learned = [](const Moments& now, const Moments& before) {
+    return std::clamp(1 - square_of(now.deviation / before.deviation), 0.0, 1.0);
+  };
+  const auto shifted = [](const Moments& now, const Moments& before, double share, double given) {
+    return now.mean + (1 - share) * (given - before.mean);
+  };
+  const double given = std::log(friction_);
+  estimate_.confidence = learned(logarithm, prior_.logarithm);
+  estimate_.friction = std::exp(shifted(logarithm, prior_.logarithm, estimate_.confidence, given));
+  estimate_.friction_deviation = estimate_.friction * logarithm.deviation;
+  estimate_.steering_gain = shifted(gain, prior_.gain, learned(gain, prior_.gain), 1);
+  estimate_.steering_gain_deviation = gain.deviation;
+  estimate_.delay = shifted(delay, prior_.delay, learned(delay, prior_.delay), delay_);
+  estimate_.delay_deviation = delay.deviation;
+  const double cautious = std::exp(quantile + (1 - estimate_.confidence) * (given - prior_.quantile));
+  estimate_.cautious_friction = std::min(cautious, friction_);
+}
+
+}  // namespace slalom::vehicle

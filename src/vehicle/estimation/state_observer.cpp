@@ -1,0 +1,217 @@
+#include "slalom/vehicle/estimation/state_observer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slalom::vehicle {
+namespace {
+
+enum Index { x, y, yaw, speed, yaw_rate, lateral, bias };
+
+constexpr double piece = 0.005;    // s, of a prediction
+constexpr double farthest = 0.5;   // m or rad; a pose further from the predicted one was reset
+constexpr double slow = 0.5;       // m/s, below it tyres do not slip
+constexpr double most_slip = 1.2;  // rad
+constexpr double bias_spread = 0.02, bias_drift = 1e-4;  // rad/s, at the start and in a period
+
+double square_of(double value) noexcept {
+  return value * value;
+}
+
+double slip_from(double sideways, double along) noexcept {
+  const double safe = std::copysign(std::max(std::abs(along), 0.1), along);
+  return std::asin(std::clamp(sideways / safe, -std::sin(most_slip), std::sin(most_slip)));
+}
+
+}  // namespace
+
+StateObserver::StateObserver(const ObserverOptions& options, double period, double latency, double dead_time)
+    : options_(options), period_(period), latency_(latency), delay_(latency + dead_time) {
+  reset();
+}
+
+void StateObserver::reset() noexcept {
+  sent_.fill({0, std::numeric_limits<double>::quiet_NaN()});
+  now_ = {};
+  known_ = false;
+  sent_since_ = 0;
+}
+
+void StateObserver::send(const Command& command) noexcept {
+  for (std::size_t i = sent_.size() - 1; i > 0; --i) sent_[i] = sent_[i - 1];
+  sent_[0] = command;
+  ++sent_since_;
+}
+
+double StateObserver::yaw_rate_deviation() const noexcept {
+  return std::sqrt(covariance_[yaw_rate][yaw_rate]);
+}
+
+double StateObserver::lateral_deviation() const noexcept {
+  return std::sqrt(covariance_[lateral][lateral]);
+}
+
+/// The command that acts with this delay at a time, s after the last measurements; the newest was sent one
+/// period before it.
+const Command& StateObserver::acting(double time, double delay) const noexcept {
+  const double periods = std::ceil((delay - time) / period_) - 1;
+  return sent_[static_cast<std::size_t>(std::clamp(periods, 0.0, static_cast<double>(sent_.size() - 1)))];
+}
+
+/// From `begin` to `end`, s after the last measurements.
+void StateObserver::move(const VehicleModel& model, VehicleStart& car, double begin,
+                         double end) const noexcept {
+  const int pieces = static_cast<int>(std::ceil((end - begin) / piece - 1e-9));
+  for (int i = 0; i < pieces; ++i) {
+    const double dt = (end - begin) / pieces, middle = begin + (i + 0.5) * dt;
+    car = model.advance(car, {acting(middle, delay_).steer, acting(middle, latency_).speed}, dt);
+  }
+}
+
+/// The state one period after `from`; `steer` (rad) is that of the wheels.
+StateObserver::Vector StateObserver::moved(const VehicleModel& model, const Vector& from,
+                                           double& steer) const noexcept {
+  VehicleStart car{{from[x], from[y], from[yaw]},
+                   from[speed],
+                   steer,
+                   from[yaw_rate],
+                   slip_from(from[lateral], from[speed])};
+  move(model, car, -period_, 0);
+  steer = car.steer;
+  return {car.pose.x, car.pose.y, car.pose.yaw, car.speed, car.yaw_rate, car.speed * std::sin(car.slip),
+          from[bias]};
+}
+
+/// As a car whose tyres do not slip.
+void StateObserver::begin(const VehicleModel& model, const ObserverInput& input) noexcept {
+  const VehicleTraits traits = model.traits();
+  const double slope = std::tan(now_.steer) / traits.wheelbase;
+  const double gyro = known_ ? state_[bias] : 0;
+  now_ = {input.pose, input.speed, now_.steer, input.speed * slope, std::atan(traits.rear_length * slope)};
+  state_ = {now_.pose.x, now_.pose.y,   now_.pose.yaw,
+            now_.speed,  now_.yaw_rate, now_.speed * std::sin(now_.slip),
+            gyro};
+  const double bias_variance = known_ ? covariance_[bias][bias] : square_of(bias_spread);
+  covariance_ = {};
+  covariance_[x][x] = covariance_[y][y] =
+      square_of(std::max(options_.position_noise, input.position_deviation));
+  covariance_[yaw][yaw] = square_of(std::max(options_.heading_noise, input.yaw_deviation));
+  covariance_[speed][speed] = square_of(options_.speed_noise);
+  covariance_[yaw_rate][yaw_rate] = square_of(0.3 * std::abs(input.speed) * std::abs(slope) + 0.05);
+  covariance_[lateral][lateral] = square_of(0.05 * std::abs(input.speed) + 0.01);
+  covariance_[bias][bias] = bias_variance;
+}
+
+/// One period on: F P F' + Q, with the accelerometers' share.
+void StateObserver::predict(const VehicleModel& model, const std::optional<ImuReading>& imu) noexcept {
+  const Vector before = state_;
+  const double steer_before = now_.steer;
+  Matrix f{};
+  for (std::size_t i = 0; i < size; ++i) f[i][i] = 1;
+  state_ = moved(model, before, now_.steer);
+  f[x][yaw] = -(state_[y] - before[y]);
+  f[y][yaw] = state_[x] - before[x];
+  constexpr double difference = 1e-4;
+  for (const std::size_t column : {std::size_t{speed}, std::size_t{yaw_rate}, std::size_t{lateral}}) {
+    Vector other = before;
+    other[column] += difference;
+    double steer = steer_before;
+    other = moved(model, other, steer);
+    for (std::size_t row = 0; row < bias; ++row) f[row][column] = (other[row] - state_[row]) / difference;
+  }
+  const double dt = period_;
+  Vector noise{1e-6,
+               1e-6,
+               1e-8,
+               square_of(options_.acceleration_noise * dt),
+               square_of(options_.yaw_acceleration_noise * dt),
+               square_of(options_.sideways_noise * dt),
+               square_of(bias_drift)};
+  if (imu) {
+    const double measured = square_of(options_.accelerometer_noise * dt);
+    const double slip = slip_from(before[lateral], before[speed]), s = std::sin(slip), c = std::cos(slip);
+    const auto share_in = [&](std::size_t row, double predicted, const Vector& derivative) {
+      const double share = noise[row] / (noise[row] + measured);
+      state_[row] += share * (predicted - state_[row]);
+      for (std::size_t i = 0; i < size; ++i) f[row][i] += share * (derivative[i] - f[row][i]);
+      noise[row] *= 1 - share;
+    };
+    const double rate = 0.5 * (before[yaw_rate] + state_[yaw_rate]);
+    Vector derivative{};
+    derivative[lateral] = 1;
+    derivative[speed] = -rate * c * dt;
+    derivative[yaw_rate] = -before[speed] * c * dt;
+    share_in(lateral, before[lateral] + dt * (imu->leftward - before[speed] * c * rate), derivative);
+    derivative = {};
+    derivative[speed] = 1;
+    share_in(speed, before[speed] + dt * (imu->forward * c + imu->leftward * s), derivative);
+  }
+  Matrix half{}, made{};
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t k = 0; k < size; ++k)
+      for (std::size_t j = 0; j < size; ++j) half[i][j] += f[i][k] * covariance_[k][j];
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t k = 0; k < size; ++k)
+      for (std::size_t j = 0; j < size; ++j) made[i][j] += half[i][k] * f[j][k];
+    made[i][i] += noise[i];
+  }
+  covariance_ = made;
+}
+
+/// One measurement that is `row` times the state, `difference` above what the state says.
+void StateObserver::correct(const Vector& row, double difference, double variance) noexcept {
+  Vector shared{};
+  double total = variance;
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t k = 0; k < size; ++k) shared[i] += covariance_[i][k] * row[k];
+  for (std::size_t i = 0; i < size; ++i) total += row[i] * shared[i];
+  for (std::size_t i = 0; i < size; ++i) state_[i] += shared[i] * (difference / total);
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t j = 0; j < size; ++j) covariance_[i][j] -= shared[i] * shared[j] / total;
+}
+
+void StateObserver::update(const VehicleModel& model, const ObserverInput& input) noexcept {
+  const bool missed = sent_since_ > 1;
+  sent_since_ = 0;
+  if (!known_ || missed || std::abs(input.speed) < slow) {
+    if (known_) move(model, now_, -period_, 0);
+    begin(model, input);
+    known_ = true;
+    return;
+  }
+  predict(model, input.imu);
+  const double turned = maps::wrap_angle(input.pose.yaw - state_[yaw]);
+  if (!(std::hypot(input.pose.x - state_[x], input.pose.y - state_[y]) < farthest &&
+        std::abs(turned) < farthest))
+    return begin(model, input);
+  const double position = square_of(std::max(options_.position_noise, input.position_deviation));
+  correct({1}, input.pose.x - state_[x], position);
+  correct({0, 1}, input.pose.y - state_[y], position);
+  correct({0, 0, 1}, maps::wrap_angle(input.pose.yaw - state_[yaw]),
+          square_of(std::max(options_.heading_noise, input.yaw_deviation)));
+  correct({0, 0, 0, 1}, input.speed - state_[speed], square_of(options_.speed_noise));
+  if (input.imu)
+    correct({0, 0, 0, 0, 1, 0, 1}, input.imu->yaw_rate - state_[yaw_rate] - state_[bias],
+            square_of(options_.gyro_noise));
+  now_ = {{state_[x], state_[y], maps::wrap_angle(state_[yaw])},
+          state_[speed],
+          now_.steer,
+          state_[yaw_rate],
+          slip_from(state_[lateral], state_[speed])};
+  state_[yaw] = now_.pose.yaw;
+}
+
+VehicleStart StateObserver::ahead(const VehicleModel& model) const noexcept {
+  VehicleStart car = now_;
+  move(model, car, 0, delay_);
+  return car;
+}
+
+double StateObserver::speed_ahead(const VehicleModel& model) const noexcept {
+  VehicleStart car = now_;
+  move(model, car, 0, latency_);
+  return car.speed;
+}
+
+}  // namespace slalom::vehicle

@@ -1,0 +1,91 @@
+// Inertial measurement unit: known answers of simple motions, bias and noise.
+#include "slalom/sim/imu.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace slalom::sim {
+namespace {
+
+constexpr double time_step = 0.005;  // s
+constexpr ImuOptions faultless{
+    .gyro_bias = 0, .gyro_noise = 0, .accelerometer_bias = 0, .accelerometer_noise = 0};
+
+/// The state on a circle at constant speed (m/s) and yaw rate (rad/s), with a constant slip (rad).
+CarState on_circle(double speed, double yaw_rate, double slip, double time) {
+  CarState state;
+  state.speed = speed;
+  state.yaw = std::remainder(yaw_rate * time, 2 * 3.141592653589793);
+  state.yaw_rate = yaw_rate;
+  state.slip = slip;
+  return state;
+}
+
+TEST(Imu, ReadsTheCentripetalAccelerationAcrossTheDirectionOfTravel) {
+  Imu imu(faultless);
+  imu.reset(on_circle(4, -1.5, 0.1, 0));
+  for (int i = 1; i <= 2000; ++i) {  // more than a turn
+    imu.update(on_circle(4, -1.5, 0.1, time_step * i), time_step);
+    const ImuReading reading = imu.read();
+    EXPECT_NEAR(reading.yaw_rate, -1.5, 1e-12);
+    EXPECT_NEAR(reading.leftward, -6 * std::cos(0.1), 1e-3);
+    EXPECT_NEAR(reading.forward, 6 * std::sin(0.1), 1e-3);
+  }
+}
+
+TEST(Imu, ReadsTheMeanSinceTheLastReading) {
+  Imu imu(faultless);
+  CarState state;
+  imu.reset(state);
+  for (int i = 1; i <= 10; ++i) {
+    state.speed += (i <= 5 ? 2.0 : 4.0) * time_step;
+    imu.update(state, time_step);
+  }
+  EXPECT_NEAR(imu.read().forward, 3, 1e-9);
+  EXPECT_NEAR(imu.read().forward, 3, 1e-9);  // nothing new
+}
+
+TEST(Imu, HasTheBiasAndNoiseOfItsOptions) {
+  double squares = 0;
+  constexpr int drives = 400;
+  for (int drive = 0; drive < drives; ++drive) {
+    ImuOptions options = faultless;
+    options.seed = static_cast<std::uint64_t>(drive);
+    options.gyro_bias = 0.3;
+    Imu imu(options);
+    imu.reset({});
+    imu.update({}, time_step);
+    const double bias = imu.read().yaw_rate;
+    imu.update({}, time_step);
+    EXPECT_EQ(imu.read().yaw_rate, bias);
+    squares += bias * bias;
+  }
+  EXPECT_NEAR(std::sqrt(squares / drives), 0.3, 0.03);
+
+  ImuOptions options = faultless;
+  options.accelerometer_noise = 0.5;
+  Imu imu(options);
+  imu.reset({});
+  squares = 0;
+  for (int i = 0; i < 4000; ++i) {
+    imu.update({}, time_step);
+    squares += std::pow(imu.read().leftward, 2);
+  }
+  EXPECT_NEAR(std::sqrt(squares / 4000), 0.5, 0.02);
+}
+
+TEST(Imu, IgnoresWhatIsNotFiniteAndRejectsInvalidOptions) {
+  Imu imu(faultless);
+  imu.reset({});
+  CarState bad;
+  bad.speed = std::nan("");
+  imu.update(bad, time_step);
+  imu.update({}, 0);
+  EXPECT_EQ(imu.read().forward, 0);
+  EXPECT_THROW(Imu({.gyro_noise = -1}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slalom::sim

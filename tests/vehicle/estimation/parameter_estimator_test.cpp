@@ -1,0 +1,147 @@
+// Friction, steering gain and delay found while a simulated car drives: from wrong given values, without
+// turning, on all instruction sets, with and without noise.
+#include "slalom/vehicle/estimation/parameter_estimator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+
+#include "slalom/core/random.hpp"
+#include "slalom/sim/plant.hpp"
+#include "slalom/sim/wheel_odometry.hpp"
+#include "slalom/vehicle/model/single_track.hpp"
+#include "support/allocations.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+constexpr double period = 0.025, time_step = 0.005;  // s
+
+PathTrackingOptions car_options() {
+  PathTrackingOptions options;
+  options.steer_time_constant = 0.05;
+  options.dead_time = 0.025;
+  options.max_acceleration = options.max_deceleration = 9;
+  options.hold_first_input = false;
+  return options;
+}
+
+/// A drive of a simulated car and what its estimator was given.
+struct Drive {
+  sim::Model tyres = sim::Model::saturating;
+  double friction = 1.0489;
+  double gain = 1;   ///< of the steering
+  double delay = 0;  ///< s, besides the plant's dead time of 20 ms
+  double given_friction = 1.0489, given_delay = 0.025;
+  double speed = 4;                          ///< m/s
+  double swing = 0.2;                        ///< rad, amplitude of the steering
+  double position_noise = 0, yaw_noise = 0;  ///< m, rad, standard deviations
+  double duration = 3;                       ///< s, after reaching the speed
+};
+
+ParameterEstimate after(const Drive& drive, const EstimationOptions& options = {}) {
+  sim::CarParameters car;
+  car.friction = drive.friction;
+  sim::PlantOptions plant_options;
+  plant_options.dynamics.model = drive.tyres;
+  sim::Plant plant(car, plant_options, time_step);
+  plant.reset({.speed = drive.speed});
+  const SingleTrackDynamics dynamics(
+      car_options(),
+      {.tyres = drive.tyres == sim::Model::saturating ? TyreModel::saturating : TyreModel::linear});
+  ParameterEstimator estimator(dynamics, options, drive.given_friction, drive.given_delay, period);
+  RandomStream noise({7, 0});
+  std::deque<double> commands(static_cast<std::size_t>(std::lround(drive.delay / time_step)), 0.0);
+  double wheel = 0;
+  for (int tick = 0; tick * period < drive.duration; ++tick) {
+    const double time = tick * period;
+    const sim::CarState& state = plant.state();
+    maps::Pose pose = sim::rear_axle(car, state);
+    pose.x += drive.position_noise * noise.normal();
+    pose.y += drive.position_noise * noise.normal();
+    pose.yaw += drive.yaw_noise * noise.normal();
+    estimator.update({pose, state.speed, state.yaw_rate, state.slip});
+    const double steer = drive.swing * std::sin(2 * 3.14159 * time / 1.5) * std::cos(0.7 * time);
+    estimator.send(steer);
+    for (int k = 0; k < std::lround(period / time_step); ++k) {
+      commands.push_back(steer);
+      // The servo's lag, before the plant's own dead time.
+      wheel += (drive.gain * commands.front() - wheel) * (1 - std::exp(-time_step / 0.05));
+      commands.pop_front();
+      plant.step({wheel, drive.speed});
+    }
+  }
+  return estimator.estimate();
+}
+
+TEST(ParameterEstimator, FindsLowFrictionAndALongDelayWithinThreeSeconds) {
+  const ParameterEstimate found = after({.friction = 0.7, .delay = 0.1});
+  EXPECT_NEAR(found.friction, 0.7, 0.07);
+  EXPECT_NEAR(found.delay, 0.12, 0.015);
+  EXPECT_NEAR(found.steering_gain, 1, 0.07);
+  EXPECT_LT(found.cautious_friction, 0.75);
+  EXPECT_GT(found.confidence, 0.7);
+}
+
+TEST(ParameterEstimator, FindsOtherGroundsToo) {
+  for (const auto tyres : {sim::Model::saturating, sim::Model::single_track})
+    for (const double friction : {0.4, 0.55, 0.85, 1.0489}) {
+      const ParameterEstimate found =
+          after({.tyres = tyres, .friction = friction, .speed = friction < 0.5 ? 3.0 : 4.0});
+      EXPECT_NEAR(found.friction / friction, 1, 0.12) << friction;
+      EXPECT_NEAR(found.delay, 0.02, 0.015) << friction;
+    }
+}
+
+TEST(ParameterEstimator, FindsTheSteeringGain) {
+  EXPECT_NEAR(after({.gain = 0.93, .swing = 0.12}).steering_gain, 0.93, 0.04);
+  EXPECT_NEAR(after({.gain = 1.08, .swing = 0.12}).steering_gain, 1.08, 0.06);
+}
+
+TEST(ParameterEstimator, KeepsTheGivenValuesWithoutTurningAndSaysSo) {
+  const ParameterEstimate found = after({.friction = 0.5, .delay = 0.1, .swing = 0.002});
+  EXPECT_LT(found.confidence, 0.1);
+  EXPECT_NEAR(found.cautious_friction, 1.0489, 0.05);
+  EXPECT_NEAR(found.delay, 0.025, 0.02);
+  EXPECT_NEAR(found.steering_gain, 1, 0.02);
+}
+
+TEST(ParameterEstimator, StandsTheNoiseOfALocalisation) {
+  const ParameterEstimate found =
+      after({.friction = 0.7, .delay = 0.1, .position_noise = 0.015, .yaw_noise = 0.005, .duration = 4});
+  EXPECT_NEAR(found.friction, 0.7, 0.14);
+  EXPECT_NEAR(found.delay, 0.12, 0.03);
+}
+
+TEST(ParameterEstimator, TheLowerTheQuantileTheMoreCautious) {
+  EstimationOptions options;
+  double before = 0;
+  for (const double quantile : {0.05, 0.2, 0.5}) {
+    options.friction_quantile = quantile;
+    const double cautious = after({.friction = 0.7}, options).cautious_friction;
+    EXPECT_GT(cautious, before);
+    before = cautious;
+  }
+}
+
+TEST(ParameterEstimator, DoesNotAllocateAndGivesTheSameBitsAgainAfterAReset) {
+  const SingleTrackDynamics dynamics(car_options(), {});
+  ParameterEstimator estimator(dynamics, {}, 1, 0.02, period);
+  const auto drive = [&] {
+    for (int i = 0; i < 100; ++i) {
+      estimator.update({{0.1 * i, 0.002 * i * i, 0.01 * i}, 4, 0.4, 0.02});
+      estimator.send(0.03);
+    }
+    return estimator.estimate().friction;
+  };
+  const long before = testing::allocations();
+  const double first = drive();
+  estimator.reset();
+  EXPECT_EQ(estimator.estimate().confidence, 0);
+  EXPECT_EQ(drive(), first);
+  EXPECT_EQ(testing::allocations(), before);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle

@@ -1,0 +1,155 @@
+// The observer of yaw rate, slip and speed against the truth of the simulator.
+#include "slalom/vehicle/estimation/state_observer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "slalom/core/random.hpp"
+#include "slalom/sim/imu.hpp"
+#include "slalom/sim/plant.hpp"
+#include "slalom/sim/wheel_odometry.hpp"
+#include "support/allocations.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+constexpr double period = 0.025, time_step = 0.005;  // s
+
+/// A drive of a simulated car with saturating tyres, and what its observer gets.
+struct Drive {
+  double friction = 1.0489, assumed_friction = 1.0489;
+  double position_noise = 0, yaw_noise = 0, speed_noise = 0;  ///< m, rad, m/s, standard deviations
+  bool imu = false;
+};
+
+/// Root mean square errors.
+struct Errors {
+  double yaw_rate = 0, slip = 0, speed = 0;  ///< rad/s, rad, m/s
+};
+
+std::unique_ptr<VehicleModel> model_with(double friction) {
+  VehicleOptions options;
+  options.model = vehicle_model("single_track");
+  options.hold_first_input = false;
+  options.steer_time_constant = 0.01;
+  options.dead_time = 0.02;
+  options.max_acceleration = options.max_deceleration = 9;
+  options.own_of<SingleTrackOptions>().friction = friction;
+  return make_vehicle_model(options);
+}
+
+Errors errors_of(const Drive& drive) {
+  sim::CarParameters car;
+  car.friction = drive.friction;
+  sim::PlantOptions plant_options;
+  plant_options.dynamics.model = sim::Model::saturating;
+  sim::Plant plant(car, plant_options, time_step);
+  plant.reset({.speed = 4});
+  sim::Imu imu({.seed = 3});
+  imu.reset(plant.state());
+  const auto model = model_with(drive.assumed_friction);
+  StateObserver observer({}, period, 0, 0.02);
+  RandomStream noise({5, 0});
+  Errors sum;
+  int count = 0;
+  for (int tick = 0; tick < 320; ++tick) {
+    const double time = tick * period;
+    const sim::CarState& state = plant.state();
+    ObserverInput input{sim::rear_axle(car, state), state.speed, drive.position_noise, drive.yaw_noise};
+    input.pose.x += drive.position_noise * noise.normal();
+    input.pose.y += drive.position_noise * noise.normal();
+    input.pose.yaw += drive.yaw_noise * noise.normal();
+    input.speed += drive.speed_noise * noise.normal();
+    if (drive.imu) input.imu = imu.read();
+    observer.update(*model, input);
+    if (time > 1) {
+      ++count;
+      sum.yaw_rate += std::pow(observer.now().yaw_rate - state.yaw_rate, 2);
+      sum.slip += std::pow(observer.now().slip - state.slip, 2);
+      sum.speed += std::pow(observer.now().speed - state.speed, 2);
+    }
+    const Command command{0.16 * std::sin(2 * 3.14159 * time / 1.6), 4 + std::sin(time)};
+    observer.send(command);
+    for (int k = 0; k < std::lround(period / time_step); ++k) {
+      plant.step(command);
+      imu.update(plant.state(), time_step);
+    }
+  }
+  return {std::sqrt(sum.yaw_rate / count), std::sqrt(sum.slip / count), std::sqrt(sum.speed / count)};
+}
+
+void show(const char* what, const Errors& e) {
+  std::printf("%s: yaw rate %.4f rad/s, slip %.4f rad, speed %.4f m/s\n", what, e.yaw_rate, e.slip, e.speed);
+}
+
+constexpr Drive localised{.position_noise = 0.02, .yaw_noise = 0.006, .speed_noise = 0.03};
+
+TEST(StateObserver, FollowsExactMeasurements) {
+  const Errors e = errors_of({});
+  show("exact", e);
+  EXPECT_LT(e.yaw_rate, 0.08);
+  EXPECT_LT(e.slip, 0.012);
+  EXPECT_LT(e.speed, 0.05);
+}
+
+TEST(StateObserver, HasSmallErrorsWithALocalisedPose) {
+  const Errors e = errors_of(localised);
+  show("localised", e);
+  // Differences of the noisy heading would have 0.006 sqrt(2) / 0.025 s = 0.34 rad/s.
+  EXPECT_LT(e.yaw_rate, 0.17);
+  EXPECT_LT(e.slip, 0.03);
+  EXPECT_LT(e.speed, 0.08);
+}
+
+TEST(StateObserver, AnImuGivesTheYawRate) {
+  Drive drive = localised;
+  const Errors without = errors_of(drive);
+  drive.imu = true;
+  const Errors with = errors_of(drive);
+  show("with an IMU", with);
+  EXPECT_LT(with.yaw_rate, 0.7 * without.yaw_rate);
+  EXPECT_LT(with.slip, 0.02);
+}
+
+TEST(StateObserver, WithTheWrongFrictionAnImuHelpsMost) {
+  Drive drive = localised;
+  drive.friction = 0.6;
+  const Errors without = errors_of(drive);
+  drive.imu = true;
+  const Errors with = errors_of(drive);
+  show("wrong friction", without);
+  show("wrong friction with an IMU", with);
+  EXPECT_LT(with.slip, 0.8 * without.slip);
+}
+
+TEST(StateObserver, BeginsAnewAfterAJumpAndAtAStandstill) {
+  const auto model = model_with(1);
+  StateObserver observer({}, period, 0, 0.02);
+  for (int i = 0; i < 40; ++i) {
+    observer.update(*model, {{0.1 * i, 0, 0}, 4});
+    observer.send({0, 4});
+  }
+  EXPECT_NEAR(observer.now().pose.x, 3.9, 0.01);
+  EXPECT_NEAR(observer.now().yaw_rate, 0, 0.01);
+  observer.update(*model, {{20, 5, 1}, 4});
+  EXPECT_EQ(observer.now().pose.x, 20);
+  observer.send({0, 0});
+  observer.update(*model, {{20, 5, 1}, 0});
+  EXPECT_EQ(observer.now().speed, 0);
+  EXPECT_EQ(observer.now().slip, 0);
+}
+
+TEST(StateObserver, DoesNotAllocate) {
+  const auto model = model_with(1);
+  StateObserver observer({}, period, 0, 0.02);
+  const auto before = testing::allocations();
+  for (int i = 0; i < 40; ++i) {
+    observer.update(*model, {{0.1 * i, 0, 0}, 4, 0, 0, ImuReading{}});
+    observer.send({0.1, 4});
+  }
+  EXPECT_EQ(testing::allocations(), before);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle
