@@ -42,6 +42,39 @@ TEST_F(CommandLine, AnUnknownInstructionSetDoesNotAbort) {
   EXPECT_EQ(timed("drive --help", "SLALOM_TARGET=foo").status, 0);
 }
 
+TEST_F(CommandLine, AMistypedCommandOrOptionIsAnsweredWithTheNearest) {
+  refuses("drvie --course wren", {"'drvie' is not a command", "Did you mean drive?", "--help"}, 2);
+  refuses("something", {"'something' is not a command", "--help"}, 2);
+  refuses("drive --obstcles 5", {"--obstcles", "Did you mean --obstacles?"}, 2);
+}
+
+TEST_F(CommandLine, TheShellCompletesCommandsOptionsAndValues) {
+  const auto completed = [&](const std::string& words, int at) {
+    return testing::run_shell(
+               "'" SLALOM_PROGRAM "' completion bash > c.bash && bash -c '. ./c.bash; COMP_WORDS=(" + words +
+                   "); COMP_CWORD=" + std::to_string(at) + "; _slalom; echo \"${COMPREPLY[*]}\"'",
+               folder_.string())
+        .output;
+  };
+  EXPECT_EQ(completed("slalom dr", 1), "drive\n");
+  EXPECT_EQ(completed("slalom drive --obs", 2), "--obstacles\n");
+  EXPECT_EQ(completed("slalom drive --course wr", 3), "wren\n");
+  EXPECT_EQ(completed("slalom eval --methods svg", 3), "svg_mppi\n");
+  refuses("completion fish", {"'fish' must be bash or zsh"});
+}
+
+TEST_F(CommandLine, TheManPagesRenderWithoutWarnings) {
+  const testing::Run written = timed("manual pages");
+  EXPECT_EQ(written.status, 0) << written.output;
+  EXPECT_TRUE(contains(written.output, "pages/slalom-drive.1"));
+  if (testing::run_shell("command -v groff >/dev/null").status != 0) GTEST_SKIP() << "groff is not installed";
+  const testing::Run run =
+      testing::run_shell("groff -man -Tascii -wall -P-cbou pages/*.1 >rendered", folder_.string());
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.output, "");
+  EXPECT_TRUE(contains(content(folder_ / "rendered"), "--obstacles"));
+}
+
 TEST_F(CommandLine, AFullStandardOutputIsAnError) {
   ASSERT_TRUE(fs::exists("/dev/full"));
   for (const std::string arguments : {"options", "options --json -", "options --yaml", "--help", "--version",

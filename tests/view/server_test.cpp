@@ -143,12 +143,8 @@ void acknowledge(WebClient& client, unsigned frames) {
 TEST(ViewServer, SendsTwoFramesUntilOneIsAcknowledgedAndMessagesOvertakeTheRest) {
   Server server({}, page);
   WebClient client(server.port());
-  client.get("/ws", true);
+  client.get("/ws?acknowledge=1", true);
   until([&] { return server.clients() == 1; });
-  acknowledge(client, 0);
-  client.send_message("after the acknowledgement");
-  until([&] { return server.counters().messages == 1; });
-
   const auto publish = [&](const char* frame, std::uint64_t dropped) {
     server.publish(std::make_shared<const std::string>(frame));
     // The server's thread has this frame once the message after it has arrived.
@@ -174,9 +170,8 @@ TEST(ViewServer, SendsTwoFramesUntilOneIsAcknowledgedAndMessagesOvertakeTheRest)
 TEST(ViewServer, AFrameForOneClientCanBeAcknowledged) {
   Server server({}, page);
   WebClient client(server.port());
-  client.get("/ws", true);
+  client.get("/ws?acknowledge=1", true);
   until([&] { return server.clients() == 1; });
-  acknowledge(client, 0);
   server.publish(server.take().at(0).client, std::make_shared<const std::string>("greeting"));
   EXPECT_EQ(client.next_message(), "greeting");
   acknowledge(client, 1);
@@ -187,14 +182,19 @@ TEST(ViewServer, AFrameForOneClientCanBeAcknowledged) {
 
 TEST(ViewServer, RefusesImpossibleAcknowledgements) {
   Server server({}, page);
-  WebClient client(server.port());
-  client.get("/ws", true);
-  until([&] { return server.clients() == 1; });
+  WebClient client(server.port()), other(server.port());
+  client.get("/ws?acknowledge=1", true);
+  other.get("/ws", true);
+  until([&] { return server.clients() == 2; });
   acknowledge(client, 1);  // nothing has been sent
-  acknowledge(client, 0);
-  acknowledge(client, 0);  // not new
-  client.send_message("12345", 2);
-  until([&] { return server.counters().refused_other == 3; });
+  server.publish(std::make_shared<const std::string>("frame"));
+  EXPECT_EQ(client.next_message(), "frame");
+  EXPECT_EQ(other.next_message(), "frame");
+  acknowledge(client, 1);
+  acknowledge(client, 1);           // not new
+  client.send_message("12345", 2);  // not a number of frames
+  acknowledge(other, 1);            // this client did not say that it acknowledges
+  until([&] { return server.counters().refused_other == 4; });
 }
 
 TEST(ViewServer, RejectsClientsAboveItsLimit) {

@@ -1,6 +1,7 @@
 #include "tools/command_line/command.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <deque>
 #include <exception>
 #include <iostream>
@@ -9,6 +10,8 @@
 #include "slalom/core/instruction_set.hpp"
 #include "slalom/core/version.hpp"
 #include "tools/command_line/checks.hpp"
+#include "tools/command_line/description.hpp"
+#include "tools/command_line/nearest.hpp"
 #include "tools/evaluation/ranks.hpp"
 
 namespace slalom::tools {
@@ -137,8 +140,40 @@ void check(const CLI::App& command) {
   simd::active_target();
 }
 
+/// "Did you mean ...?" for a word that is none of a list; empty if no word is near.
+std::string suggestion(const std::string& typed, const std::vector<std::string>& words) {
+  const std::string nearest = nearest_word(typed, words);
+  return nearest.empty() ? "" : "Did you mean " + nearest + "?\n";
+}
+
+/// The answer to the name of a command that does not exist.
+int unknown_command(const std::string& typed, const std::vector<CommandEntry>& entries) {
+  std::vector<std::string> names;
+  for (const CommandEntry& entry : entries) names.emplace_back(entry.name);
+  std::cerr << "slalom: '" << typed << "' is not a command. " << suggestion(typed, names)
+            << "slalom --help lists all commands.\n";
+  return 2;
+}
+
+/// Suggestions for the options that the parser did not expect.
+std::string option_suggestions(const CLI::App& app) {
+  std::string text;
+  for (const CLI::App* command : app.get_subcommands()) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command->get_options())
+      if (!option->get_positional()) names.push_back(option->get_name());
+    for (const std::string& typed : app.remaining(true))
+      if (typed.rfind("--", 0) == 0) text += suggestion(typed.substr(0, typed.find('=')), names);
+  }
+  return text;
+}
+
 int parse_and_run(int argc, const char* const* argv, const std::vector<CommandEntry>& entries) {
   int exit_status = 0;
+  if (argc > 1 && argv[1][0] != '-' &&
+      std::none_of(entries.begin(), entries.end(),
+                   [&](const CommandEntry& entry) { return std::string(entry.name) == argv[1]; }))
+    return unknown_command(argv[1], entries);
   CLI::App app{
       "Slalom: real-time sampling-based stochastic optimal control; drives, evaluates and shows 1/10-scale "
       "cars",
@@ -163,6 +198,10 @@ int parse_and_run(int argc, const char* const* argv, const std::vector<CommandEn
   });
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError& error) {
+    app.exit(error);
+    std::cerr << option_suggestions(app);
+    return 2;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
@@ -186,6 +225,25 @@ int run_guarded(int argc, const char* const* argv, const std::vector<CommandEntr
 }
 
 }  // namespace
+
+std::vector<CommandDescription> describe_commands(const std::vector<CommandEntry>& commands) {
+  std::vector<CommandDescription> all;
+  for (const CommandEntry& entry : commands) {
+    CLI::App parser("", entry.name);
+    Subcommand command(parser);
+    entry.declare(command);
+    CommandDescription described{entry.name, parser.get_description(), parser.get_footer(), {}};
+    for (const CLI::Option* option : parser.get_options())
+      if (option != parser.get_help_ptr())
+        described.options.push_back({.name = option->get_name(),
+                                     .help = option->get_description(),
+                                     .value = option->get_expected_max() == 0 ? "" : option->get_type_name(),
+                                     .preset = option->get_default_str(),
+                                     .is_required = option->get_required()});
+    all.push_back(std::move(described));
+  }
+  return all;
+}
 
 int run_command_line(int argc, const char* const* argv, const std::vector<CommandEntry>& commands) {
   return after_output(run_guarded(argc, argv, commands));

@@ -4,13 +4,11 @@ namespace slalom::tools {
 
 const std::vector<CommandEntry>& all_commands() {
   static const std::vector<CommandEntry> commands = {
-      {"bench", declare_bench},       {"compare", declare_compare},
-      {"drive", declare_drive},       {"eval", declare_eval},
-      {"explain", declare_explain},   {"hardware", declare_hardware},
-      {"identify", declare_identify}, {"options", declare_options},
-      {"replay", declare_replay},     {"reproduce", declare_reproduce},
-      {"track", declare_track},       {"tune", declare_tune},
-      {"view", declare_view}};
+      {"bench", declare_bench},       {"compare", declare_compare},   {"completion", declare_completion},
+      {"drive", declare_drive},       {"eval", declare_eval},         {"explain", declare_explain},
+      {"hardware", declare_hardware}, {"identify", declare_identify}, {"manual", declare_manual},
+      {"options", declare_options},   {"replay", declare_replay},     {"reproduce", declare_reproduce},
+      {"track", declare_track},       {"tune", declare_tune},         {"view", declare_view}};
   return commands;
 }
 

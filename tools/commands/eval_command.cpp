@@ -42,6 +42,7 @@ int run(const Arguments& arguments) {
   }
   print_results(evaluated, words);
   std::fprintf(words, "%s\n", file.c_str());
+  if (arguments.report) std::fprintf(words, "%s/report.html\n", arguments.evaluation.out.c_str());
   if (!arguments.evaluation.json.empty()) write_json(summary, arguments.evaluation.json);
   return 0;
 }

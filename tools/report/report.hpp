@@ -42,6 +42,7 @@ struct ReportFigure {
   std::string section;  ///< below which it stands; empty: at the end
   std::string title, caption;
   std::string mime, data;  ///< of the image
+  std::string table{};     ///< the data that it shows, as CSV with a header
 };
 
 /// Boxes of costs and bars of collision rates for every section; times of computation. Writes SVG and PNG to

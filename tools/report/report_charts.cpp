@@ -2,6 +2,7 @@
 #include <fstream>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/option_access.hpp"
 #include "tools/drawing/row_chart.hpp"
 #include "tools/report/report.hpp"
 
@@ -26,6 +27,30 @@ Marks cost_marks(const Report& report, const ReportRow& row) {
   for (const LapRow& lap : report.evaluated.rows)
     if (lap.experiment == row.experiment) marks.values.push_back(lap.mean_sequence_cost());
   return marks;
+}
+
+/// Cost of every lap of a section's rows, as CSV.
+std::string lap_costs(const Report& report, const std::string& section) {
+  std::string csv = "row,scenario,lap,mean_sequence_cost,collisions\n";
+  for (const ReportRow& row : report.rows) {
+    if (row.section != section) continue;
+    for (const LapRow& lap : report.evaluated.rows)
+      if (lap.experiment == row.experiment)
+        csv += row.name + "," + report.experiment(row).scenario + "," + std::to_string(lap.lap + 1) + "," +
+               to_text(lap.mean_sequence_cost()) + "," + std::to_string(lap.collisions) + "\n";
+  }
+  return csv;
+}
+
+/// Solve times of a section's rows, ms, as CSV.
+std::string solve_times(const Report& report, const std::string& section) {
+  std::string csv = "row,scenario,mean_ms,maximum_ms\n";
+  for (const ReportRow& row : report.rows)
+    if (row.section == section)
+      csv += row.name + "," + report.experiment(row).scenario + "," +
+             to_text(report.result(row).solve_ms_mean) + "," + to_text(report.result(row).solve_ms_max) +
+             "\n";
+  return csv;
 }
 
 /// Rows of a section, by name: its experiment in each scenario.
@@ -156,7 +181,8 @@ std::vector<ReportFigure> report_charts(const Report& report, const std::filesys
          "points, the mean as a diamond; the axes of costs are logarithmic. Bars: collision rate with its "
          "95 % Wilson interval.",
          {},
-         {}},
+         {},
+         lap_costs(report, section)},
         folder));
   }
   if (!sections.empty()) {
@@ -168,7 +194,8 @@ std::vector<ReportFigure> report_charts(const Report& report, const std::filesys
                             "on a logarithmic axis. It depends on the machine and its load; every other "
                             "figure repeats exactly.",
                             {},
-                            {}},
+                            {},
+                            solve_times(report, sections.front())},
                            folder));
   }
   return figures;

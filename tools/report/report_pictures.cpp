@@ -6,6 +6,7 @@
 #include <map>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/option_access.hpp"
 #include "slalom/sim/shapes.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "tools/drawing/lap_picture.hpp"
@@ -77,7 +78,7 @@ std::vector<int> pair_of(const Report& report, const std::string& scenario) {
   return chosen;
 }
 
-/// The first lap in which only the second method collides; otherwise lap 0.
+/// The first lap (from 0) in which only the second method collides; otherwise the first.
 int telling_lap(const Report& report, const std::vector<int>& pair) {
   std::map<int, std::array<int, 2>> contacts;
   for (const LapRow& row : report.evaluated.rows)
@@ -112,7 +113,8 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
     picture.polygon({corners.begin(), corners.end()}, obstacle_fill, white);
   }
   std::vector<std::pair<std::string, Colour>> key;
-  std::string facts = "lap " + std::to_string(lap);
+  std::string facts = "lap " + std::to_string(lap + 1);
+  std::string csv = "row,lap,x_m,y_m\n";
   for (std::size_t i = lines.size(); i-- > 0;) {
     const Colour colour = i == 0 ? blue : orange;
     picture.line(lines[i].driven.points, colour, 4.5, false);
@@ -127,6 +129,9 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
     std::snprintf(words, sizeof words, " \xC2\xB7 MS %.2f, %d collision%s", lines[i].lap.mean_sequence_cost,
                   lines[i].lap.collisions, lines[i].lap.collisions == 1 ? "" : "s");
     facts += words;
+    for (const maps::Point& point : lines[i].driven.points)
+      csv +=
+          row->name + "," + std::to_string(lap + 1) + "," + to_text(point.x) + "," + to_text(point.y) + "\n";
   }
   const bool tracking = scenario == "pt";
   picture.key(tracking ? "Path tracking" : "Among obstacles", facts, key);
@@ -142,7 +147,8 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
                tracking ? "Driven lines: path tracking" : "Driven lines: obstacles",
                caption,
                {},
-               {}},
+               {},
+               csv},
               folder);
 }
 
@@ -180,11 +186,14 @@ ReportFigure contact_map(const Report& report, const maps::OccupancyGrid& map,
   if (with_ours) colour_of("svg_mppi");
   for (const Experiment& e : evaluation.experiments) colour_of(e.method);
   int count = 0;
+  std::string csv = "experiment,lap,x_m,y_m\n";
   for (const LapRow& row : report.evaluated.rows) {
     Colour colour = colour_of(evaluation.experiments[static_cast<std::size_t>(row.experiment)].method);
     colour.opacity = 0.75;
     for (const maps::Point& point : contact_points(row.contact_points)) {
       picture.disc(point, 8, colour);
+      csv += evaluation.experiments[static_cast<std::size_t>(row.experiment)].label() + "," +
+             std::to_string(row.lap + 1) + "," + to_text(point.x) + "," + to_text(point.y) + "\n";
       ++count;
     }
   }
@@ -200,7 +209,8 @@ ReportFigure contact_map(const Report& report, const maps::OccupancyGrid& map,
        "The car's centre of gravity at every first collision with a body or wall, all laps of all rows. "
        "Clusters mark narrow stretches and turns with a short view.",
        {},
-       {}},
+       {},
+       csv},
       folder);
 }
 
@@ -214,7 +224,9 @@ std::vector<ReportFigure> report_pictures(const Report& report, const std::files
     const auto pair = pair_of(report, scenario);
     if (!pair.empty()) figures.push_back(driven_lines(report, map, scenario, pair, folder));
   }
-  figures.push_back(contact_map(report, map, folder));
+  const auto& rows = report.evaluated.rows;
+  if (std::any_of(rows.begin(), rows.end(), [](const LapRow& row) { return !row.contact_points.empty(); }))
+    figures.push_back(contact_map(report, map, folder));
   return figures;
 }
 

@@ -1,24 +1,16 @@
 #include "tools/terminal/progress_line.hpp"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
+#include "tools/terminal/progress_text.hpp"
 
 namespace slalom::tools {
 namespace {
 
-int columns(std::FILE* stream) {
-  winsize size{};
-  return ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
-
-std::string bar(double progress, int width) {
-  const int full = static_cast<int>(std::lround(progress * width));
-  std::string text;
-  for (int i = 0; i < width; ++i) text += i < full ? '#' : '.';
+template <class... Values>
+std::string formatted(const char* format, Values... values) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, values...);
   return text;
 }
 
@@ -36,14 +28,17 @@ void ProgressLine::show(int lap, int laps, const evaluation::ControlStep& tick) 
   if (now < next_) return;
   next_ = now + std::chrono::milliseconds(50);
   const SolveResult* solve = tick.output.solve;
-  char text[256];
-  std::snprintf(text, sizeof text,
-                "lap %d/%d [%s] %5.1f s  %4.1f m/s  cost %8.3g  ESS %6.0f  solve %5.2f ms  collisions %d",
-                lap, laps, bar(tick.progress, 20).c_str(), tick.time, tick.seen.speed, tick.cost.total(),
-                solve ? solve->effective_sample_size : 0.0, solve ? 1e3 * solve->times.total : 0.0,
-                tick.collisions);
-  text[std::min<std::size_t>(std::strlen(text), static_cast<std::size_t>(columns(stream_) - 1))] = '\0';
-  std::fprintf(stream_, "\r\033[K%s", text);
+  std::vector<std::string> parts = {
+      formatted("%.1f s", tick.time), formatted("%d collisions", tick.collisions),
+      formatted("%.1f m/s", tick.seen.speed), formatted("cost %.3g", tick.cost.total())};
+  if (solve) {
+    parts.push_back(formatted("%.2f ms", 1e3 * solve->times.total));
+    if (solve->samples)
+      parts.push_back(formatted("ESS %.0f of %d", solve->effective_sample_size, solve->samples->samples()));
+  }
+  const std::string text = lap_text(formatted("lap %d of %d", lap, laps), tick.progress, parts,
+                                    terminal_columns(stream_), has_colour(stream_));
+  std::fprintf(stream_, "\r\033[K%s", text.c_str());
   std::fflush(stream_);
   shown_ = true;
 }

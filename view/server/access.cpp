@@ -57,7 +57,7 @@ Answer answer_to_upgrade(ServerState& state, const Request& request) {
     return refuse(counters.refused_origin, 403, "pages of another origin are not served\n");
   if (state.clients.size() >= state.options.max_clients)
     return refuse(counters.refused_other, 503, "too many clients\n");
-  return {101};
+  return {.status = 101, .acknowledges = query_value(request.target, "acknowledge") == "1"};
 }
 
 }  // namespace

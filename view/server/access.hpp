@@ -19,6 +19,7 @@ struct Answer {
   unsigned status = 200;               ///< of HTTP; 101 if the connection becomes a WebSocket
   const Resource* resource = nullptr;  ///< the body if the status is 200
   std::string_view reason{};           ///< the body if the request is refused
+  bool acknowledges = false;           ///< a WebSocket whose client acknowledges frames
 };
 
 /// Decides who may have what: host name, token and origin must be those of this server, and the path must

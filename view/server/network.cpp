@@ -49,11 +49,12 @@ std::string_view view_of(beast::string_view text) {
 /// One WebSocket. Exists as long as an operation of it is pending.
 class WebSocketClient final : public Client, public std::enable_shared_from_this<WebSocketClient> {
  public:
-  WebSocketClient(ServerState& state, beast::tcp_stream&& stream)
+  WebSocketClient(ServerState& state, beast::tcp_stream&& stream, bool acknowledges)
       : state_(state),
         socket_(std::move(stream)),
         id_(state.next_client++),
-        rate_(state.options.messages_per_second, state.options.burst) {}
+        rate_(state.options.messages_per_second, state.options.burst),
+        flow_(acknowledges) {}
 
   ~WebSocketClient() override { --state_.open_connections; }
 
@@ -204,7 +205,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
                                              .is_upgrade = websocket::is_upgrade(request),
                                              .is_ambiguous = request.count(http::field::host) > 1 ||
                                                              request.count(http::field::origin) > 1});
-    if (answer.status == 101) return become_client();
+    if (answer.status == 101) return become_client(answer.acknowledges);
     response_.result(answer.status);
     if (answer.resource)
       add_resource(*answer.resource);
@@ -215,10 +216,10 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     respond();
   }
 
-  void become_client() {
+  void become_client(bool acknowledges) {
     stream_.expires_never();  // the WebSocket has its own timeouts
     is_handed_over_ = true;
-    std::make_shared<WebSocketClient>(state_, std::move(stream_))->open(parser_.release());
+    std::make_shared<WebSocketClient>(state_, std::move(stream_), acknowledges)->open(parser_.release());
   }
 
   void add_resource(const Resource& resource) {

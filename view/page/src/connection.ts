@@ -37,11 +37,11 @@ export class Connection implements Link {
     address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
     address.hash = "";
     const token = new URLSearchParams(location.search).get("token");
-    address.search = token ? "?token=" + encodeURIComponent(token) : "";
+    address.search = "?acknowledge=1" + (token ? "&token=" + encodeURIComponent(token) : "");
     const socket = new WebSocket(address);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
-    socket.onopen = () => { this.attempts = 0; this.arrived = 0; this.acknowledge(0); this.handlers.status(true, 0); };
+    socket.onopen = () => { this.attempts = 0; this.arrived = this.acknowledged = 0; this.handlers.status(true, 0); };
     socket.onmessage = (event) => this.got(event.data);
     socket.onclose = () => {
       this.attempts += 1;
