@@ -12,6 +12,7 @@ using ProgramRun = testing::Run;
 using testing::contains;
 using testing::content;
 using testing::count_lines;
+using testing::remove_checksums;
 using testing::repeatable;
 
 class EvalCommand : public testing::EvaluationFolder {
@@ -66,7 +67,7 @@ TEST_F(EvalCommand, RepairsATruncatedJournalAndRejectsACorruptOne) {
   write(table.substr(0, second) + "mppi,oa,what,is,this\n");
   const ProgramRun corrupt = run(small(1) + "--resume --out half");
   EXPECT_EQ(corrupt.status, 1);
-  EXPECT_TRUE(contains(corrupt.output, "laps.journal.csv:3: has 5 columns")) << corrupt.output;
+  EXPECT_TRUE(contains(corrupt.output, "laps.journal.csv:3: checksum")) << corrupt.output;
 }
 
 TEST_F(EvalCommand, ThreeProcessesWriteTheTableOfOne) {
@@ -128,7 +129,7 @@ TEST_F(EvalCommand, ACorruptTableOrAnUnknownColumnIsNamed) {
   EXPECT_TRUE(contains(complaint(table.substr(0, table.size() - 30)), "laps.csv:3: "));
   std::string wrong = table;
   wrong.replace(wrong.find(",oa,") + 1, 2, "ob");
-  EXPECT_TRUE(contains(complaint(wrong), "laps.csv:2: matches no experiment"));
+  EXPECT_TRUE(contains(complaint(wrong), "laps.csv:2: checksum"));
   const std::size_t second = table.find('\n', table.find('\n') + 1) + 1;
   EXPECT_TRUE(contains(complaint(table + table.substr(second)), "laps.csv:4: duplicate lap"));
   std::ofstream(folder_ / "one/settings.json") << "{";
@@ -137,6 +138,7 @@ TEST_F(EvalCommand, ACorruptTableOrAnUnknownColumnIsNamed) {
 
 TEST_F(EvalCommand, RejectsLapsOfAnotherBuild) {
   ASSERT_EQ(run(small(1) + "--out one").status, 0);
+  remove_checksums(folder_ / "one");
   auto settings = nlohmann::ordered_json::parse(content(folder_ / "one/settings.json"));
   ASSERT_FALSE(settings.at("build").get<std::string>().empty());
   settings["build"] = "0123456789ab";

@@ -34,7 +34,7 @@ TEST(ExplainCommand, ShowsEveryMethodInPictureAndFigures) {
       area += d.get<double>() * (places[1].get<double>() - places[0].get<double>());
     EXPECT_NEAR(area, 1, 1e-6);
     const bool guided = method["method"].get<std::string>().rfind("svg_mppi", 0) == 0;
-    EXPECT_EQ(method["guide_ways"].size(), guided ? 1u : 0u);
+    EXPECT_EQ(method["guide_ways"].size(), guided ? 4u : 0u);
     if (guided) {
       EXPECT_EQ(method["guide_ways"][0].size(), 10u * 10u);
     }

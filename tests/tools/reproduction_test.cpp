@@ -70,9 +70,9 @@ std::string verdict(double measured, double log, double released = 0) {
 
 TEST(Verdict, SaysWithWhichOfTheTwoTheLapsAgree) {
   EXPECT_EQ(verdict(1, 1, 2), verdicts::log);
-  EXPECT_EQ(
-      verdict(1, 2, 1).rfind("agrees with the paper's program, not with the log: MS 0.996 in 8 laps, p = ", 0),
-      0u)
+  EXPECT_EQ(verdict(1, 2, 1).rfind(
+                "agrees with the paper's program, not with the log: MS 0.996 in 8 laps, p = ", 0),
+            0u)
       << verdict(1, 2, 1);
   EXPECT_NE(verdict(1, 2, 1).find("log: MS 50.0 % lower (p < 0.001)"), std::string::npos) << verdict(1, 2, 1);
   EXPECT_EQ(verdict(1, 2, 3).rfind("disagrees with both: log: MS 50.0 % lower", 0), 0u) << verdict(1, 2, 3);
