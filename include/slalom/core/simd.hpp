@@ -5,7 +5,6 @@
 #include <cstring>
 #include <type_traits>
 
-#include "slalom/core/coefficient.hpp"
 #include "slalom/core/instruction_set.hpp"
 
 /// Packs of float32 lanes, so that one piece of template code runs a whole pack of samples at once.
@@ -21,6 +20,31 @@
 ///
 /// Packs have a user-defined copy constructor on purpose: where a call is not inlined (unoptimised builds)
 /// they are passed by reference in memory, so the calling convention does not depend on the instruction set.
+
+namespace slalom {
+
+/// A number that a problem multiplies with: kept in double for scalar code and, converted once, in float32
+/// for SIMD lanes. A plain `double` member works as well, but is converted anew for every pack it meets.
+///
+///     T travelled = x.speed * T(time_step_);   // time_step_ is a Coefficient; T float, double or a pack
+class Coefficient {
+ public:
+  /// Rounds `value` once.
+  constexpr Coefficient(double value = 0) noexcept : exact_(value), rounded_(static_cast<float>(value)) {}
+
+  /// The exact value.
+  constexpr explicit operator double() const noexcept { return exact_; }
+  /// The rounded value.
+  constexpr explicit operator float() const noexcept { return rounded_; }
+  /// The rounded value.
+  constexpr float rounded() const noexcept { return rounded_; }
+
+ private:
+  double exact_;
+  float rounded_;
+};
+
+}  // namespace slalom
 
 namespace slalom::simd {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "slalom/core/coefficient.hpp"
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/problem.hpp"
+#include "slalom/core/simd.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
 

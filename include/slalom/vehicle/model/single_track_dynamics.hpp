@@ -1,7 +1,7 @@
 #pragma once
 
-#include "slalom/core/coefficient.hpp"
 #include "slalom/core/math.hpp"
+#include "slalom/core/simd.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
 #include "slalom/vehicle/model/single_track_options.hpp"
 
