@@ -201,7 +201,7 @@ TEST_F(CommandLine, NamesEmptyEvaluations) {
   const auto changed = [&](const std::string& pattern, const std::string& to) {
     std::ofstream(folder_ / "ev/settings.json") << std::regex_replace(unchecked, std::regex(pattern), to);
   };
-  changed(R"re("experiments": \[[^]]*\])re", R"("experiments": [])");
+  changed(R"re("experiments": \[[^\]]*\])re", R"("experiments": [])");
   refuses("view --eval ev", {"ev/settings.json: is invalid: experiments: must be at least one"});
   changed(R"re("laps": \d+)re", R"("laps": 4294967298)");
   refuses("view --eval ev", {"ev/settings.json: is invalid: 4294967298 must be a whole number"});
