@@ -91,10 +91,9 @@ class GridView {
   template <class Target>
   SLALOM_INLINE_CALLS simd::IntPack<Target> index_of_cell(const Pack<Target>& row_position,
                                                           const Pack<Target>& column_position) const {
-    using I = typename simd::IntPack<Target>::Vector;
-    I row = clamped_index<Target>(row_position, last_row_);
-    simd::Operations<Target>::shift_left(row, stride_log2_);
-    return simd::IntPack<Target>(row + clamped_index<Target>(column_position, last_column_));
+    simd::IntPack<Target> row = clamped_index<Target>(row_position, last_row_);
+    simd::Operations<Target>::shift_left(row.v, stride_log2_);
+    return row + clamped_index<Target>(column_position, last_column_);
   }
 
  private:
@@ -132,13 +131,12 @@ class GridView {
   /// Truncates; negative values and NaN become huge as unsigned numbers and are clamped into the ring with
   /// the rest.
   template <class Target>
-  SLALOM_INLINE static typename simd::IntPack<Target>::Vector clamped_index(const Pack<Target>& cell,
-                                                                            int last) {
+  SLALOM_INLINE static simd::IntPack<Target> clamped_index(const Pack<Target>& cell, int last) {
     using I = typename simd::IntPack<Target>::Vector;
     using U = typename simd::detail::VectorTypes<Target::lanes>::Unsigned;
     const U index = reinterpret_cast<U>(__builtin_convertvector(cell.v, I));
     const U bound = U{} + static_cast<unsigned>(last);
-    return reinterpret_cast<I>(index < bound ? index : bound);
+    return simd::IntPack<Target>(reinterpret_cast<I>(index < bound ? index : bound));
   }
 
   const float* cells_ = nullptr;
