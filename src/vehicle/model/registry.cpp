@@ -79,7 +79,7 @@ Command VehicleModel::command(std::span<const float> inputs, double speed, doubl
   return {static_cast<double>(inputs[0]), speed};
 }
 void VehicleModel::set_friction(double) noexcept {}
-void VehicleModel::set_slowest(double) noexcept {}
+void VehicleModel::set_reverse(double) noexcept {}
 
 std::unique_ptr<VehicleModel> make_vehicle_model(const VehicleOptions& options, simd::Target target) {
   validate_options(options, "vehicle");

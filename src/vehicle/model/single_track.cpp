@@ -64,6 +64,7 @@ SingleTrack::SingleTrack(const PathTrackingOptions& options, const Options& own)
 void SingleTrack::complete(VehicleTraits& traits) const noexcept {
   traits.friction = own_.friction;
   traits.usable_grip = own_.usable_grip;
+  traits.half_steer_speed = own_.half_steer_speed;
   traits.switch_speed = own_.switch_speed;
 }
 

@@ -19,6 +19,10 @@ FeasibleSpeeds::FeasibleSpeeds(std::span<const maps::ReferencePoint> path) {
   for (double& each : curvature_) each = std::abs(each);
   gap_ = std::move(geometry.step);
   if (!geometry.closed) gap_.back() = 0;
+  for (double arc = 0; const double gap : gap_) {
+    arc_.push_back(arc);
+    arc += gap;
+  }
   speed_ = own_;
 }
 
@@ -48,6 +52,18 @@ void FeasibleSpeeds::update(const DrivingLimits& limits) noexcept {
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t from = (slowest + n - k) % n, to = (from + n - 1) % n;
     if (gap_[to] > 0) reach(from, to, gap_[to], limits.braking);
+  }
+  anticipate(limits.delay);
+}
+
+/// A car that follows late must find what it needs a little earlier: the least speed of the way that it
+/// drives in the delay.
+void FeasibleSpeeds::anticipate(double delay) noexcept {
+  const std::size_t n = speed_.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    double way = speed_[i] * delay;
+    for (std::size_t k = i; way > 0 && gap_[k] > 0; way -= gap_[k], k = (k + 1) % n)
+      speed_[i] = std::min(speed_[i], speed_[(k + 1) % n]);
   }
 }
 

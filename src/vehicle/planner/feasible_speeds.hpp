@@ -12,6 +12,7 @@ struct DrivingLimits {
   double grip = 9;          ///< m/s^2, of the tyres in any direction
   double acceleration = 9;  ///< m/s^2, of the motor below `switch_speed`
   double braking = 9;       ///< m/s^2
+  double delay = 0;         ///< s, by which the car follows the speeds late
   double switch_speed = 7;  ///< m/s, above it the motor's power is the limit
 };
 
@@ -29,11 +30,19 @@ class FeasibleSpeeds {
   /// Computes the speeds. Allocates nothing.
   void update(const DrivingLimits& limits) noexcept;
 
+  /// m along the path, of a point.
+  double arc(int point) const noexcept { return arc_[static_cast<std::size_t>(point)]; }
+  /// m, of a closed path; 0 of an open one.
+  double length() const noexcept { return gap_.back() > 0 ? arc_.back() + gap_.back() : 0; }
+
   /// m/s, a point each; those of the path before the first update.
   std::span<const double> speeds() const noexcept { return speed_; }
 
  private:
+  void anticipate(double delay) noexcept;
+
   std::vector<double> own_, speed_;  ///< m/s
+  std::vector<double> arc_;          ///< m
   std::vector<double> curvature_;    ///< 1/m
   std::vector<double> gap_;          ///< m, from each point to the next; 0 where the path is not joined
 };

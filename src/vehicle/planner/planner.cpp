@@ -14,6 +14,9 @@
 #include "vehicle/planner/final_check.hpp"
 #include "vehicle/planner/local_frame.hpp"
 #include "vehicle/planner/map_options.hpp"
+#include "vehicle/planner/obstacle_memory.hpp"
+#include "vehicle/planner/recovery.hpp"
+#include "vehicle/planner/sequence_choice.hpp"
 
 namespace slalom::vehicle {
 
@@ -50,12 +53,14 @@ struct Planner::Implementation {
   CarEstimator car;  ///< of models with tyres that slip; others have `history`
   CommandHistory history;
   BackUp back_up;
+  Recovery recovery;  ///< of models with tyres that slip; others have `back_up`
+  ObstacleMemory memory;
   double planned_steer = 0;  ///< rad, before it was limited
   bool brakes = false;       ///< this update brakes: the command must not be faster than the car
   double path_friction = 0;  ///< of the path's speeds
   double speed_ahead = 0;    ///< m/s, when the next command takes effect
-  std::vector<PredictedState> states, candidate_states;
-  std::vector<float> candidate;
+  SequenceChoice choice;
+  std::vector<PredictedState> states;
   PlannerOutput output;
 
   Implementation(const PlannerOptions& o, std::unique_ptr<VehicleModel> m,
@@ -72,9 +77,8 @@ struct Planner::Implementation {
         speeds(limited_path(detail::relative(path, origin), o, traits)),
         car(o, *model),
         history(o.control_period, delay_of(o, traits), o.observer_time_constant, traits.wheelbase),
-        states(static_cast<std::size_t>(solver->horizon()) + 1),
-        candidate_states(states.size()),
-        candidate(static_cast<std::size_t>(solver->horizon()) * static_cast<std::size_t>(solver->inputs())) {
+        choice(solver->horizon(), solver->inputs(), traits),
+        states(static_cast<std::size_t>(solver->horizon()) + 1) {
     if (model->has_dynamics()) set_friction(traits.friction);
   }
 
@@ -84,7 +88,7 @@ struct Planner::Implementation {
     if (std::abs(friction - path_friction) <= 0.02 * path_friction) return;
     path_friction = friction;
     speeds.update({friction * gravity * traits.usable_grip, traits.max_acceleration, traits.max_deceleration,
-                   traits.switch_speed});
+                   traits.time_step, traits.switch_speed});
     field.set_speeds(speeds.speeds());
   }
 
@@ -135,6 +139,11 @@ struct Planner::Implementation {
         std::max(std::abs(odometry.speed), 1.0) + (jumps ? 0 : traits.max_acceleration * horizon_time());
     field.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? horizon_time() : 0);
     const maps::ReferenceCell here = field.at(start.pose.x, start.pose.y);
+    if (model->has_dynamics() && options.back_up) {
+      const bool reverse = recovery.update(speeds.arc(field.nearest()), speeds.length(), odometry.speed,
+                                           options.control_period);
+      model->set_reverse(reverse ? Recovery::speed : 0);
+    }
     if (traits.follows_path && options.stop_when_blocked &&
         here.distance >= field.options().outside.distance) {
       return stop(PlannerStatus::off_course);
@@ -150,7 +159,18 @@ struct Planner::Implementation {
         result.status == Status::degenerate ? PlannerStatus::solver_degenerate : PlannerStatus::ok;
     PredictedCost cost = model->predict(result.inputs, states);
     std::span<const float> sent = result.inputs;
-    if (options.verify_plan && cost.collided) cost = find_free_sequence(result, cost, sent);
+    if (options.verify_plan && model->has_dynamics() && !recovery.reversing()) {
+      const auto slower = choice.slower(*model, {sent, cost}, states);
+      if (cost.collided && !slower.cost.collided) output.status = PlannerStatus::fallback_plan;
+      cost = slower.cost;
+      sent = slower.inputs;
+    }
+    if (options.verify_plan && cost.collided) {
+      const auto chosen = choice.choose(*model, result, {sent, cost}, recovery.reversing(), states);
+      if (!chosen.cost.collided) output.status = PlannerStatus::fallback_plan;
+      cost = chosen.cost;
+      sent = chosen.inputs;
+    }
     output.inputs = sent;
     output.inputs_per_step = model->inputs();
     output.predicted = states;
@@ -160,7 +180,12 @@ struct Planner::Implementation {
                                            : Command{static_cast<double>(sent[0]), command_speed(here.speed)};
     planned_steer = without_turns(output.command.steer);
     output.command.steer = std::clamp(planned_steer, -options.steer_limit, options.steer_limit);
-    if (options.verify_plan && options.stop_when_blocked) slow_down(cost, odometry.speed);
+    if (model->has_dynamics()) {
+      choice.sent(sent);
+      if (cost.collided || recovery.reversing()) output.status = PlannerStatus::blocked;
+    } else if (options.verify_plan && options.stop_when_blocked) {
+      slow_down(cost, odometry.speed);
+    }
     to_map_frame(states);
   }
 
@@ -191,7 +216,9 @@ struct Planner::Implementation {
   void check(const Odometry& odometry) noexcept {
     const double now = std::isfinite(odometry.speed) ? std::max(odometry.speed, 0.0) : 0;
     const double fastest = brakes ? std::min(now, options.max_speed) : options.max_speed;
-    detail::check_output(output, {options.steer_limit, fastest, -BackUp::speed}, steer_estimate());
+    detail::check_output(output,
+                         {options.steer_limit, fastest, -std::max(BackUp::speed, 2 * Recovery::speed)},
+                         steer_estimate());
   }
 
   /// The paper's program sends the planned angle less whole turns, as a float32.
@@ -221,44 +248,6 @@ struct Planner::Implementation {
     if (planned) return ahead.speed;
     const maps::ReferenceCell cell = field.at(ahead.pose.x, ahead.pose.y);
     return cell.distance < field.options().outside.distance ? cell.speed : here;
-  }
-
-  /// If the solution collides: the cheapest of the nominal sequence, the guides and the best sample without
-  /// collision.
-  PredictedCost find_free_sequence(const SolveResult& result, const PredictedCost& of_plan,
-                                   std::span<const float>& sent) noexcept {
-    PredictedCost best = of_plan;
-    const auto consider = [&](std::span<const float> inputs) {
-      if (inputs.size() != candidate.size()) return;
-      const PredictedCost cost = model->predict(inputs, candidate_states);
-      const bool better = best.collided != cost.collided
-                              ? best.collided
-                              : cost.state + cost.collision < best.state + best.collision;
-      if (!better) return;
-      best = cost;
-      sent = inputs;
-      states.swap(candidate_states);
-      if (!cost.collided) output.status = PlannerStatus::fallback_plan;
-    };
-    consider(result.nominal);
-    for (int g = 0; g < result.guides.sequences; ++g) {
-      consider(
-          result.guides.values.subspan(static_cast<std::size_t>(g) * candidate.size(), candidate.size()));
-    }
-    int cheapest = -1;
-    for (int k = 0; result.samples && k < result.samples->samples(); ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      if (result.collided[i] || !std::isfinite(result.costs[i])) continue;
-      if (cheapest < 0 || result.costs[i] < result.costs[static_cast<std::size_t>(cheapest)]) cheapest = k;
-    }
-    if (cheapest >= 0) {
-      for (std::size_t row = 0; row < candidate.size(); ++row) {
-        const int at = static_cast<int>(row), inputs = solver->inputs();
-        candidate[row] = result.samples->at(at / inputs, at % inputs, cheapest);
-      }
-      consider(candidate);
-    }
-    return best;
   }
 };
 
@@ -294,6 +283,11 @@ const PlannerOutput& Planner::update(const PlannerInput& input) noexcept {
     p.clearance_map.clear();
     p.clearance_map.add(p.cost_map.points());
     p.clearance_map.add(input.obstacles);
+    if (p.model->has_dynamics() && out.scan.accepted && plausible(input.odometry)) {
+      const maps::Pose laser{p.options.laser_x, p.options.laser_y, p.options.laser_yaw};
+      p.clearance_map.add(p.memory.blind_points(input.odometry.pose, laser, input.scan));
+      p.memory.remember(p.cost_map.points(), input.odometry.pose, p.options.control_period);
+    }
   }
   out.steer_estimate = p.steer_estimate();
   p.brakes = false;
@@ -317,6 +311,9 @@ void Planner::reset(std::uint64_t seed) noexcept {
   implementation_->history.reset();
   implementation_->forget_car();
   implementation_->back_up.reset();
+  implementation_->recovery.reset();
+  implementation_->memory.reset();
+  implementation_->choice.reset();
   implementation_->solver->reset(seed);
   implementation_->cost_map.clear();
   implementation_->output = {};

@@ -82,6 +82,13 @@ class PathTracking {
     obstacles_.set_map(maps.obstacles, maps.robot);
   }
 
+  /// See VehicleModel.
+  void set_reverse(double speed) noexcept requires requires(Motion& m) { m.set_reverse(1.0); }
+  {
+    motion_.set_reverse(speed);
+    cost_.set_reverse(speed);
+  }
+
   /// The state at the start; `reference_speed` (m/s) is the path's there.
   State<double> start(const VehicleStart& start, double reference_speed) noexcept {
     return motion_.start(start, reference_speed);

@@ -84,8 +84,8 @@ class ProblemModel final : public VehicleModel {
   void set_friction([[maybe_unused]] double friction) noexcept override {
     if constexpr (dynamic) evaluator_.problem().motion().set_friction(friction);
   }
-  void set_slowest([[maybe_unused]] double speed) noexcept override {
-    if constexpr (dynamic) evaluator_.problem().motion().set_slowest(speed);
+  void set_reverse([[maybe_unused]] double speed) noexcept override {
+    if constexpr (dynamic) evaluator_.problem().set_reverse(speed);
   }
 
   PredictedCost predict(std::span<const float> inputs,

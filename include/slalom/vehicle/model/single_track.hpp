@@ -45,8 +45,11 @@ class SingleTrack {
   /// acceleration (m/s^2) over `period` (s).
   double commanded_speed(double speed, double acceleration, double period) const noexcept;
 
-  /// Lowest speed of rollouts, m/s: 0 where the car drives forwards, negative where it may reverse.
-  void set_slowest(double speed) noexcept { slowest_ = speed; }
+  /// See VehicleModel.
+  void set_reverse(double speed) noexcept {
+    slowest_ = -speed;
+    fastest_ = speed > 0 ? 0.0 : 1e3;
+  }
 
   /// The dynamics.
   const SingleTrackDynamics& dynamics() const noexcept { return dynamics_; }
@@ -65,8 +68,9 @@ class SingleTrack {
     const T friction = T(friction_), to_speed = T(inverse_time_step_);
     const T braking = dynamics_.braking_limit(s, friction);
     const T driving = min(dynamics_.driving_limit(s.speed), braking);
-    const T asked = min(wanted, (reference_speed - s.speed) * to_speed);
-    return max(clamp(asked, -braking, driving), (T(slowest_) - s.speed) * to_speed);
+    const T fastest = min(reference_speed, T(fastest_));
+    const T asked = clamp(min(wanted, (fastest - s.speed) * to_speed), -braking, driving);
+    return max(asked, min((T(slowest_) - s.speed) * to_speed, braking));
   }
 
   /// The state after a step; `reference_speed` (m/s) is that of the path.
@@ -89,7 +93,7 @@ class SingleTrack {
   Coefficient friction_;
   Coefficient time_step_, inverse_time_step_;
   Coefficient squared_half_steer_speed_;
-  Coefficient slowest_{};  ///< m/s
+  Coefficient slowest_{0}, fastest_{1e3};  ///< m/s
   Coefficient max_deceleration_;
   Coefficient usable_grip_, grip_weight_;
 };

@@ -98,7 +98,7 @@ class SingleTrackDynamics {
       next_steer = next_steer + next_steer * square(next_steer) * T(1.0 / 3);
       front = max(front, T(0)) * flattened;
       rear = max(rear, T(0));
-      const T front_slip = way * steer - (s.lateral + T(front_length_) * s.yaw_rate) * inverse;
+      const T front_slip = (steer * middle_speed - (s.lateral + T(front_length_) * s.yaw_rate)) * inverse;
       const T rear_slip = (T(rear_length_) * s.yaw_rate - s.lateral) * inverse;
       const T share = acceleration * (T(inverse_gravity_) / friction);
       const T left = sqrt(max(T(1) - square(share), T(0)));

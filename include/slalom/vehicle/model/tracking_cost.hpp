@@ -26,6 +26,12 @@ class TrackingCost {
   /// Cells {distance, yaw, speed, outside} in the map frame, as Surroundings has them.
   void set_reference(const GridView<4>& reference) noexcept { reference_ = reference; }
 
+  /// Progress counts forwards, or with a speed (m/s, > 0) backwards at most at it.
+  void set_reverse(double speed) noexcept {
+    way_ = speed > 0 ? -1.0 : 1.0;
+    fastest_ = speed > 0 ? speed : 1e3;
+  }
+
   /// What the maps hold at a position (m, map frame) with this cost map value.
   template <class T>
   SLALOM_INLINE Surroundings<T> look_up(const T& x, const T& y, const T& speed, const T& obstacle) const {
@@ -55,8 +61,9 @@ class TrackingCost {
   SLALOM_INLINE Cost<T> with_time_lost(const Cost<T>& cost, const T& yaw, const T& speed,
                                        const Surroundings<T>& seen) const {
     const T error = wrap_angle(yaw - seen.yaw);
-    const T along = max(T(1) - T(0.45) * square(error), T(-1));
-    const T lost = (seen.speed - speed * along) / max(seen.speed, T(0.5));
+    const T along = max(T(1) - T(0.45) * square(error), T(-1)) * T(way_);
+    const T wanted = min(seen.speed, T(fastest_));
+    const T lost = (wanted - speed * along) / max(wanted, T(0.5));
     return {cost.value + T(speed_weight_) * max(lost, T(0)), cost.collided};
   }
 
@@ -90,6 +97,7 @@ class TrackingCost {
   Coefficient distance_weight_, yaw_weight_, outside_cost_;
   Coefficient terminal_distance_weight_, terminal_yaw_weight_, outside_terminal_cost_;
   Coefficient speed_weight_;
+  Coefficient way_{1}, fastest_{1e3};  ///< 1 forwards, -1 backwards; m/s
   Coefficient collision_weight_;
 };
 

@@ -49,8 +49,9 @@ class VehicleModel {
   virtual Command command(std::span<const float> inputs, double speed, double period) const noexcept;
   /// The friction that predictions assume from now on.
   virtual void set_friction(double friction) noexcept;
-  /// The lowest speed of predictions from now on, m/s: negative where the car may reverse.
-  virtual void set_slowest(double speed) noexcept;
+  /// Predictions from now on drive forwards, or backwards at most at this speed (m/s, > 0) and away from
+  /// where the path leads.
+  virtual void set_reverse(double speed) noexcept;
 
   /// The states (one more than steps) of one control sequence, [step][input], and its cost. A car that
   /// collides at the start must be able to leave, so the states before the first free one do not count as a

@@ -69,6 +69,8 @@ struct VehicleTraits {
   /// plans may use. The planner then predicts the start with the model, and lowers the path's speeds to what
   /// the car can do.
   double friction = 0, usable_grip = 0;
+  double half_steer_speed =
+      0;                    ///< m/s, with tyres that slip: an input steers half as much as at a standstill
   double switch_speed = 0;  ///< m/s, with tyres that slip: above it the motor's power is the limit
 };
 

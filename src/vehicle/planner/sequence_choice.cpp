@@ -1,0 +1,140 @@
+#include "vehicle/planner/sequence_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slalom::vehicle::detail {
+
+namespace {
+
+/// Of the largest deceleration, what a braking car reaches among curves, and what it accelerates with.
+constexpr double braking_share = 0.8, accelerating_share = 0.4;
+
+/// Calls `use` with each guide's sequence of `size` values.
+template <class Use>
+void for_each_guide(const SolveResult& result, std::size_t size, Use&& use) {
+  for (int g = 0; g < result.guides.sequences; ++g)
+    use(result.guides.values.subspan(static_cast<std::size_t>(g) * size, size));
+}
+
+/// The index of the cheapest sample without collision, -1 if there is none.
+int cheapest_sample(const SolveResult& result) {
+  int cheapest = -1;
+  for (int k = 0; result.samples && k < result.samples->samples(); ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    if (result.collided[i] || !std::isfinite(result.costs[i])) continue;
+    if (cheapest < 0 || result.costs[i] < result.costs[static_cast<std::size_t>(cheapest)]) cheapest = k;
+  }
+  return cheapest;
+}
+
+}  // namespace
+
+SequenceChoice::SequenceChoice(int horizon, int inputs, const VehicleTraits& traits)
+    : inputs_(static_cast<std::size_t>(inputs)),
+      traits_(traits),
+      max_deceleration_(static_cast<float>(traits.max_deceleration)),
+      candidate_(static_cast<std::size_t>(horizon) * inputs_),
+      braking_(candidate_.size()),
+      previous_(candidate_.size()),
+      slower_(candidate_.size()),
+      candidate_states_(static_cast<std::size_t>(horizon) + 1),
+      path_(candidate_states_.size()) {}
+
+void SequenceChoice::sent(std::span<const float> inputs) noexcept {
+  has_previous_ = inputs.size() == previous_.size();
+  if (has_previous_) std::copy(inputs.begin(), inputs.end(), previous_.begin());
+}
+
+SequenceChoice::Choice SequenceChoice::choose(const VehicleModel& model, const SolveResult& result,
+                                              const Choice& solution, bool reversing,
+                                              std::vector<PredictedState>& states) noexcept {
+  Choice best = solution;
+  const auto consider = [&](std::span<const float> inputs) {
+    if (inputs.size() != candidate_.size()) return;
+    const PredictedCost cost = model.predict(inputs, candidate_states_);
+    const bool better = best.cost.collided != cost.collided
+                            ? best.cost.collided
+                            : cost.state + cost.collision < best.cost.state + best.cost.collision;
+    if (!better) return;
+    best = {inputs, cost};
+    states.swap(candidate_states_);
+  };
+  consider(result.nominal);
+  for_each_guide(result, candidate_.size(), consider);
+  if (const int sample = cheapest_sample(result); sample >= 0) {
+    for (std::size_t row = 0; row < candidate_.size(); ++row)
+      candidate_[row] =
+          result.samples->at(static_cast<int>(row / inputs_), static_cast<int>(row % inputs_), sample);
+    consider(candidate_);
+  }
+  if (best.cost.collided && model.has_dynamics()) brake(model, result, reversing, best, states);
+  return best;
+}
+
+SequenceChoice::Choice SequenceChoice::slower(const VehicleModel& model, const Choice& solution,
+                                              std::vector<PredictedState>& states) noexcept {
+  Choice best = solution;
+  std::copy(states.begin(), states.end(), path_.begin());
+  for (const int steps : {3, 6, 10, 16}) {
+    follow_slower(steps);
+    const PredictedCost cost = model.predict(candidate_, candidate_states_);
+    if (cost.collided > best.cost.collided) continue;
+    if (cost.collided == best.cost.collided &&
+        !(cost.state + cost.collision < best.cost.state + best.cost.collision))
+      continue;
+    candidate_.swap(slower_);
+    best = {slower_, cost};
+    states.swap(candidate_states_);
+  }
+  return best;
+}
+
+/// The inputs that brake for these steps, then accelerate, with the wheels' angles of `path_` at the same
+/// places.
+void SequenceChoice::follow_slower(int braking_steps) noexcept {
+  const double dt = traits_.time_step;
+  const std::size_t steps = path_.size() - 1;
+  double speed = std::max(path_[0].speed, 0.0), ahead = 0;  // m/s, m beyond the state `at`
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < steps; ++k) {
+    const bool brakes = static_cast<int>(k) < braking_steps;
+    const double before = speed;
+    speed =
+        std::max(speed + (brakes ? -braking_share : accelerating_share) * traits_.max_deceleration * dt, 0.0);
+    speed = brakes ? speed : std::min(speed, std::max(path_[at].speed, before));
+    ahead += 0.5 * (before + speed) * dt;
+    for (double way = std::abs(path_[at].speed) * dt; at + 1 < steps && ahead >= way && way > 0;) {
+      ahead -= way;
+      way = std::abs(path_[++at].speed) * dt;
+    }
+    const double slowness = speed / traits_.half_steer_speed;
+    candidate_[k * inputs_] = static_cast<float>(path_[at + 1].steer * (1 + slowness * slowness));
+    candidate_[k * inputs_ + 1] = brakes ? -max_deceleration_ : max_deceleration_;
+  }
+}
+
+void SequenceChoice::brake(const VehicleModel& model, const SolveResult& result, bool reversing, Choice& best,
+                           std::vector<PredictedState>& states) noexcept {
+  bool first = true;
+  const auto consider = [&](std::span<const float> steering) {
+    if (steering.size() != candidate_.size()) return;
+    const float braking = reversing ? max_deceleration_ : -max_deceleration_;
+    for (std::size_t row = 0; row < candidate_.size(); ++row)
+      candidate_[row] = row % inputs_ == 0 ? steering[row] : braking;
+    const PredictedCost cost = model.predict(candidate_, candidate_states_);
+    const bool better =
+        best.cost.collided != cost.collided ? best.cost.collided : cost.collision < best.cost.collision;
+    if (!first && !better) return;
+    first = false;
+    candidate_.swap(braking_);
+    best = {braking_, cost};
+    states.swap(candidate_states_);
+  };
+  consider(best.inputs);
+  if (has_previous_) consider(previous_);
+  consider(result.nominal);
+  for_each_guide(result, candidate_.size(), consider);
+}
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "slalom/solvers/solver.hpp"
+#include "slalom/vehicle/model/vehicle_model.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// What is sent where the solution collides.
+class SequenceChoice {
+ public:
+  /// A sequence that is chosen: its inputs, valid until the next choice, and its cost.
+  struct Choice {
+    std::span<const float> inputs;
+    PredictedCost cost;
+  };
+
+  /// For sequences of `horizon` steps with so many inputs each, of a car with these traits.
+  SequenceChoice(int horizon, int inputs, const VehicleTraits& traits);
+
+  /// The cheapest of the solution and of driving along it more slowly: brakes first, for some steps, and the
+  /// same path. Samples of the solver rarely brake for long, so it finds late that it must. For models that
+  /// have the car's dynamics. `states` as in `choose`.
+  Choice slower(const VehicleModel& model, const Choice& solution,
+                std::vector<PredictedState>& states) noexcept;
+
+  /// The cheapest of the nominal sequence, the guides and the best sample that does not collide. If there is
+  /// none and the model has the car's dynamics, a full stop: along the solution, the sequence sent last, the
+  /// nominal one or a guide, as hard as the tyres allow; the cheapest that does not collide, else the
+  /// cheapest of all. `states` holds the prediction of the solution, afterwards that of the choice.
+  Choice choose(const VehicleModel& model, const SolveResult& result, const Choice& solution, bool reversing,
+                std::vector<PredictedState>& states) noexcept;
+
+  /// Keeps the sequence that is sent.
+  void sent(std::span<const float> inputs) noexcept;
+  /// Forgets it.
+  void reset() noexcept { has_previous_ = false; }
+
+ private:
+  void follow_slower(int braking_steps) noexcept;
+  void brake(const VehicleModel& model, const SolveResult& result, bool reversing, Choice& best,
+             std::vector<PredictedState>& states) noexcept;
+
+  std::size_t inputs_;
+  VehicleTraits traits_;
+  float max_deceleration_;
+  std::vector<float> candidate_, braking_, previous_, slower_;
+  std::vector<PredictedState> candidate_states_, path_;
+  bool has_previous_ = false;
+};
+
+}  // namespace slalom::vehicle::detail

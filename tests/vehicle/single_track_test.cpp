@@ -1,0 +1,142 @@
+// The single-track model against the simulator's dynamics, and what holds for any input.
+#include "slalom/vehicle/model/single_track.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "slalom/sim/dynamics.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+PathTrackingOptions car_options() {
+  PathTrackingOptions options;
+  options.steer_time_constant = 1e-3;
+  options.max_acceleration = options.max_deceleration = 9.51;
+  return options;
+}
+
+struct Drive {
+  TyreModel tyres;
+  double speed;         ///< m/s, at the start
+  double acceleration;  ///< m/s^2
+};
+
+/// The largest distance (m) between the rear axles of model and simulator in one second of steps of 0.05 s,
+/// for steering that is held and for steering that swings, of about 6 m/s^2 of lateral acceleration.
+double largest_error(const Drive& drive) {
+  const PathTrackingOptions options = car_options();
+  SingleTrackOptions own;
+  own.tyres = drive.tyres;
+  const SingleTrackDynamics dynamics(options, own);
+  const sim::CarParameters car;
+  sim::DynamicsOptions reference;
+  reference.model = drive.tyres == TyreModel::linear ? sim::Model::single_track : sim::Model::saturating;
+  const double steer = std::min(0.35, 1.2 * std::atan(car.wheelbase() * 6 / (drive.speed * drive.speed)));
+  double worst = 0;
+  for (const bool swinging : {false, true}) {
+    SingleTrackState<double> s{0, 0, 0, drive.speed, 0, 0, 0};
+    sim::CarState truth;
+    truth.x = car.rear_length;
+    truth.speed = drive.speed;
+    for (int k = 0; k < 20; ++k) {
+      const double command = swinging ? steer * std::sin(0.05 * k * 2 * 3.14159 / 0.8) : steer;
+      const double acceleration = std::min(drive.acceleration, dynamics.driving_limit(s.speed));
+      s = dynamics.advance(s, dynamics.lagged(s.steer, command), acceleration, own.friction, 0.05);
+      for (int i = 0; i < 10; ++i)
+        truth = sim::advance(car, reference, truth, {(command - truth.steer) / 0.005, acceleration}, 0.005);
+      const double x = truth.x - car.rear_length * std::cos(truth.yaw),
+                   y = truth.y - car.rear_length * std::sin(truth.yaw);
+      worst = std::max(worst, std::hypot(x - s.x, y - s.y));
+    }
+  }
+  return worst;
+}
+
+TEST(SingleTrack, LinearTyresAgreeWithTheSimulator) {
+  for (const double speed : {-2.0, 0.3, 1.0, 3.0, 5.0, 8.0, 12.0, 20.0})
+    EXPECT_LT(largest_error({TyreModel::linear, speed, 0}), 0.02) << speed << " m/s";
+  for (const double speed : {3.0, 5.0, 8.0}) {
+    EXPECT_LT(largest_error({TyreModel::linear, speed, -3}), 0.03) << speed << " m/s, braking";
+    EXPECT_LT(largest_error({TyreModel::linear, speed, 3}), 0.03) << speed << " m/s, accelerating";
+  }
+}
+
+TEST(SingleTrack, SaturatingTyresAgreeWithTheSimulator) {
+  for (const double speed : {-2.0, 0.3, 1.0, 3.0, 5.0, 8.0, 12.0, 20.0})
+    EXPECT_LT(largest_error({TyreModel::saturating, speed, 0}), 0.08) << speed << " m/s";
+  for (const double speed : {3.0, 5.0, 8.0})
+    EXPECT_LT(largest_error({TyreModel::saturating, speed, 3}), 0.12) << speed << " m/s, accelerating";
+}
+
+TEST(SingleTrack, StandsStillAtAStandstill) {
+  const SingleTrackDynamics dynamics(car_options(), {});
+  SingleTrackState<double> s{1, 2, 0.5, 0, 0, 0, 0};
+  for (int k = 0; k < 100; ++k) s = dynamics.advance(s, 0.4, 0.0, 1.0489, 0.05);
+  EXPECT_EQ(s.x, 1);
+  EXPECT_EQ(s.y, 2);
+  EXPECT_EQ(s.yaw, 0.5);
+  EXPECT_EQ(s.yaw_rate, 0);
+  EXPECT_EQ(s.lateral, 0);
+}
+
+TEST(SingleTrack, IsTheKinematicBicycleAtLowSpeed) {
+  const PathTrackingOptions options = car_options();
+  const SingleTrackDynamics dynamics(options, {});
+  for (const double speed : {-0.2, -0.01, 0.01, 0.2}) {
+    SingleTrackState<double> s{0, 0, 0, speed, 0.2, 0, 0};
+    for (int k = 0; k < 40; ++k) s = dynamics.advance(s, 0.2, 0.0, 1.0489, 0.05);
+    const double expected = s.speed * std::tan(0.2) / options.wheelbase();
+    EXPECT_NEAR(s.yaw_rate, expected, 0.02 * std::abs(expected)) << speed << " m/s";
+  }
+}
+
+TEST(SingleTrack, IsFiniteForAnyInput) {
+  std::mt19937 random(1);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  for (const TyreModel tyres : {TyreModel::linear, TyreModel::saturating}) {
+    SingleTrackOptions own;
+    own.tyres = tyres;
+    SingleTrack model(car_options(), own);
+    for (int n = 0; n < 2000; ++n) {
+      model.set_friction(uniform(0.1, 1.5));
+      model.set_reverse(n % 3 == 0 ? 1 : 0);
+      const double speed = uniform(-5, 20);
+      SingleTrackState<double> s{
+          0, 0, 0, speed, uniform(-0.4, 0.4), uniform(-5, 5), 0.3 * speed * uniform(-1, 1)};
+      for (int k = 0; k < 30; ++k) {
+        s = model.step(s, uniform(0, 20), Input<double, 2>{{uniform(-0.42, 0.42), uniform(-9.5, 9.5)}}, k);
+        ASSERT_TRUE(std::isfinite(s.x) && std::isfinite(s.y) && std::isfinite(s.yaw) &&
+                    std::isfinite(s.speed) && std::isfinite(s.yaw_rate) && std::isfinite(s.lateral))
+            << "sample " << n << ", step " << k;
+        ASSERT_LE(std::abs(s.steer), 0.43);
+      }
+    }
+  }
+}
+
+TEST(SingleTrack, BrakesNoHarderThanTurningLeavesGrip) {
+  SingleTrackOptions own;
+  own.usable_grip = 0.9;
+  const SingleTrackDynamics dynamics(car_options(), own);
+  const double most = 0.9 * own.friction * 9.81;
+  for (const double turning : {0.0, 0.5, 0.9, 2.0}) {
+    const SingleTrackState<double> s{0, 0, 0, 5, 0, turning * most / 5, 0};
+    const double left = dynamics.braking_limit(s, own.friction);
+    EXPECT_NEAR(left, most * std::max(0.1, std::sqrt(std::max(1 - turning * turning, 0.0))), 1e-9) << turning;
+  }
+}
+
+TEST(SingleTrack, HasNoHeldInput) {
+  PathTrackingOptions options = car_options();
+  options.hold_first_input = true;
+  EXPECT_THROW(SingleTrack{options}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle
