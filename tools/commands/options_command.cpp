@@ -91,7 +91,7 @@ void declare_options(Subcommand& command) {
   const auto arguments = std::make_shared<Arguments>();
   command
       .option("--config", arguments->scenario.config,
-              "Configuration: default, default_speed, published, hardware, or a file")
+              "Configuration: default, default_speed, single_track, published, hardware, or a file")
       .show_default();
   command.option("--set", arguments->scenario.set, "section.option=value; may be repeated").repeatable();
   const Option method = command.option("--method", arguments->method,

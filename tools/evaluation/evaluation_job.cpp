@@ -103,7 +103,7 @@ void add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
   command.option("--course", a.scenario.course, "Course name or folder").show_default();
   command
       .option("--config", a.scenario.config,
-              "Configuration: default, default_speed, published, hardware, or a file")
+              "Configuration: default, default_speed, single_track, published, hardware, or a file")
       .show_default();
   command
       .option("--evaluation", a.scenario.evaluation,

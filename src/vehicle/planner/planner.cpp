@@ -212,13 +212,16 @@ struct Planner::Implementation {
     if (cost.collided) output.status = PlannerStatus::blocked;
   }
 
+  /// m/s, of commands.
+  double slowest() const noexcept {
+    if (!model->has_dynamics()) return -BackUp::speed;
+    return recovery.reversing() ? -1.5 * Recovery::speed : 0;
+  }
   /// The final check of the output.
   void check(const Odometry& odometry) noexcept {
     const double now = std::isfinite(odometry.speed) ? std::max(odometry.speed, 0.0) : 0;
     const double fastest = brakes ? std::min(now, options.max_speed) : options.max_speed;
-    detail::check_output(output,
-                         {options.steer_limit, fastest, -std::max(BackUp::speed, 2 * Recovery::speed)},
-                         steer_estimate());
+    detail::check_output(output, {options.steer_limit, fastest, slowest()}, steer_estimate());
   }
 
   /// The paper's program sends the planned angle less whole turns, as a float32.

@@ -76,7 +76,7 @@ SequenceChoice::Choice SequenceChoice::slower(const VehicleModel& model, const C
                                               std::vector<PredictedState>& states) noexcept {
   Choice best = solution;
   std::copy(states.begin(), states.end(), path_.begin());
-  for (const int steps : {3, 6, 10, 16}) {
+  for (const int steps : {0, 3, 6, 10, 16}) {
     follow_slower(steps);
     const PredictedCost cost = model.predict(candidate_, candidate_states_);
     if (cost.collided > best.cost.collided) continue;

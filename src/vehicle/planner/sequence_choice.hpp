@@ -20,9 +20,10 @@ class SequenceChoice {
   /// For sequences of `horizon` steps with so many inputs each, of a car with these traits.
   SequenceChoice(int horizon, int inputs, const VehicleTraits& traits);
 
-  /// The cheapest of the solution and of driving along it more slowly: brakes first, for some steps, and the
-  /// same path. Samples of the solver rarely brake for long, so it finds late that it must. For models that
-  /// have the car's dynamics. `states` as in `choose`.
+  /// The cheapest of the solution and of driving along it more slowly, which brakes first for some steps and
+  /// keeps the path, or faster. Samples of the solver rarely brake for long, so it finds late that it must;
+  /// and around a solution that stands still none of them drives. For models that have the car's dynamics.
+  /// `states` as in `choose`.
   Choice slower(const VehicleModel& model, const Choice& solution,
                 std::vector<PredictedState>& states) noexcept;
 

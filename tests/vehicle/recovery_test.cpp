@@ -1,0 +1,129 @@
+// When the planner reverses, what it remembers of obstacles, and the speeds that it may plan with.
+#include "vehicle/planner/recovery.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "vehicle/planner/feasible_speeds.hpp"
+#include "vehicle/planner/obstacle_memory.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+constexpr double period = 0.025, length = 100;
+
+TEST(Recovery, LeavesACarThatGetsOnAlone) {
+  Recovery recovery;
+  for (int k = 0; k < 4000; ++k)
+    EXPECT_FALSE(recovery.update(std::fmod(0.05 * k, length), length, 2, period)) << "step " << k;
+}
+
+TEST(Recovery, ReversesACarThatStandsAndDrivesOnAfterTheWayItChose) {
+  Recovery recovery;
+  int waited = 0;
+  while (!recovery.update(7, length, 0, period)) ++waited;
+  EXPECT_NEAR(waited * period, 0.7, 0.05);
+  double arc = 7;
+  int reversed = 0;
+  while (recovery.update(arc, length, -1, period)) {
+    arc -= period;
+    ++reversed;
+  }
+  EXPECT_NEAR(reversed * period, 0.8, 0.05) << "at 1 m/s";
+  EXPECT_FALSE(recovery.reversing());
+}
+
+TEST(Recovery, ReversesFurtherEachTimeUntilTheCarGetsOn) {
+  Recovery recovery;
+  const auto way_of_a_try = [&] {
+    while (!recovery.update(7, length, 0, period)) {
+    }
+    double way = 0;
+    while (recovery.update(7 - way, length, -1, period)) way += period;
+    return way;
+  };
+  const double first = way_of_a_try(), second = way_of_a_try();
+  EXPECT_NEAR(second / first, 1.6, 0.1);
+  for (int k = 0; k < 200; ++k) recovery.update(7 + 0.05 * k, length, 2, period);
+  while (!recovery.update(17, length, 0, period)) {
+  }
+  double way = 0;
+  while (recovery.update(17 - way, length, -1, period)) way += period;
+  EXPECT_NEAR(way, first, 0.05);
+}
+
+TEST(Recovery, NoticesACarThatDrivesInCircles) {
+  Recovery recovery;
+  bool reversed = false;
+  for (int k = 0; k < 200 && !reversed; ++k)
+    reversed = recovery.update(20 + 0.4 * std::sin(0.1 * k), length, 1.5, period);
+  EXPECT_TRUE(reversed);
+}
+
+TEST(Recovery, GivesUpReversingWhereSomethingStandsBehind) {
+  Recovery recovery;
+  while (!recovery.update(7, length, 0, period)) {
+  }
+  int blocked = 0;
+  while (recovery.update(7, length, 0, period)) ++blocked;
+  EXPECT_NEAR(blocked * period, 0.7, 0.05);
+}
+
+TEST(ObstacleMemory, KnowsWhatTheCarHasPassed) {
+  ObstacleMemory memory;
+  const std::vector<maps::ScanPoint> seen = {{2.0f, 0.1f}};
+  memory.remember(seen, {10, 5, 0}, 0.25);
+  const std::vector<float> ranges(271, 10.0f);
+  const maps::LaserScanView view{ranges, -2.356, 4.712 / 270, 0.05, 30};
+  EXPECT_TRUE(memory.blind_points({10, 5, 0}, {}, view).empty()) << "in sight";
+  const auto behind = memory.blind_points({13.5, 5, 0}, {}, view);
+  ASSERT_EQ(behind.size(), 1u);
+  EXPECT_NEAR(behind[0].x, -1.5, 1e-6);
+  EXPECT_NEAR(behind[0].y, 0.1, 1e-6);
+  memory.reset();
+  EXPECT_TRUE(memory.blind_points({13.5, 5, 0}, {}, view).empty());
+}
+
+/// A closed course of two straights of 30 m and two half circles of 3 m radius, driven at 12 m/s.
+std::vector<maps::ReferencePoint> oval() {
+  std::vector<maps::ReferencePoint> path;
+  const double pi = 3.14159265358979, radius = 3;
+  for (int i = 0; i < 150; ++i) path.push_back({0.2 * i, 0, 0, 12});
+  for (int i = 0; i < 47; ++i) {
+    const double a = -pi / 2 + pi * i / 47;
+    path.push_back({30 + radius * std::cos(a), radius + radius * std::sin(a), 0, 12});
+  }
+  for (int i = 0; i < 150; ++i) path.push_back({30 - 0.2 * i, 2 * radius, pi, 12});
+  for (int i = 0; i < 47; ++i) {
+    const double a = pi / 2 + pi * i / 47;
+    path.push_back({radius * std::cos(a), radius + radius * std::sin(a), 0, 12});
+  }
+  return path;
+}
+
+TEST(FeasibleSpeeds, KeepToGripBrakesAndMotor) {
+  const auto path = oval();
+  FeasibleSpeeds speeds(path);
+  EXPECT_EQ(speeds.speeds()[0], 12);
+  speeds.update({.grip = 8, .acceleration = 9, .braking = 6, .delay = 0, .switch_speed = 7});
+  const auto v = speeds.speeds();
+  EXPECT_NEAR(v[170], std::sqrt(8.0 * 3), 0.15) << "in the middle of the curve";
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const std::size_t next = (i + 1) % v.size();
+    const double way = std::hypot(path[next].x - path[i].x, path[next].y - path[i].y);
+    const double change = (v[next] * v[next] - v[i] * v[i]) / (2 * way);
+    EXPECT_GT(change, -6.001) << "point " << i;
+    EXPECT_LT(change, 8.001) << "point " << i;
+    if (v[i] > 7) {
+      EXPECT_LT(change, 9 * 7 / v[i] + 1e-6) << "point " << i;
+    }
+  }
+  const std::vector<double> fast(v.begin(), v.end());
+  speeds.update({.grip = 4, .acceleration = 9, .braking = 6, .delay = 0.05, .switch_speed = 7});
+  for (std::size_t i = 0; i < v.size(); ++i) EXPECT_LE(speeds.speeds()[i], fast[i]);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle::detail
