@@ -106,7 +106,8 @@ fs::path program_folder() {
 void add_scenario_options(Subcommand& command, ScenarioArguments& a) {
   command.option("--course", a.course, "Course name or folder").show_default();
   command
-      .option("--config", a.config, "Configuration: default, default_speed, single_track, published, hardware, or a file")
+      .option("--config", a.config,
+              "Configuration: default, default_speed, single_track, published, hardware, or a file")
       .show_default();
   command
       .option("--evaluation", a.evaluation,
