@@ -1,7 +1,11 @@
 // HTTP and WebSocket of the live view's server, through a client that breaks their rules.
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
 #include <chrono>
+#include <ctime>
+#include <deque>
 #include <functional>
 #include <thread>
 
@@ -13,7 +17,8 @@ namespace {
 
 using testing::WebClient;
 
-const std::map<std::string, Resource> page = {{"/", {"text/html", "gzip", "<p>compressed</p>"}}};
+const std::map<std::string, Resource> page = {
+    {"/", {"text/html", "gzip", "<p>compressed</p>", "<p>plain</p>"}}};
 
 void wait_until(const std::function<bool()>& holds) {
   for (int i = 0; i < 1000 && !holds(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -112,15 +117,56 @@ TEST(ServerProtocol, ClosesOnViolations) {
 
 TEST(ServerProtocol, ServesCompressedPageWithHeaders) {
   Server server({}, page);
-  const std::string whole = answer_to(server, "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  const std::string fields = "Host: localhost\r\nAccept-Encoding: br, gzip;q=0.5\r\n\r\n";
+  const std::string whole = answer_to(server, "GET / HTTP/1.1\r\n" + fields);
   for (const char* line : {"Content-Type: text/html", "Content-Encoding: gzip", "Content-Length: 17",
                            "Cache-Control: no-store", "X-Content-Type-Options: nosniff",
                            "Referrer-Policy: no-referrer", "Content-Security-Policy: default-src 'self'"})
     EXPECT_NE(whole.find(line), std::string::npos) << whole;
   EXPECT_TRUE(whole.ends_with("\r\n\r\n<p>compressed</p>"));
-  const std::string head = answer_to(server, "HEAD / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  const std::string head = answer_to(server, "HEAD / HTTP/1.1\r\n" + fields);
   EXPECT_NE(head.find("Content-Length: 17"), std::string::npos) << head;
   EXPECT_TRUE(head.ends_with("\r\n\r\n"));
+}
+
+TEST(ServerProtocol, CompressesOnlyForThoseWhoAcceptIt) {
+  Server server({}, page);
+  for (const char* field :
+       {"", "Accept-Encoding: br\r\n", "Accept-Encoding: gzip;q=0.0, br\r\n", "Accept-Encoding:\r\n"}) {
+    const std::string whole =
+        answer_to(server, "GET / HTTP/1.1\r\nHost: localhost\r\n" + std::string(field) + "\r\n");
+    EXPECT_EQ(whole.find("Content-Encoding"), std::string::npos) << field;
+    EXPECT_NE(whole.find("Vary: Accept-Encoding"), std::string::npos) << field;
+    EXPECT_TRUE(whole.ends_with("\r\n\r\n<p>plain</p>")) << field;
+  }
+}
+
+TEST(ServerProtocol, SlowClientsDoNotKeepOthersOut) {
+  Server server({.max_clients = 4}, page);
+  std::deque<WebClient> slow;
+  for (int i = 0; i < 200; ++i) slow.emplace_back(server.port()).say("GET / HTTP/1.1\r\n");
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_NE(answer_to(server, "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n").find(" 200 "), std::string::npos);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5))
+      << "a request has 10 s to arrive";
+}
+
+TEST(ServerProtocol, WaitsWhileNoFileDescriptorIsLeft) {
+  Server server({}, page);
+  const int next_descriptor = dup(0);
+  close(next_descriptor);
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit one_more{static_cast<rlim_t>(next_descriptor) + 1, before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &one_more);
+  const std::clock_t processor_time = std::clock();
+  WebClient client(server.port());  // has the last descriptor, and the server has none for its side
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_LT(std::clock() - processor_time, CLOCKS_PER_SEC / 4) << "the server must not try without a pause";
+  client.say("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_NE(client.rest().find(" 200 "), std::string::npos);
+  EXPECT_GE(server.counters().refused_other, 1u);
 }
 
 TEST(ServerProtocol, RejectsMalformedRequests) {

@@ -71,7 +71,8 @@ class ViewSession : public ::testing::Test {
   void say(const std::string& text) {
     client_.send_message(text);
     server_.wait(std::chrono::seconds(5));
-    session_.turn();
+    do session_.turn();
+    while (session_.is_stepping());
   }
   /// Reads until a message of JSON of this type comes.
   json next(const std::string& type) {
@@ -213,11 +214,40 @@ TEST_F(ViewSession, RejectsUnknownCommandsAndContinues) {
                              "{\"do\":\"add\",\"kind\":\"disc\",\"x\":1e999,\"y\":0}",
                              "{\"do\":\"add\",\"kind\":\"moon\",\"x\":1,\"y\":0}",
                              "{\"do\":\"rate\",\"rate\":-1}",
+                             "{\"do\":\"rate\",\"rate\":1e-300}",
                              "\xff\xfe"};
   const auto before = session_.refused();
   for (const char* text : bad) say(text);
   EXPECT_GE(session_.refused() - before, std::size(bad) - 2)
       << "text that is not UTF-8 ends the connection instead";
+}
+
+TEST_F(ViewSession, StepsOfOneClientDoNotDelayTheCommandsOfAnother) {
+  testing::WebClient other(server_.port());
+  other.get("/ws", true);
+  while (server_.clients() < 2) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  session_.turn();
+  for (int i = 0; i < 60; ++i) client_.send_message(R"({"do":"step","ticks":400})");
+  server_.wait(std::chrono::seconds(5));
+  session_.turn();
+  ASSERT_TRUE(session_.is_stepping());
+  other.send_message(R"({"do":"pause"})");
+  int turns = 0;
+  while (session_.is_stepping() && turns < 100) {
+    server_.wait(std::chrono::milliseconds(5));
+    session_.turn();
+    ++turns;
+  }
+  EXPECT_LT(turns, 100) << "a pause must not wait for the steps";
+}
+
+TEST_F(ViewSession, RefusesOptionsThatMakeASolveTooLong) {
+  tell({{"do", "set"}, {"key", "samples"}, {"value", "4194304"}});
+  EXPECT_NE(next("error")["message"].get<std::string>().find("million rollout steps"), std::string::npos);
+  tell({{"do", "fork"}, {"method", "mppi"}, {"set", {"samples=4194304"}}});
+  EXPECT_NE(next("error")["message"].get<std::string>().find("million rollout steps"), std::string::npos);
+  tell({{"do", "set"}, {"key", "samples"}, {"value", "20000"}});
+  step_to(1);
 }
 
 TEST_F(ViewSession, LoadsOnlyListedCourses) {

@@ -7,6 +7,7 @@
 #include "tools/live_view/view_setup.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
+#include "view/recording/encodings.hpp"
 #include "view/server/page_data.hpp"
 #include "view/server/server.hpp"
 #include "view/session/session.hpp"
@@ -51,7 +52,8 @@ view::SessionOptions session_options(const Arguments& arguments) {
 
 int run(const Arguments& arguments) {
   const view::ServerOptions options = server_options(arguments.host, arguments.port, arguments.token);
-  view::Server server(options, {{"/", {"text/html; charset=utf-8", "gzip", view::page_gzip()}}});
+  const std::string page = view::page_gzip();
+  view::Server server(options, {{"/", {"text/html; charset=utf-8", "gzip", page, view::gunzip(page)}}});
   view::SessionOptions session_of = session_options(arguments);
   if (!arguments.evaluation.empty()) open_evaluation(arguments.evaluation, session_of);
   view::Session session(std::move(session_of), server);

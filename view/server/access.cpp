@@ -1,5 +1,6 @@
 #include "view/server/access.hpp"
 
+#include <algorithm>
 #include <string>
 
 namespace slalom::view {
@@ -46,9 +47,29 @@ bool is_own_origin(std::string_view origin, std::string_view host) {
          origin == "https://" + std::string(host);
 }
 
+/// Whether a list such as "br, gzip;q=0.8" has an encoding with a weight above zero.
+bool accepts(std::string_view list, std::string_view encoding) {
+  const auto trimmed = [](std::string_view text) {
+    const std::size_t first = text.find_first_not_of(" \t");
+    return first == std::string_view::npos ? ""
+                                           : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+  };
+  while (!list.empty()) {
+    const std::string_view item = list.substr(0, list.find(','));
+    list.remove_prefix(std::min(list.size(), item.size() + 1));
+    const std::string_view name = trimmed(item.substr(0, item.find(';')));
+    if (name != encoding && name != "*") continue;
+    const std::size_t weight = item.find("q=");
+    // A weight of zero has no digit but zeros.
+    return weight == std::string_view::npos ||
+           item.find_first_of("123456789", weight) != std::string_view::npos;
+  }
+  return false;
+}
+
 Answer refuse(std::atomic<std::uint64_t>& counter, unsigned status, std::string_view reason) {
   ++counter;
-  return {status, nullptr, reason};
+  return {.status = status, .reason = reason};
 }
 
 Answer answer_to_upgrade(ServerState& state, const Request& request) {
@@ -79,7 +100,9 @@ Answer answer_to(ServerState& state, const Request& request) {
   const auto found = state.resources.find(path);
   if (request.is_upgrade || found == state.resources.end())
     return refuse(counters.refused_other, 404, "not found\n");
-  return {200, &found->second};
+  const Resource& resource = found->second;
+  const bool encoded = !resource.encoding.empty() && accepts(request.accept_encoding, resource.encoding);
+  return {.status = 200, .resource = &resource, .encoded = encoded};
 }
 
 }  // namespace slalom::view

@@ -35,7 +35,8 @@ struct ServerOptions {
 struct Resource {
   std::string type;      ///< Content-Type
   std::string encoding;  ///< Content-Encoding, or empty
-  std::string body;
+  std::string body;      ///< in that encoding
+  std::string plain{};   ///< the body without the encoding, for clients that do not accept it
 };
 
 /// A message to clients; shared, so that one copy serves all.

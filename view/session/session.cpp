@@ -57,6 +57,7 @@ void Session::restart() {
   history_bytes_ = 0;
   laps_.clear();
   viewed_ = stop_at_ = -1;
+  steps_left_ = 0;
   contact_.fill(-1);
   ++generation_;
   due_ = Clock::now();
@@ -78,8 +79,11 @@ void Session::run(const std::atomic<bool>& stop) {
 }
 
 void Session::turn() {
-  for (const Received& received : server_.take()) handle(received);
-  if (until_due() <= Clock::duration::zero()) tick();
+  handle_all();
+  if (until_due() <= Clock::duration::zero()) {
+    if (steps_left_ > 0) --steps_left_;
+    tick();
+  }
   const auto now = Clock::now();
   if (server_.clients() > 0 && (state_changed_ || now - last_state_ > 4 * state_gap)) {
     last_state_ = now;
@@ -88,6 +92,7 @@ void Session::turn() {
 }
 
 Session::Clock::duration Session::until_due() const {
+  if (steps_left_ > 0) return Clock::duration::zero();
   if (waiting_ || paused_) return std::chrono::hours(1);
   if (rate_ <= 0) return Clock::duration::zero();
   return due_ - Clock::now();

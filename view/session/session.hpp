@@ -64,6 +64,9 @@ class Session {
   void turn();
 
   std::uint64_t refused() const noexcept { return refused_; }  ///< messages that were not valid commands
+  bool is_stepping() const noexcept {
+    return steps_left_ > 0;
+  }  ///< ticks of a command "step" are still to come
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -90,6 +93,9 @@ class Session {
   Clock::duration until_due() const;
 
   // Obeying.
+  void handle_all();
+  bool must_wait(const Received& received) const;
+  void defer(Received received);
   void handle(const Received& received);
   void handle(std::uint64_t client, const Json& command);
   void edit(const Edit& edit);
@@ -99,6 +105,7 @@ class Session {
   void fork(const Json& command);
   void handle_lap(const Json& command);
   int tick_of_contact(int contact);
+  void handle_step(std::uint64_t client, const Json& command);
   bool handle_transport(const std::string& what, const Json& command);
   bool handle_edit(const std::string& what, const Json& command);
   bool handle_options(const std::string& what, const Json& command);
@@ -131,8 +138,11 @@ class Session {
   std::size_t history_bytes_ = 0;
   std::vector<LapNote> laps_;
   std::shared_ptr<const std::string> scene_;
-  int viewed_ = -1;   ///< tick that is shown while it is not the newest
-  int stop_at_ = -1;  ///< tick at which to pause
+  int viewed_ = -1;                    ///< tick that is shown while it is not the newest
+  int stop_at_ = -1;                   ///< tick at which to pause
+  int steps_left_ = 0;                 ///< ticks of a command "step" that are still to come
+  std::uint64_t stepping_client_ = 0;  ///< who asked for them; its further commands wait for them
+  std::vector<Received> deferred_;     ///< the commands that wait
   std::array<int, 4> contact_{-1, -1, -1, -1};
   bool waiting_ = true, paused_ = false, real_time_ = false, state_changed_ = true;
   double rate_ = 1;  ///< of simulated to real time; 0: as fast as it goes

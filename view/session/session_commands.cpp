@@ -1,13 +1,19 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "view/session/session.hpp"
 
 #include "tools/json/json.hpp"
+#include "view/session/work_limit.hpp"
 
 namespace slalom::view {
 namespace {
+
+constexpr int most_steps = 400;             // of one command "step"
+constexpr std::size_t most_deferred = 256;  // commands that wait for steps
+constexpr double slowest_rate = 0.001;
 
 /// A malformed command, in contrast to one that cannot be executed.
 struct Malformed : std::invalid_argument {
@@ -50,6 +56,33 @@ std::uint64_t count(const std::string& digits) {
 
 }  // namespace
 
+/// Handles what has come. While a client's steps are driven, tick by tick, its further commands wait, and
+/// those of other clients do not.
+void Session::handle_all() {
+  std::vector<Received> all = std::exchange(deferred_, {});
+  for (Received& each : server_.take()) all.push_back(std::move(each));
+  for (Received& each : all) {
+    if (each.kind == Received::Kind::left && each.client == stepping_client_) {
+      steps_left_ = 0;
+      std::erase_if(deferred_, [&](const Received& waiting) { return waiting.client == each.client; });
+    }
+    if (must_wait(each))
+      defer(std::move(each));
+    else
+      handle(each);
+  }
+}
+
+bool Session::must_wait(const Received& received) const {
+  return steps_left_ > 0 && received.client == stepping_client_ && received.kind == Received::Kind::message;
+}
+
+void Session::defer(Received received) {
+  if (deferred_.size() < most_deferred) return deferred_.push_back(std::move(received));
+  ++refused_;
+  refuse(received.client, "step: too many commands wait for the steps before them");
+}
+
 void Session::handle(const Received& received) {
   if (received.kind == Received::Kind::joined) return greet(received.client);
   if (received.kind == Received::Kind::left) {
@@ -74,7 +107,9 @@ void Session::handle(const Received& received) {
 void Session::handle(std::uint64_t client, const Json& command) {
   const std::string what = text(command, "do");
   state_changed_ = true;
-  if (what == "scenario")
+  if (what == "step")
+    handle_step(client, command);
+  else if (what == "scenario")
     handle_scenario(command);
   else if (what == "lap")
     handle_lap(command);
@@ -84,25 +119,33 @@ void Session::handle(std::uint64_t client, const Json& command) {
     throw Malformed("do: '" + what.substr(0, 40) + "' is not a command");
 }
 
+/// Asks for ticks, which `turn` then drives.
+void Session::handle_step(std::uint64_t client, const Json& command) {
+  const int ticks = command.contains("ticks") ? std::clamp(integer(command, "ticks"), 1, most_steps) : 1;
+  go_to_viewed();
+  waiting_ = false;
+  paused_ = true;
+  stepping_client_ = client;
+  steps_left_ = std::min(steps_left_ + ticks, most_steps);
+}
+
 bool Session::handle_transport(const std::string& what, const Json& command) {
   if (what == "pause") {
     paused_ = true;
+    steps_left_ = 0;
   } else if (what == "play") {
     go_to_viewed();
     stop_at_ = -1;
+    steps_left_ = 0;
     paused_ = waiting_ = false;
     due_ = Clock::now();
-  } else if (what == "step") {
-    go_to_viewed();
-    waiting_ = false;
-    paused_ = true;
-    const int many = command.contains("ticks") ? std::clamp(integer(command, "ticks"), 1, 400) : 1;
-    for (int i = 0; i < many; ++i) tick();
   } else if (what == "seek") {
+    steps_left_ = 0;
     show(integer(command, "tick"));
   } else if (what == "rate") {
     const double rate = number(command, "rate");
-    if (rate < 0 || rate > 100) throw Malformed("rate: must be in [0, 100]; 0 means maximum speed");
+    if (rate != 0 && !(rate >= slowest_rate && rate <= 100))
+      throw Malformed("rate: must be 0 for the maximum speed, or in [0.001, 100]");
     rate_ = rate;
     due_ = Clock::now();
   } else if (what == "real_time") {
@@ -159,6 +202,7 @@ void Session::edit(const Edit& edit) {
 
 /// Another configuration or method drives from now on.
 void Session::change(const vehicle::Configuration& configuration, const std::string& method, bool remember) {
+  check_work(configuration, method);
   const auto runner = make_runner(configuration, method);  // throws before anything changes
   if (remember) {
     undo_.push_back(configuration_);
@@ -184,6 +228,7 @@ void Session::end_ghost() {
 /// Starts a ghost in its own world with the same history.
 void Session::start_ghost(const std::string& method, const vehicle::Configuration& configuration) {
   if (method.empty()) return end_ghost();
+  check_work(configuration, method);
   const auto runner = make_runner(configuration, method);
   Simulation ghost(*simulation_, simulation_->ticks());
   if (method != names_.method || ghost.ticks() == 0) ghost.apply(ChangeDriver{runner});
@@ -203,6 +248,7 @@ void Session::fork(const Json& command) {
     if (equals == std::string::npos) throw Malformed("set: must be a list of key=value");
     vehicle::set_option(changed, assignment.substr(0, equals), assignment.substr(equals + 1), method);
   }
+  check_work(changed, method);
   const auto runner = make_runner(changed, method);  // throws before anything changes
   if (runner->control_period() != simulation_->loop().runner().control_period())
     throw std::invalid_argument("fork: the control period cannot change during a drive");
