@@ -17,6 +17,7 @@ function(slalom_add_layer name)
     target_link_libraries(slalom_${name} PRIVATE ${library})
   endforeach()
   slalom_compile_options(slalom_${name})
+  slalom_set_rpath(slalom_${name} "$ORIGIN")
   set_property(GLOBAL APPEND PROPERTY SLALOM_LAYERS slalom_${name})
 endfunction()
 
@@ -30,6 +31,27 @@ function(slalom_compile_options target)
   if(SLALOM_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${SLALOM_SANITIZE} -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${SLALOM_SANITIZE})
+  else()
+    slalom_harden(${target})
+  endif()
+endfunction()
+
+# Checks of the stack and of calls that write to buffers; symbols bound at the start and read-only from then on; no
+# executable stack. SECURITY.md names them, and the test `install_hardening` looks for them in the installed files.
+function(slalom_harden target)
+  # Ubuntu's compiler defines _FORTIFY_SOURCE by itself; it needs optimised code.
+  target_compile_options(${target} PRIVATE -fstack-protector-strong
+    "$<$<CONFIG:Release,RelWithDebInfo,MinSizeRel>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=2>")
+  target_link_options(${target} PRIVATE LINKER:-z,relro LINKER:-z,now LINKER:-z,noexecstack)
+endfunction()
+
+# Where a program or library looks for slalom's own shared libraries, in the build tree and in the install tree alike:
+# below its own place. Otherwise CMake writes another path at install, and ends that of the build tree with a colon,
+# which makes the loader search the current directory.
+function(slalom_set_rpath target path)
+  set_target_properties(${target} PROPERTIES BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH_USE_LINK_PATH ON)
+  if(BUILD_SHARED_LIBS)
+    set_target_properties(${target} PROPERTIES INSTALL_RPATH ${path})
   endif()
 endfunction()
 
