@@ -239,14 +239,17 @@ class Controller {
   /// The final check of the inputs.
   void check_plan_inputs() noexcept {
     Inputs before = previous_;
-    const auto reach = [this]([[maybe_unused]] std::size_t input) {
-      if constexpr (StateEvaluator<P>) {
-        return std::numeric_limits<double>::infinity();
-      } else {
-        return detail::input_step(evaluator_.problem(), static_cast<int>(input));
-      }
-    };
+    const auto reach = [this](std::size_t input) { return input_step(input); };
     for (Inputs& u : inputs_) corrections_ += check_inputs(u.value, before.value, bounds_, reach);
+  }
+
+  /// How far an input may move in one step; infinite if the evaluator does not tell.
+  double input_step([[maybe_unused]] std::size_t input) const noexcept {
+    if constexpr (StateEvaluator<P>) {
+      return std::numeric_limits<double>::infinity();
+    } else {
+      return detail::input_step(evaluator_.problem(), static_cast<int>(input));
+    }
   }
 
   /// The final check of cost and states: those that are not finite become the largest double and the state
