@@ -44,7 +44,7 @@ def main():
     notices = prefix / "share/doc/slalom/page-licenses.txt"
     if "uPlot" not in notices.read_text() or "fflate" not in notices.read_text():
         found.append(f"{notices} does not name the libraries of the page")
-    sys.exit("\n".join(found))
+    sys.exit("\n".join(found) or 0)
 
 
 if __name__ == "__main__":
