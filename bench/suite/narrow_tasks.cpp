@@ -121,7 +121,7 @@ struct ArmAmongBalls : problems::Arm {
     return {{T(60) * distance(arm), T(0), select(hit, T(100), T(0))}, hit};
   }
   template <class T>
-  mask_t<T> collides_with_any(const Posture<T>& arm) const {
+  SLALOM_INLINE_CALLS mask_t<T> collides_with_any(const Posture<T>& arm) const {
     mask_t<T> hit(false);
     for (std::size_t i = 0; i < radius.size(); ++i) {
       Arm one;

@@ -174,7 +174,7 @@ struct Rings {
   }
   template <class T>
   mask_t<T> on_bad_ground(const State<T>& s) const {
-    return (abs(s.x - T(2.5)) < T(0.5)) & (abs(s.y) < T(1.2));
+    return (abs(s.x - T(2.5)) < T(0.5)) && (abs(s.y) < T(1.2));
   }
 };
 

@@ -11,11 +11,19 @@
 /// latencies hide behind each other.
 namespace slalom::detail {
 
+// A state may hold arrays, which this list of all scalars fills without braces of their own.
+#if defined(__clang__)
+#pragma clang diagnostic push
+#pragma clang diagnostic ignored "-Wmissing-braces"
+#endif
 /// A state whose scalars are all given as float values, spread over the lanes of `T`.
 template <class P, class T, std::size_t... I>
 SLALOM_INLINE StateOf<P, T> broadcast_state(const float* x, std::index_sequence<I...>) {
   return StateOf<P, T>{T(x[I])...};
 }
+#if defined(__clang__)
+#pragma clang diagnostic pop
+#endif
 
 /// What a problem returns from a look-up.
 template <class P, class F>
