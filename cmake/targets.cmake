@@ -55,8 +55,12 @@ function(slalom_set_rpath target path)
   endif()
 endfunction()
 
-# For targets whose time is spent in the libraries that they call: less optimisation, which takes a third of the
-# compile time away. Applies to optimised builds alone.
+# For code whose time is spent in what it calls, or that runs once in an evaluation: less optimisation, which takes a
+# quarter to a third of the compile time away. Applies to optimised builds alone.
 function(slalom_optimise_lightly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+# The same for source files of the current folder.
+function(slalom_optimise_sources_lightly)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
 endfunction()
