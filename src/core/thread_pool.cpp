@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -63,6 +64,14 @@ struct ThreadPool::Shared {
       ticket = open.load(std::memory_order_acquire);
     }
   }
+
+  /// Ends the workers.
+  void stop() {
+    quit.store(true, std::memory_order_relaxed);
+    round.fetch_add(1, std::memory_order_release);
+    round.notify_all();
+    for (auto& worker : workers) worker.join();
+  }
 };
 
 ThreadPool::ThreadPool(int threads) : threads_(threads) {
@@ -71,24 +80,28 @@ ThreadPool::ThreadPool(int threads) : threads_(threads) {
   }
   if (threads == 1) return;
   shared_ = std::make_unique<Shared>();
-  for (int i = 1; i < threads; ++i) {
-    shared_->workers.emplace_back([shared = shared_.get()] {
-      std::uint32_t seen = 0;
-      for (;;) {
-        seen = wait_for_change(shared->round, seen);
-        if (shared->quit.load(std::memory_order_relaxed)) return;
-        shared->work(seen);
-      }
-    });
+  shared_->workers.reserve(static_cast<std::size_t>(threads - 1));
+  const auto serve = [shared = shared_.get()] {
+    std::uint32_t seen = 0;
+    for (;;) {
+      seen = wait_for_change(shared->round, seen);
+      if (shared->quit.load(std::memory_order_relaxed)) return;
+      shared->work(seen);
+    }
+  };
+  try {
+    for (int i = 1; i < threads; ++i) shared_->workers.emplace_back(serve);
+  } catch (const std::system_error& error) {
+    const std::size_t started = shared_->workers.size() + 1;
+    shared_->stop();
+    throw std::runtime_error("threads: " + std::to_string(threads) + " cannot start, " +
+                             std::to_string(started) + " can (" + error.code().message() +
+                             "); use fewer threads, or raise the limits of processes and memory");
   }
 }
 
 ThreadPool::~ThreadPool() {
-  if (!shared_) return;
-  shared_->quit.store(true, std::memory_order_relaxed);
-  shared_->round.fetch_add(1, std::memory_order_release);
-  shared_->round.notify_all();
-  for (auto& worker : shared_->workers) worker.join();
+  if (shared_) shared_->stop();
 }
 
 void ThreadPool::run_erased(int count, Call call, void* context) noexcept {

@@ -1,8 +1,9 @@
 #include "slalom/evaluation/evaluation.hpp"
 
 #include <set>
-#include <thread>
 #include <utility>
+
+#include "slalom/evaluation/worker_threads.hpp"
 
 namespace slalom::evaluation {
 
@@ -48,11 +49,8 @@ void drive_until_empty(const Evaluation& evaluation, LapQueue& queue,
 
 }  // namespace
 
-void drive_laps(const Evaluation& evaluation, LapQueue& queue, int jobs, const std::atomic<bool>& cancel) {
-  std::vector<std::thread> threads;
-  for (int i = 1; i < jobs; ++i) threads.emplace_back([&] { drive_until_empty(evaluation, queue, cancel); });
-  drive_until_empty(evaluation, queue, cancel);
-  for (auto& thread : threads) thread.join();
+int drive_laps(const Evaluation& evaluation, LapQueue& queue, int jobs, const std::atomic<bool>& cancel) {
+  return run_in_threads(jobs, [&] { drive_until_empty(evaluation, queue, cancel); });
 }
 
 EvaluationQueue::EvaluationQueue(const Evaluation& evaluation, LapStore& store,

@@ -3,10 +3,10 @@
 #include <exception>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/statistics.hpp"
+#include "slalom/evaluation/worker_threads.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
@@ -83,10 +83,7 @@ bool drive(std::vector<Task>& tasks, const std::vector<Driver>& drivers,
       }
     }
   };
-  std::vector<std::thread> threads;
-  for (int i = 1; i < arguments.jobs; ++i) threads.emplace_back(work);
-  work();
-  for (auto& thread : threads) thread.join();
+  run_in_threads(arguments.jobs, work);
   if (failed) std::rethrow_exception(failed);
   return !interrupt.raised();
 }

@@ -211,7 +211,10 @@ bool drive_evaluation(const Evaluation& evaluation, const EvaluationArguments& a
   EvaluationProgressBar bar(title);
   EvaluationQueue work(
       evaluation, store, [&](const EvaluationProgress& p) { bar.show(p); }, cancel);
-  drive_with_ranks(evaluation, work, jobs, cancel);
+  const int threads = drive_with_ranks(evaluation, work, jobs, cancel);
+  if (threads < jobs)
+    std::fprintf(stderr, "--jobs %d: the system could start %d threads only; the laps are the same\n", jobs,
+                 threads);
   if (!work.finish()) {
     std::fprintf(stderr, "interrupted after %zu laps; --resume continues\n", store.rows().size());
     return false;

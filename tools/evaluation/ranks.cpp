@@ -135,13 +135,15 @@ int rank() {
   return World::instance().rank;
 }
 
-void drive_with_ranks(const Evaluation& evaluation, EvaluationQueue& work, int jobs,
-                      const std::atomic<bool>& cancel) {
+int drive_with_ranks(const Evaluation& evaluation, EvaluationQueue& work, int jobs,
+                     const std::atomic<bool>& cancel) {
   if (rank_count() == 1) return drive_laps(evaluation, work, jobs, cancel);
-  std::thread own([&] { drive_laps(evaluation, work, jobs, cancel); });
+  int threads = 1;
+  std::thread own([&] { threads = drive_laps(evaluation, work, jobs, cancel); });
   serve(evaluation, work);
   own.join();
   MPI_Finalize();
+  return threads;
 }
 
 void drive_for_first_rank(const Evaluation& evaluation, int jobs, const std::atomic<bool>& cancel) {
@@ -162,9 +164,9 @@ int rank_count() {
 int rank() {
   return 0;
 }
-void drive_with_ranks(const evaluation::Evaluation& evaluation, evaluation::EvaluationQueue& work, int jobs,
-                      const std::atomic<bool>& cancel) {
-  drive_laps(evaluation, work, jobs, cancel);
+int drive_with_ranks(const evaluation::Evaluation& evaluation, evaluation::EvaluationQueue& work, int jobs,
+                     const std::atomic<bool>& cancel) {
+  return drive_laps(evaluation, work, jobs, cancel);
 }
 void drive_for_first_rank(const evaluation::Evaluation&, int, const std::atomic<bool>&) {}
 

@@ -13,9 +13,9 @@ int rank_count();
 int rank();
 
 /// In the first process: drives laps on `jobs` threads of its own and hands laps to the other processes,
-/// until there are none left.
-void drive_with_ranks(const evaluation::Evaluation& evaluation, evaluation::EvaluationQueue& work, int jobs,
-                      const std::atomic<bool>& cancel);
+/// until there are none left. Returns how many threads of its own worked.
+int drive_with_ranks(const evaluation::Evaluation& evaluation, evaluation::EvaluationQueue& work, int jobs,
+                     const std::atomic<bool>& cancel);
 
 /// In every other process: drives laps on `jobs` threads until the first has none left.
 void drive_for_first_rank(const evaluation::Evaluation& evaluation, int jobs,

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <deque>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 
 #include "view/server/http_connection.hpp"
@@ -43,7 +44,12 @@ struct Network::Implementation {
   explicit Implementation(ServerState& shared) : state(shared) {
     listen();
     accept();
-    thread = std::thread([this] { run(); });
+    try {
+      thread = std::thread([this] { run(); });
+    } catch (const std::system_error& error) {
+      throw std::runtime_error("the system cannot start the thread of the server (" + error.code().message() +
+                               ")");
+    }
   }
 
   ~Implementation() {

@@ -1,5 +1,7 @@
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
+#include <utility>
 
 #include "tools/json/json.hpp"
 #include "view/protocol/frame_writer.hpp"
@@ -74,8 +76,8 @@ void Session::save(std::uint64_t client, const std::string& what) {
                            .wall_clock = options_.record_times};
   const std::string name = "slalom-" + scenario_.environment->course.name + "-" + names_.method + "-" +
                            std::to_string(history_.back().tick) + (what == "replay" ? ".html" : ".mcap");
-  saver_ = std::jthread([this, client, what, name, frames = std::move(frames), recorder = std::move(recorder),
-                         opening = Opening{hello(), options(), state(), scene_}] {
+  auto write = [this, client, what, name, frames = std::move(frames), recorder = std::move(recorder),
+                opening = Opening{hello(), options(), state(), scene_}] {
     try {
       const std::string content =
           what == "replay" ? replay_of(opening, frames) : recording_of(opening, frames, recorder);
@@ -84,7 +86,14 @@ void Session::save(std::uint64_t client, const std::string& what) {
       refuse(client, error.what());
     }
     saving_ = false;
-  });
+  };
+  try {
+    saver_ = std::jthread(std::move(write));
+  } catch (const std::system_error& error) {
+    saving_ = false;
+    throw std::runtime_error("save: the system cannot start a thread to write the file (" +
+                             error.code().message() + ")");
+  }
 }
 
 }  // namespace slalom::view

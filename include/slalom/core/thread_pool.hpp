@@ -12,7 +12,8 @@ namespace slalom {
 /// its partial result and combine the slots in order.
 class ThreadPool {
  public:
-  /// `threads` in [1, 1024], the caller's included. Throws std::invalid_argument otherwise.
+  /// `threads` in [1, 1024], the caller's included. Throws std::invalid_argument otherwise, and
+  /// std::runtime_error if the system cannot start that many.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;

@@ -60,8 +60,8 @@ class LapQueue {
 };
 
 /// Drives laps on `jobs` threads until `queue` is empty or `cancel` is true. The results do not depend on
-/// which thread drives which lap.
-void drive_laps(const Evaluation& evaluation, LapQueue& queue, int jobs, const std::atomic<bool>& cancel);
+/// which thread drives which lap. Returns how many threads worked: fewer if the system could not start all.
+int drive_laps(const Evaluation& evaluation, LapQueue& queue, int jobs, const std::atomic<bool>& cancel);
 
 namespace detail {
 class FolderLock;

@@ -92,6 +92,12 @@ class ParameterEstimator {
     std::array<double, delays> angle{};  ///< rad, of the wheels at gain 1, for each delay
   };
 
+  /// Of the prior alone.
+  struct Prior {
+    detail::Moments logarithm, gain, delay;  ///< of the friction's logarithm, the gain and the delay, s
+    double quantile = 0;                     ///< of the friction's logarithm
+  };
+
   const Moment& ago(int periods) const noexcept;
   void turn_wheels(Moment& next) const noexcept;
   void weigh() noexcept;
@@ -109,11 +115,7 @@ class ParameterEstimator {
   std::vector<double> log_prior_;  ///< logarithms of weights, [delay][gain][friction]
   std::vector<double> evidence_;   ///< logarithms of likelihoods
   std::vector<float> lateral_error_, yaw_error_;
-  /// Of the prior alone.
-  struct {
-    detail::Moments logarithm, gain, delay;  ///< of the friction's logarithm, the gain and the delay, s
-    double quantile = 0;                     ///< of the friction's logarithm
-  } prior_;
+  Prior prior_;
   ParameterEstimate estimate_;
 };
 

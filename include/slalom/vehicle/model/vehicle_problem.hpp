@@ -65,10 +65,10 @@ struct VehicleTraits {
   ObstacleMap obstacle_map = ObstacleMap::inflated;  ///< what the map of obstacles holds
   double clearance_reach = 0;                        ///< m
   BodyOptions body;                                  ///< by which obstacles are inflated
-  /// Where the model has tyres that slip: the friction (> 0) that its options give and the share of it that
-  /// plans may use. The planner then predicts the start with the model, and lowers the path's speeds to what
-  /// the car can do.
-  double friction = 0, usable_grip = 0;
+  /// Where the model has tyres that slip: the friction (> 0) that its options give. The planner then predicts
+  /// the start with the model, and lowers the path's speeds to what the car can do.
+  double friction = 0;
+  double usable_grip = 0;  ///< the share of the friction that plans may use
   double half_steer_speed =
       0;                    ///< m/s, with tyres that slip: an input steers half as much as at a standstill
   double switch_speed = 0;  ///< m/s, with tyres that slip: above it the motor's power is the limit
