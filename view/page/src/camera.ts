@@ -7,14 +7,21 @@ export class Camera {
   turn = 0; // rad, of the map on the screen
   follow: Follow = "follow";
   width = 1; height = 1;
+  /** Pixels at the edges of the view that panels cover. The camera's point lies in the middle of the rest. */
+  covered = { left: 0, right: 0, top: 0, bottom: 0 };
+
+  private get freeWidth() { return Math.max(60, this.width - this.covered.left - this.covered.right); }
+  private get freeHeight() { return Math.max(60, this.height - this.covered.top - this.covered.bottom); }
+  get middleX() { return this.covered.left + this.freeWidth / 2; }
+  get middleY() { return this.covered.top + this.freeHeight / 2; }
 
   toScreen(x: number, y: number): [number, number] {
     const c = Math.cos(this.turn), s = Math.sin(this.turn), dx = x - this.x, dy = y - this.y;
-    return [this.width / 2 + this.zoom * (c * dx - s * dy), this.height / 2 - this.zoom * (s * dx + c * dy)];
+    return [this.middleX + this.zoom * (c * dx - s * dy), this.middleY - this.zoom * (s * dx + c * dy)];
   }
   toMap(px: number, py: number): [number, number] {
     const c = Math.cos(this.turn), s = Math.sin(this.turn);
-    const u = (px - this.width / 2) / this.zoom, v = (this.height / 2 - py) / this.zoom;
+    const u = (px - this.middleX) / this.zoom, v = (this.middleY - py) / this.zoom;
     return [this.x + c * u + s * v, this.y - s * u + c * v];
   }
   zoomAt(px: number, py: number, factor: number) {
@@ -26,15 +33,17 @@ export class Camera {
     this.y += y - ny;
   }
   pan(dx: number, dy: number) {
-    const [x, y] = this.toMap(this.width / 2 - dx, this.height / 2 - dy);
+    const [x, y] = this.toMap(this.middleX - dx, this.middleY - dy);
     this.x = x;
     this.y = y;
     this.follow = "free";
   }
-  /** Keeps the car in view, a little behind the middle, so that more is seen of what lies ahead. */
-  track(x: number, y: number, yaw: number) {
+  /** Keeps the car and the `reach` (m) of the plan ahead of it in view. */
+  track(x: number, y: number, yaw: number, reach: number) {
     if (this.follow === "free") return;
-    const ahead = (this.follow === "heading" ? 0.22 * this.height : 0.14 * Math.min(this.width, this.height)) / this.zoom;
+    // The middle of the view lies ahead of the car by half the plan, as far as the car stays away from the edge.
+    const room = this.follow === "heading" ? this.freeHeight : Math.min(this.freeWidth, this.freeHeight);
+    const ahead = Math.min(0.5 * reach, (0.4 * room) / this.zoom);
     this.x = x + ahead * Math.cos(yaw);
     this.y = y + ahead * Math.sin(yaw);
     this.turn = this.follow === "heading" ? Math.PI / 2 - yaw : 0;
@@ -44,6 +53,6 @@ export class Camera {
     this.turn = 0;
     this.x = (x0 + x1) / 2;
     this.y = (y0 + y1) / 2;
-    this.zoom = Math.min(this.width / (x1 - x0 + 1), this.height / (y1 - y0 + 1));
+    this.zoom = Math.max(2, Math.min(this.freeWidth / (x1 - x0), this.freeHeight / (y1 - y0)));
   }
 }

@@ -10,7 +10,7 @@ const strips: Strip[] = [
   { title: "Cost of the plan", unit: "", lines: [{ name: "distance_cost", label: "distance", colour: "--blue" }, { name: "yaw_cost", label: "yaw", colour: "--violet", dash: [6, 3] }, { name: "collision_cost", label: "collision", colour: "--bad" }] },
   { title: "Steering", unit: "rad", lines: [{ name: "command_steer", label: "command", colour: "--accent", digits: 3 }, { name: "steer", label: "wheels", colour: "--text", dash: [5, 3], digits: 3 }] },
   { title: "Speed", unit: "m/s", lines: [{ name: "command_speed", label: "command", colour: "--accent", digits: 2 }, { name: "speed", label: "car", colour: "--text", dash: [5, 3], digits: 2 }] },
-  { title: "Samples", unit: "", lines: [{ name: "effective_samples", label: "effective", colour: "--blue", digits: 0 }, { name: "temperature", label: "temperature", colour: "--warn", dash: [5, 3], right: true, digits: 2 }] },
+  { title: "Samples", unit: "", lines: [{ name: "effective_samples", label: "ESS", colour: "--blue", digits: 0 }, { name: "temperature", label: "temperature", colour: "--warn", dash: [5, 3], right: true, digits: 2 }] },
   { title: "Collided candidates", unit: "%", scale: 100, lines: [{ name: "collided_share", label: "share", colour: "--bad", digits: 0 }] },
   { title: "Clearance", unit: "m", lines: [{ name: "clearance", label: "to wall or obstacle", colour: "--accent", digits: 2 }] },
 ];
@@ -145,7 +145,9 @@ export class Charts {
     this.deadline = at("deadline_ms");
     this.latest = frame;
     this.step = at("prediction_step");
+    this.samples = at("samples");
   }
+  private samples = 0;
   private step = 0.05;
 
   /** At most ten times a second: nobody reads charts faster. */
@@ -158,7 +160,8 @@ export class Charts {
       p.plot?.setData(this.data(p));
       p.strip.lines.forEach((l, i) => {
         const v = p.columns[i].at(-1);
-        p.values[i].textContent = `${l.label} ${v == null ? "–" : v.toFixed(l.digits ?? 2)}`;
+        const of = l.name === "effective_samples" && this.samples > 0 ? ` of ${this.samples}` : "";
+        p.values[i].textContent = `${l.label} ${v == null ? "–" : v.toFixed(l.digits ?? 2)}${of}`;
       });
     }
     const c = this.latest?.covariance;

@@ -5,8 +5,8 @@ export class ForkBox {
   private options?: Options;
 
   constructor(private readonly box: HTMLDialogElement, private readonly send: (command: Record<string, unknown>) => void) {
-    box.innerHTML = `<form method="dialog"><h2>Fork</h2>
-      <p>From the tick that is shown another controller drives on; the present one goes on as a ghost in the same world.</p>
+    box.innerHTML = `<form method="dialog"><h2 id="fork-title">Fork</h2>
+      <p>Another controller continues from the control step shown. The present one continues as a ghost.</p>
       <label class="line"><span>Method</span><select id="fork-method"></select></label>
       <label class="line"><span>Options</span><input type="text" id="fork-options" placeholder="samples=512 temperature=1" spellcheck="false" autocomplete="off"></label>
       <p id="fork-keys"></p>
@@ -21,7 +21,7 @@ export class ForkBox {
   takeOptions(options: Options) { this.options = options; }
 
   open(hello: Hello, state: State) {
-    this.method.replaceChildren(...hello.methods.map((m) => new Option(m === state.method ? `${m} (drives now)` : m, m)));
+    this.method.replaceChildren(...hello.methods.map((m) => new Option(m === state.method ? `${m} (present)` : m, m)));
     this.method.value = state.ghost || (hello.methods.find((m) => m !== state.method) ?? state.method);
     this.text.value = "";
     this.showKeys();

@@ -6,13 +6,16 @@ import { EvaluationPane } from "./evaluation";
 import { ForkBox } from "./fork";
 import type { Link } from "./link";
 import { attachPointer, type Tool } from "./pointer";
+import { Popover } from "./popover";
 import { OptionsPane } from "./options";
 import { download, picture } from "./picture";
 import { Player, recordings } from "./player";
-import { layout, help } from "./layout";
+import { foldHeader, help, icon, layout } from "./layout";
 import { rampCss, themes } from "./palette";
 import type { Frame, Hello, Scene, State, Text } from "./protocol";
 import { copy, toast } from "./toast";
+import { attachKeys, attachTabs, returnFocus } from "./keys";
+import { coveredBy, place, showRuler } from "./overlay";
 import { layers, SceneView, terms, type Layer, type Term } from "./scene";
 
 layout(document.getElementById("app")!);
@@ -75,7 +78,7 @@ function got(message: Text) {
     fill("course", message.courses);
     fill("method", message.methods);
     fill("config", message.configurations);
-    fill("ghost", ["", ...message.methods], "no ghost");
+    fill("ghost", ["", ...message.methods], "none");
   } else if (message.type === "state") showState(message);
   else if (message.type === "options") { options.show(message); fork.takeOptions(message); changedOptions = message.changed; showAddress(); }
   else if (message.type === "error") toast(message.message, true);
@@ -117,15 +120,14 @@ function showState(next: State) {
     if (document.activeElement !== input) input.value = value;
   }
   const past = next.tick < next.newest;
-  get("play").textContent = next.paused ? "▶ Play" : "❚❚ Pause";
+  get("play").innerHTML = next.paused ? `${icon("play")}<span>Play</span>` : `${icon("pause")}<span>Pause</span>`;
   get("play").classList.toggle("primary", next.paused);
-  get("fork").hidden = !next.paused || isReplay;
   const mode = get("mode");
   mode.className = "pill" + (next.paused ? " warn" : "");
-  get("mode-text").textContent = (isReplay ? "replay" : next.real_time ? "real time" : "lockstep") + (next.paused ? (past && !isReplay ? " · earlier tick" : " · paused") : next.rate === 0 ? " · maximum speed" : next.rate !== 1 ? ` · ${next.rate}×` : "");
+  get("mode-text").textContent = (isReplay ? "replay" : next.real_time ? "real time" : "lockstep") + (next.paused ? (past && !isReplay ? " · earlier tick" : " · paused") : next.rate === 0 ? " · max speed" : next.rate !== 1 ? ` · ${next.rate}×` : "");
   mode.title = isReplay ? "A recording of an earlier drive" : next.real_time ? "Commands take effect after the wall-clock time that the planner needed, as on a car" : "Simulated time waits for the planner: the same seed gives the same drive on any machine";
   get<HTMLSelectElement>("rate").value = String(next.rate);
-  get("real-time").classList.toggle("on", next.real_time);
+  get<HTMLInputElement>("real-time").checked = next.real_time;
   showTimeline();
   const best = Math.min(...next.laps.map((l) => l.time));
   const name = (l: (typeof next.laps)[number]) => l.method + (l.ghost ? " (ghost)" : "");
@@ -182,22 +184,18 @@ function showFrame() {
   dirty = true;
 }
 
+/** The size of the stage, and what panels cover of it. A fitted course stays fitted. */
 function resize() {
-  const stage = get("stage");
+  const stage = get("stage"), fitted = scene.isFitted;
   scene.camera.width = stage.clientWidth;
   scene.camera.height = stage.clientHeight;
+  scene.camera.covered = coveredBy(stage, get<HTMLDetailsElement>("layers"), get("readout"));
+  if (fitted) scene.fit();
   dirty = true;
 }
-new ResizeObserver(resize).observe(get("stage"));
+const resized = new ResizeObserver(resize);
+for (const id of ["stage", "layers", "readout"]) resized.observe(get(id));
 resize();
-
-/** Puts a label below (or above) what it names. */
-function place(label: HTMLElement, at: { x: number; y: number } | undefined, side: 1 | -1) {
-  label.hidden = !at;
-  if (!at) return;
-  const [x, y] = scene.camera.toScreen(at.x, at.y), away = 0.34 * scene.camera.zoom + 8;
-  label.style.transform = `translate(${Math.round(x - label.offsetWidth / 2)}px, ${Math.round(side > 0 ? y + away : y - away - label.offsetHeight)}px)`;
-}
 
 function draw() {
   if (dirty) {
@@ -205,14 +203,11 @@ function draw() {
     scene.draw();
     charts.draw();
     const car = frame?.bodies[0], ghost = scene.visible.has("ghost") ? frame?.ghost : undefined;
-    // Behind the car, so that the label does not hide the plan; a ghost close by has its label on the other side.
-    const behind = (yaw: number) => (Math.sin(yaw + scene.camera.turn) < -0.25 ? -1 : 1);
-    place(get("label"), car, behind(car?.yaw ?? 0));
+    place(get("label"), car, scene.camera);
     const near = car && ghost && Math.hypot(car.x - ghost.x, car.y - ghost.y) < 1.2;
-    place(get("ghost-label"), ghost, near ? (behind(car.yaw) > 0 ? -1 : 1) : behind(ghost?.yaw ?? 0));
-    const metres = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20].find((m) => m * scene.camera.zoom >= 48) ?? 20;
-    get("ruler-text").textContent = metres + " m";
-    get("ruler-bar").style.width = metres * scene.camera.zoom + "px";
+    place(get("ghost-label"), ghost, scene.camera, near ? 1 : 0);
+    showRuler(scene.camera, get("ruler-text"), get("ruler-bar"));
+    showFollow();
     const [low, high] = scene.costRange;
     get("scale-low").textContent = low.toPrecision(3);
     get("scale-high").textContent = high.toPrecision(3);
@@ -236,14 +231,22 @@ function setTheme(name: "dark" | "light") {
 }
 
 let tool: Tool = "disc";
+function press(button: HTMLElement, on: boolean) {
+  button.classList.toggle("on", on);
+  button.setAttribute("aria-pressed", String(on));
+}
 function setTool(next: Tool) {
   tool = next;
-  for (const b of document.querySelectorAll<HTMLElement>("[data-tool]")) b.classList.toggle("on", b.dataset.tool === next);
+  for (const b of document.querySelectorAll<HTMLElement>("[data-tool]")) press(b, b.dataset.tool === next);
 }
 function setFollow(next: "free" | "follow" | "heading" | "fit") {
   if (next === "fit") scene.fit();
   else scene.camera.follow = next;
   dirty = true;
+}
+function showFollow() {
+  const now = scene.isFitted ? "fit" : scene.camera.follow;
+  for (const b of document.querySelectorAll<HTMLElement>("[data-follow]")) if ((b.ariaPressed === "true") !== (b.dataset.follow === now) || !b.ariaPressed) press(b, b.dataset.follow === now);
 }
 
 function clicked(x: number, y: number) {
@@ -255,27 +258,28 @@ attachPointer({ canvas: get<HTMLCanvasElement>("scene"), scene, send, tool: () =
 
 // Controls.
 const click = (id: string, act: () => void) => (get(id).onclick = act);
-const scenario = (key: string) => (get<HTMLInputElement>(key).onchange = () => { const value = get<HTMLInputElement>(key).value; send({ do: "scenario", [key]: key === "obstacles" || key === "opponents" ? Number(value) : value }); (document.activeElement as HTMLElement).blur(); });
+const scenario = (key: string) => (get<HTMLInputElement>(key).onchange = () => { const value = get<HTMLInputElement>(key).value; send({ do: "scenario", [key]: key === "obstacles" || key === "opponents" ? Number(value) : value });; });
 for (const key of ["course", "config", "seed", "obstacles", "opponents"]) scenario(key);
-get<HTMLSelectElement>("method").onchange = () => { send({ do: "method", method: get<HTMLSelectElement>("method").value }); get("method").blur(); };
-get<HTMLSelectElement>("ghost").onchange = () => { send({ do: "ghost", method: get<HTMLSelectElement>("ghost").value }); get("ghost").blur(); };
+get<HTMLSelectElement>("method").onchange = () => { send({ do: "method", method: get<HTMLSelectElement>("method").value }); };
+get<HTMLSelectElement>("ghost").onchange = () => { send({ do: "ghost", method: get<HTMLSelectElement>("ghost").value }); };
 get<HTMLSelectElement>("rate").onchange = () => send({ do: "rate", rate: Number(get<HTMLSelectElement>("rate").value) });
 const play = () => send({ do: state?.paused ? "play" : "pause" });
 click("play", play);
 click("step", () => send({ do: "step" }));
 click("restart", () => send({ do: "restart" }));
-click("real-time", () => send({ do: "real_time", on: !state?.real_time }));
+get("real-time").onchange = () => send({ do: "real_time", on: get<HTMLInputElement>("real-time").checked });
 const openFork = () => { if (isReplay || !hello || !state) return; if (!state.paused) send({ do: "pause" }); fork.open(hello, state); };
 click("fork", openFork);
 click("theme", () => { setTheme(themeName === "dark" ? "light" : "dark"); try { localStorage.setItem("slalom-theme", themeName); } catch { /* storage is not available */ } });
 click("help", () => get<HTMLDialogElement>("help-box").showModal());
-const menu = get<HTMLDetailsElement>("save");
-const save = (id: string, act: () => void) => click(id, () => { menu.open = false; act(); });
+const menu = new Popover(get("save-open"), get("save"));
+new Popover(get("scenario-open"), get("scenario"));
+foldHeader();
+const save = (id: string, act: () => void) => click(id, () => { menu.close(); act(); });
 save("save-picture", () => { scene.draw(); void picture(get<HTMLCanvasElement>("scene"), get("stage")).then((blob) => download(`slalom-${state?.course}-${state?.tick}.png`, blob, "image/png")); });
 save("save-replay", () => { if (!isReplay) { toast("Saving a replay of the last minute …"); send({ do: "save", what: "replay" }); } else void fetch(location.href).then((r) => r.text()).then((text) => download("slalom-replay.html", text, "text/html"), () => toast("This page is the replay; it is already on your disk.")); });
 save("save-recording", () => { toast("Saving a recording of the last minute …"); send({ do: "save", what: "recording" }); });
 save("save-link", () => copy(location.href, "a link"));
-document.addEventListener("pointerdown", (event) => { if (!menu.contains(event.target as Node)) menu.open = false; });
 click("nudge-left", () => send({ do: "nudge", left: 0.15 }));
 click("nudge-right", () => send({ do: "nudge", left: -0.15 }));
 const timeline = get<HTMLInputElement>("timeline");
@@ -283,13 +287,18 @@ timeline.oninput = () => { scrubbing = true; send({ do: "seek", tick: Number(tim
 timeline.onchange = () => (scrubbing = false);
 for (const b of document.querySelectorAll<HTMLElement>("[data-tool]")) b.onclick = () => setTool(b.dataset.tool as Tool);
 for (const b of document.querySelectorAll<HTMLElement>("[data-follow]")) b.onclick = () => setFollow(b.dataset.follow as "follow");
-for (const b of document.querySelectorAll<HTMLElement>("nav button")) b.onclick = () => showPane(b.dataset.pane!);
+attachTabs(document.querySelector("nav")!, showPane);
 for (const box of document.querySelectorAll<HTMLInputElement>("[data-layer]"))
   box.onchange = () => { const name = box.dataset.layer as Layer; if (box.checked) scene.visible.add(name); else scene.visible.delete(name); dirty = true; };
 get<HTMLSelectElement>("term").onchange = () => { scene.term = get<HTMLSelectElement>("term").value as Term; dirty = true; };
 
 function showPane(name: string) {
-  for (const b of document.querySelectorAll<HTMLElement>("nav button")) b.classList.toggle("on", b.dataset.pane === name);
+  for (const b of document.querySelectorAll<HTMLElement>("nav button")) {
+    const shown = b.dataset.pane === name;
+    b.classList.toggle("on", shown);
+    b.setAttribute("aria-selected", String(shown));
+    b.tabIndex = shown ? 0 : -1;
+  }
   for (const p of document.querySelectorAll<HTMLElement>(".pane")) p.hidden = p.id !== "pane-" + name;
   if (name === "charts") charts.rebuild();
 }
@@ -305,24 +314,18 @@ const keys: Record<string, () => void> = {
   a: () => setFollow("fit"),
   "1": () => setTool("disc"), "2": () => setTool("box"), "3": () => setTool("car"), "4": () => setTool("pan"),
   k: openFork,
-  s: () => { menu.open = !menu.open; },
+  s: () => menu.toggle(),
   t: () => get("theme").click(),
   l: () => { get<HTMLDetailsElement>("layers").open = !get<HTMLDetailsElement>("layers").open; },
   "?": () => get<HTMLDialogElement>("help-box").showModal(),
   Delete: () => { if (scene.selected > 0) send({ do: "remove", body: scene.selected }); scene.selected = -1; },
   Backspace: () => keys.Delete(),
 };
-addEventListener("keydown", (event) => {
-  const target = event.target as HTMLElement;
-  if (/^(INPUT|SELECT|TEXTAREA)$/.test(target.tagName) && !(target instanceof HTMLInputElement && /range|checkbox/.test(target.type))) return;
-  if ((event.ctrlKey || event.metaKey) && (event.key === "z" || event.key === "y")) { send({ do: event.key === "z" ? "undo" : "redo" }); event.preventDefault(); return; }
-  if (event.ctrlKey || event.metaKey || event.altKey) return;
-  const act = keys[event.key];
-  if (act) { act(); event.preventDefault(); if (event.key === " ") target.blur(); }
-});
+attachKeys(keys, () => send({ do: "undo" }), () => send({ do: "redo" }));
+returnFocus(get("scene"));
 
 help(get("help-box"));
-get<HTMLSelectElement>("term").append(...terms.map((t) => new Option(t === "total" ? "total cost" : t + " cost", t, t === "total", t === "total")));
+get<HTMLSelectElement>("term").append(...terms.map((t) => new Option(t === "total" ? "Total cost" : t[0].toUpperCase() + t.slice(1) + " cost", t, t === "total", t === "total")));
 if (isReplay) {
   document.body.classList.add("replay");
   get("caption").hidden = false;

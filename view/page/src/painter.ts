@@ -16,7 +16,7 @@ void main() {
   local = vec2(mix(-extend, len + extend, corner.x), mix(-reach, reach, corner.y));
   vec2 p = a + along * local.x + across * local.y;
   colour = mix(colour0, colour1, corner.x);
-  gl_Position = vec4(2.0 * p / size, 0, 1);
+  gl_Position = vec4(2.0 * p / size + view.xy, 0, 1);
 }`;
 const lineFragment = `#version 300 es
 precision highp float;
@@ -31,7 +31,7 @@ layout(location=0) in vec2 point; layout(location=1) in vec4 tint;
 uniform vec4 view; uniform vec2 size; uniform vec2 turn; out vec4 colour;
 void main() {
   vec2 d = point * view.z; vec2 p = vec2(turn.x * d.x - turn.y * d.y, turn.y * d.x + turn.x * d.y);
-  colour = tint; gl_Position = vec4(2.0 * p / size, 0, 1);
+  colour = tint; gl_Position = vec4(2.0 * p / size + view.xy, 0, 1);
 }`;
 const fillFragment = `#version 300 es
 precision highp float; in vec4 colour; out vec4 result;
@@ -44,7 +44,7 @@ void main() {
   vec2 q = corner * extent;
   vec2 m = place.xy + vec2(place.z * q.x - place.w * q.y, place.w * q.x + place.z * q.y);
   vec2 d = m * view.z; vec2 p = vec2(turn.x * d.x - turn.y * d.y, turn.y * d.x + turn.x * d.y);
-  gl_Position = vec4(2.0 * p / size, 0, 1);
+  gl_Position = vec4(2.0 * p / size + view.xy, 0, 1);
 }`;
 const cellFragment = `#version 300 es
 precision highp float; in vec2 uv; out vec4 result; uniform sampler2D cells; uniform vec4 inside, outside, edge; uniform float edgeWidth;
@@ -148,7 +148,7 @@ export class Painter {
   private use(p: Program) {
     const gl = this.gl, c = this.camera;
     gl.useProgram(p.program);
-    gl.uniform4f(p.view, 0, 0, c.zoom * this.ratio, this.ratio);
+    gl.uniform4f(p.view, (2 * c.middleX) / c.width - 1, 1 - (2 * c.middleY) / c.height, c.zoom * this.ratio, this.ratio);
     gl.uniform2f(p.size, this.canvas.width, this.canvas.height);
     gl.uniform2f(p.turn, Math.cos(c.turn), Math.sin(c.turn));
   }

@@ -53,7 +53,7 @@ export const themes: Record<"dark" | "light", Theme> = {
     path: hex("#7f8ea3", 0.6), scan: hex("#8fd3ff", 0.85), collided: hex("#ff5a36", 0.42), guide: hex("#f4a8ff", 0.95),
     nominal: hex("#ffffff", 0.75), plan: hex("#3ff2c8"), spread: hex("#3ff2c8", 0.11), driven: hex("#7b8cff", 0.9),
     car: hex("#f3f6fa"), carEdge: hex("#0b0e13"), wheel: hex("#2b3340"), obstacle: hex("#e8a13a"), obstacleEdge: hex("#fff1d6"),
-    ghost: hex("#c79bff", 0.85), selected: hex("#ffffff"), grid: hex("#ffffff", 0.045), opponent: hex("#59b7f0"), mark: hex("#ff5a36", 0.95),
+    ghost: hex("#9060b4", 0.85), selected: hex("#ffffff"), grid: hex("#ffffff", 0.045), opponent: hex("#59b7f0"), mark: hex("#ff5a36", 0.95),
   },
   light: {
     dark: false, ramp: ramp(false),
@@ -61,7 +61,7 @@ export const themes: Record<"dark" | "light", Theme> = {
     path: hex("#6b7a8d", 0.6), scan: hex("#0069b4", 0.8), collided: hex("#c93410", 0.4), guide: hex("#a01bb0", 0.95),
     nominal: hex("#20262e", 0.7), plan: hex("#00876c"), spread: hex("#00876c", 0.11), driven: hex("#4353d8", 0.85),
     car: hex("#1d2530"), carEdge: hex("#ffffff"), wheel: hex("#66738a"), obstacle: hex("#d98518"), obstacleEdge: hex("#5c3500"),
-    ghost: hex("#7c3fc4", 0.85), selected: hex("#000000"), grid: hex("#000000", 0.05), opponent: hex("#1273b8"), mark: hex("#c93410", 0.95),
+    ghost: hex("#4a1470", 0.85), selected: hex("#000000"), grid: hex("#000000", 0.05), opponent: hex("#1273b8"), mark: hex("#c93410", 0.95),
   },
 };
 

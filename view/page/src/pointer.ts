@@ -16,8 +16,9 @@ interface Setting {
 
 const slack = 5; // pixels that a click may move
 const gap = 40; // ms between two messages of a drag
+const longPress = 600; // ms that a finger rests on an obstacle to delete it
 
-/** Mouse, pen and fingers on the scene: pan, zoom, pinch, drop, drag, take away. */
+/** Mouse, pen and fingers on the scene: pan, zoom, pinch, place, drag, delete. */
 export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixed }: Setting) {
   const pointers = new Map<number, { x: number; y: number }>();
   let start: { x: number; y: number } | undefined;
@@ -25,8 +26,14 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
   let dragged: Body | undefined;
   let grip = { x: 0, y: 0 };
   let sent = 0;
+  let pressed = 0; // timer of a long press
 
   const place = (e: PointerEvent | MouseEvent) => { const box = canvas.getBoundingClientRect(); return { x: e.clientX - box.left, y: e.clientY - box.top }; };
+  const remove = (body: Body | undefined) => {
+    if (!body || body.kind === 0 || body.kind === 4 || fixed) return false;
+    send({ do: "remove", body: body.id });
+    return true;
+  };
   const move = (body: Body, x: number, y: number) => {
     if (body.kind === 0) send({ do: "place_car", x, y, yaw: body.yaw });
     else send({ do: "move", body: body.id, x, y, yaw: body.yaw });
@@ -37,6 +44,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
     canvas.setPointerCapture(e.pointerId);
     const p = place(e);
     pointers.set(e.pointerId, p);
+    clearTimeout(pressed);
     if (pointers.size > 1) { dragged = undefined; moved = true; return; }
     if (e.button !== 0) return;
     start = p;
@@ -46,6 +54,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
     if (fixed || dragged?.kind === 4) dragged = undefined; // opponents drive themselves
     scene.selected = dragged && dragged.kind !== 0 ? dragged.id : -1;
     if (dragged) grip = { x: dragged.x - x, y: dragged.y - y };
+    if (e.pointerType === "touch") pressed = window.setTimeout(() => { if (start && !moved && remove(dragged)) start = dragged = undefined; }, longPress);
     redraw();
   });
 
@@ -64,7 +73,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
       if (was > 1) scene.camera.zoomAt((p.x + other.x) / 2, (p.y + other.y) / 2, is / was);
       scene.camera.pan((p.x - before.x) / 2, (p.y - before.y) / 2);
     } else if (start) {
-      if (Math.hypot(p.x - start.x, p.y - start.y) > slack) moved = true;
+      if (Math.hypot(p.x - start.x, p.y - start.y) > slack) { moved = true; clearTimeout(pressed); }
       if (moved && dragged) {
         const [x, y] = scene.camera.toMap(p.x, p.y);
         if (performance.now() - sent > gap) { sent = performance.now(); move(dragged, x + grip.x, y + grip.y); }
@@ -81,6 +90,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
   const up = (e: PointerEvent) => {
     const p = place(e);
     pointers.delete(e.pointerId);
+    clearTimeout(pressed);
     canvas.classList.remove("panning");
     if (!start || pointers.size) return;
     const [x, y] = scene.camera.toMap(p.x, p.y);
@@ -98,8 +108,8 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
   canvas.addEventListener("pointerleave", () => { scene.preview = undefined; redraw(); });
   canvas.addEventListener("contextmenu", (e) => {
     e.preventDefault();
-    const p = place(e), [x, y] = scene.camera.toMap(p.x, p.y), body = scene.bodyAt(x, y);
-    if (body && body.kind !== 0 && body.kind !== 4 && !fixed) send({ do: "remove", body: body.id });
+    const p = place(e), [x, y] = scene.camera.toMap(p.x, p.y);
+    remove(scene.bodyAt(x, y));
   });
   canvas.addEventListener("wheel", (e) => {
     e.preventDefault();

@@ -4,18 +4,18 @@ import { rampColour, type Rgba, type Theme } from "./palette";
 import type { Body, Frame, Hello, Scene } from "./protocol";
 
 export const layers = [
-  ["costMap", "Cost map", "where the car's rear axle cannot be, from the scan"],
+  ["costMap", "Cost map", "where the rear axle would mean a collision, from the scan"],
   ["path", "Course line", "the line to follow"],
-  ["scan", "LiDAR", "what the scanner sees"],
-  ["candidates", "Candidates", "control sequences that were drawn, coloured by cost"],
-  ["guides", "Guides", "guide particles and the way they were moved"],
-  ["nominal", "Nominal", "the sequence round which samples are weighed"],
-  ["plan", "Plan", "what is sent to the car"],
+  ["scan", "LiDAR", "end points of the scan"],
+  ["candidates", "Candidates", "sampled control sequences, coloured by cost"],
+  ["guides", "Guides", "guide particles and how the solver moved them"],
+  ["nominal", "Nominal", "the sequence around which samples are weighted"],
+  ["plan", "Plan", "the sequence that is sent to the car"],
   ["spread", "Spread", "two standard deviations of the plan, from the solver's covariance"],
-  ["driven", "Driven line", "where the car has been"],
-  ["obstacles", "Obstacles", "parked cars, boxes, poles"],
-  ["opponents", "Opponents", "cars that drive along the line"],
-  ["ghost", "Ghost", "the second controller, in the same world"],
+  ["driven", "Driven line", "the path of the car"],
+  ["obstacles", "Obstacles", "parked cars, boxes and poles"],
+  ["opponents", "Opponents", "cars that follow the course line"],
+  ["ghost", "Ghost", "the second controller, in a world of its own"],
 ] as const;
 export type Layer = (typeof layers)[number][0];
 export const terms = ["distance", "yaw", "collision", "total"] as const;
@@ -58,7 +58,8 @@ export class SceneView {
   private costMapOf?: Frame;
   private driven: number[] = [];
   private drivenTicks: number[] = [];
-  private bounds: [number, number, number, number] = [-5, -5, 5, 5];
+  private bounds: [number, number, number, number] = [-5, -5, 5, 5]; // of the course line, with room for the walls
+  get courseBounds() { return this.bounds; }
   marks: Mark[] = []; // collisions of an evaluation
   preview?: { x: number; y: number; kind: number };
 
@@ -85,7 +86,14 @@ export class SceneView {
     }
   }
 
-  fit() { this.camera.fit(...this.bounds); }
+  fit() {
+    this.camera.fit(...this.bounds);
+    this.fitted = this.place();
+  }
+  /** Whether the camera is where `fit` put it. */
+  get isFitted() { return this.fitted === this.place(); }
+  private place() { const c = this.camera; return c.follow === "free" ? [c.x, c.y, c.zoom].join() : "not fitted"; }
+  private fitted = "";
 
   setFrame(frame: Frame, tick: number, x: number, y: number) {
     this.frame = frame;
@@ -122,7 +130,8 @@ export class SceneView {
   draw() {
     const { painter, camera, theme, frame } = this;
     const car = frame?.bodies.find((b) => b.kind === 0);
-    if (car) camera.track(car.x, car.y, car.yaw);
+    const end = frame?.plan?.at(-1);
+    if (car) camera.track(car.x, car.y, car.yaw, end ? Math.hypot(end.x - car.x, end.y - car.y) : 0);
     painter.begin(camera, theme.ground);
     this.drawMap();
     if (!frame) return;
@@ -196,10 +205,13 @@ export class SceneView {
     const low = sorted[0] ?? 0, high = Math.max(low + 1e-9, sorted[Math.floor(0.9 * (sorted.length - 1))] ?? 1);
     this.costRange = [low, high];
     const order = Array.from({ length: c.count }, (_, i) => i).sort((a, b) => (c.collided[b] - c.collided[a]) || value(b) - value(a));
+    // Their number is small where the weight is concentrated, so a share of the largest weight is shown.
+    const heaviest = Math.max(1e-12, ...Array.from({ length: c.count }, (_, i) => c.terms[5 * i + 4]));
     for (const i of order) {
+      const share = Math.sqrt(c.terms[5 * i + 4] / heaviest);
       const t = Math.min(1, Math.max(0, (value(i) - low) / (high - low)));
-      const colour = c.collided[i] ? theme.collided : rampColour(theme, t, (theme.dark ? 0.75 : 0.7) - 0.38 * t);
-      this.painter.polyline(c.xy, i * c.points, c.points, colour, c.collided[i] ? 1 : 1.5 - 0.4 * t, false);
+      const colour = c.collided[i] ? theme.collided : rampColour(theme, t, 0.5 - 0.25 * t + 0.5 * share);
+      this.painter.polyline(c.xy, i * c.points, c.points, colour, c.collided[i] ? 1 : 1 + 2 * share, false);
     }
   }
 
@@ -286,7 +298,7 @@ export class SceneView {
 
   private drawGhost(frame: Frame) {
     const g = frame.ghost!;
-    this.painter.polyline(g.plan, 0, g.plan.length / 2, faded(this.theme.ghost, 0.9), 2.4, true);
+    this.dashed(g.plan, g.plan.length / 2, faded(this.theme.ghost, 0.9), 2.4);
     this.painter.flush();
     this.drawCar(g.x, g.y, g.yaw, g.steer, faded(this.theme.ghost, 0.75), this.theme.carEdge, 0.9);
   }

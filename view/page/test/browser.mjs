@@ -2,6 +2,7 @@
 // SLALOM_TEST=TEXT runs only the tests whose name contains the text.
 import { chromiumPath, Harness } from "./harness.mjs";
 import access from "./suites/access.mjs";
+import accessible from "./suites/accessible.mjs";
 import compare from "./suites/compare.mjs";
 import drive from "./suites/drive.mjs";
 import evaluation from "./suites/evaluation.mjs";
@@ -21,7 +22,7 @@ if (!chromiumPath()) {
 const harness = new Harness(program, pictures, process.env.SLALOM_TEST);
 await harness.open_all();
 await harness.page.goto(harness.server.address);
-for (const suite of [drive, responsive, compare, save, evaluation, layout, access]) await suite(harness);
+for (const suite of [drive, responsive, compare, save, evaluation, layout, accessible, access]) await suite(harness);
 await harness.close();
 console.log(harness.failed ? `${harness.failed} failed` : "all passed");
 process.exit(harness.failed ? 1 : 0);

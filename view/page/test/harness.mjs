@@ -78,6 +78,10 @@ export class Harness {
     await this.send({ do: "pause" });
     await this.until(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
   }
+  /** Hides what is slow to draw without a graphics card, for tests that do not look at it. */
+  hideLayers() { return this.page.evaluate(() => { slalom.scene.visible.clear(); }); }
+  showLayers() { return this.page.evaluate(() => { for (const box of document.querySelectorAll("[data-layer]")) if (box.checked) slalom.scene.visible.add(box.dataset.layer); }); }
+
   /** Waits until the page has drawn what it has received. */
   drawn(page = this.page) { return page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))); }
 

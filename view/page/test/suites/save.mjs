@@ -22,7 +22,7 @@ export default async function (h) {
 
   /** What the page saves when something is clicked. */
   async function saved(from, id) {
-    await from.click("#save > summary");
+    await from.click("#save-open");
     const [file] = await Promise.all([from.waitForEvent("download", { timeout: patience }), from.click(id)]);
     const path = join(h.folder, file.suggestedFilename());
     await file.saveAs(path);
@@ -52,7 +52,7 @@ export default async function (h) {
     await replay.selectOption("#rate", "4");
     await replay.click("#play");
     await wait(() => slalom.state.tick > 35);
-    assert.equal(await replay.evaluate(() => getComputedStyle(document.querySelector("[data-tool=disc]")).display), "none");
+    assert.equal(await replay.isVisible("[data-tool=disc]"), false);
   }
 
   await h.test("the exported replay opens from disk and plays", async () => {
