@@ -188,6 +188,66 @@ TEST_F(ViewSession, SetsUndoesAndForks) {
   EXPECT_NE(next("error")["message"].get<std::string>().find("must be in"), std::string::npos);
 }
 
+TEST_F(ViewSession, UndoesChangesOfBodies) {
+  const auto bodies = [&](int tick) {
+    const std::string message = step_to(tick);
+    return std::string(FrameReader(message).block(Block::bodies).substr(4 + 24));  // without the driven car
+  };
+  const std::string before = bodies(10);
+  tell({{"do", "add"}, {"kind", "disc"}, {"x", 0}, {"y", 50}, {"length", 0.2}});
+  const std::string added = bodies(11);
+  EXPECT_GT(added.size(), before.size());
+  for (const double x : {0.1, 0.2, 0.3})
+    tell({{"do", "move"}, {"body", 3}, {"x", x}, {"y", 50}, {"drag", 5}});
+  const std::string moved = bodies(12);
+  EXPECT_NE(moved, added);
+  tell({{"do", "remove"}, {"body", 1}});
+  EXPECT_LT(bodies(13).size(), moved.size());
+  tell({{"do", "undo"}});
+  EXPECT_EQ(bodies(14), moved) << "with the numbers that they had";
+  tell({{"do", "undo"}});
+  EXPECT_EQ(bodies(15), added) << "a drag is one change";
+  tell({{"do", "undo"}});
+  EXPECT_EQ(bodies(16), before);
+  tell({{"do", "redo"}});
+  EXPECT_EQ(bodies(17), added);
+  tell({{"do", "seek"}, {"tick", 9}});
+  tell({{"do", "step"}, {"ticks", 1}});
+  tell({{"do", "undo"}});
+  EXPECT_NE(next("error")["message"].get<std::string>().find("nothing to undo"), std::string::npos)
+      << "going back has undone the rest";
+}
+
+TEST_F(ViewSession, SendsThePastThatIsAskedFor) {
+  step_to(30);
+  tell({{"do", "past"}, {"from", 10}, {"to", 12}, {"id", 4}});
+  std::string message;
+  do message = client_.next_message();
+  while (message.rfind("SLV1", 0) != 0 || message[4] != static_cast<char>(Block::past));
+  PayloadReader past(FrameReader(message).block(Block::past));
+  for (int tick = 10; tick <= 12; ++tick)
+    for (const char* name : scalar_names()) {
+      const double value = past.get<double>();
+      if (std::string_view(name) == "tick") {
+        EXPECT_EQ(value, tick);
+      }
+    }
+  EXPECT_EQ(next("done")["id"], 4);
+  tell({{"do", "past"}, {"from", "x"}, {"to", 12}, {"id", 5}});
+  EXPECT_EQ(next("error")["id"], 5);
+}
+
+TEST_F(ViewSession, SetsAPresetAsOneChange) {
+  tell({{"do", "set"}, {"key", "svg_mppi.samples"}, {"value", "64"}});
+  tell({{"do", "preset"}, {"set", {"svg_mppi.temperature=5", "mppi.samples=32"}}});
+  EXPECT_EQ(scalar(step_to(2), "samples"), 128) << "the rest is as in the configuration";
+  tell({{"do", "undo"}});
+  EXPECT_EQ(scalar(step_to(3), "samples"), 64);
+  tell({{"do", "preset"}, {"set", {"svg_mppi.samples=32", "svg_mppi.nothing=1"}}});
+  EXPECT_NE(next("error")["message"].get<std::string>().find("nothing"), std::string::npos);
+  EXPECT_EQ(scalar(step_to(4), "samples"), 64) << "a preset with an error changes nothing";
+}
+
 TEST_F(ViewSession, ShowsTheStatesOfTrajectoriesWithTwoInputs) {
   tell({{"do", "set"}, {"key", "vehicle.model"}, {"value", "kinematic_acceleration"}});
   const std::string shown = step_to(3);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/sim/dynamics.hpp"
 #include "view/protocol/frame_writer.hpp"
 
 namespace slalom::view {
@@ -52,11 +53,31 @@ constexpr const char* names[] = {"tick",
                                  "contacts",
                                  "sequence_cost",
                                  "prediction_step",
-                                 "method"};
+                                 "method",
+                                 "slip_estimate",
+                                 "grip_used",
+                                 "friction_estimate",
+                                 "friction_relied_on",
+                                 "steering_gain_estimate",
+                                 "delay_estimate"};
 
 /// How many states a sequence of inputs leads through.
 std::size_t states_of(const vehicle::Planner& planner, std::span<const float> inputs) {
   return inputs.size() / static_cast<std::size_t>(planner.solver().inputs()) + 1;
+}
+
+/// What the observer and the estimator of a car whose tyres slip say; NaN for other cars.
+std::array<double, 6> estimates(const vehicle::PlannerOutput& out) {
+  const vehicle::ParameterEstimate& car = out.parameters;
+  if (car.friction <= 0) {
+    std::array<double, 6> none{};
+    none.fill(std::numeric_limits<double>::quiet_NaN());
+    return none;
+  }
+  const double turning = std::abs(out.speed_estimate * out.yaw_rate_estimate);
+  return {out.slip_estimate,     turning / (car.friction * sim::gravity),
+          car.friction,          car.cautious_friction,
+          car.steering_gain,     car.delay};
 }
 
 }  // namespace
@@ -75,6 +96,7 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
   cost_ = {};
   if (solve && !out.inputs.empty()) predict(tick.planner, out.inputs);
   const double none = std::numeric_limits<double>::quiet_NaN();
+  const auto [slip, grip, friction, cautious, gain, delay] = estimates(out);
   const std::array<double, std::size(names)> values = {
       static_cast<double>(tick.step),
       tick.time,
@@ -115,7 +137,13 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
       static_cast<double>(tick.collisions),
       tick.cost.total(),
       facts.prediction_step,
-      static_cast<double>(facts.method)};
+      static_cast<double>(facts.method),
+      slip,
+      grip,
+      friction,
+      cautious,
+      gain,
+      delay};
 
   FrameWriter to;
   to.begin(Block::scalars);

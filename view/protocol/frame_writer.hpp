@@ -5,6 +5,7 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "slalom/maps/pose.hpp"
 
@@ -24,6 +25,7 @@ enum class Block : std::uint16_t {
   ghost = 10,
   grid = 20,
   path = 21,
+  past = 22,
   file = 30,
 };
 
@@ -31,6 +33,8 @@ enum class Block : std::uint16_t {
 /// zeros to four bytes. Little-endian, as every machine is that this runs on.
 class FrameWriter {
  public:
+  static constexpr std::size_t head_bytes = 12;  ///< before the payload of a message's first block
+
   FrameWriter() { bytes_ = "SLV1"; }
 
   void begin(Block block) {
@@ -72,7 +76,7 @@ class FrameWriter {
     put_difference(counts(point.y - origin_.y), last_y_);
   }
 
-  void append(const std::string& bytes) { bytes_ += bytes; }
+  void append(std::string_view bytes) { bytes_ += bytes; }
   std::string take() { return std::move(bytes_); }
   /// Without the four bytes that a message begins with, to be appended to another message.
   std::string take_blocks() { return take().substr(4); }

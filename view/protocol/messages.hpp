@@ -27,9 +27,14 @@ struct Choices {
   std::vector<std::string> courses, methods, configurations;
 };
 
-/// Names and sizes that do not change while a page is open. `history`, `control_period`: s.
-std::string hello_message(const evaluation::Environment& environment, const Choices& choices, double history,
-                          double control_period);
+struct HelloFacts {
+  std::string session{};      ///< another one after each start of the server
+  double history = 0;         ///< s that can be gone back
+  double control_period = 0;  ///< s
+};
+/// Names and sizes that do not change while a server runs.
+std::string hello_message(const evaluation::Environment& environment, const Choices& choices,
+                          const HelloFacts& facts);
 
 struct OptionsFacts {
   const ScenarioNames& names;

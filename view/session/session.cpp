@@ -1,6 +1,7 @@
 #include "view/session/session.hpp"
 
 #include <algorithm>
+#include <random>
 
 #include "tools/json/json.hpp"
 
@@ -17,6 +18,8 @@ constexpr int most_catching_up = 4;  // ticks that a late clock may owe
 Session::Session(SessionOptions options, Server& server)
     : options_(std::move(options)), server_(server), waiting_(options_.wait_for_client) {
   load(options_.scenario);
+  std::random_device random;
+  number_ = std::to_string(random()) + "-" + std::to_string(random());
   if (!options_.against.empty()) start_ghost(options_.against, configuration_);
 }
 
@@ -34,7 +37,6 @@ void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
   scenario_ = std::move(loaded);
   configuration_ = scenario_.configuration;
   undo_.clear();
-  redo_.clear();
   names_ = names;
   scene_ = std::make_shared<const std::string>(encode_scene(*scenario_.environment));
   server_.broadcast({scene_, true});
@@ -56,6 +58,7 @@ void Session::restart() {
   history_.clear();
   history_bytes_ = 0;
   laps_.clear();
+  undo_.forget_bodies();
   viewed_ = stop_at_ = -1;
   steps_left_ = 0;
   contact_.fill(-1);

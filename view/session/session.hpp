@@ -18,6 +18,7 @@
 #include "view/protocol/messages.hpp"
 #include "view/server/server.hpp"
 #include "view/session/simulation.hpp"
+#include "view/session/undo.hpp"
 
 namespace slalom::view {
 
@@ -99,6 +100,7 @@ class Session {
   void handle(const Received& received);
   void handle(std::uint64_t client, const Json& command);
   void edit(const Edit& edit);
+  void undo(bool again);
   void change(const vehicle::Configuration& configuration, const std::string& method, bool remember);
   void start_ghost(const std::string& method, const vehicle::Configuration& configuration);
   void end_ghost();
@@ -114,7 +116,9 @@ class Session {
 
   // Telling.
   void greet(std::uint64_t client);
-  void refuse(std::uint64_t client, const std::string& why);
+  void refuse(std::uint64_t client, const std::string& why, const Json& id = {});
+  void tell_done(std::uint64_t client, const Json& id);
+  void tell_past(std::uint64_t client, int from, int to);
   void note(const std::string& what);
   void tell_state();
   void tell_options();
@@ -126,10 +130,11 @@ class Session {
 
   SessionOptions options_;
   Server& server_;
+  std::string number_;  ///< random; a server that is started anew has another
   ScenarioNames names_;
   LoadedScenario scenario_;
   vehicle::Configuration configuration_;
-  std::vector<vehicle::Configuration> undo_, redo_;
+  UndoHistory undo_;
   std::optional<Simulation> simulation_, ghost_;
   std::string ghost_method_, ghost_label_;
   std::vector<maps::Pose> ghost_plan_;

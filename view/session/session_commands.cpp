@@ -54,6 +54,19 @@ std::uint64_t count(const std::string& digits) {
   return std::stoull(digits);
 }
 
+/// Applies the settings `set` of a command, a list of key=value. False if there are none.
+bool apply_settings(vehicle::Configuration& configuration, const Json& command, const std::string& method) {
+  const Json set = command.contains("set") ? command.at("set") : Json::array();
+  if (!set.is_array() || set.size() > 200) throw Malformed("set: must be a list of at most 200 key=value");
+  for (const Json& each : set) {
+    const std::string assignment = each.is_string() ? each.get<std::string>() : "";
+    const auto equals = assignment.find('=');
+    if (equals == std::string::npos) throw Malformed("set: must be a list of key=value");
+    vehicle::set_option(configuration, assignment.substr(0, equals), assignment.substr(equals + 1), method);
+  }
+  return !set.empty();
+}
+
 }  // namespace
 
 /// Handles what has come. While a client's steps are driven, tick by tick, its further commands wait, and
@@ -94,13 +107,16 @@ void Session::handle(const Received& received) {
     ++refused_;
     return refuse(received.client, "a command must be a JSON object");
   }
+  const Json* given = command.find("id");
+  const Json id = given != nullptr && given->is_integer() ? *given : Json();
   try {
     handle(received.client, command);
+    if (!id.is_null()) tell_done(received.client, id);
   } catch (const Malformed& error) {
     ++refused_;
-    refuse(received.client, error.what());
+    refuse(received.client, error.what(), id);
   } catch (const std::exception& error) {
-    refuse(received.client, error.what());
+    refuse(received.client, error.what(), id);
   }
 }
 
@@ -115,6 +131,8 @@ void Session::handle(std::uint64_t client, const Json& command) {
     handle_lap(command);
   else if (what == "save")
     save(client, text(command, "what"));
+  else if (what == "past")
+    tell_past(client, integer(command, "from"), integer(command, "to"));
   else if (!handle_transport(what, command) && !handle_edit(what, command) && !handle_options(what, command))
     throw Malformed("do: '" + what.substr(0, 40) + "' is not a command");
 }
@@ -161,6 +179,10 @@ bool Session::handle_transport(const std::string& what, const Json& command) {
 }
 
 bool Session::handle_edit(const std::string& what, const Json& command) {
+  constexpr const char* edits[] = {"add", "move", "remove", "place_car", "nudge"};
+  if (std::find(std::begin(edits), std::end(edits), what) == std::end(edits)) return false;
+  go_to_viewed();
+  const SetBodies before{bodies_of(simulation_->loop().world())};
   if (what == "add") {
     const std::string kind = text(command, "kind");
     AddBody body{.pose = pose(command)};
@@ -175,26 +197,27 @@ bool Session::handle_edit(const std::string& what, const Json& command) {
     if (!(body.length >= 0.02 && body.length <= 10 && body.width >= 0.02 && body.width <= 10))
       throw Malformed("length and width: must be in [0.02, 10] m");
     edit(body);
+    undo_.remember(before);
   } else if (what == "move") {
     edit(MoveBody{integer(command, "body"), pose(command)});
+    undo_.remember_drag(before, command.contains("drag") ? integer(command, "drag") : 0);
   } else if (what == "remove") {
     edit(RemoveBody{integer(command, "body")});
+    undo_.remember(before);
   } else if (what == "place_car") {
     edit(MoveCar{pose(command)});
-  } else if (what == "nudge") {
+  } else {
     const sim::CarState& car = simulation_->loop().world().state(0);
     const double aside = number(command, "left", 0), turn = number(command, "turn", 0);
     if (std::abs(aside) > 2 || std::abs(turn) > 3.2)
       throw Malformed("nudge: must be at most 2 m and 3.2 rad");
     edit(MoveCar{{car.x - aside * std::sin(car.yaw), car.y + aside * std::cos(car.yaw), car.yaw + turn}});
-  } else {
-    return false;
   }
+  tell_options();  // has the number of changes that can be undone
   return true;
 }
 
 void Session::edit(const Edit& edit) {
-  go_to_viewed();
   simulation_->apply(edit);
   if (ghost_ && !std::holds_alternative<MoveCar>(edit)) ghost_->apply(edit);
   show_edit();
@@ -204,11 +227,7 @@ void Session::edit(const Edit& edit) {
 void Session::change(const vehicle::Configuration& configuration, const std::string& method, bool remember) {
   check_work(configuration, method);
   const auto runner = make_runner(configuration, method);  // throws before anything changes
-  if (remember) {
-    undo_.push_back(configuration_);
-    if (undo_.size() > 200) undo_.erase(undo_.begin());
-    redo_.clear();
-  }
+  if (remember) undo_.remember(configuration_);
   const bool other_clock = runner->control_period() != simulation_->loop().runner().control_period();
   configuration_ = configuration;
   names_.method = method;
@@ -217,6 +236,21 @@ void Session::change(const vehicle::Configuration& configuration, const std::str
   else
     simulation_->apply(ChangeDriver{runner});
   tell_options();
+}
+
+/// Takes back the last change of options or of bodies, or with `again` the last undo.
+void Session::undo(bool again) {
+  go_to_viewed();
+  const SetBodies present{bodies_of(simulation_->loop().world())};
+  const auto last = again ? undo_.take_redo(present) : undo_.take_undo(present);
+  if (!last) throw std::invalid_argument(again ? "nothing to redo" : "nothing to undo");
+  if (const auto* bodies = std::get_if<SetBodies>(&*last)) {
+    edit(*bodies);
+    undo_.replaced(present, again);
+    return tell_options();
+  }
+  undo_.replaced(configuration_, again);
+  change(std::get<vehicle::Configuration>(*last), names_.method, false);
 }
 
 void Session::end_ghost() {
@@ -240,14 +274,7 @@ void Session::start_ghost(const std::string& method, const vehicle::Configuratio
 void Session::fork(const Json& command) {
   const std::string method = text(command, "method"), before = names_.method;
   vehicle::Configuration changed = configuration_;
-  const Json set = command.contains("set") ? command.at("set") : Json::array();
-  if (!set.is_array() || set.size() > 100) throw Malformed("set: must be a list of key=value");
-  for (const Json& each : set) {
-    const std::string assignment = each.is_string() ? each.get<std::string>() : "";
-    const auto equals = assignment.find('=');
-    if (equals == std::string::npos) throw Malformed("set: must be a list of key=value");
-    vehicle::set_option(changed, assignment.substr(0, equals), assignment.substr(equals + 1), method);
-  }
+  const bool has_settings = apply_settings(changed, command, method);
   check_work(changed, method);
   const auto runner = make_runner(changed, method);  // throws before anything changes
   if (runner->control_period() != simulation_->loop().runner().control_period())
@@ -255,7 +282,7 @@ void Session::fork(const Json& command) {
   go_to_viewed();
   start_ghost(before, configuration_);
   if (before == method) ghost_label_ = before + " as before";
-  change(changed, method, !set.empty());
+  change(changed, method, has_settings);
 }
 
 bool Session::handle_options(const std::string& what, const Json& command) {
@@ -265,15 +292,15 @@ bool Session::handle_options(const std::string& what, const Json& command) {
     go_to_viewed();
     change(changed, names_.method, true);
   } else if (what == "undo" || what == "redo") {
-    auto& from = what == "undo" ? undo_ : redo_;
-    auto& to = what == "undo" ? redo_ : undo_;
-    if (from.empty()) throw std::invalid_argument("nothing to " + what);
-    to.push_back(configuration_);
-    const vehicle::Configuration changed = from.back();
-    from.pop_back();
-    change(changed, names_.method, false);
+    undo(what == "redo");
   } else if (what == "reset_options") {
+    go_to_viewed();
     change(scenario_.configuration, names_.method, true);
+  } else if (what == "preset") {
+    vehicle::Configuration changed = scenario_.configuration;
+    apply_settings(changed, command, names_.method);
+    go_to_viewed();
+    change(changed, names_.method, true);
   } else if (what == "method") {
     go_to_viewed();
     change(configuration_, text(command, "method"), false);

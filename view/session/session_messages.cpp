@@ -1,9 +1,23 @@
 
 #include "view/session/session.hpp"
 
+#include <algorithm>
+#include <string_view>
+
 #include "tools/json/json.hpp"
+#include "view/protocol/frame_writer.hpp"
 
 namespace slalom::view {
+namespace {
+
+constexpr int most_past = 800;  // ticks in one message
+
+/// The values of the scalars of a frame, as they stand in it.
+std::string_view scalars_of(const std::string& frame) {
+  return std::string_view(frame).substr(FrameWriter::head_bytes, 8 * scalar_names().size());
+}
+
+}  // namespace
 
 void Session::greet(std::uint64_t client) {
   server_.send(client, {std::make_shared<const std::string>(hello()), false});
@@ -24,9 +38,31 @@ void Session::greet(std::uint64_t client) {
   state_changed_ = true;
 }
 
-void Session::refuse(std::uint64_t client, const std::string& why) {
-  server_.send(
-      client, {std::make_shared<const std::string>(Json{{"type", "error"}, {"message", why}}.dump()), false});
+void Session::refuse(std::uint64_t client, const std::string& why, const Json& id) {
+  Json message = {{"type", "error"}, {"message", why}};
+  if (!id.is_null()) message["id"] = id;
+  server_.send(client, {std::make_shared<const std::string>(message.dump()), false});
+}
+
+/// Answers a command that has an `id`.
+void Session::tell_done(std::uint64_t client, const Json& id) {
+  const Json message = {{"type", "done"}, {"id", id}};
+  server_.send(client, {std::make_shared<const std::string>(message.dump()), false});
+}
+
+/// Sends the scalars of past ticks, of as many as a message holds and as are still known.
+void Session::tell_past(std::uint64_t client, int from, int to) {
+  FrameWriter past;
+  past.begin(Block::past);
+  if (!history_.empty()) {
+    const int oldest = history_.front().tick;
+    to = std::min(to, history_.back().tick);
+    from = std::max({from, oldest, to - most_past + 1});
+    for (int tick = from; tick <= to; ++tick)
+      past.append(scalars_of(history_[static_cast<std::size_t>(tick - oldest)].without_bodies));
+  }
+  past.end();
+  server_.send(client, {std::make_shared<const std::string>(past.take()), true});
 }
 
 void Session::note(const std::string& what) {
@@ -44,8 +80,10 @@ void Session::tell_options() {
 }
 
 std::string Session::hello() const {
-  return hello_message(*scenario_.environment, options_.choices, options_.history,
-                       simulation_->loop().runner().control_period());
+  return hello_message(*scenario_.environment, options_.choices,
+                       {.session = number_,
+                        .history = options_.history,
+                        .control_period = simulation_->loop().runner().control_period()});
 }
 
 std::string Session::state() const {
@@ -75,8 +113,8 @@ OptionsFacts Session::options_facts() const {
           .now = configuration_,
           .loaded = scenario_.configuration,
           .further_arguments = options_.further_arguments,
-          .undo = undo_.size(),
-          .redo = redo_.size()};
+          .undo = undo_.undos(),
+          .redo = undo_.redos()};
 }
 
 std::string Session::options() const {

@@ -4,6 +4,31 @@
 #include <utility>
 
 namespace slalom::view {
+namespace {
+
+void add(sim::World& world, const AddBody& body) {
+  if (world.bodies() >= 512) throw std::invalid_argument("bodies: at most 512 are supported");
+  if (body.kind == BodyKind::parked_car)
+    world.add_parked_car(body.pose);
+  else if (body.kind == BodyKind::disc)
+    world.add_disc({{body.pose.x, body.pose.y}, 0.5 * body.length});
+  else
+    world.add_box({body.pose, body.length, body.width});
+}
+
+}  // namespace
+
+std::vector<AddBody> bodies_of(const sim::World& world) {
+  std::vector<AddBody> bodies;
+  for (std::size_t i = world.cars(); i < world.bodies(); ++i) {
+    const sim::Box box = world.outline(i);
+    bodies.push_back({.kind = world.disc(i) ? BodyKind::disc : BodyKind::box,
+                      .pose = box.pose,
+                      .length = box.length,
+                      .width = box.width});
+  }
+  return bodies;
+}
 
 Simulation::Simulation(std::shared_ptr<const evaluation::LapRunner> runner, std::uint64_t seed)
     : first_runner_(std::move(runner)), seed_(seed), loop_(first_runner_, seed) {}
@@ -54,17 +79,13 @@ void Simulation::perform(const Edit& edit) {
   struct Perform {
     evaluation::ClosedLoop& loop;
     sim::World& world;
-    void operator()(const AddBody& e) const {
-      if (world.bodies() >= 512) throw std::invalid_argument("bodies: at most 512 are supported");
-      if (e.kind == BodyKind::parked_car)
-        world.add_parked_car(e.pose);
-      else if (e.kind == BodyKind::disc)
-        world.add_disc({{e.pose.x, e.pose.y}, 0.5 * e.length});
-      else
-        world.add_box({e.pose, e.length, e.width});
-    }
+    void operator()(const AddBody& e) const { add(world, e); }
     void operator()(const MoveBody& e) const { world.move_body(e.body, e.pose); }
     void operator()(const RemoveBody& e) const { world.remove_body(e.body); }
+    void operator()(const SetBodies& e) const {
+      while (world.bodies() > world.cars()) world.remove_body(static_cast<int>(world.bodies()) - 1);
+      for (const AddBody& body : e.bodies) add(world, body);
+    }
     void operator()(const MoveCar& e) const {
       sim::CarState state = world.state(0);
       if (world.track().in_wall({e.pose.x, e.pose.y}))

@@ -18,6 +18,10 @@ struct AddBody {
   maps::Pose pose;
   double length = 0.3, width = 0.3;  ///< m; a disc's diameter is its length
 };
+/// Replaces all bodies that do not drive. They are numbered in this order, after the driven cars.
+struct SetBodies {
+  std::vector<AddBody> bodies;
+};
 struct MoveBody {
   int body = 0;
   maps::Pose pose;
@@ -31,7 +35,10 @@ struct MoveCar {
 struct ChangeDriver {
   std::shared_ptr<const evaluation::LapRunner> runner;
 };
-using Edit = std::variant<AddBody, MoveBody, RemoveBody, MoveCar, ChangeDriver>;
+using Edit = std::variant<AddBody, MoveBody, RemoveBody, SetBodies, MoveCar, ChangeDriver>;
+
+/// The bodies of a world that do not drive, in the order of their numbers.
+std::vector<AddBody> bodies_of(const sim::World& world);
 
 /// A loop with the log of its edits. To go back, it is driven again from its start with the same seed and
 /// edits: everything is deterministic, so this is exact, and no state of solvers needs to be copied.

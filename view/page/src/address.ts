@@ -17,11 +17,11 @@ export function applyAddress(wanted: URLSearchParams, now: State, changedOptions
   if (ghost && ghost !== now.ghost) send({ do: "ghost", method: ghost });
 }
 
-/** Puts the scenario into the address, so that it can be shared as a link. */
-export function writeAddress(state: State, changedOptions: string[]) {
+/** The scenario as it stands in the address after the #, so that it can be shared as a link. */
+export function addressOf(state: State, changedOptions: string[]): string {
   const words = new URLSearchParams({ course: state.course, method: state.method, config: state.config, seed: state.seed, obstacles: String(state.obstacles) });
   if (state.opponents) words.set("opponents", String(state.opponents));
   if (state.ghost) words.set("against", state.ghost);
   for (const each of changedOptions) words.append("set", each);
-  history.replaceState(null, "", `${location.pathname}${location.search}#${words.toString().replace(/%3D/g, "=").replace(/%5B/g, "[").replace(/%5D/g, "]")}`);
+  return words.toString().replace(/%3D/g, "=").replace(/%5B/g, "[").replace(/%5D/g, "]");
 }

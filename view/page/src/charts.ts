@@ -1,46 +1,49 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
+import type { Past } from "./past";
 import type { Frame, Hello } from "./protocol";
-
-interface Line { name: string; label: string; colour: string; dash?: number[]; right?: boolean; digits?: number }
-interface Strip { title: string; unit: string; lines: Line[]; scale?: number }
-
-// Colours tell apart with any colour vision: they differ in lightness as well, and one of each pair is dashed.
-const strips: Strip[] = [
-  { title: "Cost of the plan", unit: "", lines: [{ name: "distance_cost", label: "distance", colour: "--blue" }, { name: "yaw_cost", label: "yaw", colour: "--violet", dash: [6, 3] }, { name: "collision_cost", label: "collision", colour: "--bad" }] },
-  { title: "Steering", unit: "rad", lines: [{ name: "command_steer", label: "command", colour: "--accent", digits: 3 }, { name: "steer", label: "wheels", colour: "--text", dash: [5, 3], digits: 3 }] },
-  { title: "Speed", unit: "m/s", lines: [{ name: "command_speed", label: "command", colour: "--accent", digits: 2 }, { name: "speed", label: "car", colour: "--text", dash: [5, 3], digits: 2 }] },
-  { title: "Samples", unit: "", lines: [{ name: "effective_samples", label: "ESS", colour: "--blue", digits: 0 }, { name: "temperature", label: "temperature", colour: "--warn", dash: [5, 3], right: true, digits: 2 }] },
-  { title: "Collided candidates", unit: "%", scale: 100, lines: [{ name: "collided_share", label: "share", colour: "--bad", digits: 0 }] },
-  { title: "Clearance", unit: "m", lines: [{ name: "clearance", label: "to wall or obstacle", colour: "--accent", digits: 2 }] },
-];
+import { needsEstimates, strips, type Line, type Strip } from "./strips";
 
 const span = 20; // s that the strips show
-const gap = 0.5; // s without a frame that are drawn as a gap
+const most_ticks = 500; // of the histogram
 
 function css(name: string) { return getComputedStyle(document.documentElement).getPropertyValue(name).trim(); }
 
-interface Plotted { strip: Strip; plot?: uPlot; holder: HTMLElement; values: HTMLElement[]; columns: number[][] }
+interface Plotted { strip: Strip; plot?: uPlot; box: HTMLElement; holder: HTMLElement; values: HTMLElement[]; columns: (number | null)[][] }
 
-/** Strip charts of the last seconds, the covariance along the plan, and how long solves took. */
+interface Setting {
+  past: Past;
+  /** The time under the pointer (s), or undefined: the page shows it in the scene and on the slider. */
+  hovered(time: number | undefined): void;
+  /** A click on a chart. */
+  chosen(time: number): void;
+}
+
+/** Strip charts of the last seconds, the covariance along the plan, and how long planner updates took. */
 export class Charts {
   private times: number[] = [];
+  private positions: number[] = [];
   private readonly plotted: Plotted[] = [];
   private readonly covariance: { holder: HTMLElement; plot?: uPlot };
   private readonly histogram: { holder: HTMLElement; plot?: uPlot; value: HTMLElement };
-  private ticks: { tick: number; ms: number }[] = [];
   private deadline = 25;
   private latest?: Frame;
+  private hello?: Hello;
+  private shown = 0; // position
+  private period = 0.025; // s between two steps
+  private cursor?: number; // s
   private width = 0;
-  private drawn = 0;
+  private drawn = 0; // ms, when the charts were drawn
+  private took = 0; // ms, to draw them
 
-  constructor(private readonly root: HTMLElement) {
+  constructor(private readonly root: HTMLElement, private readonly setting: Setting) {
     for (const strip of strips) {
-      const { holder, values } = this.frame(strip.title + (strip.unit ? ", " + strip.unit : ""), strip.lines);
-      this.plotted.push({ strip, holder, values, columns: strip.lines.map(() => []) });
+      const { box, holder, values } = this.frame(strip.title + (strip.unit ? ", " + strip.unit : ""), strip.lines);
+      box.hidden = needsEstimates(strip);
+      this.plotted.push({ strip, box, holder, values, columns: strip.lines.map(() => []) });
     }
     this.covariance = this.frame("Standard deviation of the steering along the plan, rad", []);
-    const h = this.frame("Planner time, last 500 ticks, ms", [{ name: "", label: "", colour: "" }]);
+    const h = this.frame(`Planner time, last ${most_ticks} ticks, ms`, [{ name: "", label: "", colour: "" }]);
     this.histogram = { holder: h.holder, value: h.values[0] };
     new ResizeObserver(() => this.rebuild()).observe(root);
   }
@@ -53,7 +56,11 @@ export class Charts {
     const values = lines.map((line) => {
       const em = document.createElement("em"), mark = document.createElement("i"), value = document.createElement("span");
       em.className = "value";
-      if (line.colour) { mark.style.background = `var(${line.colour})`; em.append(mark); }
+      if (line.colour) {
+        const [on, off] = line.dash ?? [1, 0], colour = `var(${line.colour})`;
+        mark.style.background = `repeating-linear-gradient(90deg, ${colour} 0 ${on}px, transparent ${on}px ${on + off}px)`;
+        em.append(mark);
+      }
       value.className = "numbers";
       em.append(value);
       head.append(em);
@@ -62,7 +69,7 @@ export class Charts {
     const holder = document.createElement("div");
     box.append(head, holder);
     this.root.append(box);
-    return { holder, values };
+    return { box, holder, values };
   }
 
   rebuild() {
@@ -70,119 +77,161 @@ export class Charts {
     if (width < 50) return;
     this.width = width;
     const axis = (over: Partial<uPlot.Axis> = {}): uPlot.Axis => ({ stroke: css("--soft"), grid: { stroke: css("--line"), width: 1 }, ticks: { show: false }, font: "10px system-ui, sans-serif", size: 40, gap: 3, ...over });
+    const upright = { space: 18 }; // px between two values of an axis, so that there are at least three
     for (const p of this.plotted) {
       p.plot?.destroy();
       const right = p.strip.lines.some((l) => l.right);
       p.plot = new uPlot({
-        width, height: 104, cursor: { show: true, y: false, drag: { x: false, y: false }, sync: { key: "slalom" } }, legend: { show: false },
-        scales: { x: { time: false }, y: { range: (_u, a, b) => pad(a, b) }, r: { range: (_u, a, b) => pad(a, b) } },
-        axes: [axis({ size: 18, values: (_u, all) => all.map((v) => v + " s") }), axis(), ...(right ? [axis({ side: 1, scale: "r", grid: { show: false } })] : [])],
+        width, height: 104, cursor: { show: true, y: false, drag: { x: false, y: false }, points: { size: 7 } }, legend: { show: false },
+        scales: { x: { time: false, range: () => this.range() }, y: { range: (_u, a, b) => pad(a, b) }, r: { range: (_u, a, b) => pad(a, b) } },
+        axes: [axis({ size: 18, values: (_u, all) => all.map((v) => v + " s") }), axis(upright), ...(right ? [axis({ side: 1, scale: "r", grid: { show: false }, ...upright })] : [])],
         series: [{}, ...p.strip.lines.map((l) => ({ stroke: css(l.colour), width: 1.6, dash: l.dash, scale: l.right ? "r" : "y", points: { show: false } }))],
+        hooks: { draw: [(u) => this.drawShown(u)] },
       }, this.data(p), p.holder);
+      this.watch(p.plot);
     }
     this.covariance.plot?.destroy();
     this.covariance.plot = new uPlot({
       width, height: 96, cursor: { show: false }, legend: { show: false }, scales: { x: { time: false }, y: { range: (_u, _a, b) => [0, (b || 0.1) * 1.15] } },
-      axes: [axis({ size: 18, values: (_u, all) => all.map((v) => v + " s") }), axis()],
+      axes: [axis({ size: 18, values: (_u, all) => all.map((v) => v + " s") }), axis(upright)],
       series: [{}, { stroke: css("--accent"), fill: css("--accent") + "33", width: 1.6, paths: uPlot.paths.stepped!({ align: 1 }), points: { show: false } }],
     }, [[0], [0]], this.covariance.holder);
     this.histogram.plot?.destroy();
     this.histogram.plot = new uPlot({
       width, height: 96, cursor: { show: false }, legend: { show: false }, scales: { x: { time: false }, y: { range: (_u, _a, b) => [0, Math.max(4, b * 1.15)] } },
-      axes: [axis({ size: 18, values: (_u, all) => all.map((v) => v + " ms") }), axis()],
+      axes: [axis({ size: 18, values: (_u, all) => all.map((v) => v + " ms") }), axis(upright)],
       series: [{}, { stroke: css("--blue"), fill: css("--blue") + "55", width: 1, paths: uPlot.paths.bars!({ size: [0.9] }), points: { show: false } }],
-      hooks: { draw: [(u) => this.drawDeadline(u)] },
+      hooks: { draw: [(u) => vertical(u, this.deadline, "--bad", [5, 4])] },
     }, [[0], [0]], this.histogram.holder);
     this.draw(true);
   }
 
-  private drawDeadline(u: uPlot) {
-    const x = u.valToPos(this.deadline, "x", true), { top, height, left, width } = u.bbox;
-    if (x < left || x > left + width) return;
-    u.ctx.save();
-    u.ctx.strokeStyle = css("--bad");
-    u.ctx.setLineDash([5, 4]);
-    u.ctx.lineWidth = 1.5 * devicePixelRatio;
-    u.ctx.beginPath();
-    u.ctx.moveTo(x, top);
-    u.ctx.lineTo(x, top + height);
-    u.ctx.stroke();
-    u.ctx.restore();
+  /** The pointer over a chart. */
+  private watch(plot: uPlot) {
+    const time = (e: PointerEvent | MouseEvent) => plot.posToVal(e.clientX - plot.over.getBoundingClientRect().left, "x");
+    plot.over.addEventListener("pointermove", (e) => this.setting.hovered(time(e)));
+    plot.over.addEventListener("pointerleave", () => this.setting.hovered(undefined));
+    plot.over.addEventListener("click", (e) => this.setting.chosen(time(e)));
+  }
+
+  /** Puts the cursor of all charts to a time (s), or takes it away. */
+  showCursor(time: number | undefined) {
+    this.cursor = time;
+    for (const { plot } of this.plotted) plot?.setCursor({ left: time === undefined ? -10 : plot.valToPos(time, "x"), top: time === undefined ? -10 : 0 }, false);
+    this.showValues();
+  }
+
+  private range(): [number, number] {
+    const last = this.times.at(-1) ?? 0;
+    return [Math.max(0, last - span), Math.max(1, last)];
+  }
+
+  /** The tick that the scene shows, if it is not the newest. */
+  private drawShown(u: uPlot) {
+    const time = this.times[this.positions.indexOf(this.shown)];
+    if (time !== undefined && this.shown < this.setting.past.newest) vertical(u, time, "--text", [2, 3]);
   }
 
   private data(p: Plotted): uPlot.AlignedData { return [this.times, ...p.columns] as uPlot.AlignedData; }
 
-  clear() {
-    this.times = [];
-    for (const p of this.plotted) p.columns = p.strip.lines.map(() => []);
-    this.ticks = [];
-  }
+  clear() { this.times = []; this.positions = []; for (const p of this.plotted) p.columns = p.strip.lines.map(() => []); }
 
-  add(frame: Frame, hello: Hello) {
-    const at = (name: string) => frame.scalars[hello.scalars.indexOf(name)];
-    const time = at("time"), tick = at("tick");
-    let keep = this.times.length;
-    while (keep > 0 && this.times[keep - 1] >= time - 1e-9) --keep;
-    if (keep < this.times.length) {
-      this.times.length = keep;
-      for (const p of this.plotted) for (const c of p.columns) c.length = keep;
-      this.ticks = this.ticks.filter((t) => t.tick < tick);
-    }
-    if (this.times.length && time - this.times[this.times.length - 1] > gap) { // nothing is known of what lies between
-      this.times.push(time - 1e-6);
-      for (const p of this.plotted) for (const c of p.columns) c.push(null as unknown as number);
-    }
-    this.times.push(time);
-    for (const p of this.plotted) p.strip.lines.forEach((l, i) => { const v = at(l.name); p.columns[i].push(Number.isFinite(v) ? v * (p.strip.scale ?? 1) : (null as unknown as number)); });
-    let old = 0;
-    while (this.times[old] < time - span) ++old;
-    if (old > 0) {
-      this.times.splice(0, old);
-      for (const p of this.plotted) for (const c of p.columns) c.splice(0, old);
-    }
-    if (Number.isFinite(at("tick_ms"))) this.ticks.push({ tick, ms: at("tick_ms") });
-    if (this.ticks.length > 500) this.ticks.shift();
-    this.deadline = at("deadline_ms");
+  /** A frame at a position of the past is shown; `period`: s between two steps. */
+  show(frame: Frame, hello: Hello, position: number, period: number) {
     this.latest = frame;
-    this.step = at("prediction_step");
-    this.samples = at("samples");
+    this.hello = hello;
+    this.shown = position;
+    this.period = period;
+    this.deadline = frame.scalars[hello.scalars.indexOf("deadline_ms")];
   }
-  private samples = 0;
-  private step = 0.05;
 
-  /** At most ten times a second: nobody reads charts faster. */
+  /** The columns of the window that is shown: the newest seconds, or those around the tick that is shown. */
+  private collect(hello: Hello) {
+    const { past } = this.setting, { period } = this, length = Math.round(span / period);
+    const last = this.shown >= past.newest - length ? past.newest : this.shown + Math.round(length / 2);
+    const first = Math.max(past.oldest, last - length);
+    this.clear();
+    const index = this.plotted.map((p) => p.strip.lines.map((l) => hello.scalars.indexOf(l.name)));
+    for (let position = first; position <= last; ++position) {
+      const row = past.at(position);
+      this.times.push(+(position * period).toFixed(6));
+      this.positions.push(position);
+      this.plotted.forEach((p, k) => p.strip.lines.forEach((l, i) => { const v = row ? row[index[k][i]] : NaN; p.columns[i].push(Number.isFinite(v) ? v * (l.scale ?? 1) : null); }));
+    }
+    for (const p of this.plotted) if (needsEstimates(p.strip)) p.box.hidden = !p.strip.lines.some((l, i) => (l.name.endsWith("_estimate") || l.name === "grip_used") && p.columns[i].some((v) => v !== null));
+  }
+
+  /** At most ten times a second, and less often where a draw takes long: at most a sixth of the time. */
   draw(now = false) {
     const time = performance.now();
-    if (!now && time - this.drawn < 100) return;
-    if (this.root.offsetParent === null || !this.width) return;
+    if (!now && time - this.drawn < Math.max(100, 6 * this.took)) return;
+    if (this.root.offsetParent === null || !this.width || !this.hello || !this.latest) return;
     this.drawn = time;
-    for (const p of this.plotted) {
-      p.plot?.setData(this.data(p));
-      p.strip.lines.forEach((l, i) => {
-        const v = p.columns[i].at(-1);
-        const of = l.name === "effective_samples" && this.samples > 0 ? ` of ${this.samples}` : "";
-        p.values[i].textContent = `${l.label} ${v == null ? "–" : v.toFixed(l.digits ?? 2)}${of}`;
-      });
-    }
-    const c = this.latest?.covariance;
+    this.collect(this.hello);
+    for (const p of this.plotted) if (!p.box.hidden) p.plot?.setData(this.data(p));
+    if (this.cursor !== undefined) this.showCursor(this.cursor);
+    this.showValues();
+    const c = this.latest.covariance, step = this.scalar("prediction_step");
     if (c && c.length) {
-      const x = Array.from({ length: c.length + 1 }, (_, i) => +(i * this.step).toFixed(4)), y = Array.from(c, Math.sqrt);
+      const x = Array.from({ length: c.length + 1 }, (_, i) => +(i * step).toFixed(4)), y = Array.from(c, Math.sqrt);
       this.covariance.plot?.setData([x, [...y, y[y.length - 1]]]);
     }
-    this.histogram.holder.parentElement!.hidden = !this.ticks.length;
-    if (this.ticks.length) {
-      const all = this.ticks.map((t) => t.ms).sort((a, b) => a - b);
-      const top = Math.max(2, all[Math.floor(0.995 * (all.length - 1))] * 1.3), bins = 36, counts = new Array(bins).fill(0);
-      for (const v of all) counts[Math.min(bins - 1, Math.floor((v / top) * bins))] += 1;
-      this.histogram.plot?.setData([counts.map((_, i) => ((i + 0.5) * top) / bins), counts]);
-      const q = (p: number) => all[Math.floor(p * (all.length - 1))].toFixed(2), misses = all.filter((v) => v > this.deadline).length;
-      this.histogram.value.textContent = `median ${q(0.5)} · p99 ${q(0.99)} · deadline ${this.deadline.toFixed(0)} · missed ${misses}`;
-    }
+    this.drawHistogram();
+    this.took = performance.now() - time;
   }
+
+  private scalar(name: string) { return this.latest!.scalars[this.hello!.scalars.indexOf(name)]; }
+
+  /** The values at the cursor, else at the tick that is shown. */
+  private showValues() {
+    if (!this.hello || !this.latest) return;
+    const position = this.cursor === undefined ? this.shown : Math.round(this.cursor / this.period), i = this.positions.indexOf(position);
+    for (const p of this.plotted)
+      p.strip.lines.forEach((l, k) => {
+        const v = i < 0 ? null : p.columns[k][i], samples = this.scalar("samples");
+        const of = l.name === "effective_samples" && samples > 0 ? ` of ${samples}` : "";
+        p.values[k].textContent = `${l.label} ${v == null ? "–" : v.toFixed(l.digits ?? 2)}${of}`;
+      });
+  }
+
+  private drawHistogram() {
+    const { past } = this.setting, index = this.hello!.scalars.indexOf("tick_ms"), all: number[] = [];
+    for (let position = past.newest; position >= past.oldest && all.length < most_ticks; --position) { const v = past.at(position)?.[index] ?? NaN; if (Number.isFinite(v)) all.push(v); }
+    this.histogram.holder.parentElement!.hidden = !all.length;
+    if (!all.length) return;
+    all.sort((a, b) => a - b);
+    const top = Math.max(2, all[Math.floor(0.995 * (all.length - 1))] * 1.3), bins = 36, counts = new Array(bins).fill(0);
+    for (const v of all) counts[Math.min(bins - 1, Math.floor((v / top) * bins))] += 1;
+    this.histogram.plot?.setData([counts.map((_, i) => ((i + 0.5) * top) / bins), counts]);
+    const q = (p: number) => all[Math.floor(p * (all.length - 1))].toFixed(2), misses = all.filter((v) => v > this.deadline).length;
+    this.histogram.value.textContent = `median ${q(0.5)} · p99 ${q(0.99)} · deadline ${this.deadline.toFixed(0)} · missed ${misses}`;
+  }
+
+  /** What the charts show, as comma-separated values with the names of the scalars. */
+  csv(): string {
+    const shown = this.plotted.filter((p) => !p.box.hidden).flatMap((p) => p.strip.lines.map((l, i) => ({ l, column: p.columns[i] })));
+    const rows = this.positions.map((position, i) => [position, this.times[i], ...shown.map(({ l, column }) => (column[i] === null ? "" : column[i]! / (l.scale ?? 1)))].join());
+    return [["tick", "time", ...shown.map(({ l }) => l.name)].join(), ...rows].join("\n") + "\n";
+  }
+}
+
+/** A dashed vertical line at a value of the x axis. */
+function vertical(u: uPlot, value: number, colour: string, dash: number[]) {
+  const x = u.valToPos(value, "x", true), { top, height, left, width } = u.bbox;
+  if (x < left || x > left + width) return;
+  u.ctx.save();
+  u.ctx.strokeStyle = css(colour);
+  u.ctx.setLineDash(dash.map((d) => d * devicePixelRatio));
+  u.ctx.lineWidth = 1.5 * devicePixelRatio;
+  u.ctx.beginPath();
+  u.ctx.moveTo(x, top);
+  u.ctx.lineTo(x, top + height);
+  u.ctx.stroke();
+  u.ctx.restore();
 }
 
 function pad(a: number | null, b: number | null): [number, number] {
   if (a == null || b == null) return [0, 1];
-  const room = Math.max(0.08 * (b - a), 1e-3 * Math.max(1, Math.abs(b)));
+  const room = Math.max(0.08 * (b - a), b - a < 1e-6 ? 0.1 * Math.max(1, Math.abs(b)) : 0);
   return [a - room, b + room];
 }

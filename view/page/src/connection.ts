@@ -18,6 +18,24 @@ export class Connection implements Link {
     if (this.connected) this.socket!.send(JSON.stringify(command));
   }
 
+  ask(command: Record<string, unknown>): Promise<void> {
+    if (!this.connected) return Promise.reject(new Error("There is no connection to the server."));
+    const id = ++this.asked;
+    return new Promise((done, fail) => { this.questions.set(id, { done, fail }); this.send({ ...command, id }); });
+  }
+  private asked = 0;
+  private readonly questions = new Map<number, { done(): void; fail(error: Error): void }>();
+
+  /** Whether a message answers a command; the asker deals with it then. */
+  private answers(message: Text) {
+    const question = message.type === "done" || message.type === "error" ? this.questions.get(message.id ?? 0) : undefined;
+    if (!question) return false;
+    this.questions.delete((message as { id: number }).id);
+    if (message.type === "error") question.fail(new Error(message.message));
+    else question.done();
+    return true;
+  }
+
   get waiting() { return this.arrived - this.acknowledged; }
 
   /** Acknowledges the frames: the server has at most two under way that are not acknowledged. */
@@ -45,6 +63,8 @@ export class Connection implements Link {
     socket.onmessage = (event) => this.got(event.data);
     socket.onclose = () => {
       this.attempts += 1;
+      for (const { fail } of this.questions.values()) fail(new Error("The connection was lost."));
+      this.questions.clear();
       this.handlers.status(false, this.attempts);
       clearTimeout(this.timer);
       this.timer = window.setTimeout(() => this.open(), Math.min(3000, 250 * this.attempts));
@@ -52,9 +72,14 @@ export class Connection implements Link {
   }
 
   private got(data: string | ArrayBuffer) {
-    if (typeof data === "string") return this.handlers.text(JSON.parse(data) as Text);
+    if (typeof data === "string") {
+      const text = JSON.parse(data) as Text;
+      if (!this.answers(text)) this.handlers.text(text);
+      return;
+    }
     const message = decode(data);
     if (message.file) this.handlers.file(message.file.name, message.file.content);
+    else if (message.past) this.handlers.past(message.past);
     else if (message.scene) this.handlers.scene(message.scene);
     else if (message.frame) { this.received += 1; this.arrived += 1; this.handlers.frame(message.frame); }
   }

@@ -62,6 +62,7 @@ export function layout(root: HTMLElement) {
     <span id="gap-label" hidden>to ghost</span><b id="gap" hidden>–<small>m</small></b>
   </div>
   <div id="ruler" class="numbers"><span id="ruler-text"></span><div id="ruler-bar"></div></div>
+  <div id="restore" class="card" role="alertdialog" aria-labelledby="restore-text" hidden><p id="restore-text">The server was started anew, with another scenario.</p><div class="row end"><button id="restore-not">Keep the server's</button><button id="restore-mine" class="primary">Restore my scenario</button></div></div>
   <div id="lost" role="alertdialog" aria-labelledby="lost-title" hidden><div class="card"><h2 id="lost-title">Connection lost</h2><p id="lost-text"></p></div></div>
 </main>
 <div id="tools" role="toolbar" aria-label="Edit the world, and the view">
@@ -79,13 +80,13 @@ export function layout(root: HTMLElement) {
   <button id="step" title="One control step (.)">${icon("step")}<span>Step</span></button>
   <button id="fork" title="Continue from here with another method or other options (K)">${icon("fork")}<span>Fork…</span></button>
   <select id="rate" aria-label="Speed">${speeds.map(([v, t]) => `<option value="${v}"${v === 1 ? " selected" : ""}>${t}</option>`).join("")}</select>
-  <input id="timeline" type="range" min="0" max="1" step="1" aria-label="The last minute">
+  <div class="track"><input id="timeline" type="range" min="0" max="1" step="1" aria-label="The last minute"><i id="timeline-mark" hidden></i></div>
   <span class="time numbers" id="time">0.00 s</span>
   <button id="restart" title="Restart from the beginning (R)">${icon("restart")}<span>Restart</span></button>
 </div>
 <aside aria-label="Details">
   <nav role="tablist" aria-label="Details">${panes.map((name) => `<button role="tab" id="tab-${name}" data-pane="${name}" aria-controls="pane-${name}"${name === "evaluation" ? " hidden" : ""}>${titled(name)}</button>`).join("")}</nav>
-  <div class="pane" id="pane-charts"><div id="charts"></div></div>
+  <div class="pane" id="pane-charts"><div class="row end tight"><button id="csv" title="The values of the charts, as they are shown">Save as CSV</button></div><div id="charts"></div></div>
   <div class="pane" id="pane-options" hidden><div id="options"></div></div>
   <div class="pane" id="pane-laps" hidden><p id="about"></p><div id="laps"></div></div>
   <div class="pane" id="pane-evaluation" hidden><div id="evaluation"></div></div>

@@ -2,10 +2,11 @@ import type { Frame, Scene, Text } from "./protocol";
 
 /** Who gets what comes, from a server or from a recording. */
 export interface Handlers {
-  frame(frame: Frame): void;
+  /** `position`: in the past, if it is not the tick. */
+  frame(frame: Frame, position?: number): void;
   scene(scene: Scene): void;
-  /** The figures of the frames before one that was jumped to. */
-  past(scalars: Float64Array[]): void;
+  /** The scalars of several steps, one after the other; with the position of the first if they are not live. */
+  past(scalars: Float64Array, from?: number): void;
   text(message: Text): void;
   file(name: string, content: Uint8Array): void;
   status(connected: boolean, attempts: number): void;
@@ -14,6 +15,8 @@ export interface Handlers {
 /** Where the page gets its messages from and sends its commands to. */
 export interface Link {
   send(command: Record<string, unknown>): void;
+  /** Sends a command and waits until it was executed; fails with the reason why it could not be. */
+  ask(command: Record<string, unknown>): Promise<void>;
   /** Tells that what was received has been drawn. */
   drawn(): void;
   readonly received: number; // frames

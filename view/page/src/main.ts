@@ -1,5 +1,5 @@
 import "./style.css";
-import { applyAddress, writeAddress } from "./address";
+import { addressOf, applyAddress } from "./address";
 import { Charts } from "./charts";
 import { Connection } from "./connection";
 import { EvaluationPane } from "./evaluation";
@@ -9,10 +9,15 @@ import { attachPointer, type Tool } from "./pointer";
 import { Popover } from "./popover";
 import { OptionsPane } from "./options";
 import { download, picture } from "./picture";
+import { Gaps, Past } from "./past";
 import { Player, recordings } from "./player";
-import { foldHeader, help, icon, layout } from "./layout";
+import { foldHeader, help, layout } from "./layout";
 import { rampCss, themes } from "./palette";
 import type { Frame, Hello, Scene, State, Text } from "./protocol";
+import { Readout } from "./readout";
+import { Restore } from "./restore";
+import { showStatus } from "./status";
+import { Timeline } from "./timeline";
 import { copy, toast } from "./toast";
 import { attachKeys, attachTabs, returnFocus } from "./keys";
 import { coveredBy, place, showRuler } from "./overlay";
@@ -25,10 +30,8 @@ let hello: Hello | undefined;
 let state: State | undefined;
 let frame: Frame | undefined;
 let dirty = true;
-let scrubbing = false;
-/** The limits of SolveResult::has_few_samples, and how many frames in a row were below the first. */
-const FEW_SAMPLES = 3, FEW_FRAMES = 20;
-let fewFrames = 0;
+/** Where the frame that is shown stands in the past. */
+let position = 0;
 
 /** The scenario in the address that is still to be set. */
 const wanted = new URLSearchParams(location.hash.slice(1));
@@ -38,21 +41,21 @@ function storedTheme(): "dark" | "light" | null {
 }
 let themeName: "dark" | "light" = storedTheme() ?? (matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark");
 const scene = new SceneView(get<HTMLCanvasElement>("scene"), themes[themeName]);
-const charts = new Charts(get("charts"));
+const past = new Past(Infinity);
+const charts = new Charts(get("charts"), { past, hovered: hover, chosen: (time) => state && send({ do: "seek", tick: Math.round(time / state.control_period) }) });
 const scalar = (name: string) => (frame && hello ? frame.scalars[hello.scalars.indexOf(name)] : NaN);
 
 const handlers = {
-  frame(next: Frame) { frame = next; showFrame(); },
-  scene(next: Scene) { scene.setScene(next); charts.clear(); dirty = true; },
-  past(frames: Float64Array[]) {
-    charts.clear();
-    scene.clearDriven();
-    if (!hello) return;
-    for (const scalars of frames) {
-      charts.add({ scalars, bodies: [] }, hello);
-      const at = (name: string) => scalars[hello!.scalars.indexOf(name)];
-      scene.addDriven(at("tick"), at("x"), at("y"));
+  frame(next: Frame, at?: number) { frame = next; showFrame(at); },
+  scene(next: Scene) { scene.setScene(next); past.clear(); charts.clear(); dirty = true; },
+  past(scalars: Float64Array, from?: number) {
+    gaps.answered();
+    const width = hello?.scalars.length ?? 0;
+    for (let i = 0; width && i < scalars.length; i += width) {
+      const row = scalars.slice(i, i + width);
+      past.set(from ?? row[hello!.scalars.indexOf("tick")], row);
     }
+    dirty = true;
   },
   text: got,
   file(name: string, content: Uint8Array) { download(name, content as BlobPart, name.endsWith(".html") ? "text/html" : "application/octet-stream"); toast(`Saved ${name}, ${(content.length / 1e6).toFixed(1)} MB.`); },
@@ -68,12 +71,16 @@ const recorded = recordings(), isReplay = recorded.length > 0;
 const link: Link = isReplay ? new Player(handlers, recorded) : new Connection(handlers);
 const send = (command: Record<string, unknown>) => link.send(command);
 const options = new OptionsPane(get("options"), send, copy);
-const fork = new ForkBox(get<HTMLDialogElement>("fork-box"), send);
+const fork = new ForkBox(get<HTMLDialogElement>("fork-box"), (command) => link.ask(command));
+const readout = new Readout(), gaps = new Gaps(send);
+const timeline = new Timeline(isReplay, (tick) => send({ do: "seek", tick }), (at) => hover(at === undefined || !state ? undefined : at * state.control_period));
+const restore = new Restore((address) => state && applyAddress(new URLSearchParams(address), state, changedOptions, send), () => showAddress());
 const evaluation = new EvaluationPane(get("evaluation"), send, () => { scene.marks = evaluation.marks(); dirty = true; });
 
 function got(message: Text) {
   if (message.type === "hello") {
     hello = message;
+    if (!isReplay) { past.most = Math.ceil(message.history_seconds / message.control_period); restore.greeted(message.session, wanted.size ? "" : location.hash.slice(1)); }
     scene.hello = message;
     fill("course", message.courses);
     fill("method", message.methods);
@@ -105,11 +112,15 @@ function choose(id: string, value: string) {
 let changedOptions: string[] = [];
 
 function showAddress() {
-  if (state && !isReplay && !wanted.size) writeAddress(state, changedOptions);
+  if (!state || isReplay || wanted.size) return;
+  const address = addressOf(state, changedOptions);
+  restore.showServer(address);
+  if (!restore.isOpen) history.replaceState(null, "", `${location.pathname}${location.search}#${address}`);
 }
 
 function showState(next: State) {
-  if (state && next.generation !== state.generation) charts.clear();
+  if (state && next.generation !== state.generation) past.clear();
+  if (!isReplay && next.paused) past.forgetAfter(next.newest);
   state = next;
   choose("course", next.course);
   choose("method", next.method);
@@ -117,71 +128,56 @@ function showState(next: State) {
   choose("ghost", next.ghost);
   for (const [id, value] of [["seed", next.seed], ["obstacles", String(next.obstacles)], ["opponents", String(next.opponents)]]) {
     const input = get<HTMLInputElement>(id);
-    if (document.activeElement !== input) input.value = value;
+    if (document.activeElement !== input && input.ariaInvalid !== "true") input.value = value;
   }
-  const past = next.tick < next.newest;
-  get("play").innerHTML = next.paused ? `${icon("play")}<span>Play</span>` : `${icon("pause")}<span>Pause</span>`;
-  get("play").classList.toggle("primary", next.paused);
-  const mode = get("mode");
-  mode.className = "pill" + (next.paused ? " warn" : "");
-  get("mode-text").textContent = (isReplay ? "replay" : next.real_time ? "real time" : "lockstep") + (next.paused ? (past && !isReplay ? " · earlier tick" : " · paused") : next.rate === 0 ? " · max speed" : next.rate !== 1 ? ` · ${next.rate}×` : "");
-  mode.title = isReplay ? "A recording of an earlier drive" : next.real_time ? "Commands take effect after the wall-clock time that the planner needed, as on a car" : "Simulated time waits for the planner: the same seed gives the same drive on any machine";
+  showStatus(next, isReplay);
   get<HTMLSelectElement>("rate").value = String(next.rate);
   get<HTMLInputElement>("real-time").checked = next.real_time;
   showTimeline();
-  const best = Math.min(...next.laps.map((l) => l.time));
-  const name = (l: (typeof next.laps)[number]) => l.method + (l.ghost ? " (ghost)" : "");
-  get("laps").innerHTML = next.laps.length
-    ? `<table><thead><tr><th>Lap</th><th>Method</th><th class="n">Time, s</th><th class="n">Collisions</th></tr></thead><tbody>${[...next.laps].reverse().map((l) => `<tr class="${l.time === best ? "best" : ""}"><td>${l.lap}</td><td>${name(l)}</td><td class="n">${l.time.toFixed(2)}</td><td class="n">${l.contacts}</td></tr>`).join("")}</tbody></table>`
-    : "<p>No lap has been completed.</p>";
-  get("about").textContent = `${next.description} ${next.length.toFixed(1)} m, ${next.evaluation === "published" ? "evaluation of the published program" : "physical evaluation"}${next.edited ? ", edited" : ""}.`;
   if (wanted.size) applyAddress(wanted, next, changedOptions, send);
   showAddress();
   evaluation.showState(next);
-  get("caption").textContent = isReplay ? `${next.course} · ${next.method} · seed ${next.seed} · ${next.obstacles} obstacles${next.opponents ? ` · ${next.opponents} opponents` : ""}` : "";
   dirty = true;
 }
 
+const newest = () => (isReplay ? state!.newest : Math.max(state!.newest, past.newest));
 function showTimeline() {
-  if (!state) return;
-  const slider = get<HTMLInputElement>("timeline"), newest = isReplay ? state.newest : Math.max(state.newest, scalar("tick") || 0);
-  slider.min = String(Math.max(0, state.oldest));
-  slider.max = String(Math.max(1, newest));
-  const tick = state.paused || isReplay ? state.tick : newest;
-  if (!scrubbing) slider.value = String(tick);
-  const back = (newest - Number(slider.value)) * state.control_period;
-  if (isReplay) get("time").textContent = `${(state.tick * state.control_period).toFixed(1)} of ${(newest * state.control_period).toFixed(1)} s`;
-  else get("time").textContent = back > 1e-6 ? `−${back.toFixed(2)} s` : `${(scalar("time") || 0).toFixed(2)} s`;
+  if (state) timeline.show(state, newest(), scalar("time"));
 }
 
-function showFrame() {
+/** Puts the cursor of the charts, the slider and the scene to a time (s). */
+function hover(time: number | undefined) {
+  const at = time === undefined || !state ? undefined : Math.round(time / state.control_period), row = at === undefined ? undefined : past.at(at);
+  charts.showCursor(time);
+  timeline.showCursor(at);
+  const of = (name: string) => row![hello!.scalars.indexOf(name)];
+  scene.probe = row && { x: of("x"), y: of("y"), yaw: of("yaw") };
+  dirty = true;
+}
+
+function showFrame(at?: number) {
   if (!frame || !hello) return;
-  scene.setFrame(frame, scalar("tick"), scalar("x"), scalar("y"));
-  charts.add(frame, hello);
-  const n = (name: string, digits: number) => { const v = scalar(name); return Number.isFinite(v) ? v.toFixed(digits) : "–"; };
-  const status = hello.statuses[scalar("status")] ?? "";
-  get("speed").firstChild!.textContent = n("speed", 1);
-  get("lap-time").firstChild!.textContent = n("lap_time", 1);
-  get("lap-number").textContent = `lap ${scalar("lap") + 1}`;
-  get("clearance").firstChild!.textContent = n("clearance", 2);
-  get("solve").firstChild!.textContent = n("tick_ms", 2);
-  get("solve").hidden = get("solve-label").hidden = !Number.isFinite(scalar("tick_ms"));
-  get("contacts").textContent = n("contacts", 0);
-  const label = get("label");
-  fewFrames = scalar("effective_samples") < FEW_SAMPLES ? fewFrames + 1 : 0;
-  const few = fewFrames >= FEW_FRAMES;
-  label.textContent = `${hello.methods[scalar("method")] ?? ""}${status && status !== "ok" ? " · " + status.replace(/_/g, " ") : ""}${few ? " · few samples" : ""}`;
-  label.title = few ? `The effective sample size stays below ${FEW_SAMPLES}: raise the temperature or reduce the variances.` : "";
-  label.classList.toggle("blocked", status === "blocked");
-  const ghost = frame.ghost;
-  get("gap").hidden = get("gap-label").hidden = !ghost;
-  if (ghost && state) {
-    const ahead = (scalar("lap") + scalar("progress") - ghost.laps) * state.length;
-    get("gap").firstChild!.textContent = (ahead >= 0 ? "+" : "−") + Math.abs(ahead).toFixed(1);
-    get("ghost-label").textContent = "ghost · " + (state.ghost_label || state.ghost);
-  }
+  position = at ?? scalar("tick");
+  if (!isReplay && !state?.paused) past.forgetAfter(position);
+  past.set(position, frame.scalars);
+  scene.frame = frame;
+  charts.show(frame, hello, position, state?.control_period ?? hello.control_period);
+  readout.show(frame, hello, state);
   if (!state?.paused) showTimeline();
   dirty = true;
+}
+
+/** The driven line: as far as the past is known, to the step that is shown. */
+function showDriven() {
+  if (!hello) return;
+  const x = hello.scalars.indexOf("x"), y = hello.scalars.indexOf("y"), line: number[] = [];
+  for (let i = past.oldest; i <= position; ++i) {
+    const row = past.at(i), n = line.length;
+    if (!row) continue;
+    if (n && Math.hypot(row[x] - line[n - 2], row[y] - line[n - 1]) > 2) line.length = 0; // the car was put elsewhere
+    line.push(row[x], row[y]);
+  }
+  scene.driven = line;
 }
 
 /** The size of the stage, and what panels cover of it. A fitted course stays fitted. */
@@ -200,6 +196,8 @@ resize();
 function draw() {
   if (dirty) {
     dirty = false;
+    if (!isReplay && state) gaps.fill(past, state);
+    showDriven();
     scene.draw();
     charts.draw();
     const car = frame?.bodies[0], ghost = scene.visible.has("ghost") ? frame?.ghost : undefined;
@@ -258,8 +256,11 @@ attachPointer({ canvas: get<HTMLCanvasElement>("scene"), scene, send, tool: () =
 
 // Controls.
 const click = (id: string, act: () => void) => (get(id).onclick = act);
-const scenario = (key: string) => (get<HTMLInputElement>(key).onchange = () => { const value = get<HTMLInputElement>(key).value; send({ do: "scenario", [key]: key === "obstacles" || key === "opponents" ? Number(value) : value });; });
-for (const key of ["course", "config", "seed", "obstacles", "opponents"]) scenario(key);
+/** A field of the scenario keeps what was typed while it is not valid. */
+for (const key of ["course", "config", "seed", "obstacles", "opponents"]) {
+  const field = get<HTMLInputElement>(key), mark = (bad: boolean) => field.setAttribute("aria-invalid", String(bad));
+  field.onchange = () => void link.ask({ do: "scenario", [key]: key === "obstacles" || key === "opponents" ? Number(field.value) : field.value }).then(() => mark(false), (error: Error) => { mark(true); toast(error.message, true); });
+}
 get<HTMLSelectElement>("method").onchange = () => { send({ do: "method", method: get<HTMLSelectElement>("method").value }); };
 get<HTMLSelectElement>("ghost").onchange = () => { send({ do: "ghost", method: get<HTMLSelectElement>("ghost").value }); };
 get<HTMLSelectElement>("rate").onchange = () => send({ do: "rate", rate: Number(get<HTMLSelectElement>("rate").value) });
@@ -280,11 +281,9 @@ save("save-picture", () => { scene.draw(); void picture(get<HTMLCanvasElement>("
 save("save-replay", () => { if (!isReplay) { toast("Saving a replay of the last minute …"); send({ do: "save", what: "replay" }); } else void fetch(location.href).then((r) => r.text()).then((text) => download("slalom-replay.html", text, "text/html"), () => toast("This page is the replay; it is already on your disk.")); });
 save("save-recording", () => { toast("Saving a recording of the last minute …"); send({ do: "save", what: "recording" }); });
 save("save-link", () => copy(location.href, "a link"));
+click("csv", () => download(`slalom-${state?.course}-${position}.csv`, charts.csv(), "text/csv"));
 click("nudge-left", () => send({ do: "nudge", left: 0.15 }));
 click("nudge-right", () => send({ do: "nudge", left: -0.15 }));
-const timeline = get<HTMLInputElement>("timeline");
-timeline.oninput = () => { scrubbing = true; send({ do: "seek", tick: Number(timeline.value) }); };
-timeline.onchange = () => (scrubbing = false);
 for (const b of document.querySelectorAll<HTMLElement>("[data-tool]")) b.onclick = () => setTool(b.dataset.tool as Tool);
 for (const b of document.querySelectorAll<HTMLElement>("[data-follow]")) b.onclick = () => setFollow(b.dataset.follow as "follow");
 attachTabs(document.querySelector("nav")!, showPane);
@@ -331,14 +330,13 @@ if (isReplay) {
   get("caption").hidden = false;
   get("option-list").inert = true;
   get<HTMLSelectElement>("rate").querySelector('[value="0"]')?.remove();
-  get("timeline").setAttribute("aria-label", "the recording");
 }
 if (innerWidth < 900) get<HTMLDetailsElement>("layers").open = false;
-if (innerWidth < 900) scene.camera.zoom = 42;
+if (innerWidth < 900) scene.camera.zoom = innerWidth < 480 ? 32 : 42;
 setTheme(themeName);
 setTool(isReplay ? "pan" : "disc");
 showPane("charts");
 requestAnimationFrame(draw);
 
 // The state of the page, for tests and for debugging in the console.
-Object.assign(window, { slalom: { get frame() { return frame; }, get state() { return state; }, get hello() { return hello; }, get received() { return link.received; }, get waiting() { return link.waiting; }, replay: isReplay, scalar, scene, send } });
+Object.assign(window, { slalom: { get frame() { return frame; }, get state() { return state; }, get hello() { return hello; }, get received() { return link.received; }, get waiting() { return link.waiting; }, replay: isReplay, scalar, scene, past, send } });

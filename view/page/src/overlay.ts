@@ -22,7 +22,8 @@ export function place(label: HTMLElement, at: Pose | undefined, camera: Camera, 
   const [x, y] = camera.toScreen(at.x, at.y), ahead = at.yaw + camera.turn;
   const h = Math.cos(ahead), v = -Math.sin(ahead), width = label.offsetWidth, height = label.offsetHeight;
   const away = 0.36 * camera.zoom + 8 + (0.5 + further) * (Math.abs(h) * width + Math.abs(v) * (height + 4));
-  label.style.transform = `translate(${Math.round(x - h * away - width / 2)}px, ${Math.round(y - v * away - height / 2)}px)`;
+  const inside = (at: number, size: number, room: number) => Math.round(Math.max(margin, Math.min(room - size - margin, at)));
+  label.style.transform = `translate(${inside(x - h * away - width / 2, width, camera.width)}px, ${inside(y - v * away - height / 2, height, camera.height)}px)`;
 }
 
 /** The length of the ruler, m, and its text. */

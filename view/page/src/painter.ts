@@ -2,20 +2,20 @@ import type { Camera } from "./camera";
 import type { Rgba } from "./palette";
 
 const lineVertex = `#version 300 es
-layout(location=0) in vec2 corner; layout(location=1) in vec4 ends; layout(location=2) in vec4 colour0;
-layout(location=3) in vec4 colour1; layout(location=4) in vec2 shape;
+layout(location=0) in vec4 ends; layout(location=1) in vec4 tint; layout(location=2) in float width; // width below 0: no round ends
 uniform vec4 view; uniform vec2 size; uniform vec2 turn;
 out vec4 colour; out vec2 local; flat out float len; flat out float halfWidth; flat out float roundEnds;
 vec2 pixel(vec2 p) { vec2 d = p * view.z; return vec2(turn.x * d.x - turn.y * d.y, turn.y * d.x + turn.x * d.y); }
 void main() {
+  vec2 corner = vec2(gl_VertexID & 1, (gl_VertexID >> 1) & 1);
   vec2 a = pixel(ends.xy), b = pixel(ends.zw), d = b - a;
   len = length(d);
   vec2 along = len > 1e-6 ? d / len : vec2(1, 0), across = vec2(-along.y, along.x);
-  halfWidth = 0.5 * shape.x * view.w; roundEnds = shape.y;
+  halfWidth = 0.5 * abs(width) * view.w; roundEnds = width > 0.0 ? 1.0 : 0.0;
   float reach = halfWidth + 1.0, extend = roundEnds > 0.5 ? reach : 0.0;
   local = vec2(mix(-extend, len + extend, corner.x), mix(-reach, reach, corner.y));
   vec2 p = a + along * local.x + across * local.y;
-  colour = mix(colour0, colour1, corner.x);
+  colour = tint;
   gl_Position = vec4(2.0 * p / size + view.xy, 0, 1);
 }`;
 const lineFragment = `#version 300 es
@@ -57,9 +57,18 @@ void main() {
   result = vec4(c.rgb, 1.0) * c.a;
 }`;
 
+const byte = (v: number) => Math.round(255 * Math.min(1, Math.max(0, v)));
+const bytes = (c: Rgba) => (byte(c[0]) | (byte(c[1]) << 8) | (byte(c[2]) << 16) | (byte(c[3]) << 24)) >>> 0;
+
 interface Program { program: WebGLProgram; view: WebGLUniformLocation | null; size: WebGLUniformLocation | null; turn: WebGLUniformLocation | null }
 
-/** Collects lines and triangles in layers and draws them in order; positions in m of the map frame. */
+const vertexWords = 6; // of a line: ends, colour, width
+const lineWords = 4 * vertexWords;
+
+/**
+ * Collects lines and triangles in layers and draws them in order; positions in m of the map frame. Each line has four
+ * vertices of its own: without a graphics card, instanced drawing takes a hundred times as long.
+ */
 export class Painter {
   readonly gl: WebGL2RenderingContext;
   private readonly line: Program;
@@ -70,7 +79,10 @@ export class Painter {
   private readonly cellArray: WebGLVertexArrayObject;
   private readonly lineBuffer: WebGLBuffer;
   private readonly fillBuffer: WebGLBuffer;
-  private lines = new Float32Array(14 * 4096);
+  private readonly indexBuffer: WebGLBuffer;
+  private indexed = 0; // lines that the index buffer has room for
+  private lines = new Float32Array(lineWords * 4096);
+  private colours = new Uint32Array(this.lines.buffer);
   private lineCount = 0;
   private fills = new Float32Array(6 * 1024);
   private fillCount = 0;
@@ -93,16 +105,14 @@ export class Painter {
     gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 0, 0);
     this.lineArray = gl.createVertexArray()!;
     gl.bindVertexArray(this.lineArray);
-    gl.enableVertexAttribArray(0);
-    gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 0, 0);
+    this.indexBuffer = gl.createBuffer()!;
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.indexBuffer);
     this.lineBuffer = gl.createBuffer()!;
     gl.bindBuffer(gl.ARRAY_BUFFER, this.lineBuffer);
-    const layout: [number, number, number][] = [[1, 4, 0], [2, 4, 4], [3, 4, 8], [4, 2, 12]];
-    for (const [location, size, offset] of layout) {
-      gl.enableVertexAttribArray(location);
-      gl.vertexAttribPointer(location, size, gl.FLOAT, false, 56, 4 * offset);
-      gl.vertexAttribDivisor(location, 1);
-    }
+    for (const location of [0, 1, 2]) gl.enableVertexAttribArray(location);
+    gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 4 * vertexWords, 0);
+    gl.vertexAttribPointer(1, 4, gl.UNSIGNED_BYTE, true, 4 * vertexWords, 16);
+    gl.vertexAttribPointer(2, 1, gl.FLOAT, false, 4 * vertexWords, 20);
     this.fillArray = gl.createVertexArray()!;
     gl.bindVertexArray(this.fillArray);
     this.fillBuffer = gl.createBuffer()!;
@@ -153,22 +163,24 @@ export class Painter {
     gl.uniform2f(p.turn, Math.cos(c.turn), Math.sin(c.turn));
   }
 
-  segment(x0: number, y0: number, x1: number, y1: number, c0: Rgba, c1: Rgba, width: number, round = true) {
-    if (14 * (this.lineCount + 1) > this.lines.length) {
+  segment(x0: number, y0: number, x1: number, y1: number, colour: Rgba, width: number, round = true) {
+    if (lineWords * (this.lineCount + 1) > this.lines.length) {
       const larger = new Float32Array(this.lines.length * 2);
       larger.set(this.lines);
       this.lines = larger;
+      this.colours = new Uint32Array(larger.buffer);
     }
-    const d = this.lines, i = 14 * this.lineCount++, ox = this.camera.x, oy = this.camera.y;
-    d[i] = x0 - ox; d[i + 1] = y0 - oy; d[i + 2] = x1 - ox; d[i + 3] = y1 - oy;
-    d[i + 4] = c0[0]; d[i + 5] = c0[1]; d[i + 6] = c0[2]; d[i + 7] = c0[3];
-    d[i + 8] = c1[0]; d[i + 9] = c1[1]; d[i + 10] = c1[2]; d[i + 11] = c1[3];
-    d[i + 12] = width; d[i + 13] = round ? 1 : 0;
+    const d = this.lines, from = lineWords * this.lineCount++, ox = this.camera.x, oy = this.camera.y, packed = bytes(colour);
+    for (let i = from; i < from + lineWords; i += vertexWords) {
+      d[i] = x0 - ox; d[i + 1] = y0 - oy; d[i + 2] = x1 - ox; d[i + 3] = y1 - oy;
+      this.colours[i + 4] = packed;
+      d[i + 5] = round ? width : -width;
+    }
   }
 
   polyline(xy: ArrayLike<number>, from: number, count: number, colour: Rgba, width: number, round = true) {
     for (let i = from; i < from + count - 1; ++i)
-      this.segment(xy[2 * i], xy[2 * i + 1], xy[2 * i + 2], xy[2 * i + 3], colour, colour, width, round);
+      this.segment(xy[2 * i], xy[2 * i + 1], xy[2 * i + 2], xy[2 * i + 3], colour, width, round);
   }
 
   triangle(ax: number, ay: number, bx: number, by: number, cx: number, cy: number, colour: Rgba) {
@@ -194,11 +206,11 @@ export class Painter {
   outline(points: [number, number][], colour: Rgba, width: number) {
     points.forEach(([x, y], i) => {
       const [nx, ny] = points[(i + 1) % points.length];
-      this.segment(x, y, nx, ny, colour, colour, width);
+      this.segment(x, y, nx, ny, colour, width);
     });
   }
 
-  dot(x: number, y: number, diameter: number, colour: Rgba) { this.segment(x, y, x, y, colour, colour, diameter); }
+  dot(x: number, y: number, diameter: number, colour: Rgba) { this.segment(x, y, x, y, colour, diameter); }
 
   /** Draws what was collected; triangles first. */
   flush() {
@@ -214,10 +226,20 @@ export class Painter {
       this.use(this.line);
       gl.bindVertexArray(this.lineArray);
       gl.bindBuffer(gl.ARRAY_BUFFER, this.lineBuffer);
-      gl.bufferData(gl.ARRAY_BUFFER, this.lines.subarray(0, 14 * this.lineCount), gl.STREAM_DRAW);
-      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.lineCount);
+      gl.bufferData(gl.ARRAY_BUFFER, this.lines.subarray(0, lineWords * this.lineCount), gl.STREAM_DRAW);
+      this.index(this.lineCount);
+      gl.drawElements(gl.TRIANGLES, 6 * this.lineCount, gl.UNSIGNED_INT, 0);
     }
     this.fillCount = this.lineCount = 0;
+  }
+
+  /** Two triangles for each of so many lines. */
+  private index(lines: number) {
+    if (lines <= this.indexed) return;
+    this.indexed = 2 * lines;
+    const corners = [0, 1, 2, 2, 1, 3], all = new Uint32Array(6 * this.indexed);
+    for (let i = 0; i < all.length; ++i) all[i] = 4 * Math.floor(i / 6) + corners[i % 6];
+    this.gl.bufferData(this.gl.ELEMENT_ARRAY_BUFFER, all, this.gl.STATIC_DRAW);
   }
 
   texture(): WebGLTexture {

@@ -12,8 +12,6 @@ async function unpacked(script: HTMLScriptElement): Promise<ArrayBuffer> {
   return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
 }
 
-const history = 800; // frames, of what the charts show
-
 /** A frame's figures alone: its first block. */
 function scalarsOf(frame: ArrayBuffer): Float64Array {
   return new Float64Array(frame.slice(12, 12 + new DataView(frame).getUint32(8, true)));
@@ -54,7 +52,10 @@ export class Player implements Link {
       at += 5 + length;
       if (kind === 0) this.takeText(JSON.parse(new TextDecoder().decode(content)) as Text);
       else if (new DataView(content).getUint16(4, true) >= 20) this.handlers.scene(decode(content).scene!);
-      else this.frames.push(content);
+      else {
+        this.handlers.past(scalarsOf(content), this.frames.length);
+        this.frames.push(content);
+      }
     }
     this.tell();
   }
@@ -77,8 +78,7 @@ export class Player implements Link {
     const before = this.shown;
     this.shown = index;
     this.received += 1;
-    if (index < before || index > before + 15) this.handlers.past(this.frames.slice(Math.max(0, index - history), index).map(scalarsOf));
-    this.handlers.frame(decode(this.frames[index]).frame!);
+    this.handlers.frame(decode(this.frames[index]).frame!, index);
     if (this.paused || index % 10 === 0 || Math.abs(index - before) > 1) this.tell();
   }
 
@@ -94,6 +94,11 @@ export class Player implements Link {
     }
     this.show();
     requestAnimationFrame((then) => this.turn(then));
+  }
+
+  ask(command: Record<string, unknown>) {
+    this.send(command);
+    return Promise.resolve();
   }
 
   drawn() { /* frames come from this page */ }

@@ -26,6 +26,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
   let dragged: Body | undefined;
   let grip = { x: 0, y: 0 };
   let sent = 0;
+  let drag = 0; // number of the drag, whose steps are undone together
   let pressed = 0; // timer of a long press
 
   const place = (e: PointerEvent | MouseEvent) => { const box = canvas.getBoundingClientRect(); return { x: e.clientX - box.left, y: e.clientY - box.top }; };
@@ -36,7 +37,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
   };
   const move = (body: Body, x: number, y: number) => {
     if (body.kind === 0) send({ do: "place_car", x, y, yaw: body.yaw });
-    else send({ do: "move", body: body.id, x, y, yaw: body.yaw });
+    else send({ do: "move", body: body.id, x, y, yaw: body.yaw, drag });
   };
 
   canvas.addEventListener("pointerdown", (e) => {
@@ -53,6 +54,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
     dragged = scene.bodyAt(x, y);
     if (fixed || dragged?.kind === 4) dragged = undefined; // opponents drive themselves
     scene.selected = dragged && dragged.kind !== 0 ? dragged.id : -1;
+    drag = 1 + Math.floor(1e9 * Math.random()); // other pages drag too
     if (dragged) grip = { x: dragged.x - x, y: dragged.y - y };
     if (e.pointerType === "touch") pressed = window.setTimeout(() => { if (start && !moved && remove(dragged)) start = dragged = undefined; }, longPress);
     redraw();

@@ -45,7 +45,7 @@ export interface Path { closed: boolean; xyv: Float32Array }
 export interface Scene { grid?: Grid; path?: Path }
 
 const MAGIC = 0x31564c53; // "SLV1"
-const kinds = { scalars: 1, scan: 2, costMap: 3, candidates: 4, guides: 5, nominal: 6, plan: 7, bodies: 8, covariance: 9, ghost: 10, grid: 20, path: 21, file: 30 };
+const kinds = { scalars: 1, scan: 2, costMap: 3, candidates: 4, guides: 5, nominal: 6, plan: 7, bodies: 8, covariance: 9, ghost: 10, grid: 20, path: 21, past: 22, file: 30 };
 
 class Reader {
   at: number;
@@ -73,8 +73,8 @@ function points(r: Reader, count: number): Float32Array {
   return out;
 }
 
-/** Reads a binary message: a frame, a scene (grid and path), or a file. */
-export function decode(buffer: ArrayBuffer): { frame?: Frame; scene?: Scene; file?: { name: string; content: Uint8Array } } {
+/** Reads a binary message: a frame, a scene (grid and path), scalars of past steps, or a file. */
+export function decode(buffer: ArrayBuffer): { frame?: Frame; scene?: Scene; past?: Float64Array; file?: { name: string; content: Uint8Array } } {
   const view = new DataView(buffer);
   if (view.byteLength < 4 || view.getUint32(0, true) !== MAGIC) throw new Error("not a message of the live view");
   const frame: Frame = { scalars: new Float64Array(0), bodies: [] };
@@ -175,6 +175,11 @@ export function decode(buffer: ArrayBuffer): { frame?: Frame; scene?: Scene; fil
         const n = r.u32(), begin = r.at + ((n + 3) & ~3);
         return { file: { name: new TextDecoder().decode(new Uint8Array(buffer, r.at, n)), content: new Uint8Array(buffer, begin, r.end - begin) } };
       }
+      case kinds.past: {
+        const past = new Float64Array(length / 8);
+        for (let i = 0; i < past.length; ++i) past[i] = r.f64();
+        return { past };
+      }
       case kinds.path: {
         const n = r.u32(), closed = r.u32() !== 0;
         scene.path = { closed, xyv: r.f32s(3 * n) };
@@ -197,7 +202,7 @@ export interface Hello {
   type: "hello"; protocol: number; scalars: string[]; statuses: string[]; courses: string[]; methods: string[]; configurations: string[];
   car: { length: number; width: number; front: number; rear: number };
   lidar: { angle_min: number; angle_increment: number; range_max: number };
-  history_seconds: number; control_period: number; replay?: boolean;
+  session: string; history_seconds: number; control_period: number; replay?: boolean;
 }
 export interface LapRow { lap: number; time: number; contacts: number; method: string; ghost?: boolean }
 export interface State {
@@ -206,8 +211,9 @@ export interface State {
   time: number; control_period: number; laps: LapRow[]; ghost: string; ghost_label: string; contact?: { experiment: number; lap: number; contact: number; tick: number }; generation: number; clients: number; edited: boolean;
 }
 export interface Options { type: "options"; sections: OptionSection[]; changed: string[]; command_line: string; yaml: string; undo: number; redo: number }
-export interface Problem { type: "error"; message: string }
+export interface Problem { type: "error"; message: string; id?: number }
+export interface Done { type: "done"; id: number }
 export interface Note { type: "note"; message: string }
 export interface EvaluationLap { experiment: number; lap: number; seed: string; finished: boolean; time: number; contacts: number; points: [number, number][] }
 export interface Evaluation { type: "evaluation"; folder: string; course: string; experiments: { label: string; scenario: string; obstacles: number }[]; laps: EvaluationLap[] }
-export type Text = Hello | State | Options | Problem | Note | Evaluation;
+export type Text = Hello | State | Options | Problem | Done | Note | Evaluation;

@@ -56,8 +56,10 @@ export class SceneView {
   private readonly map: WebGLTexture;
   private readonly costMap: WebGLTexture;
   private costMapOf?: Frame;
-  private driven: number[] = [];
-  private drivenTicks: number[] = [];
+  /** x and y (m) of the path that the car has driven, one after the other. */
+  driven: number[] = [];
+  /** Where the car was at the time under the pointer. */
+  probe?: { x: number; y: number; yaw: number };
   private bounds: [number, number, number, number] = [-5, -5, 5, 5]; // of the course line, with room for the walls
   get courseBounds() { return this.bounds; }
   marks: Mark[] = []; // collisions of an evaluation
@@ -72,7 +74,6 @@ export class SceneView {
 
   setScene(scene: Scene) {
     this.scene = scene;
-    this.clearDriven();
     const grid = scene.grid;
     if (grid) this.painter.upload(this.map, grid.width, grid.height, smoothed(grid.cells.map((v) => (v === 0 ? 255 : 0)), grid.width, grid.height));
     const p = scene.path?.xyv;
@@ -95,28 +96,6 @@ export class SceneView {
   private place() { const c = this.camera; return c.follow === "free" ? [c.x, c.y, c.zoom].join() : "not fitted"; }
   private fitted = "";
 
-  setFrame(frame: Frame, tick: number, x: number, y: number) {
-    this.frame = frame;
-    this.addDriven(tick, x, y);
-  }
-
-  clearDriven() {
-    this.driven = [];
-    this.drivenTicks = [];
-  }
-
-  addDriven(tick: number, x: number, y: number) {
-    while (this.drivenTicks.length && this.drivenTicks[this.drivenTicks.length - 1] >= tick) {
-      this.drivenTicks.pop();
-      this.driven.length -= 2;
-    }
-    const n = this.driven.length;
-    if (n >= 2 && Math.hypot(x - this.driven[n - 2], y - this.driven[n - 1]) > 2) { this.driven = []; this.drivenTicks = []; }
-    this.drivenTicks.push(tick);
-    this.driven.push(x, y);
-    if (this.drivenTicks.length > 6000) { this.drivenTicks.splice(0, 1000); this.driven.splice(0, 2000); }
-  }
-
   /** The body under a point of the map frame; the driven car is 0. */
   bodyAt(x: number, y: number): Body | undefined {
     const slack = 6 / this.camera.zoom;
@@ -137,7 +116,7 @@ export class SceneView {
     if (!frame) return;
     if (this.visible.has("costMap")) this.drawCostMap(frame);
     if (this.visible.has("path")) this.drawPath();
-    if (this.visible.has("driven")) painter.polyline(this.driven, 0, this.drivenTicks.length, theme.driven, 2, false);
+    if (this.visible.has("driven")) painter.polyline(this.driven, 0, this.driven.length / 2, theme.driven, 2, false);
     if (this.visible.has("candidates")) this.drawCandidates(frame);
     painter.flush();
     if (this.visible.has("spread")) this.drawSpread(frame);
@@ -155,6 +134,7 @@ export class SceneView {
     if (this.visible.has("plan") && frame.plan) this.drawPlan(frame);
     if (frame.ghost && this.visible.has("ghost")) this.drawGhost(frame);
     painter.flush();
+    if (this.probe) this.drawProbe(this.probe);
     if (car) this.drawCar(car.x, car.y, car.yaw, frame.scalars[this.index("steer")] ?? 0, theme.car, car.touched ? theme.collided : theme.carEdge, 1);
     painter.flush();
   }
@@ -190,7 +170,7 @@ export class SceneView {
     for (let i = 0; i < (path.closed ? n : n - 1); ++i) {
       if (i % 4 >= 2) continue;
       const j = (i + 1) % n;
-      this.painter.segment(p[3 * i], p[3 * i + 1], p[3 * j], p[3 * j + 1], colour, colour, 1.3, false);
+      this.painter.segment(p[3 * i], p[3 * i + 1], p[3 * j], p[3 * j + 1], colour, 1.3, false);
     }
   }
 
@@ -228,7 +208,7 @@ export class SceneView {
         this.painter.dot(g.xy[2 * end], g.xy[2 * end + 1], last ? 6 : 3, faded(theme.guide, last ? 1 : 0.55));
         if (k > 0) {
           const before = ((k - 1) * g.guides + i + 1) * g.points - 1;
-          this.painter.segment(g.xy[2 * before], g.xy[2 * before + 1], g.xy[2 * end], g.xy[2 * end + 1], faded(theme.guide, 0.8), faded(theme.guide, 0.8), 1.2, false);
+          this.painter.segment(g.xy[2 * before], g.xy[2 * before + 1], g.xy[2 * end], g.xy[2 * end + 1], faded(theme.guide, 0.8), 1.2, false);
         }
       }
     }
@@ -245,7 +225,7 @@ export class SceneView {
 
   private drawPlan(frame: Frame) {
     const plan = frame.plan!, { theme } = this;
-    for (let i = 1; i < plan.length; ++i) this.painter.segment(plan[i - 1].x, plan[i - 1].y, plan[i].x, plan[i].y, theme.plan, theme.plan, 3.2);
+    for (let i = 1; i < plan.length; ++i) this.painter.segment(plan[i - 1].x, plan[i - 1].y, plan[i].x, plan[i].y, theme.plan, 3.2);
     for (const p of plan) this.painter.dot(p.x, p.y, 5, theme.plan);
   }
 
@@ -261,7 +241,7 @@ export class SceneView {
   }
 
   private dashed(xy: Float32Array, count: number, colour: Rgba, width: number) {
-    for (let i = 0; i < count - 1; i += 2) this.painter.segment(xy[2 * i], xy[2 * i + 1], xy[2 * i + 2], xy[2 * i + 3], colour, colour, width, false);
+    for (let i = 0; i < count - 1; i += 2) this.painter.segment(xy[2 * i], xy[2 * i + 1], xy[2 * i + 2], xy[2 * i + 3], colour, width, false);
   }
 
   private drawObstacle(b: Body) {
@@ -282,11 +262,17 @@ export class SceneView {
     this.painter.outline(points, this.theme.obstacle, 1.5);
   }
 
+  private drawProbe(at: { x: number; y: number; yaw: number }) {
+    const size = this.hello?.car ?? { length: 0.58, width: 0.31 };
+    this.painter.outline(corners({ ...at, length: size.length, width: size.width }), this.theme.selected, 2);
+    this.painter.dot(at.x, at.y, 5, this.theme.selected);
+  }
+
   private drawMarks() {
     for (const m of this.marks) {
       const r = (m.shown ? 9 : 5) / this.camera.zoom, colour = m.shown ? this.theme.selected : this.theme.mark;
-      this.painter.segment(m.x - r, m.y - r, m.x + r, m.y + r, colour, colour, m.shown ? 3.5 : 2.2);
-      this.painter.segment(m.x - r, m.y + r, m.x + r, m.y - r, colour, colour, m.shown ? 3.5 : 2.2);
+      this.painter.segment(m.x - r, m.y - r, m.x + r, m.y + r, colour, m.shown ? 3.5 : 2.2);
+      this.painter.segment(m.x - r, m.y + r, m.x + r, m.y - r, colour, m.shown ? 3.5 : 2.2);
     }
   }
 

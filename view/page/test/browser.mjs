@@ -7,6 +7,7 @@ import compare from "./suites/compare.mjs";
 import drive from "./suites/drive.mjs";
 import evaluation from "./suites/evaluation.mjs";
 import layout from "./suites/layout.mjs";
+import past from "./suites/past.mjs";
 import responsive from "./suites/responsive.mjs";
 import save from "./suites/save.mjs";
 
@@ -22,7 +23,7 @@ if (!chromiumPath()) {
 const harness = new Harness(program, pictures, process.env.SLALOM_TEST);
 await harness.open_all();
 await harness.page.goto(harness.server.address);
-for (const suite of [drive, responsive, compare, save, evaluation, layout, accessible, access]) await suite(harness);
+for (const suite of [drive, responsive, compare, past, save, evaluation, layout, accessible, access]) await suite(harness);
 await harness.close();
 console.log(harness.failed ? `${harness.failed} failed` : "all passed");
 process.exit(harness.failed ? 1 : 0);

@@ -7,9 +7,9 @@ import { chromium } from "playwright-core";
 
 /**
  * How long a condition may take, ms. Tests wait for conditions and never for a time, so a slow machine only takes
- * longer; this bound ends a test whose condition will never hold.
+ * longer; this bound ends a test whose condition will never hold. SLALOM_PATIENCE sets it.
  */
-export const patience = 180_000;
+export const patience = Number(process.env.SLALOM_PATIENCE ?? 180_000);
 
 /** Starts the program and waits for its address. */
 export async function startProgram(program, args) {

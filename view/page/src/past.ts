@@ -1,0 +1,68 @@
+import type { State } from "./protocol";
+
+/**
+ * The scalars of the control steps of the last minute, by their position: the tick, or the index of the frame in a
+ * recording. Some arrive late: those of frames that this page was not sent.
+ */
+export class Past {
+  private rows: (Float64Array | undefined)[] = [];
+  private first = 0; // position of the first row
+
+  /** `most`: the number of steps that are kept. */
+  constructor(public most: number) {}
+
+  get oldest() { return this.first; }
+  get newest() { return this.first + this.rows.length - 1; }
+  at(position: number): Float64Array | undefined { return this.rows[position - this.first]; }
+
+  set(position: number, scalars: Float64Array) {
+    if (!this.rows.length || position > this.newest + this.most) { this.rows = []; this.first = position; }
+    if (position < this.first) {
+      if (this.newest - position >= this.most) return;
+      this.rows = [...new Array<undefined>(this.first - position), ...this.rows];
+      this.first = position;
+    }
+    while (this.newest < position) this.rows.push(undefined);
+    this.rows[position - this.first] = scalars;
+    const surplus = this.rows.length - this.most;
+    if (surplus > 0) { this.rows.splice(0, surplus); this.first += surplus; }
+  }
+
+  /** For a drive that went back to a position and continues from there. */
+  forgetAfter(position: number) { this.rows.length = Math.max(0, Math.min(this.rows.length, position - this.first + 1)); }
+  clear() { this.rows = []; }
+
+  /** The newest gap from `oldest` to `newest`, at most `most` steps of it. */
+  missing(oldest: number, newest: number, most: number): { from: number; to: number } | undefined {
+    let to = newest;
+    while (to >= oldest && this.at(to)) --to;
+    if (to < oldest) return undefined;
+    let from = to;
+    while (from > oldest && to - from + 1 < most && !this.at(from - 1)) --from;
+    return { from, to };
+  }
+}
+
+const pause = 400; // ms between two questions
+const patience = 4000; // ms until an answer that did not come is asked for again
+const many = 800; // steps in one answer
+
+/** Asks the server for the scalars of steps whose frames did not come: the page was too slow, or opened later. */
+export class Gaps {
+  private isAsking = false;
+  private askedAt = -Infinity;
+
+  constructor(private readonly send: (command: Record<string, unknown>) => void) {}
+
+  fill(past: Past, state: State) {
+    const now = performance.now();
+    if (now - this.askedAt < (this.isAsking ? patience : pause)) return;
+    const gap = past.missing(Math.max(0, state.oldest), Math.max(state.newest, past.newest), many);
+    if (!gap) return;
+    this.isAsking = true;
+    this.askedAt = now;
+    this.send({ do: "past", ...gap });
+  }
+
+  answered() { this.isAsking = false; }
+}
