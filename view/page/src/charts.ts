@@ -209,6 +209,7 @@ export class Charts {
 
   /** What the charts show, as comma-separated values with the names of the scalars. */
   csv(): string {
+    if (this.hello) this.collect(this.hello);
     const shown = this.plotted.filter((p) => !p.box.hidden).flatMap((p) => p.strip.lines.map((l, i) => ({ l, column: p.columns[i] })));
     const rows = this.positions.map((position, i) => [position, this.times[i], ...shown.map(({ l, column }) => (column[i] === null ? "" : column[i]! / (l.scale ?? 1)))].join());
     return [["tick", "time", ...shown.map(({ l }) => l.name)].join(), ...rows].join("\n") + "\n";

@@ -25,8 +25,8 @@ export function returnFocus(scene: HTMLElement) {
   const used = (event: Event) => {
     const target = event.target as HTMLElement;
     const keeps = target.closest("dialog, .menu > div, [aria-expanded], [type=text], [type=number]");
-    const closed = document.activeElement === document.body || document.activeElement === target || target.contains(document.activeElement);
-    if (byPointer && !keeps && closed && !document.querySelector("dialog[open]")) scene.focus({ preventScroll: true });
+    const focused = document.activeElement, isFree = focused === document.body || target.closest("button, summary, label, select, input")?.contains(focused);
+    if (byPointer && !keeps && isFree && !document.querySelector("dialog[open]")) scene.focus({ preventScroll: true });
   };
   document.addEventListener("change", used);
   document.addEventListener("click", (event) => { if ((event.target as HTMLElement).closest("button, summary, label")) used(event); });

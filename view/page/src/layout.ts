@@ -86,13 +86,14 @@ export function layout(root: HTMLElement) {
 </div>
 <aside aria-label="Details">
   <nav role="tablist" aria-label="Details">${panes.map((name) => `<button role="tab" id="tab-${name}" data-pane="${name}" aria-controls="pane-${name}"${name === "evaluation" ? " hidden" : ""}>${titled(name)}</button>`).join("")}</nav>
-  <div class="pane" id="pane-charts"><div class="row end tight"><button id="csv" title="The values of the charts, as they are shown">Save as CSV</button></div><div id="charts"></div></div>
+  <div class="pane" id="pane-charts"><div id="charts"></div><div class="row end"><button id="csv" title="The values of the charts, as they are shown">Save as CSV</button></div></div>
   <div class="pane" id="pane-options" hidden><div id="options"></div></div>
   <div class="pane" id="pane-laps" hidden><p id="about"></p><div id="laps"></div></div>
   <div class="pane" id="pane-evaluation" hidden><div id="evaluation"></div></div>
 </aside>
 <div id="toast" class="card" role="status" hidden></div>
 <dialog id="help-box" aria-labelledby="help-title"></dialog>
+<dialog id="preset-box" aria-labelledby="preset-title"></dialog>
 <dialog id="fork-box" aria-labelledby="fork-title"></dialog>`;
   for (const pane of root.querySelectorAll<HTMLElement>(".pane")) {
     pane.setAttribute("role", "tabpanel");

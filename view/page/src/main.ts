@@ -14,6 +14,7 @@ import { Player, recordings } from "./player";
 import { foldHeader, help, layout } from "./layout";
 import { rampCss, themes } from "./palette";
 import type { Frame, Hello, Scene, State, Text } from "./protocol";
+import { PresetBox } from "./preset";
 import { Readout } from "./readout";
 import { Restore } from "./restore";
 import { showStatus } from "./status";
@@ -70,7 +71,11 @@ const handlers = {
 const recorded = recordings(), isReplay = recorded.length > 0;
 const link: Link = isReplay ? new Player(handlers, recorded) : new Connection(handlers);
 const send = (command: Record<string, unknown>) => link.send(command);
-const options = new OptionsPane(get("options"), send, copy);
+const preset = new PresetBox(get<HTMLDialogElement>("preset-box"), async ({ base, set }) => {
+  if (base && base !== state?.config) await link.ask({ do: "scenario", config: base });
+  await link.ask({ do: "preset", set });
+});
+const options = new OptionsPane(get("options"), send, { copy, save: (yaml) => download(`slalom-${state?.config}-preset.yaml`, yaml, "text/yaml"), load: () => preset.open() });
 const fork = new ForkBox(get<HTMLDialogElement>("fork-box"), (command) => link.ask(command));
 const readout = new Readout(), gaps = new Gaps(send);
 const timeline = new Timeline(isReplay, (tick) => send({ do: "seek", tick }), (at) => hover(at === undefined || !state ? undefined : at * state.control_period));

@@ -19,23 +19,31 @@ function travel(o: OptionDeclaration) {
   };
 }
 
+/** The options that are changed most often; those that were changed are shown as well. */
+const short = ["samples", "horizon", "temperature", "variance", "guides", "restart_variance", "adapt_covariance", "use_nominal", "vehicle.body_margin", "planner.max_speed"];
+
 /** Sliders made from the options' declarations. */
 export class OptionsPane {
   private readonly list: HTMLElement;
   private filter = "";
+  private all = false;
   private last?: Options;
 
-  constructor(private readonly root: HTMLElement, private readonly send: (command: Record<string, unknown>) => void, copy: (text: string, what: string) => void) {
-    root.innerHTML = `<div class="row"><input type="text" id="filter" placeholder="find an option" aria-label="find an option" style="flex:1">
+  constructor(private readonly root: HTMLElement, private readonly send: (command: Record<string, unknown>) => void, actions: { copy(text: string, what: string): void; save(yaml: string): void; load(): void }) {
+    root.innerHTML = `<div class="row"><input type="text" id="filter" placeholder="Search all options" aria-label="Search all options" style="flex:1">
       <button id="undo" title="Undo (Ctrl+Z)">Undo</button><button id="redo" title="Redo (Ctrl+Y)">Redo</button><button id="reset">Reset</button></div>
-      <div class="row"><button id="copy-yaml">Copy as YAML</button><button id="copy-command">Copy as command line</button></div><pre id="command"></pre><div id="option-list"></div>`;
+      <div class="row"><button id="save-preset" title="What differs from the configuration, as a YAML file">Save preset</button><button id="load-preset">Load preset…</button><button id="copy-yaml">Copy as YAML</button><button id="copy-command">Copy as command line</button></div><pre id="command"></pre>
+      <div id="option-list"></div><button id="all-options" aria-expanded="false"></button>`;
     this.list = root.querySelector("#option-list")!;
     const on = (id: string, act: () => void) => ((root.querySelector(id) as HTMLElement).onclick = act);
     on("#undo", () => send({ do: "undo" }));
     on("#redo", () => send({ do: "redo" }));
     on("#reset", () => send({ do: "reset_options" }));
-    on("#copy-yaml", () => this.last && copy(this.last.yaml, "YAML"));
-    on("#copy-command", () => this.last && copy(this.last.command_line, "command line"));
+    on("#copy-yaml", () => this.last && actions.copy(this.last.yaml, "YAML"));
+    on("#copy-command", () => this.last && actions.copy(this.last.command_line, "command line"));
+    on("#save-preset", () => this.last && actions.save(this.last.yaml));
+    on("#load-preset", () => actions.load());
+    on("#all-options", () => { this.all = !this.all; if (this.last) this.show(this.last); });
     (root.querySelector("#filter") as HTMLInputElement).oninput = (e) => {
       this.filter = (e.target as HTMLInputElement).value.toLowerCase();
       if (this.last) this.show(this.last);
@@ -50,16 +58,26 @@ export class OptionsPane {
     this.root.querySelector("#command")!.textContent = options.command_line;
     const parts: HTMLElement[] = [];
     for (const section of options.sections) {
-      const shown = section.options.filter((o) => !this.filter || `${section.name} ${o.name} ${o.help} ${o.symbol}`.toLowerCase().includes(this.filter));
+      const shown = section.options.filter((o) => this.shows(section.name, o));
       if (!shown.length) continue;
       const head = document.createElement("div");
       head.className = "section";
       head.textContent = section.name;
       parts.push(head, ...shown.map((o) => this.row(section.name, o)));
     }
+    const more = this.root.querySelector<HTMLElement>("#all-options")!, count = options.sections.reduce((n, s) => n + s.options.length, 0);
+    more.hidden = this.filter !== "";
+    more.textContent = this.all ? "Fewer options" : `All ${count} options`;
+    more.setAttribute("aria-expanded", String(this.all));
+    if (!parts.length) parts.push(Object.assign(document.createElement("p"), { textContent: `No option matches '${this.filter}'.` }));
     const at = this.root.scrollTop;
     this.list.replaceChildren(...parts);
     this.root.scrollTop = at;
+  }
+
+  private shows(section: string, o: OptionDeclaration) {
+    if (this.filter) return `${section} ${o.name} ${o.help} ${o.symbol}`.toLowerCase().includes(this.filter);
+    return this.all || o.value !== o.default || short.includes(`${section}.${o.name}`) || (section !== "vehicle" && section !== "planner" && short.includes(o.name));
   }
 
   private row(section: string, o: OptionDeclaration): HTMLElement {

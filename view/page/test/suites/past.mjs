@@ -3,14 +3,14 @@ import assert from "node:assert/strict";
 
 export default async function (h) {
   const { page } = h;
-  /** How many of the steps that can be gone back to the page does not know. */
-  const unknown = () => { let missing = 0; for (let i = Math.max(0, slalom.state.oldest); i <= slalom.state.newest; ++i) if (!slalom.past.at(i)) ++missing; return missing; };
+  /** The page knows all steps that can be gone back to. */
+  const known = () => window.slalom?.state && slalom.frame && !slalom.past.missing(Math.max(0, slalom.state.oldest), slalom.state.newest, 1);
 
   await h.test("the scalars of steps without a frame arrive late instead of never", async () => {
     await h.pause();
     await h.send({ do: "step", ticks: 120 }); // of 120 steps in one go, few frames can be sent
     await h.until(() => slalom.state.tick === slalom.scalar("tick"));
-    await h.until((f) => new Function(`return (${f})()`)() === 0, unknown.toString());
+    await h.until(known);
     const names = await page.evaluate(() => slalom.hello.scalars), tick = (await h.state()).newest - 60;
     const late = await page.evaluate((t) => [...slalom.past.at(t)], tick);
     await h.send({ do: "seek", tick });
@@ -21,7 +21,7 @@ export default async function (h) {
 
   await h.test("a reloaded page has the charts and the driven line of the minute before", async () => {
     const other = await h.open(page.url());
-    await h.until((f) => window.slalom?.state && slalom.frame && new Function(`return (${f})()`)() === 0, unknown.toString(), other);
+    await h.until(known, undefined, other);
     await h.drawn(other);
     const { points, steps } = await other.evaluate(() => { slalom.scene.draw(); return { points: slalom.scene.driven.length / 2, steps: slalom.scalar("tick") - Math.max(0, slalom.state.oldest) + 1 }; });
     assert.ok(points > 0.9 * steps, `${points} points of ${steps} steps`);
@@ -96,11 +96,48 @@ export default async function (h) {
 
   await h.test("the charts are saved as CSV", async () => {
     await h.until(() => slalom.frame && slalom.scalar("tick") > 20);
+    await h.pause();
     const [file] = await Promise.all([page.waitForEvent("download"), page.click("#csv")]);
     const { readFileSync } = await import("node:fs"), rows = readFileSync(await file.path(), "utf8").trim().split("\n").map((row) => row.split(","));
     assert.deepEqual(rows[0].slice(0, 3), ["tick", "time", "distance_cost"]);
     assert.ok(rows.length > 10 && rows.every((row) => row.length === rows[0].length));
     const speed = rows[0].indexOf("speed"), known = await page.evaluate((t) => slalom.past.at(t)[slalom.hello.scalars.indexOf("speed")], Number(rows[5][0]));
     assert.equal(Number(rows[5][speed]), known);
+  });
+
+  await h.test("a short list of options comes first, and the search finds the others", async () => {
+    await page.click("#tab-options");
+    const keys = () => page.evaluate(() => [...document.querySelectorAll("#option-list [data-key]")].map((e) => e.dataset.key));
+    const first = await keys();
+    assert.ok(first.length <= 12 && first.includes("svg_mppi.samples") && !first.includes("planner.steer_limit"), `${first}`);
+    await page.fill("#filter", "steer_limit");
+    assert.deepEqual(await keys(), ["planner.steer_limit"]);
+    await page.fill("#filter", "");
+    await page.click("#all-options");
+    assert.ok((await keys()).length > 60);
+    await page.click("#all-options");
+    assert.equal((await keys()).length, first.length);
+  });
+
+  await h.test("presets are saved and loaded as YAML, and a mistake keeps what was typed", async () => {
+    await h.send({ do: "set", key: "svg_mppi.temperature", value: "5" });
+    await h.until(() => document.querySelector('[data-key="svg_mppi.temperature"]').classList.contains("changed"));
+    const { readFileSync } = await import("node:fs");
+    const [file] = await Promise.all([page.waitForEvent("download"), page.click("#save-preset")]);
+    const yaml = readFileSync(await file.path(), "utf8");
+    assert.equal(yaml, "base: default\nsvg_mppi:\n  temperature: 5\n");
+    await h.send({ do: "reset_options" });
+    await page.click("#load-preset");
+    const load = async (text) => { await page.fill("#preset-text", text); await page.click("#preset-go"); };
+    await load("svg_mppi:\ntemperature: 5\n");
+    await h.until(() => /^Line 2: /.test(document.getElementById("preset-error").textContent));
+    await load("svg_mppi:\n  temperatur: 5\n");
+    await h.until(() => /temperature/.test(document.getElementById("preset-error").textContent));
+    assert.equal(await page.inputValue("#preset-text"), "svg_mppi:\n  temperatur: 5\n");
+    await load(yaml);
+    await h.until(() => !document.getElementById("preset-box").open && document.querySelector('[data-key="svg_mppi.temperature"] input').value === "5");
+    await h.send({ do: "undo" });
+    await h.until(() => !document.querySelector('[data-key="svg_mppi.temperature"]').classList.contains("changed"));
+    await page.click("#tab-charts");
   });
 }
