@@ -4,5 +4,5 @@
 set -eu
 cd "$1"
 command -v node >/dev/null || { echo "skipped: node is not installed"; exit 77; }
-[ -d node_modules/playwright-core ] || { echo "skipped: run script/bootstrap first"; exit 77; }
+[ -d node_modules/playwright-core ] || { echo "skipped: the packages of npm are not installed; script/bootstrap test installs them"; exit 77; }
 exec node "test/$2" "$3"

@@ -16,7 +16,7 @@ const titled = (text: string) => text[0].toUpperCase() + text.slice(1);
 export function layout(root: HTMLElement) {
   root.innerHTML = `
 <header>
-  <div class="brand">${mark}<b>Slalom</b></div>
+  <div class="brand">${mark}<h1>Slalom</h1></div>
   <div id="primary">
     <label class="field"><span>Course</span><select id="course"></select></label>
     <label class="field"><span>Method</span><select id="method"></select></label>
@@ -61,11 +61,12 @@ export function layout(root: HTMLElement) {
     <span>collisions</span><b id="contacts">0</b>
     <span id="gap-label" hidden>to ghost</span><b id="gap" hidden>–<small>m</small></b>
   </div>
+  <p id="modes" class="card" hidden></p>
   <div id="ruler" class="numbers"><span id="ruler-text"></span><div id="ruler-bar"></div></div>
   <div id="restore" class="card" role="alertdialog" aria-labelledby="restore-text" hidden><p id="restore-text">The server was started anew, with another scenario.</p><div class="row end"><button id="restore-not">Keep the server's</button><button id="restore-mine" class="primary">Restore my scenario</button></div></div>
   <div id="lost" role="alertdialog" aria-labelledby="lost-title" hidden><div class="card"><h2 id="lost-title">Connection lost</h2><p id="lost-text"></p></div></div>
 </main>
-<div id="tools" role="toolbar" aria-label="Edit the world, and the view">
+<div id="tools" role="region" aria-label="Edit the world, and the view">
   <span class="group" role="group" aria-label="What a click places">
     <button data-tool="disc" title="A click places a pole (1)">Pole</button><button data-tool="box" title="A click places a box (2)">Box</button>
     <button data-tool="car" title="A click places a parked car (3)">Car</button><button data-tool="pan" title="A click only selects (4)">Select</button>
@@ -75,7 +76,7 @@ export function layout(root: HTMLElement) {
     <button data-follow="follow" title="Follow the car (F)">Follow</button><button data-follow="heading" title="Follow, heading up (F)">Heading up</button><button data-follow="fit" title="Show the whole course (A)">Fit course</button>
   </span>
 </div>
-<div id="bar" role="group" aria-label="Time">
+<div id="bar" role="region" aria-label="Time">
   <button id="play" title="Play or pause (Space)"></button>
   <button id="step" title="One control step (.)">${icon("step")}<span>Step</span></button>
   <button id="fork" title="Continue from here with another method or other options (K)">${icon("fork")}<span>Fork…</span></button>

@@ -7,6 +7,7 @@ import { ForkBox } from "./fork";
 import type { Link } from "./link";
 import { attachPointer, type Tool } from "./pointer";
 import { Popover } from "./popover";
+import { Caption } from "./modes";
 import { OptionsPane } from "./options";
 import { download, picture } from "./picture";
 import { Gaps, Past } from "./past";
@@ -77,7 +78,7 @@ const preset = new PresetBox(get<HTMLDialogElement>("preset-box"), async ({ base
 });
 const options = new OptionsPane(get("options"), send, { copy, save: (yaml) => download(`slalom-${state?.config}-preset.yaml`, yaml, "text/yaml"), load: () => preset.open() });
 const fork = new ForkBox(get<HTMLDialogElement>("fork-box"), (command) => link.ask(command));
-const readout = new Readout(), gaps = new Gaps(send);
+const readout = new Readout(), gaps = new Gaps(send), caption = new Caption(get("modes"));
 const timeline = new Timeline(isReplay, (tick) => send({ do: "seek", tick }), (at) => hover(at === undefined || !state ? undefined : at * state.control_period));
 const restore = new Restore((address) => state && applyAddress(new URLSearchParams(address), state, changedOptions, send), () => showAddress());
 const evaluation = new EvaluationPane(get("evaluation"), send, () => { scene.marks = evaluation.marks(); dirty = true; });
@@ -168,6 +169,7 @@ function showFrame(at?: number) {
   scene.frame = frame;
   charts.show(frame, hello, position, state?.control_period ?? hello.control_period);
   readout.show(frame, hello, state);
+  caption.show(hello.methods[scalar("method")] ?? "", scene.visible.has("modes") ? frame : undefined, position * (state?.control_period ?? hello.control_period));
   if (!state?.paused) showTimeline();
   dirty = true;
 }
@@ -226,7 +228,7 @@ function setTheme(name: "dark" | "light") {
   get("ramp").style.background = rampCss(themes[name]);
   for (const [layer] of layers) {
     const swatch = document.querySelector<HTMLElement>(`[data-swatch="${layer}"]`), t = themes[name];
-    const colour = { costMap: t.cost, path: t.path, scan: t.scan, candidates: undefined, guides: t.guide, nominal: t.nominal, plan: t.plan, spread: t.spread, driven: t.driven, obstacles: t.obstacle, opponents: t.opponent, ghost: t.ghost }[layer];
+    const colour = { costMap: t.cost, path: t.path, scan: t.scan, candidates: undefined, guides: t.guide, nominal: t.nominal, plan: t.plan, spread: t.spread, driven: t.driven, obstacles: t.obstacle, opponents: t.opponent, modes: t.nominal, ghost: t.ghost }[layer];
     if (swatch) swatch.style.background = colour ? `rgb(${colour.slice(0, 3).map((v) => Math.round(255 * v)).join(" ")} / ${Math.max(0.45, colour[3])})` : rampCss(t);
   }
   charts.rebuild();

@@ -15,6 +15,7 @@ export const layers = [
   ["driven", "Driven line", "the path of the car"],
   ["obstacles", "Obstacles", "parked cars, boxes and poles"],
   ["opponents", "Opponents", "cars that follow the course line"],
+  ["modes", "Caption", "which way around the next obstacle the samples and the plan take"],
   ["ghost", "Ghost", "the second controller, in a world of its own"],
 ] as const;
 export type Layer = (typeof layers)[number][0];
@@ -85,6 +86,15 @@ export class SceneView {
       }
       this.bounds = [x0 - 1.5, y0 - 1.5, x1 + 1.5, y1 + 1.5];
     }
+  }
+
+  /** The pose (m, m, rad) on the course line after an arc length (m). */
+  alongPath(length: number): [number, number, number] {
+    const p = this.scene.path?.xyv ?? new Float32Array(6), at = (k: number): Point => [p[3 * k], p[3 * k + 1]];
+    let k = 0;
+    for (let s = 0; 3 * k + 6 < p.length && s < length; ++k) s += Math.hypot(p[3 * k + 3] - p[3 * k], p[3 * k + 4] - p[3 * k + 1]);
+    const [x, y] = at(k), [nx, ny] = at(k + 1);
+    return [x, y, Math.atan2(ny - y, nx - x)];
   }
 
   fit() {

@@ -1,5 +1,5 @@
 // Drives the page in Chromium: node test/browser.mjs PROGRAM [SCREENSHOT_FOLDER]
-// SLALOM_TEST=TEXT runs only the tests whose name contains the text.
+// SLALOM_SUITES=drive,access runs only these suites, SLALOM_TEST=TEXT only the tests whose name contains the text.
 import { chromiumPath, Harness } from "./harness.mjs";
 import access from "./suites/access.mjs";
 import accessible from "./suites/accessible.mjs";
@@ -11,6 +11,8 @@ import past from "./suites/past.mjs";
 import responsive from "./suites/responsive.mjs";
 import save from "./suites/save.mjs";
 
+const suites = { drive, responsive, compare, past, save, evaluation, layout, accessible, access };
+const chosen = process.env.SLALOM_SUITES?.split(",") ?? Object.keys(suites);
 const program = process.argv[2], pictures = process.argv[3];
 if (!program) {
   console.error("usage: browser.mjs PROGRAM [SCREENSHOT_FOLDER]");
@@ -23,7 +25,7 @@ if (!chromiumPath()) {
 const harness = new Harness(program, pictures, process.env.SLALOM_TEST);
 await harness.open_all();
 await harness.page.goto(harness.server.address);
-for (const suite of [drive, responsive, compare, past, save, evaluation, layout, accessible, access]) await suite(harness);
+for (const [name, suite] of Object.entries(suites)) if (chosen.includes(name)) await suite(harness);
 await harness.close();
 console.log(harness.failed ? `${harness.failed} failed` : "all passed");
 process.exit(harness.failed ? 1 : 0);

@@ -5,6 +5,7 @@ export default async function (h) {
   const { page } = h;
 
   await h.test("keys are explained", async () => {
+    await page.focus("#scene");
     await page.keyboard.press("?");
     await h.until(() => document.getElementById("help-box").open);
     await h.picture("help");

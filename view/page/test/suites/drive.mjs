@@ -101,4 +101,27 @@ export default async function (h) {
     await h.send({ do: "scenario", opponents: 0 });
     await h.until(() => slalom.state.opponents === 0);
   });
+
+  await h.test("a caption says when the controller averages two ways, and when it commits to one", async () => {
+    await h.send({ do: "scenario", config: "published", method: "mppi", obstacles: 0, seed: "0" });
+    await h.until(() => slalom.state.config === "published" && slalom.state.obstacles === 0);
+    await h.send({ do: "set", key: "mppi.variance", value: "0.1" });
+    await h.pause();
+    // A parked car in the middle of the straight, 8 m along the course line.
+    const [x, y, yaw] = await page.evaluate(() => slalom.scene.alongPath(8));
+    await h.send({ do: "add", kind: "car", x, y, yaw });
+    const said = new Set();
+    for (let step = 0; step < 90 && !said.has("commits"); ++step) {
+      const tick = await h.scalar("tick");
+      await h.send({ do: "step" });
+      await h.until((t) => slalom.scalar("tick") === t + 1, tick);
+      const text = await page.evaluate(() => document.getElementById("modes").textContent);
+      if (/mppi averages: .* leads into/.test(text)) { said.add("averages"); await h.picture("averages"); }
+      if (said.has("averages") && /mppi commits: /.test(text)) said.add("commits");
+    }
+    assert.deepEqual([...said], ["averages", "commits"]);
+    await h.picture("commits");
+    await h.send({ do: "scenario", config: "default", method: "svg_mppi", obstacles: 4, seed: "3" });
+    await h.until(() => slalom.state.config === "default" && slalom.state.seed === "3" && slalom.scalar("tick") > 3);
+  });
 }

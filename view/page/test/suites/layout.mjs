@@ -15,7 +15,7 @@ function faults(smallest) {
     if (box.left < -0.5 || box.right > innerWidth + 0.5 || box.top < -0.5 || box.bottom > innerHeight + 0.5) problems.push(`${name(control)} is outside: ${[box.left, box.top, box.right, box.bottom].map(Math.round)}`);
     const found = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
     if (!found || !(control.contains(found) || found.contains(control))) problems.push(`${name(control)} is covered by ${found ? name(found) : "nothing"}`);
-    const row = control.closest("label") ?? control, tall = Math.max(box.height, row.getBoundingClientRect().height);
+    const row = control.labels?.[0] ?? control, tall = Math.max(box.height, row.getBoundingClientRect().height);
     if (tall < smallest - 0.5) problems.push(`${name(control)} is ${Math.round(tall)} px high`);
   }
   return problems;
@@ -81,9 +81,10 @@ export default async function (h) {
     await h.until(() => window.slalom?.frame?.bodies.length > 1 && slalom.state, undefined, touch);
     await touch.evaluate(() => { slalom.send({ do: "pause" }); slalom.scene.fit(); slalom.scene.draw(); });
     const body = await touch.evaluate(() => { const b = slalom.frame.bodies.find((o) => o.kind !== 0), [x, y] = slalom.scene.camera.toScreen(b.x, b.y), s = document.getElementById("scene").getBoundingClientRect(); return { id: b.id, x: s.x + x, y: s.y + y }; });
+    const bodies = await touch.evaluate(() => slalom.frame.bodies.length);
     const tools = await touch.context().newCDPSession(touch);
     await tools.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: [{ x: body.x, y: body.y }] });
-    await h.until((id) => !slalom.frame.bodies.some((b) => b.id === id), body.id, touch);
+    await h.until((n) => slalom.frame.bodies.length === n - 1, bodies, touch); // the others are numbered anew
     await tools.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
     await h.picture("layout-400-touch", touch);
     await touch.close();
