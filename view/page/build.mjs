@@ -23,7 +23,7 @@ if (packed.length > most) {
   process.exit(1);
 }
 // The sources of the page in the form of sha256sum: tests compare them without Node.
-const sources = ["index.html", "package.json", "package-lock.json", "tsconfig.json", "build.mjs", ...readdirSync("src").sort().map((name) => "src/" + name)];
+const sources = ["index.html", "package.json", "package-lock.json", "tsconfig.json", "build.mjs", ...readdirSync("src", { recursive: true }).filter((name) => /\.\w+$/.test(name)).sort().map((name) => "src/" + name)];
 const sums = sources.map((name) => `${createHash("sha256").update(readFileSync(name)).digest("hex")}  ${name}\n`).join("");
 if (process.argv.includes("--check")) {
   if (!packed.equals(readFileSync("built/index.html.gz")) || sums !== readFileSync("built/sources.sha256", "utf8")) {

@@ -75,9 +75,9 @@ std::array<double, 6> estimates(const vehicle::PlannerOutput& out) {
     return none;
   }
   const double turning = std::abs(out.speed_estimate * out.yaw_rate_estimate);
-  return {out.slip_estimate,     turning / (car.friction * sim::gravity),
-          car.friction,          car.cautious_friction,
-          car.steering_gain,     car.delay};
+  return {out.slip_estimate, turning / (car.friction * sim::gravity),
+          car.friction,      car.cautious_friction,
+          car.steering_gain, car.delay};
 }
 
 }  // namespace

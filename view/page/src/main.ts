@@ -1,21 +1,21 @@
 import "./style.css";
 import { addressOf, applyAddress } from "./address";
-import { Charts } from "./charts";
+import { Charts } from "./panes/charts";
 import { Connection } from "./connection";
-import { EvaluationPane } from "./evaluation";
-import { ForkBox } from "./fork";
+import { EvaluationPane } from "./panes/evaluation";
+import { ForkBox } from "./panes/fork";
 import type { Link } from "./link";
 import { attachPointer, type Tool } from "./pointer";
 import { Popover } from "./popover";
 import { Caption } from "./modes";
-import { OptionsPane } from "./options";
+import { OptionsPane } from "./panes/options";
 import { download, picture } from "./picture";
 import { Gaps, Past } from "./past";
 import { Player, recordings } from "./player";
 import { foldHeader, help, layout } from "./layout";
 import { rampCss, themes } from "./palette";
 import type { Frame, Hello, Scene, State, Text } from "./protocol";
-import { PresetBox } from "./preset";
+import { PresetBox } from "./panes/preset";
 import { Readout } from "./readout";
 import { Restore } from "./restore";
 import { showStatus } from "./status";
@@ -66,7 +66,7 @@ const handlers = {
     get("lost-text").textContent = `Reconnecting … (attempt ${attempts}). The drive continues without this page.`;
     get("connection").className = "pill" + (connected ? "" : " bad");
     get("connection-text").textContent = connected ? "connected" : "connection lost";
-    if (connected) document.title = "Slalom";
+    if (connected) state = undefined; // it may be that of another server
   },
 };
 const recorded = recordings(), isReplay = recorded.length > 0;

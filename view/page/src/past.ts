@@ -32,13 +32,13 @@ export class Past {
   forgetAfter(position: number) { this.rows.length = Math.max(0, Math.min(this.rows.length, position - this.first + 1)); }
   clear() { this.rows = []; }
 
-  /** The newest gap from `oldest` to `newest`, at most `most` steps of it. */
+  /** The newest `most` steps from `oldest` to `newest` of which some are not known, without known ones at their ends. */
   missing(oldest: number, newest: number, most: number): { from: number; to: number } | undefined {
     let to = newest;
     while (to >= oldest && this.at(to)) --to;
     if (to < oldest) return undefined;
-    let from = to;
-    while (from > oldest && to - from + 1 < most && !this.at(from - 1)) --from;
+    let from = Math.max(oldest, to - most + 1);
+    while (from < to && this.at(from)) ++from;
     return { from, to };
   }
 }

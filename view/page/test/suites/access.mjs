@@ -31,7 +31,7 @@ export default async function (h) {
       await h.server.stop();
       await h.until(() => !document.getElementById("lost").hidden);
       h.server = await h.start("view", "--course", "stag", "--seed", "5", "--port", h.server.port);
-      await h.until(() => document.getElementById("lost").hidden && slalom.state.seed === "5" && !document.getElementById("restore").hidden);
+      await h.until(() => document.getElementById("lost").hidden && slalom.state?.seed === "5" && !document.getElementById("restore").hidden);
     };
     await restart();
     assert.equal(await page.evaluate(() => location.hash), mine, "the address keeps the scenario");

@@ -105,8 +105,11 @@ export default async function (h) {
   await h.test("a caption says when the controller averages two ways, and when it commits to one", async () => {
     await h.send({ do: "scenario", config: "published", method: "mppi", obstacles: 0, seed: "0" });
     await h.until(() => slalom.state.config === "published" && slalom.state.obstacles === 0);
-    await h.send({ do: "set", key: "mppi.variance", value: "0.1" });
+    await h.until(() => slalom.state.newest > 2);
     await h.pause();
+    await h.send({ do: "seek", tick: 0 });
+    await h.until(() => slalom.scalar("tick") === 0);
+    await h.send({ do: "set", key: "mppi.variance", value: "0.1" });
     // A parked car in the middle of the straight, 8 m along the course line.
     const [x, y, yaw] = await page.evaluate(() => slalom.scene.alongPath(8));
     await h.send({ do: "add", kind: "car", x, y, yaw });

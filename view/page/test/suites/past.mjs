@@ -38,7 +38,7 @@ export default async function (h) {
     const at = await page.evaluate(() => { const p = slalom.scene.probe; let i = slalom.state.newest; while (i >= 0 && slalom.past.at(i)?.[slalom.hello.scalars.indexOf("x")] !== p.x) --i; return i; });
     assert.ok(at > 0 && at < (await h.state()).newest);
     const speed = await page.evaluate((i) => slalom.past.at(i)[slalom.hello.scalars.indexOf("speed")], at);
-    await h.until((text) => [...document.querySelectorAll("#charts h3 em")].some((e) => e.textContent === text), `car ${speed.toFixed(2)}`);
+    await h.until((text) => [...document.querySelectorAll("#charts h2 em")].some((e) => e.textContent === text), `car ${speed.toFixed(2)}`);
     const lefts = await page.evaluate(() => [...document.querySelectorAll("#charts .chart:not([hidden]) .u-cursor-x")].filter((l) => l.closest(".chart").querySelectorAll(".u-axis").length < 3).map((l) => Math.round(new DOMMatrix(getComputedStyle(l).transform).m41)));
     assert.ok(new Set(lefts.filter((x) => x > 0)).size === 1, `the cursors stand at ${lefts} px`);
     assert.equal(await page.isVisible("#timeline-mark"), true);

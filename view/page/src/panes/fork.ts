@@ -1,4 +1,4 @@
-import type { Hello, Options, State } from "./protocol";
+import type { Hello, Options, State } from "../protocol";
 
 /** Asks what is to drive on from the tick that is shown. */
 export class ForkBox {

@@ -1,7 +1,7 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
-import type { Past } from "./past";
-import type { Frame, Hello } from "./protocol";
+import type { Past } from "../past";
+import type { Frame, Hello } from "../protocol";
 import { needsEstimates, strips, type Line, type Strip } from "./strips";
 
 const span = 20; // s that the strips show
@@ -51,7 +51,7 @@ export class Charts {
   private frame(title: string, lines: Line[]) {
     const box = document.createElement("div");
     box.className = "chart";
-    const head = document.createElement("h3");
+    const head = document.createElement("h2");
     head.append(title);
     const values = lines.map((line) => {
       const em = document.createElement("em"), mark = document.createElement("i"), value = document.createElement("span");

@@ -1,4 +1,4 @@
-import type { Evaluation, EvaluationLap, State } from "./protocol";
+import type { Evaluation, EvaluationLap, State } from "../protocol";
 
 /** A list of an evaluation's laps; a click on a collision shows the two seconds before it. */
 export class EvaluationPane {

@@ -1,4 +1,4 @@
-import type { OptionDeclaration, Options } from "./protocol";
+import type { OptionDeclaration, Options } from "../protocol";
 
 /** A slider's travel in [0, 1] and the option's value; logarithmic where the range spans decades. */
 function travel(o: OptionDeclaration) {
