@@ -8,8 +8,9 @@ export default async function (h) {
 
   await h.test("the scalars of steps without a frame arrive late instead of never", async () => {
     await h.pause();
+    const before = (await h.state()).newest;
     await h.send({ do: "step", ticks: 120 }); // of 120 steps in one go, few frames can be sent
-    await h.until(() => slalom.state.tick === slalom.scalar("tick"));
+    await h.until((n) => slalom.state.newest >= n && slalom.state.tick === slalom.scalar("tick"), before + 120);
     await h.until(known);
     const names = await page.evaluate(() => slalom.hello.scalars), tick = (await h.state()).newest - 60;
     const late = await page.evaluate((t) => [...slalom.past.at(t)], tick);
