@@ -219,8 +219,7 @@ void ParameterEstimator::summarise() noexcept {
   const Moments logarithm = moments(of_friction, ratio(), [](int i) { return std::log(friction_at(i)); });
   const Moments gain = moments(of_gain, (highest_gain - lowest_gain) / (gains - 1), gain_at);
   const Moments delay = moments(of_delay, longest_delay / (delays - 1), delay_at);
-  const double quantile = log_quantile(of_friction);
-  if (moments_ == 0) prior_ = {logarithm, gain, delay, quantile};
+  if (moments_ == 0) prior_ = {logarithm, gain, delay};
   // A grid cuts the prior, whose mean is then not the given value. What has been learned replaces the given
   // value, not the mean of the cut prior.
   const auto learned = [](const Moments& now, const Moments& before) {
@@ -237,8 +236,7 @@ void ParameterEstimator::summarise() noexcept {
   estimate_.steering_gain_deviation = gain.deviation;
   estimate_.delay = shifted(delay, prior_.delay, learned(delay, prior_.delay), delay_);
   estimate_.delay_deviation = delay.deviation;
-  const double cautious = std::exp(quantile + (1 - estimate_.confidence) * (given - prior_.quantile));
-  estimate_.cautious_friction = std::min(cautious, friction_);
+  estimate_.cautious_friction = std::min(std::exp(log_quantile(of_friction)), friction_);
 }
 
 }  // namespace slalom::vehicle

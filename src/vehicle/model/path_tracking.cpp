@@ -7,7 +7,8 @@
 namespace slalom::vehicle {
 
 TrackingCost::TrackingCost(const PathTrackingOptions& options)
-    : localisation_less_(options.localisation_less),
+    : options_(options.cost),
+      localisation_less_(options.localisation_less),
       distance_weight_(options.cost.distance_weight),
       yaw_weight_(options.cost.yaw_weight),
       outside_cost_(options.cost.outside_cost),
@@ -16,6 +17,14 @@ TrackingCost::TrackingCost(const PathTrackingOptions& options)
       outside_terminal_cost_(options.cost.outside_terminal_cost),
       speed_weight_(options.cost.speed_weight),
       collision_weight_(options.cost.collision_weight) {}
+
+void TrackingCost::set_urgent(bool urgent) noexcept {
+  constexpr double urgent_distance = 0.1, urgent_speed = 4;
+  const double share = urgent ? urgent_distance : 1;
+  distance_weight_ = share * options_.distance_weight;
+  terminal_distance_weight_ = share * options_.terminal_distance_weight;
+  speed_weight_ = (urgent ? urgent_speed : 1) * options_.speed_weight;
+}
 
 SteeringActuator::SteeringActuator(const PathTrackingOptions& options, bool exact)
     : hold_(options.hold_first_input),

@@ -80,6 +80,7 @@ Command VehicleModel::command(std::span<const float> inputs, double speed, doubl
 }
 void VehicleModel::set_friction(double) noexcept {}
 void VehicleModel::set_reverse(double) noexcept {}
+void VehicleModel::set_urgent(bool) noexcept {}
 
 std::unique_ptr<VehicleModel> make_vehicle_model(const VehicleOptions& options, simd::Target target) {
   validate_options(options, "vehicle");

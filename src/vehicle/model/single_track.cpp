@@ -11,6 +11,7 @@ namespace {
 constexpr double gravity = 9.81;          // m/s^2
 constexpr double tyre_shape = 1.5;        // C of Pacejka's curve
 constexpr double longest_piece = 0.0125;  // s, of a prediction by commands
+constexpr double braking_share = 0.8;     // of the usable grip, that curves leave for braking
 
 }  // namespace
 
@@ -54,7 +55,8 @@ SingleTrack::SingleTrack(const PathTrackingOptions& options, const Options& own)
       squared_half_steer_speed_(own.half_steer_speed * own.half_steer_speed),
       max_deceleration_(options.max_deceleration),
       usable_grip_(own.usable_grip),
-      grip_weight_(own.grip_weight) {
+      grip_weight_(own.grip_weight),
+      stopping_distance_(1 / (2 * braking_share * own.usable_grip * gravity)) {
   if (options.hold_first_input)
     throw std::invalid_argument(
         "vehicle.hold_first_input: must be false with vehicle.model 'single_track', whose start the planner "
@@ -66,6 +68,7 @@ void SingleTrack::complete(VehicleTraits& traits) const noexcept {
   traits.usable_grip = own_.usable_grip;
   traits.half_steer_speed = own_.half_steer_speed;
   traits.switch_speed = own_.switch_speed;
+  traits.stopping_deceleration = braking_share * own_.usable_grip * gravity * own_.friction;
 }
 
 SingleTrack::State<double> SingleTrack::start(const VehicleStart& start, double) const noexcept {

@@ -10,6 +10,11 @@
 
 namespace slalom::vehicle::detail {
 
+/// From sending a command to its first effect, s.
+inline double delay_of(const PlannerOptions& options, const VehicleTraits& traits) {
+  return options.latency + traits.dead_time;
+}
+
 /// State and parameters of a car whose tyres slip, for the planner. The steering of states and plans is the
 /// angle of the wheels; commands to the car are larger where its steering gain is smaller than 1.
 class CarEstimator {
@@ -22,7 +27,7 @@ class CarEstimator {
                   model.traits().dead_time),
         parameters_(model.dynamics() ? std::make_unique<ParameterEstimator>(
                                            *model.dynamics(), options.estimation, model.traits().friction,
-                                           options.latency + model.traits().dead_time, options.control_period)
+                                           delay_of(options, model.traits()), options.control_period)
                                      : nullptr) {}
 
   void reset() noexcept {

@@ -6,12 +6,25 @@
 
 namespace slalom::vehicle::detail {
 
+namespace {
+
+double fastest(std::span<const maps::ReferencePoint> path, const PlannerOptions& options) {
+  double speed = 0;
+  for (const maps::ReferencePoint& point : path) speed = std::max(speed, point.speed);
+  return std::min(speed, options.max_speed);
+}
+
+}  // namespace
+
+double stopping_time(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
+                     const VehicleTraits& traits) {
+  return traits.stopping_deceleration > 0 ? fastest(path, options) / (2 * traits.stopping_deceleration) : 0;
+}
+
 double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                   double duration) {
   constexpr double least = 6, most = 30;
-  double fastest = 0;
-  for (const maps::ReferencePoint& point : path) fastest = std::max(fastest, point.speed);
-  return std::clamp(std::min(fastest, options.max_speed) * duration + 1.5, least, most);
+  return std::clamp(fastest(path, options) * duration + 1.5, least, most);
 }
 
 maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const VehicleTraits& traits) {

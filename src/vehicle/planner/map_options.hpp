@@ -16,7 +16,12 @@ namespace slalom::vehicle::detail {
 std::vector<maps::ReferencePoint> limited_path(std::span<const maps::ReferencePoint> path,
                                                const PlannerOptions& options, const VehicleTraits& traits);
 
-/// m, how far a plan of this duration (s) can get.
+/// s, in which a car at the path's highest speed drives as far as it needs to stop, where plans must be able
+/// to; else 0.
+double stopping_time(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
+                     const VehicleTraits& traits);
+
+/// m, how far the car can get in this time (s).
 double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options, double duration);
 
 maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const VehicleTraits& traits);

@@ -12,11 +12,13 @@
 #include "vehicle/planner/command_history.hpp"
 #include "vehicle/planner/feasible_speeds.hpp"
 #include "vehicle/planner/final_check.hpp"
+#include "vehicle/planner/input_check.hpp"
 #include "vehicle/planner/local_frame.hpp"
 #include "vehicle/planner/map_options.hpp"
 #include "vehicle/planner/obstacle_memory.hpp"
 #include "vehicle/planner/recovery.hpp"
 #include "vehicle/planner/sequence_choice.hpp"
+#include "vehicle/planner/ways_around.hpp"
 
 namespace slalom::vehicle {
 
@@ -24,18 +26,7 @@ namespace {
 
 using namespace detail;
 
-/// Whether odometry is a number and as large as that of a car may be.
-bool plausible(const Odometry& o) {
-  return std::abs(o.pose.x) <= Odometry::furthest && std::abs(o.pose.y) <= Odometry::furthest &&
-         std::abs(o.pose.yaw) <= Odometry::most_turned && std::abs(o.speed) <= Odometry::fastest;
-}
-
 constexpr double gravity = 9.81;  // m/s^2
-
-/// From sending a command to its first effect, s.
-double delay_of(const PlannerOptions& options, const VehicleTraits& traits) {
-  return options.latency + traits.dead_time;
-}
 
 }  // namespace
 
@@ -46,7 +37,8 @@ struct Planner::Implementation {
   VehicleTraits traits;
   std::unique_ptr<Solver> solver;
   maps::LocalCostMap cost_map;
-  double reach;  ///< m, of plans
+  double stopping_time;  ///< s, by which maps reach beyond plans at the given friction
+  double reach;          ///< m, of maps
   maps::ClearanceMap clearance_map;
   maps::ReferenceField field;
   FeasibleSpeeds speeds;
@@ -60,6 +52,7 @@ struct Planner::Implementation {
   double path_friction = 0;  ///< of the path's speeds
   double speed_ahead = 0;    ///< m/s, when the next command takes effect
   SequenceChoice choice;
+  WaysAround ways;  ///< of models with tyres that slip
   std::vector<PredictedState> states;
   PlannerOutput output;
 
@@ -71,13 +64,16 @@ struct Planner::Implementation {
         traits(model->traits()),
         solver(std::move(s)),
         cost_map(cost_map_options(o, traits)),
-        reach(plan_reach(path, o, traits.time_step * solver->horizon())),
+        stopping_time(detail::stopping_time(path, o, traits)),
+        reach(plan_reach(path, o, traits.time_step * solver->horizon() + stopping_time)),
         clearance_map(clearance_options(traits, reach)),
         field(limited_path(detail::relative(path, origin), o, traits), field_options(o, traits, reach)),
         speeds(limited_path(detail::relative(path, origin), o, traits)),
         car(o, *model),
         history(o.control_period, delay_of(o, traits), o.observer_time_constant, traits.wheelbase),
         choice(solver->horizon(), solver->inputs(), traits),
+        ways(detail::relative(path, origin), speeds.length() > 0, solver->horizon(), solver->inputs(), traits,
+             o.steer_limit),
         states(static_cast<std::size_t>(solver->horizon()) + 1) {
     if (model->has_dynamics()) set_friction(traits.friction);
   }
@@ -137,13 +133,9 @@ struct Planner::Implementation {
     const bool jumps = traits.unlimited_acceleration || model->has_dynamics();
     const double furthest =
         std::max(std::abs(odometry.speed), 1.0) + (jumps ? 0 : traits.max_acceleration * horizon_time());
-    field.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? horizon_time() : 0);
+    field.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? time_in_view() : 0);
     const maps::ReferenceCell here = field.at(start.pose.x, start.pose.y);
-    if (model->has_dynamics() && options.back_up) {
-      const bool reverse = recovery.update(speeds.arc(field.nearest()), speeds.length(), odometry.speed,
-                                           options.control_period);
-      model->set_reverse(reverse ? Recovery::speed : 0);
-    }
+    if (model->has_dynamics() && options.back_up) recover(odometry.speed);
     if (traits.follows_path && options.stop_when_blocked &&
         here.distance >= field.options().outside.distance) {
       return stop(PlannerStatus::off_course);
@@ -160,10 +152,12 @@ struct Planner::Implementation {
     PredictedCost cost = model->predict(result.inputs, states);
     std::span<const float> sent = result.inputs;
     if (options.verify_plan && model->has_dynamics() && !recovery.reversing()) {
+      ways.draw(start, field.nearest(), speeds.speeds(), path_friction);
       const auto slower = choice.slower(*model, {sent, cost}, states);
-      if (cost.collided && !slower.cost.collided) output.status = PlannerStatus::fallback_plan;
-      cost = slower.cost;
-      sent = slower.inputs;
+      const auto chosen = choice.better(*model, slower, ways.cheapest(model->evaluator()), states);
+      if (cost.collided && !chosen.cost.collided) output.status = PlannerStatus::fallback_plan;
+      cost = chosen.cost;
+      sent = chosen.inputs;
     }
     if (options.verify_plan && cost.collided) {
       const auto chosen = choice.choose(*model, result, {sent, cost}, recovery.reversing(), states);
@@ -187,6 +181,15 @@ struct Planner::Implementation {
       slow_down(cost, odometry.speed);
     }
     to_map_frame(states);
+  }
+
+  /// Watches the progress, and sets whether plans reverse or are urgent.
+  void recover(double speed) noexcept {
+    const int nearest = field.nearest();
+    recovery.update(speeds.arc(nearest), speeds.length(), speed,
+                    speeds.speeds()[static_cast<std::size_t>(nearest)], options.control_period);
+    model->set_reverse(recovery.reversing() ? Recovery::speed : 0);
+    model->set_urgent(recovery.leaving() && !recovery.reversing());
   }
 
   void to_map_frame(std::span<PredictedState> predicted) const noexcept {
@@ -239,6 +242,11 @@ struct Planner::Implementation {
   }
 
   double horizon_time() const noexcept { return traits.time_step * solver->horizon(); }
+  /// s, of a plan and of stopping after it.
+  double time_in_view() const noexcept {
+    if (!model->has_dynamics()) return horizon_time();
+    return horizon_time() + stopping_time * traits.friction / path_friction;
+  }
 
   /// The speed to command where that of the path is `here`.
   double command_speed(double here) const noexcept {

@@ -10,6 +10,12 @@ namespace {
 /// Of the largest deceleration, what a braking car reaches among curves, and what it accelerates with.
 constexpr double braking_share = 0.8, accelerating_share = 0.4;
 
+/// Whether one sequence is better than another: without collision, else at the lower cost.
+bool cheaper(const PredictedCost& one, const PredictedCost& other) {
+  if (one.collided != other.collided) return other.collided;
+  return one.state + one.collision < other.state + other.collision;
+}
+
 /// Calls `use` with each guide's sequence of `size` values.
 template <class Use>
 void for_each_guide(const SolveResult& result, std::size_t size, Use&& use) {
@@ -53,10 +59,7 @@ SequenceChoice::Choice SequenceChoice::choose(const VehicleModel& model, const S
   const auto consider = [&](std::span<const float> inputs) {
     if (inputs.size() != candidate_.size()) return;
     const PredictedCost cost = model.predict(inputs, candidate_states_);
-    const bool better = best.cost.collided != cost.collided
-                            ? best.cost.collided
-                            : cost.state + cost.collision < best.cost.state + best.cost.collision;
-    if (!better) return;
+    if (!cheaper(cost, best.cost)) return;
     best = {inputs, cost};
     states.swap(candidate_states_);
   };
@@ -72,6 +75,16 @@ SequenceChoice::Choice SequenceChoice::choose(const VehicleModel& model, const S
   return best;
 }
 
+SequenceChoice::Choice SequenceChoice::better(const VehicleModel& model, const Choice& solution,
+                                              std::span<const float> other,
+                                              std::vector<PredictedState>& states) noexcept {
+  if (other.size() != candidate_.size()) return solution;
+  const PredictedCost cost = model.predict(other, candidate_states_);
+  if (!cheaper(cost, solution.cost)) return solution;
+  states.swap(candidate_states_);
+  return {other, cost};
+}
+
 SequenceChoice::Choice SequenceChoice::slower(const VehicleModel& model, const Choice& solution,
                                               std::vector<PredictedState>& states) noexcept {
   Choice best = solution;
@@ -79,10 +92,7 @@ SequenceChoice::Choice SequenceChoice::slower(const VehicleModel& model, const C
   for (const int steps : {0, 3, 6, 10, 16}) {
     follow_slower(steps);
     const PredictedCost cost = model.predict(candidate_, candidate_states_);
-    if (cost.collided > best.cost.collided) continue;
-    if (cost.collided == best.cost.collided &&
-        !(cost.state + cost.collision < best.cost.state + best.cost.collision))
-      continue;
+    if (!cheaper(cost, best.cost)) continue;
     candidate_.swap(slower_);
     best = {slower_, cost};
     states.swap(candidate_states_);

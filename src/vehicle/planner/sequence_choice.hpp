@@ -27,6 +27,10 @@ class SequenceChoice {
   Choice slower(const VehicleModel& model, const Choice& solution,
                 std::vector<PredictedState>& states) noexcept;
 
+  /// The cheaper of the solution and another sequence, collisions first; `states` as in `choose`.
+  Choice better(const VehicleModel& model, const Choice& solution, std::span<const float> other,
+                std::vector<PredictedState>& states) noexcept;
+
   /// The cheapest of the nominal sequence, the guides and the best sample that does not collide. If there is
   /// none and the model has the car's dynamics, a full stop: along the solution, the sequence sent last, the
   /// nominal one or a guide, as hard as the tyres allow; the cheapest that does not collide, else the

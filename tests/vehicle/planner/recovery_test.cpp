@@ -17,17 +17,17 @@ constexpr double period = 0.025, length = 100;
 TEST(Recovery, LeavesACarThatGetsOnAlone) {
   Recovery recovery;
   for (int k = 0; k < 4000; ++k)
-    EXPECT_FALSE(recovery.update(std::fmod(0.05 * k, length), length, 2, period)) << "step " << k;
+    EXPECT_FALSE(recovery.update(std::fmod(0.05 * k, length), length, 2, 2, period)) << "step " << k;
 }
 
 TEST(Recovery, ReversesACarThatStandsAndDrivesOnAfterTheWayItChose) {
   Recovery recovery;
   int waited = 0;
-  while (!recovery.update(7, length, 0, period)) ++waited;
+  while (!recovery.update(7, length, 0, 2, period)) ++waited;
   EXPECT_NEAR(waited * period, 0.7, 0.05);
   double arc = 7;
   int reversed = 0;
-  while (recovery.update(arc, length, -1, period)) {
+  while (recovery.update(arc, length, -1, 2, period)) {
     arc -= period;
     ++reversed;
   }
@@ -38,36 +38,51 @@ TEST(Recovery, ReversesACarThatStandsAndDrivesOnAfterTheWayItChose) {
 TEST(Recovery, ReversesFurtherEachTimeUntilTheCarGetsOn) {
   Recovery recovery;
   const auto way_of_a_try = [&] {
-    while (!recovery.update(7, length, 0, period)) {
+    while (!recovery.update(7, length, 0, 2, period)) {
     }
     double way = 0;
-    while (recovery.update(7 - way, length, -1, period)) way += period;
+    while (recovery.update(7 - way, length, -1, 2, period)) way += period;
     return way;
   };
   const double first = way_of_a_try(), second = way_of_a_try();
   EXPECT_NEAR(second / first, 1.6, 0.1);
-  for (int k = 0; k < 200; ++k) recovery.update(7 + 0.05 * k, length, 2, period);
-  while (!recovery.update(17, length, 0, period)) {
+  for (int k = 0; k < 200; ++k) recovery.update(7 + 0.05 * k, length, 2, 2, period);
+  while (!recovery.update(17, length, 0, 2, period)) {
   }
   double way = 0;
-  while (recovery.update(17 - way, length, -1, period)) way += period;
+  while (recovery.update(17 - way, length, -1, 2, period)) way += period;
   EXPECT_NEAR(way, first, 0.05);
+}
+
+TEST(Recovery, LeavesThePathUntilTheCarIsPastThePlaceWhereItStood) {
+  Recovery recovery;
+  for (int k = 0; k < 40; ++k) recovery.update(6 + 0.025 * k, length, 1, 2, period);
+  EXPECT_FALSE(recovery.leaving());
+  for (int k = 0; k < 22; ++k) EXPECT_FALSE(recovery.update(7, length, 0, 2, period));
+  EXPECT_TRUE(recovery.leaving()) << "before it reverses";
+  while (!recovery.update(7, length, 0, 2, period)) {
+  }
+  for (double arc = 7; recovery.update(arc, length, -1, 2, period); arc -= period) {
+  }
+  double arc = 6.2;
+  for (; recovery.leaving(); arc += 0.05) EXPECT_FALSE(recovery.update(arc, length, 2, 2, period));
+  EXPECT_NEAR(arc, 11, 0.1);
 }
 
 TEST(Recovery, NoticesACarThatDrivesInCircles) {
   Recovery recovery;
   bool reversed = false;
   for (int k = 0; k < 200 && !reversed; ++k)
-    reversed = recovery.update(20 + 0.4 * std::sin(0.1 * k), length, 1.5, period);
+    reversed = recovery.update(20 + 0.4 * std::sin(0.1 * k), length, 1.5, 2, period);
   EXPECT_TRUE(reversed);
 }
 
 TEST(Recovery, GivesUpReversingWhereSomethingStandsBehind) {
   Recovery recovery;
-  while (!recovery.update(7, length, 0, period)) {
+  while (!recovery.update(7, length, 0, 2, period)) {
   }
   int blocked = 0;
-  while (recovery.update(7, length, 0, period)) ++blocked;
+  while (recovery.update(7, length, 0, 2, period)) ++blocked;
   EXPECT_NEAR(blocked * period, 0.7, 0.05);
 }
 

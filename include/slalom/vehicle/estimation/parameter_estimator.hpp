@@ -53,8 +53,8 @@ struct Moments {
 /// values, of the friction's logarithm.
 ///
 /// The means are those of the posterior; before the first turn they are the given values.
-/// `cautious_friction` is the `friction_quantile` of the posterior, shifted as far as needed to be the given
-/// friction before the first turn, and never above the given friction.
+/// `cautious_friction` is the `friction_quantile` of the posterior, never above the given friction: before the
+/// first turn it is that of the prior.
 ///
 /// An update takes no time that depends on data, and neither allocates nor throws.
 class ParameterEstimator {
@@ -95,7 +95,6 @@ class ParameterEstimator {
   /// Of the prior alone.
   struct Prior {
     detail::Moments logarithm, gain, delay;  ///< of the friction's logarithm, the gain and the delay, s
-    double quantile = 0;                     ///< of the friction's logarithm
   };
 
   const Moment& ago(int periods) const noexcept;

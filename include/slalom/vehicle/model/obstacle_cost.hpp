@@ -46,6 +46,19 @@ class ObstacleCost {
     }
   }
 
+  /// m ahead of the rear axle, of the foremost disc's centre.
+  double foremost() const noexcept { return double(disc_[2]); }
+
+  /// Whether the foremost disc of the body would collide with its centre at a position in the map frame, m.
+  /// Off the map nothing is known, and nothing collides.
+  template <class T>
+  SLALOM_INLINE mask_t<T> blocked(const T& x, const T& y) const {
+    const T value = slalom::look_up(obstacles_, T(to_local_[0]) * x + (T(to_local_[1]) * y + T(to_local_[2])),
+                                    T(to_local_[3]) * x + (T(to_local_[4]) * y + T(to_local_[5])));
+    if (!discs_) return mask_t<T>(value >= T(100));
+    return mask_t<T>((value >= T(0)) & (value < T(collision_clearance_)));
+  }
+
   /// The value at a pose in the robot's frame: m, m, rad.
   template <class T>
   SLALOM_INLINE T in_robot_frame(const T& x, const T& y, const T& yaw) const {

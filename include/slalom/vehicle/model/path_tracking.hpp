@@ -89,6 +89,9 @@ class PathTracking {
     cost_.set_reverse(speed);
   }
 
+  /// See VehicleModel.
+  void set_urgent(bool urgent) noexcept { cost_.set_urgent(urgent); }
+
   /// The state at the start; `reference_speed` (m/s) is the path's there.
   State<double> start(const VehicleStart& start, double reference_speed) noexcept {
     return motion_.start(start, reference_speed);
@@ -128,7 +131,11 @@ class PathTracking {
   /// Cost of the last state.
   template <class T>
   Cost<T> terminal_cost(const State<T>& s, const Surroundings<T>& seen) const {
-    return with_speed(cost_.terminal(s.yaw, seen), s, seen);
+    Cost<T> cost = with_speed(cost_.terminal(s.yaw, seen), s, seen);
+    if constexpr (requires { motion_.stopping_distance(s); }) {
+      cost.value = cost.value + motion_.collision_ahead_cost() * speed_of_collision(s);
+    }
+    return cost;
   }
   /// The part of a cost that collisions make.
   double collision_part(const Surroundings<double>& seen, bool last) const {
@@ -140,6 +147,28 @@ class PathTracking {
   }
 
  private:
+  /// The car brakes from the state on and follows the path at its distance from it: the share of the energy
+  /// that is left where it collides with what the map shows, 0 if it can stop before. A plan may only end
+  /// where the car can go on; without this, plans would put off the approach to an obstacle forever.
+  template <class T>
+  SLALOM_INLINE T speed_of_collision(const State<T>& s) const {
+    constexpr int pieces = 5;
+    const T piece = motion_.stopping_distance(s) * T(1.0 / pieces);
+    const T lead = T(obstacles_.foremost());
+    T sine, cosine;
+    sin_cos(s.yaw, sine, cosine);
+    T x = s.x + lead * cosine, y = s.y + lead * sine, share(0);
+    T turned = wrap_angle(s.yaw - cost_.path_yaw(s.x, s.y, s.yaw));
+    for (int i = 0; i < pieces; ++i) {
+      x = x + piece * cosine;
+      y = y + piece * sine;
+      share = max(share, select(obstacles_.blocked(x, y), T(1 - static_cast<double>(i) / pieces), T(0)));
+      turned = T(0.5) * turned;
+      sin_cos(cost_.path_yaw(x, y, s.yaw) + turned, sine, cosine);
+    }
+    return share;
+  }
+
   template <class T>
   SLALOM_INLINE Cost<T> with_speed(const Cost<T>& cost, const State<T>& s,
                                    const Surroundings<T>& seen) const {

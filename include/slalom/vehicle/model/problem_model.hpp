@@ -40,7 +40,9 @@ class ProblemModel final : public VehicleModel {
   void set_start(const VehicleStart& start, double reference_speed) noexcept override {
     origin_ = {start.pose.x, start.pose.y};
     evaluator_.problem().set_maps(maps_.relative_to(origin_));
-    start_ = evaluator_.problem().start({{0, 0, start.pose.yaw}, start.speed, start.steer}, reference_speed);
+    VehicleStart local = start;
+    local.pose = {0, 0, start.pose.yaw};
+    start_ = evaluator_.problem().start(local, reference_speed);
     evaluator_.set_state(start_);
   }
 
@@ -86,6 +88,9 @@ class ProblemModel final : public VehicleModel {
   }
   void set_reverse([[maybe_unused]] double speed) noexcept override {
     if constexpr (dynamic) evaluator_.problem().set_reverse(speed);
+  }
+  void set_urgent([[maybe_unused]] bool urgent) noexcept override {
+    if constexpr (dynamic) evaluator_.problem().set_urgent(urgent);
   }
 
   PredictedCost predict(std::span<const float> inputs,

@@ -80,6 +80,14 @@ class SingleTrack {
                              limited(s, reference_speed, u[1]), T(friction_), T(time_step_));
   }
 
+  /// m, in which the car stops from a state without leaving a curve; 0 in reverse.
+  template <class T>
+  SLALOM_INLINE T stopping_distance(const State<T>& s) const {
+    return square(max(s.speed, T(0))) * (T(stopping_distance_) / T(friction_));
+  }
+  /// The cost of ending where the car cannot stop before an obstacle, times the share of its energy.
+  double collision_ahead_cost() const noexcept { return own_.collision_ahead_cost; }
+
   /// The cost of grip that a state needs beyond the usable share.
   template <class T>
   SLALOM_INLINE T grip_cost(const State<T>& s) const {
@@ -96,6 +104,7 @@ class SingleTrack {
   Coefficient slowest_{0}, fastest_{1e3};  ///< m/s
   Coefficient max_deceleration_;
   Coefficient usable_grip_, grip_weight_;
+  Coefficient stopping_distance_;  ///< s^2/m, times the squared speed over the friction
 };
 
 }  // namespace slalom::vehicle

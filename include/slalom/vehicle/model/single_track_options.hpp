@@ -18,19 +18,21 @@ inline const char* const* enum_names(TyreModel) {
 /// Options of `vehicle.model: single_track`. The defaults are the 1/10-scale car of f1tenth_gym.
 struct SingleTrackOptions {
   TyreModel tyres = TyreModel::saturating;
-  double friction = 1.0489;        ///< mu, between tyre and road
-  double cornering_front = 4.718;  ///< C_Sf, 1/rad, cornering stiffness over friction and axle load
-  double cornering_rear = 5.4562;  ///< C_Sr, 1/rad
-  double gravity_height = 0.074;   ///< h, m, of the centre of gravity
-  double mass = 3.74;              ///< m, kg
-  double inertia = 0.04712;        ///< I_z, kg m^2, about the vertical axis
-  double steer_rate = 3.2;         ///< rad/s, at which the wheels turn at most
-  double half_steer_speed = 5;     ///< m/s, at which the input steers half as much as at a standstill
-  double switch_speed = 7.319;     ///< m/s, above it the motor's power limits the acceleration
-  double speed_gain = 4.755;       ///< 1/s, acceleration per error of speed of the car's own speed control
-  double brake_gain = 19.02;       ///< 1/s, the same when braking
-  double usable_grip = 0.9;        ///< share of friction times gravity that a plan may use
-  double grip_weight = 300;        ///< cost of the square of the share above `usable_grip`
+  double friction = 1.0489;           ///< mu, between tyre and road
+  double cornering_front = 4.718;     ///< C_Sf, 1/rad, cornering stiffness over friction and axle load
+  double cornering_rear = 5.4562;     ///< C_Sr, 1/rad
+  double gravity_height = 0.074;      ///< h, m, of the centre of gravity
+  double mass = 3.74;                 ///< m, kg
+  double inertia = 0.04712;           ///< I_z, kg m^2, about the vertical axis
+  double steer_rate = 3.2;            ///< rad/s, at which the wheels turn at most
+  double half_steer_speed = 5;        ///< m/s, at which the input steers half as much as at a standstill
+  double switch_speed = 7.319;        ///< m/s, above it the motor's power limits the acceleration
+  double speed_gain = 4.755;          ///< 1/s, acceleration per error of speed of the car's own speed control
+  double brake_gain = 19.02;          ///< 1/s, the same when braking
+  double usable_grip = 0.9;           ///< share of friction times gravity that a plan may use
+  double grip_weight = 300;           ///< cost of the square of the share above `usable_grip`
+  double collision_ahead_cost = 100;  ///< cost of a plan that ends where the car cannot stop before an
+                                      ///< obstacle, times the share of its energy that is left there
 
   /// Whether all values are equal.
   bool operator==(const SingleTrackOptions&) const = default;
@@ -69,6 +71,10 @@ void visit_options(Options& o, Visit&& visit) {
          "model `single_track`: share of friction times gravity that a plan may use", 0.05, 1);
   number(o.grip_weight, "grip_weight", "", "",
          "model `single_track`: cost of the square of the share above usable_grip", 0, 1e6);
+  number(o.collision_ahead_cost, "collision_ahead_cost", "", "",
+         "model `single_track`: cost of a plan that ends where the car cannot stop before an obstacle, times "
+         "the share of its energy that is left there",
+         0, 1e6);
 }
 
 }  // namespace slalom::vehicle

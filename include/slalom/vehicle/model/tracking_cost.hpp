@@ -32,12 +32,25 @@ class TrackingCost {
     fastest_ = speed > 0 ? speed : 1e3;
   }
 
+  /// Time that is lost costs several times as much, the distance to the path only a part. Usually a car that
+  /// stands pays less than one that passes close to an obstacle or far from the path, which is right for a
+  /// moment and wrong for good.
+  void set_urgent(bool urgent) noexcept;
+
   /// What the maps hold at a position (m, map frame) with this cost map value.
   template <class T>
   SLALOM_INLINE Surroundings<T> look_up(const T& x, const T& y, const T& speed, const T& obstacle) const {
     if (localisation_less_) return {T(0), T(0), speed, T(0), obstacle};
     const CellValues<T> reference = slalom::look_up(reference_, x, y);
     return {reference.a, reference.b, reference.c, reference.d, obstacle};
+  }
+
+  /// The path's yaw (rad) at a position (m, map frame); `otherwise` off the map.
+  template <class T>
+  SLALOM_INLINE T path_yaw(const T& x, const T& y, const T& otherwise) const {
+    if (localisation_less_) return otherwise;
+    const CellValues<T> reference = slalom::look_up(reference_, x, y);
+    return select(reference.d > T(0), otherwise, reference.b);
   }
 
   /// Cost and collision of a state with this yaw (rad, map frame).
@@ -93,6 +106,7 @@ class TrackingCost {
   }
 
   GridView<4> reference_;
+  TrackingCostOptions options_;
   bool localisation_less_;
   Coefficient distance_weight_, yaw_weight_, outside_cost_;
   Coefficient terminal_distance_weight_, terminal_yaw_weight_, outside_terminal_cost_;

@@ -70,8 +70,9 @@ struct VehicleTraits {
   double friction = 0;
   double usable_grip = 0;  ///< the share of the friction that plans may use
   double half_steer_speed =
-      0;                    ///< m/s, with tyres that slip: an input steers half as much as at a standstill
-  double switch_speed = 0;  ///< m/s, with tyres that slip: above it the motor's power is the limit
+      0;  ///< m/s, with tyres that slip: an input steers half as much as at a standstill
+  double stopping_deceleration = 0;  ///< m/s^2, with tyres that slip: by which a plan must be able to stop
+  double switch_speed = 0;           ///< m/s, with tyres that slip: above it the motor's power is the limit
 };
 
 /// The traits of models that take these options as they are.

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slalom/core/batch_evaluator.hpp"
+#include "slalom/core/sequence_batch.hpp"
+#include "slalom/maps/reference_path.hpp"
+#include "slalom/vehicle/model/vehicle_problem.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// Plans that drive beside the path, to either side of it and at several speeds: the ways around an obstacle
+/// on it. A solver searches near its last solution, and around one that stands in front of an obstacle hardly
+/// a sample steers out, passes and gains by it within the horizon.
+class WaysAround {
+ public:
+  /// For sequences of `horizon` steps with so many inputs each, along this path, by a car with these traits
+  /// whose wheels turn so far (rad).
+  WaysAround(std::span<const maps::ReferencePoint> path, bool closed, int horizon, int inputs,
+             const VehicleTraits& traits, double steer_limit);
+
+  /// Draws the ways from `start`, near the point `nearest` of the path whose points have these speeds (m/s),
+  /// on ground of this friction.
+  void draw(const VehicleStart& start, int nearest, std::span<const double> path_speeds,
+            double friction) noexcept;
+
+  /// The inputs, [step][input], of the cheapest way; empty if no cost is finite.
+  std::span<const float> cheapest(const BatchEvaluator& evaluator) noexcept;
+
+ private:
+  static constexpr int sides = 8, speeds = 3, count = (2 * sides + 1) * speeds;
+
+  struct Car;
+  void draw_way(int way, Car car, std::span<const double> path_speeds, double grip) noexcept;
+  double steering_to(const Car& car, double offset) const noexcept;
+  bool advance(std::size_t& at) const noexcept;
+
+  std::vector<maps::ReferencePoint> path_;
+  bool closed_;
+  VehicleTraits traits_;
+  double steepest_;  ///< tangent of the wheels' angle
+  SequenceBatch batch_;
+  AlignedBuffer costs_;
+  std::vector<std::uint8_t> collided_;
+  std::vector<float> inputs_;
+};
+
+}  // namespace slalom::vehicle::detail
