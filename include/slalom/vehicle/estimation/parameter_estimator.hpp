@@ -53,8 +53,8 @@ struct Moments {
 /// values, of the friction's logarithm.
 ///
 /// The means are those of the posterior; before the first turn they are the given values.
-/// `cautious_friction` is the `friction_quantile` of the posterior, never above the given friction: before the
-/// first turn it is that of the prior.
+/// `cautious_friction` is the `friction_quantile` of the posterior, never above the given friction: before
+/// the first turn it is that of the prior.
 ///
 /// An update takes no time that depends on data, and neither allocates nor throws.
 class ParameterEstimator {
