@@ -4,13 +4,13 @@ import type { Camera } from "./camera";
 
 const margin = 8; // pixels between a panel and what is fitted
 
-/** The pixels at the edges of the stage that panels cover: at its sides where there is room, else at its top. */
+/** The pixels at the edges of the stage that panels cover: at its sides where there is room, else the readout at its top. */
 export function coveredBy(stage: HTMLElement, layers: HTMLDetailsElement, readout: HTMLElement): Camera["covered"] {
   const box = stage.getBoundingClientRect(), right = box.right - readout.getBoundingClientRect().left + margin;
   const panel = layers.getBoundingClientRect(), left = layers.open ? panel.right - box.left + margin : 0;
   const top = Math.max(readout.getBoundingClientRect().bottom, layers.open ? 0 : panel.bottom) - box.top + margin;
   if (box.width - left - right > 0.5 * box.width && box.width > box.height) return { left, right, top: left ? 0 : panel.bottom - box.top + margin, bottom: 0 };
-  return { left: 0, right: 0, top: Math.min(top, 0.4 * box.height), bottom: 0 };
+  return { left: left < 0.5 * box.width ? left : 0, right: 0, top: Math.min(top, 0.4 * box.height), bottom: 0 };
 }
 
 interface Pose { x: number; y: number; yaw: number }
