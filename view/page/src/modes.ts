@@ -62,8 +62,8 @@ function modesOf(frame: Frame): Modes | undefined {
 /** Says what a method does at the next obstacle; empty where neither verdict holds. */
 function sentence(method: string, modes: Modes | undefined): string {
   const percent = (share: number) => `${Math.round(100 * share)} %`, what = verdict(modes);
-  if (what === "averages") return `${method} averages: samples with ${percent(modes!.left)} of the weight pass on the left and with ${percent(modes!.right)} on the right. The plan between them leads into the obstacle.`;
-  if (what === "commits") return `${method} commits: the plan, and samples with ${percent(modes![modes!.plan as "left" | "right"])} of the weight, pass on the ${modes!.plan}.`;
+  if (what === "averages") return `${method} averages: ${percent(modes!.left)} of the weight left, ${percent(modes!.right)} right. The plan between them leads into the obstacle.`;
+  if (what === "commits") return `${method} commits: the plan and ${percent(modes![modes!.plan as "left" | "right"])} of the weight pass ${modes!.plan}.`;
   return "";
 }
 
