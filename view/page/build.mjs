@@ -11,8 +11,12 @@ const built = (ending) => bundle.outputFiles.find((file) => file.path.endsWith(e
 const entry = '<script type="module" src="/src/main.ts"></script>';
 const source = readFileSync("index.html", "utf8");
 if (!source.includes(entry)) throw new Error(`index.html must contain ${entry}`);
+const script = built(".js").replace(/<\/script/g, "<\\/script");
+// Only this script may run, neither one that a file brings nor a handler in HTML. The server sends further rules.
+const policy = `default-src 'none'; script-src 'sha256-${createHash("sha256").update(script).digest("base64")}'; style-src 'unsafe-inline'; img-src data: blob:; media-src blob:; connect-src 'self' ws: wss:; base-uri 'none'`;
 const html = source
-  .replace(entry, () => `<script type="module">${built(".js").replace(/<\/script/g, "<\\/script")}</script>`)
+  .replace(entry, () => `<script type="module">${script}</script>`)
+  .replace('<meta charset="utf-8" />', (first) => `${first}<meta http-equiv="Content-Security-Policy" content="${policy}" />`)
   .replace("</head>", () => `<style>${built(".css")}</style></head>`);
 mkdirSync("dist", { recursive: true });
 writeFileSync("dist/index.html", html);

@@ -1,3 +1,4 @@
+import { html, Markup } from "../html";
 import type { Evaluation, EvaluationLap, State } from "../protocol";
 
 /** A list of an evaluation's laps; a click on a collision shows the two seconds before it. */
@@ -37,11 +38,11 @@ export class EvaluationPane {
     const all = this.evaluation;
     if (!all) return;
     const laps = this.laps(this.experiment), contacts = laps.reduce((n, l) => n + l.points.length, 0), finished = laps.filter((l) => l.finished).length;
-    this.root.innerHTML = `<p>${all.folder}: ${all.laps.length} laps on ${all.course}. Click a collision, here or on the map, to drive its lap again and see the two seconds before it.</p>
+    this.root.innerHTML = html`<p>${all.folder}: ${all.laps.length} laps on ${all.course}. Click a collision, here or on the map, to drive its lap again and see the two seconds before it.</p>
       <div class="row"><select id="experiment" aria-label="experiment" style="flex:1;max-width:none"></select></div>
-      <div class="row"><label><input type="checkbox" id="only-contacts"${this.onlyContacts ? " checked" : ""}> only laps with collisions</label></div>
+      <div class="row"><label><input type="checkbox" id="only-contacts"${new Markup(this.onlyContacts ? " checked" : "")}> only laps with collisions</label></div>
       <p><b>${laps.length}</b> laps, <b>${finished}</b> finished, <b>${contacts}</b> collisions</p>
-      <table><thead><tr><th>Lap</th><th class="n">Time, s</th><th>Collisions</th></tr></thead><tbody></tbody></table>`;
+      <table><thead><tr><th>Lap</th><th class="n">Time, s</th><th>Collisions</th></tr></thead><tbody></tbody></table>`.text;
     const select = this.root.querySelector<HTMLSelectElement>("#experiment")!;
     select.append(...all.experiments.map((e, i) => new Option(`${e.label} · ${e.scenario}`, String(i), false, i === this.experiment)));
     select.onchange = () => { this.experiment = Number(select.value); this.render(); };

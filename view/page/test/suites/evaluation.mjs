@@ -1,4 +1,5 @@
 // The laps of an evaluation.
+import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { join } from "node:path";
 
@@ -28,6 +29,25 @@ export default async function (h) {
     for (let before; String(before) !== String(at); at = await mark()) { before = at; await h.drawn(look); }
     await look.mouse.click(...at);
     await wait((g) => slalom.state.generation > g && slalom.state.contact, generation);
+    await look.close();
+    await shown.stop();
+  });
+
+  await h.test("names from files are text, and no script but the page's own runs", async () => {
+    const hostile = "<img src=x onerror='window.broken = 1'><script>window.broken = 2<\/script>";
+    const out = join(h.folder, hostile.replaceAll("/", "&sol;"));
+    execFileSync(h.program, ["eval", "--course", "wren", "--methods", "mppi", "--scenario", "pt", "--laps", "1", "--set", "mppi.samples=64", "--out", out], { stdio: "ignore" });
+    const shown = await h.start("view", "--eval", out, "--port", "0"), look = await h.open(shown.address);
+    await h.until(() => document.querySelector("#evaluation p")?.textContent.includes("<img src=x onerror="), null, look);
+    assert.equal(await look.locator("#evaluation img").count(), 0);
+    const problems = h.problems.length;
+    const ran = await look.evaluate(() => new Promise((done) => {
+      document.addEventListener("securitypolicyviolation", () => setTimeout(() => done(window.broken ?? "nothing"), 100));
+      document.body.insertAdjacentHTML("beforeend", "<img src='data:,' onerror='window.broken = 1'>");
+      setTimeout(() => done("no violation"), 20_000);
+    }));
+    h.problems.length = problems; // Chromium reports the violation in the console
+    assert.equal(ran, "nothing");
     await look.close();
     await shown.stop();
   });
