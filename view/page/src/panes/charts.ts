@@ -111,7 +111,8 @@ export class Charts {
     const time = (e: PointerEvent | MouseEvent) => plot.posToVal(e.clientX - plot.over.getBoundingClientRect().left, "x");
     plot.over.addEventListener("pointermove", (e) => this.setting.hovered(time(e)));
     plot.over.addEventListener("pointerleave", () => this.setting.hovered(undefined));
-    plot.over.addEventListener("click", (e) => this.setting.chosen(time(e)));
+    // The place of a click is rounded to whole pixels, that of the cursor is not; what the cursor shows is chosen.
+    plot.over.addEventListener("click", (e) => this.setting.chosen(this.cursor ?? time(e)));
   }
 
   /** Puts the cursor of all charts to a time (s), or takes it away. */
