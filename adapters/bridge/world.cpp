@@ -12,8 +12,9 @@ namespace {
 
 std::shared_ptr<const slalom::evaluation::Environment> arena_of(const std::string& course) {
   const auto roots = slalom::vehicle::course_roots(program_folder());
-  return slalom::evaluation::load_environment(slalom::vehicle::find_course(course, roots),
-                                              slalom::evaluation::Protocol::true_physics, roots);
+  return slalom::evaluation::make_environment(
+      slalom::vehicle::load_course(slalom::vehicle::find_course(course, roots)),
+      slalom::evaluation::Protocol::true_physics);
 }
 
 }  // namespace

@@ -78,7 +78,9 @@ std::shared_ptr<Environment> make_environment(vehicle::Course course, Protocol p
 std::shared_ptr<const Environment> load_environment(const std::filesystem::path& folder, Protocol protocol,
                                                     const std::vector<std::filesystem::path>& course_roots) {
   const LapRules& rules = rules_of(protocol);
-  auto environment = make_environment(vehicle::load_course(folder, rules.map_reading()), protocol);
+  vehicle::Course course = vehicle::load_course(folder, rules.map_reading());
+  vehicle::move_to_local_origin(course);
+  auto environment = make_environment(std::move(course), protocol);
   rules.complete(*environment, folder, course_roots);
   return environment;
 }

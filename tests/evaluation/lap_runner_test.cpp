@@ -47,6 +47,39 @@ TEST(LapRunner, FinishesALap) {
   EXPECT_EQ(lap.solve_ms.size(), static_cast<std::size_t>(lap.steps));
 }
 
+/// As files in UTM coordinates give it.
+std::shared_ptr<const Environment> at_utm_coordinates(vehicle::Course course, Protocol protocol) {
+  const auto shift = [](auto& point) {
+    point.x += 500000;
+    point.y += 5000000;
+  };
+  maps::Pose start = course.start;
+  shift(start);
+  shift(course.map.origin);
+  for (auto& point : course.waypoints) shift(point);
+  for (auto& point : course.obstacle_path) shift(point);
+  vehicle::complete_course(course, course.closed);
+  course.start = start;
+  vehicle::move_to_local_origin(course);
+  return make_environment(std::move(course), protocol);
+}
+
+TEST(LapRunner, DrivesTheSameLapAtUtmCoordinates) {
+  for (const Protocol protocol : {Protocol::true_physics, Protocol::published}) {
+    SCOPED_TRACE(name(protocol));
+    const auto here = load_environment(fs::path(SLALOM_COURSES) / "eel", protocol, {SLALOM_COURSES});
+    const auto there = at_utm_coordinates(here->course, protocol);
+    EXPECT_EQ(here->course.origin.x, 0);
+    EXPECT_EQ(there->course.origin.x, 500000);
+    EXPECT_EQ(there->course.origin.y, 5000000);
+    LapSettings settings;
+    settings.obstacles = 2;
+    const LapResult a = LapRunner(here, configuration("default"), "svg_mppi", settings).run(0);
+    const LapResult b = LapRunner(there, configuration("default"), "svg_mppi", settings).run(0);
+    EXPECT_EQ(bits(a), bits(b));
+  }
+}
+
 TEST(LapRunner, DrivesWithTheAccelerationAsAnInputByEveryMethod) {
   for (const char* method : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
     SCOPED_TRACE(method);

@@ -58,8 +58,7 @@ Scenario scenario_of(const BagReplay& replay, const BagDrive& drive) {
   } else {
     const auto roots = vehicle::course_roots(program_folder());
     scenario.folder = vehicle::find_course(replay.driver.course, roots);
-    environment =
-        std::make_shared<Environment>(*load_environment(scenario.folder, Protocol::true_physics, roots));
+    environment = make_environment(vehicle::load_course(scenario.folder), Protocol::true_physics);
   }
   environment->lidar =
       lidar_of(drive, scenario.configuration.planner, environment->world_options().car.rear_length);

@@ -171,7 +171,11 @@ Scenario load_scenario(const ScenarioArguments& arguments, const std::string& me
   if (arguments.hardware) scenario.lap.hardware.emplace();
   scenario.lap.threads = arguments.threads;
   apply_settings(arguments.set, method, scenario.configuration, scenario.lap);
-  if (!arguments.start.empty()) scenario.lap.start = parse_pose(arguments.start);
+  const maps::Point& origin = scenario.environment->course.origin;
+  if (!arguments.start.empty()) {
+    const maps::Pose start = parse_pose(arguments.start);
+    scenario.lap.start = maps::Pose{start.x - origin.x, start.y - origin.y, start.yaw};
+  }
   scenario.notes = notes_on(scenario.environment->course, scenario.configuration);
   return scenario;
 }
@@ -203,17 +207,19 @@ Json options_json(const vehicle::Configuration& configuration, const std::string
 
 Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario, const std::string& method) {
   const maps::Pose start = scenario.lap.start.value_or(scenario.environment->start);
+  const maps::Point& origin = scenario.environment->course.origin;
   Json settings{{"course", scenario.environment->course.name},
                 {"method", method},
                 {"config", arguments.config},
                 {"evaluation", arguments.evaluation},
                 {"obstacles", arguments.obstacles},
                 {"opponents", arguments.opponents},
-                {"start", {start.x, start.y, start.yaw}},
+                {"start", {start.x + origin.x, start.y + origin.y, start.yaw}},
                 {"latency_ms", arguments.latency_ms},
                 {"options", options_json(scenario.configuration, method)}};
   for (const OptionEntry& entry : list_options(scenario.lap))
     settings["options"]["world"][entry.declaration.name] = value_json(entry.value);
+  if (origin.x != 0 || origin.y != 0) settings["origin"] = {origin.x, origin.y};
   if (arguments.hardware) settings["hardware"] = true;
   if (const std::string folder = folder_without_name(scenario); !folder.empty())
     settings["course_folder"] = folder;

@@ -35,7 +35,7 @@ struct Environment {
   std::vector<maps::ReferencePoint> path;  ///< the waypoints of the course
   /// m, for each point of the course's obstacle path: the distance to the wall on its wider side, at most 10.
   std::vector<double> obstacle_room;
-  maps::Pose start;                        ///< of the centre of gravity, map frame
+  maps::Pose start;                        ///< of the centre of gravity, relative to the course's origin
   double timeout = 0;                      ///< s; 0: three times the lap time of the speed profile
   std::optional<sim::LidarOptions> lidar;  ///< replaces the LiDAR of the protocol
 
@@ -47,8 +47,9 @@ struct Environment {
 /// Prepares a course. Throws std::invalid_argument if its path or map cannot be driven on.
 std::shared_ptr<Environment> make_environment(vehicle::Course course, Protocol protocol);
 
-/// Loads the course in `folder` and prepares it. Under Protocol::published start and timeout come from the
-/// table of known courses in `course_roots`, if the course is in it. Throws IoError, std::invalid_argument.
+/// Loads the course in `folder`, moves it to its local origin and prepares it. Under Protocol::published
+/// start and timeout come from the table of known courses in `course_roots`, if the course is in it. Throws
+/// IoError, std::invalid_argument.
 std::shared_ptr<const Environment> load_environment(const std::filesystem::path& folder, Protocol protocol,
                                                     const std::vector<std::filesystem::path>& course_roots);
 

@@ -16,6 +16,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* obstacle_file = "opp_ref_path.csv";
 constexpr const char* course_file = "course.yaml";
+constexpr double origin_spacing = 100000;  // m, as of the planner's origin
+constexpr double decimals = 1e8;           // 1 / m, to which coordinates relative to an origin are rounded
 constexpr double slowest_profile_speed = 0.1;  // m/s, keeps the time of a profile that stops finite
 
 double distance(const Waypoint& a, const Waypoint& b) {
@@ -181,6 +183,27 @@ Course load_course(const fs::path& folder, const maps::MapReading& reading) {
       throw IoError(file.string(), said.start_line, std::string("key start: ") + error.what());
     }
   return course;
+}
+
+void move_to_local_origin(Course& course) {
+  const auto nearest = [](double x) { return origin_spacing * std::round(x / origin_spacing); };
+  const maps::Point shift{nearest(course.map.origin.x), nearest(course.map.origin.y)};
+  if (shift.x == 0 && shift.y == 0) return;
+  const auto move = [&](auto& point) {
+    point.x = std::round((point.x - shift.x) * decimals) / decimals;
+    point.y = std::round((point.y - shift.y) * decimals) / decimals;
+  };
+  const Waypoint& first = course.waypoints.front();
+  const bool starts_at_first =
+      course.start.x == first.x && course.start.y == first.y && course.start.yaw == first.yaw;
+  maps::Pose start = course.start;
+  move(start);
+  move(course.map.origin);
+  for (Waypoint& point : course.waypoints) move(point);
+  for (maps::Point& point : course.obstacle_path) move(point);
+  course.origin = {course.origin.x + shift.x, course.origin.y + shift.y};
+  complete_course(course, course.closed);
+  if (!starts_at_first) course.start = start;
 }
 
 void cap_speed(Course& course, double max_speed) {

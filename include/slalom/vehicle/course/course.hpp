@@ -35,6 +35,7 @@ struct Waypoint {
 struct Course {
   std::string name;         ///< the name
   std::string description;  ///< one sentence
+  maps::Point origin;       ///< m, map frame: what the coordinates below are relative to
   maps::OccupancyGrid map;  ///< the map
   std::vector<Waypoint>
       waypoints;  ///< at least 3, successive ones differ; the first is not repeated at the end
@@ -56,6 +57,12 @@ Course load_course(const std::filesystem::path& folder, const maps::MapReading& 
 /// is closed unless `closed` has a value, and its obstacle path if it has none. Throws std::invalid_argument
 /// on fewer than 3 points.
 void complete_course(Course& course, std::optional<bool> closed = {});
+
+/// Makes the coordinates relative to `origin`: to the nearest point of the map frame whose coordinates are
+/// multiples of 100 km, so that those of a course near the map frame's origin stay. In UTM coordinates, which
+/// reach 1e7 m, double resolves 1e-9 m only, and a simulated lap would not be that of the same course
+/// elsewhere. The new coordinates are rounded to 1e-8 m, which restores those of files with up to 8 decimals.
+void move_to_local_origin(Course& course);
 
 /// Lowers every waypoint's speed to at most `max_speed` (m/s, > 0, else std::invalid_argument).
 void cap_speed(Course& course, double max_speed);
