@@ -10,6 +10,7 @@
 #include "slalom/core/option_access.hpp"
 #include "slalom/core/problem.hpp"
 #include "slalom/core/problem_evaluator.hpp"
+#include "slalom/core/risk/risk_evaluator.hpp"
 #include "slalom/core/status.hpp"
 #include "slalom/core/version.hpp"
 #include "slalom/solvers/cem.hpp"

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "slalom/core/sequence_batch.hpp"
 
@@ -62,8 +63,9 @@ class RandomStream {
  public:
   using result_type = std::uint32_t;  ///< type of the numbers
 
-  /// Starts at the first number of `key`.
-  explicit RandomStream(RandomKey key) noexcept : key_(key) {}
+  /// Starts at the first number of `key`. A mirrored stream is the antithetic one: where the other gives u
+  /// and z, its uniform values are 1 - u and its normal values -z.
+  explicit RandomStream(RandomKey key, bool mirrored = false) noexcept : key_(key), mirrored_(mirrored) {}
 
   /// Smallest value.
   static constexpr result_type min() { return 0; }
@@ -71,10 +73,7 @@ class RandomStream {
   static constexpr result_type max() { return 0xffffffffu; }
 
   /// 32 random bits.
-  result_type operator()() noexcept {
-    if (used_ == 4) refill();
-    return words_[static_cast<std::size_t>(used_++)];
-  }
+  result_type operator()() noexcept { return mirrored_ ? ~next() : next(); }
   /// Uniform in [0, 1), 53 bits.
   double uniform() noexcept {
     const std::uint64_t high = (*this)() >> 5, low = (*this)() >> 6;
@@ -84,14 +83,22 @@ class RandomStream {
   double uniform(double low, double high) noexcept { return low + (high - low) * uniform(); }
   /// Standard normal (Box & Muller 1958).
   double normal() noexcept {
+    const bool mirrored = std::exchange(mirrored_, false);
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
-    return radius * std::cos(6.283185307179586 * uniform());
+    const double value = radius * std::cos(6.283185307179586 * uniform());
+    mirrored_ = mirrored;
+    return mirrored ? -value : value;
   }
 
  private:
+  result_type next() noexcept {
+    if (used_ == 4) refill();
+    return words_[static_cast<std::size_t>(used_++)];
+  }
   void refill() noexcept;
 
   RandomKey key_;
+  bool mirrored_;
   std::uint64_t block_ = 0;
   std::array<std::uint32_t, 4> words_ = {};
   int used_ = 4;

@@ -32,6 +32,7 @@ namespace slalom {
 ///     Cost<double> predict(const State&, const Input<double, 2>* u, int steps, State* x) const;
 ///                                                       // x[0 ... steps] and the cost of one sequence
 ///     void set_previous_input(const Input<double, 2>&); // what was applied before the next sequences
+///     const MyProblem& problem() const;                 // whose bounds and rates hold, as RiskEvaluator has
 template <class E>
 concept StateEvaluator = std::derived_from<E, BatchEvaluator> && requires(E& e, const typename E::State& x) {
   requires std::is_trivially_copyable_v<typename E::State>;
@@ -52,6 +53,7 @@ struct Controlled {
   static constexpr int inputs = P::inputs;
   static constexpr bool predicts = true;
   static constexpr bool uses_previous_input = limits_rates<P>;
+  static constexpr bool has_problem = true;
   static constexpr auto cost_terms() { return cost_terms_of<P>(); }
 };
 
@@ -67,6 +69,7 @@ struct Controlled<E> {
   static constexpr bool uses_previous_input = requires(E & e, const Input<double, inputs>& u) {
     e.set_previous_input(u);
   };
+  static constexpr bool has_problem = requires(const E& e) { e.problem(); };
   static constexpr auto cost_terms() { return std::array<CostTerm, 1>{{{"total", 0}}}; }
 };
 
@@ -143,7 +146,7 @@ class Controller {
     const float* value = result_->inputs.data();
     for (Inputs& input : inputs_)
       for (int i = 0; i < input_count; ++i) input[i] = static_cast<double>(*value++);
-    if constexpr (!StateEvaluator<P> && Controlled::uses_previous_input)
+    if constexpr (Controlled::has_problem && Controlled::uses_previous_input)
       hold_input_rates(evaluator_.problem(), previous_, inputs_.data(), solver_->horizon());
     check_plan_inputs();
     predict_plan(x);
@@ -160,9 +163,9 @@ class Controller {
   }
 
   /// The problem, to change its parameters between solves.
-  P& problem() noexcept requires(!StateEvaluator<P>) { return evaluator_.problem(); }
+  auto& problem() noexcept requires Controlled::has_problem { return evaluator_.problem(); }
   /// The problem.
-  const P& problem() const noexcept requires(!StateEvaluator<P>) { return evaluator_.problem(); }
+  const auto& problem() const noexcept requires Controlled::has_problem { return evaluator_.problem(); }
   /// The evaluator of the problem, or the one given.
   Evaluator& evaluator() noexcept { return evaluator_; }
   /// The evaluator.
@@ -191,7 +194,7 @@ class Controller {
   /// The bounds that the problem states, narrowed by those of the options.
   static InputBounds bounds_of(const Evaluator& evaluator, const SolverOptions* options) {
     InputBounds bounds;
-    if constexpr (!StateEvaluator<P>) {
+    if constexpr (Controlled::has_problem) {
       bounds = detail::stated_bounds(evaluator.problem());
     } else {
       bounds = InputBounds(input_count);
@@ -245,10 +248,10 @@ class Controller {
 
   /// How far an input may move in one step; infinite if the evaluator does not tell.
   double input_step([[maybe_unused]] std::size_t input) const noexcept {
-    if constexpr (StateEvaluator<P>) {
-      return std::numeric_limits<double>::infinity();
-    } else {
+    if constexpr (Controlled::has_problem) {
       return detail::input_step(evaluator_.problem(), static_cast<int>(input));
+    } else {
+      return std::numeric_limits<double>::infinity();
     }
   }
 

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "slalom/core/option_access.hpp"
+#include "slalom/core/risk/risk_evaluator.hpp"
 #include "slalom/vehicle/model/problem_model.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
 
@@ -22,6 +23,16 @@ template <std::size_t i>
 std::unique_ptr<VehicleModel> make_indexed(const VehicleOptions& options, simd::Target target) {
   using Model = VehicleModels::At<i>;
   const auto make = [&]<class P>(P problem) -> std::unique_ptr<VehicleModel> {
+    if constexpr (RandomizableProblem<P>) {
+      using Evaluator = RiskEvaluator<P>;
+      if (options.risk.variants > 1)
+        return std::make_unique<ProblemModel<P, Evaluator>>(
+            Evaluator(std::move(problem), options.risk, target));
+    } else if (options.risk.variants > 1) {
+      throw std::invalid_argument("vehicle.risk_variants: " + std::to_string(options.risk.variants) +
+                                  " must be 1 for vehicle.model '" + Model::name +
+                                  "', which has no variants of the world");
+    }
     return std::make_unique<ProblemModel<P>>(std::move(problem), target);
   };
   if constexpr (requires { Model::with_problem(options, std::get<i>(options.own), make); }) {

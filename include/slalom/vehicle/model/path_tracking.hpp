@@ -3,6 +3,7 @@
 #include <array>
 #include <concepts>
 
+#include "slalom/core/random.hpp"
 #include "slalom/vehicle/model/model_options.hpp"
 #include "slalom/vehicle/model/obstacle_cost.hpp"
 #include "slalom/vehicle/model/tracking_cost.hpp"
@@ -81,6 +82,10 @@ class PathTracking {
     cost_.set_reference(maps.reference);
     obstacles_.set_map(maps.obstacles, maps.robot);
   }
+
+  /// Makes a variant of the world, if the motion model does (see RandomizableProblem).
+  void randomize(RandomStream& random) noexcept requires requires(Motion& m) { m.randomize(random); }
+  { motion_.randomize(random); }
 
   /// See VehicleModel.
   void set_reverse(double speed) noexcept requires requires(Motion& m) { m.set_reverse(1.0); }

@@ -13,9 +13,12 @@ namespace slalom::vehicle {
 /// float32 rollouts are as exact at UTM coordinates (5e6 m) as near the origin.
 ///
 ///     Planner planner(options, std::make_unique<ProblemModel<MyProblem>>(MyProblem{}), path, solver);
-template <VehicleProblem P>
+///
+/// `Evaluator` rolls out: a ProblemEvaluator, or a RiskEvaluator, whose cost is that of several variants of
+/// the world. What is predicted is the problem itself.
+template <VehicleProblem P, class Evaluator = ProblemEvaluator<P>>
 class ProblemModel final : public VehicleModel {
-  using State = typename ProblemEvaluator<P>::State;  ///< the problem's state in double
+  using State = typename Evaluator::State;  ///< the problem's state in double
 
   /// Whether the problem has a motion model with tyres that slip.
   static constexpr bool dynamic = requires(const P& p, State s) {
@@ -27,6 +30,8 @@ class ProblemModel final : public VehicleModel {
   /// A vehicle model of `problem`, whose rollouts use the instruction set `target`.
   explicit ProblemModel(P problem, simd::Target target = simd::active_target())
       : evaluator_(std::move(problem), target) {}
+  /// With rollouts by `evaluator`.
+  explicit ProblemModel(Evaluator evaluator) : evaluator_(std::move(evaluator)) {}
 
   int inputs() const noexcept override { return P::inputs; }
   /// What the planner needs to know of the model.
@@ -125,7 +130,7 @@ class ProblemModel final : public VehicleModel {
   }
 
  private:
-  ProblemEvaluator<P> evaluator_;
+  Evaluator evaluator_;
   VehicleMaps maps_;
   maps::Point origin_;  ///< of the problem's frame, in the map frame
   State start_{};

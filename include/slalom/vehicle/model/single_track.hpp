@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "slalom/core/random.hpp"
 #include "slalom/maps/command.hpp"
 #include "slalom/vehicle/model/single_track_dynamics.hpp"
 #include "slalom/vehicle/model/vehicle_problem.hpp"
@@ -36,6 +37,10 @@ class SingleTrack {
 
   /// The friction between tyres and road that rollouts assume.
   void set_friction(double friction) noexcept { friction_ = friction; }
+
+  /// Multiplies friction and cornering stiffness by log-normal factors of the deviations in the options: a
+  /// variant of the world (see RandomizableProblem).
+  void randomize(RandomStream& random) noexcept;
 
   /// The car `duration` (s) later, where this command acts all the time; with a speed that is not finite it
   /// rolls.

@@ -31,6 +31,8 @@ struct SingleTrackOptions {
   double brake_gain = 19.02;          ///< 1/s, the same when braking
   double usable_grip = 0.9;           ///< share of friction times gravity that a plan may use
   double grip_weight = 300;           ///< cost of the square of the share above `usable_grip`
+  double friction_deviation = 0.1;    ///< of the logarithm of the friction in the variants of the world
+  double cornering_deviation = 0.1;   ///< the same of the cornering stiffness
   double collision_ahead_cost = 100;  ///< cost of a plan that ends where the car cannot stop before an
                                       ///< obstacle, times the share of its energy that is left there
 
@@ -71,6 +73,12 @@ void visit_options(Options& o, Visit&& visit) {
          "model `single_track`: share of friction times gravity that a plan may use", 0.05, 1);
   number(o.grip_weight, "grip_weight", "", "",
          "model `single_track`: cost of the square of the share above usable_grip", 0, 1e6);
+  number(o.friction_deviation, "friction_deviation", "", "",
+         "model `single_track`: standard deviation of the logarithm of the friction in the variants of "
+         "risk_variants",
+         0, 1);
+  number(o.cornering_deviation, "cornering_deviation", "", "",
+         "model `single_track`: the same of the cornering stiffness", 0, 1);
   number(o.collision_ahead_cost, "collision_ahead_cost", "", "",
          "model `single_track`: cost of a plan that ends where the car cannot stop before an obstacle, times "
          "the share of its energy that is left there",
