@@ -82,8 +82,12 @@ double LapRunner::control_period() const noexcept {
 }
 
 std::unique_ptr<vehicle::Planner> LapRunner::make_planner() const {
-  return std::make_unique<vehicle::Planner>(configuration_.planner,
-                                            vehicle::make_vehicle_model(configuration_.vehicle), path_,
+  auto model = vehicle::make_vehicle_model(configuration_.vehicle);
+  vehicle::PlannerOptions options = configuration_.planner;
+  // A planner that estimates the car's motion must know the time between two updates. The paper's program
+  // does not: its planner assumes 0.025 s where its simulator takes steps of 0.01 s.
+  if (model->has_dynamics()) options.control_period = control_period();
+  return std::make_unique<vehicle::Planner>(options, std::move(model), path_,
                                             vehicle::make_solver(configuration_, method_, settings_.threads));
 }
 

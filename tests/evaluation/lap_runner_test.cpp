@@ -81,16 +81,18 @@ TEST(LapRunner, DrivesTheSameLapAtUtmCoordinates) {
 }
 
 TEST(LapRunner, DrivesWithTheAccelerationAsAnInputByEveryMethod) {
-  for (const char* method : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
-    SCOPED_TRACE(method);
-    const LapResult lap =
-        LapRunner(wren(), configuration("default_speed"), method, {.additional_costs = true}).run(0);
-    EXPECT_TRUE(std::isfinite(lap.mean_sequence_cost));
-    EXPECT_TRUE(std::isfinite(lap.published_model_cost));
-    if (method != std::string("svg_mppi")) continue;
-    EXPECT_TRUE(lap.finished);
-    EXPECT_EQ(lap.collisions, 0);
-    EXPECT_LT(lap.time, 1.3 * LapRunner(wren(), configuration("default"), method, {}).run(0).time);
+  const double usual = LapRunner(wren(), configuration("default_kinematic"), "svg_mppi", {}).run(0).time;
+  for (const char* name : {"default", "default_speed"}) {
+    for (const char* method : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
+      SCOPED_TRACE(std::string(name) + ", " + method);
+      const LapResult lap = LapRunner(wren(), configuration(name), method, {.additional_costs = true}).run(0);
+      EXPECT_TRUE(std::isfinite(lap.mean_sequence_cost));
+      EXPECT_TRUE(std::isfinite(lap.published_model_cost));
+      if (method != std::string("svg_mppi")) continue;
+      EXPECT_TRUE(lap.finished);
+      EXPECT_EQ(lap.collisions, 0);
+      EXPECT_LT(lap.time, 1.3 * usual);
+    }
   }
 }
 
@@ -128,6 +130,18 @@ TEST(LapRunner, CostEqualsThePlannersInThePublishedConfiguration) {
   EXPECT_GT(ticks, 100);
 }
 
+TEST(LapRunner, APlannerThatEstimatesTheCarKnowsThePeriodOfThePublishedEvaluation) {
+  LapRunner runner(wren(Protocol::published), configuration("default"), "svg_mppi", {});
+  double gain = 0, speed_error = 0;
+  const LapResult lap = runner.run(0, [&](const ControlStep& tick) {
+    gain = tick.output.parameters.steering_gain;
+    speed_error = std::max(speed_error, std::abs(tick.output.speed_estimate - tick.seen.speed));
+  });
+  EXPECT_TRUE(lap.finished);
+  EXPECT_NEAR(gain, 1, 0.05) << "0.85 with a period of 0.025 s";
+  EXPECT_LT(speed_error, 0.1);
+}
+
 TEST(LapRunner, AdditionalCostsAreComparable) {
   LapRunner runner(wren(), configuration("published"), "svg_mppi", {.additional_costs = true});
   const LapResult lap = runner.run(0);
@@ -136,7 +150,7 @@ TEST(LapRunner, AdditionalCostsAreComparable) {
 }
 
 TEST(LapRunner, CanBeTimedOutAndCancelled) {
-  auto slow = configuration("default", 64);
+  auto slow = configuration("default_kinematic", 64);
   vehicle::set_option(slow, "planner.max_speed", "0.02");
   auto environment = std::make_shared<Environment>(*wren());
   environment->timeout = 1;
@@ -159,7 +173,7 @@ TEST(LapRunner, LatencyDelaysCommands) {
   const auto environment = wren();
   const auto first_motion = [&](double latency) {
     double start = -1;
-    LapRunner(environment, configuration("default", 64), "mppi", {.latency = latency})
+    LapRunner(environment, configuration("default_kinematic", 64), "mppi", {.latency = latency})
         .run(0, [&](const ControlStep& tick) {
           if (start < 0 && tick.seen.speed > 0) start = tick.time;
         });
@@ -196,7 +210,7 @@ TEST(LapRunner, ACarThatCannotLocaliseStops) {
   HardwareConditions blind;
   blind.dropout = 1;
   const LapResult lap =
-      LapRunner(environment, configuration("default", 64), "mppi", {.hardware = blind}).run(1);
+      LapRunner(environment, configuration("default_kinematic", 64), "mppi", {.hardware = blind}).run(1);
   EXPECT_FALSE(lap.finished);
   EXPECT_GT(lap.localisation.blind, lap.steps / 2);
   EXPECT_LT(lap.mean_speed, 0.5);
@@ -210,7 +224,7 @@ TEST(LapRunner, TheWorldCanBeMadeHarder) {
     if (key) {
       EXPECT_TRUE(set_world_option(settings, key, value)) << key;
     }
-    return LapRunner(environment, configuration("default", 64), "mppi", settings).run(0);
+    return LapRunner(environment, configuration("default_kinematic", 64), "mppi", settings).run(0);
   };
   const LapResult usual = lap(nullptr, nullptr);
   for (const auto& [key, value] :
@@ -264,10 +278,10 @@ TEST(LapRunner, RejectsInvalidSettings) {
   } catch (const std::invalid_argument& error) {
     says(error.what(), "hardware");
   }
-  auto two = usual;
-  for (SolverOptions& method : two.methods)
-    if (std::string_view(method.method()) == "mppi") *method.find<PerInput>("variance") = {0.1, 0.2};
-  says(error_of("mppi", {}, two), "variance");
+  auto three = usual;
+  for (SolverOptions& method : three.methods)
+    if (std::string_view(method.method()) == "mppi") *method.find<PerInput>("variance") = {0.1, 0.2, 0.3};
+  says(error_of("mppi", {}, three), "variance");
 }
 
 TEST(LapSeeds, AreThoseOfTheProtocol) {

@@ -30,7 +30,8 @@ class HardwareCommand : public testing::ProgramTest {
   /// Two short laps; what does not depend on the clock of the wall.
   json results(const std::string& arguments) const {
     const auto run = program(
-        "hardware --drivers mppi@default --set samples=64 --tracking-laps 1 --layouts 1 --laps 1 --obstacles "
+        "hardware --drivers mppi@default_kinematic --set samples=64 --tracking-laps 1 --layouts 1 --laps 1 "
+        "--obstacles "
         "2 "
         "--json out.json " +
         arguments);
@@ -79,10 +80,10 @@ class IdentifyCommand : public testing::ProgramTest {
 };
 
 TEST_F(IdentifyCommand, FindsTheServoOfASimulatedCar) {
-  ASSERT_EQ(
-      program("drive --course eel --method mppi --set samples=256 --hardware --laps 3 --record lap.jsonl")
-          .status,
-      0);
+  ASSERT_EQ(program("drive --course eel --config default_kinematic --method mppi --set samples=256 "
+                    "--hardware --laps 3 --record lap.jsonl")
+                .status,
+            0);
   const json found = identified("lap.jsonl");
   EXPECT_NEAR(found["steering_gain"]["value"], 0.95, 0.05);
   EXPECT_NEAR(found["steering_offset"]["value"], 0.01, 0.004);
@@ -178,9 +179,10 @@ class BagReplay : public IdentifyCommand {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
-    ASSERT_EQ(
-        program("drive --course wren --method mppi --set samples=256 --hardware --record lap.jsonl").status,
-        0);
+    ASSERT_EQ(program("drive --course wren --config default_kinematic --method mppi --set samples=256 "
+                      "--hardware --record lap.jsonl")
+                  .status,
+              0);
     write("lap.bag", bag(true).bytes());
   }
 

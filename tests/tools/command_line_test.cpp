@@ -28,7 +28,8 @@ class CommandLine : public testing::EvaluationFolder {
     EXPECT_FALSE(contains(run.output, "json.exception")) << run.output;
   }
   std::string evaluation(const std::string& out) const {
-    return "eval --course " + wren + " --methods mppi --scenario pt --laps 1 --set mppi.samples=48 --out " +
+    return "eval --course " + wren +
+           " --methods mppi --scenario pt --laps 1 --config default_kinematic --set mppi.samples=48 --out " +
            out;
   }
 };
@@ -210,7 +211,9 @@ TEST_F(CommandLine, NamesEmptyEvaluations) {
 }
 
 TEST_F(CommandLine, IdentifyPrintsItsInputs) {
-  ASSERT_EQ(timed("drive --course wren --method mppi --set samples=64 --record a.mcap --record-times").status,
+  ASSERT_EQ(timed("drive --course wren --config default_kinematic --method mppi --set samples=64 --record "
+                  "a.mcap --record-times")
+                .status,
             0);
   refuses("identify a.mcap", {"a.mcap", "must be JSON lines"});
   refuses("identify .", {".: is a directory"});
@@ -221,7 +224,8 @@ TEST_F(CommandLine, IdentifyPrintsItsInputs) {
 TEST_F(CommandLine, CtrlCInHardwareKeepsWhatWasDriven) {
   const testing::Run run = testing::run_shell(
       "'" SLALOM_PROGRAM "' hardware --course " + wren +
-          " --drivers mppi@default --set samples=64 --tracking-laps 1000 --layouts 0 --json hw.json "
+          " --drivers mppi@default_kinematic --set samples=64 --tracking-laps 1000 --layouts 0 --json "
+          "hw.json "
           "> words.txt 2> laps.txt & pid=$!; for i in $(seq 600); do grep -q 'lap 2 of' laps.txt && break; "
           "sleep 0.1; done; kill -INT $pid; wait $pid",
       folder_.string());
@@ -243,7 +247,8 @@ TEST_F(CommandLine, ReportsThatMemoryRanOut) {
   GTEST_SKIP() << "sanitizers take more address space than the limit leaves";
 #endif
   const testing::Run run =
-      timed("drive --course wren --set samples=4194304 --set horizon=10000", "ulimit -v 3000000;");
+      timed("drive --course wren --config default_kinematic --set samples=4194304 --set horizon=10000",
+            "ulimit -v 3000000;");
   EXPECT_EQ(run.status, 1);
   EXPECT_TRUE(contains(run.output, "not enough memory")) << run.output;
 }

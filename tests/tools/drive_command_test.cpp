@@ -89,7 +89,7 @@ TEST_F(DriveCommand, RecordsEveryStepAndDraws) {
   EXPECT_EQ(lines[1]["type"], "lap");
   EXPECT_EQ(lines[2]["type"], "tick");
   EXPECT_EQ(lines[2]["ranges"].size(), 1080u);
-  EXPECT_EQ(lines[2]["inputs"].size(), 20u);
+  EXPECT_EQ(lines[2]["inputs"].size(), 40u) << "20 steps of steering and acceleration";
   EXPECT_EQ(lines[2]["predicted"].size(), 21u);
   EXPECT_EQ(lines.back()["type"], "lap_end");
   EXPECT_EQ(lines.back()["result"], result("out.json")["laps"][0]);
@@ -140,7 +140,7 @@ TEST_F(DriveCommand, RejectsInvalidArguments) {
   expect_refused("drive --set vehicle.time_step=soon", {"vehicle.time_step", "'soon'", "must be a number"});
   expect_refused("drive --set planner.verify_plan=maybe", {"'maybe'", "true or false"});
   expect_refused("drive --set guide_weight=heavy", {"'heavy'", "must be one of"});
-  expect_refused("drive --set variance=[0.1,0.2]", {"variance", "2 values"});
+  expect_refused("drive --set variance=[0.1,0.2,0.3]", {"variance", "3 values"});
   expect_refused("drive --start 0,0", {"--start", "x,y,yaw"});
   expect_refused("drive --start 0,0,nan", {"--start", "finite"});
   expect_refused("drive --course wren --start 1e6,0,0", {"start", "on the map"});

@@ -13,7 +13,7 @@ class EvalCheck : public testing::EvaluationFolder {
  protected:
   static std::string small(int laps = 3) {
     return "eval --course " SLALOM_COURSES "/wren --methods mppi --scenario oa --obstacles 2 --laps " +
-           std::to_string(laps) + " --set mppi.samples=48 ";
+           std::to_string(laps) + " --config default_kinematic --set mppi.samples=48 ";
   }
 };
 

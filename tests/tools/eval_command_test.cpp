@@ -21,7 +21,8 @@ class EvalCommand : public testing::EvaluationFolder {
     return "eval --course " SLALOM_COURSES
            "/wren --methods mppi,svg_mppi --scenario oa --obstacles 2 --laps " +
            std::to_string(laps) +
-           " --set mppi.samples=48 --set svg_mppi.samples=32 --set svg_mppi.gradient_samples=8 ";
+           " --config default_kinematic --set mppi.samples=48 --set svg_mppi.samples=32 --set "
+           "svg_mppi.gradient_samples=8 ";
   }
 };
 
@@ -270,7 +271,8 @@ TEST_F(EvalCommand, ReplaysALapBitForBitAndComparesTwoRuns) {
 
 TEST_F(EvalCommand, RemembersTheFolderOfACourseThatHasNoKnownName) {
   fs::copy(SLALOM_COURSES "/wren", folder_ / "elsewhere");
-  const std::string drive = "--methods mppi --set mppi.samples=64 --laps 1 --scenario pt --out one ";
+  const std::string drive =
+      "--methods mppi --config default_kinematic --set mppi.samples=64 --laps 1 --scenario pt --out one ";
   ASSERT_EQ(run("eval --course elsewhere " + drive).status, 0);
   const auto settings = nlohmann::json::parse(content(folder_ / "one/settings.json"));
   EXPECT_EQ(settings.at("course_folder"), fs::canonical(folder_ / "elsewhere").string());

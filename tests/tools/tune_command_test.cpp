@@ -23,7 +23,7 @@ class TuneCommand : public testing::EvaluationFolder {
   }
   void SetUp() override {
     EvaluationFolder::SetUp();
-    std::ofstream(folder_ / "timid.yaml") << "base: default\nmppi:\n  variance: 0.01\n";
+    std::ofstream(folder_ / "timid.yaml") << "base: default_kinematic\nmppi:\n  variance: 0.01\n";
   }
   std::string complaint(const std::string& arguments) const {
     const auto r = run(arguments);

@@ -89,10 +89,7 @@ void run(const Arguments& arguments) {
 void declare_options(Subcommand& command) {
   command.summary("List all options with values, units and ranges");
   const auto arguments = std::make_shared<Arguments>();
-  command
-      .option("--config", arguments->scenario.config,
-              "Configuration: default, default_speed, single_track, published, hardware, or a file")
-      .show_default();
+  command.option("--config", arguments->scenario.config, config_help).show_default();
   command.option("--set", arguments->scenario.set, "section.option=value; may be repeated").repeatable();
   const Option method = command.option("--method", arguments->method,
                                        "Only the options of this method, vehicle, planner and world");

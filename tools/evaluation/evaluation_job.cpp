@@ -101,10 +101,7 @@ std::string course_hash(const Environment& environment) {
 
 void add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
   command.option("--course", a.scenario.course, "Course name or folder").show_default();
-  command
-      .option("--config", a.scenario.config,
-              "Configuration: default, default_speed, single_track, published, hardware, or a file")
-      .show_default();
+  command.option("--config", a.scenario.config, config_help).show_default();
   command
       .option("--evaluation", a.scenario.evaluation,
               "true: physically correct world; published: world, clock and counting of the paper's program")

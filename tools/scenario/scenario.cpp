@@ -67,10 +67,14 @@ std::vector<std::string> notes_on(const vehicle::Course& course,
       vehicle::grip_limits(friction, planner.max_speed, car.max_acceleration, car.max_deceleration);
   const vehicle::CourseCheck check = vehicle::check_course(course, options);
   for (std::string& sentence : sentences(check, options)) notes.push_back(std::move(sentence));
-  if (!check.grip.stretches.empty())
-    notes.push_back(lowered ? "planner.profile_friction lowers the profile to what the car can"
-                            : "--set planner.profile_friction=" + to_text(friction) +
-                                  " lowers the profile to what the car can");
+  if (check.grip.stretches.empty()) return notes;
+  if (lowered)
+    notes.push_back("planner.profile_friction lowers the profile to what the car can");
+  else if (vehicle::make_vehicle_model(configuration.vehicle)->has_dynamics())
+    notes.push_back("the planner lowers the profile to what the car can");
+  else
+    notes.push_back("--set planner.profile_friction=" + to_text(friction) +
+                    " lowers the profile to what the car can");
   return notes;
 }
 
@@ -105,10 +109,7 @@ fs::path program_folder() {
 
 void add_scenario_options(Subcommand& command, ScenarioArguments& a) {
   command.option("--course", a.course, "Course name or folder").show_default();
-  command
-      .option("--config", a.config,
-              "Configuration: default, default_speed, single_track, published, hardware, or a file")
-      .show_default();
+  command.option("--config", a.config, config_help).show_default();
   command
       .option("--evaluation", a.evaluation,
               "true: physically correct world; published: world, clock and counting of the paper's program")

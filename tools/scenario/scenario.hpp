@@ -16,6 +16,10 @@
 /// The options shared by all commands that drive: course, configuration, evaluation, method.
 namespace slalom::tools {
 
+/// Help of --config.
+inline constexpr const char* config_help =
+    "Configuration: default, default_kinematic, default_speed, published, hardware, or a file";
+
 /// The folder of the running program.
 std::filesystem::path program_folder();
 

@@ -11,7 +11,9 @@ namespace slalom::vehicle::detail {
 /// stand.
 class Recovery {
  public:
-  static constexpr double speed = 1.0;  ///< m/s at most, in reverse
+  /// m/s at most, in reverse. Slow, since a car that reverses steers with its rear; and the car of f1tenth_gym
+  /// diverges in reverse at more than 0.5 m/s (sim::GymDynamics::reverse).
+  static constexpr double speed = 0.45;
 
   void reset() noexcept { *this = {}; }
 
@@ -42,7 +44,7 @@ class Recovery {
   static constexpr double hesitation = 0.5;               ///< s of crawling
   static constexpr double stand_still = 0.7;              ///< s of standing
   static constexpr double shortest = 0.8, longest = 3.0;  ///< m to reverse
-  static constexpr double slowest_try = 5;                ///< s of reversing at most
+  static constexpr double slowest_try = 10;               ///< s of reversing at most
   static constexpr double relief = 4;                     ///< m of progress after which the dead end is left
 
   /// m from one place to another along the course.

@@ -89,11 +89,14 @@ async function check(file, { times = false } = {}) {
     schema.parsed = ours;
   }
   const decoder = new TextDecoder();
+  const estimates = ["slip_estimate", "grip_used", "friction_estimate", "friction_relied_on", "steering_gain_estimate", "delay_estimate"];
   let fitted = 0;
   for (const message of messages) {
     const channel = reader.channelsById.get(message.channelId);
     assert.equal(channel.messageEncoding, "json");
-    fits(JSON.parse(decoder.decode(message.data)), reader.schemasById.get(channel.schemaId).parsed, channel.topic);
+    const content = JSON.parse(decoder.decode(message.data));
+    fits(content, reader.schemasById.get(channel.schemaId).parsed, channel.topic);
+    if (channel.topic === "/tick") for (const name of estimates) assert.equal(typeof content[name], "number", `/tick.${name}`);
     fitted += 1;
   }
   console.log(`ok    ${file.split("/").at(-1)}: ${statSync(file).size} bytes, ${statistics.chunkCount} chunks, ${messages.length} messages by index and as a stream, ${fitted} fit their schemas, ${topics.length} topics, ${attachments.length} attachments`);
