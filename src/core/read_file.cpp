@@ -1,6 +1,11 @@
 #include "slalom/core/read_file.hpp"
 
+#include <dirent.h>
+
+#include <algorithm>
 #include <fstream>
+#include <memory>
+#include <string_view>
 
 #include "slalom/core/error.hpp"
 
@@ -25,6 +30,19 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t most) {
   if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
     throw IoError(file.string(), 0, "does not exist or cannot be read");
   return bytes;
+}
+
+std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder) {
+  const auto close = [](DIR* open) { ::closedir(open); };
+  const std::unique_ptr<DIR, decltype(close)> open(::opendir(folder.c_str()), close);
+  if (!open) throw IoError(folder.string(), 0, "is not a folder, or cannot be read");
+  std::vector<std::filesystem::path> found;
+  while (const dirent* const entry = ::readdir(open.get())) {
+    const std::string_view name = entry->d_name;
+    if (name != "." && name != "..") found.push_back(folder / name);
+  }
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 }  // namespace slalom

@@ -97,6 +97,9 @@ ThreadPool::ThreadPool(int threads) : threads_(threads) {
     throw std::runtime_error("threads: " + std::to_string(threads) + " cannot start, " +
                              std::to_string(started) + " can (" + error.code().message() +
                              "); use fewer threads, or raise the limits of processes and memory");
+  } catch (...) {
+    shared_->stop();
+    throw;
   }
 }
 

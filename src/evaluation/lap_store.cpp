@@ -61,6 +61,19 @@ void replace_file(const fs::path& file, const std::string& text) {
 
 constexpr const char* checksum_key = "checksum";
 
+/// JSON from a file; discarded if it is none. Throws std::invalid_argument where it is nested too deep:
+/// writing and comparing it recurse.
+template <class Value>
+Value parse_stored(const std::string& text) {
+  constexpr int deepest = 64;
+  const auto bounded = [](int depth, typename Value::parse_event_t, Value&) {
+    if (depth > deepest)
+      throw std::invalid_argument("must not nest deeper than " + std::to_string(deepest) + " levels");
+    return true;
+  };
+  return Value::parse(text, bounded, false);
+}
+
 /// The 64-bit FNV-1a hash of the settings, written with their keys in order.
 std::string checksum_of(const nlohmann::ordered_json& settings) {
   std::uint64_t hash = 14695981039346656037ULL;
@@ -109,12 +122,11 @@ StoredSettings check_settings(const fs::path& file, const std::string& requested
   StoredSettings result;
   try {
     const std::string text = read_file(file, std::uint64_t{1} << 24);
-    stored = nlohmann::json::parse(text);
+    stored = parse_stored<nlohmann::json>(text);
+    if (stored.is_discarded()) throw std::invalid_argument("is not JSON");
     result.checked = verify_checksum(text);
   } catch (const std::invalid_argument& error) {
     throw IoError(file.string(), 0, error.what());
-  } catch (const nlohmann::json::exception& error) {
-    throw IoError(file.string(), 0, std::string("is not JSON: ") + error.what());
   }
   if (stored.contains("build") && stored["build"].is_string()) result.build = stored["build"];
   stored.erase("build");
@@ -167,7 +179,7 @@ std::string with_checksum(const std::string& settings) {
 }
 
 bool verify_checksum(const std::string& stored_settings) {
-  auto json = nlohmann::ordered_json::parse(stored_settings, nullptr, false);
+  auto json = parse_stored<nlohmann::ordered_json>(stored_settings);
   if (!json.is_object()) throw std::invalid_argument("is not a JSON object");
   const auto found = json.find(checksum_key);
   if (found == json.end()) return false;

@@ -123,6 +123,22 @@ TEST_F(StoredLaps, SettingsThatWereChangedShow) {
     }
 }
 
+TEST_F(StoredLaps, SettingsOfAnyDepthAreRefused) {
+  store(false);
+  for (const int depth : {100, 1000000}) {
+    const std::size_t brackets = static_cast<std::size_t>(depth);
+    write("settings.json", "{\"a\": " + std::string(brackets, '[') + std::string(brackets, ']') + "}");
+    try {
+      LapStore(folder_, evaluation_, true);
+      ADD_FAILURE() << "settings of depth " << depth << " were taken";
+    } catch (const IoError& error) {
+      EXPECT_NE(std::string(error.what()).find("settings.json: must not nest deeper than 64 levels"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 TEST_F(StoredLaps, AFolderHasOneStoreAtATime) {
   {
     LapStore first(folder_, evaluation_, false);

@@ -32,6 +32,21 @@ class CommandLine : public testing::EvaluationFolder {
            " --methods mppi --scenario pt --laps 1 --config default_kinematic --set mppi.samples=48 --out " +
            out;
   }
+  /// The commands that print and end, with arguments for a short run; `out` is a file or folder of its own.
+  std::vector<std::string> short_runs(const std::string& out) const {
+    return {"bench --methods mppi --seconds 0.01 --json " + out,
+            "compare ev ev --json " + out,
+            "completion bash",
+            "drive --course wren --method mppi --set samples=32 --json " + out,
+            "eval --check ev --again 0",
+            "identify lap.jsonl --json " + out,
+            evaluation(out),
+            "explain --method mppi --solves 1 --json " + out,
+            "manual " + out,
+            "options",
+            "replay lap.mcap --repair " + out,
+            "track --length 30 --out " + out};
+  }
 };
 
 TEST_F(CommandLine, AnUnknownInstructionSetDoesNotAbort) {
@@ -86,6 +101,62 @@ TEST_F(CommandLine, AFullStandardOutputIsAnError) {
     EXPECT_EQ(run.status, 1) << arguments;
     EXPECT_TRUE(contains(run.output, "slalom: standard output: cannot be written")) << run.output;
   }
+}
+
+TEST_F(CommandLine, AStandardOutputThatIsClosedIsAnErrorAndLosesNothing) {
+  ASSERT_EQ(timed(evaluation("ev")).status, 0);
+  ASSERT_EQ(timed("drive --course wren --method mppi --set samples=32 --record lap.mcap").status, 0);
+  ASSERT_EQ(timed("drive --course wren --method mppi --set samples=32 --record lap.jsonl").status, 0);
+  const auto open = short_runs("open"), closed = short_runs("closed"), broken = short_runs("broken");
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    for (const char* name : {"open", "closed", "broken"}) fs::remove_all(folder_ / name);
+    EXPECT_EQ(timed(open[i]).status, 0) << open[i];
+    const testing::Run without = timed(closed[i] + " >&-");
+    EXPECT_EQ(without.status, 1) << closed[i];
+    EXPECT_TRUE(contains(without.output, "slalom: standard output: cannot be written")) << without.output;
+    const testing::Run unread = testing::run_shell(
+        "{ sleep 0.2; '" SLALOM_PROGRAM "' " + broken[i] + "; echo status $? >&2; } | true",
+        folder_.string());
+    EXPECT_TRUE(contains(unread.output, "slalom: standard output: cannot be written")) << unread.output;
+    EXPECT_TRUE(contains(unread.output, "status 1")) << unread.output;
+    if (!contains(open[i], "--json")) continue;
+    const auto keys = [&](const char* name) { return json::parse(content(folder_ / name)).size(); };
+    EXPECT_EQ(keys("closed"), keys("open")) << closed[i];
+    EXPECT_EQ(keys("broken"), keys("open")) << broken[i];
+  }
+}
+
+TEST_F(CommandLine, AFileDoesNotTakeThePlaceOfAClosedStream) {
+  for (const std::string closed : {" >&-", " 2>&-", " <&-", " <&- >&- 2>&-"}) {
+    timed("drive --course wren --method mppi --set samples=32 --record lap.jsonl" + closed);
+    const std::string recording = content(folder_ / "lap.jsonl");
+    EXPECT_EQ(recording.find("lap 1:"), std::string::npos) << closed;
+    EXPECT_EQ(recording.rfind("{\"type\":\"recording\"", 0), 0u) << closed;
+  }
+}
+
+/// Files that cannot be opened since the process has too many: an error, or all of the result.
+TEST_F(CommandLine, TooFewDescriptorsAreAnError) {
+  ASSERT_EQ(timed(evaluation("ev")).status, 0);
+  int errors = 0;
+  for (const std::string command : {"drive --course wren --method mppi --set samples=32 --json result.json",
+                                    "compare ev ev --json result.json"})
+    for (int descriptors = 4; descriptors < 9; ++descriptors) {
+      fs::remove(folder_ / "result.json");
+      const testing::Run run = timed(command, "ulimit -n " + std::to_string(descriptors) + ";");
+      ASSERT_NE(run.status, -1) << command;
+      if (run.status == 0) {
+        EXPECT_TRUE(json::accept(content(folder_ / "result.json"))) << command << descriptors;
+      } else {
+        EXPECT_FALSE(run.output.empty()) << command;
+        ++errors;
+      }
+    }
+  EXPECT_GT(errors, 0);
+  const testing::Run view = testing::run_shell(
+      "ulimit -n 5; timeout 20 '" SLALOM_PROGRAM "' view --port 0 --eval ev", folder_.string());
+  EXPECT_EQ(view.status, 1) << view.output;
+  EXPECT_TRUE(contains(view.output, "slalom: ")) << view.output;
 }
 
 TEST_F(CommandLine, ChecksItsOutputFilesFirst) {

@@ -59,6 +59,8 @@ class Fields {
   std::string_view bytes_;
 };
 
+// Bytes on the wire, of a header with an empty frame.
+constexpr std::size_t least_header = 16, pose_size = 7 * sizeof(double), twist_size = 6 * sizeof(double);
 constexpr std::size_t covariance = 36 * sizeof(double);
 
 }  // namespace
@@ -114,6 +116,8 @@ maps::OccupancyGrid map(std::string_view bytes) {
   grid.width = f.get<std::int32_t>();
   grid.height = f.get<std::int32_t>();
   grid.origin = f.pose();
+  if (!(grid.resolution > 0 && std::isfinite(grid.resolution)))
+    throw std::invalid_argument("has a resolution that is not a finite number above 0");
   const std::size_t cells = f.count(1);
   if (grid.width <= 0 || grid.height <= 0 ||
       static_cast<double>(grid.width) * grid.height != static_cast<double>(cells))
@@ -131,12 +135,13 @@ maps::OccupancyGrid map(std::string_view bytes) {
 std::vector<Waypoint> waypoints(std::string_view bytes) {
   Fields f(bytes);
   f.header();
-  std::vector<Waypoint> points(f.count(1));
+  std::vector<Waypoint> points(f.count(least_header + pose_size));
   for (Waypoint& point : points) {
     f.header();
     point.pose = f.pose();
   }
-  if (f.count(1) != points.size()) throw std::invalid_argument("has different numbers of poses and speeds");
+  if (f.count(least_header + twist_size) != points.size())
+    throw std::invalid_argument("has different numbers of poses and speeds");
   for (Waypoint& point : points) {
     f.header();
     point.speed = f.twist();
@@ -147,7 +152,7 @@ std::vector<Waypoint> waypoints(std::string_view bytes) {
 
 std::vector<Transform> transforms(std::string_view bytes) {
   Fields f(bytes);
-  std::vector<Transform> all(f.count(1));
+  std::vector<Transform> all(f.count(least_header + sizeof(std::uint32_t) + pose_size));
   for (Transform& each : all) {
     each.parent = f.header().frame;
     each.child = f.text();

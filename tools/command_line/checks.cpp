@@ -7,11 +7,13 @@
 #include <cctype>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <stdexcept>
 
 #include "slalom/core/error.hpp"
 #include "tools/command_line/command.hpp"
@@ -111,6 +113,15 @@ void check_options(const std::vector<GivenOption>& options) {
       files.push_back({option.name, file});
       check_distinct(files);
     }
+  }
+}
+
+void guard_standard_streams() {
+  std::signal(SIGPIPE, SIG_IGN);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) != -1) continue;
+    // The lowest free descriptor, so that of this stream. It cannot be written to.
+    if (::open("/dev/null", O_RDONLY) < 0) throw std::runtime_error("/dev/null: cannot be opened");
   }
 }
 

@@ -22,4 +22,9 @@ void check_options(const std::vector<GivenOption>& options);
 /// The exit status once all output is flushed: not 0 if standard output could not be written.
 int after_output(int exit_status);
 
+/// To be called first: makes output to a standard stream that is closed, or to a pipe that nobody reads any
+/// more, an error in the writing call. Otherwise the next file that is opened would take the place of the
+/// closed stream, or the system would end the program, with all that it has not yet written.
+void guard_standard_streams();
+
 }  // namespace slalom::tools

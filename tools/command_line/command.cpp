@@ -216,6 +216,7 @@ int report_error(const char* what) {
 
 int run_guarded(int argc, const char* const* argv, const std::vector<CommandEntry>& commands) {
   try {
+    guard_standard_streams();
     return parse_and_run(argc, argv, commands);
   } catch (const std::bad_alloc&) {
     return report_error("not enough memory; use fewer samples or a shorter horizon");

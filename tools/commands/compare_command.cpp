@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/results.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
@@ -194,10 +195,9 @@ std::vector<std::string> places_of(const Arguments& arguments) {
   const fs::path first = arguments.first, second = arguments.second;
   if (is_evaluation(first) || is_evaluation(second) || !fs::is_directory(first)) return {""};
   std::vector<std::string> places;
-  for (const auto& entry : fs::directory_iterator(first))
-    if (is_evaluation(entry.path()) && is_evaluation(second / entry.path().filename()))
-      places.push_back(entry.path().filename().string());
-  std::sort(places.begin(), places.end());
+  for (const fs::path& entry : list_folder(first))
+    if (is_evaluation(entry) && is_evaluation(second / entry.filename()))
+      places.push_back(entry.filename().string());
   if (places.empty())
     throw IoError(arguments.second, 0,
                   "must be an evaluation or a folder of evaluations, as " + arguments.first + " has");

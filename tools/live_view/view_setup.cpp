@@ -7,6 +7,7 @@
 #include <random>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "tools/json/json.hpp"
@@ -18,8 +19,8 @@ namespace {
 std::vector<std::string> configuration_names() {
   std::vector<std::string> names;
   for (const auto& root : vehicle::configuration_roots(program_folder()))
-    for (const auto& entry : std::filesystem::directory_iterator(root))
-      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+    for (const auto& entry : list_folder(root))
+      if (entry.extension() == ".yaml") names.push_back(entry.stem().string());
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "vehicle/yaml_file.hpp"
 
@@ -189,8 +190,8 @@ fs::path find_configuration(const std::string& name_or_file, const std::vector<f
     if (const fs::path file = root / (name_or_file + ".yaml"); fs::is_regular_file(file)) return file;
     searched += (searched.empty() ? "" : ", ") + root.string();
     if (!fs::is_directory(root)) continue;
-    for (const auto& entry : fs::directory_iterator(root))
-      if (entry.path().extension() == ".yaml") known.insert(entry.path().stem().string());
+    for (const fs::path& entry : list_folder(root))
+      if (entry.extension() == ".yaml") known.insert(entry.stem().string());
   }
   for (const auto& name : known) names += (names.empty() ? "" : ", ") + name;
   throw IoError(

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 #include "slalom/maps/ros_map.hpp"
 #include "vehicle/course/course_csv.hpp"
 #include "vehicle/course/course_yaml.hpp"
@@ -27,12 +28,11 @@ double distance(const Waypoint& a, const Waypoint& b) {
 /// The files of a folder whose name ends in one of `extensions`, in the order of their names.
 std::vector<fs::path> files_with(const fs::path& folder, const std::vector<std::string>& extensions) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const auto extension = entry.path().extension().string();
-    if (entry.is_regular_file() && std::count(extensions.begin(), extensions.end(), extension))
-      files.push_back(entry.path());
+  for (fs::path& file : list_folder(folder)) {
+    const auto extension = file.extension().string();
+    if (std::count(extensions.begin(), extensions.end(), extension) && fs::is_regular_file(file))
+      files.push_back(std::move(file));
   }
-  std::sort(files.begin(), files.end());
   return files;
 }
 

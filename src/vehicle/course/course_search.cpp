@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "vehicle/course/course_yaml.hpp"
 
@@ -35,8 +36,8 @@ std::vector<std::string> course_names(const std::vector<fs::path>& roots) {
   std::vector<std::string> names;
   for (const auto& root : roots) {
     if (!fs::is_directory(root)) continue;
-    for (const auto& entry : fs::directory_iterator(root))
-      if (entry.is_directory()) names.push_back(entry.path().filename().string());
+    for (const fs::path& entry : list_folder(root))
+      if (fs::is_directory(entry)) names.push_back(entry.filename().string());
   }
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());

@@ -1,0 +1,53 @@
+// Memory that runs out at any allocation of a planner, a course or the start of a lap: std::bad_alloc, and
+// nothing is lost.
+#include <gtest/gtest.h>
+
+#include "slalom/evaluation/closed_loop.hpp"
+#include "support/allocation_failures.hpp"
+#include "vehicle/planner/planner_calls.hpp"
+
+namespace slalom::evaluation {
+namespace {
+
+TEST(AllocationFailure, EveryPlannerIsMadeOrThrowsAndThenPlans) {
+  const auto path = testing::lane(3);
+  const std::vector<float> ranges(271, 10);
+  for (int model = 0; model < static_cast<int>(vehicle::VehicleModels::size); ++model)
+    for (const char* method : solver_names()) {
+      SCOPED_TRACE("model " + std::to_string(model) + ", " + method);
+      vehicle::VehicleOptions car;
+      car.model = vehicle::VehicleModelId{model};
+      EXPECT_GT(testing::fail_every_allocation([&] {
+                  vehicle::Planner planner(
+                      {}, vehicle::make_vehicle_model(car), path,
+                      make_solver(testing::few_samples(method), vehicle::input_count(car)));
+                  return planner.update({{ranges, -2.35, 4.7 / 270, 0.05, 30}, {{5, 0, 0}, 2}}).command.steer;
+                }),
+                20);
+    }
+}
+
+TEST(AllocationFailure, ACourseIsLoadedOrThrows) {
+  EXPECT_GT(
+      testing::fail_every_allocation(
+          [&] { return load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {})->path.size(); },
+          400),
+      100);
+}
+
+TEST(AllocationFailure, ALapStartsOrThrows) {
+  const auto environment = load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {});
+  vehicle::Configuration configuration;
+  vehicle::set_option(configuration, "samples", "40", "svg_mppi");
+  EXPECT_GT(testing::fail_every_allocation([&] {
+              ClosedLoop loop(std::make_shared<const LapRunner>(environment, configuration, "svg_mppi",
+                                                                LapSettings{.obstacles = 2}),
+                              5);
+              for (int step = 0; step < 2; ++step) loop.step();
+              return loop.world().state(0).x;
+            }),
+            100);
+}
+
+}  // namespace
+}  // namespace slalom::evaluation

@@ -1,0 +1,42 @@
+// Settings of an evaluation that no evaluation has are refused by name.
+#include "tools/evaluation/stored_evaluation.hpp"
+
+#include "slalom/core/error.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace slalom::tools {
+namespace {
+
+class StoredSettings : public testing::TemporaryFolder {
+ protected:
+  /// What is wrong with a folder without laps whose settings have this for the experiments and seed.
+  std::string complaint(const std::string& experiments, const std::string& seed0 = "0") const {
+    write("laps.csv", evaluation::checked_header() + "\n");
+    write("settings.json",
+          evaluation::with_checksum("{\"experiments\": [" + experiments + "], \"seed0\": " + seed0 + "}"));
+    try {
+      load_evaluation(folder_);
+    } catch (const IoError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  static std::string experiment(const std::string& laps) {
+    return R"({"method": "mppi", "set": "", "scenario": "oa", "obstacles": 5, "laps": )" + laps + "}";
+  }
+};
+
+TEST_F(StoredSettings, NeedAnExperiment) {
+  EXPECT_EQ(complaint(experiment("3")), "");
+  EXPECT_NE(complaint("").find("settings.json: is invalid: experiments: must be at least one"),
+            std::string::npos);
+}
+
+TEST_F(StoredSettings, WholeNumbersAreNotCutToFit) {
+  EXPECT_NE(complaint(experiment("4294967298")).find("4294967298"), std::string::npos);
+  EXPECT_NE(complaint(experiment("0")).find("laps: 0 must be in [1, 1000000]"), std::string::npos);
+  EXPECT_NE(complaint(experiment("3"), "1e30").find("must be a whole number"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace slalom::tools
