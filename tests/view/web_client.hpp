@@ -45,6 +45,9 @@ class WebClient {
     return true;
   }
 
+  /// Tells the server that nothing more will be sent.
+  void end() { shutdown(socket_, SHUT_WR); }
+
   /// A GET, or with `upgrade` the opening of a WebSocket; the answer's head.
   std::string get(const std::string& target, bool upgrade = false, const std::string& host = "127.0.0.1",
                   const std::string& origin = "") {

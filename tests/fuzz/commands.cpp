@@ -1,0 +1,92 @@
+// Commands of a page to a session of the live view: one a line.
+#include <chrono>
+
+#include "fuzz/target.hpp"
+#include "view/session/session.hpp"
+#include "view/web_client.hpp"
+
+namespace slalom::fuzz {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int most_commands = 24, most_ticks = 12;
+
+std::vector<std::string> seeds() {
+  return {R"({"do":"step","ticks":3,"id":1}
+{"do":"seek","tick":1}
+{"do":"add","kind":"disc","x":1,"y":0.5,"length":0.3}
+{"do":"move","body":1,"x":1.5,"y":0,"yaw":0.1,"drag":1}
+{"do":"undo"}
+{"do":"redo"}
+{"do":"remove","body":1}
+)",
+          R"({"do":"set","key":"mppi.temperature","value":"2"}
+{"do":"fork","method":"svg_mppi","set":["svg_mppi.samples=16"]}
+{"do":"ghost","method":"mppi"}
+{"do":"step"}
+{"do":"preset","set":["samples=20"]}
+{"do":"reset_options"}
+{"do":"method","method":"cem"}
+)",
+          R"({"do":"play"}
+{"do":"rate","rate":0}
+{"do":"real_time","on":true}
+{"do":"pause"}
+{"do":"place_car","x":0,"y":0,"yaw":1}
+{"do":"nudge","left":0.1,"turn":-0.2}
+{"do":"past","from":0,"to":2,"id":5}
+{"do":"restart"}
+{"do":"scenario","course":"wren","seed":"9","obstacles":1,"opponents":0}
+{"do":"save","what":"recording"}
+{"do":"lap","experiment":0,"lap":0}
+)"};
+}
+
+view::SessionOptions session_options() {
+  static const auto environment =
+      evaluation::load_environment(SLALOM_COURSES "/wren", evaluation::Protocol::true_physics, {});
+  view::SessionOptions options;
+  options.scenario = {.course = "wren", .method = "mppi", .config = "default", .obstacles = 1};
+  options.load = [](const view::ScenarioNames& names) {
+    view::LoadedScenario loaded;
+    loaded.environment = environment;
+    for (const char* method : {"mppi", "svg_mppi", "cem"})
+      vehicle::set_option(loaded.configuration, "samples", "16", method);
+    loaded.lap.obstacles = names.obstacles;
+    loaded.lap.opponents = names.opponents;
+    return loaded;
+  };
+  options.choices = {
+      .courses = {"wren"}, .methods = {"mppi", "svg_mppi", "cem"}, .configurations = {"default"}};
+  return options;
+}
+
+/// Waits until the server has got `messages`, or has closed the connection.
+void await(view::Server& server, std::uint64_t messages, Clock::time_point until) {
+  while (server.clients() > 0 && server.counters().messages < messages && Clock::now() < until)
+    server.wait(std::chrono::milliseconds(1));
+}
+
+bool run(std::string_view bytes) {
+  const auto until = Clock::now() + std::chrono::seconds(2);
+  view::Server server({.messages_per_second = 1e6, .burst = 1e6}, {});
+  view::Session session(session_options(), server);
+  testing::WebClient client(server.port());
+  client.get("/ws", true);
+  while (server.clients() == 0 && Clock::now() < until) server.wait(std::chrono::milliseconds(1));
+  std::uint64_t sent = 0;
+  while (!bytes.empty() && sent < most_commands && Clock::now() < until) {
+    const std::string_view line = bytes.substr(0, bytes.find('\n'));
+    bytes.remove_prefix(std::min(bytes.size(), line.size() + 1));
+    if (!client.send_message(line)) break;
+    await(server, ++sent, until);
+    for (int ticks = 0; ticks < most_ticks && (ticks == 0 || session.is_stepping()); ++ticks) session.turn();
+  }
+  require(session.refused() <= sent, "a command is refused once");
+  return sent > 0 && session.refused() == 0;
+}
+
+const Target target("commands", 2048, seeds, run);
+
+}  // namespace
+}  // namespace slalom::fuzz

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "slalom/solvers/registry.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
+#include "solvers/set_option.hpp"
+#include "support/adversary.hpp"
+#include "support/promise.hpp"
+
+/// Planners as state machines: updates with any scan and odometry, and what every command promises.
+namespace slalom::testing {
+
+/// A straight lane along x, 60 m long.
+inline std::vector<maps::ReferencePoint> lane(double speed) {
+  std::vector<maps::ReferencePoint> path;
+  for (int i = 0; i < 600; ++i) path.push_back({0.1 * i, 0, 0, speed});
+  return path;
+}
+
+/// A method's options for short solves of a car.
+inline SolverOptions few_samples(const char* method) {
+  SolverOptions options = solver_options(method);
+  set(options, "horizon", 6);
+  set(options, "samples", 32);
+  set(options, "input_min", -0.4);
+  set(options, "input_max", 0.4);
+  return options;
+}
+
+/// What was called.
+struct PlannerTally {
+  long updates = 0, corrections = 0;
+  long statuses[7] = {};
+};
+
+inline maps::LaserScanView any_scan(Adversary& adversary, std::vector<float>& ranges) {
+  ranges.resize(static_cast<std::size_t>(adversary.below(20) ? 40 : adversary.below(3000)));
+  const bool walls = adversary.below(2) != 0;
+  for (float& range : ranges)
+    range = static_cast<float>(walls ? adversary.within(0.3, 4) : adversary.any(-1, 31));
+  if (adversary.below(4)) return {ranges, -2.35, 0.12, 0.05, 30};
+  return {ranges, adversary.any(-7, 7), adversary.any(-0.1, 0.1), adversary.any(-1, 1), adversary.any(0, 40)};
+}
+
+/// Throws Finding unless a command may be sent to a car with these options.
+inline void check_output(const vehicle::PlannerOutput& out, const vehicle::PlannerOptions& options) {
+  using vehicle::PlannerStatus;
+  require(std::abs(out.command.steer) <= options.steer_limit, "the steering is within its limit");
+  require(out.command.speed <= options.max_speed, "the speed is at most the largest");
+  require(out.command.speed >= -0.5, "the car backs up slowly");
+  if (out.status == PlannerStatus::bad_scan || out.status == PlannerStatus::bad_odometry ||
+      out.status == PlannerStatus::off_course)
+    require(out.command.speed == 0, "without a plan the car stops");
+  require(std::isfinite(out.state_cost) && std::isfinite(out.collision_cost), "costs are finite");
+  require(std::isfinite(out.steer_estimate), "the estimate is finite");
+  for (const float u : out.inputs) require(std::isfinite(u), "inputs are finite");
+  for (const vehicle::PredictedState& s : out.predicted)
+    require(std::isfinite(s.pose.x) && std::isfinite(s.pose.y) && std::isfinite(s.speed),
+            "predicted states are finite");
+}
+
+/// One planner with some options, and up to `most` updates. Throws Finding.
+inline void call_planner(Adversary& adversary, int most, PlannerTally& tally) {
+  vehicle::PlannerOptions options;
+  options.max_speed = adversary.within(0.01, 20);
+  options.steer_limit = adversary.within(0.01, 1.5);
+  options.stop_when_blocked = adversary.below(4) != 0;
+  options.verify_plan = adversary.below(4) != 0;
+  options.back_up = adversary.below(2) != 0;
+  options.published.maps = adversary.below(3) == 0;
+  options.speed_lookahead = adversary.below(2) ? 0 : adversary.within(0, 2);
+  vehicle::VehicleOptions car;
+  car.model = vehicle::VehicleModelId{adversary.below(static_cast<int>(vehicle::VehicleModels::size))};
+  const auto methods = solver_names();
+  const char* method = methods[static_cast<std::size_t>(adversary.below(static_cast<int>(methods.size())))];
+  vehicle::Planner planner(options, vehicle::make_vehicle_model(car), lane(adversary.within(0, 30)),
+                           make_solver(few_samples(method), vehicle::input_count(car)));
+  std::vector<float> ranges;
+  std::vector<maps::Point> points;
+  for (int i = 0; i < most && !adversary.is_done(); ++i) {
+    const maps::LaserScanView scan = any_scan(adversary, ranges);
+    points.resize(adversary.below(3) ? 0 : 3);
+    for (maps::Point& point : points) point = {adversary.any(-5, 5), adversary.any(-5, 5)};
+    const double aside = adversary.below(8) ? 0.5 : 10;
+    const bool hostile = adversary.below(4) == 0;
+    const auto value = [&](double low, double high) {
+      return hostile ? adversary.any(low, high) : adversary.within(low, high);
+    };
+    const vehicle::Odometry odometry{{value(0, 60), aside * value(-1, 1), value(-4, 4)}, value(-1, 12)};
+    const vehicle::PlannerOutput& out = planner.update({scan, odometry, points});
+    check_output(out, options);
+    ++tally.updates;
+    ++tally.statuses[static_cast<int>(out.status)];
+    tally.corrections += out.corrections;
+    if (!adversary.below(30)) planner.reset(static_cast<std::uint64_t>(i));
+  }
+}
+
+}  // namespace slalom::testing

@@ -1,0 +1,77 @@
+#include "tools/recording/driven_samples.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "slalom/core/error.hpp"
+#include "tools/bags/bag_drive.hpp"
+#include "tools/bags/ros_bag.hpp"
+#include "tools/json/json.hpp"
+
+namespace slalom::tools {
+namespace {
+
+/// An element of a tick's list, NaN where it is null.
+double entry(const Json& tick, const char* key, std::size_t index) {
+  const Json& value = tick.at(key)[index];
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+
+/// The ticks of a bag.
+std::vector<vehicle::DrivenSample> read_bag_samples(const std::string& file) {
+  std::vector<vehicle::DrivenSample> samples;
+  for (const BagTick& tick : load_bag_drive(file).ticks) {
+    const maps::Pose& pose = tick.odometry.pose;
+    samples.push_back({tick.time, pose.x, pose.y, pose.yaw, tick.odometry.speed, tick.command.steer});
+  }
+  return samples;
+}
+
+/// The next line, of at most `most_line` bytes, without its end; false at the end of the file.
+bool next_line(std::istream& stream, std::string& line, const std::string& file, int number) {
+  constexpr std::size_t most_line = std::size_t{1} << 22;
+  line.clear();
+  for (int c = stream.get(); c != std::istream::traits_type::eof(); c = stream.get()) {
+    if (c == '\n') return true;
+    if (line.size() == most_line)
+      throw IoError(file, number,
+                    "is longer than " + std::to_string(most_line) + " bytes: it is not a record");
+    line += static_cast<char>(c);
+  }
+  return !line.empty();
+}
+
+}  // namespace
+
+std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& file) {
+  if (std::filesystem::is_directory(file)) throw IoError(file, 0, "is a directory; a recording is a file");
+  if (is_bag(file)) return read_bag_samples(file);
+  if (!std::filesystem::is_regular_file(file))
+    throw IoError(file, 0, "cannot be read: it must be a regular file");
+  std::ifstream stream(file);
+  if (!stream) throw IoError(file, 0, "cannot be read");
+  std::vector<vehicle::DrivenSample> samples;
+  std::string line;
+  for (int number = 1; next_line(stream, line, file, number); ++number) {
+    // The magic bytes of an MCAP file.
+    if (number == 1 && line.rfind("\x89MCAP", 0) == 0)
+      throw IoError(file, 0,
+                    "is an MCAP recording; must be JSON lines, which slalom drive --record writes to a file "
+                    "whose name does not end in .mcap");
+    try {
+      const Json record = Json::parse(line);
+      const auto type = record.at("type").get<std::string>();
+      if (number == 1 && type != "recording") throw IoError(file, 1, "must be the first line of a recording");
+      if (type != "tick") continue;
+      samples.push_back({record.at("time").get<double>(), entry(record, "odometry", 0),
+                         entry(record, "odometry", 1), entry(record, "odometry", 2),
+                         entry(record, "odometry", 3), entry(record, "command", 0)});
+    } catch (const JsonError& error) {
+      throw IoError(file, number, std::string("must be a record of a recording: ") + error.what());
+    }
+  }
+  return samples;
+}
+
+}  // namespace slalom::tools
