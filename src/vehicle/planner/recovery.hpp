@@ -11,8 +11,8 @@ namespace slalom::vehicle::detail {
 /// stand.
 class Recovery {
  public:
-  /// m/s at most, in reverse. Slow, since a car that reverses steers with its rear; and the car of f1tenth_gym
-  /// diverges in reverse at more than 0.5 m/s (sim::GymDynamics::reverse).
+  /// m/s at most, in reverse. Slow, since a car that reverses steers with its rear; and the car of
+  /// f1tenth_gym diverges in reverse at more than 0.5 m/s (sim::GymDynamics::reverse).
   static constexpr double speed = 0.45;
 
   void reset() noexcept { *this = {}; }
