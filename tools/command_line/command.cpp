@@ -111,6 +111,14 @@ bool Subcommand::given(const std::string& name) const {
   return parser_.count(name) > 0;
 }
 
+bool Subcommand::given_only(const std::vector<std::string>& names) const {
+  const CLI::App& parsed = parser_;
+  for (const CLI::Option* option : parsed.get_options())
+    if (option->count() > 0 && std::find(names.begin(), names.end(), option->get_name()) == names.end())
+      return false;
+  return true;
+}
+
 namespace {
 
 GivenOption given_option(const CLI::Option& option) {

@@ -74,6 +74,8 @@ class Subcommand {
   Option find(const std::string& name);
   /// Whether the user gave the option.
   bool given(const std::string& name) const;
+  /// Whether the user gave no options but some of these.
+  bool given_only(const std::vector<std::string>& names) const;
 
   /// What the command does once its options are set. Returns the exit status of the program; may throw.
   void action(std::function<int()> run) { action_ = std::move(run); }

@@ -23,7 +23,19 @@ struct Arguments {
   std::uint16_t port = 8400;
   std::string token, against, evaluation;
   bool record_times = false;
+  bool introduction = false;
 };
+
+/// A scenario in which MPPI averages two ways around a parked car and SVG-MPPI commits to one: the program of
+/// the paper, and a car in the middle of a straight.
+void set_introduction(Arguments& arguments) {
+  arguments.introduction = true;
+  arguments.scenario.course = "stag";
+  arguments.scenario.config = "published";
+  arguments.scenario.obstacles = 1;
+  arguments.seed = 77;
+  arguments.against = "mppi";
+}
 
 view::SessionOptions session_options(const Arguments& arguments) {
   view::SessionOptions options;
@@ -44,6 +56,7 @@ view::SessionOptions session_options(const Arguments& arguments) {
   };
   options.choices = choices();
   options.against = arguments.against;
+  options.introduction = arguments.introduction;
   options.record_times = arguments.record_times;
   options.program = std::string("slalom ") + version();
   options.further_arguments = further_arguments(arguments.scenario);
@@ -84,7 +97,15 @@ void declare_view(Subcommand& command) {
   command.option("--port", arguments->port, "Port to listen on; 0 means any free port").show_default();
   command.option("--token", arguments->token,
                  "Token that the page must present; random if --host is not a loopback address");
-  command.action([arguments] { return run(*arguments); });
+  command.footer(
+      "Without options of the scenario, the page opens with an introduction: svg_mppi and mppi side by side "
+      "on the "
+      "same seed, in slow motion before a parked car.");
+  command.action([arguments, &command] {
+    if (command.given_only({"--host", "--port", "--token", "--record-times", "--threads"}))
+      set_introduction(*arguments);
+    return run(*arguments);
+  });
 }
 
 }  // namespace slalom::tools

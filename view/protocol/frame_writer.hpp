@@ -23,6 +23,7 @@ enum class Block : std::uint16_t {
   bodies = 8,
   covariance = 9,
   ghost = 10,
+  ghost_frame = 11,
   grid = 20,
   path = 21,
   past = 22,

@@ -139,7 +139,8 @@ std::string state_message(const StateFacts& facts) {
                 {"generation", facts.generation},
                 {"clients", facts.clients},
                 {"refused", facts.refused},
-                {"edited", facts.edited}};
+                {"edited", facts.edited},
+                {"introduction", facts.introduction}};
   if (facts.contact[0] >= 0)
     state["contact"] = {{"experiment", facts.contact[0]},
                         {"lap", facts.contact[1]},

@@ -66,6 +66,7 @@ struct StateFacts {
   double time = 0, control_period = 0;      ///< s
   int tick = -1, newest = -1, oldest = -1;  ///< shown, and those that can be gone to
   bool paused = false, real_time = false, edited = false;
+  bool introduction = false;  ///< the scenario with which the program starts without arguments, unchanged
   double rate = 1;
   std::string ghost{};        ///< its method; empty if there is none
   std::string ghost_label{};  ///< what it is called

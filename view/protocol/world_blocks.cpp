@@ -58,6 +58,14 @@ std::string encode_ghost(const sim::World& world, std::span<const maps::Pose> pl
   return to.take_blocks();
 }
 
+std::string encode_ghost_frame(std::string_view frame) {
+  FrameWriter to;
+  to.begin(Block::ghost_frame);
+  to.append(frame);
+  to.end();
+  return to.take_blocks();
+}
+
 std::string encode_scene(const evaluation::Environment& environment) {
   const maps::OccupancyGrid& grid = environment.course.map;
   std::vector<std::uint32_t> runs;  // value in the upper 8 bits, length in the lower 24

@@ -120,9 +120,13 @@ std::string Recorder::without_wall_clock(std::string_view frame, const FrameRead
   std::string copy(frame);
   const double none = std::numeric_limits<double>::quiet_NaN();
   const auto names = scalar_names();
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (is_wall_clock(names[i]))
-      std::memcpy(copy.data() + reader.offset(Block::scalars) + 8 * i, &none, sizeof none);
+  const auto erase = [&](std::size_t scalars) {
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (is_wall_clock(names[i])) std::memcpy(copy.data() + scalars + 8 * i, &none, sizeof none);
+  };
+  erase(reader.offset(Block::scalars));
+  if (const auto ghost = reader.block(Block::ghost_frame); !ghost.empty())
+    erase(reader.offset(Block::ghost_frame) + FrameReader(ghost).offset(Block::scalars));
   return copy;
 }
 

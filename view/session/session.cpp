@@ -21,6 +21,8 @@ Session::Session(SessionOptions options, Server& server)
   std::random_device random;
   number_ = std::to_string(random()) + "-" + std::to_string(random());
   if (!options_.against.empty()) start_ghost(options_.against, configuration_);
+  introduces_ = options_.introduction;
+  slow_down();
 }
 
 Session::~Session() = default;
@@ -62,6 +64,8 @@ void Session::restart() {
   viewed_ = stop_at_ = -1;
   steps_left_ = 0;
   contact_.fill(-1);
+  slow_motion_ = {};
+  slow_down();
   ++generation_;
   due_ = Clock::now();
   state_changed_ = true;
@@ -108,30 +112,29 @@ void Session::tick() {
     const auto step = std::chrono::duration_cast<Clock::duration>(period / rate_);
     due_ = std::max(due_ + step, now - most_catching_up * step);
   }
+  Step made;
+  std::string ghost, ghost_bodies;
   if (ghost_) {
     ghost_->tick(
         [&](const evaluation::ControlStep& step) {
-          ghost_plan_.clear();
-          for (const auto& state : step.output.predicted) ghost_plan_.push_back(state.pose);
+          std::vector<maps::Pose> plan;
+          for (const auto& state : step.output.predicted) plan.push_back(state.pose);
+          ghost = encode_ghost(step.world, plan);
+          made.ghost = encoder_.encode(step, facts_of(ghost_->loop().runner()));
+          ghost_bodies = encode_bodies(step.world);
         },
         real_time_);
   }
-  Step made;
   simulation_->tick(
       [&](const evaluation::ControlStep& step) {
-        const auto method =
-            std::find(options_.choices.methods.begin(), options_.choices.methods.end(), names_.method);
         made.tick = step.step;
-        made.without_bodies =
-            encoder_.encode(step, {.deadline = period.count(),
-                                   .prediction_step = configuration_.vehicle.time_step,
-                                   .method = static_cast<int>(method - options_.choices.methods.begin())});
-        if (ghost_) made.without_bodies += encode_ghost(ghost_->loop().world(), ghost_plan_);
-        made.frame = std::make_shared<const std::string>(made.without_bodies + encode_bodies(step.world));
+        made.without_bodies = encoder_.encode(step, facts_of(simulation_->loop().runner())) + ghost;
+        made.frame = frame_of(made, encode_bodies(step.world), ghost_bodies);
       },
       real_time_);
   keep(std::move(made));
   note_laps();
+  slow_down();
   if (history_.back().tick == stop_at_) {
     paused_ = true;
     stop_at_ = -1;
@@ -141,6 +144,22 @@ void Session::tick() {
     last_frame_ = Clock::now();
     server_.publish(history_.back().frame);
   }
+}
+
+StepFacts Session::facts_of(const evaluation::LapRunner& runner) const {
+  const auto& methods = options_.choices.methods;
+  const auto method = std::find(methods.begin(), methods.end(), runner.method());
+  return {.deadline = runner.control_period(),
+          .prediction_step = runner.configuration().vehicle.time_step,
+          .method = static_cast<int>(method - methods.begin())};
+}
+
+/// The message of a step with its bodies, and with those of the ghost's world.
+std::shared_ptr<const std::string> Session::frame_of(const Step& step, const std::string& bodies,
+                                                     const std::string& ghost_bodies) {
+  std::string frame = step.without_bodies + bodies;
+  if (!step.ghost.empty()) frame += encode_ghost_frame(step.ghost + ghost_bodies);
+  return std::make_shared<const std::string>(std::move(frame));
 }
 
 void Session::note_laps() {
@@ -167,19 +186,19 @@ void Session::note_laps_of(const Simulation& simulation, const std::string& meth
 }
 
 void Session::keep(Step step) {
-  history_bytes_ += 2 * step.without_bodies.size();
+  history_bytes_ += bytes_of(step);
   history_.push_back(std::move(step));
   const auto most =
       static_cast<std::size_t>(options_.history / simulation_->loop().runner().control_period());
   while (history_.size() > 1 && (history_.size() > most || history_bytes_ > most_history_bytes)) {
-    history_bytes_ -= 2 * history_.front().without_bodies.size();
+    history_bytes_ -= bytes_of(history_.front());
     history_.pop_front();
   }
 }
 
 void Session::forget_after(int tick) {
   while (!history_.empty() && history_.back().tick > tick) {
-    history_bytes_ -= 2 * history_.back().without_bodies.size();
+    history_bytes_ -= bytes_of(history_.back());
     history_.pop_back();
   }
   while (!laps_.empty() && laps_.back().tick > tick + 1) laps_.pop_back();
@@ -218,8 +237,9 @@ void Session::show(int tick) {
 void Session::show_edit() {
   if (history_.empty()) return;
   Step& last = history_.back();
-  last.frame =
-      std::make_shared<const std::string>(last.without_bodies + encode_bodies(simulation_->loop().world()));
+  const bool has_ghost = ghost_ && !last.ghost.empty();
+  last.frame = frame_of(last, encode_bodies(simulation_->loop().world()),
+                        has_ghost ? encode_bodies(ghost_->loop().world()) : std::string());
   if (paused_) server_.publish(last.frame);
 }
 

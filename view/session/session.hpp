@@ -18,6 +18,7 @@
 #include "view/protocol/messages.hpp"
 #include "view/server/server.hpp"
 #include "view/session/simulation.hpp"
+#include "view/session/slow_motion.hpp"
 #include "view/session/undo.hpp"
 
 namespace slalom::view {
@@ -45,8 +46,10 @@ struct SessionOptions {
   /// An evaluation to show: its message to the page (JSON), and how one of its laps is loaded.
   std::string evaluation{};
   std::function<LoadedLap(int experiment, int lap)> load_lap{};
-  std::string against{};           ///< method of a ghost from the start; empty for none
-  bool record_times = false;       ///< recordings hold figures of the wall clock too
+  std::string against{};      ///< method of a ghost from the start; empty for none
+  bool introduction = false;  ///< in slow motion until the first obstacle has been passed; the page shows the
+                              ///< ghost beside the car
+  bool record_times = false;  ///< recordings hold figures of the wall clock too
   std::string program = "slalom";  ///< who writes recordings
 };
 
@@ -74,8 +77,12 @@ class Session {
   struct Step {
     int tick;
     std::string without_bodies;
+    std::string ghost;  ///< its control step, without its bodies; empty if there is none
     std::shared_ptr<const std::string> frame;
   };
+  static std::size_t bytes_of(const Step& step) {
+    return 2 * (step.without_bodies.size() + step.ghost.size());
+  }
 
   // Driving.
   void load(const ScenarioNames& names);
@@ -84,6 +91,11 @@ class Session {
   std::shared_ptr<const evaluation::LapRunner> make_runner(const vehicle::Configuration& configuration,
                                                            const std::string& method) const;
   void tick();
+  StepFacts facts_of(const evaluation::LapRunner& runner) const;
+  static std::shared_ptr<const std::string> frame_of(const Step& step, const std::string& bodies,
+                                                     const std::string& ghost_bodies);
+  void slow_down();
+  void end_introduction(const std::string& command);
   void note_laps();
   void note_laps_of(const Simulation& simulation, const std::string& method, bool ghost);
   void keep(Step step);
@@ -137,7 +149,6 @@ class Session {
   UndoHistory undo_;
   std::optional<Simulation> simulation_, ghost_;
   std::string ghost_method_, ghost_label_;
-  std::vector<maps::Pose> ghost_plan_;
   FrameEncoder encoder_;
   std::deque<Step> history_;
   std::size_t history_bytes_ = 0;
@@ -150,6 +161,8 @@ class Session {
   std::vector<Received> deferred_;     ///< the commands that wait
   std::array<int, 4> contact_{-1, -1, -1, -1};
   bool waiting_ = true, paused_ = false, real_time_ = false, state_changed_ = true;
+  bool introduces_ = false;  ///< the scenario of the introduction is driven, and nobody has changed it
+  SlowMotion slow_motion_;
   double rate_ = 1;  ///< of simulated to real time; 0: as fast as it goes
   int generation_ = 0;
   Clock::time_point due_ = Clock::now(), last_state_ = Clock::now(), last_frame_ = Clock::now();

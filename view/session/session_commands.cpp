@@ -135,6 +135,7 @@ void Session::handle(std::uint64_t client, const Json& command) {
     tell_past(client, integer(command, "from"), integer(command, "to"));
   else if (!handle_transport(what, command) && !handle_edit(what, command) && !handle_options(what, command))
     throw Malformed("do: '" + what.substr(0, 40) + "' is not a command");
+  end_introduction(what);
 }
 
 /// Asks for ticks, which `turn` then drives.

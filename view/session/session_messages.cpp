@@ -99,6 +99,7 @@ std::string Session::state() const {
                         .paused = paused_,
                         .real_time = real_time_,
                         .edited = simulation_->edited(),
+                        .introduction = introduces_,
                         .rate = rate_,
                         .ghost = ghost_method_,
                         .ghost_label = ghost_label_,

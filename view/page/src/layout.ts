@@ -1,4 +1,4 @@
-import { layers } from "./scene";
+import { layers } from "./scene/layers";
 
 const mark = `<svg viewBox="0 0 32 32" aria-hidden="true"><path d="M4 24c8 0 8-16 14-16s4 12 10 12" fill="none" stroke="var(--accent)" stroke-width="3.6" stroke-linecap="round"/><circle cx="15" cy="19" r="3.2" fill="#e2663a"/></svg>`;
 
@@ -61,7 +61,14 @@ export function layout(root: HTMLElement) {
     <span>collisions</span><b id="contacts">0</b>
     <span id="gap-label" hidden>to ghost</span><b id="gap" hidden>–<small>m</small></b>
   </div>
-  <p id="modes" class="card" hidden></p>
+  <canvas id="minimap" class="card" role="img" aria-label="The whole course, with the car and the part that is in view" hidden></canvas>
+  <i id="divider" hidden></i>
+  <p id="lane-title" class="card lane-title numbers" hidden></p>
+  <p id="ghost-lane-title" class="card lane-title numbers" hidden></p>
+  <p id="no-picture" class="card" hidden>This browser has no WebGL 2, with which the scene is drawn. Charts, options and laps work without it.</p>
+  <p id="modes" class="card caption" hidden></p>
+  <p id="ghost-modes" class="card caption" hidden></p>
+  <div id="introduction" class="card" role="region" aria-label="Introduction" hidden><p id="introduction-text"></p><button id="introduction-again">Show again</button><button id="introduction-close">Close</button></div>
   <div id="ruler" class="numbers"><span id="ruler-text"></span><div id="ruler-bar"></div></div>
   <div id="restore" class="card" role="alertdialog" aria-labelledby="restore-text" hidden><p id="restore-text">The server was started anew, with another scenario.</p><div class="row end"><button id="restore-not">Keep the server's</button><button id="restore-mine" class="primary">Restore my scenario</button></div></div>
   <div id="lost" role="alertdialog" aria-labelledby="lost-title" hidden><div class="card"><h2 id="lost-title">Connection lost</h2><p id="lost-text"></p></div></div>
@@ -74,6 +81,8 @@ export function layout(root: HTMLElement) {
   <span class="group"><button id="nudge-left" title="Push the car to its left ([)">← Nudge</button><button id="nudge-right" title="Push the car to its right (])">Nudge →</button></span>
   <span class="group" role="group" aria-label="What the view follows">
     <button data-follow="follow" title="Follow the car (F)">Follow</button><button data-follow="heading" title="Follow, heading up (F)">Heading up</button><button data-follow="fit" title="Show the whole course (A)">Fit course</button>
+    <button id="space" title="The scene in space, or from above (C)">3D</button>
+    <button id="split" title="The ghost beside the car (G)" hidden>Side by side</button>
   </span>
 </div>
 <div id="bar" role="region" aria-label="Time">
@@ -115,12 +124,12 @@ export function foldHeader() {
 }
 
 const keys: [string, string][] = [
-  ["Space", "pause and continue"], [".", "one control step forward"], [",", "one control step back"], ["R", "restart from the beginning"], ["F", "follow the car, heading up or not"], ["A", "fit the course"],
-  ["1 2 3 4", "pole, box, parked car, select"], ["[ ]", "push the car to its left or right"], ["Delete", "delete the selected obstacle"], ["Ctrl Z, Ctrl Y", "undo and redo an option"], ["K", "fork from the control step shown"], ["S", "save or share: picture, replay, recording, link"], ["L", "layers"], ["T", "dark or light"], ["?", "this help"],
+  ["Space", "pause and continue"], [".", "one control step forward"], [",", "one control step back"], ["R", "restart from the beginning"], ["F", "follow the car, heading up or not"], ["A", "fit the course"], ["C", "the scene in space, or from above"], ["G", "car and ghost side by side, or in one picture"],
+  ["← → ↑ ↓", "move the view; in space, turn it"], ["+ -", "zoom"], ["1 2 3 4", "pole, box, parked car, select"], ["[ ]", "push the car to its left or right"], ["Delete", "delete the selected obstacle"], ["Ctrl Z, Ctrl Y", "undo and redo an option"], ["K", "fork from the control step shown"], ["S", "save or share: picture, replay, recording, link"], ["L", "layers"], ["T", "dark or light"], ["?", "this help"],
 ];
 
 export function help(box: HTMLElement) {
   box.innerHTML = `<h2 id="help-title">Keys and gestures</h2><dl>${keys.map(([k, t]) => `<dt>${k.split(" ").map((p) => `<kbd>${p}</kbd>`).join(" ")}</dt><dd>${t}</dd>`).join("")}
-<dt>Click</dt><dd>place what is chosen below the scene; an obstacle or the car can be dragged</dd><dt>Right click, long press</dt><dd>delete an obstacle</dd><dt>Drag, wheel, pinch</dt><dd>move and zoom</dd></dl>
+<dt>Click</dt><dd>place what is chosen below the scene; an obstacle or the car can be dragged</dd><dt>Right click, long press</dt><dd>delete an obstacle</dd><dt>Drag, wheel, pinch</dt><dd>move and zoom; in space, a drag turns the view</dd></dl>
 <form method="dialog"><button class="primary">Close</button></form>`;
 }

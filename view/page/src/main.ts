@@ -3,17 +3,18 @@ import { addressOf, applyAddress } from "./address";
 import { Charts } from "./panes/charts";
 import { Connection } from "./connection";
 import { EvaluationPane } from "./panes/evaluation";
+import { ScenarioFields } from "./fields";
 import { ForkBox } from "./panes/fork";
 import type { Link } from "./link";
-import { attachPointer, type Tool } from "./pointer";
+import { attachPointer, type Tool } from "./scene/pointer";
 import { Popover } from "./popover";
-import { Caption } from "./modes";
 import { OptionsPane } from "./panes/options";
-import { download, picture } from "./picture";
+import { download, picture } from "./scene/picture";
 import { Gaps, Past } from "./past";
 import { Player, recordings } from "./player";
+import { Introduction } from "./introduction";
+import { Lanes } from "./scene/lanes";
 import { foldHeader, help, layout } from "./layout";
-import { rampCss, themes } from "./palette";
 import type { Frame, Hello, Scene, State, Text } from "./protocol";
 import { PresetBox } from "./panes/preset";
 import { Readout } from "./readout";
@@ -21,9 +22,12 @@ import { Restore } from "./restore";
 import { showStatus } from "./status";
 import { Timeline } from "./timeline";
 import { copy, toast } from "./toast";
+import { press, Views } from "./scene/views";
 import { attachKeys, attachTabs, returnFocus } from "./keys";
-import { coveredBy, place, showRuler } from "./overlay";
-import { layers, SceneView, terms, type Layer, type Term } from "./scene";
+import { coveredBy, place, showRuler } from "./scene/overlay";
+import { terms, type Layer, type Term } from "./scene/layers";
+import { SceneView } from "./scene/scene";
+import { Themes } from "./theme";
 
 layout(document.getElementById("app")!);
 const get = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
@@ -37,19 +41,16 @@ let position = 0;
 
 /** The scenario in the address that is still to be set. */
 const wanted = new URLSearchParams(location.hash.slice(1));
-/** The theme chosen before. A page opened from disk may not be allowed to store it. */
-function storedTheme(): "dark" | "light" | null {
-  try { return localStorage.getItem("slalom-theme") as "dark" | "light" | null; } catch { return null; }
-}
-let themeName: "dark" | "light" = storedTheme() ?? (matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark");
-const scene = new SceneView(get<HTMLCanvasElement>("scene"), themes[themeName]);
-const past = new Past(Infinity);
+let isNew = wanted.size === 0; // whether nobody has told this page what to show
+const theme = new Themes();
+const scene = new SceneView(get<HTMLCanvasElement>("scene"), theme.now);
+const past = new Past(Infinity), ghostPast = new Past(Infinity);
 const charts = new Charts(get("charts"), { past, hovered: hover, chosen: (time) => state && send({ do: "seek", tick: Math.round(time / state.control_period) }) });
 const scalar = (name: string) => (frame && hello ? frame.scalars[hello.scalars.indexOf(name)] : NaN);
 
 const handlers = {
   frame(next: Frame, at?: number) { frame = next; showFrame(at); },
-  scene(next: Scene) { scene.setScene(next); past.clear(); charts.clear(); dirty = true; },
+  scene(next: Scene) { scene.setScene(next); views.minimap.setScene(next); past.clear(); ghostPast.clear(); charts.clear(); dirty = true; },
   past(scalars: Float64Array, from?: number) {
     gaps.answered();
     const width = hello?.scalars.length ?? 0;
@@ -78,7 +79,10 @@ const preset = new PresetBox(get<HTMLDialogElement>("preset-box"), async ({ base
 });
 const options = new OptionsPane(get("options"), send, { copy, save: (yaml) => download(`slalom-${state?.config}-preset.yaml`, yaml, "text/yaml"), load: () => preset.open() });
 const fork = new ForkBox(get<HTMLDialogElement>("fork-box"), (command) => link.ask(command));
-const readout = new Readout(), gaps = new Gaps(send), caption = new Caption(get("modes"));
+const readout = new Readout(), gaps = new Gaps(send), lanes = new Lanes(scene);
+const fields = new ScenarioFields(send, (command) => link.ask(command));
+const introduction = new Introduction(() => send({ do: "restart" }), () => views.setSplit(false));
+const views = new Views(scene, introduction, () => { resize(); showFrame(position); });
 const timeline = new Timeline(isReplay, (tick) => send({ do: "seek", tick }), (at) => hover(at === undefined || !state ? undefined : at * state.control_period));
 const restore = new Restore((address) => state && applyAddress(new URLSearchParams(address), state, changedOptions, send), () => showAddress());
 const evaluation = new EvaluationPane(get("evaluation"), send, () => { scene.marks = evaluation.marks(); dirty = true; });
@@ -86,12 +90,9 @@ const evaluation = new EvaluationPane(get("evaluation"), send, () => { scene.mar
 function got(message: Text) {
   if (message.type === "hello") {
     hello = message;
-    if (!isReplay) { past.most = Math.ceil(message.history_seconds / message.control_period); restore.greeted(message.session, wanted.size ? "" : location.hash.slice(1)); }
+    if (!isReplay) { past.most = ghostPast.most = Math.ceil(message.history_seconds / message.control_period); restore.greeted(message.session, wanted.size ? "" : location.hash.slice(1)); }
     scene.hello = message;
-    fill("course", message.courses);
-    fill("method", message.methods);
-    fill("config", message.configurations);
-    fill("ghost", ["", ...message.methods], "none");
+    fields.offer(message);
   } else if (message.type === "state") showState(message);
   else if (message.type === "options") { options.show(message); fork.takeOptions(message); changedOptions = message.changed; showAddress(); }
   else if (message.type === "error") toast(message.message, true);
@@ -105,16 +106,6 @@ function got(message: Text) {
   }
 }
 
-function fill(id: string, names: string[], none = "") {
-  const select = get<HTMLSelectElement>(id);
-  select.replaceChildren(...names.map((n) => new Option(n || none, n)));
-}
-function choose(id: string, value: string) {
-  const select = get<HTMLSelectElement>(id);
-  if (![...select.options].some((o) => o.value === value)) select.append(new Option(value, value));
-  if (document.activeElement !== select) select.value = value;
-}
-
 let changedOptions: string[] = [];
 
 function showAddress() {
@@ -125,20 +116,14 @@ function showAddress() {
 }
 
 function showState(next: State) {
-  if (state && next.generation !== state.generation) past.clear();
+  if (state && next.generation !== state.generation) { past.clear(); ghostPast.clear(); }
+  if (isNew && next.introduction && !isReplay) views.introduce();
+  isNew = false;
+  if (!next.introduction) introduction.end();
   if (!isReplay && next.paused) past.forgetAfter(next.newest);
   state = next;
-  choose("course", next.course);
-  choose("method", next.method);
-  choose("config", next.config);
-  choose("ghost", next.ghost);
-  for (const [id, value] of [["seed", next.seed], ["obstacles", String(next.obstacles)], ["opponents", String(next.opponents)]]) {
-    const input = get<HTMLInputElement>(id);
-    if (document.activeElement !== input && input.ariaInvalid !== "true") input.value = value;
-  }
+  fields.show(next);
   showStatus(next, isReplay);
-  get<HTMLSelectElement>("rate").value = String(next.rate);
-  get<HTMLInputElement>("real-time").checked = next.real_time;
   showTimeline();
   if (wanted.size) applyAddress(wanted, next, changedOptions, send);
   showAddress();
@@ -164,19 +149,22 @@ function hover(time: number | undefined) {
 function showFrame(at?: number) {
   if (!frame || !hello) return;
   position = at ?? scalar("tick");
-  if (!isReplay && !state?.paused) past.forgetAfter(position);
+  if (!isReplay && !state?.paused) for (const each of [past, ghostPast]) each.forgetAfter(position);
   past.set(position, frame.scalars);
+  if (frame.ghostFrame) ghostPast.set(position, frame.ghostFrame.scalars);
   scene.frame = frame;
   charts.show(frame, hello, position, state?.control_period ?? hello.control_period);
   readout.show(frame, hello, state);
-  caption.show(hello.methods[scalar("method")] ?? "", scene.visible.has("modes") ? frame : undefined, position * (state?.control_period ?? hello.control_period));
+  get("split").hidden = !frame.ghostFrame;
+  lanes.show(frame, hello, position * (state?.control_period ?? hello.control_period));
+  introduction.show(frame, hello);
   if (!state?.paused) showTimeline();
   dirty = true;
 }
 
-/** The driven line: as far as the past is known, to the step that is shown. */
-function showDriven() {
-  if (!hello) return;
+/** A driven line: as far as the past is known, to the step that is shown. */
+function drivenLine(past: Past): number[] {
+  if (!hello) return [];
   const x = hello.scalars.indexOf("x"), y = hello.scalars.indexOf("y"), line: number[] = [];
   for (let i = past.oldest; i <= position; ++i) {
     const row = past.at(i), n = line.length;
@@ -184,28 +172,29 @@ function showDriven() {
     if (n && Math.hypot(row[x] - line[n - 2], row[y] - line[n - 1]) > 2) line.length = 0; // the car was put elsewhere
     line.push(row[x], row[y]);
   }
-  scene.driven = line;
+  return line;
 }
 
 /** The size of the stage, and what panels cover of it. A fitted course stays fitted. */
 function resize() {
-  const stage = get("stage"), fitted = scene.isFitted;
-  scene.camera.width = stage.clientWidth;
-  scene.camera.height = stage.clientHeight;
-  scene.camera.covered = coveredBy(stage, get<HTMLDetailsElement>("layers"), get("readout"));
-  if (fitted) scene.fit();
+  const stage = get("stage"), covered = coveredBy(stage, get<HTMLDetailsElement>("layers"), get("readout"));
+  if (introduction.isOpen) covered.top = Math.max(covered.top, get("introduction").offsetTop + get("introduction").offsetHeight);
+  scene.setStage(stage.clientWidth, stage.clientHeight, covered);
   dirty = true;
 }
 const resized = new ResizeObserver(resize);
-for (const id of ["stage", "layers", "readout"]) resized.observe(get(id));
+for (const id of ["stage", "layers", "readout", "introduction"]) resized.observe(get(id));
 resize();
 
 function draw() {
   if (dirty) {
     dirty = false;
     if (!isReplay && state) gaps.fill(past, state);
-    showDriven();
+    scene.driven = drivenLine(past);
+    scene.ghostDriven = scene.isSideBySide ? drivenLine(ghostPast) : [];
     scene.draw();
+    lanes.place();
+    views.showMinimap(theme.now);
     charts.draw();
     const car = frame?.bodies[0], ghost = scene.visible.has("ghost") ? frame?.ghost : undefined;
     place(get("label"), car, scene.camera);
@@ -221,25 +210,13 @@ function draw() {
   requestAnimationFrame(draw);
 }
 
-function setTheme(name: "dark" | "light") {
-  themeName = name;
-  document.documentElement.dataset.theme = name;
-  scene.theme = themes[name];
-  get("ramp").style.background = rampCss(themes[name]);
-  for (const [layer] of layers) {
-    const swatch = document.querySelector<HTMLElement>(`[data-swatch="${layer}"]`), t = themes[name];
-    const colour = { costMap: t.cost, path: t.path, scan: t.scan, candidates: undefined, guides: t.guide, nominal: t.nominal, plan: t.plan, spread: t.spread, driven: t.driven, obstacles: t.obstacle, opponents: t.opponent, modes: t.nominal, ghost: t.ghost }[layer];
-    if (swatch) swatch.style.background = colour ? `rgb(${colour.slice(0, 3).map((v) => Math.round(255 * v)).join(" ")} / ${Math.max(0.45, colour[3])})` : rampCss(t);
-  }
+function showTheme() {
+  theme.apply();
+  scene.theme = theme.now;
   charts.rebuild();
   dirty = true;
 }
-
 let tool: Tool = "disc";
-function press(button: HTMLElement, on: boolean) {
-  button.classList.toggle("on", on);
-  button.setAttribute("aria-pressed", String(on));
-}
 function setTool(next: Tool) {
   tool = next;
   for (const b of document.querySelectorAll<HTMLElement>("[data-tool]")) press(b, b.dataset.tool === next);
@@ -263,22 +240,13 @@ attachPointer({ canvas: get<HTMLCanvasElement>("scene"), scene, send, tool: () =
 
 // Controls.
 const click = (id: string, act: () => void) => (get(id).onclick = act);
-/** A field of the scenario keeps what was typed while it is not valid. */
-for (const key of ["course", "config", "seed", "obstacles", "opponents"]) {
-  const field = get<HTMLInputElement>(key), mark = (bad: boolean) => field.setAttribute("aria-invalid", String(bad));
-  field.onchange = () => void link.ask({ do: "scenario", [key]: key === "obstacles" || key === "opponents" ? Number(field.value) : field.value }).then(() => mark(false), (error: Error) => { mark(true); toast(error.message, true); });
-}
-get<HTMLSelectElement>("method").onchange = () => { send({ do: "method", method: get<HTMLSelectElement>("method").value }); };
-get<HTMLSelectElement>("ghost").onchange = () => { send({ do: "ghost", method: get<HTMLSelectElement>("ghost").value }); };
-get<HTMLSelectElement>("rate").onchange = () => send({ do: "rate", rate: Number(get<HTMLSelectElement>("rate").value) });
 const play = () => send({ do: state?.paused ? "play" : "pause" });
 click("play", play);
 click("step", () => send({ do: "step" }));
 click("restart", () => send({ do: "restart" }));
-get("real-time").onchange = () => send({ do: "real_time", on: get<HTMLInputElement>("real-time").checked });
 const openFork = () => { if (isReplay || !hello || !state) return; if (!state.paused) send({ do: "pause" }); fork.open(hello, state); };
 click("fork", openFork);
-click("theme", () => { setTheme(themeName === "dark" ? "light" : "dark"); try { localStorage.setItem("slalom-theme", themeName); } catch { /* storage is not available */ } });
+click("theme", () => { theme.toggle(); showTheme(); });
 click("help", () => get<HTMLDialogElement>("help-box").showModal());
 const menu = new Popover(get("save-open"), get("save"));
 new Popover(get("scenario-open"), get("scenario"));
@@ -309,6 +277,8 @@ function showPane(name: string) {
   if (name === "charts") charts.rebuild();
 }
 
+const stride = 40; // pixels of an arrow key
+const move = (act: () => void) => { act(); dirty = true; };
 const keys: Record<string, () => void> = {
   " ": play,
   ".": () => send({ do: "step" }),
@@ -319,6 +289,10 @@ const keys: Record<string, () => void> = {
   f: () => setFollow(scene.camera.follow === "follow" ? "heading" : "follow"),
   a: () => setFollow("fit"),
   "1": () => setTool("disc"), "2": () => setTool("box"), "3": () => setTool("car"), "4": () => setTool("pan"),
+  g: () => get("split").click(),
+  c: () => get("space").click(),
+  "+": () => move(() => scene.zoom(1.2)), "-": () => move(() => scene.zoom(1 / 1.2)),
+  ArrowLeft: () => move(() => scene.drag(stride, 0)), ArrowRight: () => move(() => scene.drag(-stride, 0)), ArrowUp: () => move(() => scene.drag(0, stride)), ArrowDown: () => move(() => scene.drag(0, -stride)),
   k: openFork,
   s: () => menu.toggle(),
   t: () => get("theme").click(),
@@ -340,7 +314,7 @@ if (isReplay) {
 }
 if (innerWidth < 900) get<HTMLDetailsElement>("layers").open = false;
 if (innerWidth < 900) scene.camera.zoom = innerWidth < 480 ? 32 : 42;
-setTheme(themeName);
+showTheme();
 setTool(isReplay ? "pan" : "disc");
 showPane("charts");
 requestAnimationFrame(draw);

@@ -1,3 +1,4 @@
+import { html, type Markup } from "./html";
 import type { Body, Frame } from "./protocol";
 
 /** On which side of an obstacle something passes: left, right, or into it. */
@@ -43,7 +44,7 @@ function nextObstacle(frame: Frame, beside: number): Body | undefined {
 }
 
 /** How the controller of a frame passes the next obstacle; undefined where there is none or the plan ends before it. */
-function modesOf(frame: Frame): Modes | undefined {
+export function modesOf(frame: Frame): Modes | undefined {
   const obstacle = nextObstacle(frame, 1.2), plan = frame.plan, candidates = frame.candidates;
   if (!obstacle || !plan || !candidates) return undefined;
   const from = frame.bodies[0], reach = (obstacle.kind === 3 ? obstacle.length / 2 : obstacle.width / 2) + halfCar;
@@ -59,12 +60,11 @@ function modesOf(frame: Frame): Modes | undefined {
   return { obstacle, plan: side(planned), left: all > 0 ? weights.left / all : 0, right: all > 0 ? weights.right / all : 0 };
 }
 
-/** Says what a method does at the next obstacle; empty where neither verdict holds. */
-function sentence(method: string, modes: Modes | undefined): string {
-  const percent = (share: number) => `${Math.round(100 * share)} %`, what = verdict(modes);
-  if (what === "averages") return `${method} averages: ${percent(modes!.left)} of the weight left, ${percent(modes!.right)} right. The plan between them leads into the obstacle.`;
-  if (what === "commits") return `${method} commits: the plan and ${percent(modes![modes!.plan as "left" | "right"])} of the weight pass ${modes!.plan}.`;
-  return "";
+/** Says what a method does at the next obstacle: its verdict, the figures, and what follows. */
+function sentence(method: string, modes: Modes, what: "averages" | "commits"): Markup {
+  const percent = (share: number) => `${Math.round(100 * share)} %`;
+  if (what === "averages") return html`<b>${method} averages:</b> ${percent(modes.left)} of the weight left, ${percent(modes.right)} right.<span class="long"> The plan between them leads into the obstacle.</span>`;
+  return html`<b>${method} commits:</b> the plan and ${percent(modes[modes.plan as "left" | "right"])} of the weight pass ${modes.plan}.`;
 }
 
 const both = 0.15; // share of the weight on the lighter side from which on both ways count
@@ -74,7 +74,7 @@ const one = 0.9; // share from which on one way is chosen
  * `averages`: samples of both ways have weight, and the plan between them leads into the obstacle. `commits`: the plan
  * and nearly all of the weight are on one side.
  */
-function verdict(modes: Modes | undefined): "averages" | "commits" | undefined {
+export function verdict(modes: Modes | undefined): "averages" | "commits" | undefined {
   if (!modes) return undefined;
   if (modes.plan === "into") return Math.min(modes.left, modes.right) >= both ? "averages" : undefined;
   return modes[modes.plan] >= one ? "commits" : undefined;
@@ -82,18 +82,21 @@ function verdict(modes: Modes | undefined): "averages" | "commits" | undefined {
 
 const hold = 0.5; // s of simulated time that a sentence stays, so that it can be read
 
-/** The sentence over the scene. */
+/** The sentence over a scene. Another verdict is shown once it has held for two frames. */
 export class Caption {
   private since = 0; // s
+  private before?: "averages" | "commits"; // verdict of the frame before
 
   constructor(private readonly line: HTMLElement) {}
 
   /** Shows what a frame says at a time (s); without a frame nothing. */
   show(method: string, frame: Frame | undefined, time: number) {
-    const text = frame ? sentence(method, modesOf(frame)) : "";
-    if (text) this.since = time;
+    const modes = frame && modesOf(frame), now = verdict(modes), what = now === this.before || now === this.line.dataset.verdict ? now : undefined;
+    this.before = now;
+    if (what) this.since = time;
     else if (frame && time >= this.since && time < this.since + hold) return;
-    this.line.textContent = text;
-    this.line.hidden = !text;
+    this.line.hidden = !what;
+    this.line.dataset.verdict = what ?? "";
+    this.line.innerHTML = what ? sentence(method, modes!, what).text : "";
   }
 }

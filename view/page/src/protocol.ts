@@ -39,13 +39,14 @@ export interface Frame {
   covariance?: Float32Array;
   bodies: Body[];
   ghost?: Ghost;
+  ghostFrame?: Frame; // what the ghost's controller considers, in the ghost's world
 }
 export interface Grid { width: number; height: number; resolution: number; x: number; y: number; yaw: number; cells: Uint8Array }
 export interface Path { closed: boolean; xyv: Float32Array }
 export interface Scene { grid?: Grid; path?: Path }
 
 const MAGIC = 0x31564c53; // "SLV1"
-const kinds = { scalars: 1, scan: 2, costMap: 3, candidates: 4, guides: 5, nominal: 6, plan: 7, bodies: 8, covariance: 9, ghost: 10, grid: 20, path: 21, past: 22, file: 30 };
+const kinds = { scalars: 1, scan: 2, costMap: 3, candidates: 4, guides: 5, nominal: 6, plan: 7, bodies: 8, covariance: 9, ghost: 10, ghostFrame: 11, grid: 20, path: 21, past: 22, file: 30 };
 
 class Reader {
   at: number;
@@ -158,6 +159,9 @@ export function decode(buffer: ArrayBuffer): { frame?: Frame; scene?: Scene; pas
         frame.ghost = { x, y, yaw, steer, speed, laps, lapTime, plan: points(r, n) };
         break;
       }
+      case kinds.ghostFrame:
+        frame.ghostFrame = decode(buffer.slice(r.at, r.end)).frame;
+        break;
       case kinds.grid: {
         const width = r.u32(), height = r.u32(), resolution = r.f64(), x = r.f64(), y = r.f64(), yaw = r.f64();
         const cells = new Uint8Array(width * height), runs = r.u32();
@@ -208,7 +212,7 @@ export interface LapRow { lap: number; time: number; contacts: number; method: s
 export interface State {
   type: "state"; course: string; description: string; length: number; method: string; config: string; evaluation: string;
   seed: string; obstacles: number; opponents: number; paused: boolean; real_time: boolean; rate: number; tick: number; newest: number; oldest: number;
-  time: number; control_period: number; laps: LapRow[]; ghost: string; ghost_label: string; contact?: { experiment: number; lap: number; contact: number; tick: number }; generation: number; clients: number; edited: boolean;
+  time: number; control_period: number; laps: LapRow[]; ghost: string; ghost_label: string; contact?: { experiment: number; lap: number; contact: number; tick: number }; generation: number; clients: number; edited: boolean; introduction?: boolean;
 }
 export interface Options { type: "options"; sections: OptionSection[]; changed: string[]; command_line: string; yaml: string; undo: number; redo: number }
 export interface Problem { type: "error"; message: string; id?: number }

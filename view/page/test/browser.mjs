@@ -6,12 +6,14 @@ import accessible from "./suites/accessible.mjs";
 import compare from "./suites/compare.mjs";
 import drive from "./suites/drive.mjs";
 import evaluation from "./suites/evaluation.mjs";
+import introduction from "./suites/introduction.mjs";
 import layout from "./suites/layout.mjs";
 import past from "./suites/past.mjs";
 import responsive from "./suites/responsive.mjs";
 import save from "./suites/save.mjs";
+import space from "./suites/space.mjs";
 
-const suites = { drive, responsive, compare, past, save, evaluation, layout, accessible, access };
+const suites = { introduction, drive, space, responsive, compare, past, save, evaluation, layout, accessible, access };
 const chosen = process.env.SLALOM_SUITES?.split(",") ?? Object.keys(suites);
 const program = process.argv[2], pictures = process.argv[3];
 if (!program) {

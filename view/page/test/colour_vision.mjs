@@ -25,7 +25,7 @@ function oklab([r, g, b]) {
 
 /** Pairs of layers that are drawn alike and that somebody cannot tell apart, in one line each. */
 export async function similarColours() {
-  const { code } = await transform(readFileSync(new URL("../src/palette.ts", import.meta.url), "utf8"), { loader: "ts" });
+  const { code } = await transform(readFileSync(new URL("../src/scene/palette.ts", import.meta.url), "utf8"), { loader: "ts" });
   const { themes } = await import("data:text/javascript," + encodeURIComponent(code));
   const found = [];
   for (const [name, theme] of Object.entries(themes))

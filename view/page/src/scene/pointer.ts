@@ -1,4 +1,4 @@
-import type { Body } from "./protocol";
+import type { Body } from "../protocol";
 import type { SceneView } from "./scene";
 
 export type Tool = "disc" | "box" | "car" | "pan";
@@ -29,7 +29,15 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
   let drag = 0; // number of the drag, whose steps are undone together
   let pressed = 0; // timer of a long press
 
-  const place = (e: PointerEvent | MouseEvent) => { const box = canvas.getBoundingClientRect(); return { x: e.clientX - box.left, y: e.clientY - box.top }; };
+  let inGhostLane = false; // where the first pointer went down
+  /** Where the pointer is, in the lane of the car. */
+  const place = (e: PointerEvent | MouseEvent) => {
+    const box = canvas.getBoundingClientRect(), p = { x: e.clientX - box.left, y: e.clientY - box.top };
+    if (!pointers.size) inGhostLane = scene.isInGhostLane(p);
+    return inGhostLane ? scene.fromGhostLane(p) : p;
+  };
+  /** What can be grasped at a point of the map frame. The driven car is not in the lane of the ghost. */
+  const bodyAt = (x: number, y: number) => { const body = scene.bodyAt(x, y); return inGhostLane && body?.kind === 0 ? undefined : body; };
   const remove = (body: Body | undefined) => {
     if (!body || body.kind === 0 || body.kind === 4 || fixed) return false;
     send({ do: "remove", body: body.id });
@@ -50,8 +58,8 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
     if (e.button !== 0) return;
     start = p;
     moved = false;
-    const [x, y] = scene.camera.toMap(p.x, p.y);
-    dragged = scene.bodyAt(x, y);
+    const [x, y] = scene.toMap(p);
+    dragged = bodyAt(x, y);
     if (fixed || dragged?.kind === 4) dragged = undefined; // opponents drive themselves
     scene.selected = dragged && dragged.kind !== 0 ? dragged.id : -1;
     drag = 1 + Math.floor(1e9 * Math.random()); // other pages drag too
@@ -63,7 +71,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
   canvas.addEventListener("pointermove", (e) => {
     const p = place(e), before = pointers.get(e.pointerId);
     if (!before) {
-      const [x, y] = scene.camera.toMap(p.x, p.y), over = scene.bodyAt(x, y), kind = { disc: 3, box: 2, car: 1, pan: 0 }[tool()];
+      const [x, y] = scene.toMap(p), over = bodyAt(x, y), kind = { disc: 3, box: 2, car: 1, pan: 0 }[tool()];
       canvas.style.cursor = over ? "grab" : tool() === "pan" ? "default" : "crosshair";
       scene.preview = over || !kind || e.pointerType === "touch" ? undefined : { x, y, kind };
       redraw();
@@ -72,16 +80,16 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
     if (pointers.size === 2) {
       const other = [...pointers].find(([id]) => id !== e.pointerId)![1];
       const was = Math.hypot(before.x - other.x, before.y - other.y), is = Math.hypot(p.x - other.x, p.y - other.y);
-      if (was > 1) scene.camera.zoomAt((p.x + other.x) / 2, (p.y + other.y) / 2, is / was);
-      scene.camera.pan((p.x - before.x) / 2, (p.y - before.y) / 2);
+      if (was > 1) scene.zoomAt((p.x + other.x) / 2, (p.y + other.y) / 2, is / was);
+      scene.drag((p.x - before.x) / 2, (p.y - before.y) / 2);
     } else if (start) {
       if (Math.hypot(p.x - start.x, p.y - start.y) > slack) { moved = true; clearTimeout(pressed); }
       if (moved && dragged) {
-        const [x, y] = scene.camera.toMap(p.x, p.y);
+        const [x, y] = scene.toMap(p);
         if (performance.now() - sent > gap) { sent = performance.now(); move(dragged, x + grip.x, y + grip.y); }
       } else if (moved) {
         canvas.classList.add("panning");
-        scene.camera.pan(p.x - before.x, p.y - before.y);
+        scene.drag(p.x - before.x, p.y - before.y);
       }
     }
     scene.preview = undefined;
@@ -95,7 +103,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
     clearTimeout(pressed);
     canvas.classList.remove("panning");
     if (!start || pointers.size) return;
-    const [x, y] = scene.camera.toMap(p.x, p.y);
+    const [x, y] = scene.toMap(p);
     if (dragged && moved) move(dragged, x + grip.x, y + grip.y);
     else if (!moved && e.type === "pointerup" && !clicked(x, y) && !dragged && tool() !== "pan") drop(x, y); // a mark may lie on a body
     start = dragged = undefined;
@@ -110,13 +118,13 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
   canvas.addEventListener("pointerleave", () => { scene.preview = undefined; redraw(); });
   canvas.addEventListener("contextmenu", (e) => {
     e.preventDefault();
-    const p = place(e), [x, y] = scene.camera.toMap(p.x, p.y);
-    remove(scene.bodyAt(x, y));
+    const p = place(e), [x, y] = scene.toMap(p);
+    remove(bodyAt(x, y));
   });
   canvas.addEventListener("wheel", (e) => {
     e.preventDefault();
     const p = place(e);
-    scene.camera.zoomAt(p.x, p.y, Math.exp(-e.deltaY * (e.deltaMode === 1 ? 0.05 : 0.0015)));
+    scene.zoomAt(p.x, p.y, Math.exp(-e.deltaY * (e.deltaMode === 1 ? 0.05 : 0.0015)));
     redraw();
   }, { passive: false });
 }

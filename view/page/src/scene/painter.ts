@@ -60,6 +60,9 @@ void main() {
 const byte = (v: number) => Math.round(255 * Math.min(1, Math.max(0, v)));
 const bytes = (c: Rgba) => (byte(c[0]) | (byte(c[1]) << 8) | (byte(c[2]) << 16) | (byte(c[3]) << 24)) >>> 0;
 
+/** Takes the place of a context that the browser does not have. */
+const nothing = new Proxy({}, { get: () => () => 1 }) as unknown as WebGL2RenderingContext;
+
 interface Program { program: WebGLProgram; view: WebGLUniformLocation | null; size: WebGLUniformLocation | null; turn: WebGLUniformLocation | null }
 
 const vertexWords = 6; // of a line: ends, colour, width
@@ -71,6 +74,8 @@ const lineWords = 4 * vertexWords;
  */
 export class Painter {
   readonly gl: WebGL2RenderingContext;
+  /** Whether there is WebGL 2. Without it nothing is drawn, and the rest of the page works. */
+  readonly canDraw: boolean;
   private readonly line: Program;
   private readonly fill: Program;
   private readonly cell: Program;
@@ -90,8 +95,8 @@ export class Painter {
   ratio = 1;
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    const gl = canvas.getContext("webgl2", { alpha: false, antialias: true, preserveDrawingBuffer: true });
-    if (!gl) throw new Error("This browser has no WebGL 2, with which the scene is drawn.");
+    const gl = canvas.getContext("webgl2", { alpha: false, antialias: true, preserveDrawingBuffer: true }) ?? nothing;
+    this.canDraw = gl !== nothing;
     this.gl = gl;
     this.line = this.compile(lineVertex, lineFragment);
     this.fill = this.compile(fillVertex, fillFragment);
@@ -125,7 +130,7 @@ export class Painter {
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  private compile(vertex: string, fragment: string): Program {
+  compile(vertex: string, fragment: string): Program {
     const gl = this.gl, program = gl.createProgram()!;
     for (const [kind, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]] as const) {
       const shader = gl.createShader(kind)!;
@@ -140,26 +145,35 @@ export class Painter {
     return { program, view: at("view"), size: at("size"), turn: at("turn") };
   }
 
-  begin(camera: Camera, ground: Rgba) {
+  /** Begins a picture of the size of the canvas. */
+  begin(ground: Rgba) {
     const gl = this.gl;
-    this.camera = camera;
     this.ratio = Math.min(2, window.devicePixelRatio || 1);
-    const width = Math.max(1, Math.round(camera.width * this.ratio)), height = Math.max(1, Math.round(camera.height * this.ratio));
+    const width = Math.max(1, Math.round(this.canvas.clientWidth * this.ratio)), height = Math.max(1, Math.round(this.canvas.clientHeight * this.ratio));
     if (this.canvas.width !== width || this.canvas.height !== height) {
       this.canvas.width = width;
       this.canvas.height = height;
     }
-    gl.viewport(0, 0, width, height);
+    gl.disable(gl.SCISSOR_TEST);
     gl.clearColor(ground[0], ground[1], ground[2], 1);
     gl.clear(gl.COLOR_BUFFER_BIT);
+    gl.enable(gl.SCISSOR_TEST);
     this.lineCount = this.fillCount = 0;
+  }
+
+  /** What follows is drawn into the part of the canvas that a camera covers. */
+  look(camera: Camera) {
+    const r = this.ratio, at = [camera.left * r, this.canvas.height - (camera.top + camera.height) * r, camera.width * r, camera.height * r].map(Math.round) as [number, number, number, number];
+    this.camera = camera;
+    this.gl.viewport(...at);
+    this.gl.scissor(...at);
   }
 
   private use(p: Program) {
     const gl = this.gl, c = this.camera;
     gl.useProgram(p.program);
-    gl.uniform4f(p.view, (2 * c.middleX) / c.width - 1, 1 - (2 * c.middleY) / c.height, c.zoom * this.ratio, this.ratio);
-    gl.uniform2f(p.size, this.canvas.width, this.canvas.height);
+    gl.uniform4f(p.view, (2 * (c.middleX - c.left)) / c.width - 1, 1 - (2 * (c.middleY - c.top)) / c.height, c.zoom * this.ratio, this.ratio);
+    gl.uniform2f(p.size, c.width * this.ratio, c.height * this.ratio);
     gl.uniform2f(p.turn, Math.cos(c.turn), Math.sin(c.turn));
   }
 

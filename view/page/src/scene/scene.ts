@@ -1,46 +1,19 @@
 import { Camera } from "./camera";
+import { lookOf, type CandidateLook } from "./candidates";
+import { layers, type Layer, type Term } from "./layers";
 import { Painter } from "./painter";
-import { rampColour, type Rgba, type Theme } from "./palette";
-import type { Body, Frame, Hello, Scene } from "./protocol";
+import type { Theme } from "./palette";
+import type { Body, Frame, Hello, Scene } from "../protocol";
+import { freeSpace } from "./solid/contours";
+import { SpaceView } from "./solid/view";
+import { circle, corners, dashed, drawCar, drawObstacle, faded, usualCar, type Point, type Pose } from "./shapes";
 
-export const layers = [
-  ["costMap", "Cost map", "where the rear axle would mean a collision, from the scan"],
-  ["path", "Course line", "the line to follow"],
-  ["scan", "LiDAR", "end points of the scan"],
-  ["candidates", "Candidates", "sampled control sequences, coloured by cost"],
-  ["guides", "Guides", "guide particles and how the solver moved them"],
-  ["nominal", "Nominal", "the sequence around which samples are weighted"],
-  ["plan", "Plan", "the sequence that is sent to the car"],
-  ["spread", "Spread", "two standard deviations of the plan, from the solver's covariance"],
-  ["driven", "Driven line", "the path of the car"],
-  ["obstacles", "Obstacles", "parked cars, boxes and poles"],
-  ["opponents", "Opponents", "cars that follow the course line"],
-  ["modes", "Caption", "which way around the next obstacle the samples and the plan take"],
-  ["ghost", "Ghost", "the second controller, in a world of its own"],
-] as const;
-export type Layer = (typeof layers)[number][0];
-export const terms = ["distance", "yaw", "collision", "total"] as const;
-export type Term = (typeof terms)[number];
-
-type Point = [number, number];
 export interface Mark { x: number; y: number; shown: boolean }
 const opponent = 4; // kind of body
+const room = { top: 40, bottom: 56 }; // pixels of a lane that its title and caption cover
 
-export function corners(b: { x: number; y: number; yaw: number; length: number; width: number }): Point[] {
-  const c = Math.cos(b.yaw), s = Math.sin(b.yaw), l = b.length / 2, w = b.width / 2;
-  return ([[l, w], [-l, w], [-l, -w], [l, -w]] as Point[]).map(([u, v]) => [b.x + c * u - s * v, b.y + s * u + c * v]);
-}
-function circle(x: number, y: number, radius: number, n = 28): Point[] {
-  return Array.from({ length: n }, (_, i) => [x + radius * Math.cos((2 * Math.PI * i) / n), y + radius * Math.sin((2 * Math.PI * i) / n)]);
-}
-/** The mean over 3 x 3 cells, so that the border between free and occupied is drawn as a line and not as stairs. */
-function smoothed(cells: Uint8Array, width: number, height: number): Uint8Array {
-  const rows = new Uint16Array(cells.length), out = new Uint8Array(cells.length);
-  for (let i = 1; i + 1 < cells.length; ++i) rows[i] = cells[i - 1] + cells[i] + cells[i + 1];
-  for (let i = width; i < width * (height - 1); ++i) out[i] = Math.round((rows[i - width] + rows[i] + rows[i + width]) / 9);
-  return out;
-}
-const faded = (c: Rgba, by: number): Rgba => [c[0], c[1], c[2], c[3] * by];
+/** A part of the stage in which one controller is shown. */
+interface Lane { camera: Camera; frame?: Frame; driven: number[] }
 
 /** Draws what the controller considers. */
 export class SceneView {
@@ -53,6 +26,13 @@ export class SceneView {
   frame?: Frame;
   costRange: [number, number] = [0, 1];
   private scene: Scene = {};
+  private space?: SpaceView; // while it is needed for the first time
+  isInSpace = false;
+  /** The ghost is to be shown beside the car, in a lane of its own. */
+  isSplit = false;
+  readonly ghostCamera = new Camera();
+  ghostDriven: number[] = [];
+  private stage = { width: 1, height: 1, covered: this.camera.covered };
   private readonly painter: Painter;
   private readonly map: WebGLTexture;
   private readonly costMap: WebGLTexture;
@@ -60,8 +40,10 @@ export class SceneView {
   /** x and y (m) of the path that the car has driven, one after the other. */
   driven: number[] = [];
   /** Where the car was at the time under the pointer. */
-  probe?: { x: number; y: number; yaw: number };
+  probe?: Pose;
   private bounds: [number, number, number, number] = [-5, -5, 5, 5]; // of the course line, with room for the walls
+  /** Whether the browser can draw the scene. */
+  get canDraw() { return this.painter.canDraw; }
   get courseBounds() { return this.bounds; }
   marks: Mark[] = []; // collisions of an evaluation
   preview?: { x: number; y: number; kind: number };
@@ -76,7 +58,8 @@ export class SceneView {
   setScene(scene: Scene) {
     this.scene = scene;
     const grid = scene.grid;
-    if (grid) this.painter.upload(this.map, grid.width, grid.height, smoothed(grid.cells.map((v) => (v === 0 ? 255 : 0)), grid.width, grid.height));
+    if (grid) this.painter.upload(this.map, grid.width, grid.height, freeSpace(grid));
+    this.space?.setScene(scene);
     const p = scene.path?.xyv;
     if (p) {
       let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
@@ -99,11 +82,12 @@ export class SceneView {
 
   fit() {
     this.camera.fit(...this.bounds);
+    this.space?.orbit.fit(...this.bounds);
     this.fitted = this.place();
   }
   /** Whether the camera is where `fit` put it. */
   get isFitted() { return this.fitted === this.place(); }
-  private place() { const c = this.camera; return c.follow === "free" ? [c.x, c.y, c.zoom].join() : "not fitted"; }
+  private place() { const c = this.camera; if (this.isInSpace) return this.space!.orbit.place(); return c.follow === "free" ? [c.x, c.y, c.zoom].join() : "not fitted"; }
   private fitted = "";
 
   /** The body under a point of the map frame; the driven car is 0. */
@@ -116,17 +100,103 @@ export class SceneView {
     return undefined;
   }
 
+  get isSideBySide() { return this.isSplit && !this.isInSpace && this.frame?.ghostFrame !== undefined; }
+
+  /** The size of the stage, and what panels cover of it (pixels). */
+  setStage(width: number, height: number, covered: Camera["covered"]) {
+    const fitted = this.isFitted;
+    this.stage = { width, height, covered };
+    this.space?.setStage(width, height, covered);
+    this.lanes();
+    if (fitted) this.fit();
+  }
+
+  /** Shows the scene in space or from above. Throws where the device cannot. */
+  setInSpace(on: boolean) {
+    const fitted = this.isFitted, { width, height, covered } = this.stage;
+    if (on && !this.space) {
+      this.space = new SpaceView(this.painter);
+      this.space.setScene(this.scene);
+    }
+    this.isInSpace = on;
+    this.space?.setStage(width, height, covered);
+    if (fitted) this.fit();
+  }
+
+  setSplit(on: boolean) {
+    const fitted = this.isFitted;
+    this.isSplit = on;
+    this.lanes();
+    if (fitted) this.fit();
+  }
+
+  /** The lanes, with their cameras where they belong: beside one another, or one above the other on a high stage. */
+  private lanes(): Lane[] {
+    const { width, height, covered } = this.stage, { camera, ghostCamera, frame } = this;
+    const first = { camera, frame, driven: this.driven };
+    if (!this.isSideBySide) {
+      Object.assign(camera, { left: 0, top: 0, width, height, covered });
+      return [first];
+    }
+    if (width >= 0.7 * height) {
+      const middle = Math.round((covered.left + width - covered.right) / 2), own = { top: 0, height }, ends = { top: covered.top + room.top, bottom: room.bottom };
+      Object.assign(camera, { left: 0, width: middle, covered: { ...ends, left: covered.left, right: 0 }, ...own });
+      Object.assign(ghostCamera, { left: middle, width: width - middle, covered: { ...ends, left: 0, right: covered.right }, ...own });
+    } else {
+      const middle = Math.round((covered.top + height) / 2), own = { left: 0, width }, sides = { left: covered.left, right: covered.right };
+      Object.assign(camera, { top: 0, height: middle, covered: { ...sides, top: covered.top + room.top, bottom: room.bottom }, ...own });
+      Object.assign(ghostCamera, { top: middle, height: height - middle, covered: { ...sides, ...room }, ...own });
+    }
+    const { x, y, zoom, turn, follow } = camera;
+    Object.assign(ghostCamera, follow === "free" ? { x, y, zoom, turn, follow } : { zoom, turn, follow });
+    return [first, { camera: ghostCamera, frame: frame!.ghostFrame, driven: this.ghostDriven }];
+  }
+
+  /** Whether a point of the stage lies in the ghost's lane. */
+  isInGhostLane(p: { x: number; y: number }) {
+    const c = this.ghostCamera;
+    return this.isSideBySide && p.x >= c.left && p.y >= c.top;
+  }
+  /** The point of the first lane that shows the same place as a point of the ghost's lane. */
+  fromGhostLane(p: { x: number; y: number }) {
+    const [x, y] = this.camera.toScreen(...this.ghostCamera.toMap(p.x, p.y));
+    return { x, y };
+  }
+
+  /** The place (m, map frame) under a point of the stage. */
+  toMap(p: { x: number; y: number }): [number, number] { return this.isInSpace ? this.space!.orbit.toGround(p.x, p.y) : this.camera.toMap(p.x, p.y); }
+  /** Where a place is seen on the stage. */
+  toScreen(x: number, y: number) { return this.isInSpace ? this.space!.orbit.toScreen(x, y) : this.camera.toScreen(x, y); }
+  /** Moves what is seen by pixels; in space, turns the camera around it. */
+  drag(dx: number, dy: number) { if (this.isInSpace) this.space!.orbit.turn(dx, dy); else this.camera.pan(dx, dy); }
+  zoomAt(x: number, y: number, factor: number) { if (this.isInSpace) this.space!.orbit.zoom(factor); else this.camera.zoomAt(x, y, factor); }
+  zoom(factor: number) { this.zoomAt(this.camera.middleX, this.camera.middleY, factor); }
+
+  private lookOf(frame: Frame): CandidateLook {
+    // Both lanes have one scale.
+    const look = lookOf(frame.candidates!, this.theme, this.term, frame === this.frame ? undefined : this.costRange);
+    this.costRange = look.range;
+    return look;
+  }
+
   draw() {
-    const { painter, camera, theme, frame } = this;
-    const car = frame?.bodies.find((b) => b.kind === 0);
-    const end = frame?.plan?.at(-1);
+    this.painter.begin(this.theme.ground);
+    if (this.isInSpace) {
+      const { frame, theme, visible, hello, driven } = this, candidates = frame?.candidates && visible.has("candidates") ? this.lookOf(frame) : undefined;
+      return this.space!.draw(frame, this.map, this.camera.follow, { theme, visible, hello, driven, candidates });
+    }
+    for (const lane of this.lanes()) this.drawLane(lane);
+  }
+
+  private drawLane({ camera, frame, driven }: Lane) {
+    const { painter, theme } = this, car = frame?.bodies.find((b) => b.kind === 0), end = frame?.plan?.at(-1);
     if (car) camera.track(car.x, car.y, car.yaw, end ? Math.hypot(end.x - car.x, end.y - car.y) : 0);
-    painter.begin(camera, theme.ground);
+    painter.look(camera);
     this.drawMap();
     if (!frame) return;
     if (this.visible.has("costMap")) this.drawCostMap(frame);
     if (this.visible.has("path")) this.drawPath();
-    if (this.visible.has("driven")) painter.polyline(this.driven, 0, this.driven.length / 2, theme.driven, 2, false);
+    if (this.visible.has("driven")) painter.polyline(driven, 0, driven.length / 2, theme.driven, 2, false);
     if (this.visible.has("candidates")) this.drawCandidates(frame);
     painter.flush();
     if (this.visible.has("spread")) this.drawSpread(frame);
@@ -135,20 +205,21 @@ export class SceneView {
     if (this.visible.has("scan")) this.drawScan(frame);
     painter.flush();
     for (const body of frame.bodies) {
-      if (body.kind === opponent && this.visible.has("opponents")) this.drawCar(body.x, body.y, body.yaw, 0, theme.opponent, theme.carEdge, 1);
-      else if (body.kind !== 0 && body.kind !== opponent && this.visible.has("obstacles")) this.drawObstacle(body);
+      if (body.kind === opponent && this.visible.has("opponents")) drawCar(painter, theme, this.size, body, 0, theme.opponent, theme.carEdge);
+      else if (body.kind !== 0 && body.kind !== opponent && this.visible.has("obstacles")) drawObstacle(painter, theme, body, this.selected === body.id);
     }
     this.drawMarks();
     if (this.preview) this.drawPreview(this.preview);
-    if (this.visible.has("nominal") && frame.nominal) this.dashed(frame.nominal.xy, frame.nominal.points, theme.nominal, 1.6);
+    if (this.visible.has("nominal") && frame.nominal) dashed(painter, frame.nominal.xy, frame.nominal.points, theme.nominal, 1.6);
     if (this.visible.has("plan") && frame.plan) this.drawPlan(frame);
-    if (frame.ghost && this.visible.has("ghost")) this.drawGhost(frame);
+    if (frame.ghost && this.visible.has("ghost") && !this.isSideBySide) this.drawGhost(frame);
     painter.flush();
     if (this.probe) this.drawProbe(this.probe);
-    if (car) this.drawCar(car.x, car.y, car.yaw, frame.scalars[this.index("steer")] ?? 0, theme.car, car.touched ? theme.collided : theme.carEdge, 1);
+    if (car) drawCar(painter, theme, this.size, car, frame.scalars[this.index("steer")] ?? 0, theme.car, car.touched ? theme.collided : theme.carEdge);
     painter.flush();
   }
 
+  private get size() { return this.hello?.car ?? usualCar; }
   private index(name: string) { return this.hello?.scalars.indexOf(name) ?? -1; }
 
   private drawMap() {
@@ -187,22 +258,8 @@ export class SceneView {
   private drawCandidates(frame: Frame) {
     const c = frame.candidates;
     if (!c) return;
-    const { theme } = this, k = terms.indexOf(this.term);
-    const value = (i: number) => (k < 3 ? c.terms[5 * i + k] : c.terms[5 * i + 3]);
-    const free = Array.from({ length: c.count }, (_, i) => i).filter((i) => !c.collided[i] || k === 2);
-    const sorted = free.map(value).filter(Number.isFinite).sort((a, b) => a - b);
-    // The worst tenth shares the end of the scale, so that the many good ones can be told apart.
-    const low = sorted[0] ?? 0, high = Math.max(low + 1e-9, sorted[Math.floor(0.9 * (sorted.length - 1))] ?? 1);
-    this.costRange = [low, high];
-    const order = Array.from({ length: c.count }, (_, i) => i).sort((a, b) => (c.collided[b] - c.collided[a]) || value(b) - value(a));
-    // Their number is small where the weight is concentrated, so a share of the largest weight is shown.
-    const heaviest = Math.max(1e-12, ...Array.from({ length: c.count }, (_, i) => c.terms[5 * i + 4]));
-    for (const i of order) {
-      const share = Math.sqrt(c.terms[5 * i + 4] / heaviest);
-      const t = Math.min(1, Math.max(0, (value(i) - low) / (high - low)));
-      const colour = c.collided[i] ? theme.collided : rampColour(theme, t, 0.5 - 0.25 * t + 0.5 * share);
-      this.painter.polyline(c.xy, i * c.points, c.points, colour, c.collided[i] ? 1 : 1 + 2 * share, false);
-    }
+    const look = this.lookOf(frame);
+    for (const i of look.order) this.painter.polyline(c.xy, i * c.points, c.points, look.colours[i], look.widths[i], false);
   }
 
   private drawGuides(frame: Frame) {
@@ -250,31 +307,13 @@ export class SceneView {
     }
   }
 
-  private dashed(xy: Float32Array, count: number, colour: Rgba, width: number) {
-    for (let i = 0; i < count - 1; i += 2) this.painter.segment(xy[2 * i], xy[2 * i + 1], xy[2 * i + 2], xy[2 * i + 3], colour, width, false);
-  }
-
-  private drawObstacle(b: Body) {
-    const { painter, theme } = this;
-    const points = b.kind === 3 ? circle(b.x, b.y, b.length / 2) : corners(b);
-    painter.convex(points, b.touched ? [...theme.collided.slice(0, 3), 1] as unknown as Rgba : theme.obstacle);
-    painter.flush();
-    painter.outline(points, this.selected === b.id ? theme.selected : theme.obstacleEdge, this.selected === b.id ? 2.5 : 1.2);
-    if (b.kind === 1) {
-      const front = corners({ ...b, length: b.length * 0.24, width: b.width * 0.8, x: b.x + 0.12 * b.length * Math.cos(b.yaw), y: b.y + 0.12 * b.length * Math.sin(b.yaw) });
-      painter.outline(front, faded(theme.obstacleEdge, 0.7), 1);
-    }
-    painter.flush();
-  }
-
   private drawPreview(p: { x: number; y: number; kind: number }) {
     const points = p.kind === 3 ? circle(p.x, p.y, 0.15) : corners({ ...p, yaw: 0, length: p.kind === 1 ? 0.58 : 0.4, width: p.kind === 1 ? 0.31 : 0.4 });
     this.painter.outline(points, this.theme.obstacle, 1.5);
   }
 
   private drawProbe(at: { x: number; y: number; yaw: number }) {
-    const size = this.hello?.car ?? { length: 0.58, width: 0.31 };
-    this.painter.outline(corners({ ...at, length: size.length, width: size.width }), this.theme.selected, 2);
+    this.painter.outline(corners({ ...at, length: this.size.length, width: this.size.width }), this.theme.selected, 2);
     this.painter.dot(at.x, at.y, 5, this.theme.selected);
   }
 
@@ -294,28 +333,8 @@ export class SceneView {
 
   private drawGhost(frame: Frame) {
     const g = frame.ghost!;
-    this.dashed(g.plan, g.plan.length / 2, faded(this.theme.ghost, 0.9), 2.4);
+    dashed(this.painter, g.plan, g.plan.length / 2, faded(this.theme.ghost, 0.9), 2.4);
     this.painter.flush();
-    this.drawCar(g.x, g.y, g.yaw, g.steer, faded(this.theme.ghost, 0.75), this.theme.carEdge, 0.9);
-  }
-
-  private drawCar(x: number, y: number, yaw: number, steer: number, body: Rgba, edge: Rgba, alpha: number) {
-    const size = this.hello?.car ?? { length: 0.58, width: 0.31, front: 0.159, rear: 0.171 };
-    const { painter, theme } = this, c = Math.cos(yaw), s = Math.sin(yaw);
-    const place = (u: number, v: number): Point => [x + c * u - s * v, y + s * u + c * v];
-    const l = size.length / 2, w = size.width / 2;
-    for (const [along, turn] of [[size.front, steer], [-size.rear, 0]]) {
-      for (const side of [-1, 1]) {
-        const [wx, wy] = place(along, side * w * 0.86);
-        painter.convex(corners({ x: wx, y: wy, yaw: yaw + turn, length: 0.13, width: 0.055 }), faded(theme.wheel, alpha));
-      }
-    }
-    painter.flush();
-    const shape = ([[l, 0.38 * w], [0.82 * l, 0.74 * w], [-0.1 * l, 0.74 * w], [-0.3 * l, 0.86 * w], [-l, 0.8 * w], [-l, -0.8 * w], [-0.3 * l, -0.86 * w], [-0.1 * l, -0.74 * w], [0.82 * l, -0.74 * w], [l, -0.38 * w]] as Point[]).map(([u, v]) => place(u, v));
-    painter.convex([...shape], body);
-    painter.flush();
-    painter.outline(shape, edge, 1.2);
-    painter.outline(corners({ x, y, yaw, length: size.length, width: size.width }), faded(body, 0.55), 1);
-    painter.convex(([[0.42 * l, 0.4 * w], [0.0, 0.55 * w], [-0.28 * l, 0.55 * w], [-0.28 * l, -0.55 * w], [0, -0.55 * w], [0.42 * l, -0.4 * w]] as Point[]).map(([u, v]) => place(u, v)), faded(edge, 0.85));
+    drawCar(this.painter, this.theme, this.size, g, g.steer, faded(this.theme.ghost, 0.75), this.theme.carEdge);
   }
 }

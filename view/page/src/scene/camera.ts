@@ -7,13 +7,17 @@ export class Camera {
   turn = 0; // rad, of the map on the screen
   follow: Follow = "follow";
   width = 1; height = 1;
+  /** Where the view begins on the stage (pixels); screen coordinates are those of the stage. */
+  left = 0; top = 0;
   /** Pixels at the edges of the view that panels cover. The camera's point lies in the middle of the rest. */
   covered = { left: 0, right: 0, top: 0, bottom: 0 };
 
   private get freeWidth() { return Math.max(60, this.width - this.covered.left - this.covered.right); }
   private get freeHeight() { return Math.max(60, this.height - this.covered.top - this.covered.bottom); }
-  get middleX() { return this.covered.left + this.freeWidth / 2; }
-  get middleY() { return this.covered.top + this.freeHeight / 2; }
+  /** The shorter side of what panels leave free, pixels. */
+  get room() { return Math.min(this.freeWidth, this.freeHeight); }
+  get middleX() { return this.left + this.covered.left + this.freeWidth / 2; }
+  get middleY() { return this.top + this.covered.top + this.freeHeight / 2; }
 
   toScreen(x: number, y: number): [number, number] {
     const c = Math.cos(this.turn), s = Math.sin(this.turn), dx = x - this.x, dy = y - this.y;

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "view/session/session.hpp"
+#include "view/web_client.hpp"
+
+/// A session with one client, for the tests of what it does with commands.
+namespace slalom::view {
+
+using nlohmann::json;
+
+inline vehicle::Configuration small() {
+  vehicle::Configuration configuration;
+  for (const char* method : {"svg_mppi", "mppi"})
+    for (const auto& [key, value] : {std::pair{"samples", "128"},
+                                     {"horizon", "14"},
+                                     {"variance", "0.05"},
+                                     {"input_min", "-0.4"},
+                                     {"input_max", "0.4"},
+                                     {"temperature", "3"}})
+      vehicle::set_option(configuration, key, value, method);
+  return configuration;
+}
+
+inline SessionOptions session_options() {
+  SessionOptions options;
+  options.scenario = {.course = "stag", .method = "svg_mppi", .config = "default", .seed = 4, .obstacles = 2};
+  options.load = [](const ScenarioNames& names) {
+    LoadedScenario loaded;
+    loaded.environment = evaluation::load_environment(SLALOM_COURSES "/" + names.course,
+                                                      evaluation::Protocol::true_physics, {});
+    loaded.configuration = small();
+    loaded.lap.obstacles = names.obstacles;
+    return loaded;
+  };
+  options.choices.courses = {"stag", "eel"};
+  options.choices.methods = {"svg_mppi", "mppi"};
+  options.choices.configurations = {"default"};
+  return options;
+}
+
+/// The figures of a frame by name.
+inline double scalar(std::string_view frame, const std::string& name) {
+  const auto names = scalar_names();
+  const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  double value = 0;
+  std::memcpy(&value, frame.data() + 12 + 8 * at, sizeof value);
+  return value;
+}
+
+/// A session with one client, driven by hand.
+class ViewSession : public ::testing::Test {
+ protected:
+  explicit ViewSession(SessionOptions options = session_options()) : session_(std::move(options), server_) {}
+
+  void SetUp() override {
+    client_.get("/ws", true);
+    for (int i = 0; i < 1000 && server_.clients() == 0; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    session_.turn();
+    tell({{"do", "pause"}});
+  }
+
+  /// Sends a command and lets the session handle it.
+  void tell(const json& command) { say(command.dump()); }
+  void say(const std::string& text) {
+    client_.send_message(text);
+    server_.wait(std::chrono::seconds(5));
+    do session_.turn();
+    while (session_.is_stepping());
+  }
+  /// Reads until a message of JSON of this type comes.
+  json next(const std::string& type) {
+    for (;;) {
+      const std::string message = client_.next_message();
+      if (message.empty()) return nullptr;
+      if (message.rfind("SLV1", 0) == 0) continue;
+      json parsed = json::parse(message);
+      if (parsed["type"] == type) return parsed;
+    }
+  }
+  /// Reads until the frame of a tick comes.
+  std::string frame(int tick) {
+    for (;;) {
+      const std::string message = client_.next_message();
+      if (message.empty()) return message;
+      if (message.rfind("SLV1", 0) == 0 && message[4] == 1 && scalar(message, "tick") == tick) return message;
+    }
+  }
+  std::string step_to(int tick) {
+    const json state = last_state_ticks();
+    const int newest = state["newest"];
+    tell({{"do", "step"}, {"ticks", tick - newest}});
+    return frame(tick);
+  }
+  json last_state_ticks() {
+    tell({{"do", "pause"}});
+    json last;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    tell({{"do", "no such command"}});
+    for (;;) {
+      const std::string message = client_.next_message();
+      if (message.rfind("SLV1", 0) == 0) continue;
+      const json parsed = json::parse(message);
+      if (parsed["type"] == "state") last = parsed;
+      if (parsed["type"] == "error") return last;
+    }
+  }
+
+  Server server_{{.messages_per_second = 1e6, .burst = 1e6}, {}};
+  testing::WebClient client_{server_.port()};
+  Session session_;
+};
+
+}  // namespace slalom::view

@@ -1,0 +1,46 @@
+import type { Hello, State } from "./protocol";
+import { toast } from "./toast";
+
+const get = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
+const numbers = ["obstacles", "opponents"];
+
+function fill(id: string, names: string[], none = "") {
+  get(id).replaceChildren(...names.map((name) => new Option(name || none, name)));
+}
+function choose(id: string, value: string) {
+  const select = get<HTMLSelectElement>(id);
+  if (![...select.options].some((option) => option.value === value)) select.append(new Option(value, value));
+  if (document.activeElement !== select) select.value = value;
+}
+
+/** The fields of the scenario, in the header and in its sheet. */
+export class ScenarioFields {
+  constructor(send: (command: Record<string, unknown>) => void, ask: (command: Record<string, unknown>) => Promise<void>) {
+    // A field keeps what was typed while it is not valid.
+    for (const key of ["course", "config", "seed", ...numbers]) {
+      const field = get<HTMLInputElement>(key), mark = (bad: boolean) => field.setAttribute("aria-invalid", String(bad));
+      field.onchange = () => void ask({ do: "scenario", [key]: numbers.includes(key) ? Number(field.value) : field.value }).then(() => mark(false), (error: Error) => { mark(true); toast(error.message, true); });
+    }
+    for (const key of ["method", "ghost"]) get(key).onchange = () => send({ do: key, method: get<HTMLSelectElement>(key).value });
+    get("rate").onchange = () => send({ do: "rate", rate: Number(get<HTMLSelectElement>("rate").value) });
+    get("real-time").onchange = () => send({ do: "real_time", on: get<HTMLInputElement>("real-time").checked });
+  }
+
+  /** Fills in what can be chosen. */
+  offer(hello: Hello) {
+    fill("course", hello.courses);
+    fill("method", hello.methods);
+    fill("config", hello.configurations);
+    fill("ghost", ["", ...hello.methods], "none");
+  }
+
+  show(state: State) {
+    for (const key of ["course", "method", "config", "ghost"] as const) choose(key, state[key]);
+    for (const [id, value] of [["seed", state.seed], ["obstacles", String(state.obstacles)], ["opponents", String(state.opponents)]]) {
+      const input = get<HTMLInputElement>(id);
+      if (document.activeElement !== input && input.ariaInvalid !== "true") input.value = value;
+    }
+    get<HTMLSelectElement>("rate").value = String(state.rate);
+    get<HTMLInputElement>("real-time").checked = state.real_time;
+  }
+}
