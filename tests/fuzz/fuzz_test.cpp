@@ -7,6 +7,7 @@
 #include <random>
 
 #include "fuzz/target.hpp"
+#include "support/repetitions.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace slalom::fuzz {
@@ -66,9 +67,9 @@ TEST_P(Fuzz, TakesItsSeeds) {
 }
 
 TEST_P(Fuzz, TakesChangedSeeds) {
-  constexpr int runs = 60;
+  const long runs = testing::repetitions(60);
   const auto seeds = GetParam()->seeds();
-  for (int i = 0; i < runs; ++i) {
+  for (long i = 0; i < runs; ++i) {
     std::mt19937_64 random(static_cast<std::uint64_t>(i));
     run(changed(seeds[static_cast<std::size_t>(i) % seeds.size()], random),
         "changed seed " + std::to_string(i));

@@ -2,6 +2,7 @@
 
 #include "solvers/controller_calls.hpp"
 #include "solvers/solver_contract.hpp"
+#include "support/promise.hpp"
 #include "support/repetitions.hpp"
 
 /// Random and adversarial calls of every method, option set and problem: every plan is valid.

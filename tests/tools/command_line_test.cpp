@@ -139,8 +139,9 @@ TEST_F(CommandLine, AFileDoesNotTakeThePlaceOfAClosedStream) {
 TEST_F(CommandLine, TooFewDescriptorsAreAnError) {
   ASSERT_EQ(timed(evaluation("ev")).status, 0);
   int errors = 0;
-  for (const std::string command : {"drive --course wren --method mppi --set samples=32 --json result.json",
-                                    "compare ev ev --json result.json"})
+  for (const std::string& command :
+       {std::string("drive --course wren --method mppi --set samples=32 --json result.json"),
+        std::string("compare ev ev --json result.json"), evaluation("few") + " --resume --json result.json"})
     for (int descriptors = 4; descriptors < 9; ++descriptors) {
       fs::remove(folder_ / "result.json");
       const testing::Run run = timed(command, "ulimit -n " + std::to_string(descriptors) + ";");
