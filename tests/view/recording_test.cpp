@@ -24,8 +24,8 @@ std::shared_ptr<const evaluation::Environment> environment() {
   return evaluation::load_environment(SLALOM_COURSES "/wren", evaluation::Protocol::true_physics, {});
 }
 
-/// The first control steps of a drive, recorded.
-std::string record(bool wall_clock, int ticks = 12) {
+/// The first control steps of a drive, recorded; with `ghost` the same controller is the ghost too.
+std::string record(bool wall_clock, int ticks = 12, bool ghost = false) {
   const auto where = environment();
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "64", "svg_mppi");
@@ -38,7 +38,8 @@ std::string record(bool wall_clock, int ticks = 12) {
   FrameEncoder encoder;
   for (int i = 0; i < ticks; ++i)
     loop.step([&](const evaluation::ControlStep& tick) {
-      recorder.add_frame(encoder.encode(tick, {}) + encode_bodies(tick.world));
+      const std::string frame = encoder.encode(tick, {}) + encode_bodies(tick.world);
+      recorder.add_frame(ghost ? frame + encode_ghost_frame(frame) : frame);
     });
   recorder.finish();
   return std::move(stream).str();
@@ -63,6 +64,8 @@ TEST_F(McapRecording, TheSameDriveGivesTheSameBytes) {
   EXPECT_EQ(first, record(false));
   EXPECT_EQ(first.find("/wall_clock"), std::string::npos);
   EXPECT_NE(record(true).find("/wall_clock"), std::string::npos);
+  EXPECT_EQ(record(false, 12, true), record(false, 12, true))
+      << "with what the ghost's controller considered";
 }
 
 TEST_F(McapRecording, AReplayHoldsEveryFrameInOrder) {
