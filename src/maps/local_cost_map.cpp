@@ -16,10 +16,12 @@ GridGeometry geometry_of(const LocalCostMapOptions& options) {
           options.center_x, options.center_y};
 }
 
-/// floor() of a cell coordinate, clamped to [low, high] first, since far positions would not fit an int.
-/// Counted from `low` on, no number is negative, so that the conversion truncates downwards.
+/// floor() of a cell coordinate, clamped to [low, high] first, since far positions would not fit an int;
+/// `low` for one that is not a number. Counted from `low` on, no number is negative, so that the conversion
+/// truncates downwards.
 int clamped_floor(double cell, int low, int high) {
-  return static_cast<int>(std::clamp(cell, static_cast<double>(low), static_cast<double>(high)) - low) + low;
+  if (!(cell > low)) return low;
+  return static_cast<int>(std::min(cell, static_cast<double>(high)) - low) + low;
 }
 
 }  // namespace
@@ -118,6 +120,10 @@ ScanReport LocalCostMap::mark_scan(const LaserScanView& scan) noexcept {
     }
     const ScanPoint point{static_cast<float>(range * beam_cos_[i]) + laser_x,
                           static_cast<float>(range * beam_sin_[i]) + laser_y};
+    if (std::isnan(point.x) || std::isnan(point.y)) {  // the angle is beyond the range of double
+      ++report.invalid;
+      continue;
+    }
     if (options_.drop_points_on_body && point.x >= rear && point.x <= front && point.y >= right &&
         point.y <= left) {
       ++report.on_body;

@@ -100,6 +100,15 @@ TEST(LocalCostMap, BadReadingsAreDroppedAndCounted) {
   EXPECT_EQ(map.at(2.2, 0), 100);
 }
 
+TEST(LocalCostMap, BeamsWhoseAngleIsNotFiniteAreDroppedAndCounted) {
+  LocalCostMap map;
+  const std::vector<float> ranges(4, 2.0F);
+  const ScanReport report = map.update({ranges, 0, 1e308, 0.05, 30});
+  EXPECT_EQ(report.invalid, 2);
+  EXPECT_EQ(report.used, 2);
+  EXPECT_EQ(map.points().size(), 2u);
+}
+
 TEST(LocalCostMap, KeepsObstaclesBesideTheBody) {
   const std::vector<float> ranges{0.17F, 0.1F};  // 2.5 cm within the front of the body, and 9.5 cm
   const LaserScanView scan{ranges, 0, 1e-3, 0.05, 30};
