@@ -8,7 +8,7 @@ const css = (c: Rgba) => `rgb(${c.slice(0, 3).map((v) => Math.round(255 * v)).jo
 export class Minimap {
   private readonly canvas = document.getElementById("minimap") as HTMLCanvasElement;
   private readonly to = this.canvas.getContext("2d")!;
-  private course?: HTMLCanvasElement; // with one pixel for each cell of the map
+  private course?: HTMLCanvasElement; // of the size of the canvas
   private courseOf = "";
   private revision = 0;
   private scene: Scene = {};
@@ -28,10 +28,12 @@ export class Minimap {
       canvas.style.width = width + "px";
       canvas.style.height = height + "px";
     }
-    to.setTransform(1, 0, 0, 1, 0, 0);
+    const scale = ratio * zoom, fromMap = new DOMMatrix([scale, 0, 0, -scale, -scale * x0, scale * y1]); // from m of the map frame
+    to.resetTransform();
     to.clearRect(0, 0, canvas.width, canvas.height);
-    to.setTransform(ratio * zoom, 0, 0, -ratio * zoom, -ratio * zoom * x0, ratio * zoom * y1); // from m of the map frame
-    this.drawCourse(theme);
+    const course = this.drawnCourse(theme, fromMap);
+    if (course) to.drawImage(course, 0, 0);
+    to.setTransform(fromMap);
     const line = (points: [number, number][], colour: string, thick: number) => {
       to.beginPath();
       points.forEach(([x, y], i) => (i ? to.lineTo(x, y) : to.moveTo(x, y)));
@@ -56,22 +58,24 @@ export class Minimap {
     if (car) { dot(car.x, car.y, theme.ground, 5); dot(car.x, car.y, theme.plan, 3.5); }
   }
 
-  private drawCourse(theme: Theme) {
+  /** The free cells of the map as they appear in the minimap; drawn once, since a large map takes long to shrink. */
+  private drawnCourse(theme: Theme, fromMap: DOMMatrix): HTMLCanvasElement | undefined {
     const grid = this.scene.grid;
-    if (!grid) return;
-    const key = `${this.revision} ${theme.dark}`;
-    if (this.courseOf !== key) {
-      this.course = Object.assign(document.createElement("canvas"), { width: grid.width, height: grid.height });
-      const to = this.course.getContext("2d")!, image = to.createImageData(grid.width, grid.height), free = theme.dark ? [74, 88, 106, 255] : [176, 187, 200, 255];
-      for (let i = 0; i < grid.cells.length; ++i) if (grid.cells[i] === 0) image.data.set(free, 4 * i);
-      to.putImageData(image, 0, 0);
-      this.courseOf = key;
-    }
-    this.to.save();
-    this.to.translate(grid.x, grid.y);
-    this.to.rotate(grid.yaw);
-    this.to.drawImage(this.course!, 0, 0, grid.width * grid.resolution, grid.height * grid.resolution);
-    this.to.restore();
+    if (!grid) return undefined;
+    const { width, height } = this.canvas, key = `${this.revision} ${theme.dark} ${width} ${height}`;
+    if (this.courseOf === key) return this.course;
+    const cells = Object.assign(document.createElement("canvas"), { width: grid.width, height: grid.height });
+    const to = cells.getContext("2d")!, image = to.createImageData(grid.width, grid.height), free = theme.dark ? [74, 88, 106, 255] : [176, 187, 200, 255];
+    for (let i = 0; i < grid.cells.length; ++i) if (grid.cells[i] === 0) image.data.set(free, 4 * i);
+    to.putImageData(image, 0, 0);
+    this.course = Object.assign(document.createElement("canvas"), { width, height });
+    const shrunk = this.course.getContext("2d")!;
+    shrunk.setTransform(fromMap);
+    shrunk.translate(grid.x, grid.y);
+    shrunk.rotate(grid.yaw);
+    shrunk.drawImage(cells, 0, 0, grid.width * grid.resolution, grid.height * grid.resolution);
+    this.courseOf = key;
+    return this.course;
   }
 }
 
