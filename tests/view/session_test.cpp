@@ -172,6 +172,16 @@ TEST_F(ViewSession, RejectsUnknownCommandsAndContinues) {
       << "text that is not UTF-8 ends the connection instead";
 }
 
+TEST_F(ViewSession, APauseHoldsAtTheTickThatASlowClientShows) {
+  step_to(40);
+  tell({{"do", "pause"}, {"tick", 35}});
+  EXPECT_EQ(last_state_ticks()["tick"], 40) << "less than 0.25 s behind";
+  tell({{"do", "pause"}, {"tick", 20}});
+  const json state = last_state_ticks();
+  EXPECT_EQ(state["tick"], 20);
+  EXPECT_EQ(state["newest"], 40);
+}
+
 TEST_F(ViewSession, StepsOfOneClientDoNotDelayTheCommandsOfAnother) {
   testing::WebClient other(server_.port());
   other.get("/ws", true);

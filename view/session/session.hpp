@@ -120,6 +120,7 @@ class Session {
   void handle_lap(const Json& command);
   int tick_of_contact(int contact);
   void handle_step(std::uint64_t client, const Json& command);
+  void pause(const Json& command);
   bool handle_transport(const std::string& what, const Json& command);
   bool handle_edit(const std::string& what, const Json& command);
   bool handle_options(const std::string& what, const Json& command);

@@ -11,6 +11,7 @@
 namespace slalom::view {
 namespace {
 
+constexpr double most_lag = 0.25;           // s, of the tick shown when a client pauses
 constexpr int most_steps = 400;             // of one command "step"
 constexpr std::size_t most_deferred = 256;  // commands that wait for steps
 constexpr double slowest_rate = 0.001;
@@ -148,10 +149,19 @@ void Session::handle_step(std::uint64_t client, const Json& command) {
   steps_left_ = std::min(steps_left_ + ticks, most_steps);
 }
 
+/// Pauses. A client that names the tick that it shows, and is behind by more than can pass unnoticed, keeps
+/// that tick in view.
+void Session::pause(const Json& command) {
+  paused_ = true;
+  steps_left_ = 0;
+  if (!command.contains("tick") || history_.empty()) return;
+  const int tick = integer(command, "tick");
+  if ((history_.back().tick - tick) * simulation_->loop().runner().control_period() > most_lag) show(tick);
+}
+
 bool Session::handle_transport(const std::string& what, const Json& command) {
   if (what == "pause") {
-    paused_ = true;
-    steps_left_ = 0;
+    pause(command);
   } else if (what == "play") {
     go_to_viewed();
     stop_at_ = -1;

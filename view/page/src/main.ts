@@ -240,7 +240,8 @@ attachPointer({ canvas: get<HTMLCanvasElement>("scene"), scene, send, tool: () =
 
 // Controls.
 const click = (id: string, act: () => void) => (get(id).onclick = act);
-const play = () => send({ do: state?.paused ? "play" : "pause" });
+// A slow browser shows an earlier tick than the server has reached; the pause holds at what is shown.
+const play = () => send(state?.paused ? { do: "play" } : { do: "pause", ...(scene.frame ? { tick: scalar("tick") } : {}) });
 click("play", play);
 click("step", () => send({ do: "step" }));
 click("restart", () => send({ do: "restart" }));
