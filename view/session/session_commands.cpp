@@ -149,8 +149,7 @@ void Session::handle_step(std::uint64_t client, const Json& command) {
   steps_left_ = std::min(steps_left_ + ticks, most_steps);
 }
 
-/// Pauses. A client that names the tick that it shows, and is behind by more than can pass unnoticed, keeps
-/// that tick in view.
+/// Pauses. A client that is well behind keeps in view the tick that it says it shows.
 void Session::pause(const Json& command) {
   paused_ = true;
   steps_left_ = 0;
