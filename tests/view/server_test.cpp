@@ -88,6 +88,23 @@ TEST(ViewServer, SendsAndReceivesMessages) {
   EXPECT_EQ(got[0].text, "hello");
 }
 
+/// As the recording of a minute is; the messages around it arrive, too.
+TEST(ViewServer, SendsAFileThatIsLargerThanWhatMayWait) {
+  Server server({}, page);
+  WebClient client(server.port());
+  client.get("/ws", true);
+  until([&] { return server.clients() == 1; });
+  const std::uint64_t number = server.take().at(0).client;
+  const auto file = std::make_shared<const std::string>(std::size_t{100} << 20, 'x');
+  server.send(number, {std::make_shared<const std::string>("before"), false});
+  server.send(number, {file, true});
+  EXPECT_EQ(client.next_message(), "before");
+  EXPECT_TRUE(client.next_message() == *file);
+  server.send(number, {std::make_shared<const std::string>("after"), false});
+  EXPECT_EQ(client.next_message(), "after");
+  EXPECT_EQ(server.clients(), 1);
+}
+
 TEST(ViewServer, SurvivesTenThousandInvalidMessages) {
   Server server({.max_message = 1000, .messages_per_second = 100, .burst = 100}, page);
   // Each client says 400 times what is no command and ends with what is no message.

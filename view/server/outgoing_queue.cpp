@@ -11,7 +11,7 @@ constexpr std::size_t most_bytes = 64 << 20;
 }  // namespace
 
 bool OutgoingQueue::push(const Message& message) {
-  if (messages_.size() >= most_messages || bytes_ + message.body->size() > most_bytes) return false;
+  if (messages_.size() >= most_messages || bytes_ >= most_bytes) return false;
   bytes_ += message.body->size();
   messages_.push_back(message);
   return true;

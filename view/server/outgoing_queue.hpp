@@ -17,7 +17,8 @@ class OutgoingQueue {
     bool is_frame = false;
   };
 
-  /// False if the message does not fit: 256 messages or 64 MiB are already waiting.
+  /// False if 256 messages or 64 MiB are already waiting. A single message may be larger: the recording of a
+  /// minute has 70 MB.
   bool push(const Message& message);
   /// Sets the frame to be sent. True if an unsent frame was replaced.
   bool set_frame(const std::shared_ptr<const std::string>& frame);
