@@ -37,5 +37,6 @@ export default async function (h) {
     await tools.send("Emulation.setCPUThrottlingRate", { rate: 1 });
     await page.close();
     await h.send({ do: "play" });
+    await h.until(() => !slalom.state.paused);
   });
 }
