@@ -172,6 +172,30 @@ TEST_F(ViewSession, RejectsUnknownCommandsAndContinues) {
       << "text that is not UTF-8 ends the connection instead";
 }
 
+TEST_F(ViewSession, APauseShowsTheNewestTickHoweverFastTheDriveIs) {
+  tell({{"do", "rate"}, {"rate", 0}});
+  tell({{"do", "play"}});
+  for (int turn = 0; turn < 50; ++turn) session_.turn();
+  tell({{"do", "pause"}});
+  tell({{"do", "no such command"}});
+  double shown = -1, newest = -2;
+  for (bool ended = false; !ended;) {
+    const std::string message = client_.next_message();
+    ASSERT_FALSE(message.empty());
+    if (message.rfind("SLV1", 0) == 0) {
+      if (message[4] == 1) shown = scalar(message, "tick");
+      continue;
+    }
+    const json parsed = json::parse(message);
+    if (parsed["type"] == "state") newest = parsed["newest"];
+    ended = parsed["type"] == "error";
+  }
+  EXPECT_GE(newest, 50);
+  if (shown < newest) {  // messages overtake frames
+    EXPECT_FALSE(frame(static_cast<int>(newest)).empty());
+  }
+}
+
 TEST_F(ViewSession, APauseHoldsAtTheTickThatASlowClientShows) {
   step_to(40);
   tell({{"do", "pause"}, {"tick", 35}});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <random>
+#include <utility>
 
 #include "tools/json/json.hpp"
 
@@ -140,10 +141,8 @@ void Session::tick() {
     stop_at_ = -1;
     state_changed_ = true;
   }
-  if (Clock::now() - last_frame_ >= least_frame_gap || paused_) {
-    last_frame_ = Clock::now();
-    server_.publish(history_.back().frame);
-  }
+  is_newest_published_ = false;
+  if (Clock::now() - last_frame_ >= least_frame_gap || paused_) publish_newest();
 }
 
 StepFacts Session::facts_of(const evaluation::LapRunner& runner) const {
@@ -160,6 +159,12 @@ std::shared_ptr<const std::string> Session::frame_of(const Step& step, const std
   std::string frame = step.without_bodies + bodies;
   if (!step.ghost.empty()) frame += encode_ghost_frame(step.ghost + ghost_bodies);
   return std::make_shared<const std::string>(std::move(frame));
+}
+
+void Session::publish_newest() {
+  if (std::exchange(is_newest_published_, true) || history_.empty()) return;
+  last_frame_ = Clock::now();
+  server_.publish(history_.back().frame);
 }
 
 void Session::note_laps() {
@@ -228,7 +233,7 @@ void Session::show(int tick) {
   tick = std::clamp(tick, history_.front().tick, history_.back().tick);
   const auto& step = history_[static_cast<std::size_t>(tick - history_.front().tick)];
   viewed_ = tick == history_.back().tick ? -1 : tick;
-  paused_ = true;
+  paused_ = is_newest_published_ = true;
   server_.publish(step.frame);
   state_changed_ = true;
 }

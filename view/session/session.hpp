@@ -121,6 +121,7 @@ class Session {
   int tick_of_contact(int contact);
   void handle_step(std::uint64_t client, const Json& command);
   void pause(const Json& command);
+  void publish_newest();
   bool handle_transport(const std::string& what, const Json& command);
   bool handle_edit(const std::string& what, const Json& command);
   bool handle_options(const std::string& what, const Json& command);
@@ -167,6 +168,7 @@ class Session {
   double rate_ = 1;  ///< of simulated to real time; 0: as fast as it goes
   int generation_ = 0;
   Clock::time_point due_ = Clock::now(), last_state_ = Clock::now(), last_frame_ = Clock::now();
+  bool is_newest_published_ = true;  ///< false where the newest tick came too early for a frame
   std::uint64_t refused_ = 0;
   std::atomic<bool> saving_{false};
   std::jthread saver_;  ///< the last member: it ends before what it uses

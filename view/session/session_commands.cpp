@@ -11,7 +11,6 @@
 namespace slalom::view {
 namespace {
 
-constexpr double most_lag = 0.25;           // s, of the tick shown when a client pauses
 constexpr int most_steps = 400;             // of one command "step"
 constexpr std::size_t most_deferred = 256;  // commands that wait for steps
 constexpr double slowest_rate = 0.001;
@@ -149,13 +148,14 @@ void Session::handle_step(std::uint64_t client, const Json& command) {
   steps_left_ = std::min(steps_left_ + ticks, most_steps);
 }
 
-/// Pauses. A client that is well behind keeps in view the tick that it says it shows.
+/// Pauses. A client that is more than 0.25 s behind keeps in view the tick that it says it shows.
 void Session::pause(const Json& command) {
   paused_ = true;
   steps_left_ = 0;
+  publish_newest();
   if (!command.contains("tick") || history_.empty()) return;
   const int tick = integer(command, "tick");
-  if ((history_.back().tick - tick) * simulation_->loop().runner().control_period() > most_lag) show(tick);
+  if ((history_.back().tick - tick) * simulation_->loop().runner().control_period() > 0.25) show(tick);
 }
 
 bool Session::handle_transport(const std::string& what, const Json& command) {
