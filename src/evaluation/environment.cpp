@@ -38,6 +38,27 @@ std::vector<double> room_beside(const sim::Track& track, const std::vector<maps:
   return room;
 }
 
+/// Moves the start along the waypoints to the first place with room for the car, if at the first waypoint its
+/// body would be in a wall. A start that course.yaml gives stays.
+void find_start(Environment& environment) {
+  constexpr double room = 0.1;  // m around the body at the new start
+  const vehicle::Course& course = environment.course;
+  const sim::CarParameters car;
+  const auto in_wall = [&](const maps::Pose& pose, double margin) {
+    return environment.track->collides_with_wall(
+        {.pose = pose, .length = car.length + 2 * margin, .width = car.width + 2 * margin});
+  };
+  environment.start = course.start;
+  if (!vehicle::starts_at_first_waypoint(course) || !in_wall(course.start, 0)) return;
+  for (const vehicle::Waypoint& point : course.waypoints) {
+    const maps::Pose pose{point.x, point.y, point.yaw};
+    if (in_wall(pose, room)) continue;
+    environment.start = pose;
+    environment.start_moved = point.arc_length;
+    return;
+  }
+}
+
 }  // namespace
 
 const char* name(Protocol protocol) {
@@ -70,7 +91,7 @@ std::shared_ptr<Environment> make_environment(vehicle::Course course, Protocol p
       environment->course.map, sim::LapPath(points),
       sim::TrackOptions{.unknown_is_wall = false, .outside_is_wall = rules_of(protocol).outside_is_wall()});
   environment->obstacle_room = room_beside(*environment->track, environment->course.obstacle_path);
-  environment->start = environment->course.start;
+  find_start(*environment);
   environment->timeout = environment->course.timeout.value_or(0);
   return environment;
 }

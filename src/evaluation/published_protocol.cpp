@@ -25,6 +25,7 @@ class PublishedRules final : public LapRules {
     const std::string folder_name = std::filesystem::weakly_canonical(folder).filename().string();
     if (const auto known = vehicle::known_course(folder_name, course_roots)) {
       environment.start = known->start;
+      environment.start_moved = 0;
       environment.timeout = known->timeout;
     }
   }

@@ -51,6 +51,8 @@ ReferenceField::ReferenceField(std::span<const ReferencePoint> path, const Refer
     : options_(options), geometry_(geometry_of(options)), cells_(geometry_.rows, geometry_.columns) {
   check_reference_path(path);
   path_.assign(path.begin(), path.end());
+  path_x_.reserve(path.size());
+  path_y_.reserve(path.size());
   for (const ReferencePoint& point : path) {
     path_x_.push_back(point.x);
     path_y_.push_back(point.y);
@@ -118,6 +120,18 @@ bool ReferenceField::update(const Point& robot, const Point& low, const Point& h
 void ReferenceField::set_speeds(std::span<const double> speeds) noexcept {
   if (speeds.size() != path_.size()) return;
   for (std::size_t i = 0; i < speeds.size(); ++i) path_[i].speed = speeds[i];
+}
+
+bool ReferenceField::set_path(std::span<const ReferencePoint> path) noexcept {
+  if (path.size() < 3 || path.size() > path_.capacity()) return false;
+  path_.assign(path.begin(), path.end());
+  path_x_.resize(path.size());
+  path_y_.resize(path.size());
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    path_x_[i] = path[i].x;
+    path_y_[i] = path[i].y;
+  }
+  return true;
 }
 
 ReferenceCell ReferenceField::at(double x, double y) const noexcept {

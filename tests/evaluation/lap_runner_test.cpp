@@ -87,6 +87,28 @@ TEST(LapRunner, DrivesTheSameLapAtUtmCoordinates) {
   }
 }
 
+TEST(LapRunner, StartsWhereTheCarHasRoom) {
+  vehicle::Course course = wren()->course;
+  const vehicle::Waypoint& first = course.waypoints.front();
+  course.start = {first.x, first.y, first.yaw};
+  const double side = 0.12;  // m to the left of the first waypoint, less than half the car's width
+  const maps::Point cell = maps::inverse_transform(
+      course.map.origin, {first.x - side * std::sin(first.yaw), first.y + side * std::cos(first.yaw)});
+  course.map.at(static_cast<int>(cell.x / course.map.resolution),
+                static_cast<int>(cell.y / course.map.resolution)) = maps::Occupancy::occupied;
+  const auto moved = make_environment(course, Protocol::true_physics);
+  EXPECT_GT(moved->start_moved, 0.29) << "at least half the car's length";
+  EXPECT_LT(moved->start_moved, 1);
+  EXPECT_NEAR(std::hypot(moved->start.x - first.x, moved->start.y - first.y), moved->start_moved, 0.05);
+  moved->timeout = 0.1;
+  EXPECT_EQ(LapRunner(moved, configuration("default"), "svg_mppi", {}).run(0).collisions, 0);
+
+  course.start.yaw += 1e-6;  // given by course.yaml
+  const auto given = make_environment(course, Protocol::true_physics);
+  EXPECT_EQ(given->start_moved, 0);
+  EXPECT_THROW(LapRunner(given, configuration("default"), "svg_mppi", {}).run(0), std::invalid_argument);
+}
+
 TEST(LapRunner, DrivesWithTheAccelerationAsAnInputByEveryMethod) {
   const double usual = LapRunner(wren(), configuration("default_kinematic"), "svg_mppi", {}).run(0).time;
   const auto begun = timed_out_after(3);

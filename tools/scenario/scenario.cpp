@@ -53,9 +53,13 @@ maps::Pose parse_pose(const std::string& text) {
 }
 
 /// What the course's files lack, and where its line and profile ask for more than the car can.
-std::vector<std::string> notes_on(const vehicle::Course& course,
+std::vector<std::string> notes_on(const evaluation::Environment& environment,
                                   const vehicle::Configuration& configuration) {
+  const vehicle::Course& course = environment.course;
   std::vector<std::string> notes = course.notes;
+  if (environment.start_moved > 0)
+    notes.push_back("a car at the first waypoint would be in a wall; laps start " +
+                    to_text(std::round(10 * environment.start_moved) / 10) + " m further along the line");
   const vehicle::PlannerOptions& planner = configuration.planner;
   const vehicle::PathTrackingOptions& car = configuration.vehicle;
   const bool lowered = planner.profile_friction > 0;
@@ -177,7 +181,7 @@ Scenario load_scenario(const ScenarioArguments& arguments, const std::string& me
     const maps::Pose start = parse_pose(arguments.start);
     scenario.lap.start = maps::Pose{start.x - origin.x, start.y - origin.y, start.yaw};
   }
-  scenario.notes = notes_on(scenario.environment->course, scenario.configuration);
+  scenario.notes = notes_on(*scenario.environment, scenario.configuration);
   return scenario;
 }
 

@@ -35,8 +35,9 @@ struct Environment {
   std::vector<maps::ReferencePoint> path;  ///< the waypoints of the course
   /// m, for each point of the course's obstacle path: the distance to the wall on its wider side, at most 10.
   std::vector<double> obstacle_room;
-  maps::Pose start;                        ///< of the centre of gravity, relative to the course's origin
-  double timeout = 0;                      ///< s; 0: three times the lap time of the speed profile
+  maps::Pose start;        ///< of the centre of gravity, relative to the course's origin
+  double start_moved = 0;  ///< m along the waypoints from the first, where the body is in a wall
+  double timeout = 0;      ///< s; 0: three times the lap time of the speed profile
   std::optional<sim::LidarOptions> lidar;  ///< replaces the LiDAR of the protocol
 
   /// The world of the protocol, with `lidar` where it is given. Settings of a lap (noise, friction, control

@@ -81,6 +81,10 @@ class ReferenceField {
   /// them has an effect.
   void set_speeds(std::span<const double> speeds) noexcept;
 
+  /// Replaces the path from the next update on. Returns false and changes nothing unless the new one has 3
+  /// points to as many as that of the construction. They must meet check_reference_path.
+  bool set_path(std::span<const ReferencePoint> path) noexcept;
+
   /// The cell at a position, m.
   ReferenceCell at(double x, double y) const noexcept;
 

@@ -193,9 +193,7 @@ void move_to_local_origin(Course& course) {
     point.x = std::round((point.x - shift.x) * decimals) / decimals;
     point.y = std::round((point.y - shift.y) * decimals) / decimals;
   };
-  const Waypoint& first = course.waypoints.front();
-  const bool starts_at_first =
-      course.start.x == first.x && course.start.y == first.y && course.start.yaw == first.yaw;
+  const bool starts_at_first = starts_at_first_waypoint(course);
   maps::Pose start = course.start;
   move(start);
   move(course.map.origin);
@@ -221,6 +219,11 @@ double profile_time(const Course& course) {
   for (std::size_t i = 1; i < points.size(); ++i) time += stretch(points[i - 1], points[i]);
   if (course.closed && points.size() > 1) time += stretch(points.back(), points.front());
   return time;
+}
+
+bool starts_at_first_waypoint(const Course& course) noexcept {
+  const Waypoint& first = course.waypoints.front();
+  return course.start.x == first.x && course.start.y == first.y && course.start.yaw == first.yaw;
 }
 
 void check_start(const Course& course, const maps::Pose& start, double clearance) {

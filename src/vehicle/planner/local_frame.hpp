@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "slalom/maps/reference_path.hpp"
+#include "slalom/vehicle/model/vehicle_problem.hpp"
 
 namespace slalom::vehicle::detail {
 
@@ -26,6 +27,14 @@ inline std::vector<maps::ReferencePoint> relative(std::span<const maps::Referenc
     point.y -= origin.y;
   }
   return made;
+}
+
+/// Moves predicted states from that frame to the map frame.
+inline void shift(std::span<PredictedState> states, const maps::Point& origin) noexcept {
+  for (PredictedState& state : states) {
+    state.pose.x += origin.x;
+    state.pose.y += origin.y;
+  }
 }
 
 }  // namespace slalom::vehicle::detail

@@ -10,6 +10,7 @@
 #include "vehicle/planner/back_up.hpp"
 #include "vehicle/planner/car_estimator.hpp"
 #include "vehicle/planner/command_history.hpp"
+#include "vehicle/planner/detour.hpp"
 #include "vehicle/planner/feasible_speeds.hpp"
 #include "vehicle/planner/final_check.hpp"
 #include "vehicle/planner/input_check.hpp"
@@ -45,7 +46,8 @@ struct Planner::Implementation {
   CarEstimator car;  ///< of models with tyres that slip; others have `history`
   CommandHistory history;
   BackUp back_up;
-  Recovery recovery;  ///< of models with tyres that slip; others have `back_up`
+  Recovery recovery;               ///< of models with tyres that slip; others have `back_up`
+  std::unique_ptr<Detour> detour;  ///< of models with tyres that slip
   ObstacleMemory memory;
   double planned_steer = 0;  ///< rad, before it was limited
   bool brakes = false;       ///< this update brakes: the command must not be faster than the car
@@ -75,7 +77,9 @@ struct Planner::Implementation {
         ways(detail::relative(path, origin), speeds.length() > 0, solver->horizon(), solver->inputs(), traits,
              o.steer_limit),
         states(static_cast<std::size_t>(solver->horizon()) + 1) {
-    if (model->has_dynamics()) set_friction(traits.friction);
+    if (!model->has_dynamics()) return;
+    detour = std::make_unique<Detour>(limited_path(detail::relative(path, origin), o, traits), traits.body);
+    set_friction(traits.friction);
   }
 
   /// Plans for ground of this friction. The path's speeds follow in steps of 2 %.
@@ -135,13 +139,17 @@ struct Planner::Implementation {
         std::max(std::abs(odometry.speed), 1.0) + (jumps ? 0 : traits.max_acceleration * horizon_time());
     field.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? time_in_view() : 0);
     const maps::ReferenceCell here = field.at(start.pose.x, start.pose.y);
-    if (model->has_dynamics() && options.back_up) recover(odometry.speed);
+    if (model->has_dynamics() && options.back_up) recover(odometry);
     if (traits.follows_path && options.stop_when_blocked &&
         here.distance >= field.options().outside.distance) {
       return stop(PlannerStatus::off_course);
     }
     const bool clearance = traits.obstacle_map == ObstacleMap::clearance;
-    model->set_maps({field.view(), clearance ? clearance_map.view() : cost_map.view(), odometry.pose});
+    const bool detours =
+        recovery.tries_again() && detour->search(clearance_map, odometry.pose, field.nearest());
+    const GridView<4> followed =
+        detours ? detour->field_around({start.pose.x, start.pose.y}).view() : field.view();
+    model->set_maps({followed, clearance ? clearance_map.view() : cost_map.view(), odometry.pose});
     model->set_start(start, traits.follows_path ? here.speed : traits.reference_speed);
     SolveRequest request{.elapsed = options.control_period};
     if (options.deadline > 0) request.deadline = options.deadline;
@@ -180,23 +188,17 @@ struct Planner::Implementation {
     } else if (options.verify_plan && options.stop_when_blocked) {
       slow_down(cost, odometry.speed);
     }
-    to_map_frame(states);
+    shift(states, origin);
   }
 
   /// Watches the progress, and sets whether plans reverse or are urgent.
-  void recover(double speed) noexcept {
+  void recover(const Odometry& odometry) noexcept {
     const int nearest = field.nearest();
-    recovery.update(speeds.arc(nearest), speeds.length(), speed,
+    recovery.update(speeds.arc(nearest), speeds.length(), odometry.speed,
                     speeds.speeds()[static_cast<std::size_t>(nearest)], options.control_period);
+    detour->note(recovery, odometry.pose);
     model->set_reverse(recovery.reversing() ? Recovery::speed : 0);
     model->set_urgent(recovery.leaving() && !recovery.reversing());
-  }
-
-  void to_map_frame(std::span<PredictedState> predicted) const noexcept {
-    for (PredictedState& state : predicted) {
-      state.pose.x += origin.x;
-      state.pose.y += origin.y;
-    }
   }
 
   /// Brakes where every plan collides. Where the start itself collides, braking does not help: the car
@@ -334,7 +336,7 @@ PredictedCost Planner::predict(std::span<const float> inputs,
                                std::span<PredictedState> states) const noexcept {
   const PredictedCost cost = implementation_->model->predict(inputs, states);
   const auto steps = inputs.size() / static_cast<std::size_t>(implementation_->model->inputs());
-  implementation_->to_map_frame(states.first(steps + 1));
+  detail::shift(states.first(steps + 1), implementation_->origin);
   return cost;
 }
 

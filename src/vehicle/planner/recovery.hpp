@@ -20,6 +20,8 @@ class Recovery {
   bool reversing() const noexcept { return reversing_; }
   /// Whether the car makes its way out of a place where it crawled or stood: until it is well past it.
   bool leaving() const noexcept { return leaving_; }
+  /// Whether it drives on after it had to reverse, and is not yet well past the place where that was.
+  bool tries_again() const noexcept { return trying_again_ && !reversing_; }
 
   /// Advances by one control period (s), with where the car is along the course (m) of this length (m), 0
   /// where it is not closed, its speed (m/s) and the one at which it would drive if the path were free.
@@ -56,7 +58,7 @@ class Recovery {
     if (std::abs(ahead) > 10) {  // put somewhere else
       furthest_ = arc;
       ahead = since_progress_ = 0;
-      leaving_ = false;
+      leaving_ = trying_again_ = false;
     }
     since_progress_ += period;
     standing_for_ = std::abs(speed_now) < standing ? standing_for_ + period : 0;
@@ -68,9 +70,11 @@ class Recovery {
       leaving_ = false;
       distance_ = shortest;
     }
+    if (way(reversed_at_, arc, length) > relief) trying_again_ = false;
     if (crawling_for_ >= hesitation || since_progress_ >= patience) leave(arc, length);
     if (since_progress_ < patience && standing_for_ < stand_still) return;
-    reversing_ = true;
+    if (!trying_again_ || way(reversed_at_, arc, length) > 0) reversed_at_ = arc;
+    reversing_ = trying_again_ = true;
     driven_ = reversing_for_ = standing_for_ = 0;
   }
   void leave(double arc, double length) noexcept {
@@ -88,8 +92,8 @@ class Recovery {
     distance_ = std::min(1.6 * distance_, longest);
   }
 
-  bool started_ = false, reversing_ = false, leaving_ = false;
-  double furthest_ = 0, stuck_ = 0;                                   ///< m along the course
+  bool started_ = false, reversing_ = false, leaving_ = false, trying_again_ = false;
+  double furthest_ = 0, stuck_ = 0, reversed_at_ = 0;                 ///< m along the course
   double since_progress_ = 0, standing_for_ = 0, reversing_for_ = 0;  ///< s
   double crawling_for_ = 0;                                           ///< s
   double driven_ = 0;                                                 ///< m in reverse

@@ -64,9 +64,23 @@ TEST(Recovery, LeavesThePathUntilTheCarIsPastThePlaceWhereItStood) {
   }
   for (double arc = 7; recovery.update(arc, length, -1, 2, period); arc -= period) {
   }
+  EXPECT_TRUE(recovery.tries_again());
   double arc = 6.2;
   for (; recovery.leaving(); arc += 0.05) EXPECT_FALSE(recovery.update(arc, length, 2, 2, period));
   EXPECT_NEAR(arc, 11, 0.1);
+  EXPECT_FALSE(recovery.tries_again());
+}
+
+TEST(Recovery, TriesAgainUntilTheCarIsPastThePlaceHoweverSlowlyItDrives) {
+  Recovery recovery;
+  while (!recovery.update(7, length, 0, 5, period)) EXPECT_FALSE(recovery.tries_again());
+  EXPECT_FALSE(recovery.tries_again()) << "it reverses first";
+  double arc = 7;
+  for (; recovery.update(arc, length, -1, 5, period); arc -= period) {
+  }
+  for (; recovery.tries_again(); arc += period) EXPECT_FALSE(recovery.update(arc, length, 1, 5, period));
+  EXPECT_NEAR(arc, 11, 0.1);
+  EXPECT_TRUE(recovery.leaving()) << "it crawls still";
 }
 
 TEST(Recovery, NoticesACarThatDrivesInCircles) {

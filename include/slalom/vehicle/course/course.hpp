@@ -71,6 +71,9 @@ void cap_speed(Course& course, double max_speed);
 /// speeds at its ends, but at 0.1 m/s at least.
 double profile_time(const Course& course);
 
+/// Whether the start is the pose of the first waypoint.
+bool starts_at_first_waypoint(const Course& course) noexcept;
+
 /// Throws std::invalid_argument unless `start` is finite, on the map, and at least `clearance` (m) from the
 /// centre of every occupied cell.
 void check_start(const Course& course, const maps::Pose& start, double clearance = 0.15);

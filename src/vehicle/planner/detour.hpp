@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "slalom/maps/clearance_map.hpp"
+#include "slalom/maps/reference_field.hpp"
+#include "slalom/maps/reference_path.hpp"
+#include "slalom/vehicle/model/path_tracking_options.hpp"
+#include "vehicle/planner/recovery.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// A path around what blocks the course, found by a search in the map of obstacles. Plans look one horizon
+/// ahead, and from there the side of an obstacle that is a dead end can look better than the one that is
+/// open.
+///
+/// The search is Dijkstra's (Numerische Mathematik 1, 1959) over the cells of a grid around the car, in which
+/// the car is a disc of its width and margin, and cells near obstacles cost more. Its end is the furthest
+/// point of the course in the grid that can be reached. The path goes on along the course from there.
+/// After construction nothing allocates.
+class Detour {
+ public:
+  /// On this course, by a car with this body.
+  Detour(std::span<const maps::ReferencePoint> course, const BodyOptions& body);
+
+  /// To be called once a control period, with what the recovery does and where the car is (frame of the
+  /// course). A place where the car on a detour had to reverse is a dead end to the next searches, until the
+  /// car is past it.
+  void note(const Recovery& recovery, const maps::Pose& pose) noexcept;
+
+  /// Searches from `pose` (frame of the course), in the map of obstacles around it, with the point of the
+  /// course that is nearest to the car. Returns whether there is a path.
+  bool search(const maps::ClearanceMap& obstacles, const maps::Pose& pose, int nearest) noexcept;
+
+  /// The path of the last search that found one, with speeds of at most 1.5 m/s.
+  std::span<const maps::ReferencePoint> path() const noexcept { return path_; }
+  /// The field of that path around a position (m).
+  const maps::ReferenceField& field_around(const maps::Point& position) noexcept;
+
+ private:
+  struct Reached {
+    float cost;
+    int cell;
+    bool operator<(const Reached& other) const noexcept { return cost > other.cost; }
+  };
+
+  maps::Point centre_of(int cell) const noexcept;
+  int cell_at(const maps::Point& point) const noexcept;
+  void set_prices(const maps::ClearanceMap& obstacles, const maps::Pose& pose) noexcept;
+  void spread(int from) noexcept;
+  bool is_clear(int from, int to) const noexcept;
+  void follow_back(int goal) noexcept;
+  void smooth() noexcept;
+  int furthest_reached(const maps::Pose& pose, int nearest) const noexcept;
+  void follow_course(int from) noexcept;
+
+  std::vector<maps::ReferencePoint> course_;
+  double front_;                ///< m, from the pose to the car's front
+  double needed_;               ///< m, from the car's middle to an obstacle
+  std::vector<float> prices_;   ///< of driving 1 m in a cell; 0: occupied
+  std::vector<float> costs_;    ///< of reaching a cell from the car
+  std::vector<int> previous_;   ///< cell before each on the cheapest path; -1 at the car
+  std::vector<Reached> queue_;  ///< a heap
+  std::vector<int> corners_;
+  std::vector<maps::ReferencePoint> path_, smoothed_;
+  maps::ReferenceField field_;
+  std::array<maps::Point, 4> dead_ends_{};
+  std::size_t dead_end_count_ = 0;
+  bool on_detour_ = false;  ///< in the last control period
+};
+
+}  // namespace slalom::vehicle::detail
