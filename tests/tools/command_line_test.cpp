@@ -34,18 +34,23 @@ class CommandLine : public testing::EvaluationFolder {
   }
   /// The commands that print and end, with arguments for a short run; `out` is a file or folder of its own.
   std::vector<std::string> short_runs(const std::string& out) const {
-    return {"bench --methods mppi --seconds 0.01 --json " + out,
-            "compare ev ev --json " + out,
-            "completion bash",
-            "drive --course wren --method mppi --set samples=32 --json " + out,
-            "eval --check ev --again 0",
-            "identify lap.jsonl --json " + out,
-            evaluation(out),
-            "explain --method mppi --solves 1 --json " + out,
-            "manual " + out,
-            "options",
-            "replay lap.mcap --repair " + out,
-            "track --length 30 --out " + out};
+    return {
+        "bench --methods mppi --seconds 0.01 --json " + out,
+        "compare ev ev --json " + out,
+        "completion bash",
+        "drive --course wren --method mppi --set samples=32 --json " + out,
+        "eval --check ev --again 0",
+        "identify lap.jsonl --json " + out,
+        evaluation(out),
+        "explain --method mppi --solves 1 --json " + out,
+        "hardware --drivers mppi@hardware --tracking-laps 1 --layouts 1 --laps 1 --json " + out,
+        "manual " + out,
+        "options",
+        "replay lap.mcap --repair " + out,
+        "track --length 30 --out " + out,
+        "tune --method mppi --course wren --config default_kinematic --scenario pt --set temperature=0.5,1"
+        " --set samples=32 --budget 2 --laps 1 --rounds 1 --held-out 1 --out " +
+            out};
   }
 };
 
