@@ -5,6 +5,8 @@ export default async function (h) {
   const { page } = h;
 
   await h.test("forks from an earlier tick with the other method and keeps this one as a ghost", async () => {
+    await h.send({ do: "restart" });
+    await h.until(() => slalom.state.newest > 25 && slalom.scalar("tick") > 25);
     await h.pause();
     await h.send({ do: "seek", tick: (await h.state()).newest - 20 });
     await h.until(() => slalom.state.tick === slalom.state.newest - 20);

@@ -35,10 +35,12 @@ export default async function (h) {
     // A drag and the arrow keys turn the view.
     const picture = () => page.evaluate(() => { slalom.scene.draw(); return document.getElementById("scene").toDataURL(); });
     const before = await picture(), box = await page.locator("#scene").boundingBox();
-    await page.mouse.move(box.x + 420, box.y + 400);
+    const free = await page.evaluate(() => [[420, 400], [560, 420], [300, 450]].find(([x, y]) => !slalom.scene.bodyAt(...slalom.scene.toMap({ x, y })))); // a body would be dragged itself
+    await page.mouse.move(box.x + free[0], box.y + free[1]);
     await page.mouse.down();
-    await page.mouse.move(box.x + 520, box.y + 420, { steps: 4 });
+    await page.mouse.move(box.x + free[0] + 100, box.y + free[1] + 20, { steps: 4 });
     await page.mouse.up();
+    assert.deepEqual(await page.evaluate(() => { const { x, y } = slalom.frame.bodies[0]; return [x, y]; }), [car.x, car.y], "the car stays");
     const dragged = await picture();
     assert.ok(dragged !== before);
     await page.keyboard.press("ArrowLeft");
