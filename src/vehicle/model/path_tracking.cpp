@@ -18,12 +18,12 @@ TrackingCost::TrackingCost(const PathTrackingOptions& options)
       speed_weight_(options.cost.speed_weight),
       collision_weight_(options.cost.collision_weight) {}
 
-void TrackingCost::set_urgent(bool urgent) noexcept {
-  constexpr double urgent_distance = 0.1, urgent_speed = 4;
-  const double share = urgent ? urgent_distance : 1;
+void TrackingCost::set_urgency(Urgency urgency) noexcept {
+  const double share = urgency == Urgency::passing ? 0.1 : 1;
+  const double time = urgency == Urgency::passing ? 4 : urgency == Urgency::detour ? 10 : 1;
   distance_weight_ = share * options_.distance_weight;
   terminal_distance_weight_ = share * options_.terminal_distance_weight;
-  speed_weight_ = (urgent ? urgent_speed : 1) * options_.speed_weight;
+  speed_weight_ = time * options_.speed_weight;
 }
 
 SteeringActuator::SteeringActuator(const PathTrackingOptions& options, bool exact)

@@ -22,13 +22,9 @@
 #include "vehicle/planner/ways_around.hpp"
 
 namespace slalom::vehicle {
-
 namespace {
-
 using namespace detail;
-
 constexpr double gravity = 9.81;  // m/s^2
-
 }  // namespace
 
 struct Planner::Implementation {
@@ -139,16 +135,13 @@ struct Planner::Implementation {
         std::max(std::abs(odometry.speed), 1.0) + (jumps ? 0 : traits.max_acceleration * horizon_time());
     field.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? time_in_view() : 0);
     const maps::ReferenceCell here = field.at(start.pose.x, start.pose.y);
-    if (model->has_dynamics() && options.back_up) recover(odometry);
+    GridView<4> followed = field.view();
+    if (model->has_dynamics() && options.back_up) followed = recover(odometry, start.pose);
     if (traits.follows_path && options.stop_when_blocked &&
         here.distance >= field.options().outside.distance) {
       return stop(PlannerStatus::off_course);
     }
     const bool clearance = traits.obstacle_map == ObstacleMap::clearance;
-    const bool detours =
-        recovery.tries_again() && detour->search(clearance_map, odometry.pose, field.nearest());
-    const GridView<4> followed =
-        detours ? detour->field_around({start.pose.x, start.pose.y}).view() : field.view();
     model->set_maps({followed, clearance ? clearance_map.view() : cost_map.view(), odometry.pose});
     model->set_start(start, traits.follows_path ? here.speed : traits.reference_speed);
     SolveRequest request{.elapsed = options.control_period};
@@ -191,14 +184,21 @@ struct Planner::Implementation {
     shift(states, origin);
   }
 
-  /// Watches the progress, and sets whether plans reverse or are urgent.
-  void recover(const Odometry& odometry) noexcept {
+  /// Watches the progress; sets whether plans reverse and how urgent they are. Returns the field to follow:
+  /// of the path, or of a detour.
+  GridView<4> recover(const Odometry& odometry, const maps::Pose& start) noexcept {
     const int nearest = field.nearest();
     recovery.update(speeds.arc(nearest), speeds.length(), odometry.speed,
                     speeds.speeds()[static_cast<std::size_t>(nearest)], options.control_period);
     detour->note(recovery, odometry.pose);
     model->set_reverse(recovery.reversing() ? Recovery::speed : 0);
-    model->set_urgent(recovery.leaving() && !recovery.reversing());
+    if (recovery.tries_again() && detour->search(clearance_map, odometry.pose, nearest)) {
+      model->set_urgency(Urgency::detour);
+      return detour->field_around({start.x, start.y}).view();
+    }
+    const bool passes = recovery.leaving() && !recovery.reversing();
+    model->set_urgency(passes ? Urgency::passing : Urgency::usual);
+    return field.view();
   }
 
   /// Brakes where every plan collides. Where the start itself collides, braking does not help: the car

@@ -95,7 +95,7 @@ class PathTracking {
   }
 
   /// See VehicleModel.
-  void set_urgent(bool urgent) noexcept { cost_.set_urgent(urgent); }
+  void set_urgency(Urgency urgency) noexcept { cost_.set_urgency(urgency); }
 
   /// The state at the start; `reference_speed` (m/s) is the path's there.
   State<double> start(const VehicleStart& start, double reference_speed) noexcept {

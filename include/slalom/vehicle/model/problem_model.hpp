@@ -94,8 +94,8 @@ class ProblemModel final : public VehicleModel {
   void set_reverse([[maybe_unused]] double speed) noexcept override {
     if constexpr (dynamic) evaluator_.problem().set_reverse(speed);
   }
-  void set_urgent([[maybe_unused]] bool urgent) noexcept override {
-    if constexpr (dynamic) evaluator_.problem().set_urgent(urgent);
+  void set_urgency([[maybe_unused]] Urgency urgency) noexcept override {
+    if constexpr (dynamic) evaluator_.problem().set_urgency(urgency);
   }
 
   PredictedCost predict(std::span<const float> inputs,

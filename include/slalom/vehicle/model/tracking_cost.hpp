@@ -4,6 +4,7 @@
 #include "slalom/core/problem.hpp"
 #include "slalom/core/simd.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
+#include "slalom/vehicle/model/vehicle_problem.hpp"
 
 namespace slalom::vehicle {
 
@@ -32,10 +33,8 @@ class TrackingCost {
     fastest_ = speed > 0 ? speed : 1e3;
   }
 
-  /// Time that is lost costs several times as much, the distance to the path only a part. Usually a car that
-  /// stands pays less than one that passes close to an obstacle or far from the path, which is right for a
-  /// moment and wrong for good.
-  void set_urgent(bool urgent) noexcept;
+  /// See VehicleModel.
+  void set_urgency(Urgency urgency) noexcept;
 
   /// What the maps hold at a position (m, map frame) with this cost map value.
   template <class T>

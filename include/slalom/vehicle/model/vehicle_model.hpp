@@ -52,8 +52,8 @@ class VehicleModel {
   /// Predictions from now on drive forwards, or backwards at most at this speed (m/s, > 0) and away from
   /// where the path leads.
   virtual void set_reverse(double speed) noexcept;
-  /// Whether predictions from now on prefer any way that leads on, see TrackingCost.
-  virtual void set_urgent(bool urgent) noexcept;
+  /// The urgency of predictions from now on.
+  virtual void set_urgency(Urgency urgency) noexcept;
 
   /// The states (one more than steps) of one control sequence, [step][input], and its cost. A car that
   /// collides at the start must be able to leave, so the states before the first free one do not count as a

@@ -50,6 +50,14 @@ enum class ObstacleMap {
   clearance  ///< distance to the nearest obstacle, m, up to `clearance_reach`
 };
 
+/// How much a plan gives to get on. A car that stands usually pays less than one that passes close to an
+/// obstacle or far from the path, which is right for a moment and wrong for good.
+enum class Urgency {
+  usual,    ///< the weights of the options
+  passing,  ///< any way that leads on: lost time costs 4 times as much, the distance to the path a tenth
+  detour    ///< the path is a way around an obstacle, to be followed: lost time costs 10 times as much
+};
+
 /// What the planner needs to know of a model besides its rollouts.
 struct VehicleTraits {
   double time_step = 0;         ///< s, of the prediction, > 0
