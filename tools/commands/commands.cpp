@@ -8,7 +8,8 @@ const std::vector<CommandEntry>& all_commands() {
       {"drive", declare_drive},       {"eval", declare_eval},         {"explain", declare_explain},
       {"hardware", declare_hardware}, {"identify", declare_identify}, {"manual", declare_manual},
       {"options", declare_options},   {"replay", declare_replay},     {"reproduce", declare_reproduce},
-      {"track", declare_track},       {"tune", declare_tune},         {"view", declare_view}};
+      {"soak", declare_soak},         {"track", declare_track},       {"tune", declare_tune},
+      {"view", declare_view}};
   return commands;
 }
 

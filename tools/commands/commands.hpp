@@ -19,6 +19,7 @@ void declare_manual(Subcommand& command);
 void declare_options(Subcommand& command);
 void declare_replay(Subcommand& command);
 void declare_reproduce(Subcommand& command);
+void declare_soak(Subcommand& command);
 void declare_track(Subcommand& command);
 void declare_tune(Subcommand& command);
 void declare_view(Subcommand& command);
