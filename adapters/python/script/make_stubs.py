@@ -64,7 +64,9 @@ def class_lines(name, cls):
             arguments, _ = signature(value)
             yield f"    def __init__({arguments or 'self'}) -> None: ..."
         elif not member.startswith("_") and callable(value):
-            arguments, result = signature(value)
+            arguments, result = signature(getattr(value, "__func__", value))
+            if isinstance(value, staticmethod):
+                yield "    @staticmethod"
             yield f"    def {member}({arguments}) -> {result}: ..."
 
 

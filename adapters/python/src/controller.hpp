@@ -58,6 +58,7 @@ class Controller {
 };
 
 void bind_controllers(py::module_& module);
+void bind_maps(py::module_& module);
 void bind_problems(py::module_& module);
 void bind_driving(py::module_& module);
 

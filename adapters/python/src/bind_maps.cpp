@@ -1,0 +1,242 @@
+#include <array>
+
+#include "controller.hpp"
+#include "slalom/maps/field.hpp"
+#include "slalom/maps/ros_map.hpp"
+
+namespace slalom::python {
+namespace {
+
+using maps::Field;
+using maps::FieldGeometry;
+using maps::Occupancy;
+using maps::OccupancyGrid;
+
+constexpr const char* placement =
+    "`resolution` is the size of a cell, m; `origin` the pose (x, y, yaw) of the grid's lower left corner in "
+    "the map frame, as in a map of ROS map_server; by default (0, 0, 0).";
+
+/// The argument `origin`, by default the origin of the map frame.
+py::arg_v level() {
+  return {"origin", std::vector<double>{0, 0, 0}, "..."};
+}
+
+/// x, y and, if given, yaw.
+maps::Pose to_pose(const std::vector<double>& origin) {
+  if (origin.size() != 2 && origin.size() != 3)
+    throw py::value_error("origin: has " + std::to_string(origin.size()) +
+                          " values, must have 2 or 3: x (m), y (m) and, if any, yaw (rad)");
+  return {origin[0], origin[1], origin.size() == 3 ? origin[2] : 0};
+}
+
+py::tuple to_tuple(const maps::Pose& pose) {
+  return py::make_tuple(pose.x, pose.y, pose.yaw);
+}
+
+int extent(py::ssize_t count, const char* what) {
+  if (count > std::numeric_limits<int>::max())
+    throw py::value_error(std::string(what) + ": must be at most 2^31 - 1");
+  return static_cast<int>(count);
+}
+
+FieldGeometry geometry_of(int width, int height, double resolution, const std::vector<double>& origin) {
+  return {width, height, resolution, to_pose(origin)};
+}
+
+Field make_field(const py::array_t<double, py::array::c_style | py::array::forcecast>& samples,
+                 double resolution, const std::vector<double>& origin) {
+  if (samples.ndim() != 2)
+    throw py::value_error("Field.samples: has " + std::to_string(samples.ndim()) +
+                          " dimensions, must have 2: [row, column]");
+  const int height = extent(samples.shape(0), "rows"), width = extent(samples.shape(1), "columns");
+  return Field(geometry_of(width, height, resolution, origin),
+               std::span(samples.data(), static_cast<std::size_t>(samples.size())));
+}
+
+Field field_from_function(const py::object& function, int width, int height, double resolution,
+                          const std::vector<double>& origin) {
+  const FieldGeometry geometry = geometry_of(width, height, resolution, origin);
+  static_cast<void>(Field(FieldGeometry{1, 1, resolution, geometry.origin}, std::array{0.0}));
+  if (width < 1 || height < 1 || std::int64_t{width} * height > std::int64_t{1} << 26)
+    throw py::value_error("Field.from_function: " + std::to_string(width) + " x " + std::to_string(height) +
+                          " cells must be at least 1 x 1 and at most 2^26");
+  py::array_t<double> x({height, width}), y({height, width});
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      const maps::Point center = geometry.center(column, row);
+      x.mutable_at(row, column) = center.x;
+      y.mutable_at(row, column) = center.y;
+    }
+  }
+  const auto samples = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(function(x, y));
+  if (!samples) throw py::error_already_set();
+  if (samples.ndim() != 2 || samples.shape(0) != height || samples.shape(1) != width)
+    throw py::value_error("Field.from_function: the function must return an array of shape (" +
+                          std::to_string(height) + ", " + std::to_string(width) + "), as its arguments have");
+  return make_field(samples, resolution, origin);
+}
+
+/// What numpy makes of a value: an array.
+py::array to_array(const py::object& value) {
+  auto array = py::array::ensure(value);
+  if (!array) throw py::error_already_set();
+  return array;
+}
+
+/// An array, or a number if the array has no dimensions.
+template <class Array>
+py::object result(Array&& array) {
+  return array.ndim() == 0 ? py::object(array[py::tuple()]) : py::object(array);
+}
+
+/// Calls `apply` with x and y as contiguous arrays of one shape: in float32 if both are, else in double.
+template <class Apply>
+py::object with_positions(const py::object& x_values, const py::object& y_values, Apply&& apply) {
+  const py::array x = to_array(x_values), y = to_array(y_values);
+  const auto run = [&]<class Real>(Real) -> py::object {
+    using Array = py::array_t<Real, py::array::c_style | py::array::forcecast>;
+    const Array xs = Array::ensure(x), ys = Array::ensure(y);
+    if (!xs || !ys) throw py::error_already_set();
+    const std::vector<py::ssize_t> shape(xs.shape(), xs.shape() + xs.ndim());
+    if (xs.ndim() != ys.ndim() || !std::equal(shape.begin(), shape.end(), ys.shape()))
+      throw py::value_error("x, y: must have the same shape");
+    return apply(xs, ys, shape);
+  };
+  const bool single = py::isinstance<py::array_t<float>>(x) && py::isinstance<py::array_t<float>>(y);
+  return single ? run(float{}) : run(double{});
+}
+
+template <class Real>
+void look_up(const Field& field, const Real* x, const Real* y, std::size_t count, Real* value, Real* dx,
+             Real* dy) {
+  if constexpr (std::is_same_v<Real, float>) {
+    field.evaluate(x, y, count, value, dx, dy);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto at = field.value_and_gradient(x[i], y[i]);
+      value[i] = at.value;
+      if (dx) dx[i] = at.dx, dy[i] = at.dy;
+    }
+  }
+}
+
+py::object value(const Field& field, const py::object& x, const py::object& y) {
+  return with_positions(x, y, [&]<class Array>(const Array& xs, const Array& ys, const auto& shape) {
+    using Real = typename Array::value_type;
+    Array values(shape);
+    look_up<Real>(field, xs.data(), ys.data(), static_cast<std::size_t>(xs.size()), values.mutable_data(),
+                  nullptr, nullptr);
+    return result(values);
+  });
+}
+
+py::object value_and_gradient(const Field& field, const py::object& x, const py::object& y) {
+  return with_positions(x, y, [&]<class Array>(const Array& xs, const Array& ys, const auto& shape) {
+    using Real = typename Array::value_type;
+    Array values(shape), dx(shape), dy(shape);
+    look_up<Real>(field, xs.data(), ys.data(), static_cast<std::size_t>(xs.size()), values.mutable_data(),
+                  dx.mutable_data(), dy.mutable_data());
+    return py::object(py::make_tuple(result(values), result(dx), result(dy)));
+  });
+}
+
+OccupancyGrid make_grid(const py::object& given, double resolution, const std::vector<double>& origin) {
+  const py::array cells = to_array(given);
+  const bool flags = py::isinstance<py::array_t<bool>>(cells);
+  const auto values = py::array_t<int, py::array::c_style | py::array::forcecast>::ensure(cells);
+  if (!values) throw py::error_already_set();
+  if (values.ndim() != 2)
+    throw py::value_error("OccupancyGrid.cells: has " + std::to_string(values.ndim()) +
+                          " dimensions, must have 2: [row, column]");
+  OccupancyGrid grid{
+      extent(values.shape(1), "columns"), extent(values.shape(0), "rows"), resolution, to_pose(origin), {}};
+  grid.cells.reserve(static_cast<std::size_t>(values.size()));
+  for (py::ssize_t i = 0; i < values.size(); ++i) {
+    const int cell = values.data()[i];
+    if (cell < -1 || cell > 100)
+      throw py::value_error("OccupancyGrid.cells: " + std::to_string(cell) +
+                            " must be in [-1, 100], or the array one of truth values");
+    grid.cells.push_back(flags         ? (cell ? Occupancy::occupied : Occupancy::free)
+                         : cell == 0   ? Occupancy::free
+                         : cell == 100 ? Occupancy::occupied
+                                       : Occupancy::unknown);
+  }
+  return grid;
+}
+
+py::array_t<std::int8_t> cells_of(const OccupancyGrid& grid) {
+  py::array_t<std::int8_t> cells({grid.height, grid.width});
+  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+    const Occupancy cell = grid.cells[i];
+    cells.mutable_data()[i] = cell == Occupancy::free ? 0 : cell == Occupancy::occupied ? 100 : -1;
+  }
+  return cells;
+}
+
+void bind_field(py::module_& module) {
+  const std::string words = std::string(
+                                "A map that a problem looks up: a distance, a height, a cost. Its samples "
+                                "are interpolated bilinearly; beyond the outermost ones the value is that of "
+                                "the nearest point of their edge.\n\n"
+                                "samples: [row, column], row 0 at the smallest y. ") +
+                            placement;
+  py::class_<Field>(module, "Field", words.c_str())
+      .def(py::init(&make_field), py::arg("samples"), py::arg("resolution"), level())
+      .def_static("from_function", &field_from_function, py::arg("function"), py::arg("width"),
+                  py::arg("height"), py::arg("resolution"), level(),
+                  "The field of function(x[height, width], y[height, width]), which is called once with the "
+                  "centres of all cells, m.")
+      .def("value", &value, py::arg("x"), py::arg("y"),
+           "The value at positions of the map frame (m): arrays of one shape. float32 in, float32 out.")
+      .def("value_and_gradient", &value_and_gradient, py::arg("x"), py::arg("y"),
+           "A tuple: the value at positions of the map frame, and its derivatives by x and y.")
+      .def("relative_to", &Field::relative_to, py::arg("x"), py::arg("y"),
+           "The same field for positions relative to a point of the map frame, m.")
+      .def_property_readonly(
+          "shape", [](const Field& f) { return py::make_tuple(f.geometry().height, f.geometry().width); },
+          "rows and columns of samples")
+      .def_property_readonly(
+          "resolution", [](const Field& f) { return f.geometry().resolution; }, "m per cell")
+      .def_property_readonly(
+          "origin", [](const Field& f) { return to_tuple(f.geometry().origin); },
+          "x, y (m), yaw (rad) of the lower left corner")
+      .def("__repr__", [](const Field& f) {
+        const FieldGeometry& g = f.geometry();
+        return "<slalom.Field " + std::to_string(g.height) + " x " + std::to_string(g.width) + " of " +
+               py::str(py::float_(g.resolution)).cast<std::string>() + " m>";
+      });
+}
+
+}  // namespace
+
+void bind_maps(py::module_& module) {
+  const std::string words = std::string(
+                                "A map of free, occupied and unknown cells.\n\n"
+                                "cells: [row, column], row 0 at the smallest y: truth values (occupied or "
+                                "not), or numbers as in nav_msgs/OccupancyGrid: 0 is free, 100 occupied, "
+                                "anything else unknown. ") +
+                            placement;
+  py::class_<OccupancyGrid>(module, "OccupancyGrid", words.c_str())
+      .def(py::init(&make_grid), py::arg("cells"), py::arg("resolution"), level())
+      .def_property_readonly("cells", &cells_of,
+                             "int8 [row, column], a copy: 0 free, 100 occupied, -1 unknown")
+      .def_property_readonly(
+          "resolution", [](const OccupancyGrid& g) { return g.resolution; }, "m per cell")
+      .def_property_readonly(
+          "origin", [](const OccupancyGrid& g) { return to_tuple(g.origin); },
+          "x, y (m), yaw (rad) of the lower left corner");
+  bind_field(module);
+  module.def(
+      "load_ros_map", [](const std::string& file) { return maps::load_ros_map(file); }, py::arg("file"),
+      "Loads a map of ROS map_server from its yaml file.");
+  module.def(
+      "signed_distance",
+      [](const OccupancyGrid& grid, bool unknown_is_obstacle, bool outside_is_obstacle) {
+        return maps::signed_distance(grid, {unknown_is_obstacle, outside_is_obstacle});
+      },
+      py::arg("grid"), py::arg("unknown_is_obstacle") = true, py::arg("outside_is_obstacle") = true,
+      "The Field of the distance to the nearest edge of an obstacle, m: above 0 in free space, below 0 in "
+      "obstacles.");
+}
+
+}  // namespace slalom::python
