@@ -4,6 +4,7 @@
 /// vehicle, sim) are included by their own headers.
 
 #include "slalom/core/batch_evaluator.hpp"
+#include "slalom/core/derivatives/linearize.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/math.hpp"
@@ -15,6 +16,7 @@
 #include "slalom/core/version.hpp"
 #include "slalom/solvers/cem.hpp"
 #include "slalom/solvers/controller.hpp"
+#include "slalom/solvers/feedback.hpp"
 #include "slalom/solvers/mppi.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/solvers/reverse_mppi.hpp"

@@ -37,6 +37,18 @@ struct Point {
   State<T> step(const State<T>& x, const slalom::Input<T, 1>& u) {
     return {x.position + u[0]};
   }
+#elif MISTAKE == 17
+  State<double> step(const State<double>& x, const slalom::Input<double, 1>& u) const {
+    return {x.position + u[0]};
+  }
+  State<float> step(const State<float>& x, const slalom::Input<float, 1>& u) const {
+    return {x.position + u[0]};
+  }
+  template <class Target>
+  State<slalom::Pack<Target> > step(const State<slalom::Pack<Target> >& x,
+                                    const slalom::Input<slalom::Pack<Target>, 1>& u) const {
+    return {x.position + u[0]};
+  }
 #elif MISTAKE != 1
   template <class T>
   State<T> step(const State<T>& x, const slalom::Input<T, 1>& u) const {
@@ -77,5 +89,8 @@ struct Point {
 
 int main() {
   slalom::Mppi controller{Point{}, {.horizon = 5}};
+#if MISTAKE == 0 || MISTAKE == 17
+  if (slalom::linearize(controller.problem(), {1}, {{2}}).next.position != 3) return 1;
+#endif
   return controller.solver().horizon() == 5 ? 0 : 1;
 }

@@ -24,6 +24,7 @@ class Controller {
 
   AnyProblem& problem() noexcept { return *problem_; }
   const Solver& solver() const noexcept { return *solver_; }
+  const InputBounds& bounds() const noexcept { return bounds_; }
   const SolverOptions& options() const noexcept { return options_; }
   const SolveResult& result() const noexcept { return result_; }
   /// Of the last solve. A cost that is not finite shows when the prediction is first asked for.
@@ -58,6 +59,7 @@ class Controller {
 };
 
 void bind_controllers(py::module_& module);
+void bind_feedback(py::module_& module);
 void bind_maps(py::module_& module);
 void bind_problems(py::module_& module);
 void bind_driving(py::module_& module);

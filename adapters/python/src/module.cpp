@@ -7,6 +7,7 @@ PYBIND11_MODULE(_slalom, module) {
   pybind11::register_exception<slalom::IoError>(module, "IoError", PyExc_OSError);
   slalom::python::bind_problems(module);
   slalom::python::bind_controllers(module);
+  slalom::python::bind_feedback(module);
   slalom::python::bind_maps(module);
   slalom::python::bind_driving(module);
   module.attr("__version__") = slalom::version();

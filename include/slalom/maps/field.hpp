@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "slalom/core/derivatives/dual_math.hpp"
 #include "slalom/core/grid_view.hpp"
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/occupancy_grid.hpp"
@@ -119,6 +120,11 @@ class Field {
     };
     const float* c = cells_->at(index(row, geometry_.height) - 1, index(column, geometry_.width) - 1);
     return {static_cast<T>(c[0]), static_cast<T>(c[1]), static_cast<T>(c[2]), static_cast<T>(c[3])};
+  }
+  template <class T, int N>
+  CellValues<Dual<T, N>> cell(const Dual<T, N>& row, const Dual<T, N>& column) const {
+    const CellValues<double> c = cell(slalom::detail::plain(row), slalom::detail::plain(column));
+    return {c.a, c.b, c.c, c.d};
   }
   template <class Target>
   SLALOM_INLINE_CALLS CellValues<Pack<Target>> cell(const Pack<Target>& row,

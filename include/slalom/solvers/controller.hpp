@@ -172,6 +172,8 @@ class Controller {
   const Evaluator& evaluator() const noexcept { return evaluator_; }
   /// The solver in use.
   const Solver& solver() const noexcept { return *solver_; }
+  /// The bounds of the inputs: those that the problem stated at construction, narrowed by the options.
+  const InputBounds& bounds() const noexcept { return bounds_; }
 
   /// Returns to the state after construction, with random numbers from `seed`.
   void reset(std::uint64_t seed) noexcept {
