@@ -39,8 +39,7 @@ struct FieldValue {
 /// Beyond the outermost samples the value is that of the nearest point of their edge.
 ///
 ///     struct Robot {
-///       slalom::maps::Field walls;                                  // made by
-///       signed_distance(load_ros_map(...))
+///       slalom::maps::Field walls;  // made by signed_distance(load_ros_map(...))
 ///       ...
 ///       const T distance = walls.value(x.x, x.y);                  // in a cost; T is double or a pack
 ///
