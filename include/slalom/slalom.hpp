@@ -8,6 +8,7 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/math.hpp"
+#include "slalom/core/network/mlp.hpp"
 #include "slalom/core/option_access.hpp"
 #include "slalom/core/problem.hpp"
 #include "slalom/core/problem_evaluator.hpp"

@@ -1,0 +1,177 @@
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "slalom/core/error.hpp"
+#include "slalom/core/network/mlp.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace slalom {
+namespace {
+
+void append_number(std::string& bytes, std::uint64_t value, int size) {
+  for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xff);
+}
+
+std::uint32_t crc(const std::string& bytes) {
+  std::uint32_t value = 0xffffffffu;
+  for (const char byte : bytes) {
+    value ^= static_cast<unsigned char>(byte);
+    for (int bit = 0; bit < 8; ++bit) value = value >> 1 ^ (value & 1u ? 0xedb88320u : 0u);
+  }
+  return ~value;
+}
+
+/// An array as numpy.save writes it.
+std::string npy(const std::string& type, const std::string& shape, const std::string& data) {
+  std::string header = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (" + shape + "), }";
+  header.resize(118, ' ');
+  std::string bytes("\x93NUMPY\x01\x00", 8);
+  append_number(bytes, header.size(), 2);
+  return bytes + header + data;
+}
+std::string floats(const std::string& shape, const std::vector<double>& values) {
+  std::string data(values.size() * sizeof(double), '\0');
+  std::memcpy(data.data(), values.data(), data.size());
+  return npy("<f8", shape, data);
+}
+std::string text(const std::string& words) {
+  std::string data;
+  for (const char c : words) append_number(data, static_cast<unsigned char>(c), 4);
+  return npy("<U" + std::to_string(words.size()), "", data);
+}
+
+using Files = std::vector<std::pair<std::string, std::string>>;
+
+/// A ZIP archive without compression (or that says `method`), as numpy.savez writes it.
+std::string zip(const Files& files, int method = 0) {
+  std::string bytes, directory;
+  for (const auto& [name, data] : files) {
+    const std::size_t at = bytes.size();
+    std::string common;
+    append_number(common, static_cast<std::uint64_t>(method) << 32, 8);  // version, flags, method, time
+    append_number(common, 0, 2);
+    append_number(common, crc(data), 4);
+    append_number(common, data.size(), 4);
+    append_number(common, data.size(), 4);
+    append_number(common, name.size(), 2);
+    append_number(common, 0, 2);
+    append_number(bytes, 0x04034b50, 4);
+    bytes += common + name + data;
+    append_number(directory, 0x02014b50, 4);
+    append_number(directory, 20, 2);
+    directory += common;
+    append_number(directory, 0, 8);
+    append_number(directory, 0, 2);
+    append_number(directory, at, 4);
+    directory += name;
+  }
+  const std::size_t at = bytes.size();
+  bytes += directory;
+  append_number(bytes, 0x06054b50, 4);
+  append_number(bytes, 0, 4);
+  append_number(bytes, files.size(), 2);
+  append_number(bytes, files.size(), 2);
+  append_number(bytes, directory.size(), 4);
+  append_number(bytes, at, 4);
+  append_number(bytes, 0, 2);
+  return bytes;
+}
+
+Files network_files() {
+  return {{"weights_0.npy", floats("2, 3", {1, 2, 3, 4, 5, 6})},
+          {"biases_0.npy", floats("2,", {7, 8})},
+          {"weights_1.npy", floats("1, 2", {9, 10})},
+          {"biases_1.npy", floats("1,", {11})},
+          {"activation.npy", text("relu")},
+          {"input_mean.npy", floats("3,", {0, 1, 0})},
+          {"residual.npy", npy("|b1", "", std::string(1, '\x01'))}};
+}
+
+class MlpFile : public testing::TemporaryFolder {
+ protected:
+  /// What is wrong with a file of these bytes; empty if nothing is.
+  std::string error(const std::string& bytes) {
+    const auto file = write("network.npz", bytes);
+    try {
+      load_mlp(file);
+    } catch (const IoError& error) {
+      const std::string text = error.what(), prefix = file.string() + ": ";
+      EXPECT_EQ(text.substr(0, prefix.size()), prefix);
+      return text.substr(prefix.size());
+    }
+    return "";
+  }
+  /// The same of a network with one array replaced, or left out if it is empty.
+  std::string error_with(const std::string& name, const std::string& array) {
+    Files files = network_files();
+    std::erase_if(files, [&](const auto& file) { return file.first == name; });
+    if (!array.empty()) files.emplace_back(name, array);
+    return error(zip(files));
+  }
+};
+
+TEST_F(MlpFile, IsReadWithAllItsParts) {
+  const MlpParameters p = load_mlp(write("network.npz", zip(network_files())));
+  ASSERT_EQ(p.layers.size(), 2u);
+  EXPECT_EQ(p.layers[0].weights, (std::vector<double>{1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(p.layers[1].biases, (std::vector<double>{11}));
+  EXPECT_EQ(p.activation, Activation::relu);
+  EXPECT_EQ(p.input_mean, (std::vector<double>{0, 1, 0}));
+  EXPECT_TRUE(p.output_mean.empty());
+  EXPECT_TRUE(p.residual);
+  const Mlp<3, 1> network(p);
+  EXPECT_EQ(network(1.0, 2.0, 0.0)[0], 9 * (1 + 2 + 7) + 10 * (4 + 5 + 8) + 11 + 1);
+}
+
+TEST_F(MlpFile, MistakesAreNamed) {
+  EXPECT_EQ(error_with("biases_0.npy", ""), "array 'biases_0' is missing");
+  EXPECT_EQ(error_with("activation.npy", text("sine")),
+            "array 'activation': 'sine' must be tanh, relu, softplus or silu");
+  EXPECT_EQ(error_with("speed.npy", floats("1,", {1})), "array 'speed' is not known");
+  EXPECT_EQ(error_with("biases_0.npy", floats("1, 2", {1, 2})),
+            "array 'biases_0': has 2 dimensions, must have 1");
+  EXPECT_EQ(error_with("biases_0.npy", floats("3,", {1, 2, 3})), "mlp: biases_0: has 3 values, must have 2");
+  EXPECT_EQ(error_with("weights_1.npy", floats("1, 3", {1, 2, 3})),
+            "mlp: weights_1: has 3 columns, must have 2, the rows of the layer before");
+  EXPECT_EQ(error_with("biases_0.npy", floats("3,", {1, 2})),
+            "array 'biases_0': has another number of bytes than its header says");
+  EXPECT_EQ(
+      error_with("biases_0.npy", npy("<i8", "2,", std::string(16, '\0'))),
+      "array 'biases_0': has the type <i8, must be float32, float64, bool or a single text, little-endian");
+  EXPECT_EQ(error_with("note.txt", "hello"), "holds 'note.txt', which is no array");
+  EXPECT_EQ(error_with("x.npy", "hello"), "array 'x': is cut off");
+  EXPECT_EQ(error_with("x.npy", std::string(200, 'x')), "array 'x': is no numpy array");
+  EXPECT_EQ(error_with("x.npy", floats("99999999999999999999,", {})), "array 'x': has too many values");
+  EXPECT_EQ(error_with("x.npy", floats("4000000, 4000000", {})), "array 'x': has too many values");
+  EXPECT_EQ(error(zip(network_files(), 8)), "array 'weights_0' is compressed: write it with numpy.savez");
+  EXPECT_EQ(error("no archive"), "is no .npz file of numpy.savez, or is cut off");
+  EXPECT_EQ(error(""), "is no .npz file of numpy.savez, or is cut off");
+  Files twice = network_files();
+  twice.push_back(twice[0]);
+  EXPECT_EQ(error(zip(twice)), "holds array 'weights_0' twice");
+  EXPECT_EQ(error(zip(Files(300, {"a.npy", ""}))), "holds more than 256 arrays");
+  EXPECT_THROW(load_mlp("/nowhere/network.npz"), IoError);
+}
+
+TEST_F(MlpFile, DamageIsFoundOrHarmless) {
+  const std::string whole = zip(network_files());
+  for (std::size_t size = 0; size < whole.size(); size += 23) EXPECT_NE(error(whole.substr(0, size)), "");
+  std::mt19937 random(6);
+  int found = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    std::string damaged = whole;
+    for (int i = 0; i < 1 + trial % 3; ++i)
+      damaged[random() % damaged.size()] ^= static_cast<char>(1 << random() % 8);
+    found += error(damaged) != "";
+  }
+  EXPECT_GT(found, 425) << "of the rest, bits changed that are not read";
+}
+
+}  // namespace
+}  // namespace slalom
