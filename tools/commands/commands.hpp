@@ -10,6 +10,7 @@ namespace slalom::tools {
 void declare_bench(Subcommand& command);
 void declare_compare(Subcommand& command);
 void declare_completion(Subcommand& command);
+void declare_course(Subcommand& command);
 void declare_drive(Subcommand& command);
 void declare_eval(Subcommand& command);
 void declare_explain(Subcommand& command);

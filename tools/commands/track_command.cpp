@@ -1,15 +1,14 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include "slalom/vehicle/course/track_generator.hpp"
+#include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/track_picture.hpp"
 #include "tools/json/json.hpp"
@@ -29,28 +28,6 @@ struct Arguments {
   std::string out, name, description, json;
   bool no_picture = false;
 };
-
-std::string short_number(double value) {
-  std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream << value;
-  return stream.str();
-}
-
-/// A word as a shell reads it back.
-std::string shell_word(const std::string& text) {
-  const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; };
-  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
-/// The folder's own name, also where the path ends in a slash or is ".".
-std::string folder_name(const std::string& folder) {
-  const fs::path path = fs::absolute(folder).lexically_normal();
-  return (path.has_filename() ? path.filename() : path.parent_path().filename()).string();
-}
 
 /// The command that generates the same track again. --out has only the last part of the path of the folder.
 std::string command_of(const Arguments& arguments, const TrackGeneratorOptions& options) {

@@ -1,7 +1,5 @@
 #include "tools/scenario/scenario.hpp"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <system_error>
 
@@ -10,6 +8,7 @@
 #include "slalom/vehicle/course/course_check.hpp"
 #include "tools/command_line/command.hpp"
 #include "tools/json/json.hpp"
+#include "tools/scenario/start_pose.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -35,21 +34,6 @@ Json value_json(const OptionValue& value) {
     Json operator()(const std::string& v) const { return v; }
   };
   return std::visit(Convert{}, value);
-}
-
-/// "x,y,yaw" in m, m, rad.
-maps::Pose parse_pose(const std::string& text) {
-  std::array<double, 3> values{};
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto [stopped, error] = std::from_chars(at, end, values[i]);
-    const bool separated = i + 1 < values.size() ? stopped < end && *stopped == ',' : stopped == end;
-    if (error != std::errc{} || !separated || !std::isfinite(values[i]))
-      throw IoError("--start", 0, "'" + text + "' must be x,y,yaw: three finite numbers, in m, m, rad");
-    at = stopped + 1;
-  }
-  return {values[0], values[1], values[2]};
 }
 
 /// What the course's files lack, and where its line and profile ask for more than the car can.
@@ -178,7 +162,7 @@ Scenario load_scenario(const ScenarioArguments& arguments, const std::string& me
   apply_settings(arguments.set, method, scenario.configuration, scenario.lap);
   const maps::Point& origin = scenario.environment->course.origin;
   if (!arguments.start.empty()) {
-    const maps::Pose start = parse_pose(arguments.start);
+    const maps::Pose start = parse_start(arguments.start);
     scenario.lap.start = maps::Pose{start.x - origin.x, start.y - origin.y, start.yaw};
   }
   scenario.notes = notes_on(*scenario.environment, scenario.configuration);

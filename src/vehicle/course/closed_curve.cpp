@@ -7,14 +7,6 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-/// The Catmull-Rom cubic between b and c at t in [0, 1].
-maps::Point cubic(maps::Point a, maps::Point b, maps::Point c, maps::Point d, double t) {
-  const maps::Point linear = c - a;
-  const maps::Point square = 2 * a - 5 * b + 4 * c - d;
-  const maps::Point cube = 3 * (b - c) + d - a;
-  return b + 0.5 * (t * (linear + t * (square + t * cube)));
-}
-
 Curve resampled_once(const Curve& curve, int count) {
   const int n = static_cast<int>(curve.size());
   const double step = length(curve) / count;
@@ -32,12 +24,19 @@ Curve resampled_once(const Curve& curve, int count) {
       walked += stretch;
     }
     const double t = std::clamp((wanted - walked) / stretch, 0.0, 1.0);
-    result.push_back(cubic(curve[(i + n - 1) % n], curve[i % n], curve[(i + 1) % n], curve[(i + 2) % n], t));
+    result.push_back(catmull_rom(curve[(i + n - 1) % n], curve[i % n], curve[(i + 1) % n], curve[(i + 2) % n], t));
   }
   return result;
 }
 
 }  // namespace
+
+maps::Point catmull_rom(maps::Point a, maps::Point b, maps::Point c, maps::Point d, double t) {
+  const maps::Point linear = c - a;
+  const maps::Point square = 2 * a - 5 * b + 4 * c - d;
+  const maps::Point cube = 3 * (b - c) + d - a;
+  return b + 0.5 * (t * (linear + t * (square + t * cube)));
+}
 
 double length(const Curve& curve) {
   double sum = 0;

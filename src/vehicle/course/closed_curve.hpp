@@ -26,6 +26,9 @@ inline double cross(maps::Point a, maps::Point b) {
   return a.x * b.y - a.y * b.x;
 }
 
+/// The Catmull-Rom cubic between b and c at t in [0, 1].
+maps::Point catmull_rom(maps::Point a, maps::Point b, maps::Point c, maps::Point d, double t);
+
 /// The length, m.
 double length(const Curve& curve);
 

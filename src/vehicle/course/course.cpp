@@ -74,7 +74,9 @@ fs::path find_waypoints(const fs::path& folder, detail::CsvForm& form, std::vect
   std::string ignored;
   for (const auto& file : files_with(folder, {".csv"})) {
     if (file.filename() == obstacle_file) continue;
-    if (const auto candidate_form = detail::csv_form(file); candidate_form != detail::CsvForm::other) {
+    const auto candidate_form = detail::csv_form(file);
+    if (candidate_form == detail::CsvForm::centre_line) continue;
+    if (candidate_form != detail::CsvForm::other) {
       candidates.push_back(file);
       form = candidate_form;
     } else {

@@ -114,6 +114,7 @@ CsvForm csv_form(const std::filesystem::path& file) {
   for (const Line& line : read_lines(file)) {
     if (is_comment(line)) {
       if (without_blanks(line.text.substr(1)) == raceline_header) return CsvForm::raceline;
+      if (without_blanks(line.text) == without_blanks(centre_line_header)) return CsvForm::centre_line;
       continue;
     }
     const auto cells = split(line.text, ',');
@@ -157,6 +158,46 @@ std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm 
         file.string(), lines.front(),
         "column " + std::string(columns.speed_name) + ": 0 in every row; at least one must be above 0");
   return waypoints;
+}
+
+std::vector<CentreLineRow> read_centre_line_rows(const std::filesystem::path& file, bool& widths) {
+  std::vector<CentreLineRow> rows;
+  bool left_first = false, first = true;
+  for (const Line& line : read_lines(file)) {
+    const char separator = line.text.find(';') != std::string::npos ? ';' : ',';
+    const auto cells = split(line.text, separator);
+    const auto names = [&] {  // a header, by its first cell
+      double value = 0;
+      const std::string_view cell = cells[0];
+      return std::from_chars(cell.data(), cell.data() + cell.size(), value).ec != std::errc{};
+    };
+    if (is_comment(line) || (first && names())) {
+      const auto left = line.text.find("left"), right = line.text.find("right");
+      if (left != std::string::npos && right != std::string::npos) left_first = left < right;
+      first = is_comment(line) && first;
+      continue;
+    }
+    if (cells.size() < 2 || cells.size() == 3)
+      throw IoError(file.string(), line.number,
+                    std::to_string(cells.size()) +
+                        " columns; every row must have x, y, width to the right, width to the left, or x and y");
+    if (!rows.empty() && widths != (cells.size() >= 4))
+      throw IoError(file.string(), line.number,
+                    std::to_string(cells.size()) + " columns; every row must have as many as the first");
+    widths = cells.size() >= 4;
+    first = false;
+    const Row row{file, line, cells};
+    CentreLineRow read{row.number(0, "x"), row.number(1, "y"), 0, 0};
+    if (widths) {
+      const double third = row.number(2, "3 (width)"), fourth = row.number(3, "4 (width)");
+      if (third < 0 || fourth < 0)
+        throw IoError(file.string(), line.number, "columns 3 and 4 (widths): must be at least 0");
+      read.left = left_first ? third : fourth;
+      read.right = left_first ? fourth : third;
+    }
+    rows.push_back(read);
+  }
+  return rows;
 }
 
 std::vector<maps::Point> read_points(const std::filesystem::path& file) {

@@ -8,8 +8,11 @@
 
 namespace slalom::vehicle::detail {
 
-/// The two formats of a waypoint CSV, or neither.
-enum class CsvForm { optimised_line, raceline, other };
+/// The header of a centre line with its widths.
+inline constexpr const char* centre_line_header = "# x_m, y_m, w_tr_right_m, w_tr_left_m";
+
+/// The two formats of a waypoint CSV, a centre line with widths, or neither.
+enum class CsvForm { optimised_line, raceline, centre_line, other };
 
 /// Detects the format of a CSV from its first lines. Throws IoError if it cannot be read.
 CsvForm csv_form(const std::filesystem::path& file);
@@ -19,6 +22,15 @@ CsvForm csv_form(const std::filesystem::path& file);
 /// number of every row.
 std::vector<Waypoint> read_waypoints(const std::filesystem::path& file, CsvForm form,
                                      std::vector<int>& lines);
+
+/// A row of a centre line.
+struct CentreLineRow {
+  double x = 0, y = 0;         ///< m
+  double right = 0, left = 0;  ///< m, from the line to the walls; 0 if the file has points only
+};
+
+/// The rows of a centre line (see read_centre_line). `widths` becomes whether the file has them.
+std::vector<CentreLineRow> read_centre_line_rows(const std::filesystem::path& file, bool& widths);
 
 /// Columns 0 and 1 of a CSV without header, one point at least.
 std::vector<maps::Point> read_points(const std::filesystem::path& file);

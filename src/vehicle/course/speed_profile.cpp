@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "vehicle/course/speed_passes.hpp"
+
 namespace slalom::vehicle {
 namespace {
 
@@ -21,12 +23,6 @@ void require_positive(const SpeedLimits& limits) {
   require_positive("lateral_acceleration", limits.lateral_acceleration);
   require_positive("acceleration", limits.acceleration);
   require_positive("braking", limits.braking);
-}
-
-/// The share of the tyres' force that is left for accelerating when turning at `speed`, 0..1.
-double share_left(double speed, double curvature, double lateral_acceleration) {
-  const double used = speed * speed * curvature / lateral_acceleration;
-  return std::sqrt(std::max(0.0, 1 - used * used));
 }
 
 double yaw_of(const maps::Point& from, const maps::Point& to) {
@@ -63,22 +59,13 @@ std::vector<double> feasible_speeds(std::span<const double> given, std::span<con
   for (std::size_t i = 0; i < n; ++i)
     speed[i] = std::min({given[i], limits.top_speed,
                          std::sqrt(limits.lateral_acceleration / std::max(std::abs(curvature[i]), 1e-9))});
-  const auto pass = [&](std::size_t from, std::size_t to, double way, double strength) {
-    const double a = strength * share_left(speed[from], curvature[from], limits.lateral_acceleration);
-    speed[to] = std::min(speed[to], std::sqrt(speed[from] * speed[from] + 2 * a * way));
+  const auto strongest = [&](double strength) {
+    return [&limits, strength](double v, double k) {
+      return strength * detail::share_left(v, k, limits.lateral_acceleration);
+    };
   };
-  // The slowest point of a closed path keeps its speed, so one pass from it is exact.
-  const auto slowest =
-      closed ? static_cast<std::size_t>(std::min_element(speed.begin(), speed.end()) - speed.begin()) : 0;
-  const std::size_t steps = closed ? n : n - 1;
-  for (std::size_t k = 0; k < steps; ++k) {
-    const std::size_t from = (slowest + k) % n;
-    pass(from, (from + 1) % n, step[from], limits.acceleration);
-  }
-  for (std::size_t k = steps; k > 0; --k) {
-    const std::size_t to = (slowest + k - 1) % n;
-    pass((to + 1) % n, to, step[to], limits.braking);
-  }
+  detail::lower_to_reachable(speed, curvature, step, closed, strongest(limits.acceleration),
+                             strongest(limits.braking));
   return speed;
 }
 

@@ -7,6 +7,7 @@
 #include "slalom/vehicle/course/raceline.hpp"
 #include "vehicle/course/centre_line.hpp"
 #include "vehicle/course/closed_curve.hpp"
+#include "vehicle/course/start_row.hpp"
 #include "vehicle/course/track_map.hpp"
 
 namespace slalom::vehicle {
@@ -37,28 +38,12 @@ Curve make_raceline(const Curve& centre_line, const TrackGeneratorOptions& optio
   return detail::resampled(line, static_cast<int>(std::floor(detail::length(line) / raceline_step)));
 }
 
-/// Rotates the rows so that the first one is in the middle of the longest section at (nearly) the highest
-/// speed: a start with a free view.
-std::size_t start_row(const std::vector<double>& speed) {
-  const std::size_t n = speed.size();
-  const double fast = 0.97 * *std::max_element(speed.begin(), speed.end());
-  std::size_t best = 0, best_run = 0, run = 0;
-  for (std::size_t i = 0; i < 2 * n; ++i) {
-    run = speed[i % n] >= fast ? std::min(run + 1, n) : 0;
-    if (run > best_run) {
-      best_run = run;
-      best = (i + n - run / 2) % n;
-    }
-  }
-  return best;
-}
-
 std::vector<RacelinePoint> with_profile(Curve& line, const SpeedLimits& limits, double& lap_time) {
   const std::size_t n = line.size();
   const double step = detail::length(line) / static_cast<double>(n);
   auto curvature = detail::curvature(line, curvature_reach);
   auto speed = speed_profile(curvature, step, limits);
-  const auto first = static_cast<std::ptrdiff_t>(start_row(speed));
+  const auto first = static_cast<std::ptrdiff_t>(detail::start_row(speed));
   std::rotate(line.begin(), line.begin() + first, line.end());
   std::rotate(curvature.begin(), curvature.begin() + first, curvature.end());
   std::rotate(speed.begin(), speed.begin() + first, speed.end());

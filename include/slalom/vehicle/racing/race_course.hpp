@@ -1,0 +1,77 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "slalom/maps/occupancy_grid.hpp"
+#include "slalom/maps/pose.hpp"
+#include "slalom/vehicle/course/track_generator.hpp"
+#include "slalom/vehicle/racing/corridor.hpp"
+#include "slalom/vehicle/racing/minimum_time.hpp"
+#include "slalom/vehicle/racing/racing_car.hpp"
+
+namespace slalom::vehicle {
+
+/// Where a course begins and which way round it is driven.
+struct RaceCourseOptions {
+  /// Start pose of the car. Without one, the origin of the map frame if it is in the corridor, along +x: there
+  /// a mapping program was started. Else the middle of the fastest part, driven counter-clockwise.
+  std::optional<maps::Pose> start;
+  bool reverse = false;  ///< the other way round
+};
+
+/// A line to drive along, and whether it is closed.
+struct GuideLine {
+  std::vector<maps::Point> points;  ///< m, map frame, in the direction of driving
+  bool closed = true;               ///< whether the first point follows the last one
+};
+
+/// A course made for a car.
+struct RaceCourse {
+  maps::OccupancyGrid map;      ///< the map
+  Corridor corridor;            ///< the free space along the course
+  Raceline raceline;            ///< the line of least time; begins beside the start
+  std::vector<double> distance; ///< m from each point of the raceline to the nearest wall
+  maps::Pose start;             ///< pose of the car
+  std::vector<std::string> notes;  ///< what was decided or ignored and why, one sentence each
+};
+
+/// Makes a course from a map. Unknown cells are walls, but for spots that are no larger than the car is wide
+/// and touch no occupied cell. Without `guide` it finds the way round an island of the map that is longest
+/// and passes the start; free space that reaches the border of the map counts as the surroundings of the
+/// course. With `guide`, it drives along this line. Throws std::invalid_argument if there is no such way, the
+/// start is not on it, or it is too narrow for the car; the message says where.
+RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car,
+                       const RaceCourseOptions& options = {}, const GuideLine* guide = nullptr);
+
+/// Makes a course from a corridor, with a map that is drawn from it. Throws as race_course() of a map.
+RaceCourse race_course(const Corridor& corridor, const RacingCar& car, const RaceCourseOptions& options = {});
+
+/// m, the steps of a centre line that suit a car and a length (m).
+double centre_line_step(const RacingCar& car, double length);
+
+/// A map of a corridor: free between its walls, which are `wall` m thick, unknown beyond; cells of
+/// `resolution` m.
+maps::OccupancyGrid draw_corridor(const Corridor& corridor, double resolution, double wall);
+
+/// The points and widths of a centre line file, and whether its ends meet.
+struct CentreLineFile {
+  GuideLine line;
+  std::vector<double> left, right;  ///< m to the walls, a point each; empty if the file has only points
+};
+
+/// Reads a centre line: rows `x, y, width to the right, width to the left` (m), or x and y alone, separated
+/// by commas or semicolons. Lines that begin with `#`, and a first row of names, are headers; if one names
+/// the left width before the right one, that is their order. The line is closed if its ends are at most three
+/// of its longest steps apart. Throws IoError with file, line, column, value and rule.
+CentreLineFile read_centre_line(const std::filesystem::path& file);
+
+/// Writes a course folder: map.yaml, map.png, raceline.csv (`# s_m; x_m; ...`), centerline.csv
+/// (`# x_m, y_m, w_tr_right_m, w_tr_left_m`) and course.yaml. Creates the folder if it does not exist. Throws
+/// IoError.
+void save_race_course(const RaceCourse& course, const std::filesystem::path& folder, const TrackLabel& label);
+
+}  // namespace slalom::vehicle

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "slalom/vehicle/course/speed_profile.hpp"
+
+namespace slalom::vehicle {
+
+/// The most that a car accelerates at one speed: a row of its ggv diagram. All accelerations > 0.
+struct GripAtSpeed {
+  double speed = 0;         ///< m/s, >= 0
+  double acceleration = 0;  ///< m/s^2, forwards when not turning
+  double braking = 0;       ///< m/s^2, when not turning
+  double lateral = 0;       ///< m/s^2, at constant speed
+};
+
+/// What a raceline depends on of a car. Lateral and longitudinal acceleration are inside an ellipse with
+/// these limits as half axes.
+struct RacingCar {
+  std::string name = "f1tenth";
+  double width = 0.31;             ///< m, of the body
+  double margin = 0.06;            ///< m, that the body keeps from walls
+  double wheelbase = 0.3302;       ///< m
+  double max_steering = 0.4;       ///< rad, of the front wheels
+  double max_steering_rate = 3.2;  ///< rad/s
+  SpeedLimits limits{8, 8.829, 8.829, 8.829};
+  double power = std::numeric_limits<double>::infinity();  ///< W/kg: v dv/dt is at most this
+  /// By rising speed; replaces the accelerations of `limits`. Linear between rows, constant beyond them.
+  std::vector<GripAtSpeed> grip;
+};
+
+/// Throws std::invalid_argument that names the key, its value and the rule.
+void validate(const RacingCar& car);
+
+/// The names of the cars that racing_car() knows.
+std::vector<std::string> racing_car_names();
+
+/// A car by its name: `f1tenth` (scale 1/10, no power limit, top speed 8 m/s, friction coefficient 0.9) or
+/// `passenger` (a full-scale car on a dry road). Throws std::invalid_argument that lists the names.
+RacingCar racing_car(const std::string& name);
+
+/// Reads a car from a YAML file:
+///
+///     base: f1tenth        # optional: a car by its name; the default is f1tenth
+///     width: 0.31          # m; also margin, wheelbase (m), max_steering (rad), max_steering_rate (rad/s),
+///     top_speed: 8         # m/s; lateral_acceleration, acceleration, braking (m/s^2), power (W/kg)
+///     ggv: [[0, 8, 9, 9], [8, 6, 9, 9]]   # rows: speed, acceleration, braking, lateral acceleration
+///
+/// Throws IoError with file, line, key, value and rule.
+RacingCar load_racing_car(const std::filesystem::path& file);
+
+/// Sets the accelerations to those of a friction coefficient: `friction` g in every direction. Throws
+/// std::invalid_argument unless it is finite and above 0.
+void set_friction(RacingCar& car, double friction);
+
+/// m that the centre of the car keeps from walls: half the width and the margin.
+inline double wall_distance(const RacingCar& car) {
+  return 0.5 * car.width + car.margin;
+}
+
+/// 1/m, the tightest curvature that the steering reaches: tan(max_steering) / wheelbase.
+double max_curvature(const RacingCar& car);
+
+/// The limits at a speed, with the power limit.
+GripAtSpeed grip_at(const RacingCar& car, double speed);
+
+/// The highest speeds (m/s) with which a car drives along a path: as feasible_speeds(), with limits that may
+/// depend on the speed, and with steering no faster than the car's. `curvature` (1/m) has one entry a point;
+/// `step[i]` is the way (m) from point i to the next, from the last to the first; that of an open path is not
+/// used. Throws std::invalid_argument for an invalid car and for sizes that differ.
+std::vector<double> racing_speeds(std::span<const double> curvature, std::span<const double> step,
+                                  bool closed, const RacingCar& car);
+
+}  // namespace slalom::vehicle

@@ -1,0 +1,40 @@
+#include "slalom/vehicle/racing/corridor.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "vehicle/racing/polyline.hpp"
+
+namespace slalom::vehicle {
+
+Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std::vector<double>& left,
+                              const std::vector<double>& right, bool closed, double step) {
+  const std::size_t n = points.size();
+  if (n < 4) throw std::invalid_argument("centre_line: " + std::to_string(n) + " points; at least 4 are needed");
+  if (left.size() != n || right.size() != n)
+    throw std::invalid_argument("centre_line: points and widths must have the same number");
+  if (!(step > 0)) throw std::invalid_argument("step: " + std::to_string(step) + " must be above 0 m");
+  for (std::size_t i = 0; i < n; ++i)
+    if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y) || !std::isfinite(left[i]) ||
+        !std::isfinite(right[i]))
+      throw std::invalid_argument("centre_line: point " + std::to_string(i) + " must be finite");
+  const detail::Resampling places = detail::equal_steps(points, closed, step);
+  Corridor corridor;
+  corridor.closed = closed;
+  corridor.centre_line = places.points;
+  for (std::size_t k = 0; k < places.points.size(); ++k) {
+    const std::size_t row = places.row[k], next = (row + 1) % n;
+    const double t = places.share[k];
+    corridor.left.push_back((1 - t) * left[row] + t * left[next]);
+    corridor.right.push_back((1 - t) * right[row] + t * right[next]);
+  }
+  corridor.normal = detail::line_normals(corridor.centre_line, closed);
+  return corridor;
+}
+
+double length(const Corridor& corridor) {
+  return detail::line_length(corridor.centre_line, corridor.closed);
+}
+
+}  // namespace slalom::vehicle

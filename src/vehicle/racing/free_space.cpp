@@ -1,0 +1,65 @@
+#include "vehicle/racing/free_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vehicle/racing/cell_regions.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+/// Makes small unknown spots free that touch no occupied cell; returns their number.
+int fill_spots(maps::OccupancyGrid& map, double largest) {
+  const CellRegions unknown(map.width, map.height, true, [&](int x, int y) {
+    return map.at(x, y) == maps::Occupancy::unknown;
+  });
+  const int most = static_cast<int>(std::floor(largest / map.resolution));
+  std::vector<char> fill(unknown.regions().size(), 0);
+  for (std::size_t k = 0; k < fill.size(); ++k) {
+    const CellRegion& region = unknown.regions()[k];
+    fill[k] = region.right - region.left < most && region.top - region.bottom < most;
+  }
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) {
+      const int region = unknown.at(x, y);
+      if (region < 0 || !fill[static_cast<std::size_t>(region)]) continue;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx)
+          if (!map.contains(x + dx, y + dy) || map.at(x + dx, y + dy) == maps::Occupancy::occupied)
+            fill[static_cast<std::size_t>(region)] = 0;
+    }
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x)
+      if (const int region = unknown.at(x, y); region >= 0 && fill[static_cast<std::size_t>(region)])
+        map.at(x, y) = maps::Occupancy::free;
+  return static_cast<int>(std::count(fill.begin(), fill.end(), 1));
+}
+
+}  // namespace
+
+FreeSpace::FreeSpace(const maps::OccupancyGrid& map, double spot)
+    : map_(map), spots_(fill_spots(map_, spot)), field_(maps::distance_transform(map_, true)) {}
+
+maps::Point FreeSpace::centre(int column, int row) const {
+  return maps::transform(map_.origin, {(column + 0.5) * map_.resolution, (row + 0.5) * map_.resolution});
+}
+
+maps::Point FreeSpace::cell(const maps::Point& point) const {
+  const maps::Point at = maps::inverse_transform(map_.origin, point);
+  return {at.x / map_.resolution - 0.5, at.y / map_.resolution - 0.5};
+}
+
+double FreeSpace::clearance(const maps::Point& point) const {
+  const maps::Point at = cell(point);
+  const double left = std::floor(at.x), low = std::floor(at.y), s = at.x - left, t = at.y - low;
+  const auto distance = [&](double column, double row) {
+    const int x = static_cast<int>(column), y = static_cast<int>(row);
+    return map_.contains(x, y) ? field_.at(x, y) : -1.0;
+  };
+  if (!(at.x > -1 && at.y > -1 && at.x < map_.width && at.y < map_.height)) return -1;
+  const double between = (1 - t) * ((1 - s) * distance(left, low) + s * distance(left + 1, low)) +
+                         t * ((1 - s) * distance(left, low + 1) + s * distance(left + 1, low + 1));
+  return between - 0.5 * map_.resolution;
+}
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "slalom/maps/distance_field.hpp"
+#include "slalom/maps/occupancy_grid.hpp"
+#include "slalom/maps/pose.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// The space of a map in which a car can drive.
+class FreeSpace {
+ public:
+  /// Unknown cells are walls, but for spots of at most `spot` m that touch no occupied cell: gaps between
+  /// beams. Cells outside the map are no walls.
+  FreeSpace(const maps::OccupancyGrid& map, double spot);
+
+  const maps::OccupancyGrid& map() const { return map_; }  ///< without the spots
+  int spots() const { return spots_; }                     ///< number of unknown spots that count as free
+
+  /// m, from a point to the edge of the nearest wall; negative inside walls and outside the map.
+  double clearance(const maps::Point& point) const;
+  /// m, from the centre of a cell to the edge of the nearest wall.
+  double clearance(int column, int row) const { return field_.at(column, row) - 0.5 * field_.resolution; }
+
+  /// The centre of a cell, map frame.
+  maps::Point centre(int column, int row) const;
+  /// The column and row of a point as real numbers: whole at the centres of cells.
+  maps::Point cell(const maps::Point& point) const;
+
+ private:
+  maps::OccupancyGrid map_;
+  int spots_ = 0;
+  maps::DistanceField field_;
+};
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "slalom/vehicle/racing/corridor.hpp"
+#include "vehicle/racing/free_space.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// What a corridor of a map is measured with.
+struct CorridorMeasure {
+  double keep = 0;   ///< m, that the centre of the car keeps from walls
+  double step = 0;   ///< m between the points of the centre line
+  double reach = 0;  ///< m, widths are at most this
+};
+
+/// The corridor along a line: at each point the widths to both sides up to where the car can be. A width ends
+/// where another part of the line is nearer, so that normals of neighbours do not cross.
+Corridor measured_corridor(const FreeSpace& space, const std::vector<maps::Point>& line, bool closed,
+                           const CorridorMeasure& measure);
+
+/// The same along a line in the middle between the walls. `line` gives the way, and may be rough.
+Corridor centred_corridor(const FreeSpace& space, const std::vector<maps::Point>& line, bool closed,
+                          const CorridorMeasure& measure);
+
+}  // namespace slalom::vehicle::detail

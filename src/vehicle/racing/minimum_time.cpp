@@ -1,0 +1,206 @@
+#include "slalom/vehicle/racing/minimum_time.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+#include "vehicle/racing/raceline_program.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+using detail::BandedMatrix;
+using detail::RacelineProgram;
+using detail::RacelineState;
+
+constexpr double weight_factor = 0.3;      // of the barrier, from one stage to the next
+constexpr double last_gap = 1e-4;          // of the time: constraints times weight in the last stage
+constexpr double stage_accuracy = 5e-6;    // share of the value that a step must promise in a stage
+constexpr int most_steps = 60;             // of Newton's method in a stage
+constexpr double curvature_room = 1.05;    // of a line that is tighter than the car turns, to be tightened
+constexpr double start_share = 0.4;        // of the fastest squared speeds along the first line
+constexpr double start_room = 0.1;         // of the width, from the bounds of the first line
+
+/// Distances and curvatures of a line.
+struct Geometry {
+  std::vector<double> step, curvature;
+};
+
+Geometry geometry_of(const std::vector<maps::Point>& p, bool closed) {
+  const std::size_t n = p.size();
+  Geometry g{std::vector<double>(n), std::vector<double>(n)};
+  for (std::size_t i = 0; i < n; ++i) {
+    const maps::Point &a = p[(i + n - 1) % n], &b = p[i], &c = p[(i + 1) % n];
+    g.step[i] = std::hypot(c.x - b.x, c.y - b.y);
+    if (!closed && (i == 0 || i + 1 == n)) continue;
+    g.curvature[i] = 2 * ((b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x)) /
+                     (std::hypot(b.x - a.x, b.y - a.y) * g.step[i] * std::hypot(c.x - a.x, c.y - a.y));
+  }
+  return g;
+}
+
+double tightest(const Geometry& geometry) {
+  double most = 0;
+  for (const double k : geometry.curvature) most = std::max(most, std::abs(k));
+  return most;
+}
+
+void check(const Corridor& corridor, const RacingCar& car) {
+  const std::size_t n = corridor.centre_line.size();
+  if (n < 8) throw std::invalid_argument("corridor: " + std::to_string(n) + " points; at least 8 are needed");
+  if (corridor.normal.size() != n || corridor.left.size() != n || corridor.right.size() != n)
+    throw std::invalid_argument("corridor: points, normals and widths must have the same number");
+  const auto width = [&](std::size_t i) { return corridor.left[i] + corridor.right[i]; };
+  std::size_t narrowest = 0;
+  for (std::size_t i = 1; i < n; ++i)
+    if (width(i) < width(narrowest)) narrowest = i;
+  if (width(narrowest) > 2 * wall_distance(car)) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "corridor: %.3f m wide at (%.2f, %.2f); must be wider than %.3f m, the car and its margin on "
+                "both sides",
+                width(narrowest), corridor.centre_line[narrowest].x, corridor.centre_line[narrowest].y,
+                2 * wall_distance(car));
+  throw std::invalid_argument(text);
+}
+
+/// Improves lines of a program.
+class BarrierMethod {
+ public:
+  BarrierMethod(const Corridor& corridor, const RacingCar& car)
+      : corridor_(corridor),
+        car_(car),
+        program_(corridor, car),
+        hessian_(2 * program_.points(), program_.band()),
+        gradient_(2 * static_cast<std::size_t>(program_.points())) {}
+
+  RacelineState solve() {
+    RacelineState state = first_line();
+    double weight = program_.time(state) / program_.constraints();
+    for (;;) {
+      minimise(state, weight);
+      if (weight * program_.constraints() < last_gap * program_.time(state)) return state;
+      weight *= weight_factor;
+    }
+  }
+
+  const RacelineProgram& program() const { return program_; }
+
+ private:
+  /// Along the centre line, slowly enough.
+  RacelineState first_line() {
+    RacelineState state;
+    for (int i = 0; i < program_.points(); ++i) {
+      const double low = program_.lower(i), high = program_.upper(i), room = start_room * (high - low);
+      state.offset.push_back(std::clamp(0.0, low + room, high - room));
+    }
+    const Geometry geometry = geometry_of(program_.line(state), corridor_.closed);
+    program_.set_curvature_limit(std::max(max_curvature(car_), curvature_room * tightest(geometry)));
+    const double top = car_.limits.top_speed;
+    for (const double speed : racing_speeds(geometry.curvature, geometry.step, corridor_.closed, car_))
+      state.square.push_back(start_share * speed * speed / (top * top));
+    // Limits that depend on the speed may be tighter at lower speeds.
+    for (int k = 0; k < 60 && !std::isfinite(program_.value(state, 1)); ++k)
+      for (double& square : state.square) square *= 0.5;
+    return state;
+  }
+
+  /// Newton's method with a line search.
+  void minimise(RacelineState& state, double weight) {
+    double value = program_.value(state, weight);
+    for (int step = 0; step < most_steps; ++step) {
+      tighten(state, weight, value);
+      const double decrease = direction(state, weight);
+      if (decrease < stage_accuracy * value) return;
+      double length = 1;
+      for (;; length *= 0.5) {
+        const RacelineState tried = moved(state, length);
+        const double there = program_.value(tried, weight);
+        if (there <= value - 0.1 * length * decrease) {
+          state = tried;
+          value = there;
+          break;
+        }
+        if (length < 1e-10) return;
+      }
+    }
+  }
+
+  /// Brings the limit of the curvature nearer to the car's, as far as the line allows.
+  void tighten(const RacelineState& state, double weight, double& value) {
+    const double wanted = max_curvature(car_);
+    if (program_.curvature_limit() <= wanted) return;
+    const double now = tightest(geometry_of(program_.line(state), corridor_.closed));
+    program_.set_curvature_limit(std::clamp(curvature_room * now, wanted, program_.curvature_limit()));
+    value = program_.value(state, weight);
+  }
+
+  /// Computes Newton's step into `step_`; returns the decrease that its slope promises.
+  double direction(const RacelineState& state, double weight) {
+    program_.derivatives(state, weight, gradient_, hessian_);
+    double scale = 0;
+    for (int i = 0; i < hessian_.size(); ++i) scale = std::max(scale, hessian_.at(i, i));
+    // Only rounding can make the matrix indefinite.
+    BandedMatrix factors = hessian_;
+    for (double shift = 1e-14 * scale; !factors.factorise(shift); shift *= 100) factors = hessian_;
+    step_ = gradient_;
+    factors.solve(step_);
+    double slope = 0;
+    for (std::size_t i = 0; i < step_.size(); ++i) slope += step_[i] * gradient_[i];
+    return slope;
+  }
+
+  RacelineState moved(const RacelineState& state, double length) const {
+    RacelineState result = state;
+    for (int i = 0; i < program_.points(); ++i) {
+      const int row = program_.position(i);
+      result.offset[i] -= length * step_[row];
+      result.square[i] -= length * step_[row + 1];
+    }
+    return result;
+  }
+
+  const Corridor& corridor_;
+  const RacingCar& car_;
+  RacelineProgram program_;
+  BandedMatrix hessian_;
+  std::vector<double> gradient_, step_;
+};
+
+Raceline with_speeds(const std::vector<maps::Point>& line, bool closed, const RacingCar& car) {
+  const std::size_t n = line.size();
+  const Geometry geometry = geometry_of(line, closed);
+  const auto speed = racing_speeds(geometry.curvature, geometry.step, closed, car);
+  Raceline result;
+  result.closed = closed;
+  double arc = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t next = closed || i + 1 < n ? (i + 1) % n : i;
+    const std::size_t before = closed || i > 0 ? (i + n - 1) % n : i;
+    const double acceleration =
+        next == i ? 0 : (speed[next] * speed[next] - speed[i] * speed[i]) / (2 * geometry.step[i]);
+    result.points.push_back({arc, line[i].x, line[i].y,
+                             std::atan2(line[next].y - line[before].y, line[next].x - line[before].x),
+                             geometry.curvature[i], speed[i], acceleration});
+    if (next == i) break;
+    arc += geometry.step[i];
+    result.time += 2 * geometry.step[i] / (speed[i] + speed[next]);
+  }
+  return result;
+}
+
+}  // namespace
+
+Raceline minimum_time_raceline(const Corridor& corridor, const RacingCar& car) {
+  validate(car);
+  check(corridor, car);
+  BarrierMethod method(corridor, car);
+  const RacelineState state = method.solve();
+  Raceline result = with_speeds(method.program().line(state), corridor.closed, car);
+  result.curvature_limit = method.program().curvature_limit();
+  return result;
+}
+
+}  // namespace slalom::vehicle

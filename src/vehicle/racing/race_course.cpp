@@ -1,0 +1,232 @@
+#include "slalom/vehicle/racing/race_course.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+#include "vehicle/course/start_row.hpp"
+#include "vehicle/racing/free_space.hpp"
+#include "vehicle/racing/loop_search.hpp"
+#include "vehicle/racing/map_corridor.hpp"
+#include "vehicle/racing/polyline.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+constexpr double widest = 25;       // of half the car's width: the reach of a corridor to one side
+constexpr double most_points = 3000;  // of a centre line
+
+double distance(const maps::Point& a, const maps::Point& b) {
+  return std::hypot(b.x - a.x, b.y - a.y);
+}
+
+std::string text_of(const maps::Point& point) {
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.2f, %.2f)", point.x, point.y);
+  return text;
+}
+
+template <class Points>
+std::size_t nearest_row(const Points& points, const maps::Point& place) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if (distance({points[i].x, points[i].y}, place) < distance({points[best].x, points[best].y}, place)) best = i;
+  return best;
+}
+
+/// Whether the line is driven along its points at a pose.
+bool along(const std::vector<maps::Point>& line, bool closed, const maps::Pose& pose) {
+  const std::size_t n = line.size(), at = nearest_row(line, {pose.x, pose.y});
+  const std::size_t before = closed ? (at + n - 1) % n : (at > 0 ? at - 1 : 0);
+  const std::size_t after = closed ? (at + 1) % n : std::min(at + 1, n - 1);
+  return (line[after].x - line[before].x) * std::cos(pose.yaw) +
+             (line[after].y - line[before].y) * std::sin(pose.yaw) >=
+         0;
+}
+
+/// Makes the row of the raceline that is nearest to the start, or the middle of its fastest part, the first
+/// one of raceline and corridor.
+void begin_at_start(RaceCourse& course, const std::optional<maps::Pose>& start) {
+  auto& points = course.raceline.points;
+  if (course.corridor.closed) {
+    std::vector<double> speeds;
+    for (const RacelinePoint& point : points) speeds.push_back(point.speed);
+    const std::size_t first = start ? nearest_row(points, {start->x, start->y}) : detail::start_row(speeds);
+    const auto turn = [first](auto& values) {
+      std::rotate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first), values.end());
+    };
+    const double before = points[first].arc_length;
+    const RacelinePoint &last = points.back(), &front = points.front();
+    const double length = last.arc_length + distance({last.x, last.y}, {front.x, front.y});
+    turn(points);
+    for (RacelinePoint& point : points)
+      point.arc_length = std::fmod(point.arc_length - before + length, length);
+    points.front().arc_length = 0;
+    turn(course.corridor.centre_line);
+    turn(course.corridor.normal);
+    turn(course.corridor.left);
+    turn(course.corridor.right);
+  }
+  course.start = start.value_or(maps::Pose{points.front().x, points.front().y, points.front().yaw});
+}
+
+/// Raceline, start and notes from map and corridor.
+void complete(RaceCourse& course, const detail::FreeSpace& space, const RacingCar& car,
+              const std::optional<maps::Pose>& start) {
+  course.raceline = minimum_time_raceline(course.corridor, car);
+  begin_at_start(course, start);
+  for (const RacelinePoint& point : course.raceline.points)
+    course.distance.push_back(space.clearance(maps::Point{point.x, point.y}));
+  if (course.raceline.curvature_limit > max_curvature(car)) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "the corridor forces the line to a curvature of %.3g 1/m; the steering of the car reaches %.3g 1/m",
+                  course.raceline.curvature_limit, max_curvature(car));
+    course.notes.emplace_back(text);
+  }
+}
+
+/// The start that is given, or the origin of the map frame if the line passes there.
+std::optional<maps::Pose> chosen_start(const RaceCourseOptions& options, const detail::FreeSpace& space,
+                                       double keep, std::vector<std::string>& notes) {
+  if (options.start) {
+    const maps::Point at{options.start->x, options.start->y};
+    if (!(space.clearance(at) >= 0.5 * keep))
+      throw std::invalid_argument("start: " + text_of(at) + " must be in free space of the map");
+    return options.start;
+  }
+  if (space.clearance(maps::Point{0, 0}) < keep) return std::nullopt;
+  notes.emplace_back("the start is the origin of the map frame, along +x, since none was given");
+  return maps::Pose{};
+}
+
+void check_finite(const GuideLine& guide) {
+  if (guide.points.size() < 4)
+    throw std::invalid_argument("line: " + std::to_string(guide.points.size()) + " points; at least 4 are needed");
+  for (const maps::Point& point : guide.points)
+    if (!std::isfinite(point.x) || !std::isfinite(point.y))
+      throw std::invalid_argument("line: every point must be finite");
+}
+
+}  // namespace
+
+double centre_line_step(const RacingCar& car, double length) {
+  return std::max(0.5 * car.wheelbase, length / most_points);
+}
+
+RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, const RaceCourseOptions& options,
+                       const GuideLine* guide) {
+  validate(car);
+  if (guide) check_finite(*guide);
+  RaceCourse course;
+  course.map = map;
+  const double keep = wall_distance(car);
+  const detail::FreeSpace space(map, car.width);
+  if (space.spots() > 0)
+    course.notes.push_back(std::to_string(space.spots()) +
+                           " unknown spots smaller than the car count as free");
+  std::optional<maps::Pose> start;
+  std::vector<maps::Point> line;
+  bool closed = true;
+  if (guide) {
+    if (options.start) start = chosen_start(options, space, keep, course.notes);
+    line = guide->points;
+    closed = guide->closed;
+  } else {
+    start = chosen_start(options, space, keep, course.notes);
+    const auto near = [&] { return start ? std::optional(maps::Point{start->x, start->y}) : std::nullopt; };
+    line = detail::find_loop(space, keep, near());
+    if (line.empty() && start && !options.start) {
+      // The origin is free but on no loop: it was not the start.
+      course.notes.pop_back();
+      start.reset();
+      line = detail::find_loop(space, keep, near());
+    }
+    if (line.empty())
+      throw std::invalid_argument(
+          start ? "map: no closed way passes the start " + text_of({start->x, start->y}) +
+                      " at " + std::to_string(keep) + " m from all walls"
+                : "map: it has no closed way at " + std::to_string(keep) +
+                      " m from all walls; an open course needs a line to drive along");
+  }
+  if (start && !along(line, closed, *start)) std::reverse(line.begin(), line.end());
+  if (options.reverse) std::reverse(line.begin(), line.end());
+  if (options.reverse && start && !options.start) start->yaw = maps::wrap_angle(start->yaw + 3.14159265358979);
+  const double step = centre_line_step(car, detail::line_length(line, closed));
+  course.corridor = detail::centred_corridor(space, line, closed, {keep, step, 0.5 * widest * car.width});
+  complete(course, space, car, start);
+  return course;
+}
+
+RaceCourse race_course(const Corridor& corridor, const RacingCar& car, const RaceCourseOptions& options) {
+  validate(car);
+  RaceCourse course;
+  course.corridor = corridor;
+  const bool backwards = (options.start && !along(corridor.centre_line, corridor.closed, *options.start)) !=
+                         options.reverse;
+  if (backwards) {
+    Corridor& turned = course.corridor;
+    std::reverse(turned.centre_line.begin(), turned.centre_line.end());
+    std::reverse(turned.normal.begin(), turned.normal.end());
+    std::reverse(turned.left.begin(), turned.left.end());
+    std::reverse(turned.right.begin(), turned.right.end());
+    std::swap(turned.left, turned.right);
+    for (maps::Point& normal : turned.normal) normal = {-normal.x, -normal.y};
+  }
+  course.map = draw_corridor(corridor, 0.16 * car.width, 0.64 * car.width);
+  const detail::FreeSpace space(course.map, 0);
+  complete(course, space, car, options.start);
+  return course;
+}
+
+maps::OccupancyGrid draw_corridor(const Corridor& corridor, double resolution, double wall) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const auto& line = corridor.centre_line;
+  double low_x = infinity, low_y = infinity, high_x = -infinity, high_y = -infinity, reach = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    low_x = std::min(low_x, line[i].x);
+    low_y = std::min(low_y, line[i].y);
+    high_x = std::max(high_x, line[i].x);
+    high_y = std::max(high_y, line[i].y);
+    reach = std::max({reach, corridor.left[i], corridor.right[i]});
+  }
+  reach += wall;
+  maps::OccupancyGrid map;
+  map.resolution = resolution;
+  map.origin = {resolution * std::floor((low_x - reach) / resolution - 2),
+                resolution * std::floor((low_y - reach) / resolution - 2), 0};
+  map.width = static_cast<int>(std::ceil((high_x + reach - map.origin.x) / resolution)) + 2;
+  map.height = static_cast<int>(std::ceil((high_y + reach - map.origin.y) / resolution)) + 2;
+  std::vector<double> beyond(static_cast<std::size_t>(map.width) * map.height, infinity);
+  const std::size_t segments = corridor.closed ? line.size() : line.size() - 1;
+  for (std::size_t i = 0; i < segments; ++i) {
+    const std::size_t next = (i + 1) % line.size();
+    const maps::Point a = line[i], d{line[next].x - a.x, line[next].y - a.y};
+    const double square = d.x * d.x + d.y * d.y;
+    const auto cell = [&](double value, double origin) {
+      return static_cast<int>(std::floor((value - origin) / resolution));
+    };
+    const int x0 = cell(std::min(a.x, a.x + d.x) - reach, map.origin.x),
+              x1 = cell(std::max(a.x, a.x + d.x) + reach, map.origin.x),
+              y0 = cell(std::min(a.y, a.y + d.y) - reach, map.origin.y),
+              y1 = cell(std::max(a.y, a.y + d.y) + reach, map.origin.y);
+    for (int y = y0; y <= y1; ++y)
+      for (int x = x0; x <= x1; ++x) {
+        const double px = map.origin.x + (x + 0.5) * resolution - a.x,
+                     py = map.origin.y + (y + 0.5) * resolution - a.y;
+        const double t = std::clamp((px * d.x + py * d.y) / square, 0.0, 1.0);
+        const auto& widths = d.x * py - d.y * px > 0 ? corridor.left : corridor.right;
+        double& least = beyond[static_cast<std::size_t>(y) * map.width + x];
+        least = std::min(least, std::hypot(px - t * d.x, py - t * d.y) - ((1 - t) * widths[i] + t * widths[next]));
+      }
+  }
+  for (const double b : beyond)
+    map.cells.push_back(b <= 0      ? maps::Occupancy::free
+                        : b <= wall ? maps::Occupancy::occupied
+                                    : maps::Occupancy::unknown);
+  return map;
+}
+
+}  // namespace slalom::vehicle

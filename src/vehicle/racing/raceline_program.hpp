@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "slalom/vehicle/racing/corridor.hpp"
+#include "slalom/vehicle/racing/racing_car.hpp"
+#include "vehicle/racing/banded_matrix.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// The variables of the minimum-time program, a point each.
+struct RacelineState {
+  std::vector<double> offset;  ///< m, to the left of the centre line
+  std::vector<double> square;  ///< squared speed, as a share of the squared top speed
+};
+
+/// The minimum-time program of minimum_time_raceline() with a logarithmic barrier for its constraints.
+class RacelineProgram {
+ public:
+  RacelineProgram(const Corridor& corridor, const RacingCar& car);
+
+  int points() const { return count_; }
+  /// The number of constraints.
+  int constraints() const { return 9 * count_; }
+  double lower(int i) const { return lower_[static_cast<std::size_t>(i)]; }  ///< m, bound of an offset
+  double upper(int i) const { return upper_[static_cast<std::size_t>(i)]; }  ///< m, bound of an offset
+
+  /// 1/m; at first the car's.
+  double curvature_limit() const { return curvature_limit_; }
+  void set_curvature_limit(double limit) { curvature_limit_ = limit; }
+
+  /// The points of a line, m.
+  std::vector<maps::Point> line(const RacelineState& state) const;
+
+  /// s, the time along the line.
+  double time(const RacelineState& state) const;
+
+  /// The time plus `weight` times the barrier, which is infinite where a constraint is broken.
+  double value(const RacelineState& state, double weight) const;
+
+  /// The gradient of value() and a positive semi-definite matrix of second derivatives, in the order of
+  /// position(): that of each segment without its negative eigenvalues. The sum then needs no shift towards
+  /// the unit matrix, with which the steps would be short.
+  void derivatives(const RacelineState& state, double weight, std::vector<double>& gradient,
+                   BandedMatrix& hessian) const;
+
+  /// Where a point's offset stands in vectors and matrices; its speed follows. Points of both halves of a
+  /// closed line take turns, so that the matrix has no corners far from its diagonal.
+  int position(int i) const { return 2 * (i < (count_ + 1) / 2 ? 2 * i : 2 * (count_ - 1 - i) + 1); }
+  /// Diagonals of the matrix below the main one.
+  int band() const;
+
+ private:
+  template <class T>
+  T segment(int i, const T (&offset)[4], const T (&square)[2], double weight) const;
+  template <class T>
+  T limit(const T& square, double GripAtSpeed::*member, double constant) const;
+  void segment_points(int i, int (&nodes)[4]) const;
+  int segments() const { return closed_ ? count_ : count_ - 1; }
+
+  const Corridor& corridor_;
+  const RacingCar& car_;
+  int count_;
+  bool closed_;
+  double curvature_limit_, top_square_;
+  std::vector<double> lower_, upper_;
+};
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,147 @@
+#include "slalom/vehicle/racing/racing_car.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "vehicle/course/speed_passes.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+constexpr double gravity = 9.81;  // m/s^2
+
+void require(bool holds, const std::string& key, double value, const char* rule) {
+  if (!holds) throw std::invalid_argument(key + ": " + std::to_string(value) + " must be " + rule);
+}
+
+void require_positive(const std::string& key, double value) {
+  require(value > 0 && std::isfinite(value), key, value, "finite and above 0");
+}
+
+/// Linear between rows, constant beyond them.
+GripAtSpeed interpolated(const std::vector<GripAtSpeed>& rows, double speed) {
+  if (speed <= rows.front().speed) return rows.front();
+  if (speed >= rows.back().speed) return rows.back();
+  std::size_t k = 1;
+  while (rows[k].speed < speed) ++k;
+  const GripAtSpeed &a = rows[k - 1], &b = rows[k];
+  const double t = (speed - a.speed) / (b.speed - a.speed);
+  const auto mix = [t](double low, double high) { return low + t * (high - low); };
+  return {speed, mix(a.acceleration, b.acceleration), mix(a.braking, b.braking), mix(a.lateral, b.lateral)};
+}
+
+/// The highest speed, at most `top`, whose lateral acceleration on a curve the tyres allow.
+double cornering_speed(const RacingCar& car, double curvature, double top) {
+  const double bend = std::max(std::abs(curvature), 1e-9);
+  if (car.grip.empty()) return std::min(top, std::sqrt(car.limits.lateral_acceleration / bend));
+  // The tyres may allow less the faster the car is, so the highest speed that holds is bracketed.
+  const auto holds = [&](double v) { return v * v * bend <= grip_at(car, v).lateral; };
+  if (holds(top)) return top;
+  double low = 0, high = top;
+  for (int k = 0; k < 50; ++k) {
+    const double middle = 0.5 * (low + high);
+    (holds(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+RacingCar passenger_car() {
+  RacingCar car;
+  car.name = "passenger";
+  car.width = 1.85;
+  car.margin = 0.3;
+  car.wheelbase = 2.7;
+  car.max_steering = 0.5;
+  car.max_steering_rate = 0.6;
+  car.limits = {55, 8.5, 5, 8.5};
+  car.power = 75;  // 110 kW, 1500 kg
+  return car;
+}
+
+}  // namespace
+
+void validate(const RacingCar& car) {
+  require_positive("width", car.width);
+  require(car.margin >= 0 && std::isfinite(car.margin), "margin", car.margin, "finite and at least 0");
+  require_positive("wheelbase", car.wheelbase);
+  require(car.max_steering > 0 && car.max_steering < 1.5, "max_steering", car.max_steering,
+          "above 0 and below 1.5 rad");
+  require_positive("max_steering_rate", car.max_steering_rate);
+  require_positive("top_speed", car.limits.top_speed);
+  require_positive("lateral_acceleration", car.limits.lateral_acceleration);
+  require_positive("acceleration", car.limits.acceleration);
+  require_positive("braking", car.limits.braking);
+  require(car.power > 0, "power", car.power, "above 0");
+  for (std::size_t i = 0; i < car.grip.size(); ++i) {
+    const std::string row = "ggv[" + std::to_string(i) + "].";
+    const GripAtSpeed& grip = car.grip[i];
+    require(grip.speed >= 0 && std::isfinite(grip.speed), row + "speed", grip.speed, "finite and at least 0");
+    require(i == 0 || grip.speed > car.grip[i - 1].speed, row + "speed", grip.speed,
+            "above that of the row before");
+    require_positive(row + "acceleration", grip.acceleration);
+    require_positive(row + "braking", grip.braking);
+    require_positive(row + "lateral", grip.lateral);
+  }
+}
+
+std::vector<std::string> racing_car_names() {
+  return {RacingCar{}.name, passenger_car().name};
+}
+
+RacingCar racing_car(const std::string& name) {
+  for (const RacingCar& car : {RacingCar{}, passenger_car()})
+    if (car.name == name) return car;
+  std::string names;
+  for (const std::string& known : racing_car_names()) names += (names.empty() ? "" : ", ") + known;
+  throw std::invalid_argument("car: '" + name + "' must be one of " + names);
+}
+
+void set_friction(RacingCar& car, double friction) {
+  require_positive("friction", friction);
+  const double grip = friction * gravity;
+  car.limits.lateral_acceleration = car.limits.acceleration = car.limits.braking = grip;
+  car.grip.clear();
+}
+
+double max_curvature(const RacingCar& car) {
+  return std::tan(car.max_steering) / car.wheelbase;
+}
+
+GripAtSpeed grip_at(const RacingCar& car, double speed) {
+  GripAtSpeed grip{speed, car.limits.acceleration, car.limits.braking, car.limits.lateral_acceleration};
+  if (!car.grip.empty()) grip = interpolated(car.grip, speed);
+  if (speed > 0) grip.acceleration = std::min(grip.acceleration, car.power / speed);
+  grip.speed = speed;
+  return grip;
+}
+
+std::vector<double> racing_speeds(std::span<const double> curvature, std::span<const double> step,
+                                  bool closed, const RacingCar& car) {
+  validate(car);
+  const std::size_t n = curvature.size();
+  if (step.size() != n)
+    throw std::invalid_argument("racing_speeds: curvature and step must have the same size");
+  std::vector<double> speed(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    speed[i] = cornering_speed(car, curvature[i], car.limits.top_speed);
+    if (!closed && i + 1 == n) break;
+    const double turn = car.wheelbase * std::abs(curvature[(i + 1) % n] - curvature[i]) / step[i];
+    if (speed[i] * turn > car.max_steering_rate) speed[i] = car.max_steering_rate / turn;
+  }
+  const auto lateral = [&](double v) {
+    return car.grip.empty() ? car.limits.lateral_acceleration : grip_at(car, v).lateral;
+  };
+  const auto forwards = [&](double v, double k) {
+    const double strongest = car.grip.empty() ? car.limits.acceleration : interpolated(car.grip, v).acceleration;
+    return std::min(strongest * detail::share_left(v, k, lateral(v)), car.power / std::max(v, 1e-9));
+  };
+  const auto braking = [&](double v, double k) {
+    const double strongest = car.grip.empty() ? car.limits.braking : interpolated(car.grip, v).braking;
+    return strongest * detail::share_left(v, k, lateral(v));
+  };
+  detail::lower_to_reachable(speed, curvature, step, closed, forwards, braking);
+  return speed;
+}
+
+}  // namespace slalom::vehicle

@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "slalom/core/error.hpp"
+#include "slalom/maps/ros_map.hpp"
+#include "slalom/vehicle/racing/race_course.hpp"
+#include "tools/command_line/shell_word.hpp"
+#include "tools/commands/commands.hpp"
+#include "tools/drawing/course_picture.hpp"
+#include "tools/json/json.hpp"
+#include "tools/recording/driven_line.hpp"
+#include "tools/scenario/start_pose.hpp"
+#include "tools/terminal/json_output.hpp"
+
+namespace slalom::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using vehicle::RaceCourse;
+using vehicle::RacingCar;
+
+struct Arguments {
+  std::string input, line, car = RacingCar{}.name, start, out, name, description, json;
+  std::optional<double> friction, top_speed, margin;
+  bool reverse = false, no_picture = false;
+};
+
+RacingCar chosen_car(const Arguments& arguments) {
+  RacingCar car = fs::is_regular_file(arguments.car) ? vehicle::load_racing_car(arguments.car)
+                                                     : vehicle::racing_car(arguments.car);
+  if (arguments.friction) vehicle::set_friction(car, *arguments.friction);
+  if (arguments.top_speed) car.limits.top_speed = *arguments.top_speed;
+  if (arguments.margin) car.margin = *arguments.margin;
+  vehicle::validate(car);
+  return car;
+}
+
+bool is_csv(const std::string& file) {
+  return fs::path(file).extension() == ".csv";
+}
+
+/// A line to drive along: a CSV file or a recording.
+vehicle::GuideLine read_guide(const std::string& file) {
+  return is_csv(file) ? vehicle::read_centre_line(file).line : driven_line(file);
+}
+
+RaceCourse make_course(const Arguments& arguments, const RacingCar& car) {
+  vehicle::RaceCourseOptions options;
+  options.reverse = arguments.reverse;
+  if (!arguments.start.empty()) options.start = parse_start(arguments.start);
+  if (!is_csv(arguments.input)) {
+    const auto map = maps::load_ros_map(arguments.input);
+    if (arguments.line.empty()) return vehicle::race_course(map, car, options);
+    const vehicle::GuideLine guide = read_guide(arguments.line);
+    return vehicle::race_course(map, car, options, &guide);
+  }
+  if (!arguments.line.empty()) throw CommandLineError("--line", "needs a map; " + arguments.input + " is a centre line");
+  const auto read = vehicle::read_centre_line(arguments.input);
+  if (read.left.empty())
+    throw IoError(arguments.input, 0, "has no widths; give a map, and this file as --line");
+  double length = 0;
+  for (std::size_t i = 1; i < read.line.points.size(); ++i)
+    length += std::hypot(read.line.points[i].x - read.line.points[i - 1].x,
+                         read.line.points[i].y - read.line.points[i - 1].y);
+  const auto corridor = vehicle::corridor_from_widths(read.line.points, read.left, read.right, read.line.closed,
+                                                      vehicle::centre_line_step(car, length));
+  return vehicle::race_course(corridor, car, options);
+}
+
+/// The command that makes the same course again.
+std::string command_of(const Arguments& arguments) {
+  std::string text = "slalom course " + shell_word(arguments.input);
+  const auto add = [&](const char* flag, const std::string& value) {
+    if (!value.empty()) text += std::string(" ") + flag + " " + shell_word(value);
+  };
+  const auto add_number = [&](const char* flag, const std::optional<double>& value) {
+    if (value) add(flag, short_number(*value));
+  };
+  add("--line", arguments.line);
+  if (arguments.car != RacingCar{}.name) add("--car", arguments.car);
+  add_number("--friction", arguments.friction);
+  add_number("--top-speed", arguments.top_speed);
+  add_number("--margin", arguments.margin);
+  add("--start", arguments.start);
+  if (arguments.reverse) text += " --reverse";
+  add("--out", folder_name(arguments.out));
+  return text;
+}
+
+Json summary_of(const RaceCourse& course, const RacingCar& car, const Arguments& arguments) {
+  const auto& points = course.raceline.points;
+  const auto [slowest, fastest] = std::minmax_element(
+      points.begin(), points.end(), [](const auto& a, const auto& b) { return a.speed < b.speed; });
+  double sharpest = 0, narrowest = 1e300;
+  for (const auto& point : points) sharpest = std::max(sharpest, std::abs(point.curvature));
+  for (std::size_t i = 0; i < course.corridor.left.size(); ++i)
+    narrowest = std::min(narrowest, course.corridor.left[i] + course.corridor.right[i]);
+  const auto nearest = std::min_element(course.distance.begin(), course.distance.end());
+  const auto& tightest = points[static_cast<std::size_t>(nearest - course.distance.begin())];
+  Json summary = {{"name", arguments.name},
+                  {"folder", arguments.out},
+                  {"car", car.name},
+                  {"closed", course.corridor.closed},
+                  {"length_m", vehicle::length(course.corridor)},
+                  {"narrowest_m", narrowest},
+                  {"raceline_length_m", course.raceline.points.back().arc_length},
+                  {"profile_lap_s", course.raceline.time},
+                  {"slowest_mps", slowest->speed},
+                  {"fastest_mps", fastest->speed},
+                  {"most_curvature_per_m", sharpest},
+                  {"car_curvature_per_m", vehicle::max_curvature(car)},
+                  {"least_clearance_m", *nearest - 0.5 * car.width},
+                  {"least_clearance_at", {tightest.x, tightest.y}},
+                  {"start", {course.start.x, course.start.y, course.start.yaw}},
+                  {"notes", Json::array()}};
+  for (const std::string& note : course.notes) summary["notes"].push_back(note);
+  return summary;
+}
+
+void run(Arguments arguments) {
+  const RacingCar car = chosen_car(arguments);
+  if (arguments.name.empty()) arguments.name = folder_name(arguments.out);
+  const RaceCourse course = [&] {
+    try {
+      return make_course(arguments, car);
+    } catch (const std::invalid_argument& error) {
+      throw IoError(arguments.input, 0, error.what());
+    }
+  }();
+  vehicle::save_race_course(course, arguments.out, {arguments.name, arguments.description, command_of(arguments)});
+  if (!arguments.no_picture) draw_course(course, car, arguments.name, fs::path(arguments.out) / "picture.png");
+  const Json summary = summary_of(course, car, arguments);
+  std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
+  for (const std::string& note : course.notes) words << "note: " << note << "\n";
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "%s: %.1f m long, %.2f m wide at least, %s %.2f s at %.1f to %.1f m/s, radius %.2f m at least, "
+                "%.2f m from body to wall\n",
+                arguments.name.c_str(), vehicle::length(course.corridor), summary["narrowest_m"].get<double>(),
+                course.corridor.closed ? "lap" : "drive", course.raceline.time,
+                summary["slowest_mps"].get<double>(), summary["fastest_mps"].get<double>(),
+                1 / std::max(summary["most_curvature_per_m"].get<double>(), 1e-9),
+                summary["least_clearance_m"].get<double>());
+  words << text << "written to " << arguments.out << "\n";
+  if (!arguments.json.empty()) write_json(summary, arguments.json);
+}
+
+}  // namespace
+
+void declare_course(Subcommand& command) {
+  command.summary("Make a course from a map: corridor, centre line, raceline of least time, picture");
+  const auto arguments = std::make_shared<Arguments>();
+  command
+      .option("input", arguments->input,
+              "Map (ROS YAML file), or a centre line with widths (.csv), from which a map is drawn")
+      .required();
+  command.option("--out", arguments->out, "Output folder; created if it does not exist").required();
+  command.option("--line", arguments->line,
+                 "Line to drive along: .csv with x and y, or a recorded drive; else the program finds a loop");
+  command
+      .option("--car", arguments->car, "Car: f1tenth, passenger, or a YAML file (docs/courses.md)")
+      .show_default();
+  command.option("--friction", arguments->friction, "Friction coefficient: acceleration in every direction, in g");
+  command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s");
+  command.option("--margin", arguments->margin, "Distance that the body keeps from walls, m");
+  command.option("--start", arguments->start,
+                 "Start pose x,y,yaw, m, m, rad; it sets the direction [the origin of the map frame, if it is on "
+                 "the course]");
+  command.flag("--reverse", arguments->reverse, "Drive the other way round");
+  command.option("--name", arguments->name, "Name of the course [name of the folder]");
+  command.option("--description", arguments->description, "Description for course.yaml");
+  command.option("--json", arguments->json, "Write a summary as JSON to this file, or to standard output: -");
+  command.flag("--no-picture", arguments->no_picture, "Do not write picture.png");
+  command.action([arguments] {
+    run(*arguments);
+    return 0;
+  });
+}
+
+}  // namespace slalom::tools
