@@ -38,6 +38,7 @@ class CommandLine : public testing::EvaluationFolder {
         "bench --methods mppi --seconds 0.01 --json " + out,
         "compare ev ev --json " + out,
         "completion bash",
+        "course '" SLALOM_COURSES "/wren/map.yaml' --out " + out,
         "drive --course wren --method mppi --set samples=32 --json " + out,
         "eval --check ev --again 0",
         "identify lap.jsonl --json " + out,

@@ -61,7 +61,8 @@ RaceCourse make_course(const Arguments& arguments, const RacingCar& car) {
     const vehicle::GuideLine guide = read_guide(arguments.line);
     return vehicle::race_course(map, car, options, &guide);
   }
-  if (!arguments.line.empty()) throw CommandLineError("--line", "needs a map; " + arguments.input + " is a centre line");
+  if (!arguments.line.empty())
+    throw CommandLineError("--line", "needs a map; " + arguments.input + " is a centre line");
   const auto read = vehicle::read_centre_line(arguments.input);
   if (read.left.empty())
     throw IoError(arguments.input, 0, "has no widths; give a map, and this file as --line");
@@ -69,8 +70,8 @@ RaceCourse make_course(const Arguments& arguments, const RacingCar& car) {
   for (std::size_t i = 1; i < read.line.points.size(); ++i)
     length += std::hypot(read.line.points[i].x - read.line.points[i - 1].x,
                          read.line.points[i].y - read.line.points[i - 1].y);
-  const auto corridor = vehicle::corridor_from_widths(read.line.points, read.left, read.right, read.line.closed,
-                                                      vehicle::centre_line_step(car, length));
+  const auto corridor = vehicle::corridor_from_widths(
+      read.line.points, read.left, read.right, read.line.closed, vehicle::centre_line_step(car, length));
   return vehicle::race_course(corridor, car, options);
 }
 
@@ -110,7 +111,7 @@ Json summary_of(const RaceCourse& course, const RacingCar& car, const Arguments&
                   {"closed", course.corridor.closed},
                   {"length_m", vehicle::length(course.corridor)},
                   {"narrowest_m", narrowest},
-                  {"raceline_length_m", course.raceline.points.back().arc_length},
+                  {"raceline_length_m", course.raceline.length},
                   {"profile_lap_s", course.raceline.time},
                   {"slowest_mps", slowest->speed},
                   {"fastest_mps", fastest->speed},
@@ -134,20 +135,22 @@ void run(Arguments arguments) {
       throw IoError(arguments.input, 0, error.what());
     }
   }();
-  vehicle::save_race_course(course, arguments.out, {arguments.name, arguments.description, command_of(arguments)});
-  if (!arguments.no_picture) draw_course(course, car, arguments.name, fs::path(arguments.out) / "picture.png");
+  vehicle::save_race_course(course, arguments.out,
+                            {arguments.name, arguments.description, command_of(arguments)});
+  if (!arguments.no_picture)
+    draw_course(course, car, arguments.name, fs::path(arguments.out) / "picture.png");
   const Json summary = summary_of(course, car, arguments);
   std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
   for (const std::string& note : course.notes) words << "note: " << note << "\n";
   char text[320];
-  std::snprintf(text, sizeof text,
-                "%s: %.1f m long, %.2f m wide at least, %s %.2f s at %.1f to %.1f m/s, radius %.2f m at least, "
-                "%.2f m from body to wall\n",
-                arguments.name.c_str(), vehicle::length(course.corridor), summary["narrowest_m"].get<double>(),
-                course.corridor.closed ? "lap" : "drive", course.raceline.time,
-                summary["slowest_mps"].get<double>(), summary["fastest_mps"].get<double>(),
-                1 / std::max(summary["most_curvature_per_m"].get<double>(), 1e-9),
-                summary["least_clearance_m"].get<double>());
+  std::snprintf(
+      text, sizeof text,
+      "%s: %.1f m long, %.2f m wide at least, %s %.2f s at %.1f to %.1f m/s, radius %.2f m at least, "
+      "%.2f m from body to wall\n",
+      arguments.name.c_str(), vehicle::length(course.corridor), summary["narrowest_m"].get<double>(),
+      course.corridor.closed ? "lap" : "drive", course.raceline.time, summary["slowest_mps"].get<double>(),
+      summary["fastest_mps"].get<double>(), 1 / std::max(summary["most_curvature_per_m"].get<double>(), 1e-9),
+      summary["least_clearance_m"].get<double>());
   words << text << "written to " << arguments.out << "\n";
   if (!arguments.json.empty()) write_json(summary, arguments.json);
 }
@@ -162,17 +165,19 @@ void declare_course(Subcommand& command) {
               "Map (ROS YAML file), or a centre line with widths (.csv), from which a map is drawn")
       .required();
   command.option("--out", arguments->out, "Output folder; created if it does not exist").required();
-  command.option("--line", arguments->line,
-                 "Line to drive along: .csv with x and y, or a recorded drive; else the program finds a loop");
-  command
-      .option("--car", arguments->car, "Car: f1tenth, passenger, or a YAML file (docs/courses.md)")
+  command.option(
+      "--line", arguments->line,
+      "Line to drive along: .csv with x and y, or a recorded drive; else the program finds a loop");
+  command.option("--car", arguments->car, "Car: f1tenth, passenger, or a YAML file (docs/courses.md)")
       .show_default();
-  command.option("--friction", arguments->friction, "Friction coefficient: acceleration in every direction, in g");
+  command.option("--friction", arguments->friction,
+                 "Friction coefficient: acceleration in every direction, in g");
   command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s");
   command.option("--margin", arguments->margin, "Distance that the body keeps from walls, m");
-  command.option("--start", arguments->start,
-                 "Start pose x,y,yaw, m, m, rad; it sets the direction [the origin of the map frame, if it is on "
-                 "the course]");
+  command.option(
+      "--start", arguments->start,
+      "Start pose x,y,yaw, m, m, rad; it sets the direction [the origin of the map frame, if it is on "
+      "the course]");
   command.flag("--reverse", arguments->reverse, "Drive the other way round");
   command.option("--name", arguments->name, "Name of the course [name of the folder]");
   command.option("--description", arguments->description, "Description for course.yaml");

@@ -53,12 +53,13 @@ void draw_course(const vehicle::RaceCourse& course, const vehicle::RacingCar& ca
   picture.arrow(course.start, 18, ink);
 
   char facts[400];
-  std::snprintf(facts, sizeof facts,
-                "%s \xC2\xB7 %.1f m \xC2\xB7 %s %.2f s \xC2\xB7 %.2f m from body to wall (red) \xC2\xB7 radius %.2f m "
-                "(violet), the car turns %.2f m",
-                car.name.c_str(), vehicle::length(corridor), corridor.closed ? "lap" : "drive",
-                course.raceline.time, course.distance[near] - 0.5 * car.width,
-                1 / std::max(std::abs(points[tight].curvature), 1e-9), 1 / vehicle::max_curvature(car));
+  std::snprintf(
+      facts, sizeof facts,
+      "%s \xC2\xB7 %.1f m \xC2\xB7 %s %.2f s \xC2\xB7 %.2f m from body to wall (red) \xC2\xB7 radius %.2f m "
+      "(violet), the car turns %.2f m",
+      car.name.c_str(), vehicle::length(corridor), corridor.closed ? "lap" : "drive", course.raceline.time,
+      course.distance[near] - 0.5 * car.width, 1 / std::max(std::abs(points[tight].curvature), 1e-9),
+      1 / vehicle::max_curvature(car));
   picture.legend(title, facts, slowest, fastest);
   picture.save(file);
 }

@@ -27,13 +27,22 @@ std::string number(double value, int digits) {
 }
 
 MapView view_of(const maps::OccupancyGrid& map, int long_side) {
-  const double wide = map.width * map.resolution, high = map.height * map.resolution;
+  const double along = map.width * map.resolution, across = map.height * map.resolution;
+  double left = map.origin.x, right = left, low = map.origin.y, top = low;
+  for (const maps::Point& corner : {maps::Point{along, 0}, {along, across}, {0, across}}) {
+    const maps::Point at = maps::transform(map.origin, corner);
+    left = std::min(left, at.x);
+    right = std::max(right, at.x);
+    low = std::min(low, at.y);
+    top = std::max(top, at.y);
+  }
+  const double wide = right - left, high = top - low;
   MapView view;
   view.scale = long_side / std::max(wide, high);
-  view.height = static_cast<int>(std::ceil(high * view.scale));
-  view.width = std::max(static_cast<int>(std::ceil(wide * view.scale)), 900);
-  view.left = map.origin.x - 0.5 * (view.width / view.scale - wide);
-  view.top = map.origin.y + high;
+  view.height = static_cast<int>(std::ceil(high * view.scale - 1e-6));
+  view.width = std::max(static_cast<int>(std::ceil(wide * view.scale - 1e-6)), 900);
+  view.left = left - 0.5 * (view.width / view.scale - wide);
+  view.top = top;
   return view;
 }
 

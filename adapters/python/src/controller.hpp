@@ -63,5 +63,6 @@ void bind_feedback(py::module_& module);
 void bind_maps(py::module_& module);
 void bind_problems(py::module_& module);
 void bind_driving(py::module_& module);
+void bind_racing(py::module_& module);
 
 }  // namespace slalom::python

@@ -10,5 +10,6 @@ PYBIND11_MODULE(_slalom, module) {
   slalom::python::bind_feedback(module);
   slalom::python::bind_maps(module);
   slalom::python::bind_driving(module);
+  slalom::python::bind_racing(module);
   module.attr("__version__") = slalom::version();
 }

@@ -24,7 +24,8 @@ Curve resampled_once(const Curve& curve, int count) {
       walked += stretch;
     }
     const double t = std::clamp((wanted - walked) / stretch, 0.0, 1.0);
-    result.push_back(catmull_rom(curve[(i + n - 1) % n], curve[i % n], curve[(i + 1) % n], curve[(i + 2) % n], t));
+    result.push_back(
+        catmull_rom(curve[(i + n - 1) % n], curve[i % n], curve[(i + 1) % n], curve[(i + 2) % n], t));
   }
   return result;
 }

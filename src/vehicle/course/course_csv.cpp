@@ -178,9 +178,10 @@ std::vector<CentreLineRow> read_centre_line_rows(const std::filesystem::path& fi
       continue;
     }
     if (cells.size() < 2 || cells.size() == 3)
-      throw IoError(file.string(), line.number,
-                    std::to_string(cells.size()) +
-                        " columns; every row must have x, y, width to the right, width to the left, or x and y");
+      throw IoError(
+          file.string(), line.number,
+          std::to_string(cells.size()) +
+              " columns; every row must have x, y, width to the right, width to the left, or x and y");
     if (!rows.empty() && widths != (cells.size() >= 4))
       throw IoError(file.string(), line.number,
                     std::to_string(cells.size()) + " columns; every row must have as many as the first");

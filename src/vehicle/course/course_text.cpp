@@ -53,7 +53,8 @@ std::string raceline_text(const std::vector<RacelinePoint>& raceline, int digits
   return text;
 }
 
-std::string course_text(const std::string& maker, const TrackLabel& label, const maps::Pose& start, bool closed) {
+std::string course_text(const std::string& maker, const TrackLabel& label, const maps::Pose& start,
+                        bool closed) {
   return "# Made by `slalom " + maker + "`; the command below makes it again.\nname: " + quoted(label.name) +
          "\ndescription: " + quoted(label.description) + "\ncommand: " + quoted(label.command) +
          "\nstart: {x: " + fixed(start.x, 4) + ", y: " + fixed(start.y, 4) + ", yaw: " + fixed(start.yaw, 4) +

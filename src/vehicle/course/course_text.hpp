@@ -23,6 +23,7 @@ void write_file(const std::filesystem::path& file, const std::string& text);
 std::string raceline_text(const std::vector<RacelinePoint>& raceline, int digits);
 
 /// course.yaml; `maker` is the command of the program.
-std::string course_text(const std::string& maker, const TrackLabel& label, const maps::Pose& start, bool closed);
+std::string course_text(const std::string& maker, const TrackLabel& label, const maps::Pose& start,
+                        bool closed);
 
 }  // namespace slalom::vehicle::detail

@@ -16,7 +16,9 @@ class BandedMatrix {
   void clear() { std::fill(cells_.begin(), cells_.end(), 0.0); }
 
   /// The element of a row and a column; row >= column.
-  double& at(int row, int column) { return cells_[static_cast<std::size_t>(row) * (band_ + 1) + row - column]; }
+  double& at(int row, int column) {
+    return cells_[static_cast<std::size_t>(row) * (band_ + 1) + row - column];
+  }
   double at(int row, int column) const {
     return cells_[static_cast<std::size_t>(row) * (band_ + 1) + row - column];
   }

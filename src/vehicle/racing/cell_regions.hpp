@@ -36,7 +36,8 @@ class CellRegions {
           for (int dy = -1; dy <= 1; ++dy)
             for (int dx = -1; dx <= 1; ++dx) {
               const int nx = column + dx, ny = row + dy;
-              if ((!diagonal && dx != 0 && dy != 0) || nx < 0 || ny < 0 || nx >= width || ny >= height) continue;
+              if ((!diagonal && dx != 0 && dy != 0) || nx < 0 || ny < 0 || nx >= width || ny >= height)
+                continue;
               if (label_[index(nx, ny)] >= 0 || !has(nx, ny)) continue;
               label_[index(nx, ny)] = number;
               front.emplace_back(nx, ny);
@@ -52,7 +53,8 @@ class CellRegions {
 
  private:
   std::size_t index(int column, int row) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(column);
   }
 
   void add(CellRegion& region, int column, int row) const {

@@ -14,8 +14,9 @@ CentreLineFile read_centre_line(const std::filesystem::path& file) {
     return std::hypot(b.x - a.x, b.y - a.y);
   };
   // Equal points have no direction between them; a last row may repeat the first.
-  rows.erase(std::unique(rows.begin(), rows.end(), [&](const auto& a, const auto& b) { return apart(a, b) == 0; }),
-             rows.end());
+  rows.erase(
+      std::unique(rows.begin(), rows.end(), [&](const auto& a, const auto& b) { return apart(a, b) == 0; }),
+      rows.end());
   if (rows.size() > 1 && apart(rows.front(), rows.back()) == 0) rows.pop_back();
   if (rows.size() < 4)
     throw IoError(file.string(), 0, std::to_string(rows.size()) + " points; a centre line needs at least 4");

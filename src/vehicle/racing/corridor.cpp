@@ -11,7 +11,8 @@ namespace slalom::vehicle {
 Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std::vector<double>& left,
                               const std::vector<double>& right, bool closed, double step) {
   const std::size_t n = points.size();
-  if (n < 4) throw std::invalid_argument("centre_line: " + std::to_string(n) + " points; at least 4 are needed");
+  if (n < 4)
+    throw std::invalid_argument("centre_line: " + std::to_string(n) + " points; at least 4 are needed");
   if (left.size() != n || right.size() != n)
     throw std::invalid_argument("centre_line: points and widths must have the same number");
   if (!(step > 0)) throw std::invalid_argument("step: " + std::to_string(step) + " must be above 0 m");

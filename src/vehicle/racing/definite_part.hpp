@@ -6,8 +6,8 @@
 
 namespace slalom::vehicle::detail {
 
-/// Replaces the negative eigenvalues of a symmetric N x N matrix, given by its lower triangle row by row, by 0.
-/// Eigenvalues by Jacobi's cyclic rotations (Golub & Van Loan, "Matrix Computations", 2013, Sec. 8.5).
+/// Replaces the negative eigenvalues of a symmetric N x N matrix, given by its lower triangle row by row, by
+/// 0. Eigenvalues by Jacobi's cyclic rotations (Golub & Van Loan, "Matrix Computations", 2013, Sec. 8.5).
 template <int N>
 void make_positive(std::array<double, N*(N + 1) / 2>& triangle) {
   double a[N][N], v[N][N];

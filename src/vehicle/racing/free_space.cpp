@@ -10,9 +10,8 @@ namespace {
 
 /// Makes small unknown spots free that touch no occupied cell; returns their number.
 int fill_spots(maps::OccupancyGrid& map, double largest) {
-  const CellRegions unknown(map.width, map.height, true, [&](int x, int y) {
-    return map.at(x, y) == maps::Occupancy::unknown;
-  });
+  const CellRegions unknown(map.width, map.height, true,
+                            [&](int x, int y) { return map.at(x, y) == maps::Occupancy::unknown; });
   const int most = static_cast<int>(std::floor(largest / map.resolution));
   std::vector<char> fill(unknown.regions().size(), 0);
   for (std::size_t k = 0; k < fill.size(); ++k) {
@@ -49,17 +48,47 @@ maps::Point FreeSpace::cell(const maps::Point& point) const {
   return {at.x / map_.resolution - 0.5, at.y / map_.resolution - 0.5};
 }
 
-double FreeSpace::clearance(const maps::Point& point) const {
-  const maps::Point at = cell(point);
+double FreeSpace::to_centre(const maps::Point& at) const {
   const double left = std::floor(at.x), low = std::floor(at.y), s = at.x - left, t = at.y - low;
   const auto distance = [&](double column, double row) {
-    const int x = static_cast<int>(column), y = static_cast<int>(row);
-    return map_.contains(x, y) ? field_.at(x, y) : -1.0;
+    return field_.at(std::clamp(static_cast<int>(column), 0, map_.width - 1),
+                     std::clamp(static_cast<int>(row), 0, map_.height - 1));
   };
-  if (!(at.x > -1 && at.y > -1 && at.x < map_.width && at.y < map_.height)) return -1;
-  const double between = (1 - t) * ((1 - s) * distance(left, low) + s * distance(left + 1, low)) +
-                         t * ((1 - s) * distance(left, low + 1) + s * distance(left + 1, low + 1));
-  return between - 0.5 * map_.resolution;
+  return (1 - t) * ((1 - s) * distance(left, low) + s * distance(left + 1, low)) +
+         t * ((1 - s) * distance(left, low + 1) + s * distance(left + 1, low + 1));
+}
+
+double FreeSpace::to_edge(const maps::Point& at, double reach) const {
+  const int cells = static_cast<int>(std::ceil(reach / map_.resolution)) + 1;
+  const int x0 = static_cast<int>(std::lround(at.x)), y0 = static_cast<int>(std::lround(at.y));
+  double nearest = reach / map_.resolution;
+  for (int y = y0 - cells; y <= y0 + cells; ++y)
+    for (int x = x0 - cells; x <= x0 + cells; ++x) {
+      if (!map_.contains(x, y) || map_.at(x, y) == maps::Occupancy::free) continue;
+      const double dx = std::max(0.0, std::abs(at.x - x) - 0.5), dy = std::max(0.0, std::abs(at.y - y) - 0.5);
+      if (dx < nearest && dy < nearest) nearest = std::min(nearest, std::hypot(dx, dy));
+    }
+  return nearest * map_.resolution;
+}
+
+double FreeSpace::clearance(const maps::Point& point) const {
+  const maps::Point at = cell(point);
+  if (!on_map(at)) return -1;
+  const double centre = to_centre(at);  // infinite without any wall
+  return std::isfinite(centre) ? to_edge(at, centre + map_.resolution) : centre;
+}
+
+bool FreeSpace::is_clear(const maps::Point& point, double keep) const {
+  const maps::Point at = cell(point);
+  if (!on_map(at)) return false;
+  // Half a diagonal lies between centre and corner, and as much between a point and the centre of its cell.
+  const double centre = to_centre(at), doubt = 1.5 * map_.resolution;
+  if (centre - doubt >= keep) return true;
+  return centre + doubt >= keep && to_edge(at, keep + map_.resolution) >= keep;
+}
+
+bool FreeSpace::on_map(const maps::Point& at) const {
+  return at.x >= -0.5 && at.y >= -0.5 && at.x <= map_.width - 0.5 && at.y <= map_.height - 0.5;
 }
 
 }  // namespace slalom::vehicle::detail

@@ -18,9 +18,11 @@ class FreeSpace {
   const maps::OccupancyGrid& map() const { return map_; }  ///< without the spots
   int spots() const { return spots_; }                     ///< number of unknown spots that count as free
 
-  /// m, from a point to the edge of the nearest wall; negative inside walls and outside the map.
+  /// m, from a point to the nearest wall, to the edge of its cell; 0 in walls, negative outside the map.
   double clearance(const maps::Point& point) const;
-  /// m, from the centre of a cell to the edge of the nearest wall.
+  /// Whether clearance() is at least `keep` (m); faster.
+  bool is_clear(const maps::Point& point, double keep) const;
+  /// m, from the centre of a cell to the nearest wall; up to 0.2 cells too great where its corner is nearest.
   double clearance(int column, int row) const { return field_.at(column, row) - 0.5 * field_.resolution; }
 
   /// The centre of a cell, map frame.
@@ -29,6 +31,12 @@ class FreeSpace {
   maps::Point cell(const maps::Point& point) const;
 
  private:
+  bool on_map(const maps::Point& at) const;
+  /// m, from a point, in cells, to the centre of the nearest wall cell, between the values of cells.
+  double to_centre(const maps::Point& at) const;
+  /// m, from a point, in cells, to the nearest wall cell, at most `reach` (m).
+  double to_edge(const maps::Point& at, double reach) const;
+
   maps::OccupancyGrid map_;
   int spots_ = 0;
   maps::DistanceField field_;

@@ -154,7 +154,8 @@ class Area {
       if (reached > cost[static_cast<std::size_t>(cell)]) continue;
       neighbours(cell, 8, [&, cell = cell, reached = reached](int next, int k) {
         if (!open[static_cast<std::size_t>(next)]) return;
-        const double total = reached + (k < 4 ? 1 : std::sqrt(2.0)) * (1 / clearance(cell) + 1 / clearance(next));
+        const double total =
+            reached + (k < 4 ? 1 : std::sqrt(2.0)) * (1 / clearance(cell) + 1 / clearance(next));
         if (total >= cost[static_cast<std::size_t>(next)]) return;
         cost[static_cast<std::size_t>(next)] = total;
         parent[static_cast<std::size_t>(next)] = cell;
@@ -181,6 +182,14 @@ double enclosed_area(const std::vector<maps::Point>& loop) {
   return sum;
 }
 
+/// The length of a loop over its mean clearance: great for a road, small for a way round furniture or round
+/// all that stands in a hall.
+double slenderness(const FreeSpace& space, const std::vector<maps::Point>& loop) {
+  double sum = 0;
+  for (const maps::Point& point : loop) sum += space.clearance(point);
+  return loop.empty() ? 0 : line_length(loop, true) * static_cast<double>(loop.size()) / sum;
+}
+
 double distance_to(const std::vector<maps::Point>& loop, const maps::Point& point) {
   double least = std::numeric_limits<double>::infinity();
   for (const maps::Point& p : loop) least = std::min(least, std::hypot(p.x - point.x, p.y - point.y));
@@ -194,7 +203,7 @@ std::vector<maps::Point> find_loop(const FreeSpace& space, double keep,
   const CellRegions areas(space.map().width, space.map().height, false,
                           [&](int x, int y) { return space.clearance(x, y) >= keep; });
   std::vector<maps::Point> best;
-  double best_length = 0;
+  double best_slenderness = 0;
   for (const bool surroundings : {false, true}) {
     std::size_t searched = 0;
     for (const int area : largest(areas, areas.regions().size())) {
@@ -205,11 +214,12 @@ std::vector<maps::Point> find_loop(const FreeSpace& space, double keep,
       for (const int island : largest(islands, most_islands + 1)) {
         if (island == islands.at(0, 0)) continue;
         std::vector<maps::Point> loop = ground.way_round(islands, island);
-        const double length = line_length(loop, true);
-        const bool passes = !near || distance_to(loop, *near) <= std::max(4 * keep, 1.5 * space.clearance(*near));
-        if (loop.empty() || !passes || length <= best_length) continue;
+        const double slender = slenderness(space, loop);
+        const bool passes =
+            !near || distance_to(loop, *near) <= std::max(4 * keep, 1.5 * space.clearance(*near));
+        if (loop.empty() || !passes || slender <= best_slenderness) continue;
         best = std::move(loop);
-        best_length = length;
+        best_slenderness = slender;
       }
     }
     if (!best.empty()) break;

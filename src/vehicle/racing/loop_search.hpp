@@ -7,10 +7,11 @@
 
 namespace slalom::vehicle::detail {
 
-/// A closed way through the free space of a map, at least `keep` (m) from all walls: of all those that lead
-/// round an island of the map, each far from walls where it can be, the longest; with `near` the longest of
-/// those that pass there. Free space that reaches the border of the map is the surroundings, and only used if
-/// there is no other. Empty if there is no such way. Points are cells of the map, in metres, counter-clockwise.
+/// A closed way through the free space of a map, at least `keep` (m) from all walls: of those that lead round
+/// an island of the map, each far from walls where it can be, the one that is longest for its width; with
+/// `near`, of those that pass there. Free space that reaches the border of the map is the surroundings, and
+/// only used if there is no other. Empty if there is no such way. Points are the centres of cells, m, map
+/// frame, counter-clockwise.
 std::vector<maps::Point> find_loop(const FreeSpace& space, double keep,
                                    const std::optional<maps::Point>& near);
 

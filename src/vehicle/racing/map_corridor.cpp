@@ -10,14 +10,15 @@ namespace slalom::vehicle::detail {
 namespace {
 
 constexpr int centring_rounds = 4;
-constexpr double centring_reach = 1.5;    // of the median half width: side rooms do not draw the line
-constexpr double centring_smooth = 0.5;   // of the median half width, deviation of the shifts along the line
-constexpr double line_smooth = 0.3;       // of the median half width, deviation of the line's own smoothing
+constexpr double centring_reach = 1.5;   // of the median half width: side rooms do not draw the line
+constexpr double centring_smooth = 0.5;  // of the median half width, deviation of the shifts along the line
+constexpr double line_smooth = 0.3;      // of the median half width, deviation of the line's own smoothing
 
 /// Looks along the normals of a line.
 class Rays {
  public:
-  Rays(const FreeSpace& space, const std::vector<maps::Point>& line, bool closed, const CorridorMeasure& measure)
+  Rays(const FreeSpace& space, const std::vector<maps::Point>& line, bool closed,
+       const CorridorMeasure& measure)
       : space_(space),
         line_(line),
         normals_(line_normals(line, closed)),
@@ -50,7 +51,7 @@ class Rays {
  private:
   bool free(std::size_t i, double offset) const {
     const maps::Point at{line_[i].x + offset * normals_[i].x, line_[i].y + offset * normals_[i].y};
-    return space_.clearance(at) >= measure_.keep && is_nearest(i, offset, at);
+    return space_.is_clear(at, measure_.keep) && is_nearest(i, offset, at);
   }
 
   /// Whether no other part of the line nearby is nearer.
@@ -58,7 +59,8 @@ class Rays {
     const auto n = static_cast<std::ptrdiff_t>(line_.size());
     const double limit = std::abs(offset) - 0.02 * measure_.step;
     if (limit <= 0) return true;
-    const auto window = std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(4 * limit / measure_.step) + 2, n / 2);
+    const auto window =
+        std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(4 * limit / measure_.step) + 2, n / 2);
     for (std::ptrdiff_t k = -window; k <= window; ++k) {
       std::ptrdiff_t j = static_cast<std::ptrdiff_t>(i) + k;
       if (!closed_ && (j < 0 || j >= n)) continue;

@@ -15,13 +15,13 @@ using detail::BandedMatrix;
 using detail::RacelineProgram;
 using detail::RacelineState;
 
-constexpr double weight_factor = 0.3;      // of the barrier, from one stage to the next
-constexpr double last_gap = 1e-4;          // of the time: constraints times weight in the last stage
-constexpr double stage_accuracy = 5e-6;    // share of the value that a step must promise in a stage
-constexpr int most_steps = 60;             // of Newton's method in a stage
-constexpr double curvature_room = 1.05;    // of a line that is tighter than the car turns, to be tightened
-constexpr double start_share = 0.4;        // of the fastest squared speeds along the first line
-constexpr double start_room = 0.1;         // of the width, from the bounds of the first line
+constexpr double weight_factor = 0.3;    // of the barrier, from one stage to the next
+constexpr double last_gap = 1e-4;        // of the time: constraints times weight in the last stage
+constexpr double stage_accuracy = 5e-6;  // share of the value that a step must promise in a stage
+constexpr int most_steps = 60;           // of Newton's method in a stage
+constexpr double curvature_room = 1.05;  // of a line that is tighter than the car turns, to be tightened
+constexpr double start_share = 0.4;      // of the fastest squared speeds along the first line
+constexpr double start_room = 0.1;       // of the width, from the bounds of the first line
 
 /// Distances and curvatures of a line.
 struct Geometry {
@@ -175,17 +175,16 @@ Raceline with_speeds(const std::vector<maps::Point>& line, bool closed, const Ra
   const auto speed = racing_speeds(geometry.curvature, geometry.step, closed, car);
   Raceline result;
   result.closed = closed;
-  double arc = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t next = closed || i + 1 < n ? (i + 1) % n : i;
     const std::size_t before = closed || i > 0 ? (i + n - 1) % n : i;
     const double acceleration =
         next == i ? 0 : (speed[next] * speed[next] - speed[i] * speed[i]) / (2 * geometry.step[i]);
-    result.points.push_back({arc, line[i].x, line[i].y,
+    result.points.push_back({result.length, line[i].x, line[i].y,
                              std::atan2(line[next].y - line[before].y, line[next].x - line[before].x),
                              geometry.curvature[i], speed[i], acceleration});
     if (next == i) break;
-    arc += geometry.step[i];
+    result.length += geometry.step[i];
     result.time += 2 * geometry.step[i] / (speed[i] + speed[next]);
   }
   return result;

@@ -15,8 +15,12 @@
 namespace slalom::vehicle {
 namespace {
 
-constexpr double widest = 25;       // of half the car's width: the reach of a corridor to one side
+constexpr double widest = 25;         // of half the car's width: the reach of a corridor to one side
 constexpr double most_points = 3000;  // of a centre line
+constexpr int most_rounds = 4;        // of improving a line along its own normals
+constexpr double least_gain = 5e-4;   // share of the time, by which a round must improve it
+constexpr double least_room = 1e-3;   // m, between the bounds of a line
+constexpr double half_turn = 3.14159265358979323846;  // rad
 
 double distance(const maps::Point& a, const maps::Point& b) {
   return std::hypot(b.x - a.x, b.y - a.y);
@@ -32,7 +36,8 @@ template <class Points>
 std::size_t nearest_row(const Points& points, const maps::Point& place) {
   std::size_t best = 0;
   for (std::size_t i = 1; i < points.size(); ++i)
-    if (distance({points[i].x, points[i].y}, place) < distance({points[best].x, points[best].y}, place)) best = i;
+    if (distance({points[i].x, points[i].y}, place) < distance({points[best].x, points[best].y}, place))
+      best = i;
   return best;
 }
 
@@ -46,65 +51,113 @@ bool along(const std::vector<maps::Point>& line, bool closed, const maps::Pose& 
          0;
 }
 
-/// Makes the row of the raceline that is nearest to the start, or the middle of its fastest part, the first
-/// one of raceline and corridor.
+/// Makes a row of a closed line the first one.
+template <class Values>
+void begin_at(Values& values, std::size_t first) {
+  std::rotate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first), values.end());
+}
+
+/// Makes raceline and corridor begin at the start, or in the middle of the raceline's fastest part.
 void begin_at_start(RaceCourse& course, const std::optional<maps::Pose>& start) {
   auto& points = course.raceline.points;
-  if (course.corridor.closed) {
+  if (course.raceline.closed) {
     std::vector<double> speeds;
     for (const RacelinePoint& point : points) speeds.push_back(point.speed);
     const std::size_t first = start ? nearest_row(points, {start->x, start->y}) : detail::start_row(speeds);
-    const auto turn = [first](auto& values) {
-      std::rotate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first), values.end());
-    };
     const double before = points[first].arc_length;
-    const RacelinePoint &last = points.back(), &front = points.front();
-    const double length = last.arc_length + distance({last.x, last.y}, {front.x, front.y});
-    turn(points);
+    const double length = course.raceline.length;
+    begin_at(points, first);
     for (RacelinePoint& point : points)
       point.arc_length = std::fmod(point.arc_length - before + length, length);
     points.front().arc_length = 0;
-    turn(course.corridor.centre_line);
-    turn(course.corridor.normal);
-    turn(course.corridor.left);
-    turn(course.corridor.right);
+    Corridor& corridor = course.corridor;
+    const std::size_t row = nearest_row(corridor.centre_line, {points.front().x, points.front().y});
+    begin_at(corridor.centre_line, row);
+    begin_at(corridor.normal, row);
+    begin_at(corridor.left, row);
+    begin_at(corridor.right, row);
   }
   course.start = start.value_or(maps::Pose{points.front().x, points.front().y, points.front().yaw});
 }
 
+/// The fastest line. Beside tight bends the normals of the centre line meet before the wall; those of the
+/// line itself reach farther, so that it is improved along its own normals.
+Raceline fastest_line(const detail::FreeSpace& space, const Corridor& corridor, const RacingCar& car,
+                      const detail::CorridorMeasure& measure) {
+  Raceline best = minimum_time_raceline(corridor, car);
+  for (int round = 0; round < most_rounds; ++round) {
+    std::vector<maps::Point> line;
+    for (const RacelinePoint& point : best.points) line.push_back({point.x, point.y});
+    const Corridor along_line = detail::measured_corridor(space, line, best.closed, measure);
+    for (std::size_t i = 0; i < along_line.left.size(); ++i)
+      if (along_line.left[i] + along_line.right[i] <= 2 * measure.keep + least_room) return best;
+    Raceline next = minimum_time_raceline(along_line, car);
+    const bool turns_more = next.curvature_limit > best.curvature_limit;
+    if (turns_more || next.time >= best.time) return best;
+    const bool done = next.time > (1 - least_gain) * best.time;
+    best = std::move(next);
+    if (done) return best;
+  }
+  return best;
+}
+
 /// Raceline, start and notes from map and corridor.
 void complete(RaceCourse& course, const detail::FreeSpace& space, const RacingCar& car,
-              const std::optional<maps::Pose>& start) {
-  course.raceline = minimum_time_raceline(course.corridor, car);
+              const detail::CorridorMeasure& measure, const std::optional<maps::Pose>& start) {
+  course.raceline = fastest_line(space, course.corridor, car, measure);
   begin_at_start(course, start);
   for (const RacelinePoint& point : course.raceline.points)
     course.distance.push_back(space.clearance(maps::Point{point.x, point.y}));
   if (course.raceline.curvature_limit > max_curvature(car)) {
     char text[200];
-    std::snprintf(text, sizeof text,
-                  "the corridor forces the line to a curvature of %.3g 1/m; the steering of the car reaches %.3g 1/m",
-                  course.raceline.curvature_limit, max_curvature(car));
+    std::snprintf(
+        text, sizeof text,
+        "the corridor forces the line to a curvature of %.3g 1/m; the steering of the car reaches %.3g 1/m",
+        course.raceline.curvature_limit, max_curvature(car));
     course.notes.emplace_back(text);
   }
 }
 
-/// The start that is given, or the origin of the map frame if the line passes there.
-std::optional<maps::Pose> chosen_start(const RaceCourseOptions& options, const detail::FreeSpace& space,
-                                       double keep, std::vector<std::string>& notes) {
-  if (options.start) {
-    const maps::Point at{options.start->x, options.start->y};
-    if (!(space.clearance(at) >= 0.5 * keep))
-      throw std::invalid_argument("start: " + text_of(at) + " must be in free space of the map");
-    return options.start;
+/// What the corridor of a course of a length is measured with.
+detail::CorridorMeasure measure_for(const RacingCar& car, double length) {
+  return {wall_distance(car), centre_line_step(car, length), 0.5 * widest * car.width};
+}
+
+/// The start that is given.
+std::optional<maps::Pose> given_start(const RaceCourseOptions& options, const detail::FreeSpace& space,
+                                      double keep) {
+  if (!options.start) return std::nullopt;
+  const maps::Point at{options.start->x, options.start->y};
+  if (!(space.clearance(at) >= 0.5 * keep))
+    throw std::invalid_argument("start: " + text_of(at) + " must be in free space of the map");
+  return options.start;
+}
+
+/// The loop that passes the start. Without a start, the origin of the map frame becomes it if the loop passes
+/// there.
+std::vector<maps::Point> found_loop(const detail::FreeSpace& space, double keep,
+                                    std::optional<maps::Pose>& start, std::vector<std::string>& notes) {
+  const auto near = start ? std::optional(maps::Point{start->x, start->y}) : std::nullopt;
+  std::vector<maps::Point> line = detail::find_loop(space, keep, near);
+  if (line.empty()) {
+    char text[200];
+    std::snprintf(text, sizeof text, "map: no closed way%s keeps %.3f m from all walls%s",
+                  start ? (" that passes the start " + text_of({start->x, start->y})).c_str() : "", keep,
+                  start ? "" : "; an open course needs a line to drive along");
+    throw std::invalid_argument(text);
   }
-  if (space.clearance(maps::Point{0, 0}) < keep) return std::nullopt;
-  notes.emplace_back("the start is the origin of the map frame, along +x, since none was given");
-  return maps::Pose{};
+  const maps::Point &origin{0, 0}, &passed = line[nearest_row(line, origin)];
+  if (!start && space.clearance(origin) >= keep && distance(passed, origin) <= 2 * space.clearance(passed)) {
+    start = maps::Pose{};
+    notes.emplace_back("the start is the origin of the map frame, along +x, since none was given");
+  }
+  return line;
 }
 
 void check_finite(const GuideLine& guide) {
   if (guide.points.size() < 4)
-    throw std::invalid_argument("line: " + std::to_string(guide.points.size()) + " points; at least 4 are needed");
+    throw std::invalid_argument("line: " + std::to_string(guide.points.size()) +
+                                " points; at least 4 are needed");
   for (const maps::Point& point : guide.points)
     if (!std::isfinite(point.x) || !std::isfinite(point.y))
       throw std::invalid_argument("line: every point must be finite");
@@ -127,36 +180,15 @@ RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, con
   if (space.spots() > 0)
     course.notes.push_back(std::to_string(space.spots()) +
                            " unknown spots smaller than the car count as free");
-  std::optional<maps::Pose> start;
-  std::vector<maps::Point> line;
-  bool closed = true;
-  if (guide) {
-    if (options.start) start = chosen_start(options, space, keep, course.notes);
-    line = guide->points;
-    closed = guide->closed;
-  } else {
-    start = chosen_start(options, space, keep, course.notes);
-    const auto near = [&] { return start ? std::optional(maps::Point{start->x, start->y}) : std::nullopt; };
-    line = detail::find_loop(space, keep, near());
-    if (line.empty() && start && !options.start) {
-      // The origin is free but on no loop: it was not the start.
-      course.notes.pop_back();
-      start.reset();
-      line = detail::find_loop(space, keep, near());
-    }
-    if (line.empty())
-      throw std::invalid_argument(
-          start ? "map: no closed way passes the start " + text_of({start->x, start->y}) +
-                      " at " + std::to_string(keep) + " m from all walls"
-                : "map: it has no closed way at " + std::to_string(keep) +
-                      " m from all walls; an open course needs a line to drive along");
-  }
+  std::optional<maps::Pose> start = given_start(options, space, keep);
+  std::vector<maps::Point> line = guide ? guide->points : found_loop(space, keep, start, course.notes);
+  const bool closed = !guide || guide->closed;
   if (start && !along(line, closed, *start)) std::reverse(line.begin(), line.end());
   if (options.reverse) std::reverse(line.begin(), line.end());
-  if (options.reverse && start && !options.start) start->yaw = maps::wrap_angle(start->yaw + 3.14159265358979);
-  const double step = centre_line_step(car, detail::line_length(line, closed));
-  course.corridor = detail::centred_corridor(space, line, closed, {keep, step, 0.5 * widest * car.width});
-  complete(course, space, car, start);
+  if (options.reverse && start && !options.start) start->yaw = maps::wrap_angle(start->yaw + half_turn);
+  const auto measure = measure_for(car, detail::line_length(line, closed));
+  course.corridor = detail::centred_corridor(space, line, closed, measure);
+  complete(course, space, car, measure, start);
   return course;
 }
 
@@ -164,8 +196,8 @@ RaceCourse race_course(const Corridor& corridor, const RacingCar& car, const Rac
   validate(car);
   RaceCourse course;
   course.corridor = corridor;
-  const bool backwards = (options.start && !along(corridor.centre_line, corridor.closed, *options.start)) !=
-                         options.reverse;
+  const bool backwards =
+      (options.start && !along(corridor.centre_line, corridor.closed, *options.start)) != options.reverse;
   if (backwards) {
     Corridor& turned = course.corridor;
     std::reverse(turned.centre_line.begin(), turned.centre_line.end());
@@ -177,7 +209,7 @@ RaceCourse race_course(const Corridor& corridor, const RacingCar& car, const Rac
   }
   course.map = draw_corridor(corridor, 0.16 * car.width, 0.64 * car.width);
   const detail::FreeSpace space(course.map, 0);
-  complete(course, space, car, options.start);
+  complete(course, space, car, measure_for(car, length(corridor)), options.start);
   return course;
 }
 
@@ -219,7 +251,8 @@ maps::OccupancyGrid draw_corridor(const Corridor& corridor, double resolution, d
         const double t = std::clamp((px * d.x + py * d.y) / square, 0.0, 1.0);
         const auto& widths = d.x * py - d.y * px > 0 ? corridor.left : corridor.right;
         double& least = beyond[static_cast<std::size_t>(y) * map.width + x];
-        least = std::min(least, std::hypot(px - t * d.x, py - t * d.y) - ((1 - t) * widths[i] + t * widths[next]));
+        least = std::min(least,
+                         std::hypot(px - t * d.x, py - t * d.y) - ((1 - t) * widths[i] + t * widths[next]));
       }
   }
   for (const double b : beyond)

@@ -10,7 +10,8 @@ constexpr int decimals = 6;  // curvatures are second differences of the coordin
 
 }  // namespace
 
-void save_race_course(const RaceCourse& course, const std::filesystem::path& folder, const TrackLabel& label) {
+void save_race_course(const RaceCourse& course, const std::filesystem::path& folder,
+                      const TrackLabel& label) {
   detail::make_folder(folder);
   maps::save_ros_map(course.map, folder / "map.yaml");
   detail::write_file(folder / "raceline.csv", detail::raceline_text(course.raceline.points, decimals));
@@ -18,8 +19,9 @@ void save_race_course(const RaceCourse& course, const std::filesystem::path& fol
   std::string text = detail::centre_line_header + std::string("\n");
   for (std::size_t i = 0; i < corridor.centre_line.size(); ++i)
     text += detail::fixed(corridor.centre_line[i].x, decimals) + ", " +
-            detail::fixed(corridor.centre_line[i].y, decimals) + ", " + detail::fixed(corridor.right[i], decimals) +
-            ", " + detail::fixed(corridor.left[i], decimals) + "\n";
+            detail::fixed(corridor.centre_line[i].y, decimals) + ", " +
+            detail::fixed(corridor.right[i], decimals) + ", " + detail::fixed(corridor.left[i], decimals) +
+            "\n";
   detail::write_file(folder / "centerline.csv", text);
   detail::write_file(folder / "course.yaml",
                      detail::course_text("course", label, course.start, corridor.closed));

@@ -136,13 +136,12 @@ T RacelineProgram::segment(int i, const T (&offset)[4], const T (&square)[2], do
     if (bends[k]) curvature[k] = curvature_of(p[k], p[k + 1], p[k + 2]);
     const T across = top_square_ * (square[k] * curvature[k]) *
                      reciprocal(limit(square[k], &GripAtSpeed::lateral, car_.limits.lateral_acceleration));
-    const T used = along * reciprocal(forwards ? limit(square[k], &GripAtSpeed::acceleration,
-                                                       car_.limits.acceleration)
-                                               : limit(square[k], &GripAtSpeed::braking, car_.limits.braking));
+    const T used =
+        along * reciprocal(forwards ? limit(square[k], &GripAtSpeed::acceleration, car_.limits.acceleration)
+                                    : limit(square[k], &GripAtSpeed::braking, car_.limits.braking));
     barrier.add(1.0 - (across * across + used * used));
   }
-  if (std::isfinite(car_.power))
-    barrier.add(1.0 - (car_.limits.top_speed / car_.power) * (along * speed[0]));
+  if (std::isfinite(car_.power)) barrier.add(1.0 - (car_.limits.top_speed / car_.power) * (along * speed[0]));
   if (bends[0]) {
     const T share = (1 / curvature_limit_) * curvature[0];
     barrier.add(1.0 - share * share);

@@ -133,7 +133,8 @@ std::vector<double> racing_speeds(std::span<const double> curvature, std::span<c
     return car.grip.empty() ? car.limits.lateral_acceleration : grip_at(car, v).lateral;
   };
   const auto forwards = [&](double v, double k) {
-    const double strongest = car.grip.empty() ? car.limits.acceleration : interpolated(car.grip, v).acceleration;
+    const double strongest =
+        car.grip.empty() ? car.limits.acceleration : interpolated(car.grip, v).acceleration;
     return std::min(strongest * detail::share_left(v, k, lateral(v)), car.power / std::max(v, 1e-9));
   };
   const auto braking = [&](double v, double k) {

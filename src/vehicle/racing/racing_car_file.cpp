@@ -71,7 +71,8 @@ RacingCar load_racing_car(const fs::path& file) {
       if (key == name) value = field;
     }
     if (!value)
-      throw IoError(file.string(), entry.first.Mark().line + 1, "key " + key + ": unknown key; must be one of " + known);
+      throw IoError(file.string(), entry.first.Mark().line + 1,
+                    "key " + key + ": unknown key; must be one of " + known);
     *value = number(file, key, entry.second, key == "margin");
   }
   try {

@@ -17,8 +17,8 @@ namespace slalom::vehicle {
 
 /// Where a course begins and which way round it is driven.
 struct RaceCourseOptions {
-  /// Start pose of the car. Without one, the origin of the map frame if it is in the corridor, along +x: there
-  /// a mapping program was started. Else the middle of the fastest part, driven counter-clockwise.
+  /// Start pose of the car. Without one, the origin of the map frame if it is in the corridor, along +x:
+  /// there a mapping program was started. Else the middle of the fastest part, driven counter-clockwise.
   std::optional<maps::Pose> start;
   bool reverse = false;  ///< the other way round
 };
@@ -31,19 +31,19 @@ struct GuideLine {
 
 /// A course made for a car.
 struct RaceCourse {
-  maps::OccupancyGrid map;      ///< the map
-  Corridor corridor;            ///< the free space along the course
-  Raceline raceline;            ///< the line of least time; begins beside the start
-  std::vector<double> distance; ///< m from each point of the raceline to the nearest wall
-  maps::Pose start;             ///< pose of the car
+  maps::OccupancyGrid map;         ///< the map
+  Corridor corridor;               ///< the free space along the course
+  Raceline raceline;               ///< the line of least time; begins beside the start
+  std::vector<double> distance;    ///< m from each point of the raceline to the nearest wall
+  maps::Pose start;                ///< pose of the car
   std::vector<std::string> notes;  ///< what was decided or ignored and why, one sentence each
 };
 
 /// Makes a course from a map. Unknown cells are walls, but for spots that are no larger than the car is wide
 /// and touch no occupied cell. Without `guide` it finds the way round an island of the map that is longest
-/// and passes the start; free space that reaches the border of the map counts as the surroundings of the
-/// course. With `guide`, it drives along this line. Throws std::invalid_argument if there is no such way, the
-/// start is not on it, or it is too narrow for the car; the message says where.
+/// for its width and passes the start; free space that reaches the border of the map counts as the
+/// surroundings of the course. With `guide`, it drives along this line. Throws std::invalid_argument if there
+/// is no such way, the start is not on it, or it is too narrow for the car; the message says where.
 RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car,
                        const RaceCourseOptions& options = {}, const GuideLine* guide = nullptr);
 

@@ -1,0 +1,167 @@
+// The line of least time: known answers, limits, optimality, errors.
+#include "slalom/vehicle/racing/minimum_time.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "slalom/vehicle/course/raceline.hpp"
+#include "vehicle/racing/rooms.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+using testing::circle;
+using testing::pi;
+using testing::straight;
+
+/// A closed corridor with bends of both directions and of several radii.
+Corridor winding(double half_width) {
+  std::vector<maps::Point> points;
+  for (int i = 0; i < 400; ++i) {
+    const double angle = 2 * pi * i / 400, radius = 8 + 2.2 * std::sin(3 * angle) + 0.8 * std::cos(5 * angle);
+    points.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+  }
+  const std::vector<double> widths(points.size(), half_width);
+  return corridor_from_widths(points, widths, widths, true, 0.15);
+}
+
+double offset(const Corridor& corridor, const Raceline& line, std::size_t i) {
+  return (line.points[i].x - corridor.centre_line[i].x) * corridor.normal[i].x +
+         (line.points[i].y - corridor.centre_line[i].y) * corridor.normal[i].y;
+}
+
+/// The time along a line of offsets with the fastest speeds.
+double time_of(const Corridor& corridor, const std::vector<double>& offsets, const RacingCar& car) {
+  std::vector<maps::Point> p;
+  for (std::size_t i = 0; i < offsets.size(); ++i)
+    p.push_back({corridor.centre_line[i].x + offsets[i] * corridor.normal[i].x,
+                 corridor.centre_line[i].y + offsets[i] * corridor.normal[i].y});
+  const std::size_t n = p.size();
+  std::vector<double> step(n), curvature(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const maps::Point &a = p[(i + n - 1) % n], &b = p[i], &c = p[(i + 1) % n];
+    step[i] = std::hypot(c.x - b.x, c.y - b.y);
+    curvature[i] = 2 * ((b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x)) /
+                   (std::hypot(b.x - a.x, b.y - a.y) * step[i] * std::hypot(c.x - a.x, c.y - a.y));
+  }
+  const auto speed = racing_speeds(curvature, step, true, car);
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) sum += 2 * step[i] / (speed[i] + speed[(i + 1) % n]);
+  return sum;
+}
+
+TEST(MinimumTime, OnACircleItIsTheInnerBound) {
+  // v = sqrt(a r), so a lap takes 2 pi sqrt(r / a): the smallest radius is the fastest.
+  const RacingCar car;
+  const Raceline line = minimum_time_raceline(circle(5, 1), car);
+  const double radius = 5 - 1 + wall_distance(car);
+  EXPECT_NEAR(line.time, 2 * pi * std::sqrt(radius / car.limits.lateral_acceleration), 0.01);
+  for (const RacelinePoint& point : line.points) EXPECT_NEAR(std::hypot(point.x, point.y), radius, 0.01);
+}
+
+TEST(MinimumTime, OnAnOpenStraightItIsStraightAtTheTopSpeed) {
+  const RacingCar car;
+  const Raceline line = minimum_time_raceline(straight(40, 0.8), car);
+  EXPECT_FALSE(line.closed);
+  EXPECT_NEAR(line.time, 40 / car.limits.top_speed, 0.01);
+  for (const RacelinePoint& point : line.points) EXPECT_NEAR(point.speed, car.limits.top_speed, 1e-9);
+}
+
+TEST(MinimumTime, StaysInTheCorridorAndWithinTheLimits) {
+  RacingCar car;
+  car.limits = {9, 7, 4, 6};
+  car.power = 25;
+  const Corridor corridor = winding(1.1);
+  const Raceline line = minimum_time_raceline(corridor, car);
+  const std::size_t n = line.points.size();
+  ASSERT_EQ(n, corridor.centre_line.size());
+  EXPECT_EQ(line.curvature_limit, max_curvature(car));
+  double time = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const RacelinePoint &here = line.points[i], &next = line.points[(i + 1) % n];
+    const double step = std::hypot(next.x - here.x, next.y - here.y);
+    EXPECT_LE(std::abs(offset(corridor, line, i)), 1.1 - wall_distance(car));
+    EXPECT_LE(std::abs(here.curvature), max_curvature(car));
+    EXPECT_LE(here.speed, car.limits.top_speed);
+    EXPECT_LE(here.speed * here.speed * std::abs(here.curvature),
+              car.limits.lateral_acceleration * (1 + 1e-9));
+    EXPECT_LE(here.acceleration * here.speed, car.power * (1 + 1e-9));
+    EXPECT_LE(here.acceleration, car.limits.acceleration * (1 + 1e-9));
+    EXPECT_GE(here.acceleration, -car.limits.braking * (1 + 1e-9));
+    EXPECT_LE(here.speed * std::abs(next.curvature - here.curvature) * car.wheelbase / step,
+              car.max_steering_rate * (1 + 1e-9));
+    time += 2 * step / (here.speed + next.speed);
+  }
+  EXPECT_NEAR(line.time, time, 1e-9);
+}
+
+TEST(MinimumTime, IsFasterThanTheLineOfLeastCurvature) {
+  const RacingCar car;
+  const Corridor corridor = winding(1.1);
+  const auto least_curvature = minimum_curvature_offsets(corridor.centre_line, 1.1 - wall_distance(car));
+  EXPECT_LT(minimum_time_raceline(corridor, car).time, time_of(corridor, least_curvature, car));
+}
+
+TEST(MinimumTime, NoSmoothChangeOfTheLineIsFaster) {
+  const RacingCar car;
+  const Corridor corridor = winding(0.9);
+  const Raceline line = minimum_time_raceline(corridor, car);
+  const std::size_t n = line.points.size();
+  const double bound = 0.9 - wall_distance(car);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int trial = 0; trial < 60; ++trial) {
+    const double middle = uniform(random) * static_cast<double>(n), size = 0.03 * uniform(random),
+                 reach = 8 + 20 * std::abs(uniform(random));
+    std::vector<double> changed;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double away = std::remainder(static_cast<double>(i) - middle, static_cast<double>(n)) / reach;
+      changed.push_back(std::clamp(offset(corridor, line, i) + size * std::exp(-away * away), -bound, bound));
+    }
+    EXPECT_GE(time_of(corridor, changed, car), line.time * (1 - 3e-4)) << trial;
+  }
+}
+
+TEST(MinimumTime, ObeysTheSteeringWhereTheCentreLineDoesNot) {
+  // A right angle: the centre line turns on the spot, the widths allow an arc.
+  std::vector<maps::Point> points;
+  for (int i = 0; i <= 30; ++i) points.push_back({0.2 * i - 6, 0});
+  for (int i = 1; i <= 30; ++i) points.push_back({0, 0.2 * i});
+  const std::vector<double> widths(points.size(), 1.0);
+  const RacingCar car;
+  const Raceline line = minimum_time_raceline(corridor_from_widths(points, widths, widths, false, 0.15), car);
+  EXPECT_EQ(line.curvature_limit, max_curvature(car));
+  for (const RacelinePoint& point : line.points) EXPECT_LE(std::abs(point.curvature), max_curvature(car));
+}
+
+TEST(MinimumTime, SaysWhatCurvatureANarrowCornerForces) {
+  RacingCar car;
+  car.wheelbase = 3;  // turns a radius of 7 m
+  const Raceline line = minimum_time_raceline(circle(4, 0.6), car);
+  EXPECT_GT(line.curvature_limit, max_curvature(car));
+  EXPECT_GT(line.curvature_limit, 1 / 4.6);
+  EXPECT_LT(line.curvature_limit, 1.1 / 3.8);
+}
+
+TEST(MinimumTime, RejectsNarrowCorridorsAndInvalidCars) {
+  RacingCar car;
+  try {
+    minimum_time_raceline(circle(5, 0.2), car);
+    FAIL() << "the car is wider";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("0.400 m wide"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("0.430 m"), std::string::npos) << error.what();
+  }
+  car.width = -1;
+  EXPECT_THROW(minimum_time_raceline(circle(5, 1), car), std::invalid_argument);
+  EXPECT_THROW(corridor_from_widths({{0, 0}, {1, 0}}, {1, 1}, {1, 1}, true, 0.1), std::invalid_argument);
+  EXPECT_THROW(
+      corridor_from_widths({{0, 0}, {1, 0}, {1, 1}, {0, NAN}}, {1, 1, 1, 1}, {1, 1, 1, 1}, true, 0.1),
+      std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle

@@ -1,0 +1,240 @@
+// Courses from maps: the loop that is found, dirt, directions, open lines, files.
+#include "slalom/vehicle/racing/race_course.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "slalom/core/error.hpp"
+#include "slalom/vehicle/course/course.hpp"
+#include "support/temporary_folder.hpp"
+#include "vehicle/racing/rooms.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+using maps::Occupancy;
+using testing::fill;
+using testing::rectangular_course;
+
+class RaceCourseFile : public testing::TemporaryFolder {};
+
+double signed_area(const std::vector<maps::Point>& line) {
+  double sum = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const maps::Point &a = line[i], &b = line[(i + 1) % line.size()];
+    sum += 0.5 * (a.x * b.y - a.y * b.x);
+  }
+  return sum;
+}
+
+double least(const std::vector<double>& values) {
+  return *std::min_element(values.begin(), values.end());
+}
+
+/// The course is the way round the rectangle.
+void expect_rectangle(const RaceCourse& course) {
+  EXPECT_TRUE(course.corridor.closed);
+  EXPECT_NEAR(length(course.corridor), 45.5, 1.5);
+  EXPECT_GT(least(course.distance), wall_distance(RacingCar{}) - 0.02);
+  for (std::size_t i = 0; i < course.corridor.left.size(); ++i) {
+    const double width = course.corridor.left[i] + course.corridor.right[i];
+    EXPECT_GT(width, 1.9) << i;
+  }
+}
+
+TEST(RaceCourse, FindsTheLoopInTheMiddleOfTheCorridor) {
+  const RaceCourse course = race_course(rectangular_course(), RacingCar{});
+  expect_rectangle(course);
+  // Beside the long sides the centre line is in the middle.
+  for (const maps::Point& point : course.corridor.centre_line)
+    if (point.x > 3 && point.x < 13) {
+      EXPECT_NEAR(std::abs(point.y - 4), 4, 0.06);
+    }
+}
+
+TEST(RaceCourse, TheLineUsesAllOfTheWidthAtAnyResolution) {
+  // The same map at other scales, with a car whose distance to walls scales with it.
+  for (const double resolution : {0.0431, 0.05, 0.0731, 0.09585}) {
+    maps::OccupancyGrid map = rectangular_course();
+    const double scale = resolution / map.resolution;
+    map.resolution = resolution;
+    map.origin = {scale * map.origin.x, scale * map.origin.y, 0};
+    const RacingCar car;
+    const RaceCourse course = race_course(map, car);
+    EXPECT_GE(least(course.distance), wall_distance(car) - 0.005) << resolution;
+    EXPECT_LE(least(course.distance), wall_distance(car) + 0.01) << resolution;
+  }
+}
+
+TEST(RaceCourse, StartsAtTheOriginOfTheMapFrameAlongX) {
+  const RaceCourse course = race_course(rectangular_course(), RacingCar{});
+  EXPECT_EQ(course.start.x, 0);
+  EXPECT_EQ(course.start.yaw, 0);
+  EXPECT_LT(std::hypot(course.raceline.points[0].x, course.raceline.points[0].y), 1.3);
+  EXPECT_GT(signed_area(course.corridor.centre_line), 0);
+  ASSERT_FALSE(course.notes.empty());
+  EXPECT_NE(course.notes.back().find("origin of the map frame"), std::string::npos);
+}
+
+TEST(RaceCourse, AStartPoseSetsPlaceAndDirection) {
+  RaceCourseOptions options;
+  options.start = maps::Pose{8, 8, 0};
+  const RaceCourse course = race_course(rectangular_course(), RacingCar{}, options);
+  EXPECT_LT(signed_area(course.corridor.centre_line), 0);
+  EXPECT_NEAR(course.raceline.points[0].x, 8, 0.3);
+  EXPECT_EQ(course.start.x, 8);
+  options.reverse = true;
+  EXPECT_GT(signed_area(race_course(rectangular_course(), RacingCar{}, options).corridor.centre_line), 0);
+  options.start = maps::Pose{8, 4, 0};
+  EXPECT_THROW(race_course(rectangular_course(), RacingCar{}, options), std::invalid_argument);
+}
+
+TEST(RaceCourse, WithoutAStartItBeginsWhereItIsFast) {
+  maps::OccupancyGrid map = rectangular_course();
+  map.origin.x += 100;
+  const RaceCourse course = race_course(map, RacingCar{});
+  EXPECT_GT(signed_area(course.corridor.centre_line), 0);
+  EXPECT_NEAR(course.raceline.points[0].speed, RacingCar{}.limits.top_speed, 1e-6);
+  EXPECT_EQ(course.raceline.points[0].arc_length, 0);
+  for (std::size_t i = 1; i < course.raceline.points.size(); ++i)
+    EXPECT_GT(course.raceline.points[i].arc_length, course.raceline.points[i - 1].arc_length);
+}
+
+TEST(RaceCourse, UnknownSpotsInTheRoadAreFree) {
+  maps::OccupancyGrid map = rectangular_course();
+  for (int i = 0; i < 12; ++i) fill(map, 2 + i, -0.1, 2.1 + i, 0.1, Occupancy::unknown);
+  const RaceCourse course = race_course(map, RacingCar{});
+  expect_rectangle(course);
+  EXPECT_NE(course.notes.front().find("12 unknown spots"), std::string::npos) << course.notes.front();
+}
+
+TEST(RaceCourse, HolesInWallsThatAreNarrowerThanTheCarAreClosed) {
+  maps::OccupancyGrid map = rectangular_course();
+  fill(map, 4, -3, 4.3, -1, Occupancy::free);       // through the outer wall to the border of the map
+  fill(map, 8, 1, 8.3, 1.2, Occupancy::free);       // into the infield
+  fill(map, 1.2, 1.2, 14.8, 6.8, Occupancy::free);  // which was seen
+  expect_rectangle(race_course(map, RacingCar{}));
+}
+
+TEST(RaceCourse, RoomsBesideTheRoadAreNoWay) {
+  maps::OccupancyGrid map = rectangular_course();
+  // A door of 1 m in the inner wall, and a room with a table in it.
+  fill(map, 1.2, 1.2, 14.8, 6.8, Occupancy::occupied);
+  fill(map, 6, 1, 7, 2, Occupancy::free);
+  fill(map, 4, 2, 10, 6, Occupancy::free);
+  fill(map, 6, 3.5, 8, 4.5, Occupancy::occupied);
+  const RaceCourse course = race_course(map, RacingCar{});
+  EXPECT_NEAR(length(course.corridor), 45.5, 1.5);
+  for (const maps::Point& point : course.corridor.centre_line)
+    EXPECT_FALSE(point.x > 2 && point.x < 14 && point.y > 1.2 && point.y < 6.8) << point.x << " " << point.y;
+}
+
+TEST(RaceCourse, PassesWhatStandsInTheRoad) {
+  maps::OccupancyGrid map = rectangular_course();
+  fill(map, 8, -0.4, 8.5, 0.1, Occupancy::occupied);
+  const RaceCourse course = race_course(map, RacingCar{});
+  EXPECT_GT(least(course.distance), wall_distance(RacingCar{}) - 0.02);
+  EXPECT_NEAR(length(course.corridor), 45.5, 1.5);
+}
+
+TEST(RaceCourse, SurroundingsOfACourseThatIsDrawnAsOutlinesAreNoWay) {
+  maps::OccupancyGrid map = testing::unknown_map(22, 14, -3, -3);
+  fill(map, -3, -3, 20, 12, Occupancy::free);
+  const maps::OccupancyGrid drawn = rectangular_course();
+  for (std::size_t i = 0; i < map.cells.size(); ++i)
+    if (drawn.cells[i] == Occupancy::occupied) map.cells[i] = Occupancy::occupied;
+  expect_rectangle(race_course(map, RacingCar{}));
+}
+
+TEST(RaceCourse, SaysThatAMapHasNoLoop) {
+  maps::OccupancyGrid map = rectangular_course();
+  fill(map, 7, -1.2, 8, 1, Occupancy::occupied);
+  try {
+    race_course(map, RacingCar{});
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("no closed way"), std::string::npos) << error.what();
+  }
+}
+
+TEST(RaceCourse, AnOpenLineIsDrivenFromEndToEnd) {
+  maps::OccupancyGrid map = rectangular_course();
+  fill(map, -1.2, 3, 1.2, 3.5, Occupancy::occupied);
+  const GuideLine guide{{{0, 2.5}, {0, 1}, {0.2, 0.1}, {2, 0}, {8, 0.2}, {14, 0}}, false};
+  const RaceCourse course = race_course(map, RacingCar{}, {}, &guide);
+  EXPECT_FALSE(course.corridor.closed);
+  EXPECT_FALSE(course.raceline.closed);
+  EXPECT_GT(least(course.distance), wall_distance(RacingCar{}) - 0.02);
+  EXPECT_NEAR(length(course.corridor), 15.6, 1);
+  EXPECT_NEAR(course.start.y, 2.5, 0.5);
+}
+
+TEST(RaceCourse, OfACorridorHasAMapOfIt) {
+  const RacingCar car;
+  const RaceCourse course = race_course(testing::circle(6, 0.9), car);
+  EXPECT_GT(least(course.distance), wall_distance(car) - 0.08);
+  const auto& map = course.map;
+  const auto at = [&](double x, double y) {
+    return map.at(static_cast<int>((x - map.origin.x) / map.resolution),
+                  static_cast<int>((y - map.origin.y) / map.resolution));
+  };
+  EXPECT_EQ(at(6, 0), Occupancy::free);
+  EXPECT_EQ(at(0, 6.8), Occupancy::free);
+  EXPECT_EQ(at(0, 7.0), Occupancy::occupied);
+  EXPECT_EQ(at(0, 0), Occupancy::unknown);
+}
+
+TEST_F(RaceCourseFile, IsLoadedAsACourse) {
+  const RaceCourse made = race_course(rectangular_course(), RacingCar{});
+  save_race_course(made, folder_ / "course", {"room", "a \"room\"", "slalom course"});
+  const Course course = load_course(folder_ / "course");
+  EXPECT_EQ(course.name, "room");
+  EXPECT_TRUE(course.closed);
+  EXPECT_TRUE(course.notes.empty());
+  EXPECT_EQ(course.start.x, made.start.x);
+  ASSERT_EQ(course.waypoints.size(), made.raceline.points.size());
+  EXPECT_NEAR(profile_time(course), made.raceline.time, 1e-3);
+  const CentreLineFile line = read_centre_line(folder_ / "course/centerline.csv");
+  EXPECT_TRUE(line.line.closed);
+  ASSERT_EQ(line.left.size(), made.corridor.left.size());
+  EXPECT_NEAR(line.left[5], made.corridor.left[5], 1e-6);
+  EXPECT_NEAR(line.right[5], made.corridor.right[5], 1e-6);
+}
+
+TEST_F(RaceCourseFile, CentreLinesHaveOneOfSeveralForms) {
+  const auto read = [&](const std::string& text) { return read_centre_line(write("line.csv", text)); };
+  const auto plain = read("0,0,1,2\n1,0,1,2\n1,1,1,2\n0,1,1,2\n0,0,1,2\n");
+  EXPECT_EQ(plain.line.points.size(), 4u);
+  EXPECT_TRUE(plain.line.closed);
+  EXPECT_EQ(plain.right[0], 1);
+  EXPECT_EQ(plain.left[0], 2);
+  EXPECT_EQ(read("# x_m; y_m; w_tr_left_m; w_tr_right_m\n0;0;1;2\n1;0;1;2\n1;1;1;2\n0;1;1;2\n").left[0], 1);
+  EXPECT_EQ(read("x_m,y_m,w_tr_right_m,w_tr_left_m\n0,0,1,2\n1,0,1,2\n1,1,1,2\n0,1,1,2\n").left[0], 2);
+  const auto open = read("0,0\n1,0\n2,0\n3,0\n4,0\n");
+  EXPECT_FALSE(open.line.closed);
+  EXPECT_TRUE(open.left.empty());
+}
+
+TEST_F(RaceCourseFile, SaysWhatIsWrongInACentreLine) {
+  const std::pair<const char*, std::vector<const char*>> cases[] = {
+      {"0,0,1,1\n1,0,x,1\n", {"line.csv:2", "3 (width)", "'x'"}},
+      {"0,0,1,1\n1,0,-1,1\n", {"line.csv:2", "at least 0"}},
+      {"0,0,1\n", {"line.csv:1", "3 columns"}},
+      {"0,0,1,1\n1,0\n", {"line.csv:2", "as many"}},
+      {"0,0,1,1\n1,0,1,1\n", {"line.csv", "at least 4"}}};
+  for (const auto& [text, says] : cases) {
+    try {
+      read_centre_line(write("line.csv", text));
+      ADD_FAILURE() << text;
+    } catch (const IoError& error) {
+      for (const char* word : says)
+        EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace slalom::vehicle
