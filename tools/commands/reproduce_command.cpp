@@ -3,8 +3,10 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/course/course.hpp"
+#include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
+#include "tools/evaluation/racing_benchmark.hpp"
 #include "tools/evaluation/ranks.hpp"
 #include "tools/json/json.hpp"
 #include "tools/report/report.hpp"
@@ -16,13 +18,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* fallback_course = "stag";
+constexpr const char* gap_driver = "follow_the_gap";
 
 struct Arguments {
   EvaluationArguments evaluation;
-  std::string published;
+  std::string published, benchmark, driver = "svg_mppi";
   std::vector<std::string> sections{"baseline", "ablation", "sweep"};
   int laps_pt = 30, laps_oa = 100, obstacles = 5;
-  bool quick = false, course_given = false;
+  bool quick = false, course_given = false, config_given = false;
 };
 
 struct CloseFile {
@@ -134,15 +137,58 @@ int run(Arguments arguments) {
   return 0;
 }
 
+/// Drives the racing benchmark on its four maps.
+int run_racing(Arguments arguments) {
+  if (arguments.benchmark != "racing")
+    throw CommandLineError("--benchmark", "'" + arguments.benchmark + "' must be racing");
+  if (!arguments.course_given)
+    throw CommandLineError("--course", "must name the folder of the benchmark's maps and centre lines");
+  ScenarioArguments& scenario = arguments.evaluation.scenario;
+  if (!arguments.config_given) scenario.config = "default";
+  const std::string& json = arguments.evaluation.json;
+  std::FILE* words = json == "-" ? stderr : stdout;
+  const bool gap = arguments.driver == gap_driver;
+  Json summary{{"benchmark", arguments.benchmark}, {"driver", arguments.driver}};
+  if (!gap) summary["config"] = scenario.config;
+  std::fprintf(words, "%-4s %10s %10s %12s\n", "map", "mean, s", "completed", "beyond grip");
+  for (const char* name : racing_maps) {
+    const RacingMap map = load_racing_map(scenario.course, name);
+    const auto driver =
+        gap ? make_gap_driver()
+            : make_planner_driver(map, load_configuration(scenario, arguments.driver), arguments.driver);
+    const auto laps = drive_racing_laps(map, *driver, arguments.quick ? 1 : racing_laps);
+    const Json results = racing_results(laps);
+    summary["maps"][name] = results;
+    const Json& mean = results["mean_s"];
+    std::fprintf(words, "%-4s %10s %4d of %2zu %10.2f %%\n", name,
+                 mean.is_null() ? "-" : short_number(mean.get<double>()).c_str(),
+                 results["completed"].get<int>(), laps.size(), 100 * results["beyond_grip"].get<double>());
+    std::fflush(words);
+  }
+  if (!json.empty()) write_json(summary, json);
+  return 0;
+}
+
 }  // namespace
 
 void declare_reproduce(Subcommand& command) {
-  command.summary("Reproduce the simulation section of the paper and compare it with the authors' logs");
+  command.summary(
+      "Reproduce the simulation section of the paper and compare it with the authors' logs, or drive another "
+      "benchmark");
   const auto arguments = std::make_shared<Arguments>();
   auto& scenario = arguments->evaluation.scenario;
   scenario.course = "berlin";
   scenario.config = scenario.evaluation = "published";
   add_evaluation_options(command, arguments->evaluation);
+  command.find("--out").required(false);
+  command.option(
+      "--benchmark", arguments->benchmark,
+      "racing: the benchmark of Evans et al. (arXiv 2402.18558) instead; --course is the folder of its "
+      "maps aut, esp, gbr and mco, and no --out is needed");
+  command
+      .option("--driver", arguments->driver,
+              "With --benchmark: a method, whose planner follows the line of least time, or follow_the_gap")
+      .show_default();
   command.option("--published", arguments->published, "Folder of the authors' logs");
   command
       .option("--sections", arguments->sections, "Sections, separated by commas: baseline, ablation, sweep")
@@ -155,6 +201,10 @@ void declare_reproduce(Subcommand& command) {
   command.option("--set", scenario.set, "section.option=value, for all rows; may be repeated").repeatable();
   command.action([arguments, &command] {
     arguments->course_given = command.given("--course");
+    arguments->config_given = command.given("--config");
+    if (!arguments->benchmark.empty()) return run_racing(*arguments);
+    if (command.given("--driver")) throw CommandLineError("--driver", "needs --benchmark");
+    if (arguments->evaluation.out.empty()) throw CommandLineError("--out", "is required");
     return run(*arguments);
   });
 }

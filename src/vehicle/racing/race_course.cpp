@@ -20,6 +20,7 @@ constexpr double most_points = 3000;  // of a centre line
 constexpr int most_rounds = 4;        // of improving a line along its own normals
 constexpr double least_gain = 5e-4;   // share of the time, by which a round must improve it
 constexpr double least_room = 1e-3;   // m, between the bounds of a line
+constexpr double most_turned = 0.6;   // rad, of the way from the x axis at a start that is found
 constexpr double half_turn = 3.14159265358979323846;  // rad
 
 double distance(const maps::Point& a, const maps::Point& b) {
@@ -41,14 +42,18 @@ std::size_t nearest_row(const Points& points, const maps::Point& place) {
   return best;
 }
 
-/// Whether the line is driven along its points at a pose.
-bool along(const std::vector<maps::Point>& line, bool closed, const maps::Pose& pose) {
+/// The cosine of the angle between a pose and the line where it is nearest.
+double along(const std::vector<maps::Point>& line, bool closed, const maps::Pose& pose) {
   const std::size_t n = line.size(), at = nearest_row(line, {pose.x, pose.y});
-  const std::size_t before = closed ? (at + n - 1) % n : (at > 0 ? at - 1 : 0);
-  const std::size_t after = closed ? (at + 1) % n : std::min(at + 1, n - 1);
-  return (line[after].x - line[before].x) * std::cos(pose.yaw) +
-             (line[after].y - line[before].y) * std::sin(pose.yaw) >=
-         0;
+  const auto row = [&](std::size_t reach, bool ahead) {
+    if (closed) return ahead ? (at + reach) % n : (at + n - reach) % n;
+    return ahead ? std::min(at + reach, n - 1) : at - std::min(at, reach);
+  };
+  // A line of cells has eight directions from cell to cell.
+  const std::size_t reach = std::min<std::size_t>(5, n / 4);
+  const maps::Point &before = line[row(reach, false)], &after = line[row(reach, true)];
+  return ((after.x - before.x) * std::cos(pose.yaw) + (after.y - before.y) * std::sin(pose.yaw)) /
+         distance(before, after);
 }
 
 /// Makes a row of a closed line the first one.
@@ -134,7 +139,7 @@ std::optional<maps::Pose> given_start(const RaceCourseOptions& options, const de
 }
 
 /// The loop that passes the start. Without a start, the origin of the map frame becomes it if the loop passes
-/// there.
+/// there about along its x axis.
 std::vector<maps::Point> found_loop(const detail::FreeSpace& space, double keep,
                                     std::optional<maps::Pose>& start, std::vector<std::string>& notes) {
   const auto near = start ? std::optional(maps::Point{start->x, start->y}) : std::nullopt;
@@ -147,7 +152,8 @@ std::vector<maps::Point> found_loop(const detail::FreeSpace& space, double keep,
     throw std::invalid_argument(text);
   }
   const maps::Point &origin{0, 0}, &passed = line[nearest_row(line, origin)];
-  if (!start && space.clearance(origin) >= keep && distance(passed, origin) <= 2 * space.clearance(passed)) {
+  if (!start && space.clearance(origin) >= keep && distance(passed, origin) <= 2 * space.clearance(passed) &&
+      std::abs(along(line, true, {})) > std::cos(most_turned)) {
     start = maps::Pose{};
     notes.emplace_back("the start is the origin of the map frame, along +x, since none was given");
   }
@@ -183,7 +189,7 @@ RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, con
   std::optional<maps::Pose> start = given_start(options, space, keep);
   std::vector<maps::Point> line = guide ? guide->points : found_loop(space, keep, start, course.notes);
   const bool closed = !guide || guide->closed;
-  if (start && !along(line, closed, *start)) std::reverse(line.begin(), line.end());
+  if (start && along(line, closed, *start) < 0) std::reverse(line.begin(), line.end());
   if (options.reverse) std::reverse(line.begin(), line.end());
   if (options.reverse && start && !options.start) start->yaw = maps::wrap_angle(start->yaw + half_turn);
   const auto measure = measure_for(car, detail::line_length(line, closed));
@@ -197,7 +203,7 @@ RaceCourse race_course(const Corridor& corridor, const RacingCar& car, const Rac
   RaceCourse course;
   course.corridor = corridor;
   const bool backwards =
-      (options.start && !along(corridor.centre_line, corridor.closed, *options.start)) != options.reverse;
+      (options.start && along(corridor.centre_line, corridor.closed, *options.start) < 0) != options.reverse;
   if (backwards) {
     Corridor& turned = course.corridor;
     std::reverse(turned.centre_line.begin(), turned.centre_line.end());

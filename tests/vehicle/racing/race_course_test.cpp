@@ -70,13 +70,25 @@ TEST(RaceCourse, TheLineUsesAllOfTheWidthAtAnyResolution) {
 }
 
 TEST(RaceCourse, StartsAtTheOriginOfTheMapFrameAlongX) {
-  const RaceCourse course = race_course(rectangular_course(), RacingCar{});
+  maps::OccupancyGrid map = rectangular_course();
+  map.origin.x -= 8;  // the origin is in the middle of a long side
+  const RaceCourse course = race_course(map, RacingCar{});
   EXPECT_EQ(course.start.x, 0);
   EXPECT_EQ(course.start.yaw, 0);
-  EXPECT_LT(std::hypot(course.raceline.points[0].x, course.raceline.points[0].y), 1.3);
+  EXPECT_NEAR(course.raceline.points[0].x, 0, 0.2);
   EXPECT_GT(signed_area(course.corridor.centre_line), 0);
   ASSERT_FALSE(course.notes.empty());
   EXPECT_NE(course.notes.back().find("origin of the map frame"), std::string::npos);
+}
+
+TEST(RaceCourse, DoesNotStartAtAnOriginThatFacesAWall) {
+  maps::OccupancyGrid map = rectangular_course();
+  map.origin = {map.origin.x, map.origin.y - 4, 0};  // the origin is in the left corridor, which runs along y
+  const RaceCourse course = race_course(map, RacingCar{});
+  EXPECT_NE(course.start.y, 0);
+  const RacelinePoint& first = course.raceline.points[0];
+  EXPECT_EQ(course.start.yaw, first.yaw);
+  EXPECT_EQ(course.start.x, first.x);
 }
 
 TEST(RaceCourse, AStartPoseSetsPlaceAndDirection) {
@@ -194,7 +206,7 @@ TEST_F(RaceCourseFile, IsLoadedAsACourse) {
   EXPECT_EQ(course.name, "room");
   EXPECT_TRUE(course.closed);
   EXPECT_TRUE(course.notes.empty());
-  EXPECT_EQ(course.start.x, made.start.x);
+  EXPECT_NEAR(course.start.x, made.start.x, 1e-4);
   ASSERT_EQ(course.waypoints.size(), made.raceline.points.size());
   EXPECT_NEAR(profile_time(course), made.raceline.time, 1e-3);
   const CentreLineFile line = read_centre_line(folder_ / "course/centerline.csv");

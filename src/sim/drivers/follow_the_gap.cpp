@@ -1,0 +1,58 @@
+#include "slalom/sim/follow_the_gap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace slalom::sim {
+namespace {
+
+constexpr double pi = 3.141592653589793;
+
+/// The mean over a window of `width` values; beyond the ends they are 0. As numpy.convolve in the mode `same`
+/// with `width` ones: as many values as the longer of both, the window of an even width begins half of it
+/// before.
+std::vector<double> moving_mean(std::span<const double> values, int width) {
+  const auto n = static_cast<int>(values.size()), count = std::max(n, width), narrow = std::min(n, width);
+  std::vector<double> means;
+  for (int i = 0; i < count; ++i) {
+    // The window slides over the values, or, where it is wider, the values over the window.
+    const int begin = i - narrow / 2, end = begin + narrow;
+    double sum = 0;
+    for (int k = std::max(begin, 0); k < std::min(end, count); ++k)
+      sum += n >= width ? values[static_cast<std::size_t>(k)] : values[static_cast<std::size_t>(end - 1 - k)];
+    means.push_back(sum / width);
+  }
+  return means;
+}
+
+}  // namespace
+
+Command FollowTheGap::command(std::span<const double> scan) {
+  const auto skipped = static_cast<std::size_t>(options_.skipped);
+  if (scan.size() <= 2 * skipped) return {};
+  ranges_ = moving_mean(scan.subspan(skipped, scan.size() - 2 * skipped), options_.smoothing);
+  for (double& range : ranges_) range = std::clamp(range, 0.0, options_.range_max);
+  const auto n = static_cast<int>(ranges_.size());
+  const auto nearest = static_cast<int>(std::min_element(ranges_.begin(), ranges_.end()) - ranges_.begin());
+  for (int i = std::max(0, nearest - options_.bubble); i < std::min(nearest + options_.bubble, n - 1); ++i)
+    ranges_[static_cast<std::size_t>(i)] = 0;
+
+  int end = n, begin = n;
+  for (; end > 0; end = begin) {
+    while (end > 0 && ranges_[static_cast<std::size_t>(end - 1)] == 0) --end;
+    begin = end;
+    while (begin > 0 && ranges_[static_cast<std::size_t>(begin - 1)] != 0) --begin;
+    if (end - begin > options_.least_gap) break;
+  }
+  if (end == 0) return {};
+  const auto gap =
+      std::span(ranges_).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+  const auto means = moving_mean(gap, options_.target_width);
+  const auto best = static_cast<int>(std::max_element(means.begin(), means.end()) - means.begin()) + begin;
+  const double angle = (best - 0.5 * n) * (2 * pi / static_cast<double>(scan.size()));
+  const double steer = std::clamp(0.5 * angle, -options_.steer_max, options_.steer_max);
+  return {steer, std::abs(steer) > options_.slow_above ? options_.slow : options_.speed};
+}
+
+}  // namespace slalom::sim

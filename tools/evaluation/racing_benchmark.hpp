@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "slalom/sim/racing_benchmark.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
+#include "slalom/vehicle/racing/race_course.hpp"
+#include "tools/json/json.hpp"
+
+/// The racing benchmark of Evans et al. (see sim::RacingBenchmark): its maps, laps and results.
+namespace slalom::tools {
+
+/// The maps, in the order of the published table.
+inline constexpr const char* racing_maps[] = {"aut", "esp", "gbr", "mco"};
+inline constexpr int racing_laps = 10;             ///< of each map
+inline constexpr double racing_grip = 0.9 * 9.81;  ///< m/s^2, what a step is compared with
+
+/// A map of the benchmark with the centre line that its program uses.
+struct RacingMap {
+  std::string name;
+  maps::OccupancyGrid grid;              ///< without unknown cells
+  std::vector<maps::Point> centre_line;  ///< m, without the first row of the file, which the program drops
+};
+
+/// Loads `folder/NAME/NAME.yaml` and `NAME_centerline.csv`, or both from `folder` itself. Throws IoError.
+RacingMap load_racing_map(const std::filesystem::path& folder, const std::string& name);
+
+/// Drives laps by what it sees.
+class RacingDriver {
+ public:
+  virtual ~RacingDriver() = default;
+  /// The command for the next control period. A time that is not later than the last one means a new lap.
+  virtual Command command(const sim::RacingObservation& seen) = 0;
+};
+
+/// The driver by which the world is compared with the published one (sim::FollowTheGap).
+std::unique_ptr<RacingDriver> make_gap_driver();
+
+/// A planner of this library along the line of least time of a map, for a car with the grip of the
+/// benchmark.
+std::unique_ptr<RacingDriver> make_planner_driver(const RacingMap& map,
+                                                  const vehicle::Configuration& configuration,
+                                                  const std::string& method);
+
+/// A lap as it ended.
+struct RacingLap {
+  double time = 0;         ///< s
+  bool completed = false;  ///< without a collision
+  double progress = 0;     ///< share of the lap
+  int steps = 0;           ///< time steps of the physics
+  int beyond = 0;          ///< those with an acceleration above racing_grip
+};
+
+/// Drives the laps of a map.
+std::vector<RacingLap> drive_racing_laps(const RacingMap& map, RacingDriver& driver, int laps);
+
+/// `mean_s` (of completed laps, null without any), `completed`, `laps`, `beyond_grip` (share of all steps),
+/// `lap_times_s` (null for a collision).
+Json racing_results(const std::vector<RacingLap>& laps);
+
+}  // namespace slalom::tools
