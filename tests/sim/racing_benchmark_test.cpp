@@ -123,9 +123,9 @@ TEST(FollowTheGap, SteersForTheFarPartAndSlowsDown) {
   FollowTheGap driver;
   std::vector<double> scan(1080, 1.0);
   for (std::size_t i = 0; i < scan.size(); ++i) scan[i] += 1e-4 * std::abs(static_cast<double>(i) - 100);
-  for (std::size_t i = 600; i < 700; ++i) scan[i] = 9;
+  for (std::size_t i = 610; i < 690; ++i) scan[i] = 9;
   const Command left = driver.command(scan);
-  EXPECT_NEAR(left.steer, 0.5 * (650 - 540) * 2 * pi / 1080, 0.02);
+  EXPECT_NEAR(left.steer, 0.5 * (650 - 540) * 2 * pi / 1080, 1e-9);
   EXPECT_EQ(left.speed, 3);
   std::fill(scan.begin(), scan.end(), 1.0);
   scan[140] = 0.5;

@@ -49,14 +49,11 @@ TEST_F(CourseCommand, ItsCourseIsDrivenWithoutCollision) {
 }
 
 TEST_F(CourseCommand, TheCommandInCourseYamlMakesTheSameFiles) {
-  ASSERT_EQ(
-      course("room.yaml --friction 0.7 --top-speed 6.5 --margin 0.1 --start 8,8,0 --reverse --out a").status,
-      0);
+  ASSERT_EQ(course("room.yaml --friction 0.7 --top-speed 6.5 --margin 0.1 --start 8,8,0 --out a").status, 0);
   const std::string text = content(folder_ / "a/course.yaml"), key = "command: \"slalom ";
   const auto from = text.find(key) + key.size();
   const std::string command = text.substr(from, text.find("\"\n", from) - from);
-  EXPECT_EQ(command,
-            "course room.yaml --friction 0.7 --top-speed 6.5 --margin 0.1 --start 8,8,0 --reverse --out a");
+  EXPECT_EQ(command, "course room.yaml --friction 0.7 --top-speed 6.5 --margin 0.1 --start 8,8,0 --out a");
   const std::string before = content(folder_ / "a/raceline.csv");
   fs::remove_all(folder_ / "a");
   ASSERT_EQ(program(command).status, 0);
@@ -112,6 +109,7 @@ TEST_F(CourseCommand, SaysWhatIsWrong) {
   expect_refused("course room.yaml --out x --start 8,4,0",
                  {"room.yaml", "start: (8.00, 4.00)", "free space"});
   expect_refused("course room.yaml --out x --start 8", {"--start", "x,y,yaw"});
+  expect_refused("course room.yaml --out x --start 8,8,0 --reverse", {"--reverse", "--start"});
   expect_refused("course room.yaml --out x --margin -1", {"margin", "at least 0"});
   expect_refused("course room.yaml --out x --friction 0", {"friction", "above 0"});
   expect_refused("course points.csv --out x", {"points.csv", "no widths", "--line"});

@@ -174,11 +174,11 @@ void declare_course(Subcommand& command) {
                  "Friction coefficient: acceleration in every direction, in g");
   command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s");
   command.option("--margin", arguments->margin, "Distance that the body keeps from walls, m");
-  command.option(
-      "--start", arguments->start,
-      "Start pose x,y,yaw, m, m, rad; it sets the direction [the origin of the map frame, if it is on "
-      "the course]");
-  command.flag("--reverse", arguments->reverse, "Drive the other way round");
+  const Option start =
+      command.option("--start", arguments->start,
+                     "Start pose x,y,yaw, m, m, rad; it sets the direction [the origin of the map frame, if "
+                     "the course passes it along +x]");
+  command.flag("--reverse", arguments->reverse, "Drive the other way round").excludes(start);
   command.option("--name", arguments->name, "Name of the course [name of the folder]");
   command.option("--description", arguments->description, "Description for course.yaml");
   command.option("--json", arguments->json, "Write a summary as JSON to this file, or to standard output: -");

@@ -78,6 +78,10 @@ class BarrierMethod {
 
   RacelineState solve() {
     RacelineState state = first_line();
+    if (!std::isfinite(program_.value(state, 1)))
+      throw std::invalid_argument(
+          "corridor: its normals cross between the walls; the centre line must be smoother or nearer to the "
+          "middle");
     double weight = program_.time(state) / program_.constraints();
     for (;;) {
       minimise(state, weight);
@@ -144,7 +148,10 @@ class BarrierMethod {
     for (int i = 0; i < hessian_.size(); ++i) scale = std::max(scale, hessian_.at(i, i));
     // Only rounding can make the matrix indefinite.
     BandedMatrix factors = hessian_;
-    for (double shift = 1e-14 * scale; !factors.factorise(shift); shift *= 100) factors = hessian_;
+    for (double shift = 1e-14 * scale; !factors.factorise(shift); shift *= 100) {
+      if (!(shift < scale)) return 0;
+      factors = hessian_;
+    }
     step_ = gradient_;
     factors.solve(step_);
     double slope = 0;

@@ -160,6 +160,12 @@ std::vector<maps::Point> found_loop(const detail::FreeSpace& space, double keep,
   return line;
 }
 
+void check(const RaceCourseOptions& options, const RacingCar& car) {
+  validate(car);
+  if (options.reverse && options.start)
+    throw std::invalid_argument("reverse: must not be set with a start pose, which sets the direction");
+}
+
 void check_finite(const GuideLine& guide) {
   if (guide.points.size() < 4)
     throw std::invalid_argument("line: " + std::to_string(guide.points.size()) +
@@ -177,7 +183,7 @@ double centre_line_step(const RacingCar& car, double length) {
 
 RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, const RaceCourseOptions& options,
                        const GuideLine* guide) {
-  validate(car);
+  check(options, car);
   if (guide) check_finite(*guide);
   RaceCourse course;
   course.map = map;
@@ -191,7 +197,7 @@ RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, con
   const bool closed = !guide || guide->closed;
   if (start && along(line, closed, *start) < 0) std::reverse(line.begin(), line.end());
   if (options.reverse) std::reverse(line.begin(), line.end());
-  if (options.reverse && start && !options.start) start->yaw = maps::wrap_angle(start->yaw + half_turn);
+  if (options.reverse && start) start->yaw = maps::wrap_angle(start->yaw + half_turn);
   const auto measure = measure_for(car, detail::line_length(line, closed));
   course.corridor = detail::centred_corridor(space, line, closed, measure);
   complete(course, space, car, measure, start);
@@ -199,7 +205,7 @@ RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, con
 }
 
 RaceCourse race_course(const Corridor& corridor, const RacingCar& car, const RaceCourseOptions& options) {
-  validate(car);
+  check(options, car);
   RaceCourse course;
   course.corridor = corridor;
   const bool backwards =

@@ -155,6 +155,10 @@ TEST(MinimumTime, RejectsNarrowCorridorsAndInvalidCars) {
     EXPECT_NE(std::string(error.what()).find("0.400 m wide"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("0.430 m"), std::string::npos) << error.what();
   }
+  // A bend of 0.5 m whose corridor lies beyond the middle of the bend.
+  Corridor beyond = circle(0.5, 3);
+  for (double& right : beyond.right) right = -1;
+  EXPECT_THROW(minimum_time_raceline(beyond, car), std::invalid_argument);
   car.width = -1;
   EXPECT_THROW(minimum_time_raceline(circle(5, 1), car), std::invalid_argument);
   EXPECT_THROW(corridor_from_widths({{0, 0}, {1, 0}}, {1, 1}, {1, 1}, true, 0.1), std::invalid_argument);

@@ -99,9 +99,20 @@ TEST(RaceCourse, AStartPoseSetsPlaceAndDirection) {
   EXPECT_NEAR(course.raceline.points[0].x, 8, 0.3);
   EXPECT_EQ(course.start.x, 8);
   options.reverse = true;
-  EXPECT_GT(signed_area(race_course(rectangular_course(), RacingCar{}, options).corridor.centre_line), 0);
+  EXPECT_THROW(race_course(rectangular_course(), RacingCar{}, options), std::invalid_argument);
+  options.reverse = false;
   options.start = maps::Pose{8, 4, 0};
   EXPECT_THROW(race_course(rectangular_course(), RacingCar{}, options), std::invalid_argument);
+}
+
+TEST(RaceCourse, ReverseIsTheOtherWayRound) {
+  maps::OccupancyGrid map = rectangular_course();
+  map.origin.x -= 8;
+  RaceCourseOptions options;
+  options.reverse = true;
+  const RaceCourse course = race_course(map, RacingCar{}, options);
+  EXPECT_LT(signed_area(course.corridor.centre_line), 0);
+  EXPECT_NEAR(std::abs(course.start.yaw), testing::pi, 1e-9) << "the car stands at the origin, turned round";
 }
 
 TEST(RaceCourse, WithoutAStartItBeginsWhereItIsFast) {

@@ -18,7 +18,7 @@ struct Corridor {
 /// The corridor along a line of points in the direction of driving. `left` and `right` are the widths (m) at
 /// these points. The points are replaced by points at equal steps of about `step` (m), the normals are those
 /// of the smoothed line. Throws std::invalid_argument on fewer than 4 points, sizes that differ, values that
-/// are not finite, or a step that is not above 0.
+/// are not finite, a step that is not above 0, or more than 100,000 steps.
 Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std::vector<double>& left,
                               const std::vector<double>& right, bool closed, double step);
 

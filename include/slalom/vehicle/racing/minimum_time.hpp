@@ -33,8 +33,8 @@ struct Raceline {
 /// optimised together. Solved by a logarithmic barrier method (Boyd & Vandenberghe, "Convex Optimization",
 /// 2004, Sec. 11.3) with exact second derivatives; the result is a local minimum, within about 0.1 % of its
 /// time. The speeds returned are those of racing_speeds() along the line. Throws std::invalid_argument for an
-/// invalid car, fewer than 8 points, or a corridor that is narrower than the car and its margin anywhere; the
-/// message names the narrowest place.
+/// invalid car, fewer than 8 points, a corridor whose normals cross, or one that is narrower than the car and
+/// its margin anywhere; the message names the narrowest place.
 Raceline minimum_time_raceline(const Corridor& corridor, const RacingCar& car);
 
 }  // namespace slalom::vehicle

@@ -20,7 +20,7 @@ struct RaceCourseOptions {
   /// Start pose of the car. Without one, the origin of the map frame if it is in the corridor, along +x:
   /// there a mapping program was started. Else the middle of the fastest part, driven counter-clockwise.
   std::optional<maps::Pose> start;
-  bool reverse = false;  ///< the other way round
+  bool reverse = false;  ///< the other way round; not with a start
 };
 
 /// A line to drive along, and whether it is closed.
