@@ -53,6 +53,7 @@ TEST_F(RacingCommand, AnyDriverDrivesEveryMap) {
     for (const auto& results : {planned["maps"][map], gap["maps"][map]}) {
       EXPECT_EQ(results["laps"], 1) << map;
       EXPECT_EQ(results["completed"], 1) << map;
+      EXPECT_EQ(results["at_time_limit"], 0) << map;
       EXPECT_EQ(results["lap_times_s"].size(), 1u) << map;
       EXPECT_EQ(results["mean_s"], results["lap_times_s"][0]) << map;
       EXPECT_GE(results["beyond_grip"].get<double>(), 0) << map;

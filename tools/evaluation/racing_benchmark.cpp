@@ -102,7 +102,7 @@ std::vector<RacingLap> drive_racing_laps(const RacingMap& map, RacingDriver& dri
 
 Json racing_results(const std::vector<RacingLap>& laps) {
   double sum = 0;
-  int completed = 0;
+  int completed = 0, at_limit = 0;
   long long steps = 0, beyond = 0;
   Json times = Json::array();
   for (const RacingLap& lap : laps) {
@@ -112,9 +112,11 @@ Json racing_results(const std::vector<RacingLap>& laps) {
     if (!lap.completed) continue;
     sum += lap.time;
     ++completed;
+    at_limit += lap.time > sim::RacingBenchmark::most_time;
   }
   return {{"mean_s", completed > 0 ? Json(sum / completed) : Json(nullptr)},
           {"completed", completed},
+          {"at_time_limit", at_limit},
           {"laps", static_cast<int>(laps.size())},
           {"beyond_grip", steps > 0 ? static_cast<double>(beyond) / static_cast<double>(steps) : 0.0},
           {"lap_times_s", times}};

@@ -58,8 +58,8 @@ struct RacingLap {
 /// Drives the laps of a map.
 std::vector<RacingLap> drive_racing_laps(const RacingMap& map, RacingDriver& driver, int laps);
 
-/// `mean_s` (of completed laps, null without any), `completed`, `laps`, `beyond_grip` (share of all steps),
-/// `lap_times_s` (null for a collision).
+/// `mean_s` (of completed laps, null without any), `completed`, `at_time_limit` (of the completed), `laps`,
+/// `beyond_grip` (share of all steps), `lap_times_s` (null for a collision).
 Json racing_results(const std::vector<RacingLap>& laps);
 
 }  // namespace slalom::tools

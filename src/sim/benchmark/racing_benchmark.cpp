@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint64_t seed = 12345;
 constexpr double steering_delay = 0.02;                // s
 constexpr double lap_end = 0.995, past_start = 0.999;  // shares of a lap
-constexpr double least_time = 5, most_time = 250;      // s
+constexpr double least_time = 5;                       // s, of a lap
 
 PlantOptions plant_options() {
   PlantOptions options;
