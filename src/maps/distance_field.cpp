@@ -6,20 +6,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include "slalom/maps/distance_transform.hpp"
+
 namespace slalom::maps {
 namespace {
 
 /// Larger than any distance in cells, small enough to be counted up from.
 constexpr std::int32_t far = 1 << 29;
-
-/// The lower envelope of the parabolas (x - site)^2 + height^2 over one row.
-struct Envelope {
-  std::vector<std::int32_t> site;
-  std::vector<std::int64_t> height;  ///< squared, cells^2
-  std::vector<double> start;         ///< where the parabola becomes the lowest
-
-  explicit Envelope(int width) : site(width), height(width), start(width) {}
-};
 
 /// Where the parabola of (q, fq) goes below that of (v, fv), v < q. Both operands are integers below 2^53,
 /// and two different results are further apart than their rounding, so that comparing with integers is exact.
@@ -27,74 +20,86 @@ double intersection(std::int64_t v, std::int64_t fv, std::int64_t q, std::int64_
   return static_cast<double>((fq + q * q) - (fv + v * v)) / static_cast<double>(2 * (q - v));
 }
 
-/// Builds the envelope of a row of vertical distances; returns how many parabolas it has.
-int build(const std::int32_t* vertical, int width, Envelope& envelope) {
-  int count = 0;
-  for (int q = 0; q < width; ++q) {
-    if (vertical[q] >= far) continue;
-    const std::int64_t fq = static_cast<std::int64_t>(vertical[q]) * vertical[q];
-    double start = -std::numeric_limits<double>::infinity();
-    while (count > 0) {
-      start = intersection(envelope.site[count - 1], envelope.height[count - 1], q, fq);
-      if (start > envelope.start[count - 1]) break;
-      --count;
-    }
-    if (count == 0) start = -std::numeric_limits<double>::infinity();
-    envelope.site[count] = q;
-    envelope.height[count] = fq;
-    envelope.start[count] = start;
-    ++count;
-  }
-  return count;
+void check_size(int width, int height) {
+  if (width > 0 && height > 0) return;
+  throw std::invalid_argument("distance transform: the grid must have width x height cells, at least one");
 }
 
-void evaluate(const Envelope& envelope, int count, int width, double resolution, double* distance) {
+}  // namespace
+
+DistanceTransform::DistanceTransform(int width, int height) : width_(width), height_(height) {
+  check_size(width, height);
+  vertical_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  envelope_.resize(static_cast<std::size_t>(width));
+}
+
+/// Distance in cells to the nearest obstacle of the same column, by one sweep up and one down.
+void DistanceTransform::measure_columns(std::span<const Occupancy> cells, bool unknown_is_obstacle) noexcept {
+  const std::size_t width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
+  for (std::size_t i = 0; i < vertical_.size(); ++i) {
+    const bool obstacle =
+        cells[i] == Occupancy::occupied || (unknown_is_obstacle && cells[i] == Occupancy::unknown);
+    vertical_[i] = obstacle ? 0 : far;
+  }
+  const auto sweep = [&](const std::int32_t* from, std::int32_t* to) {
+    for (std::size_t x = 0; x < width; ++x) to[x] = std::min(to[x], from[x] + 1);
+  };
+  for (std::size_t y = 1; y < height; ++y) sweep(&vertical_[(y - 1) * width], &vertical_[y * width]);
+  for (std::size_t y = height; y-- > 1;) sweep(&vertical_[y * width], &vertical_[(y - 1) * width]);
+}
+
+/// Builds the envelope of a row of vertical distances; returns how many parabolas it has.
+int DistanceTransform::build_envelope(const std::int32_t* vertical) noexcept {
+  constexpr double everywhere = -std::numeric_limits<double>::infinity();
+  Parabola* const bottom = envelope_.data();
+  Parabola* end = bottom;
+  for (int q = 0; q < width_; ++q) {
+    if (vertical[q] >= far) continue;
+    const std::int64_t fq = static_cast<std::int64_t>(vertical[q]) * vertical[q];
+    double start = everywhere;
+    while (end != bottom) {
+      start = intersection(end[-1].site, end[-1].height, q, fq);
+      if (start > end[-1].start) break;
+      --end;
+    }
+    *end = {q, fq, end == bottom ? everywhere : start};
+    ++end;
+  }
+  return static_cast<int>(end - bottom);
+}
+
+void DistanceTransform::evaluate(int count, double resolution, double* distance) const noexcept {
   if (count == 0) {
-    for (int x = 0; x < width; ++x) distance[x] = std::numeric_limits<double>::infinity();
+    std::fill_n(distance, width_, std::numeric_limits<double>::infinity());
     return;
   }
-  for (int k = 0, x = 0; x < width; ++k) {
-    const double end = k + 1 < count ? envelope.start[k + 1] : width;
-    const std::int64_t site = envelope.site[k], height = envelope.height[k];
-    for (; x < width && x <= end; ++x) {
+  for (int k = 0, x = 0; x < width_; ++k) {
+    const Parabola& here = envelope_[static_cast<std::size_t>(k)];
+    const double end = k + 1 < count ? envelope_[static_cast<std::size_t>(k + 1)].start : width_;
+    const std::int64_t site = here.site, height = here.height;
+    for (; x < width_ && x <= end; ++x) {
       distance[x] = resolution * std::sqrt(static_cast<double>((x - site) * (x - site) + height));
     }
   }
 }
 
-/// Distance in cells to the nearest obstacle of the same column, by one sweep up and one down.
-std::vector<std::int32_t> vertical_distances(const OccupancyGrid& grid, bool unknown_is_obstacle) {
-  const std::size_t width = grid.width, height = grid.height;
-  std::vector<std::int32_t> vertical(width * height);
-  for (std::size_t i = 0; i < vertical.size(); ++i) {
-    const bool obstacle =
-        grid.cells[i] == Occupancy::occupied || (unknown_is_obstacle && grid.cells[i] == Occupancy::unknown);
-    vertical[i] = obstacle ? 0 : far;
+void DistanceTransform::compute(std::span<const Occupancy> cells, bool unknown_is_obstacle, double resolution,
+                                std::span<double> distance) noexcept {
+  measure_columns(cells, unknown_is_obstacle);
+  for (int y = 0; y < height_; ++y) {
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+    evaluate(build_envelope(&vertical_[row]), resolution, &distance[row]);
   }
-  const auto sweep = [&](const std::int32_t* from, std::int32_t* to) {
-    for (std::size_t x = 0; x < width; ++x) to[x] = std::min(to[x], from[x] + 1);
-  };
-  for (std::size_t y = 1; y < height; ++y) sweep(&vertical[(y - 1) * width], &vertical[y * width]);
-  for (std::size_t y = height; y-- > 1;) sweep(&vertical[y * width], &vertical[(y - 1) * width]);
-  return vertical;
 }
 
-}  // namespace
-
 DistanceField distance_transform(const OccupancyGrid& grid, bool unknown_is_obstacle) {
-  if (grid.width <= 0 || grid.height <= 0 ||
-      grid.cells.size() != static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height)) {
-    throw std::invalid_argument("distance_transform: the grid must have width x height cells, at least one");
-  }
+  check_size(grid.width, grid.height);
   DistanceField field{grid.width, grid.height, grid.resolution, grid.origin, {}};
-  field.distance.resize(grid.cells.size());
-  const auto vertical = vertical_distances(grid, unknown_is_obstacle);
-  Envelope envelope(grid.width);
-  for (int y = 0; y < grid.height; ++y) {
-    const std::size_t row = static_cast<std::size_t>(y) * grid.width;
-    const int count = build(&vertical[row], grid.width, envelope);
-    evaluate(envelope, count, grid.width, grid.resolution, &field.distance[row]);
-  }
+  field.distance.resize(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height));
+  if (grid.cells.size() != field.distance.size())
+    throw std::invalid_argument("distance_transform: the grid must have width x height cells");
+  DistanceTransform(grid.width, grid.height)
+      .compute(grid.cells, unknown_is_obstacle, grid.resolution, field.distance);
   return field;
 }
 

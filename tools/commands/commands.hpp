@@ -17,6 +17,7 @@ void declare_explain(Subcommand& command);
 void declare_hardware(Subcommand& command);
 void declare_identify(Subcommand& command);
 void declare_manual(Subcommand& command);
+void declare_navigate(Subcommand& command);
 void declare_options(Subcommand& command);
 void declare_replay(Subcommand& command);
 void declare_reproduce(Subcommand& command);

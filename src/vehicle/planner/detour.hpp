@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "slalom/maps/clearance_map.hpp"
+#include "slalom/maps/grid_search.hpp"
 #include "slalom/maps/reference_field.hpp"
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
@@ -16,10 +17,10 @@ namespace slalom::vehicle::detail {
 /// ahead, and from there the side of an obstacle that is a dead end can look better than the one that is
 /// open.
 ///
-/// The search is Dijkstra's (Numerische Mathematik 1, 1959) over the cells of a grid around the car, in which
-/// the car is a disc of its width and margin, and cells near obstacles cost more. Its end is the furthest
-/// point of the course in the grid that can be reached. The path goes on along the course from there.
-/// After construction nothing allocates.
+/// The search covers the cells of a grid around the car (maps::GridSearch), in which the car is a disc of its
+/// width and margin, and cells near obstacles cost more. Its end is the furthest point of the course in the
+/// grid that can be reached. The path goes on along the course from there. After construction nothing
+/// allocates.
 class Detour {
  public:
   /// On this course, by a car with this body.
@@ -40,31 +41,15 @@ class Detour {
   const maps::ReferenceField& field_around(const maps::Point& position) noexcept;
 
  private:
-  struct Reached {
-    float cost;
-    int cell;
-    bool operator<(const Reached& other) const noexcept { return cost > other.cost; }
-  };
-
-  maps::Point centre_of(int cell) const noexcept;
-  int cell_at(const maps::Point& point) const noexcept;
   void set_prices(const maps::ClearanceMap& obstacles, const maps::Pose& pose) noexcept;
-  void spread(int from) noexcept;
-  bool is_clear(int from, int to) const noexcept;
-  void follow_back(int goal) noexcept;
-  void smooth() noexcept;
   int furthest_reached(const maps::Pose& pose, int nearest) const noexcept;
   void follow_course(int from) noexcept;
 
   std::vector<maps::ReferencePoint> course_;
-  double front_;                ///< m, from the pose to the car's front
-  double needed_;               ///< m, from the car's middle to an obstacle
-  std::vector<float> prices_;   ///< of driving 1 m in a cell; 0: occupied
-  std::vector<float> costs_;    ///< of reaching a cell from the car
-  std::vector<int> previous_;   ///< cell before each on the cheapest path; -1 at the car
-  std::vector<Reached> queue_;  ///< a heap
-  std::vector<int> corners_;
-  std::vector<maps::ReferencePoint> path_, smoothed_;
+  double front_;   ///< m, from the pose to the car's front
+  double needed_;  ///< m, from the car's middle to an obstacle
+  maps::GridSearch grid_;
+  std::vector<maps::ReferencePoint> path_;
   maps::ReferenceField field_;
   std::array<maps::Point, 4> dead_ends_{};
   std::size_t dead_end_count_ = 0;

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "slalom/maps/pose.hpp"
+#include "slalom/navigation/base.hpp"
+#include "slalom/sim/room.hpp"
+
+namespace slalom::evaluation {
+
+/// A task for a mobile robot in a room.
+struct RoomScenario {
+  const char* name = "";     ///< as the command line writes it
+  const char* summary = "";  ///< one line
+  sim::Room room;            ///< its first obstacle is the one whose sides are counted
+  maps::Pose start, goal;    ///< m, m, rad
+  bool has_way = true;       ///< whether the goal can be reached; otherwise the robot must say that it cannot
+};
+
+/// The scenarios. Their robot is 0.7 m long and 0.5 m wide, its origin in its middle.
+std::span<const RoomScenario> room_scenarios();
+
+/// The one of this name. Throws std::invalid_argument that lists the names if there is none.
+const RoomScenario& room_scenario(std::string_view name);
+
+}  // namespace slalom::evaluation

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <array>
+
+#include "slalom/core/math.hpp"
+#include "slalom/core/options.hpp"
+#include "slalom/core/problem.hpp"
+
+namespace slalom::navigation {
+
+/// How a base can move.
+enum class BaseKind {
+  differential,     ///< forward, back, and turning, also on the spot
+  omnidirectional,  ///< the same, and sideways
+  ackermann,        ///< steered wheels: turning only while driving
+};
+inline const char* const* enum_names(BaseKind) {
+  static constexpr const char* const names[] = {"differential", "omnidirectional", "ackermann", nullptr};
+  return names;
+}
+
+/// A velocity in the robot's frame.
+struct Velocity {
+  double forward = 0;  ///< m/s
+  double left = 0;     ///< m/s; 0 but for omnidirectional bases
+  double turn = 0;     ///< rad/s, counter-clockwise
+};
+
+/// Limits of a base.
+struct BaseOptions {
+  BaseKind kind = BaseKind::differential;  ///< how it moves
+  double max_forward = 0.5;                ///< m/s
+  double max_reverse = 0.35;               ///< m/s
+  double max_sideways = 0.5;               ///< m/s, omnidirectional bases
+  double max_turn = 1.9;                   ///< rad/s
+  double max_acceleration = 2.5;           ///< m/s^2, in each direction, also for braking
+  double max_turn_acceleration = 3.2;      ///< rad/s^2
+  double min_turning_radius = 0.2;         ///< m, of Ackermann bases
+};
+
+template <class Options, class Visit>
+requires is_options_of<Options, BaseOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.kind, Declaration{.name = "base", .help = "how the base can move"});
+  visit(o.max_forward,
+        Declaration{
+            .name = "max_forward", .unit = "m/s", .help = "largest speed forward", .min = 0.01, .max = 20});
+  visit(o.max_reverse,
+        Declaration{
+            .name = "max_reverse", .unit = "m/s", .help = "largest speed backward", .min = 0, .max = 20});
+  visit(o.max_sideways, Declaration{.name = "max_sideways",
+                                    .unit = "m/s",
+                                    .help = "largest speed to either side of an omnidirectional base",
+                                    .min = 0,
+                                    .max = 20});
+  visit(o.max_turn,
+        Declaration{.name = "max_turn", .unit = "rad/s", .help = "largest yaw rate", .min = 0.01, .max = 20});
+  visit(o.max_acceleration, Declaration{.name = "max_acceleration",
+                                        .unit = "m/s^2",
+                                        .help = "largest change of a speed, also for braking",
+                                        .min = 0.01,
+                                        .max = 100});
+  visit(o.max_turn_acceleration, Declaration{.name = "max_turn_acceleration",
+                                             .unit = "rad/s^2",
+                                             .help = "largest change of the yaw rate",
+                                             .min = 0.01,
+                                             .max = 100});
+  visit(o.min_turning_radius, Declaration{.name = "min_turning_radius",
+                                          .unit = "m",
+                                          .help = "smallest radius of a circle that an Ackermann base drives",
+                                          .min = 0.01,
+                                          .max = 100});
+}
+
+/// What the motion of a step is: speeds in the robot's frame.
+template <class T>
+struct Motion {
+  T forward, left, turn;  ///< m/s, m/s, rad/s
+};
+
+/// The inputs of a differential base: speed (m/s) and yaw rate (rad/s).
+struct DifferentialBase {
+  static constexpr int inputs = 2;  ///< of a step
+  /// Takes nothing from the limits but what bounds the inputs.
+  explicit DifferentialBase(const BaseOptions&) {}
+  /// The motion of an input.
+  template <class T>
+  SLALOM_INLINE_CALLS Motion<T> motion(const Input<T, 2>& u) const {
+    return {u[0], T(0), u[1]};
+  }
+  /// The input of a motion.
+  static Input<double, 2> input(const Velocity& v) { return {{v.forward, v.turn}}; }
+  /// Values for each input, of those for speeds forward, sideways and turning.
+  static std::array<double, 2> per_input(double forward, double, double turn) { return {forward, turn}; }
+};
+
+/// The inputs of an omnidirectional base: speeds forward and to the left (m/s) and yaw rate (rad/s).
+struct OmnidirectionalBase {
+  static constexpr int inputs = 3;  ///< of a step
+  /// Takes nothing from the limits but what bounds the inputs.
+  explicit OmnidirectionalBase(const BaseOptions&) {}
+  /// The motion of an input.
+  template <class T>
+  SLALOM_INLINE_CALLS Motion<T> motion(const Input<T, 3>& u) const {
+    return {u[0], u[1], u[2]};
+  }
+  /// The input of a motion.
+  static Input<double, 3> input(const Velocity& v) { return {{v.forward, v.left, v.turn}}; }
+  /// Values for each input, of those for speeds forward, sideways and turning.
+  static std::array<double, 3> per_input(double forward, double left, double turn) {
+    return {forward, left, turn};
+  }
+};
+
+/// The inputs of an Ackermann base: speed (m/s) and yaw rate (rad/s), of which the smallest turning radius
+/// leaves the part that the speed allows.
+struct AckermannBase {
+  static constexpr int inputs = 2;  ///< of a step
+  /// Takes the smallest turning radius from the limits.
+  explicit AckermannBase(const BaseOptions& limits) : largest_curvature_(1 / limits.min_turning_radius) {}
+  /// The motion of an input.
+  template <class T>
+  SLALOM_INLINE_CALLS Motion<T> motion(const Input<T, 2>& u) const {
+    const T most = abs(u[0]) * T(largest_curvature_);
+    return {u[0], T(0), clamp(u[1], T(0) - most, most)};
+  }
+  /// The input of a motion.
+  static Input<double, 2> input(const Velocity& v) { return {{v.forward, v.turn}}; }
+  /// Values for each input, of those for speeds forward, sideways and turning.
+  static std::array<double, 2> per_input(double forward, double, double turn) { return {forward, turn}; }
+
+ private:
+  Coefficient largest_curvature_;  ///< 1/m
+};
+
+}  // namespace slalom::navigation

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <vector>
+
+#include "slalom/core/grid_view.hpp"
+#include "slalom/maps/cell_grid.hpp"
+#include "slalom/maps/distance_transform.hpp"
+#include "slalom/maps/occupancy_grid.hpp"
+#include "slalom/navigation/footprint.hpp"
+
+namespace slalom::navigation {
+
+/// What the robot may do with cells of which nothing is known.
+enum class UnknownCells {
+  obstacle,  ///< they are obstacles
+  priced,    ///< it may enter them, and its problem has a price for that
+};
+inline const char* const* enum_names(UnknownCells) {
+  static constexpr const char* const names[] = {"obstacle", "priced", nullptr};
+  return names;
+}
+
+/// The obstacles around a robot: a grid of square cells parallel to the map frame, with the distance from
+/// each to the nearest obstacle cell. The grid may move with the robot from update to update. Positions off
+/// the grid are unknown. After construction nothing allocates.
+class Costmap {
+ public:
+  /// For grids of this size in cells with this resolution (m). Throws std::invalid_argument unless the grid
+  /// has 3 to 20000 cells along each side, and the resolution is in [0.001, 10].
+  Costmap(int width, int height, double resolution, UnknownCells unknown = UnknownCells::obstacle);
+
+  /// Takes the cells of `grid`. Returns false and changes nothing if its size or resolution is another, its
+  /// origin is not finite, or it is turned (the yaw of its origin is not 0).
+  bool update(const maps::OccupancyGrid& grid) noexcept;
+
+  /// The distance (m) from the middle of the cell at a position (m) to that of the nearest obstacle cell: 0
+  /// on an obstacle, at most `reach`.
+  double distance(double x, double y) const noexcept;
+  /// Whether the body at this pose (map frame) overlaps an obstacle cell: exact but for the rounding of
+  /// double. Most poses are decided by one look-up of the distance.
+  bool collides(const Footprint& footprint, const maps::Pose& pose) const noexcept;
+
+  /// Distances as above, for rollouts in the map frame.
+  GridView<1> distances() const noexcept { return distances_.view(geometry_); }
+  /// 1 in cells that are unknown and priced, else 0.
+  GridView<1> prices() const noexcept { return prices_.view(geometry_); }
+  /// Position and size of the cells.
+  const maps::GridGeometry& geometry() const noexcept { return geometry_; }
+
+  static constexpr float reach = 100;  ///< m, the largest distance told
+
+ private:
+  bool is_obstacle(int row, int column) const noexcept { return *distances_.at(row, column) == 0; }
+
+  UnknownCells unknown_;
+  maps::GridGeometry geometry_;
+  maps::DistanceTransform transform_;
+  std::vector<double> transformed_;  ///< m, height x width
+  maps::CellGrid<1> distances_, prices_;
+};
+
+}  // namespace slalom::navigation

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "slalom/maps/pose.hpp"
+
+namespace slalom::navigation {
+
+/// The outline of a robot, with bounds that decide most collision checks without it. All in the robot's frame
+/// (m): x forward, y to the left, origin where the robot's pose is.
+class Footprint {
+ public:
+  /// A part of the body between two discs about one point.
+  struct Part {
+    maps::Point middle;    ///< m, robot's frame
+    double contained = 0;  ///< m, radius of a disc that lies in the body
+    double covering = 0;   ///< m, radius of a disc that covers the part
+  };
+  static constexpr int part_count = 3;        ///< along the longer side of the bounding box
+  static constexpr int most_vertices = 32;    ///< of an outline
+  static constexpr double most_extent = 100;  ///< m, from the origin to a vertex
+
+  /// A simple polygon, its vertices in order, in either direction. Throws std::invalid_argument, naming the
+  /// vertex, unless there are 3 to 32 of them, all finite and within 100 m of the origin, which enclose an
+  /// area with the origin inside and do not cross each other.
+  explicit Footprint(std::span<const maps::Point> vertices);
+
+  /// A rectangle: `front` and `rear` (m) are the distances from the origin to its front and rear side.
+  static Footprint rectangle(double front, double rear, double width);
+
+  /// The outline.
+  std::span<const maps::Point> vertices() const noexcept { return vertices_; }
+  /// The parts, which together cover the body.
+  const std::array<Part, part_count>& parts() const noexcept { return parts_; }
+  /// The index of the part that covers a point of the body; where several do, of the one in which it lies
+  /// deepest.
+  std::size_t part_at(const maps::Point& point) const noexcept;
+  /// The largest distance of a vertex from the origin, m.
+  double circumscribed_radius() const noexcept { return circumscribed_; }
+  /// The largest distance of a vertex from the robot's x axis, m: half of the corridor that the body needs
+  /// along a straight path.
+  double half_width() const noexcept { return half_width_; }
+
+  /// Whether a point of the robot's frame is inside.
+  bool contains(const maps::Point& point) const noexcept;
+  /// The distance of a point from the outline, m, whether it is inside or not.
+  double distance_to_outline(const maps::Point& point) const noexcept;
+  /// Points on the outline, with at most `spacing` (m, > 0) between neighbours.
+  std::vector<maps::Point> outline_points(double spacing) const;
+
+ private:
+  Part part_of(double from, double to, bool along_x) const;
+
+  std::vector<maps::Point> vertices_;
+  std::array<Part, part_count> parts_{};
+  double circumscribed_ = 0;
+  double half_width_ = 0;
+};
+
+}  // namespace slalom::navigation

@@ -1,0 +1,153 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "slalom/navigation/base.hpp"
+#include "slalom/navigation/cost_options.hpp"
+#include "slalom/navigation/costmap.hpp"
+#include "slalom/solvers/mppi_options.hpp"
+#include "slalom/solvers/solver_options.hpp"
+#include "slalom/solvers/svg_mppi_options.hpp"
+
+namespace slalom::navigation {
+
+/// The options of `svg_mppi` for a base with these limits: 2000 samples of 56 steps, in whose variances the
+/// limits are the scale.
+SvgMppiOptions svg_mppi_options(const BaseOptions& base);
+/// The same for `mppi`.
+MppiOptions mppi_options(const BaseOptions& base);
+
+/// Options of a Navigator, besides those of its solver.
+struct NavigatorOptions {
+  BaseOptions base{};          ///< limits of the base
+  CostOptions costs{};         ///< weights of the cost of a plan
+  double time_step = 0.05;     ///< s, of a plan
+  double goal_distance = 0.1;  ///< m, at which the goal is reached
+  double goal_angle = 0.15;    ///< rad, the same
+  bool find_detours = true;    ///< search a way round where the path is blocked, and report if there is none
+  double look_ahead = 6;       ///< m of path that are checked for obstacles
+  double patience = 0.3;       ///< s without a way before the robot stops and reports that it is blocked
+  double stuck_after = 4;      ///< s without progress after which the way that was chosen counts as closed
+};
+
+template <class Options, class Visit>
+requires is_options_of<Options, NavigatorOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit_options(o.base, visit);
+  visit_options(o.costs, visit);
+  visit(
+      o.time_step,
+      Declaration{
+          .name = "time_step", .unit = "s", .help = "duration of a step of a plan", .min = 0.001, .max = 1});
+  visit(o.goal_distance, Declaration{.name = "goal_distance",
+                                     .unit = "m",
+                                     .help = "distance at which the goal is reached",
+                                     .min = 0.001,
+                                     .max = 100});
+  visit(o.goal_angle, Declaration{.name = "goal_angle",
+                                  .unit = "rad",
+                                  .help = "yaw error at which the goal is reached",
+                                  .min = 0.001,
+                                  .max = 4});
+  visit(o.find_detours,
+        Declaration{.name = "find_detours", .help = "search a way round where the path is blocked"});
+  visit(o.look_ahead, Declaration{.name = "look_ahead",
+                                  .unit = "m",
+                                  .help = "length of path that is checked for obstacles",
+                                  .min = 0,
+                                  .max = 100});
+  visit(o.patience, Declaration{.name = "patience",
+                                .unit = "s",
+                                .help = "time without a way before the robot stops and reports it",
+                                .min = 0,
+                                .max = 60});
+  visit(o.stuck_after,
+        Declaration{.name = "stuck_after",
+                    .unit = "s",
+                    .help = "time without progress after which the chosen way counts as closed",
+                    .min = 0.1,
+                    .max = 3600});
+}
+
+/// What a navigator does.
+enum class NavigationStatus {
+  following,     ///< follows the path
+  detour,        ///< follows a way round what blocks the path
+  braking,       ///< the plan leads into an obstacle too soon: the robot brakes
+  blocked,       ///< the path is blocked and there is no way round: the robot stands
+  goal_reached,  ///< the robot stands at the goal
+  no_path,       ///< no path was set, or the robot is off the costmap: the robot stands
+  bad_input,     ///< a pose, velocity or time is not finite, or the costmap has another size: it stands
+};
+/// The name of a status, as it is written in results.
+constexpr const char* name(NavigationStatus status) noexcept {
+  switch (status) {
+    case NavigationStatus::following:
+      return "following";
+    case NavigationStatus::detour:
+      return "detour";
+    case NavigationStatus::braking:
+      return "braking";
+    case NavigationStatus::blocked:
+      return "blocked";
+    case NavigationStatus::goal_reached:
+      return "goal_reached";
+    case NavigationStatus::no_path:
+      return "no_path";
+    case NavigationStatus::bad_input:
+      return "bad_input";
+  }
+  return "unknown";
+}
+
+/// The answer of a navigator.
+struct NavigationResult {
+  NavigationStatus status = NavigationStatus::no_path;
+  Velocity command;                  ///< finite, within the limits
+  double remaining = 0;              ///< m of path to the goal
+  std::span<const maps::Pose> plan;  ///< predicted poses, map frame; the first is now. Empty unless it drives
+  std::span<const maps::Pose> path;  ///< what is followed, with the present detour
+};
+
+/// Drives a mobile robot along a path to a goal, between the obstacles of a costmap.
+///
+///     Navigator navigator(Footprint::rectangle(0.35, 0.35, 0.5), {}, costmap);
+///     navigator.set_path(path);                                             // when there is a new path
+///     const auto result = navigator.update(pose, velocity, costmap, 0.05);  // each control period
+///     drive(result.command);
+///
+/// Where the path is blocked within `look_ahead`, it searches for a way round and keeps to it until that is
+/// blocked itself: a search prefers the way that was chosen before. Construction and `set_path` allocate and
+/// may throw; `update` does neither.
+class Navigator {
+ public:
+  /// For costmaps of the size and resolution of `costmap`. Throws std::invalid_argument that names the
+  /// option, its value and the rule.
+  Navigator(const Footprint& footprint, const NavigatorOptions& options, const SolverOptions& solver,
+            const Costmap& costmap);
+  /// The same with `svg_mppi`.
+  Navigator(const Footprint& footprint, const NavigatorOptions& options, const Costmap& costmap);
+  ~Navigator();
+  Navigator(Navigator&&) noexcept;
+  Navigator& operator=(Navigator&&) noexcept;
+
+  /// The path to follow, in the map frame: positions from near the robot to the goal. The yaw of the last
+  /// pose is the heading at the goal; that of the others is not used. Throws std::invalid_argument unless
+  /// there is at least one pose, and all are finite and within 1e6 m of the origin.
+  void set_path(std::span<const maps::Pose> path);
+
+  /// The command for the next control period. `velocity` is that of the robot now, and `elapsed` (s) the time
+  /// since the last update.
+  NavigationResult update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
+                          double elapsed) noexcept;
+
+  /// Forgets the path and all that was learned on it, and restarts the random numbers from `seed`.
+  void reset(std::uint64_t seed) noexcept;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace slalom::navigation

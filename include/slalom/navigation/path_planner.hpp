@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slalom/maps/grid_search.hpp"
+#include "slalom/navigation/costmap.hpp"
+
+namespace slalom::navigation {
+
+/// Cheapest paths over a costmap for a body that needs a corridor of a given width. Cells within 0.3 m of
+/// what it needs cost up to five times as much. After construction nothing allocates.
+class PathPlanner {
+ public:
+  static constexpr std::size_t most_points = 4000;  ///< of a path
+  static constexpr double spacing = 0.05;           ///< m, between the points of a path
+
+  /// For costmaps of this size, and a body with this half width (m).
+  PathPlanner(const maps::GridGeometry& geometry, double half_width);
+
+  /// Whether the costmap tells of all cells that the body touches at a point of a path.
+  bool knows(const Costmap& costmap, const maps::Point& point) const noexcept;
+  /// Whether there is room for the body there, where the path goes straight on.
+  bool has_room(const Costmap& costmap, const maps::Point& point) const noexcept;
+
+  /// Makes the cells of a costmap, which must have the size given, those of the next search. `kept` is a path
+  /// that was followed before: cells further than 0.4 m from it cost 1.3 times as much, so that the search
+  /// prefers the way that was chosen. No way leads within 0.5 m of the `dead_ends`.
+  void read(const Costmap& costmap, std::span<const maps::Pose> kept,
+            std::span<const maps::Point> dead_ends) noexcept;
+  /// Searches from a position. Returns false if it is off the costmap. Cells within 0.3 m count as free.
+  bool search_from(const maps::Point& start) noexcept;
+  /// The cost of a way to a position, m of free space; infinite if there is none.
+  double cost_to(const maps::Point& point) const noexcept;
+  /// The way to a position that can be reached, without that position itself. Valid until the next call.
+  std::span<const maps::Point> path_to(const maps::Point& point) noexcept;
+
+ private:
+  double half_width_;
+  maps::GridGeometry geometry_;
+  maps::GridSearch grid_;
+  std::vector<std::uint8_t> is_kept_;  ///< by cell
+};
+
+/// A path to a goal: points at most 0.05 m apart, each with the direction of the path, and the goal. Empty if
+/// there is none. Allocates.
+std::vector<maps::Pose> plan_path(const Costmap& costmap, const Footprint& footprint, const maps::Pose& start,
+                                  const maps::Pose& goal);
+
+}  // namespace slalom::navigation

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slalom/maps/occupancy_grid.hpp"
+
+namespace slalom::navigation {
+
+/// The ranges of a planar scanner that looks all round.
+struct RangeScan {
+  maps::Pose pose;                 ///< of the scanner, map frame
+  std::span<const double> ranges;  ///< m; the beams are evenly spread, the first along the scanner's x axis
+  double max_range = 0;            ///< m; a range that is not below it is a beam that hit nothing
+};
+
+/// A map with what scans have seen besides: beams clear the cells that they cross and mark the cell where
+/// they end. What the map knows is never cleared. After construction nothing allocates.
+class ScanMap {
+ public:
+  /// On this map, whose origin must not be turned; throws std::invalid_argument if it is, or has no cells.
+  explicit ScanMap(maps::OccupancyGrid known);
+
+  /// Adds a scan. Beams whose range is not finite or below 0 are dropped; one from off the map is too.
+  void add(const RangeScan& scan) noexcept;
+
+  /// The map and what was seen.
+  const maps::OccupancyGrid& grid() const noexcept { return seen_; }
+
+ private:
+  void clear(const maps::Point& from, double cosine, double sine, double range) noexcept;
+
+  maps::OccupancyGrid known_, seen_;
+};
+
+}  // namespace slalom::navigation

@@ -1,0 +1,127 @@
+#include "slalom/maps/grid_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slalom::maps {
+
+namespace {
+
+constexpr int smoothing_reach = 3, smoothing_rounds = 2;  // points
+constexpr float unreached = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+GridSearch::GridSearch(int columns, int rows, double cell_size, std::size_t most_points)
+    : columns_(columns),
+      rows_(rows),
+      cell_size_(cell_size),
+      most_points_(most_points),
+      prices_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)),
+      costs_(prices_.size(), unreached),
+      previous_(prices_.size()) {
+  queue_.reserve(8 * prices_.size());
+  corners_.reserve(prices_.size());
+  path_.reserve(most_points);
+  smoothed_.reserve(most_points);
+}
+
+Point GridSearch::centre_of(int cell) const noexcept {
+  return {corner_.x + (cell % columns_ + 0.5) * cell_size_, corner_.y + (cell / columns_ + 0.5) * cell_size_};
+}
+
+int GridSearch::cell_at(const Point& point) const noexcept {
+  const double column = std::floor((point.x - corner_.x) / cell_size_),
+               row = std::floor((point.y - corner_.y) / cell_size_);
+  if (!(column >= 0 && column < columns_ && row >= 0 && row < rows_)) return -1;
+  return static_cast<int>(row) * columns_ + static_cast<int>(column);
+}
+
+bool GridSearch::reached(int cell) const noexcept {
+  return cost(cell) < unreached;
+}
+
+void GridSearch::spread(int from) noexcept {
+  std::fill(costs_.begin(), costs_.end(), unreached);
+  queue_.assign(1, {0, from});
+  costs_[static_cast<std::size_t>(from)] = 0;
+  previous_[static_cast<std::size_t>(from)] = -1;
+  while (!queue_.empty()) {
+    std::pop_heap(queue_.begin(), queue_.end());
+    const Reached here = queue_.back();
+    queue_.pop_back();
+    if (here.cost > costs_[static_cast<std::size_t>(here.cell)]) continue;
+    const int column = here.cell % columns_, row = here.cell / columns_;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const int x = column + dx, y = row + dy;
+        if ((dx == 0 && dy == 0) || x < 0 || x >= columns_ || y < 0 || y >= rows_) continue;
+        const auto next = static_cast<std::size_t>(y * columns_ + x);
+        if (!(prices_[next] > 0)) continue;
+        const float step = static_cast<float>(cell_size_) * (dx != 0 && dy != 0 ? 1.41421356f : 1.0f);
+        const float cost = here.cost + step * prices_[next];
+        if (cost >= costs_[next]) continue;
+        costs_[next] = cost;
+        previous_[next] = here.cell;
+        queue_.push_back({cost, static_cast<int>(next)});
+        std::push_heap(queue_.begin(), queue_.end());
+      }
+  }
+}
+
+/// Whether the straight line between two cells costs no more than the least price but for what the first one
+/// costs: it may go along an obstacle, but not towards it.
+bool GridSearch::is_clear(int from, int to) const noexcept {
+  const Point a = centre_of(from), b = centre_of(to);
+  const float most = std::max(prices_[static_cast<std::size_t>(from)], prices_[static_cast<std::size_t>(to)]);
+  const int steps = static_cast<int>(std::ceil(std::hypot(b.x - a.x, b.y - a.y) / (0.5 * cell_size_)));
+  for (int i = 1; i < steps; ++i) {
+    const double share = static_cast<double>(i) / steps;
+    const int cell = cell_at({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
+    const float price = cell < 0 ? 0 : prices_[static_cast<std::size_t>(cell)];
+    if (!(price > 0) || price > most) return false;
+  }
+  return true;
+}
+
+std::span<const Point> GridSearch::path_to(int goal, double spacing) noexcept {
+  corners_.clear();
+  for (int cell = goal; cell >= 0; cell = previous_[static_cast<std::size_t>(cell)]) corners_.push_back(cell);
+  std::reverse(corners_.begin(), corners_.end());
+  path_.clear();
+  for (std::size_t at = 0; at + 1 < corners_.size() && path_.size() < most_points_;) {
+    std::size_t next = at + 1;
+    while (next + 1 < corners_.size() && is_clear(corners_[at], corners_[next + 1])) ++next;
+    const Point a = centre_of(corners_[at]), b = centre_of(corners_[next]);
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    const int parts = std::max(1, static_cast<int>(std::round(length / spacing)));
+    for (int i = 0; i < parts && path_.size() < most_points_; ++i) {
+      const double share = static_cast<double>(i) / parts;
+      path_.push_back({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
+    }
+    at = next;
+  }
+  smooth();
+  return path_;
+}
+
+/// Rounds the corners.
+void GridSearch::smooth() noexcept {
+  const int count = static_cast<int>(path_.size());
+  for (int round = 0; round < smoothing_rounds; ++round) {
+    smoothed_.assign(path_.begin(), path_.end());
+    for (int i = 1; i + 1 < count; ++i) {
+      const int reach = std::min({smoothing_reach, i, count - 1 - i});
+      Point sum{0, 0};
+      for (int k = i - reach; k <= i + reach; ++k) {
+        sum.x += path_[static_cast<std::size_t>(k)].x;
+        sum.y += path_[static_cast<std::size_t>(k)].y;
+      }
+      smoothed_[static_cast<std::size_t>(i)] = {sum.x / (2 * reach + 1), sum.y / (2 * reach + 1)};
+    }
+    path_.swap(smoothed_);
+  }
+}
+
+}  // namespace slalom::maps

@@ -1,0 +1,138 @@
+#include "slalom/navigation/footprint.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace slalom::navigation {
+
+namespace {
+
+using maps::Point;
+
+/// Twice the area of a triangle; above 0 if its corners run counter-clockwise.
+double turn(const Point& a, const Point& b, const Point& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+bool cross(const Point& a, const Point& b, const Point& c, const Point& d) {
+  return turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0;
+}
+
+double distance_to_segment(const Point& p, const Point& a, const Point& b) {
+  const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
+  const double share =
+      squared > 0 ? std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / squared, 0.0, 1.0) : 0;
+  return std::hypot(a.x + share * dx - p.x, a.y + share * dy - p.y);
+}
+
+void check_vertices(std::span<const Point> vertices) {
+  const std::size_t count = vertices.size();
+  if (count < 3 || count > Footprint::most_vertices)
+    throw std::invalid_argument("footprint: " + std::to_string(count) + " vertices, must be 3 to 32");
+  for (std::size_t i = 0; i < count; ++i) {
+    const double extent = std::hypot(vertices[i].x, vertices[i].y);
+    if (extent <= Footprint::most_extent) continue;
+    std::ostringstream text;
+    text << "footprint: vertex " << i << " at (" << vertices[i].x << ", " << vertices[i].y
+         << "): must be finite and within 100 m of the origin";
+    throw std::invalid_argument(text.str());
+  }
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = i + 2; k < count; ++k)
+      if (cross(vertices[i], vertices[(i + 1) % count], vertices[k], vertices[(k + 1) % count]))
+        throw std::invalid_argument("footprint: the sides from vertex " + std::to_string(i) +
+                                    " and from vertex " + std::to_string(k) + " must not cross");
+}
+
+}  // namespace
+
+Footprint::Footprint(std::span<const Point> vertices) : vertices_(vertices.begin(), vertices.end()) {
+  check_vertices(vertices);
+  if (!contains({0, 0})) throw std::invalid_argument("footprint: the origin must be inside");
+  Point low = vertices_.front(), high = low;
+  for (const Point& v : vertices_) {
+    circumscribed_ = std::max(circumscribed_, std::hypot(v.x, v.y));
+    half_width_ = std::max(half_width_, std::abs(v.y));
+    low = {std::min(low.x, v.x), std::min(low.y, v.y)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y)};
+  }
+  const bool along_x = high.x - low.x >= high.y - low.y;
+  const double from = along_x ? low.x : low.y, length = along_x ? high.x - low.x : high.y - low.y;
+  for (int i = 0; i < part_count; ++i)
+    parts_[static_cast<std::size_t>(i)] =
+        part_of(from + length * i / part_count, from + length * (i + 1) / part_count, along_x);
+}
+
+Footprint Footprint::rectangle(double front, double rear, double width) {
+  const Point corners[] = {{-rear, -width / 2}, {front, -width / 2}, {front, width / 2}, {-rear, width / 2}};
+  return Footprint(corners);
+}
+
+/// The part of the body in a strip across the longer side.
+Footprint::Part Footprint::part_of(double from, double to, bool along_x) const {
+  std::vector<Point> points;  // corners of the part: vertices in the strip, and where sides cross its edges
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const Point &a = vertices_[i], &b = vertices_[(i + 1) % vertices_.size()];
+    const double start = along_x ? a.x : a.y, end = along_x ? b.x : b.y;
+    if (start >= from && start <= to) points.push_back(a);
+    for (const double edge : {from, to}) {
+      if ((start - edge) * (end - edge) >= 0) continue;
+      const double share = (edge - start) / (end - start);
+      points.push_back({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
+    }
+  }
+  Point low = points.front(), high = low;
+  for (const Point& p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  Part part{{(low.x + high.x) / 2, (low.y + high.y) / 2}, 0, 0};
+  for (const Point& p : points)
+    part.covering = std::max(part.covering, std::hypot(p.x - part.middle.x, p.y - part.middle.y));
+  if (contains(part.middle)) part.contained = distance_to_outline(part.middle);
+  return part;
+}
+
+std::size_t Footprint::part_at(const Point& point) const noexcept {
+  const auto depth = [&](const Part& part) {
+    return part.covering - std::hypot(point.x - part.middle.x, point.y - part.middle.y);
+  };
+  const auto deepest = std::max_element(parts_.begin(), parts_.end(),
+                                        [&](const Part& a, const Part& b) { return depth(a) < depth(b); });
+  return static_cast<std::size_t>(deepest - parts_.begin());
+}
+
+bool Footprint::contains(const Point& point) const noexcept {
+  bool inside = false;
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const Point &a = vertices_[i], &b = vertices_[(i + 1) % vertices_.size()];
+    if ((a.y > point.y) == (b.y > point.y)) continue;
+    if (point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+  }
+  return inside;
+}
+
+double Footprint::distance_to_outline(const Point& point) const noexcept {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < vertices_.size(); ++i)
+    least = std::min(least, distance_to_segment(point, vertices_[i], vertices_[(i + 1) % vertices_.size()]));
+  return least;
+}
+
+std::vector<Point> Footprint::outline_points(double spacing) const {
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const Point &a = vertices_[i], &b = vertices_[(i + 1) % vertices_.size()];
+    const int parts = std::max(1, static_cast<int>(std::ceil(std::hypot(b.x - a.x, b.y - a.y) / spacing)));
+    for (int k = 0; k < parts; ++k) {
+      const double share = static_cast<double>(k) / parts;
+      points.push_back({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
+    }
+  }
+  return points;
+}
+
+}  // namespace slalom::navigation

@@ -1,0 +1,324 @@
+#include "slalom/navigation/navigator.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "navigation/base_model.hpp"
+#include "navigation/path_guide.hpp"
+#include "slalom/navigation/path_planner.hpp"
+
+namespace slalom::navigation {
+
+namespace {
+
+constexpr double largest = 1e6;          // m from the origin, of positions
+constexpr double search_period = 0.1;    // s between searches while there is no way
+constexpr double least_rejoin = 0.5;     // m of path with room that a detour needs where it ends
+constexpr double progress_step = 0.1;    // m of progress after which the robot is not stuck
+constexpr double settling = 1;           // m before the goal, where a robot that turns makes no progress
+constexpr double dead_end_ahead = 0.2;   // m from the robot's front to the middle of what counts as closed
+constexpr double dead_end_radius = 0.5;  // m
+constexpr double retry_after = 10;       // s without a way after which ways that were closed are tried again
+constexpr int steps_to_react = 2;        // steps of a plan, beside those of braking, that must be free
+constexpr double longest_period = 0.2;   // s for which the robot brakes in one command
+constexpr std::size_t most_dead_ends = 4;
+
+bool finite(const maps::Pose& pose) {
+  return std::abs(pose.x) <= largest && std::abs(pose.y) <= largest && std::abs(pose.yaw) <= largest;
+}
+
+bool finite(const Velocity& v) {
+  return std::isfinite(v.forward) && std::isfinite(v.left) && std::isfinite(v.turn);
+}
+
+maps::Point position(const maps::Pose& pose) {
+  return {pose.x, pose.y};
+}
+
+double distance(const maps::Point& a, const maps::Point& b) {
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+}  // namespace
+
+class Navigator::Implementation {
+ public:
+  Implementation(const Footprint& footprint, const NavigatorOptions& options, const SolverOptions& solver,
+                 const Costmap& costmap)
+      : options_((validate_options(options, "navigator"), options)),
+        footprint_(footprint),
+        geometry_(costmap.geometry()),
+        model_(detail::make_base_model(options, footprint, geometry_.resolution, solver)),
+        guide_(static_cast<double>(model_->plan().size()) * options.time_step *
+               std::max({options.base.max_forward, options.base.max_reverse, options.base.max_sideways})),
+        planner_(geometry_, footprint.half_width()) {}
+
+  void set_path(std::span<const maps::Pose> path);
+  NavigationResult update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
+                          double elapsed) noexcept;
+  void reset(std::uint64_t seed) noexcept;
+
+ private:
+  bool fits(const Costmap& costmap) const noexcept;
+  bool is_at_goal(const maps::Pose& pose) const noexcept;
+  bool is_closed(const Costmap& costmap, const maps::Point& point) const noexcept;
+  std::size_t first_closed(const Costmap& costmap) const noexcept;
+  bool can_rejoin(const Costmap& costmap, std::size_t point) const noexcept;
+  bool find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed) noexcept;
+  bool keep_way(const maps::Pose& pose, const Costmap& costmap, double elapsed) noexcept;
+  void watch_progress(double elapsed) noexcept;
+  bool plan_collides(const Costmap& costmap, const Velocity& velocity) const noexcept;
+  NavigationResult stand(NavigationStatus status, const Velocity& velocity, double elapsed) const noexcept;
+
+  NavigatorOptions options_;
+  Footprint footprint_;
+  maps::GridGeometry geometry_;
+  std::unique_ptr<detail::BaseModel> model_;
+  detail::PathGuide guide_;
+  PathPlanner planner_;
+  NavigationMaps maps_;
+  std::vector<maps::Point> points_;  ///< of a path that is being made
+  std::vector<maps::Pose> chosen_;   ///< the last detour, which later searches prefer
+  std::array<maps::Point, most_dead_ends> dead_ends_{};
+  std::size_t dead_end_count_ = 0;
+  double detour_left_ = std::numeric_limits<double>::infinity();  ///< m of path left where the detour ends
+  double without_way_ = 0;   ///< s since the path is blocked and no way round was found
+  double since_search_ = 0;  ///< s
+  double since_solve_ = 0;   ///< s
+  double least_remaining_ = std::numeric_limits<double>::infinity();  ///< m
+  double without_progress_ = 0;                                       ///< s
+};
+
+void Navigator::Implementation::set_path(std::span<const maps::Pose> path) {
+  if (path.empty()) throw std::invalid_argument("path: no poses, must have at least one");
+  double length = 0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (!finite(path[i]))
+      throw std::invalid_argument("path: pose " + std::to_string(i) +
+                                  " must be finite and within 1e6 m of the origin");
+    if (i > 0) length += distance(position(path[i]), position(path[i - 1]));
+  }
+  if (guide_.empty() || distance(position(guide_.goal()), position(path.back())) > least_rejoin) {
+    chosen_.clear();
+    dead_end_count_ = 0;
+  }
+  // A detour is at most as long as a path of the search, and goes on along the path.
+  const double longest = length + 2 * static_cast<double>(PathPlanner::most_points) * PathPlanner::spacing;
+  guide_.reserve(longest);
+  const std::size_t most = guide_.points_for(longest) + path.size();
+  points_.reserve(most);
+  chosen_.reserve(most);
+  points_.clear();
+  for (const maps::Pose& pose : path) points_.push_back(position(pose));
+  guide_.set(points_, path.back());
+  detour_left_ = least_remaining_ = std::numeric_limits<double>::infinity();
+  without_way_ = since_search_ = without_progress_ = 0;
+}
+
+void Navigator::Implementation::reset(std::uint64_t seed) noexcept {
+  guide_.clear();
+  chosen_.clear();
+  dead_end_count_ = 0;
+  detour_left_ = least_remaining_ = std::numeric_limits<double>::infinity();
+  without_way_ = since_search_ = since_solve_ = without_progress_ = 0;
+  model_->reset(seed);
+}
+
+bool Navigator::Implementation::fits(const Costmap& costmap) const noexcept {
+  const maps::GridGeometry& g = costmap.geometry();
+  return g.rows == geometry_.rows && g.columns == geometry_.columns && g.resolution == geometry_.resolution;
+}
+
+bool Navigator::Implementation::is_at_goal(const maps::Pose& pose) const noexcept {
+  const maps::Pose& goal = guide_.goal();
+  return distance(position(pose), position(goal)) <= options_.goal_distance &&
+         std::abs(maps::wrap_angle(pose.yaw - goal.yaw)) <= options_.goal_angle;
+}
+
+/// Whether the body is known to have no room at a point of the path, or was stuck there.
+bool Navigator::Implementation::is_closed(const Costmap& costmap, const maps::Point& point) const noexcept {
+  if (planner_.knows(costmap, point) && !planner_.has_room(costmap, point)) return true;
+  return std::any_of(dead_ends_.begin(), dead_ends_.begin() + static_cast<std::ptrdiff_t>(dead_end_count_),
+                     [&](const maps::Point& end) { return distance(point, end) < dead_end_radius; });
+}
+
+/// The first closed point of the path within the look-ahead; the number of points if there is none.
+std::size_t Navigator::Implementation::first_closed(const Costmap& costmap) const noexcept {
+  const std::span<const maps::Pose> path = guide_.points();
+  const std::size_t last =
+      std::min(path.size() - 1, guide_.nearest() + guide_.points_for(options_.look_ahead));
+  for (std::size_t i = guide_.nearest(); i <= last; ++i)
+    if (is_closed(costmap, position(path[i]))) return i;
+  return path.size();
+}
+
+/// Whether a detour may end at a point: the path is open from there on for a while, or to its end.
+bool Navigator::Implementation::can_rejoin(const Costmap& costmap, std::size_t point) const noexcept {
+  const std::span<const maps::Pose> path = guide_.points();
+  const std::size_t last = std::min(path.size() - 1, point + guide_.points_for(least_rejoin));
+  for (std::size_t i = point; i <= last; ++i)
+    if (is_closed(costmap, position(path[i]))) return false;
+  return true;
+}
+
+/// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
+/// of the path. Returns false and keeps the path if there is none.
+bool Navigator::Implementation::find_way(const maps::Pose& pose, const Costmap& costmap,
+                                         std::size_t closed) noexcept {
+  planner_.read(costmap, chosen_, std::span(dead_ends_).first(dead_end_count_));
+  if (!planner_.search_from(position(pose))) return false;
+  const std::span<const maps::Pose> path = guide_.points();
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t best = path.size();
+  for (std::size_t i = closed + 1; i < path.size(); ++i) {
+    const double left = guide_.step() * static_cast<double>(path.size() - 1 - i);
+    const double cost = planner_.cost_to(position(path[i])) + left;
+    if (cost >= least || !can_rejoin(costmap, i)) continue;
+    least = cost;
+    best = i;
+  }
+  if (best == path.size()) return false;
+  const std::span<const maps::Point> way = planner_.path_to(position(path[best]));
+  points_.assign(way.begin(), way.end());
+  for (std::size_t i = best; i < path.size(); ++i) points_.push_back(position(path[i]));
+  detour_left_ = guide_.step() * static_cast<double>(path.size() - 1 - best);
+  const maps::Pose goal = guide_.goal();
+  guide_.set(points_, goal);
+  chosen_.assign(guide_.points().begin(), guide_.points().end());
+  least_remaining_ = std::numeric_limits<double>::infinity();
+  return true;
+}
+
+/// Sees to it that the path ahead is open. Returns false if there has been no way for longer than patience.
+bool Navigator::Implementation::keep_way(const maps::Pose& pose, const Costmap& costmap,
+                                         double elapsed) noexcept {
+  watch_progress(elapsed);
+  const std::size_t closed = first_closed(costmap);
+  if (closed == guide_.points().size()) {
+    without_way_ = 0;
+    return true;
+  }
+  since_search_ += elapsed;
+  if (without_way_ == 0 || since_search_ >= search_period) {
+    since_search_ = 0;
+    if (find_way(pose, costmap, closed)) {
+      without_way_ = 0;
+      return true;
+    }
+  }
+  without_way_ += std::max(elapsed, 1e-3);
+  if (without_way_ > retry_after && dead_end_count_ > 0) {
+    dead_end_count_ = 0;
+    without_way_ = 0;
+  }
+  return without_way_ < options_.patience;
+}
+
+/// Notes a dead end ahead where the robot makes no progress.
+void Navigator::Implementation::watch_progress(double elapsed) noexcept {
+  const double remaining = guide_.remaining();
+  const bool waits = without_way_ > 0 || remaining < settling;
+  if (waits || remaining < least_remaining_ - progress_step) {
+    least_remaining_ = std::min(least_remaining_, remaining);
+    without_progress_ = 0;
+    return;
+  }
+  without_progress_ += elapsed;
+  if (without_progress_ < options_.stuck_after) return;
+  without_progress_ = 0;
+  const std::size_t ahead = guide_.points_for(footprint_.circumscribed_radius() + dead_end_ahead);
+  const std::span<const maps::Pose> path = guide_.points();
+  if (dead_end_count_ == dead_ends_.size()) dead_end_count_ = 0;
+  dead_ends_[dead_end_count_++] = position(path[std::min(guide_.nearest() + ahead, path.size() - 1)]);
+}
+
+/// Whether the plan leads into an obstacle before the robot could brake. A body that overlaps an obstacle
+/// already may leave it.
+bool Navigator::Implementation::plan_collides(const Costmap& costmap,
+                                              const Velocity& velocity) const noexcept {
+  const std::span<const maps::Pose> plan = model_->plan();
+  if (costmap.collides(footprint_, plan.front())) return false;
+  const double speed = std::hypot(velocity.forward, velocity.left);
+  const double braking = speed / (options_.base.max_acceleration * options_.time_step);
+  const std::size_t last =
+      std::min(plan.size() - 1, static_cast<std::size_t>(std::min(std::ceil(braking), 1e6)) + steps_to_react);
+  for (std::size_t i = 1; i <= last; ++i)
+    if (costmap.collides(footprint_, plan[i])) return true;
+  return false;
+}
+
+/// Brakes, or stands.
+NavigationResult Navigator::Implementation::stand(NavigationStatus status, const Velocity& velocity,
+                                                  double elapsed) const noexcept {
+  NavigationResult result;
+  result.status = status;
+  result.remaining = guide_.remaining();
+  result.path = guide_.points();
+  if (!finite(velocity)) return result;
+  const double period = std::clamp(elapsed, 0.0, longest_period);
+  const double speed = std::hypot(velocity.forward, velocity.left);
+  const double kept = speed > 0 ? std::max(1 - options_.base.max_acceleration * period / speed, 0.0) : 0;
+  const double turn = std::abs(velocity.turn);
+  const double slower = std::max(turn - options_.base.max_turn_acceleration * period, 0.0);
+  result.command = {kept * velocity.forward, kept * velocity.left, std::copysign(slower, velocity.turn)};
+  return result;
+}
+
+NavigationResult Navigator::Implementation::update(const maps::Pose& pose, const Velocity& velocity,
+                                                   const Costmap& costmap, double elapsed) noexcept {
+  if (!finite(pose) || !finite(velocity) || !(elapsed >= 0) || !std::isfinite(elapsed) || !fits(costmap))
+    return stand(NavigationStatus::bad_input, velocity, std::isfinite(elapsed) ? elapsed : 0);
+  since_solve_ += elapsed;
+  if (guide_.empty() || costmap.geometry().row(pose.x) < 0 || costmap.geometry().column(pose.y) < 0)
+    return stand(NavigationStatus::no_path, velocity, elapsed);
+  guide_.advance(position(pose));
+  if (is_at_goal(pose)) return stand(NavigationStatus::goal_reached, velocity, elapsed);
+  if (options_.find_detours && !keep_way(pose, costmap, elapsed))
+    return stand(NavigationStatus::blocked, velocity, elapsed);
+  maps_.distances = costmap.distances();
+  maps_.prices = costmap.prices();
+  guide_.write(position(pose), maps_);
+  model_->solve(maps_, pose, velocity, since_solve_);
+  since_solve_ = 0;
+  NavigationResult result;
+  if (plan_collides(costmap, velocity)) {
+    result = stand(NavigationStatus::braking, velocity, elapsed);
+  } else {
+    result.command = model_->command();
+    result.status =
+        guide_.remaining() > detour_left_ ? NavigationStatus::detour : NavigationStatus::following;
+  }
+  result.remaining = guide_.remaining();
+  result.plan = model_->plan();
+  result.path = guide_.points();
+  return result;
+}
+
+Navigator::Navigator(const Footprint& footprint, const NavigatorOptions& options, const SolverOptions& solver,
+                     const Costmap& costmap)
+    : implementation_(std::make_unique<Implementation>(footprint, options, solver, costmap)) {}
+Navigator::Navigator(const Footprint& footprint, const NavigatorOptions& options, const Costmap& costmap)
+    : Navigator(footprint, options, svg_mppi_options(options.base), costmap) {}
+Navigator::~Navigator() = default;
+Navigator::Navigator(Navigator&&) noexcept = default;
+Navigator& Navigator::operator=(Navigator&&) noexcept = default;
+
+void Navigator::set_path(std::span<const maps::Pose> path) {
+  implementation_->set_path(path);
+}
+
+NavigationResult Navigator::update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
+                                   double elapsed) noexcept {
+  return implementation_->update(pose, velocity, costmap, elapsed);
+}
+
+void Navigator::reset(std::uint64_t seed) noexcept {
+  implementation_->reset(seed);
+}
+
+}  // namespace slalom::navigation

@@ -1,0 +1,58 @@
+#include "slalom/navigation/scan_map.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace slalom::navigation {
+
+namespace {
+
+constexpr double full_turn = 6.283185307179586;
+
+/// Calls `visit` with column and row of the cell at a position, if there is one.
+template <class Visit>
+void visit_cell(const maps::OccupancyGrid& grid, const maps::Point& at, Visit&& visit) {
+  const double column = std::floor((at.x - grid.origin.x) / grid.resolution),
+               row = std::floor((at.y - grid.origin.y) / grid.resolution);
+  if (column >= 0 && column < grid.width && row >= 0 && row < grid.height)
+    visit(static_cast<int>(column), static_cast<int>(row));
+}
+
+}  // namespace
+
+ScanMap::ScanMap(maps::OccupancyGrid known) : known_(std::move(known)), seen_(known_) {
+  if (known_.width < 1 || known_.height < 1 || !(known_.resolution > 0) ||
+      known_.cells.size() != static_cast<std::size_t>(known_.width) * static_cast<std::size_t>(known_.height))
+    throw std::invalid_argument("scan map: the map must have width x height cells, at least one");
+  if (known_.origin.yaw != 0) throw std::invalid_argument("scan map: the map must not be turned");
+}
+
+void ScanMap::add(const RangeScan& scan) noexcept {
+  const std::size_t count = scan.ranges.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double range = scan.ranges[i];
+    if (!(range >= 0 && std::isfinite(range))) continue;
+    const double angle = scan.pose.yaw + full_turn * static_cast<double>(i) / static_cast<double>(count);
+    const double cosine = std::cos(angle), sine = std::sin(angle);
+    const bool hit = range < scan.max_range;
+    // The last cell but one is left as it is: noise moves the end of a beam from cell to cell.
+    clear({scan.pose.x, scan.pose.y}, cosine, sine, hit ? range - 1.5 * known_.resolution : scan.max_range);
+    if (!hit) continue;
+    visit_cell(seen_, {scan.pose.x + range * cosine, scan.pose.y + range * sine},
+               [&](int column, int row) { seen_.at(column, row) = maps::Occupancy::occupied; });
+  }
+}
+
+/// Sets the cells along a beam to what the map knows of them, or free.
+void ScanMap::clear(const maps::Point& from, double cosine, double sine, double range) noexcept {
+  const double step = 0.5 * known_.resolution;
+  const int steps = static_cast<int>(std::floor(std::fmin(range / step, 1e6)));
+  for (int k = 0; k <= steps; ++k)
+    visit_cell(seen_, {from.x + k * step * cosine, from.y + k * step * sine}, [&](int column, int row) {
+      const bool is_wall = known_.at(column, row) == maps::Occupancy::occupied;
+      seen_.at(column, row) = is_wall ? maps::Occupancy::occupied : maps::Occupancy::free;
+    });
+}
+
+}  // namespace slalom::navigation

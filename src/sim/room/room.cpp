@@ -1,0 +1,80 @@
+#include "slalom/sim/room.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace slalom::sim {
+
+namespace {
+
+constexpr double full_turn = 6.283185307179586;
+
+void require(double value, double least, double most, const char* what) {
+  if (value >= least && value <= most) return;
+  std::ostringstream text;
+  text << "room: " << what << " " << value << ": must be in [" << least << ", " << most << "] m";
+  throw std::invalid_argument(text.str());
+}
+
+/// The way (m) along a ray from inside to the edge of the floor.
+double way_out(double position, double direction, double length) {
+  if (direction > 0) return (length - position) / direction;
+  if (direction < 0) return -position / direction;
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+maps::OccupancyGrid map_of(const Room& room, double resolution) {
+  require(room.length, 1, 1000, "length");
+  require(room.width, 1, 1000, "width");
+  require(resolution, 0.01, 1, "resolution");
+  maps::OccupancyGrid grid;
+  grid.resolution = resolution;
+  grid.width = static_cast<int>(std::ceil(room.length / resolution)) + 2;
+  grid.height = static_cast<int>(std::ceil(room.width / resolution)) + 2;
+  grid.origin = {-resolution, -resolution, 0};
+  grid.cells.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height),
+                    maps::Occupancy::free);
+  for (int row = 0; row < grid.height; ++row)
+    for (int column = 0; column < grid.width; ++column) {
+      const bool rim = row == 0 || column == 0 || row == grid.height - 1 || column == grid.width - 1;
+      const Box cell{
+          {grid.origin.x + (column + 0.5) * resolution, grid.origin.y + (row + 0.5) * resolution, 0},
+          resolution,
+          resolution};
+      // Cells that only touch a wall are free.
+      const bool wall = rim || std::any_of(room.walls.begin(), room.walls.end(),
+                                           [&](const Box& each) { return signed_gap(each, cell) < -1e-6; });
+      if (wall) grid.at(column, row) = maps::Occupancy::occupied;
+    }
+  return grid;
+}
+
+bool collides(const Room& room, const Box& body) noexcept {
+  for (const maps::Point& corner : corners(body))
+    if (!(corner.x >= 0 && corner.x <= room.length && corner.y >= 0 && corner.y <= room.width)) return true;
+  const auto hits = [&](const Box& other) { return signed_gap(body, other) <= 0; };
+  return std::any_of(room.walls.begin(), room.walls.end(), hits) ||
+         std::any_of(room.obstacles.begin(), room.obstacles.end(), hits);
+}
+
+void scan(const Room& room, const maps::Pose& scanner, double max_range, std::span<double> ranges) noexcept {
+  const maps::Point from{scanner.x, scanner.y};
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const double angle =
+        scanner.yaw + full_turn * static_cast<double>(i) / static_cast<double>(ranges.size());
+    const double cosine = std::cos(angle), sine = std::sin(angle);
+    double range =
+        std::min({max_range, way_out(from.x, cosine, room.length), way_out(from.y, sine, room.width)});
+    for (const Box& wall : room.walls) range = std::min(range, ray_distance(from, cosine, sine, wall));
+    for (const Box& obstacle : room.obstacles)
+      range = std::min(range, ray_distance(from, cosine, sine, obstacle));
+    ranges[i] = range;
+  }
+}
+
+}  // namespace slalom::sim

@@ -1,0 +1,70 @@
+#include "slalom/evaluation/rooms/room_drive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "slalom/navigation/path_planner.hpp"
+
+namespace slalom::evaluation {
+namespace {
+
+RoomDriver quick_driver() {
+  RoomDriver driver;
+  SvgMppiOptions options = navigation::svg_mppi_options({});
+  options.samples = 512;
+  driver.solver = options;
+  return driver;
+}
+
+TEST(RoomScenarios, StartsAndGoalsAreFreeAndThereIsAWayWhereTheySay) {
+  const navigation::Footprint body = navigation::Footprint::rectangle(0.35, 0.35, 0.5);
+  for (const RoomScenario& scenario : room_scenarios()) {
+    EXPECT_FALSE(sim::collides(scenario.room, {scenario.start, 0.7, 0.5})) << scenario.name;
+    EXPECT_FALSE(sim::collides(scenario.room, {scenario.goal, 0.7, 0.5})) << scenario.name;
+    sim::Room all = scenario.room;
+    all.walls.insert(all.walls.end(), all.obstacles.begin(), all.obstacles.end());
+    for (const bool with_obstacles : {false, true}) {
+      const maps::OccupancyGrid map = sim::map_of(with_obstacles ? all : scenario.room, 0.05);
+      navigation::Costmap costmap(map.width, map.height, map.resolution);
+      costmap.update(map);
+      const bool found = !plan_path(costmap, body, scenario.start, scenario.goal).empty();
+      EXPECT_EQ(found, scenario.has_way || !with_obstacles) << scenario.name;
+    }
+    EXPECT_EQ(&room_scenario(scenario.name), &scenario);
+  }
+  EXPECT_THROW(room_scenario("no such room"), std::invalid_argument);
+}
+
+TEST(RoomDrive, GoesRoundAPalletAndRepeatsExactly) {
+  const RoomScenario& scenario = room_scenario("pallet-on-path");
+  const RoomDrive first = drive_room(scenario, quick_driver(), 3),
+                  second = drive_room(scenario, quick_driver(), 3);
+  EXPECT_EQ(first.outcome, RoomOutcome::reached);
+  EXPECT_TRUE(first.success);
+  EXPECT_GT(first.length, 7.1) << "7 m from start to goal, and the way round";
+  EXPECT_LT(first.length, 9);
+  ASSERT_EQ(first.trace.size(), second.trace.size());
+  EXPECT_EQ(first.trace.back().x, second.trace.back().x);
+  EXPECT_EQ(first.trace.back().yaw, second.trace.back().yaw);
+  const RoomDrive other = drive_room(scenario, quick_driver(), 4);
+  EXPECT_NE(first.trace.front().x, other.trace.front().x);
+}
+
+TEST(RoomDrive, SaysWithinHalfASecondThatThereIsNoWay) {
+  const RoomDrive drive = drive_room(room_scenario("no-way"), quick_driver(), 1);
+  EXPECT_EQ(drive.outcome, RoomOutcome::blocked);
+  EXPECT_TRUE(drive.success);
+  EXPECT_GE(drive.answer_time, 0);
+  EXPECT_LE(drive.answer_time, 0.5);
+}
+
+TEST(RoomDrive, EndsAtTheTimeout) {
+  const RoomDrive drive = drive_room(room_scenario("pallet-on-path"), quick_driver(), 1, {.timeout = 2});
+  EXPECT_EQ(drive.outcome, RoomOutcome::timeout);
+  EXPECT_FALSE(drive.success);
+  EXPECT_EQ(drive.trace.size(), 40u);
+}
+
+}  // namespace
+}  // namespace slalom::evaluation

@@ -1,0 +1,237 @@
+#include "slalom/navigation/navigator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "navigation/grids.hpp"
+#include "slalom/core/random.hpp"
+#include "slalom/navigation/path_planner.hpp"
+#include "support/allocations.hpp"
+
+namespace slalom::navigation {
+namespace {
+
+constexpr double period = 0.05;  // s
+const Footprint body = Footprint::rectangle(0.35, 0.35, 0.5);
+
+/// A robot that moves as it is told, in 10 x 4 m around (5, 0).
+struct Drive {
+  explicit Drive(NavigatorOptions given = {}, int threads = 1)
+      : options(given), grid(free_grid(0, -2, 10, 4)), costmap(grid.width, grid.height, grid.resolution) {
+    SvgMppiOptions solver = svg_mppi_options(options.base);
+    solver.samples = 512;
+    solver.guides.iterations = 3;
+    solver.threads = threads;
+    navigator.emplace(body, options, solver, costmap);
+    costmap.update(grid);
+  }
+  void block(double x0, double y0, double x1, double y1) {
+    fill(grid, x0, y0, x1, y1);
+    costmap.update(grid);
+  }
+  NavigationResult step() {
+    const NavigationResult result = navigator->update(pose, velocity, costmap, period);
+    const Velocity &v = result.command, &before = velocity;
+    const BaseOptions& base = options.base;
+    EXPECT_LE(v.forward, base.max_forward + 1e-6);
+    EXPECT_GE(v.forward, -base.max_reverse - 1e-6);
+    EXPECT_LE(std::abs(v.turn), base.max_turn + 1e-6);
+    EXPECT_LE(std::abs(v.forward - before.forward), base.max_acceleration * period + 1e-6);
+    EXPECT_LE(std::abs(v.turn - before.turn), base.max_turn_acceleration * period + 1e-6);
+    if (base.kind != BaseKind::omnidirectional) {
+      EXPECT_EQ(v.left, 0);
+    }
+    const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+    pose = {pose.x + period * (c * v.forward - s * v.left), pose.y + period * (s * v.forward + c * v.left),
+            pose.yaw + period * v.turn};
+    velocity = v;
+    collided = collided || costmap.collides(body, pose);
+    return result;
+  }
+  /// Drives until one of these or for so long (s); the last status.
+  NavigationStatus drive(double duration) {
+    NavigationStatus status = NavigationStatus::following;
+    for (time = 0;
+         time < duration && status != NavigationStatus::goal_reached && status != NavigationStatus::blocked;
+         time += period)
+      status = step().status;
+    return status;
+  }
+
+  NavigatorOptions options;
+  maps::OccupancyGrid grid;
+  Costmap costmap;
+  std::optional<Navigator> navigator;
+  maps::Pose pose{1, 0, 0};
+  Velocity velocity;
+  bool collided = false;
+  double time = 0;  ///< s, of the last drive
+};
+
+const maps::Pose straight[] = {{1, 0, 0}, {6, 0, 0}};
+
+TEST(Navigator, ReachesTheGoalInItsHeadingWithEveryBase) {
+  for (const BaseKind kind : {BaseKind::differential, BaseKind::omnidirectional, BaseKind::ackermann}) {
+    NavigatorOptions options;
+    options.base.kind = kind;
+    Drive drive(options);
+    const double heading = kind == BaseKind::ackermann ? 0 : 1.2;
+    const maps::Pose path[] = {{1, 0, 0}, {5, 0.5, heading}};
+    drive.navigator->set_path(path);
+    EXPECT_EQ(drive.drive(25), NavigationStatus::goal_reached) << static_cast<int>(kind);
+    EXPECT_LE(std::hypot(drive.pose.x - 5, drive.pose.y - 0.5), options.goal_distance + 1e-9);
+    EXPECT_LE(std::abs(maps::wrap_angle(drive.pose.yaw - heading)), options.goal_angle + 1e-9);
+    EXPECT_FALSE(drive.collided);
+    for (int i = 0; i < 10; ++i) drive.step();
+    EXPECT_LT(std::abs(drive.velocity.forward) + std::abs(drive.velocity.turn), 1e-9);
+  }
+}
+
+TEST(Navigator, AnAckermannBaseKeepsItsTurningRadius) {
+  NavigatorOptions options;
+  options.base.kind = BaseKind::ackermann;
+  options.base.min_turning_radius = 0.8;
+  Drive drive(options);
+  const maps::Pose path[] = {{1, 0, 0}, {3, 0, 0}, {3.5, 1.2, 0}, {6, 1.2, 0}};
+  drive.navigator->set_path(path);
+  for (int i = 0; i < 200; ++i) {
+    const Velocity v = drive.step().command;
+    EXPECT_LE(std::abs(v.turn), std::abs(v.forward) / 0.8 + 1e-6);
+  }
+  EXPECT_GT(drive.pose.x, 3);
+}
+
+TEST(Navigator, PassesAPalletOnThePathWithoutChangingItsSide) {
+  Drive drive;
+  drive.block(3, -0.6, 4, 0.6);  // as near to one side as to the other
+  drive.navigator->set_path(straight);
+  RandomStream random({1, 0});
+  int side = 0;
+  NavigationStatus status = NavigationStatus::following;
+  for (double time = 0; time < 30 && status != NavigationStatus::goal_reached; time += period) {
+    const maps::OccupancyGrid seen = drive.grid;  // the edges of what was seen flicker
+    for (int i = 0; i < 6; ++i)
+      fill(drive.grid, 3, random.uniform() < 0.5 ? 0.6 : -0.67, 4, random.uniform() < 0.5 ? 0.67 : -0.6);
+    drive.costmap.update(drive.grid);
+    const NavigationResult result = drive.step();
+    status = result.status;
+    drive.grid = seen;
+    for (const maps::Pose& pose : result.path) {
+      if (std::abs(pose.x - 3.5) > 0.03) continue;
+      const int here = pose.y > 0 ? 1 : -1;
+      EXPECT_TRUE(side == 0 || here == side) << time;
+      side = here;
+    }
+  }
+  EXPECT_EQ(status, NavigationStatus::goal_reached);
+  EXPECT_NE(side, 0);
+  EXPECT_FALSE(drive.collided);
+}
+
+TEST(Navigator, SaysWithinHalfASecondThatThereIsNoWay) {
+  Drive drive;
+  drive.navigator->set_path(straight);
+  ASSERT_EQ(drive.drive(2), NavigationStatus::following);
+  drive.block(4, -2, 4.3, 2);
+  EXPECT_EQ(drive.drive(10), NavigationStatus::blocked);
+  EXPECT_LE(drive.time, 0.5);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(drive.step().status, NavigationStatus::blocked);
+  EXPECT_EQ(drive.velocity.forward, 0);
+  fill(drive.grid, 4, 0.5, 4.3, 2, maps::Occupancy::free);  // a way opens
+  drive.costmap.update(drive.grid);
+  EXPECT_EQ(drive.drive(30), NavigationStatus::goal_reached);
+  EXPECT_FALSE(drive.collided);
+}
+
+TEST(Navigator, WithoutDetoursItReportsNone) {
+  NavigatorOptions options;
+  options.find_detours = false;
+  Drive drive(options);
+  drive.block(4, -2, 4.3, 2);
+  drive.navigator->set_path(straight);
+  for (int i = 0; i < 200; ++i) {
+    const NavigationResult result = drive.step();
+    EXPECT_TRUE(result.status == NavigationStatus::following || result.status == NavigationStatus::braking);
+    EXPECT_NEAR(result.path.back().x, 6, 1e-9);
+  }
+  EXPECT_FALSE(drive.collided);
+}
+
+TEST(Navigator, StandsWhereItCannotDrive) {
+  Drive drive;
+  EXPECT_EQ(drive.step().status, NavigationStatus::no_path);
+  drive.navigator->set_path(straight);
+  drive.velocity = {0.5, 0, 0.3};
+  const double nan = std::nan("");
+  const Costmap other(50, 50, 0.05);
+  const auto update = [&](const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
+                          double elapsed) {
+    return drive.navigator->update(pose, velocity, costmap, elapsed);
+  };
+  EXPECT_EQ(update({nan, 0, 0}, drive.velocity, drive.costmap, period).status, NavigationStatus::bad_input);
+  EXPECT_EQ(update(drive.pose, {nan, 0, 0}, drive.costmap, period).status, NavigationStatus::bad_input);
+  EXPECT_EQ(update(drive.pose, drive.velocity, drive.costmap, -1).status, NavigationStatus::bad_input);
+  EXPECT_EQ(update(drive.pose, drive.velocity, drive.costmap, nan).status, NavigationStatus::bad_input);
+  EXPECT_EQ(update(drive.pose, drive.velocity, other, period).status, NavigationStatus::bad_input);
+  EXPECT_EQ(update({-5, 0, 0}, drive.velocity, drive.costmap, period).status, NavigationStatus::no_path);
+  const Velocity braking = update({nan, 0, 0}, drive.velocity, drive.costmap, period).command;
+  EXPECT_NEAR(braking.forward, 0.5 - period * drive.options.base.max_acceleration, 1e-9);
+  EXPECT_NEAR(braking.turn, 0.3 - period * drive.options.base.max_turn_acceleration, 1e-9);
+  EXPECT_EQ(drive.step().status, NavigationStatus::following);
+}
+
+TEST(Navigator, OptionsAndPathsThatAreNoneAreRefused) {
+  NavigatorOptions options;
+  options.base.max_forward = -1;
+  const Costmap costmap(50, 50, 0.05);
+  EXPECT_THROW(Navigator(body, options, costmap), std::invalid_argument);
+  EXPECT_THROW(Navigator(Footprint::rectangle(20, 20, 1), {}, costmap), std::invalid_argument);
+  Navigator navigator(body, {}, costmap);
+  EXPECT_THROW(navigator.set_path({}), std::invalid_argument);
+  const maps::Pose path[] = {{0, 0, 0}, {std::numeric_limits<double>::infinity(), 0, 0}};
+  EXPECT_THROW(navigator.set_path(path), std::invalid_argument);
+}
+
+TEST(Navigator, UpdatesAllocateNothing) {
+  Drive drive;
+  drive.block(3, -0.6, 4, 0.7);
+  drive.navigator->set_path(straight);
+  const long before = testing::allocations();
+  bool detour = false;
+  for (int i = 0; i < 40; ++i)
+    detour = drive.navigator->update({1 + 0.02 * i, 0, 0}, {0.4, 0, 0}, drive.costmap, period).status ==
+                 NavigationStatus::detour ||
+             detour;
+  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_TRUE(detour);
+}
+
+TEST(Navigator, TheSameSeedGivesTheSameCommandsOnAnyNumberOfThreads) {
+  Drive one({}, 1), three({}, 3);
+  for (Drive* drive : {&one, &three}) {
+    drive->block(3, -0.6, 4, 0.7);
+    drive->navigator->set_path(straight);
+  }
+  for (int i = 0; i < 30; ++i) {
+    const Velocity a = one.step().command, b = three.step().command;
+    ASSERT_EQ(a.forward, b.forward);
+    ASSERT_EQ(a.turn, b.turn);
+  }
+  const maps::Pose end = one.pose;
+  one.pose = {1, 0, 0};
+  one.velocity = {};
+  one.navigator->reset(0);
+  one.navigator->set_path(straight);
+  for (int i = 0; i < 30; ++i) one.step();
+  EXPECT_EQ(one.pose.x, end.x);
+  EXPECT_EQ(one.pose.yaw, end.yaw);
+}
+
+}  // namespace
+}  // namespace slalom::navigation

@@ -1,0 +1,89 @@
+#include "slalom/navigation/path_planner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "navigation/grids.hpp"
+#include "support/allocations.hpp"
+
+namespace slalom::navigation {
+namespace {
+
+const Footprint body = Footprint::rectangle(0.35, 0.35, 0.5);
+
+/// 8 x 6 m, divided by a wall at x = 4 with doors of 0.9 m at y = 1.5 and at y = 4.5.
+maps::OccupancyGrid two_doors() {
+  maps::OccupancyGrid grid = free_grid(0, 0, 8, 6);
+  fill(grid, 3.9, 0, 4.1, 6);
+  for (const double y : {1.5, 4.5}) fill(grid, 3.9, y - 0.45, 4.1, y + 0.45, maps::Occupancy::free);
+  return grid;
+}
+
+Costmap costmap_of(const maps::OccupancyGrid& grid) {
+  Costmap costmap(grid.width, grid.height, grid.resolution);
+  EXPECT_TRUE(costmap.update(grid));
+  return costmap;
+}
+
+/// m, where a path crosses the wall.
+double crossing(const std::vector<maps::Pose>& path) {
+  for (const maps::Pose& pose : path)
+    if (pose.x > 4) return pose.y;
+  return std::nan("");
+}
+
+TEST(PathPlanner, PathsLeadThroughTheNearerDoor) {
+  const Costmap costmap = costmap_of(two_doors());
+  for (const double y : {1.0, 5.0}) {
+    const auto path = plan_path(costmap, body, {1, y, 0}, {7, y, 1});
+    EXPECT_NEAR(crossing(path), y < 3 ? 1.5 : 4.5, 0.25);
+    EXPECT_EQ(path.back().yaw, 1);
+    for (const maps::Pose& pose : path) EXPECT_GE(costmap.distance(pose.x, pose.y), body.half_width());
+    for (std::size_t i = 1; i < path.size(); ++i)
+      EXPECT_LT(std::hypot(path[i].x - path[i - 1].x, path[i].y - path[i - 1].y), 0.12);
+  }
+}
+
+TEST(PathPlanner, ThereIsNoPathThroughADoorThatIsTooNarrow) {
+  maps::OccupancyGrid grid = two_doors();
+  fill(grid, 3.9, 1.2, 4.1, 6);  // 0.5 m or less are left of either door
+  EXPECT_TRUE(plan_path(costmap_of(grid), body, {1, 1, 0}, {7, 1, 0}).empty());
+  EXPECT_TRUE(plan_path(costmap_of(two_doors()), body, {1, 1, 0}, {4, 3, 0}).empty()) << "into a wall";
+  EXPECT_TRUE(plan_path(costmap_of(two_doors()), body, {-1, 1, 0}, {7, 1, 0}).empty()) << "off the map";
+}
+
+TEST(PathPlanner, KeepsToTheWayThatWasChosen) {
+  const Costmap costmap = costmap_of(two_doors());
+  const std::vector<maps::Pose> chosen = plan_path(costmap, body, {1, 3.2, 0}, {7, 3.2, 0});
+  ASSERT_GT(crossing(chosen), 4) << "a little nearer";
+  PathPlanner planner(costmap.geometry(), body.half_width());
+  const auto crossed = [&](std::span<const maps::Pose> kept, std::span<const maps::Point> dead_ends) {
+    planner.read(costmap, kept, dead_ends);
+    EXPECT_TRUE(planner.search_from({1, 2.8}));
+    for (const maps::Point& point : planner.path_to({7, 2.8}))
+      if (point.x > 4) return point.y;
+    return std::nan("");
+  };
+  EXPECT_LT(crossed({}, {}), 2) << "the other one is nearer now";
+  EXPECT_GT(crossed(chosen, {}), 4);
+  const maps::Point dead_end[] = {{4, 4.5}};
+  EXPECT_LT(crossed(chosen, dead_end), 2);
+}
+
+TEST(PathPlanner, SearchesDoNotAllocate) {
+  const Costmap costmap = costmap_of(two_doors());
+  PathPlanner planner(costmap.geometry(), body.half_width());
+  const std::vector<maps::Pose> kept = plan_path(costmap, body, {1, 1, 0}, {7, 1, 0});
+  const long before = testing::allocations();
+  planner.read(costmap, kept, {});
+  ASSERT_TRUE(planner.search_from({1, 1}));
+  EXPECT_TRUE(std::isfinite(planner.cost_to({7, 5})));
+  EXPECT_GT(planner.path_to({7, 5}).size(), 100u);
+  EXPECT_EQ(testing::allocations(), before);
+}
+
+}  // namespace
+}  // namespace slalom::navigation

@@ -1,0 +1,38 @@
+// `slalom navigate`: a table, results in JSON, a picture; bad options are refused.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/program_test.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using testing::content;
+
+class NavigateCommand : public testing::ProgramTest {};
+
+TEST_F(NavigateCommand, DrivesAScenarioWithBothMethodsOnTheSameSeeds) {
+  const auto run = program("navigate --scenario no-way --seeds 2 --json out.json --pictures pictures");
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_NE(run.output.find("no-way          svg_mppi          2/2"), std::string::npos) << run.output;
+  const auto results = nlohmann::json::parse(content(folder_ / "out.json"));
+  ASSERT_EQ(results["results"].size(), 2u);
+  for (const auto& row : results["results"]) {
+    EXPECT_EQ(row["scenario"], "no-way");
+    EXPECT_EQ(row["successes"], 2);
+    EXPECT_EQ(row["collisions"], 0);
+    EXPECT_LE(row["by_seed"][0]["answer_time_s"], 0.5);
+  }
+  EXPECT_EQ(results["results"][1]["driver"], "mppi");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures/no-way.png"));
+}
+
+TEST_F(NavigateCommand, RefusesWhatItDoesNotKnow) {
+  expect_refused("navigate --scenario kitchen", {"kitchen", "pallet-on-path"});
+  expect_refused("navigate --scenario no-way --methods cem", {"--methods", "cem", "svg_mppi or mppi"});
+  expect_refused("navigate --seeds 0", {"--seeds"});
+}
+
+}  // namespace
+}  // namespace slalom::tools
