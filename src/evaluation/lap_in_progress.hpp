@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "evaluation/hardware_model.hpp"
+#include "evaluation/tracking/tracking_meter.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
 #include "slalom/sim/collision_log.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
@@ -33,6 +34,7 @@ struct LapRunner::LapInProgress {
   std::unique_ptr<vehicle::Planner> planner;
   SequenceCostMeter meter;
   std::unique_ptr<HardwareModel> hardware;  ///< null where the planner gets exact measurements
+  std::unique_ptr<TrackingMeter> tracking;  ///< null with TrackingMode::off
   sim::CollisionLog log;
   LapResult result;
   Sums sums;

@@ -125,6 +125,7 @@ void LapRunner::finish(LapInProgress& lap) const {
   result.collided_bodies = lap.log.collisions();
   result.wall = lap.log.hit_wall();
   if (lap.hardware) result.localisation = lap.hardware->record();
+  if (lap.tracking) result.tracking = lap.tracking->record();
   result.time = lap.world.time();
   if (result.finished && open_length_ <= 0) result.time = rules.lap_time(lap.world);
   if (result.steps == 0) return;

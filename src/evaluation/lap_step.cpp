@@ -51,6 +51,7 @@ void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, 
   const LapRules& rules = rules_of(environment_->protocol);
   const sim::Observation seen = lap.world.observe(0);
   const maps::LaserScanView scan = rules.scan(seen, lap.world);
+  if (lap.tracking) lap.tracking->observe(lap.world, scan);
   vehicle::Odometry odometry = odometry_of(seen, lap.world.options().car.rear_length);
   bool localised = true;
   if (lap.hardware) {
@@ -119,6 +120,7 @@ void LapRunner::advance(LapInProgress& lap, bool past_finish) const {
     }
     lap.world.step(lap.commands);
     if (lap.hardware) lap.hardware->moved(lap.world.state(0), time_step);
+    if (lap.tracking) lap.tracking->moved(lap.world.state(0), time_step);
     record_collisions(lap);
   }
   LapResult& result = lap.result;

@@ -85,7 +85,7 @@ std::string checksum_of(const nlohmann::ordered_json& settings) {
 
 /// The rows as a table with checksums.
 std::string table_text(const std::vector<LapRow>& rows, const std::vector<Experiment>& experiments) {
-  std::string text = checked_header() + "\n";
+  std::string text = checked_header(experiments) + "\n";
   for (const LapRow& row : rows) text += checked_line(csv_line(row, experiments)) + "\n";
   return text;
 }

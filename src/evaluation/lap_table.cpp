@@ -18,7 +18,7 @@ namespace {
 
 /// Visits every column after `lap` with its name and field, in order, for the header, writing and reading.
 template <class Row, class Visit>
-void visit_columns(Row& r, Visit&& visit) {
+void visit_columns(Row& r, bool tracks, Visit&& visit) {
   visit("seed", r.seed);
   visit("success", r.success);
   visit("collision", r.collisions);
@@ -49,6 +49,30 @@ void visit_columns(Row& r, Visit&& visit) {
   visit("solve_p50", r.solve_p50);
   visit("solve_p99", r.solve_p99);
   visit("wall_time", r.wall_time);
+  if (!tracks) return;
+  visit("tracking_in_view", r.tracking.in_view);
+  visit("tracking_detected", r.tracking.detected);
+  visit("tracking_long_in_view", r.tracking.long_in_view);
+  visit("tracking_long_detected", r.tracking.long_detected);
+  visit("tracking_false", r.tracking.false_objects);
+  visit("tracking_position_error", r.tracking.position_error);
+  visit("tracking_speed_error", r.tracking.speed_error);
+  visit("tracking_yaw_error", r.tracking.yaw_error);
+  visit("wall_tracking_p99", r.tracking.update_p99);
+}
+
+bool any_tracks(const std::vector<Experiment>& experiments) {
+  return std::any_of(experiments.begin(), experiments.end(), [](const Experiment& e) { return e.tracks(); });
+}
+
+TrackingFigures figures_of(const TrackingRecord& record) {
+  TrackingFigures figures{record.in_view,       record.detected,      record.long_in_view,
+                          record.long_detected, record.false_objects, record.position_error,
+                          record.speed_error,   record.yaw_error};
+  auto times = record.update_ms;
+  std::sort(times.begin(), times.end());
+  if (!times.empty()) figures.update_p99 = static_cast<double>(times[(times.size() - 1) * 99 / 100]);
+  return figures;
 }
 
 constexpr const char* checksum_column = "checksum";
@@ -104,15 +128,15 @@ void parse_cell(const std::string& text, const char* column, Field& field) {
 constexpr std::size_t identity_columns = 4;  // method, scenario, set, lap
 
 /// The message about an invalid header.
-std::string header_error(const std::string& line) {
-  const auto found = split(line), expected = split(csv_header());
+std::string header_error(const std::string& line, const std::vector<Experiment>& experiments) {
+  const auto found = split(line), expected = split(csv_header(experiments));
   for (const std::string& column : found)
     if (column != checksum_column && std::find(expected.begin(), expected.end(), column) == expected.end())
       return "column '" + column + "' is unknown to this version";
   for (const std::string& column : expected)
     if (std::find(found.begin(), found.end(), column) == found.end())
       return "column " + column + " is missing";
-  return "the columns must be in this order: " + csv_header();
+  return "the columns must be in this order: " + csv_header(experiments);
 }
 
 }  // namespace
@@ -127,6 +151,11 @@ std::string Experiment::set_text() const {
 std::string Experiment::label() const {
   const std::string text = set_text();
   return text.empty() ? method : method + " " + text;
+}
+
+bool Experiment::tracks() const {
+  return std::any_of(set.begin(), set.end(),
+                     [](const auto& each) { return each.first == "world.tracking" && each.second != "off"; });
 }
 
 LapRow make_row(int experiment, int lap, const LapResult& result, double wall_time) {
@@ -178,20 +207,22 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
     r.contact_points += point;
   }
   r.wall_time = wall_time;
+  r.tracking = figures_of(result.tracking);
   return r;
 }
 
-std::string csv_header() {
+std::string csv_header(const std::vector<Experiment>& experiments) {
   std::string header = "method,scenario,set,lap";
   const LapRow row;
-  visit_columns(row, [&](const char* name, const auto&) { header.append(",").append(name); });
+  visit_columns(row, any_tracks(experiments),
+                [&](const char* name, const auto&) { header.append(",").append(name); });
   return header;
 }
 
 std::string csv_line(const LapRow& row, const std::vector<Experiment>& experiments) {
   const Experiment& e = experiments.at(static_cast<std::size_t>(row.experiment));
   std::string line = e.method + "," + e.scenario + "," + e.set_text() + "," + std::to_string(row.lap);
-  visit_columns(row, [&](const char*, const auto& field) {
+  visit_columns(row, any_tracks(experiments), [&](const char*, const auto& field) {
     using Field = std::remove_cvref_t<decltype(field)>;
     line += ',';
     if constexpr (std::is_same_v<Field, std::string>) {
@@ -211,15 +242,15 @@ std::string checked_line(const std::string& line) {
   return line + digits;
 }
 
-std::string checked_header() {
-  return csv_header() + "," + checksum_column;
+std::string checked_header(const std::vector<Experiment>& experiments) {
+  return csv_header(experiments) + "," + checksum_column;
 }
 
 LapRow parse_line(const std::string& line, const std::vector<Experiment>& experiments) {
   const auto cells = split(line);
   LapRow row;
   std::size_t columns = identity_columns;
-  visit_columns(row, [&](const char*, auto&) { ++columns; });
+  visit_columns(row, any_tracks(experiments), [&](const char*, auto&) { ++columns; });
   if (cells.size() != columns) {
     throw std::invalid_argument("has " + std::to_string(cells.size()) + " columns, must have " +
                                 std::to_string(columns));
@@ -234,7 +265,8 @@ LapRow parse_line(const std::string& line, const std::vector<Experiment>& experi
     throw std::invalid_argument("lap: " + cells[3] + " must be in [0, " + std::to_string(found->laps - 1) +
                                 "]");
   std::size_t i = identity_columns;
-  visit_columns(row, [&](const char* name, auto& field) { parse_cell(cells[i++], name, field); });
+  visit_columns(row, any_tracks(experiments),
+                [&](const char* name, auto& field) { parse_cell(cells[i++], name, field); });
   return row;
 }
 
@@ -277,8 +309,9 @@ std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vect
     if (!complete && accept_truncated) break;
     if (!complete) throw IoError(file.string(), number, "is truncated");
     if (number == 1) {
-      has_checksums = line == checked_header();
-      if (!has_checksums && line != csv_header()) throw IoError(file.string(), 1, header_error(line));
+      has_checksums = line == checked_header(experiments);
+      if (!has_checksums && line != csv_header(experiments))
+        throw IoError(file.string(), 1, header_error(line, experiments));
       continue;
     }
     try {

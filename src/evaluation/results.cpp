@@ -1,6 +1,7 @@
 #include "slalom/evaluation/results.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -23,6 +24,25 @@ std::vector<double> column(const std::vector<const LapRow*>& rows, Value&& value
   values.reserve(rows.size());
   for (const LapRow* row : rows) values.push_back(static_cast<double>(value(*row)));
   return values;
+}
+
+TrackingFigures summarise_tracking(const std::vector<const LapRow*>& rows) {
+  TrackingFigures total;
+  for (const LapRow* row : rows) {
+    const TrackingFigures& lap = row->tracking;
+    total.in_view += lap.in_view;
+    total.detected += lap.detected;
+    total.long_in_view += lap.long_in_view;
+    total.long_detected += lap.long_detected;
+    total.false_objects += lap.false_objects;
+    total.position_error += lap.detected * lap.position_error * lap.position_error;
+    total.speed_error += lap.detected * lap.speed_error * lap.speed_error;
+    total.yaw_error += lap.detected * lap.yaw_error * lap.yaw_error;
+    total.update_p99 += lap.update_p99 / static_cast<double>(rows.size());
+  }
+  for (double* error : {&total.position_error, &total.speed_error, &total.yaw_error})
+    *error = total.detected > 0 ? std::sqrt(*error / total.detected) : 0;
+  return total;
 }
 
 ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index,
@@ -61,6 +81,7 @@ ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index
     const std::vector<double> obstacles(rows.size(), experiment.obstacles);
     r.collision_rate_bootstrap_ci = bootstrap_ratio(contacts, obstacles);
   }
+  if (experiment.tracks()) r.tracking = summarise_tracking(rows);
   return r;
 }
 

@@ -237,6 +237,27 @@ TEST(LapRunner, HardwareLapsRepeatWithAnyThreadsAndApplyTheirConditions) {
   EXPECT_NE(bits(lap(late, 3, 1)), bits(first));
 }
 
+TEST(LapRunner, ATrackerFindsTheOtherCarsAndChangesNoLap) {
+  const auto environment = wren();
+  const auto lap = [&](TrackingMode mode, int opponents) {
+    return LapRunner(environment, configuration("default_kinematic", 64), "mppi",
+                     {.opponents = opponents, .range_noise = 0.02, .dropout = 0.02, .tracking = mode})
+        .run(2);
+  };
+  const LapResult without = lap(TrackingMode::off, 2);
+  EXPECT_EQ(without.tracking.in_view, 0);
+  for (const TrackingMode mode : {TrackingMode::exact, TrackingMode::localised}) {
+    const LapResult with = lap(mode, 2);
+    EXPECT_EQ(bits(with), bits(without));
+    EXPECT_EQ(with.tracking.update_ms.size(), static_cast<std::size_t>(with.steps));
+    EXPECT_GT(with.tracking.in_view, 20);
+    EXPECT_GE(with.tracking.long_detected, 0.95 * with.tracking.long_in_view);
+    EXPECT_LT(with.tracking.position_error, 0.15);
+    EXPECT_EQ(with.tracking.false_objects, 0);
+    EXPECT_EQ(lap(mode, 0).tracking.false_objects, 0) << "nothing is on the course";
+  }
+}
+
 TEST(LapRunner, ACarThatCannotLocaliseStops) {
   auto environment = std::make_shared<Environment>(*wren());
   environment->timeout = 2;

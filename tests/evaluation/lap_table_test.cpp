@@ -39,6 +39,24 @@ LapRow row(int experiment, int lap) {
   return r;
 }
 
+TEST(LapTableColumns, OfATrackerAreThereIfAnExperimentHasOne) {
+  std::vector<Experiment> tracking = experiments;
+  tracking[1].set.emplace_back("world.tracking", "off");
+  EXPECT_FALSE(tracking[1].tracks());
+  EXPECT_EQ(csv_header(tracking), csv_header());
+  tracking[1].set.back().second = "exact";
+  EXPECT_TRUE(tracking[1].tracks());
+  EXPECT_EQ(csv_header(tracking).rfind(csv_header() + ",tracking_in_view,", 0), 0U);
+  LapRow r = row(1, 0);
+  r.tracking = {100, 99, 80, 79, 2, 0.1 + 0.2, 0.25, 1.0 / 3, 0.5};
+  const LapRow back = parse_line(csv_line(r, tracking), tracking);
+  EXPECT_EQ(back.tracking.long_detected, 79);
+  EXPECT_EQ(back.tracking.false_objects, 2);
+  EXPECT_EQ(back.tracking.position_error, 0.1 + 0.2);
+  EXPECT_EQ(back.tracking.yaw_error, 1.0 / 3);
+  EXPECT_THROW(parse_line(csv_line(r, experiments), tracking), std::invalid_argument);
+}
+
 class LapTable : public testing::TemporaryFolder {
  protected:
   void write(const std::string& text) const { TemporaryFolder::write("laps.csv", text); }

@@ -60,6 +60,22 @@ void require_object(const std::filesystem::path& file) {
 Json interval_json(const Interval& i) {
   return {i.low, i.high};
 }
+/// What an evaluation says of its tracker.
+Json tracking_json(const TrackingFigures& t, int laps) {
+  const auto rate = [](int part, int whole) {
+    return Json{{"rate", whole > 0 ? Json(static_cast<double>(part) / whole) : Json(nullptr)},
+                {"detected", part},
+                {"in_view", whole}};
+  };
+  return {{"detection", rate(t.detected, t.in_view)},
+          {"detection_after_200_ms", rate(t.long_detected, t.long_in_view)},
+          {"false_objects", t.false_objects},
+          {"false_objects_per_lap", static_cast<double>(t.false_objects) / std::max(laps, 1)},
+          {"position_error_m", t.position_error},
+          {"speed_error_m_s", t.speed_error},
+          {"yaw_error_rad", t.yaw_error},
+          {"update_p99_ms", t.update_p99}};
+}
 template <class Value, class Make>
 Json optional_json(const std::optional<Value>& value, Make&& make) {
   return value ? Json(make(*value)) : Json(nullptr);
@@ -124,31 +140,32 @@ Json Evaluated::summary() const {
   for (const ExperimentResult& r : results) {
     const Experiment& e = evaluation.experiments[static_cast<std::size_t>(r.experiment)];
     const auto rate = [](double v) { return v; };
-    list.push_back(
-        {{"method", e.method},
-         {"set", e.set_text()},
-         {"scenario", e.scenario},
-         {"obstacles", e.obstacles},
-         {"laps", r.laps},
-         {"finished", r.finished},
-         {"timeouts", r.timeouts},
-         {"contacts", r.collisions},
-         {"impassable", r.impassable},
-         {"ms_mean", r.ms_mean},
-         {"ms_ci", interval_json(r.ms_ci)},
-         {"state_cost_mean", r.state_cost_mean},
-         {"collision_cost_mean", r.collision_cost_mean},
-         {"collision_rate", optional_json(r.collision_rate, rate)},
-         {"collision_rate_ci", optional_json(r.collision_rate_ci, interval_json)},
-         {"collision_rate_bootstrap_ci", optional_json(r.collision_rate_bootstrap_ci, interval_json)},
-         {"success_rate", r.success_rate},
-         {"success_rate_ci", interval_json(r.success_rate_ci)},
-         {"lap_time_mean", std::isnan(r.lap_time_mean) ? Json(nullptr) : Json(r.lap_time_mean)},
-         {"solve_ms",
-          {{"mean", r.solve_ms_mean},
-           {"p50", r.solve_ms_p50},
-           {"p99", r.solve_ms_p99},
-           {"max", r.solve_ms_max}}}});
+    Json result({{"method", e.method},
+                 {"set", e.set_text()},
+                 {"scenario", e.scenario},
+                 {"obstacles", e.obstacles},
+                 {"laps", r.laps},
+                 {"finished", r.finished},
+                 {"timeouts", r.timeouts},
+                 {"contacts", r.collisions},
+                 {"impassable", r.impassable},
+                 {"ms_mean", r.ms_mean},
+                 {"ms_ci", interval_json(r.ms_ci)},
+                 {"state_cost_mean", r.state_cost_mean},
+                 {"collision_cost_mean", r.collision_cost_mean},
+                 {"collision_rate", optional_json(r.collision_rate, rate)},
+                 {"collision_rate_ci", optional_json(r.collision_rate_ci, interval_json)},
+                 {"collision_rate_bootstrap_ci", optional_json(r.collision_rate_bootstrap_ci, interval_json)},
+                 {"success_rate", r.success_rate},
+                 {"success_rate_ci", interval_json(r.success_rate_ci)},
+                 {"lap_time_mean", std::isnan(r.lap_time_mean) ? Json(nullptr) : Json(r.lap_time_mean)},
+                 {"solve_ms",
+                  {{"mean", r.solve_ms_mean},
+                   {"p50", r.solve_ms_p50},
+                   {"p99", r.solve_ms_p99},
+                   {"max", r.solve_ms_max}}}});
+    if (r.tracking) result["tracking"] = tracking_json(*r.tracking, r.laps);
+    list.push_back(std::move(result));
   }
   Json pairs = Json::array();
   for (const PairedComparison& c : compare_pairs(rows, evaluation.experiments)) {
@@ -249,6 +266,19 @@ void print_results(const Evaluated& evaluated, std::FILE* out) {
     std::fprintf(out, "%-*s  %-3s %5d %9.3f %8.3f - %8.3f %9d %17s %6.1f %% %9.3f\n", static_cast<int>(width),
                  e.label().c_str(), e.scenario.c_str(), r.laps, r.ms_mean, r.ms_ci.low, r.ms_ci.high,
                  r.collisions, rate, 100 * r.success_rate, r.solve_ms_p50);
+  }
+  for (const ExperimentResult& r : evaluated.results) {
+    if (!r.tracking) continue;
+    const TrackingFigures& t = *r.tracking;
+    const auto percent = [](int part, int whole) { return whole > 0 ? 100.0 * part / whole : 0.0; };
+    std::fprintf(
+        out,
+        "%s: of cars in view within 8 m %.2f %% detected, after 0.2 s in view %.2f %%; %.2f false objects a "
+        "lap; error %.3f m, %.2f m/s, %.3f rad (root mean square); update p99 %.2f ms\n",
+        evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)].label().c_str(),
+        percent(t.detected, t.in_view), percent(t.long_detected, t.long_in_view),
+        static_cast<double>(t.false_objects) / std::max(r.laps, 1), t.position_error, t.speed_error,
+        t.yaw_error, t.update_p99);
   }
   // Laps of the same number have the same obstacles: those of the first experiment speak for all.
   std::string laps;

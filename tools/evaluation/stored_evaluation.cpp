@@ -113,6 +113,7 @@ bool same_lap(evaluation::LapRow a, const evaluation::LapRow& b, const std::vect
   a.solve_p50 = b.solve_p50;
   a.solve_p99 = b.solve_p99;
   a.wall_time = b.wall_time;
+  a.tracking.update_p99 = b.tracking.update_p99;
   return evaluation::csv_line(a, experiments) == evaluation::csv_line(b, experiments);
 }
 

@@ -91,6 +91,7 @@ struct LapResult {
   std::vector<float> tick_ms;               ///< wall-clock time of each planner update
   LocalisationRecord localisation;          ///< with LapSettings::hardware
   EstimationRecord estimation;              ///< with vehicle models whose tyres slip
+  TrackingRecord tracking;                  ///< with LapSettings::tracking
 };
 
 /// Drives laps of one configuration and method. Each lap is independent of the others: world, planner and

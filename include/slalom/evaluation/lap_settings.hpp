@@ -6,6 +6,7 @@
 
 #include "slalom/core/options.hpp"
 #include "slalom/evaluation/hardware.hpp"
+#include "slalom/evaluation/tracking_record.hpp"
 #include "slalom/maps/pose.hpp"
 
 namespace slalom::evaluation {
@@ -21,15 +22,16 @@ struct LapSettings {
 
   // Changes of the world, for Protocol::true_physics only. visit_options declares them, so that evaluations
   // can vary them by name.
-  double latency = 0;             ///< s from a scan until its command takes effect
-  int opponents = 0;              ///< cars that drive along the path; closed courses only
-  double opponent_speed = 0.5;    ///< fraction of the path's speed
-  double speed_scale = 1;         ///< factor of the course's speed profile
-  double friction = 1.0489;       ///< coefficient between tyre and road
-  bool saturating_tyres = false;  ///< limited tyre forces: sim::Model::saturating
-  double steering_gain = 1;       ///< angle of the wheels / commanded angle
-  double range_noise = 0.01;      ///< m, standard deviation of each range
-  double dropout = 0;             ///< fraction of beams without a return
+  double latency = 0;                         ///< s from a scan until its command takes effect
+  int opponents = 0;                          ///< cars that drive along the path; closed courses only
+  double opponent_speed = 0.5;                ///< fraction of the path's speed
+  double speed_scale = 1;                     ///< factor of the course's speed profile
+  double friction = 1.0489;                   ///< coefficient between tyre and road
+  bool saturating_tyres = false;              ///< limited tyre forces: sim::Model::saturating
+  double steering_gain = 1;                   ///< angle of the wheels / commanded angle
+  double range_noise = 0.01;                  ///< m, standard deviation of each range
+  double dropout = 0;                         ///< fraction of beams without a return
+  TrackingMode tracking = TrackingMode::off;  ///< measures a tracker of other cars; no effect on the lap
 };
 
 /// Declares the options of the world, in the section `world`.
@@ -51,6 +53,9 @@ void visit_options(Options& o, Visit&& visit) {
   number(o.steering_gain, "steering_gain", "", "angle of the wheels / commanded angle", 0.1, 10);
   number(o.range_noise, "range_noise", "m", "standard deviation of each range", 0, 1);
   number(o.dropout, "dropout", "", "fraction of beams without a return", 0, 1);
+  visit(o.tracking,
+        Declaration{.name = "tracking",
+                    .help = "measure a tracker of other cars, with this pose; no effect on the lap"});
 }
 
 /// Sets the option that `key` names, for instance "world.friction", from text. Returns false if `key` does

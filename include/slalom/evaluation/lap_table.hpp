@@ -26,6 +26,15 @@ struct Experiment {
   std::string set_text() const;
   /// Its name in tables: the method and set_text().
   std::string label() const;
+  /// Whether it measures a tracker: sets world.tracking to another value than off.
+  bool tracks() const;
+};
+
+/// What a lap with `world.tracking` says about its tracker: the figures of TrackingRecord.
+struct TrackingFigures {
+  int in_view = 0, detected = 0, long_in_view = 0, long_detected = 0, false_objects = 0;
+  double position_error = 0, speed_error = 0, yaw_error = 0;  ///< m, m/s, rad
+  double update_p99 = 0;                                      ///< ms, wall-clock; column `wall_tracking_p99`
 };
 
 /// A row of `laps.csv`: one lap of one experiment. Columns whose names contain `calculation_time`, or begin
@@ -55,6 +64,7 @@ struct LapRow {
   std::string contact_points;  ///< "x:y" in m, the car's position at its first collision with each body
   double solve_p50 = 0, solve_p99 = 0;  ///< ms
   double wall_time = 0;                 ///< s, to compute the lap
+  TrackingFigures tracking;             ///< in tables of evaluations with `world.tracking` only
 
   /// MS = state_cost + collision_cost
   double mean_sequence_cost() const { return state_cost + collision_cost; }
@@ -64,8 +74,8 @@ struct LapRow {
 LapRow make_row(int experiment, int lap, const LapResult& result, double wall_time);
 
 /// The header of laps.csv: `method,scenario,set,lap`, the columns of the logs of Honda et al. (ICRA 2024),
-/// then further ones.
-std::string csv_header();
+/// then further ones, and if one of the experiments tracks, those of TrackingFigures.
+std::string csv_header(const std::vector<Experiment>& experiments = {});
 /// A row of laps.csv without line end. Numbers read back to the same bits.
 std::string csv_line(const LapRow& row, const std::vector<Experiment>& experiments);
 
@@ -73,7 +83,7 @@ std::string csv_line(const LapRow& row, const std::vector<Experiment>& experimen
 /// the bytes before the comma in eight hexadecimal digits. It tells every change of a single byte.
 std::string checked_line(const std::string& line);
 /// The header of such a table: csv_header() and the column `checksum`.
-std::string checked_header();
+std::string checked_header(const std::vector<Experiment>& experiments = {});
 
 /// Parses a line of csv_line. Throws std::invalid_argument naming the column, its value and the rule, or what
 /// else is wrong with the line.

@@ -29,6 +29,9 @@ struct ExperimentResult {
   double solve_ms_p50 = 0;   ///< ms, mean over the laps of each lap's median
   double solve_ms_p99 = 0;   ///< ms, mean over the laps of each lap's 99th percentile
   double solve_ms_max = 0;   ///< ms, largest of all laps
+  /// Sums over laps; errors are root mean squares over all detections, `update_p99` (ms) the mean over the
+  /// laps. None without `world.tracking`.
+  std::optional<TrackingFigures> tracking;
 };
 
 /// Two experiments over the same seeds.

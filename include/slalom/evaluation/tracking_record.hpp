@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+namespace slalom::evaluation {
+
+/// Whether a tracker of other cars runs on the scans of a lap, and on which pose. It does not drive.
+enum class TrackingMode {
+  off,
+  exact,      ///< with the map and the true pose
+  localised,  ///< with the map and the pose of a localiser, which has scans and wheel odometry
+  mapless,    ///< without the map, with the pose of wheel odometry and gyro
+};
+/// The names of the enumerators, in order.
+inline const char* const* enum_names(TrackingMode) {
+  static constexpr const char* names[] = {"off", "exact", "localised", "mapless", nullptr};
+  return names;
+}
+
+/// The objects of a tracker (tracking::ObjectTracker) compared with the bodies of the simulated world, in
+/// every control step. A body is in view if at least five beams hit it, without their noise, and its middle
+/// is at most 8 m from the LiDAR. Without a map a body counts only while it moves at 0.5 m/s or more. It is
+/// detected if an object is at most 0.5 m from its middle. Figures of positions include the error of the
+/// localisation, but not the drift of the wheel odometry.
+struct TrackingRecord {
+  int in_view = 0;               ///< bodies in view, summed over control steps
+  int detected = 0;              ///< those of them that were detected
+  int long_in_view = 0;          ///< bodies that have been in view for 0.2 s without a break
+  int long_detected = 0;         ///< those of them that were detected
+  int false_objects = 0;         ///< objects that were reported as seen where no body is
+  double position_error = 0;     ///< m, root mean square over `detected`
+  double speed_error = 0;        ///< m/s, the same
+  double yaw_error = 0;          ///< rad, the same; of a body that stands, to the nearer of its ends
+  std::vector<float> update_ms;  ///< wall-clock time of each update of the tracker
+};
+
+}  // namespace slalom::evaluation

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "slalom/evaluation/tracking_record.hpp"
+#include "slalom/maps/occupancy_grid.hpp"
+#include "slalom/sim/wheel_odometry.hpp"
+#include "slalom/sim/world.hpp"
+#include "slalom/tracking/object_tracker.hpp"
+#include "slalom/vehicle/localisation/localiser.hpp"
+
+namespace slalom::evaluation {
+
+/// Runs a tracker on the scans of the first car, and compares its objects with the bodies of the world.
+class TrackingMeter {
+ public:
+  /// `mode` is not off. `seed` is that of the errors of the pose.
+  TrackingMeter(TrackingMode mode, const maps::OccupancyGrid& map, const sim::World& world,
+                std::uint64_t seed);
+
+  /// To be called in every control step.
+  void observe(const sim::World& world, const maps::LaserScanView& scan);
+  /// To be called after each step of the world, of `time_step` (s).
+  void moved(const sim::CarState& state, double time_step) noexcept { wheels_.update(state, time_step); }
+  /// The figures so far.
+  TrackingRecord record() const;
+
+ private:
+  tracking::TrackerInput locate(const sim::Observation& seen, const maps::LaserScanView& scan) noexcept;
+  void find_in_view(const sim::World& world, const maps::Pose& sensor);
+  template <class InMap>
+  void pair_up(const sim::World& world, const tracking::TrackerOutput& output, const InMap& in_map);
+  void compare(const sim::World& world, const tracking::TrackerOutput& output, const maps::Pose& sensor);
+
+  TrackingMode mode_;
+  sim::CarParameters car_;
+  maps::Pose mount_;  ///< of the LiDAR, from the rear axle
+  sim::WheelOdometry wheels_;
+  std::optional<vehicle::Localiser> localiser_;
+  maps::Pose aligned_;        ///< of the LiDAR, as the tracker aligned it last
+  maps::Pose wheels_before_;  ///< pose of the odometry at that time
+  tracking::ObjectTracker tracker_;
+
+  std::vector<float> ranges_, body_ranges_;            ///< m, without noise: of everything, and of one body
+  std::vector<std::uint8_t> in_view_;                  ///< per body
+  std::vector<double> in_view_since_;                  ///< s, per body
+  std::vector<const tracking::TrackedObject*> pairs_;  ///< per body: its object, null for none
+  std::vector<std::uint8_t> taken_;                    ///< per object
+  std::vector<int> false_ids_;                         ///< ascending
+  TrackingRecord record_;                              ///< errors as sums of squares
+};
+
+}  // namespace slalom::evaluation

@@ -1,0 +1,327 @@
+#include "slalom/tracking/object_tracker.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "tracking/association.hpp"
+#include "tracking/free_space.hpp"
+#include "tracking/map_background.hpp"
+#include "tracking/readings.hpp"
+#include "tracking/tracked.hpp"
+
+namespace slalom::tracking {
+namespace {
+
+constexpr double most_deviation = 0.8;  // m, of the position of an object that is not given up
+constexpr double longest_pause = 1.0;   // s between scans, after which all objects are forgotten
+constexpr double longest_jump = 0.5;    // m, of the sensor beyond its largest way, after which they are, too
+constexpr double most_behind_walls = 0.1;  // share of the readings; with more the pose is wrong
+constexpr double least_gap = 2.5;          // of the distance of neighbouring beams, where a cluster is split
+constexpr double largest_object = 1.3;     // of the largest diameter: a larger cluster is no object
+constexpr int longest_rest = 12;           // scans without a sign of motion, without a map
+constexpr int most_splits = 4;             // times that a cluster is halved
+
+bool is_finite(const maps::Pose& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
+}
+
+}  // namespace
+
+struct ObjectTracker::Implementation {
+  Implementation(const maps::OccupancyGrid* map, const TrackerOptions& given)
+      : options((given.validate(), given)),
+        readings(given.most_beams, given.most_range),
+        candidates(static_cast<std::size_t>(given.most_beams)),
+        owners(candidates.size()),
+        clusters(candidates.size()),
+        own(candidates.size()),
+        objects(static_cast<std::size_t>(given.most_objects)),
+        reported(objects.size()) {
+    if (map) {
+      background.emplace(*map);
+    } else {
+      free_space.emplace(given.most_beams);
+    }
+  }
+
+  void forget() noexcept {
+    object_count = 0;
+    started = false;
+    if (free_space) free_space->clear();
+    output = {};
+  }
+
+  bool detect(const TrackerInput& input) noexcept;
+  void leave_out_large_clusters() noexcept;
+  void correct() noexcept;
+  void begin_objects() noexcept;
+  void begin_object(std::size_t begin, std::size_t end, int splits) noexcept;
+  bool moves(std::span<const Reading> part) const noexcept;
+  bool seen_through(const Tracked& object) const noexcept;
+  void remove_objects() noexcept;
+  void report() noexcept;
+
+  std::span<Tracked> active() noexcept { return {objects.data(), object_count}; }
+
+  TrackerOptions options;
+  Readings readings;
+  std::optional<MapBackground> background;
+  std::optional<FreeSpace> free_space;
+  std::vector<Reading> candidates;  ///< readings that may belong to objects
+  std::vector<int> owners;          ///< of each candidate, the index of its object or -1
+  std::vector<Cluster> clusters;
+  std::vector<Reading> own;  ///< the readings of one object
+  std::vector<Tracked> objects;
+  std::vector<TrackedObject> reported;
+  std::size_t candidate_count = 0, cluster_count = 0, object_count = 0;
+  int next_id = 1;
+  bool started = false;
+  double stamp = 0;
+  maps::Pose last_sensor;
+  TrackerOutput output;
+};
+
+/// Finds the readings that may belong to objects, and their clusters; false if the scan does not fit the map.
+bool ObjectTracker::Implementation::detect(const TrackerInput& input) noexcept {
+  output.sensor = input.sensor;
+  if (background && (input.position_deviation > 0 || input.yaw_deviation > 0))
+    output.sensor = background->align(readings, input.sensor, input.position_deviation, input.yaw_deviation,
+                                      options.range_deviation);
+  readings.place(output.sensor);
+  candidate_count = 0;
+  std::size_t behind_walls = 0;
+  for (const Reading& reading : readings.all()) {
+    if (background) {
+      const double margin =
+          options.wall_distance + 3 * options.range_deviation + options.wall_angle * reading.range;
+      const double distance = background->distance(reading.point);
+      behind_walls += distance < -2 * margin;
+      if (distance <= margin) continue;
+    }
+    candidates[candidate_count++] = reading;
+  }
+  // Other cars hide walls, but let nobody look through them.
+  if (static_cast<double>(behind_walls) > most_behind_walls * static_cast<double>(readings.all().size()))
+    return false;
+  const std::span<const Reading> found(candidates.data(), candidate_count);
+  cluster_count = find_clusters(found, readings.increment(), options, clusters);
+  if (free_space) {
+    leave_out_large_clusters();
+    free_space->find_left(readings, input.stamp, options.free_margin);
+  }
+  return true;
+}
+
+/// Takes clusters away that are no objects, which without a map are most of the walls: an object that was
+/// lost must not go on along one of them.
+void ObjectTracker::Implementation::leave_out_large_clusters() noexcept {
+  std::size_t kept_candidates = 0, kept_clusters = 0;
+  for (std::size_t c = 0; c < cluster_count; ++c) {
+    const auto [begin, end] = clusters[c];
+    if (diameter({candidates.data() + begin, end - begin}) > largest_object * most_diameter(options))
+      continue;
+    clusters[kept_clusters++] = {kept_candidates, kept_candidates + (end - begin)};
+    for (std::size_t i = begin; i < end; ++i) candidates[kept_candidates++] = candidates[i];
+  }
+  candidate_count = kept_candidates;
+  cluster_count = kept_clusters;
+}
+
+/// Corrects the objects with their readings.
+void ObjectTracker::Implementation::correct() noexcept {
+  const std::span<const Reading> found(candidates.data(), candidate_count);
+  associate(found, {clusters.data(), cluster_count}, active(), options, {owners.data(), candidate_count});
+  for (std::size_t k = 0; k < object_count; ++k) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < candidate_count; ++i)
+      if (owners[i] == static_cast<int>(k)) own[count++] = candidates[i];
+    const std::span<const Reading> part(own.data(), count);
+    if (count >= 2) {
+      objects[k].correct(options, readings, part, moves(part));
+    } else {
+      objects[k].miss(seen_through(objects[k]));
+    }
+  }
+}
+
+/// Whether readings belong to something that moves, as far as that must be known: without a map.
+bool ObjectTracker::Implementation::moves(std::span<const Reading> part) const noexcept {
+  if (!free_space) return true;
+  // What appears behind something else has not moved there.
+  const bool isolated =
+      readings.ends_at(part.front().beam, -1, options.least_incidence, options.range_deviation) &&
+      readings.ends_at(part.back().beam, 1, options.least_incidence, options.range_deviation);
+  return free_space->moves(part, options.free_margin, isolated ? 2 * options.length : 0);
+}
+
+/// Whether most beams towards the predicted box go on behind it.
+bool ObjectTracker::Implementation::seen_through(const Tracked& object) const noexcept {
+  const maps::Pose pose = object.pose();
+  const maps::Point middle = maps::inverse_transform(readings.sensor(), {pose.x, pose.y});
+  const double distance = std::hypot(middle.x, middle.y), radius = 0.5 * object.width();
+  if (distance <= radius) return false;
+  const double bearing = std::atan2(middle.y, middle.x), half = std::asin(radius / distance);
+  const int beams = std::max(1, static_cast<int>(2 * half / readings.increment()));
+  const double behind = distance + 0.5 * object.length();
+  int through = 0, stopped = 0;
+  for (int i = 0; i <= beams; ++i) {
+    const int beam = readings.beam_at(bearing + half * (2.0 * i / beams - 1));
+    if (beam < 0) continue;
+    const double range = readings.range(beam);
+    if (range == 0 || std::isinf(range)) continue;
+    ++(range > behind ? through : stopped);
+  }
+  return through > 2 * stopped;
+}
+
+/// Begins an object with candidates [begin, end), or with the parts of it if it is too large for one.
+void ObjectTracker::Implementation::begin_object(std::size_t begin, std::size_t end, int splits) noexcept {
+  if (end - begin < static_cast<std::size_t>(options.least_points)) return;
+  const std::span<const Reading> part(candidates.data() + begin, end - begin);
+  const double size = diameter(part), most = most_diameter(options);
+  if (size > most && splits < most_splits) {
+    std::size_t cut = 0;
+    double widest = least_gap;
+    for (std::size_t i = 1; i < part.size(); ++i) {
+      const Reading &a = part[i - 1], &b = part[i];
+      const double step = std::min(a.range, b.range) * readings.increment() * (b.beam - a.beam);
+      const double gap =
+          (std::hypot(b.point.x - a.point.x, b.point.y - a.point.y) - 2 * options.range_deviation) / step;
+      if (gap <= widest) continue;
+      widest = gap;
+      cut = i;
+    }
+    if (cut > 0) {
+      begin_object(begin, begin + cut, splits + 1);
+      begin_object(begin + cut, end, splits + 1);
+      return;
+    }
+  }
+  if (size > largest_object * most || size < 0.25 * options.width || object_count == objects.size()) return;
+  if (!moves(part)) return;
+  objects[object_count++] = Tracked(next_id++, options, readings, part);
+}
+
+/// Begins objects with the readings that belong to none, apart from those at the outline of one.
+void ObjectTracker::Implementation::begin_objects() noexcept {
+  const std::size_t old_count = object_count;
+  const auto is_new = [&](std::size_t i) {
+    if (owners[i] >= 0) return false;
+    for (std::size_t k = 0; k < old_count; ++k)
+      if (objects[k].unseen() == 0 &&
+          outline_distance(candidates[i].point, objects[k]) < options.gate * options.range_deviation)
+        return false;
+    return true;
+  };
+  for (std::size_t c = 0; c < cluster_count; ++c) {
+    for (std::size_t i = clusters[c].begin; i < clusters[c].end;) {
+      std::size_t end = i;
+      while (end < clusters[c].end && is_new(end)) ++end;
+      if (end > i) begin_object(i, end, 0);
+      i = end + 1;
+    }
+  }
+}
+
+void ObjectTracker::Implementation::remove_objects() noexcept {
+  const auto given_up = [&](const Tracked& object) {
+    const int most_misses = object.confirmed() ? options.most_misses : 0;
+    return !object.finite() || object.misses() > most_misses || object.at_rest() > longest_rest ||
+           object.unseen() > options.longest_unseen ||
+           (!object.confirmed() && object.unseen() > 0.2 * options.longest_unseen) ||
+           (object.unseen() > 0 && object.position_variance() > most_deviation * most_deviation);
+  };
+  // Two objects cannot be in the same place: one is the double of the other.
+  const auto doubles = [&](const Tracked& object, const Tracked& other) {
+    const maps::Pose a = object.pose(), b = other.pose();
+    if (std::hypot(a.x - b.x, a.y - b.y) > 0.8 * options.width) return false;
+    if (object.confirmed() != other.confirmed()) return other.confirmed();
+    return object.id() > other.id();
+  };
+  const auto end =
+      std::remove_if(objects.begin(), objects.begin() + static_cast<std::ptrdiff_t>(object_count), given_up);
+  object_count = static_cast<std::size_t>(end - objects.begin());
+  for (std::size_t k = 0; k < object_count;) {
+    const bool twice =
+        std::any_of(objects.begin(), objects.begin() + static_cast<std::ptrdiff_t>(object_count),
+                    [&](const Tracked& other) { return doubles(objects[k], other); });
+    if (twice) {
+      std::move(objects.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+                objects.begin() + static_cast<std::ptrdiff_t>(object_count),
+                objects.begin() + static_cast<std::ptrdiff_t>(k));
+      --object_count;
+    } else {
+      ++k;
+    }
+  }
+}
+
+void ObjectTracker::Implementation::report() noexcept {
+  std::size_t count = 0;
+  for (Tracked& object : active()) {
+    object.confirm(options, background ? 0 : options.least_speed);
+    if (object.confirmed()) reported[count++] = object.object();
+  }
+  std::sort(reported.begin(), reported.begin() + static_cast<std::ptrdiff_t>(count),
+            [](const TrackedObject& a, const TrackedObject& b) { return a.id < b.id; });
+  output.objects = {reported.data(), count};
+}
+
+ObjectTracker::ObjectTracker(const TrackerOptions& options)
+    : implementation_(std::make_unique<Implementation>(nullptr, options)) {}
+ObjectTracker::ObjectTracker(const maps::OccupancyGrid& map, const TrackerOptions& options)
+    : implementation_(std::make_unique<Implementation>(&map, options)) {}
+ObjectTracker::~ObjectTracker() = default;
+ObjectTracker::ObjectTracker(ObjectTracker&&) noexcept = default;
+ObjectTracker& ObjectTracker::operator=(ObjectTracker&&) noexcept = default;
+
+void ObjectTracker::reset() noexcept {
+  implementation_->forget();
+  implementation_->next_id = 1;
+}
+
+const TrackerOptions& ObjectTracker::options() const noexcept {
+  return implementation_->options;
+}
+
+const TrackerOutput& ObjectTracker::update(const TrackerInput& input) noexcept {
+  const auto begin = std::chrono::steady_clock::now();
+  Implementation& self = *implementation_;
+  const auto finish = [&](TrackerStatus status) -> const TrackerOutput& {
+    self.output.status = status;
+    self.output.update_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return self.output;
+  };
+  self.output.clusters = 0;
+  if (!is_finite(input.sensor) || !std::isfinite(input.stamp)) return finish(TrackerStatus::bad_pose);
+  double elapsed = self.started ? input.stamp - self.stamp : 0;
+  if (self.started && elapsed <= 0 && elapsed > -longest_pause) return finish(TrackerStatus::stale);
+  const double moved = std::hypot(input.sensor.x - self.last_sensor.x, input.sensor.y - self.last_sensor.y);
+  // Also a clock that was set back, and a sensor that was placed elsewhere.
+  if (std::abs(elapsed) > longest_pause ||
+      (self.started && moved > self.options.most_speed * elapsed + longest_jump)) {
+    self.forget();
+    elapsed = 0;
+  }
+  self.started = true;
+  self.stamp = input.stamp;
+  self.last_sensor = input.sensor;
+  for (Tracked& object : self.active()) object.predict(elapsed, self.options);
+  TrackerStatus status = TrackerStatus::bad_scan;
+  if (self.readings.set(input.scan)) status = self.detect(input) ? TrackerStatus::ok : TrackerStatus::misfit;
+  if (status == TrackerStatus::ok) {
+    self.output.clusters = static_cast<int>(self.cluster_count);
+    self.correct();
+    self.begin_objects();
+    if (self.free_space) self.free_space->keep(self.readings, input.stamp);
+  }
+  self.remove_objects();
+  self.report();
+  return finish(status);
+}
+
+}  // namespace slalom::tracking
