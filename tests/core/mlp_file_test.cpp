@@ -37,7 +37,7 @@ std::string npy(const std::string& type, const std::string& shape, const std::st
 }
 std::string floats(const std::string& shape, const std::vector<double>& values) {
   std::string data(values.size() * sizeof(double), '\0');
-  std::memcpy(data.data(), values.data(), data.size());
+  if (!values.empty()) std::memcpy(data.data(), values.data(), data.size());
   return npy("<f8", shape, data);
 }
 std::string text(const std::string& words) {
