@@ -98,15 +98,19 @@ def check_cpp(root, compiler):
 
 
 def check_python(root):
+    """The blocks run, one after the other for each page, in a folder for what they write."""
     errors = []
     for page in pages(root):
         found = blocks(page, "python")
         names = {}
-        for line, text in found:
-            try:
-                exec(compile(text, f"{page}:{line}", "exec"), names)
-            except Exception as error:
-                errors.append(f"{page}:{line}: {type(error).__name__}: {error}")
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+            for line, text in found:
+                try:
+                    exec(compile(text, f"{page}:{line}", "exec"), names)
+                except Exception as error:
+                    errors.append(f"{page}:{line}: {type(error).__name__}: {error}")
+            os.chdir(root)
         if found:
             print(f"{page.relative_to(root)}: {len(found)} blocks of Python")
     return errors

@@ -125,7 +125,7 @@ void bind_racing(py::module_& module) {
       "keywords that change it: friction, width, margin, wheelbase, max_steering, "
       "max_steering_rate, top_speed, lateral_acceleration, acceleration, braking, power.")
       .def(py::init(&make_car), py::arg("name") = RacingCar{}.name)
-      .def_readonly("name", &RacingCar::name)
+      .def_readonly("name", &RacingCar::name, "f1tenth, passenger, or that of the file")
       .def_readonly("width", &RacingCar::width, "m")
       .def_readonly("margin", &RacingCar::margin, "m")
       .def_property_readonly(
