@@ -30,8 +30,10 @@ TEST_F(SoakCommand, RunsEveryTrialAndPasses) {
 }
 
 TEST_F(SoakCommand, AnInterruptIsNoSuccessAndLeavesNothing) {
+  // In the foreground, since otherwise `timeout` may signal twice, and the second signal ends the program at
+  // once.
   const testing::Run run = testing::run_shell(
-      "export TMPDIR=$PWD; timeout --signal=INT 3 '" SLALOM_PROGRAM
+      "export TMPDIR=$PWD; timeout --foreground --signal=INT 3 '" SLALOM_PROGRAM
       "' soak --hours 1 --course " SLALOM_COURSES
       "/wren --config default_kinematic --method mppi --set samples=32; echo status $?; ls",
       folder_.string());
