@@ -73,6 +73,13 @@ export class Harness {
   until(what, arg, page = this.page) { return page.waitForFunction(what, arg, { timeout: patience }); }
   async picture(name, page = this.page) { if (this.pictures) await page.screenshot({ path: `${this.pictures}/${name}.png` }); }
 
+  /** Starts the drive again and waits until the page has the state of the new one. */
+  async restart() {
+    const generation = (await this.state()).generation;
+    await this.send({ do: "restart" });
+    await this.until((g) => slalom.state.generation > g, generation);
+  }
+
   /** Waits until the drive is paused and the page shows the server's tick. */
   async pause() {
     await this.send({ do: "pause" });

@@ -4,12 +4,18 @@ import assert from "node:assert/strict";
 export default async function (h) {
   const { page } = h;
 
-  await h.test("forks from an earlier tick with the other method and keeps this one as a ghost", async () => {
-    await h.send({ do: "restart" });
-    await h.until(() => slalom.state.newest > 25 && slalom.scalar("tick") > 25);
+  /** Pauses and shows the state some ticks before the newest. */
+  async function goBack(ticks) {
     await h.pause();
-    await h.send({ do: "seek", tick: (await h.state()).newest - 20 });
-    await h.until(() => slalom.state.tick === slalom.state.newest - 20);
+    const tick = (await h.state()).newest - ticks;
+    await h.send({ do: "seek", tick });
+    await h.until((t) => slalom.state.tick === t && slalom.scalar("tick") === t, tick);
+  }
+
+  await h.test("forks from an earlier tick with the other method and keeps this one as a ghost", async () => {
+    await h.restart();
+    await h.until(() => slalom.state.newest > 25);
+    await goBack(20);
     await page.click("#fork");
     await page.selectOption("#fork-method", "mppi");
     await page.click("#fork-go");
@@ -24,9 +30,7 @@ export default async function (h) {
   await h.test("forks with other options of the same method", async () => {
     await h.send({ do: "method", method: "svg_mppi" });
     await h.until(() => slalom.state.method === "svg_mppi" && slalom.scalar("tick") > 25);
-    await h.pause();
-    await h.send({ do: "seek", tick: (await h.state()).newest - 20 });
-    await h.until(() => slalom.state.tick === slalom.state.newest - 20);
+    await goBack(20);
     await page.keyboard.press("k");
     await page.selectOption("#fork-method", "svg_mppi");
     await page.fill("#fork-options", "samples=640");

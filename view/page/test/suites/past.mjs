@@ -41,7 +41,8 @@ export default async function (h) {
     const speed = await page.evaluate((i) => slalom.past.at(i)[slalom.hello.scalars.indexOf("speed")], at);
     await h.until((text) => [...document.querySelectorAll("#charts h2 em")].some((e) => e.textContent === text), `car ${speed.toFixed(2)}`);
     const lefts = await page.evaluate(() => [...document.querySelectorAll("#charts .chart:not([hidden]) .u-cursor-x")].filter((l) => l.closest(".chart").querySelectorAll(".u-axis").length < 3).map((l) => Math.round(new DOMMatrix(getComputedStyle(l).transform).m41)));
-    assert.ok(new Set(lefts.filter((x) => x > 0)).size === 1, `the cursors stand at ${lefts} px`);
+    const shown = lefts.filter((x) => x > 0);
+    assert.ok(shown.length > 0 && Math.max(...shown) - Math.min(...shown) <= 1, `the cursors stand at ${lefts} px; at most the rounding of one pixel may separate them`);
     assert.equal(await page.isVisible("#timeline-mark"), true);
     await h.picture("cursor");
     await page.mouse.click(over.x + 0.5 * over.width, over.y + 20);
