@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "slalom/core/simd_operations.hpp"
+#include "core/cell_access.hpp"
 
 namespace slalom::simd {
 
@@ -45,13 +45,6 @@ bool supported(Target target) noexcept {
   return target == Target::generic;
 }
 
-#if SLALOM_X86
-namespace detail {
-// Intel's since Ice Lake; AMD's (Zen 4 and 5) take a step a lane.
-const bool gathers_are_fast = __builtin_cpu_is("intel") != 0;
-}  // namespace detail
-#endif
-
 namespace {
 
 Target choose() {
@@ -74,7 +67,11 @@ Target choose() {
 }  // namespace
 
 Target active_target() {
-  static const Target target = choose();
+  static const Target target = [] {
+    const Target chosen = choose();
+    detail::choose_cell_access(chosen);
+    return chosen;
+  }();
   return target;
 }
 

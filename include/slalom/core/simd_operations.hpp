@@ -128,9 +128,8 @@ struct Operations<Generic> : PortableOperations<Generic> {};
 
 #if SLALOM_X86
 namespace detail {
-/// Whether the AVX-512 gathers of 64 bits are faster than loads on this processor; set before main begins.
-/// Results do not depend on it.
-extern const bool gathers_are_fast;
+/// How AVX-512 kernels read cells: a CellAccess. Results do not depend on it.
+extern std::uint8_t cell_access;
 /// Bytes 3 2 1 0, 7 6 5 4, ...: the order of a shuffle that reverses the bytes of each 32-bit lane.
 inline constexpr __m128i reversed_bytes = {0x0405060700010203, 0x0c0d0e0f08090a0b};
 }  // namespace detail
@@ -280,7 +279,8 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
     r = (I)_mm512_maskz_srai_epi32(all, _mm512_maskz_slli_epi32(all, both, 16), 16);
   }
   SLALOM_ISA_AVX512 static void gather_cells(const float* from, const I& index, F& r0, F& r1, F& r2, F& r3) {
-    if (detail::gathers_are_fast) {
+    if (__atomic_load_n(&detail::cell_access, __ATOMIC_RELAXED) ==
+        static_cast<std::uint8_t>(CellAccess::gathers)) {
       gather_halves(from, index, r0, r1, r2, r3);
     } else {
       load_cells(from, index, r0, r1, r2, r3);
@@ -288,8 +288,7 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
   }
 
  private:
-  /// Two values of a cell at a time by gathers of 64 bits. For 16 cells this took about 10 ns on a Xeon of
-  /// 2023; `load_cells` took 15 ns.
+  /// Two values of a cell at a time by gathers of 64 bits.
   SLALOM_ISA_AVX512 SLALOM_INLINE static void gather_halves(const float* from, const I& index, F& r0, F& r1,
                                                             F& r2, F& r3) {
     constexpr __mmask8 half = 0xff;
