@@ -7,22 +7,22 @@ namespace slalom::vehicle::detail {
 
 namespace {
 
-constexpr double cell_size = 0.1;               // m
-constexpr int columns = 80, rows = 80;          // along the car's x and y
-constexpr double first_x = -2, first_y = -4;    // m, robot's frame, corner of the grid
-constexpr double speed_limit = 1.5;             // m/s on the detour
-constexpr double cautious = 0.2;                // m beyond what the car needs, in which driving costs more
-constexpr double nearness_price = 4;            // times as much at the inner end of it
-constexpr double start_reach = 0.5;             // m around the car that counts as free
-constexpr double spacing = 0.1, least_way = 3;  // m between points, and along the course to the end
-constexpr double dead_end_radius = 0.4;         // m
-constexpr std::size_t most_points = 240;
+constexpr double cell_size = 0.1;             // m
+constexpr int columns = 80, rows = 80;        // along the car's x and y
+constexpr double first_x = -2, first_y = -4;  // m, robot's frame, corner of the grid
+constexpr double speed_limit = 1.5;           // m/s on the detour
+constexpr double cautious = 0.2;              // m beyond what the car needs, in which driving costs more
+constexpr double nearness_price = 4;          // times as much at the inner end of it
+constexpr double start_reach = 0.5;           // m around the car that counts as free
+constexpr double spacing = 0.1, min_path_length = 3;  // m between points, and along the course to the end
+constexpr double dead_end_radius = 0.4;               // m
+constexpr std::size_t max_points = 240;
 constexpr double map_length = 14;  // m
 
 maps::ReferenceFieldOptions field_options() {
   maps::ReferenceFieldOptions options;
   options.length_x = options.length_y = map_length;
-  options.points = static_cast<int>(most_points);
+  options.points = static_cast<int>(max_points);
   options.points_behind = 10;
   options.spacing = 0;
   return options;
@@ -30,7 +30,7 @@ maps::ReferenceFieldOptions field_options() {
 
 /// A path to construct the field with, before there is one.
 std::vector<maps::ReferencePoint> any_path() {
-  std::vector<maps::ReferencePoint> path(most_points);
+  std::vector<maps::ReferencePoint> path(max_points);
   for (std::size_t i = 0; i < path.size(); ++i)
     path[i] = {spacing * static_cast<double>(i), 0, 0, speed_limit};
   return path;
@@ -38,14 +38,15 @@ std::vector<maps::ReferencePoint> any_path() {
 
 }  // namespace
 
-Detour::Detour(std::span<const maps::ReferencePoint> course, const BodyOptions& body)
+Detour::Detour(std::span<const maps::ReferencePoint> course, bool closed, const BodyOptions& body)
     : course_(course.begin(), course.end()),
+      closed_(closed),
       front_(body.front),
       needed_(0.5 * body.width + body.margin),
-      grid_(columns, rows, cell_size, most_points),
+      grid_(columns, rows, cell_size, max_points),
       field_(any_path(), field_options()) {
   grid_.set_corner({first_x, first_y});
-  path_.reserve(most_points);
+  path_.reserve(max_points);
 }
 
 void Detour::note(const Recovery& recovery, const maps::Pose& pose) noexcept {
@@ -78,15 +79,15 @@ void Detour::set_prices(const maps::ClearanceMap& obstacles, const maps::Pose& p
 /// The furthest point of the course that is reached before the course leaves the grid, as an index; -1 if
 /// there is none.
 int Detour::furthest_reached(const maps::Pose& pose, int nearest) const noexcept {
-  const std::size_t count = course_.size();
   std::size_t at = static_cast<std::size_t>(nearest);
+  const std::size_t count = points_from(at);
   int furthest = -1;
   double way = 0;
   for (std::size_t k = 0; k + 1 < count; ++k) {
-    const std::size_t next = (at + 1) % count;
+    const std::size_t next = (at + 1) % course_.size();
     way += std::hypot(course_[next].x - course_[at].x, course_[next].y - course_[at].y);
     at = next;
-    if (way < least_way) continue;
+    if (way < min_path_length) continue;
     const int cell = grid_.cell_at(maps::inverse_transform(pose, {course_[at].x, course_[at].y}));
     if (cell < 0) break;
     if (grid_.reached(cell)) furthest = static_cast<int>(at);
@@ -96,9 +97,10 @@ int Detour::furthest_reached(const maps::Pose& pose, int nearest) const noexcept
 
 /// Continues the path along the course from this point on.
 void Detour::follow_course(int from) noexcept {
-  const std::size_t count = course_.size();
-  for (std::size_t k = 0; k < count && path_.size() < most_points; ++k) {
-    const maps::ReferencePoint& next = course_[(static_cast<std::size_t>(from) + k) % count];
+  const auto first = static_cast<std::size_t>(from);
+  const std::size_t count = points_from(first);
+  for (std::size_t k = 0; k < count && path_.size() < max_points; ++k) {
+    const maps::ReferencePoint& next = course_[(first + k) % course_.size()];
     if (std::hypot(next.x - path_.back().x, next.y - path_.back().y) < spacing) continue;
     path_.push_back({next.x, next.y, 0, std::min(next.speed, speed_limit)});
   }

@@ -23,8 +23,8 @@ namespace slalom::vehicle::detail {
 /// allocates.
 class Detour {
  public:
-  /// On this course, by a car with this body.
-  Detour(std::span<const maps::ReferencePoint> course, const BodyOptions& body);
+  /// On this course, which may be closed, by a car with this body.
+  Detour(std::span<const maps::ReferencePoint> course, bool closed, const BodyOptions& body);
 
   /// To be called once a control period, with what the recovery does and where the car is (frame of the
   /// course). A place where the car on a detour had to reverse is a dead end to the next searches, until the
@@ -44,8 +44,13 @@ class Detour {
   void set_prices(const maps::ClearanceMap& obstacles, const maps::Pose& pose) noexcept;
   int furthest_reached(const maps::Pose& pose, int nearest) const noexcept;
   void follow_course(int from) noexcept;
+  /// The number of points of the course from this one on.
+  std::size_t points_from(std::size_t first) const noexcept {
+    return closed_ ? course_.size() : course_.size() - first;
+  }
 
   std::vector<maps::ReferencePoint> course_;
+  bool closed_;
   double front_;   ///< m, from the pose to the car's front
   double needed_;  ///< m, from the car's middle to an obstacle
   maps::GridSearch grid_;

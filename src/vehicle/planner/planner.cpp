@@ -57,7 +57,7 @@ struct Planner::Implementation {
   Implementation(const PlannerOptions& o, std::unique_ptr<VehicleModel> m,
                  std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> s)
       : options(o),
-        origin(detail::grid_origin(path)),
+        origin(grid_origin(path)),
         model(std::move(m)),
         traits(model->traits()),
         solver(std::move(s)),
@@ -65,16 +65,17 @@ struct Planner::Implementation {
         stopping_time(detail::stopping_time(path, o, traits)),
         reach(plan_reach(path, o, traits.time_step * solver->horizon() + stopping_time)),
         clearance_map(clearance_options(traits, reach)),
-        field(limited_path(detail::relative(path, origin), o, traits), field_options(o, traits, reach)),
-        speeds(limited_path(detail::relative(path, origin), o, traits)),
+        field(limited_path(relative(path, origin), o, traits), field_options(o, traits, reach)),
+        speeds(limited_path(relative(path, origin), o, traits)),
         car(o, *model),
         history(o.control_period, delay_of(o, traits), o.observer_time_constant, traits.wheelbase),
         choice(solver->horizon(), solver->inputs(), traits),
-        ways(detail::relative(path, origin), speeds.length() > 0, solver->horizon(), solver->inputs(), traits,
+        ways(relative(path, origin), speeds.length() > 0, solver->horizon(), solver->inputs(), traits,
              o.steer_limit),
         states(static_cast<std::size_t>(solver->horizon()) + 1) {
     if (!model->has_dynamics()) return;
-    detour = std::make_unique<Detour>(limited_path(detail::relative(path, origin), o, traits), traits.body);
+    detour = std::make_unique<Detour>(limited_path(relative(path, origin), o, traits), speeds.length() > 0,
+                                      traits.body);
     set_friction(traits.friction);
   }
 
@@ -184,8 +185,7 @@ struct Planner::Implementation {
     shift(states, origin);
   }
 
-  /// Watches the progress; sets whether plans reverse and how urgent they are. Returns the field to follow:
-  /// of the path, or of a detour.
+  /// Sets whether plans reverse and how urgent they are. Returns the field to follow: of path or detour.
   GridView<4> recover(const Odometry& odometry, const maps::Pose& start) noexcept {
     const int nearest = field.nearest();
     recovery.update(speeds.arc(nearest), speeds.length(), odometry.speed,
@@ -226,7 +226,7 @@ struct Planner::Implementation {
   void check(const Odometry& odometry) noexcept {
     const double now = std::isfinite(odometry.speed) ? std::max(odometry.speed, 0.0) : 0;
     const double fastest = brakes ? std::min(now, options.max_speed) : options.max_speed;
-    detail::check_output(output, {options.steer_limit, fastest, slowest()}, steer_estimate());
+    check_output(output, {options.steer_limit, fastest, slowest()}, steer_estimate());
   }
 
   /// The paper's program sends the planned angle less whole turns, as a float32.

@@ -67,7 +67,7 @@ Recovery trying_again() {
 
 TEST(Detour, LeadsThroughTheGapAndBackToTheCourse) {
   const Walls walls{{-9, 0.8}, {1.5, 9}};
-  Detour detour(straight(), body);
+  Detour detour(straight(), false, body);
   ASSERT_TRUE(detour.search(walls.map(), car, nearest));
   const auto path = detour.path();
   EXPECT_LT(std::hypot(path.front().x - car.x, path.front().y - car.y), 0.1);
@@ -88,22 +88,39 @@ TEST(Detour, LeadsThroughTheGapAndBackToTheCourse) {
   EXPECT_NEAR(field.at(path[20].x, path[20].y).speed, 1.5, 1e-6);
 }
 
+TEST(Detour, EndsWhereAnOpenCourseEnds) {
+  const Walls walls{{-9, 0.8}, {1.5, 9}};
+  const std::vector<maps::ReferencePoint> course = straight();
+  Detour detour(std::span<const maps::ReferencePoint>(course).first(160), false, body);
+  ASSERT_TRUE(detour.search(walls.map(), car, nearest));
+  EXPECT_NEAR(detour.path().back().x, 15.9, 0.2);
+}
+
+TEST(Detour, GoesOnOverTheSeamOfAClosedCourse) {
+  const Walls walls{{-9, 0.8}, {1.5, 9}};
+  std::vector<maps::ReferencePoint> course = straight();
+  std::rotate(course.begin(), course.begin() + 110, course.end());  // the seam is 1 m ahead of the car
+  Detour detour(course, true, body);
+  ASSERT_TRUE(detour.search(walls.map(), car, static_cast<int>(course.size()) - 10));
+  EXPECT_GT(detour.path().back().x, car.x + 8);
+}
+
 TEST(Detour, PrefersTheShorterWay) {
   const Walls walls{{-9, -2.5}, {-1.5, 0.8}, {1.5, 9}};
-  Detour detour(straight(), body);
+  Detour detour(straight(), false, body);
   ASSERT_TRUE(detour.search(walls.map(), car, nearest));
   EXPECT_GT(crossing(detour.path()), 0);
 }
 
 TEST(Detour, FindsNoWayWhereThereIsNoneOrItIsTooNarrow) {
-  Detour detour(straight(), body);
+  Detour detour(straight(), false, body);
   EXPECT_FALSE(detour.search(Walls{{-9, 9}}.map(), car, nearest));
   EXPECT_FALSE(detour.search(Walls{{-9, 0.8}, {1.1, 9}}.map(), car, nearest));
 }
 
 TEST(Detour, TriesAnotherWayWhereTheCarHadToReverse) {
   const Walls walls{{-9, -2.5}, {-1.5, 0.8}, {1.5, 9}};
-  Detour detour(straight(), body);
+  Detour detour(straight(), false, body);
   Recovery recovery = trying_again();
   detour.note(recovery, car);
   ASSERT_TRUE(detour.search(walls.map(), car, nearest));
@@ -129,7 +146,7 @@ TEST(Detour, TriesAnotherWayWhereTheCarHadToReverse) {
 
 TEST(Detour, AllocatesNothing) {
   const Walls walls{{-9, 0.8}, {1.5, 9}};
-  Detour detour(straight(), body);
+  Detour detour(straight(), false, body);
   const long before = testing::allocations();
   for (int k = 0; k < 5; ++k) {
     EXPECT_TRUE(detour.search(walls.map(), {car.x + 0.1 * k, 0.05 * k, 0.1 * k}, nearest + k));
