@@ -22,16 +22,7 @@ py::array_t<double> table(std::size_t points, std::size_t columns) {
 RacingCar make_car(const std::string& name, const py::kwargs& changes) {
   RacingCar car =
       std::filesystem::is_regular_file(name) ? vehicle::load_racing_car(name) : vehicle::racing_car(name);
-  const std::pair<const char*, double*> keys[] = {{"width", &car.width},
-                                                  {"margin", &car.margin},
-                                                  {"wheelbase", &car.wheelbase},
-                                                  {"max_steering", &car.max_steering},
-                                                  {"max_steering_rate", &car.max_steering_rate},
-                                                  {"top_speed", &car.limits.top_speed},
-                                                  {"lateral_acceleration", &car.limits.lateral_acceleration},
-                                                  {"acceleration", &car.limits.acceleration},
-                                                  {"braking", &car.limits.braking},
-                                                  {"power", &car.power}};
+  const auto keys = vehicle::numbers_of(car);
   for (const auto& [key, value] : changes) {
     const auto wanted = key.cast<std::string>();
     bool found = wanted == "friction";
@@ -133,7 +124,7 @@ void bind_racing(py::module_& module) {
   module.def(
       "raceline", &raceline, py::arg("centre_line"), py::arg("car") = RacingCar{}, py::arg("closed") = true,
       py::arg("step") = py::none(),
-      "The line of least time along a centre line [points, 4] of x, y, width right and width left, m. "
+      "The minimum-time line along a centre line [points, 4] of x, y, width right and width left, m. "
       "Returns a dict: points [n, 7] (s, x, y, yaw, curvature, speed, acceleration), time, length, closed, "
       "curvature_limit.");
   module.def(

@@ -97,6 +97,19 @@ RacingCar racing_car(const std::string& name) {
   throw std::invalid_argument("car: '" + name + "' must be one of " + names);
 }
 
+std::array<std::pair<const char*, double*>, 10> numbers_of(RacingCar& car) {
+  return {{{"width", &car.width},
+           {"margin", &car.margin},
+           {"wheelbase", &car.wheelbase},
+           {"max_steering", &car.max_steering},
+           {"max_steering_rate", &car.max_steering_rate},
+           {"top_speed", &car.limits.top_speed},
+           {"lateral_acceleration", &car.limits.lateral_acceleration},
+           {"acceleration", &car.limits.acceleration},
+           {"braking", &car.limits.braking},
+           {"power", &car.power}}};
+}
+
 void set_friction(RacingCar& car, double friction) {
   require_positive("friction", friction);
   const double grip = friction * gravity;

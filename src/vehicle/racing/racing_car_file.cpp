@@ -47,16 +47,7 @@ RacingCar load_racing_car(const fs::path& file) {
       throw IoError(file.string(), base.Mark().line + 1, std::string("key base: ") + error.what());
     }
   car.name = file.stem().string();
-  const std::pair<const char*, double*> keys[] = {{"width", &car.width},
-                                                  {"margin", &car.margin},
-                                                  {"wheelbase", &car.wheelbase},
-                                                  {"max_steering", &car.max_steering},
-                                                  {"max_steering_rate", &car.max_steering_rate},
-                                                  {"top_speed", &car.limits.top_speed},
-                                                  {"lateral_acceleration", &car.limits.lateral_acceleration},
-                                                  {"acceleration", &car.limits.acceleration},
-                                                  {"braking", &car.limits.braking},
-                                                  {"power", &car.power}};
+  const auto keys = numbers_of(car);
   for (const auto& entry : root) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "?";
     if (key == "base") continue;

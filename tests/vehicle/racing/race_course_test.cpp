@@ -10,6 +10,7 @@
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/thrown_words.hpp"
 #include "vehicle/racing/rooms.hpp"
 
 namespace slalom::vehicle {
@@ -249,13 +250,8 @@ TEST_F(RaceCourseFile, SaysWhatIsWrongInACentreLine) {
       {"0,0,1,1\n1,0\n", {"line.csv:2", "as many"}},
       {"0,0,1,1\n1,0,1,1\n", {"line.csv", "at least 4"}}};
   for (const auto& [text, says] : cases) {
-    try {
-      read_centre_line(write("line.csv", text));
-      ADD_FAILURE() << text;
-    } catch (const IoError& error) {
-      for (const char* word : says)
-        EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
-    }
+    SCOPED_TRACE(text);
+    expect_error_with<IoError>(says, [&, text = text] { read_centre_line(write("line.csv", text)); });
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -102,13 +103,8 @@ TEST_F(RacingCarFile, SaysWhatIsWrongAndWhere) {
       {"max_steering: 2\n", {"max_steering", "1.5"}},
       {"- 1\n", {"car.yaml:1", "keys"}}};
   for (const auto& [text, says] : cases) {
-    try {
-      load_racing_car(write("car.yaml", text));
-      ADD_FAILURE() << text;
-    } catch (const IoError& error) {
-      for (const char* word : says)
-        EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
-    }
+    SCOPED_TRACE(text);
+    expect_error_with<IoError>(says, [&, text = text] { load_racing_car(write("car.yaml", text)); });
   }
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "slalom/vehicle/course/speed_profile.hpp"
@@ -42,6 +44,9 @@ std::vector<std::string> racing_car_names();
 /// A car by its name: `f1tenth` (scale 1/10, no power limit, top speed 8 m/s, friction coefficient 0.9) or
 /// `passenger` (a full-scale car on a dry road). Throws std::invalid_argument that lists the names.
 RacingCar racing_car(const std::string& name);
+
+/// The numbers of a car by their keys in files and in Python.
+std::array<std::pair<const char*, double*>, 10> numbers_of(RacingCar& car);
 
 /// Reads a car from a YAML file:
 ///
