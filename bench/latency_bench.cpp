@@ -62,8 +62,8 @@ SvgMppiOptions reference_options(int threads) {
 struct Run {
   std::vector<double> times;  // ms
   long cut_short = 0, late = 0;
-  long gaps = 0;           // longer than `latest`, while polling the clock
-  double longest_gap = 0;  // s
+  long gaps = 0;       // longer than `latest`, while polling the clock
+  double max_gap = 0;  // s
 };
 
 /// Polls the clock for as long as a solve took. A gap means that the machine stopped.
@@ -72,7 +72,7 @@ void watch_clock(double duration, Run& run) {
   for (auto last = begin;;) {
     const auto now = Clock::now();
     const double gap = std::chrono::duration<double>(now - last).count();
-    run.longest_gap = std::max(run.longest_gap, gap);
+    run.max_gap = std::max(run.max_gap, gap);
     run.gaps += gap > latest;
     if (std::chrono::duration<double>(now - begin).count() >= duration) return;
     last = now;
@@ -129,7 +129,7 @@ int run(long solves, int threads, double period) {
       "%.0f ms\n",
       t.p50, t.p99, t.p999, t.max, made.cut_short, 1e3 * deadline, made.late, 1e3 * latest);
   std::printf("in the same time spent polling the clock: %ld gaps longer than that, the longest %.3f ms\n",
-              made.gaps, 1e3 * made.longest_gap);
+              made.gaps, 1e3 * made.max_gap);
   print_histogram(made.times);
   return made.late > 0;
 }

@@ -37,9 +37,9 @@ void check_scale(const std::vector<double>& values, int count, const std::string
 
 void check(const MlpParameters& p, int inputs, int outputs) {
   using detail::MlpNetwork;
-  if (p.layers.empty() || p.layers.size() > MlpNetwork::most_layers)
+  if (p.layers.empty() || p.layers.size() > MlpNetwork::max_layers)
     reject("has " + std::to_string(p.layers.size()) + " layers, must have 1 to " +
-           std::to_string(MlpNetwork::most_layers));
+           std::to_string(MlpNetwork::max_layers));
   int entering = inputs;
   for (std::size_t i = 0; i < p.layers.size(); ++i) {
     const auto& layer = p.layers[i];
@@ -47,9 +47,9 @@ void check(const MlpParameters& p, int inputs, int outputs) {
     if (layer.inputs != entering)
       reject(name + ": has " + std::to_string(layer.inputs) + " columns, must have " +
              std::to_string(entering) + (i == 0 ? ", the inputs" : ", the rows of the layer before"));
-    if (layer.outputs < 1 || layer.outputs > MlpNetwork::most_neurons)
+    if (layer.outputs < 1 || layer.outputs > MlpNetwork::max_neurons)
       reject(name + ": has " + std::to_string(layer.outputs) + " rows, must have 1 to " +
-             std::to_string(MlpNetwork::most_neurons));
+             std::to_string(MlpNetwork::max_neurons));
     const auto rows = static_cast<std::size_t>(layer.outputs);
     check_values(layer.weights, rows * static_cast<std::size_t>(layer.inputs), name);
     check_values(layer.biases, rows, "biases_" + std::to_string(i));

@@ -10,8 +10,8 @@
 namespace slalom {
 namespace {
 
-constexpr std::uint64_t most_bytes = 16 << 20;
-constexpr int most_arrays = 256;
+constexpr std::uint64_t max_bytes = 16 << 20;
+constexpr int max_arrays = 256;
 
 /// A file, or a part of it, whose reads are checked.
 class Bytes {
@@ -75,7 +75,7 @@ std::vector<std::int64_t> shape_of(const Bytes& bytes, std::string_view header) 
   for (const char c : text) {
     if (c >= '0' && c <= '9') {
       length = (length < 0 ? 0 : length) * 10 + (c - '0');
-      bytes.require(length <= static_cast<std::int64_t>(most_bytes), "has too many values");
+      bytes.require(length <= static_cast<std::int64_t>(max_bytes), "has too many values");
     } else {
       bytes.require(c == ',' || c == ' ', "has no valid shape");
       if (c == ',' && length >= 0) shape.push_back(std::exchange(length, -1));
@@ -108,7 +108,7 @@ NpyArray read_array(const Bytes& bytes) {
   std::uint64_t count = 1;
   for (const std::int64_t n : array.shape) {
     count *= static_cast<std::uint64_t>(n);
-    bytes.require(count <= most_bytes, "has too many values");
+    bytes.require(count <= max_bytes, "has too many values");
   }
   std::string_view type = entry(bytes, header, "descr");
   bytes.require(!type.empty() && type.front() == '\'' && type.find('\'', 1) != std::string_view::npos,
@@ -146,14 +146,14 @@ std::pair<std::uint64_t, int> find_directory(const Bytes& zip) {
   zip.require(zip.size() >= size && zip.number(zip.size() - size, 4) == 0x06054b50,
               "is no .npz file of numpy.savez, or is cut off");
   const std::uint64_t end = zip.size() - size, count = zip.number(end + 10, 2);
-  zip.require(count <= most_arrays, "holds more than " + std::to_string(most_arrays) + " arrays");
+  zip.require(count <= max_arrays, "holds more than " + std::to_string(max_arrays) + " arrays");
   return {zip.number(end + 16, 4), static_cast<int>(count)};
 }
 
 }  // namespace
 
 std::map<std::string, NpyArray> read_npz(const std::filesystem::path& file) {
-  const std::string content = read_file(file, most_bytes);
+  const std::string content = read_file(file, max_bytes);
   const Bytes zip(content, file.string());
   auto [at, count] = find_directory(zip);
   std::map<std::string, NpyArray> arrays;

@@ -13,12 +13,12 @@ namespace {
 /// m, the distance from a point to the next wall in a direction, at most `most`.
 double distance_to_wall(const sim::Track& track, const maps::Point& from, double cosine, double sine,
                         double most) {
-  const double least_step = 0.5 * track.grid().resolution;
+  const double min_step = 0.5 * track.grid().resolution;
   double distance = 0;
   while (distance < most) {
     const maps::Point at{from.x + distance * cosine, from.y + distance * sine};
     if (track.in_wall(at)) return distance;
-    distance += std::max(track.distance_to_wall(at) - track.grid().resolution, least_step);
+    distance += std::max(track.distance_to_wall(at) - track.grid().resolution, min_step);
   }
   return most;
 }

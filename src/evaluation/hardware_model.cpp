@@ -48,7 +48,7 @@ std::optional<vehicle::Odometry> HardwareModel::sense(const sim::Observation& se
   const vehicle::LocaliserOutput& out = localiser_.update({seen.scan, wheels_.pose(), seen.time});
   record_.update_ms.push_back(static_cast<float>(1e3 * out.update_time));
   if (out.status == vehicle::LocaliserStatus::ok) known_at_ = seen.time;
-  if (seen.time - known_at_ > conditions_.longest_blind) {
+  if (seen.time - known_at_ > conditions_.max_blind_time) {
     ++record_.blind;
     return std::nullopt;
   }

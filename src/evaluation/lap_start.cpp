@@ -27,14 +27,14 @@ std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t lap_seed) const
 std::vector<maps::Pose> LapRunner::place_opponents(const std::vector<maps::Pose>& obstacles) const {
   const sim::LapPath& path = *environment_->track->lap_path();
   const double begin = path.project({start_.x, start_.y}).arc;
-  const double least_distance = 1.0, step = 0.25;  // m
+  const double min_distance = 1.0, step = 0.25;  // m
   std::vector<maps::Pose> poses;
   for (int i = 1; i <= settings_.opponents; ++i) {
     double arc = begin + path.length() * i / (settings_.opponents + 1);
     for (double tried = 0; tried < path.length(); tried += step, arc += step) {
       const maps::Pose pose = path.at(arc);
       const auto is_near = [&](const maps::Pose& other) {
-        return std::hypot(other.x - pose.x, other.y - pose.y) < least_distance;
+        return std::hypot(other.x - pose.x, other.y - pose.y) < min_distance;
       };
       if (std::any_of(obstacles.begin(), obstacles.end(), is_near) ||
           std::any_of(poses.begin(), poses.end(), is_near) || is_near(start_))
@@ -57,7 +57,7 @@ std::unique_ptr<LapRunner::LapInProgress> LapRunner::begin(std::uint64_t seed) c
   lap->planner->reset(solver_seed(seed, method_));
   lap->result.seed = seed;
   lap->result.obstacles = place_obstacles(seed);
-  lap->result.least_clearance = std::numeric_limits<double>::infinity();
+  lap->result.min_clearance = std::numeric_limits<double>::infinity();
   std::vector<maps::Pose> cars{start_};
   if (settings_.opponents > 0) {
     std::vector<sim::PathPoint> line;

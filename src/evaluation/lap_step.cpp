@@ -126,9 +126,9 @@ void LapRunner::advance(LapInProgress& lap, bool past_finish) const {
   LapResult& result = lap.result;
   const sim::Box body = lap.world.outline(0);
   for (const maps::Point& corner : sim::corners(body))
-    result.least_clearance = std::min(result.least_clearance, environment_->track->distance_to_wall(corner));
+    result.min_clearance = std::min(result.min_clearance, environment_->track->distance_to_wall(corner));
   for (std::size_t i = 1; i < lap.world.bodies(); ++i)
-    result.least_clearance = std::min(result.least_clearance, sim::signed_gap(body, lap.world.outline(i)));
+    result.min_clearance = std::min(result.min_clearance, sim::signed_gap(body, lap.world.outline(i)));
 }
 
 void LapRunner::record_collisions(LapInProgress& lap) const {

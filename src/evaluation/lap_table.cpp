@@ -189,7 +189,7 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
   r.collided_bodies = result.collided_bodies;
   r.wall = result.wall;
   r.impassable = result.impassable;
-  r.minimum_clearance = result.least_clearance;
+  r.minimum_clearance = result.min_clearance;
   r.mean_speed = result.mean_speed;
   r.mean_path_distance = result.mean_path_distance;
   r.max_path_distance = result.max_path_distance;
@@ -294,8 +294,8 @@ void check_seed(const LapRow& row, const Experiment& experiment, std::uint64_t s
 
 std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vector<Experiment>& experiments,
                               bool accept_truncated, std::optional<std::uint64_t> seed0, bool* checked) {
-  constexpr std::uint64_t most_bytes = std::uint64_t{1} << 30;
-  const std::string text = read_file(file, most_bytes);
+  constexpr std::uint64_t max_bytes = std::uint64_t{1} << 30;
+  const std::string text = read_file(file, max_bytes);
   bool has_checksums = false;
   std::vector<LapRow> rows;
   std::set<std::pair<int, int>> seen;

@@ -13,18 +13,18 @@ constexpr float unreached = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-GridSearch::GridSearch(int columns, int rows, double cell_size, std::size_t most_points)
+GridSearch::GridSearch(int columns, int rows, double cell_size, std::size_t max_points)
     : columns_(columns),
       rows_(rows),
       cell_size_(cell_size),
-      most_points_(most_points),
+      max_points_(max_points),
       prices_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)),
       costs_(prices_.size(), unreached),
       previous_(prices_.size()) {
   queue_.reserve(8 * prices_.size());
   corners_.reserve(prices_.size());
-  path_.reserve(most_points);
-  smoothed_.reserve(most_points);
+  path_.reserve(max_points);
+  smoothed_.reserve(max_points);
 }
 
 Point GridSearch::centre_of(int cell) const noexcept {
@@ -90,13 +90,13 @@ std::span<const Point> GridSearch::path_to(int goal, double spacing) noexcept {
   for (int cell = goal; cell >= 0; cell = previous_[static_cast<std::size_t>(cell)]) corners_.push_back(cell);
   std::reverse(corners_.begin(), corners_.end());
   path_.clear();
-  for (std::size_t at = 0; at + 1 < corners_.size() && path_.size() < most_points_;) {
+  for (std::size_t at = 0; at + 1 < corners_.size() && path_.size() < max_points_;) {
     std::size_t next = at + 1;
     while (next + 1 < corners_.size() && is_clear(corners_[at], corners_[next + 1])) ++next;
     const Point a = centre_of(corners_[at]), b = centre_of(corners_[next]);
     const double length = std::hypot(b.x - a.x, b.y - a.y);
     const int parts = std::max(1, static_cast<int>(std::round(length / spacing)));
-    for (int i = 0; i < parts && path_.size() < most_points_; ++i) {
+    for (int i = 0; i < parts && path_.size() < max_points_; ++i) {
       const double share = static_cast<double>(i) / parts;
       path_.push_back({a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)});
     }

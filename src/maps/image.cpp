@@ -73,10 +73,10 @@ class PgmReader {
 };
 
 /// A pixel takes two bytes, or in text up to six.
-constexpr std::uint64_t most_pgm_bytes = 6 * static_cast<std::uint64_t>(max_image_pixels) + (1 << 16);
+constexpr std::uint64_t max_pgm_bytes = 6 * static_cast<std::uint64_t>(max_image_pixels) + (1 << 16);
 
 GreyImage read_pgm(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path, most_pgm_bytes);
+  const std::string bytes = read_file(path, max_pgm_bytes);
   PgmReader reader(path, bytes);
   const std::int64_t width = reader.number("the width", max_image_side + 1);
   const std::int64_t height = reader.number("the height", max_image_side + 1);

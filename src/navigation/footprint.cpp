@@ -30,11 +30,11 @@ double distance_to_segment(const Point& p, const Point& a, const Point& b) {
 
 void check_vertices(std::span<const Point> vertices) {
   const std::size_t count = vertices.size();
-  if (count < 3 || count > Footprint::most_vertices)
+  if (count < 3 || count > Footprint::max_vertices)
     throw std::invalid_argument("footprint: " + std::to_string(count) + " vertices, must be 3 to 32");
   for (std::size_t i = 0; i < count; ++i) {
     const double extent = std::hypot(vertices[i].x, vertices[i].y);
-    if (extent <= Footprint::most_extent) continue;
+    if (extent <= Footprint::max_extent) continue;
     std::ostringstream text;
     text << "footprint: vertex " << i << " at (" << vertices[i].x << ", " << vertices[i].y
          << "): must be finite and within 100 m of the origin";

@@ -18,15 +18,15 @@ namespace {
 
 constexpr double largest = 1e6;          // m from the origin, of positions
 constexpr double search_period = 0.1;    // s between searches while there is no way
-constexpr double least_rejoin = 0.5;     // m of path with room that a detour needs where it ends
+constexpr double min_rejoin = 0.5;       // m of path with room that a detour needs where it ends
 constexpr double progress_step = 0.1;    // m of progress after which the robot is not stuck
 constexpr double settling = 1;           // m before the goal, where a robot that turns makes no progress
 constexpr double dead_end_ahead = 0.2;   // m from the robot's front to the middle of what counts as closed
 constexpr double dead_end_radius = 0.5;  // m
 constexpr double retry_after = 10;       // s without a way after which ways that were closed are tried again
 constexpr int steps_to_react = 2;        // steps of a plan, beside those of braking, that must be free
-constexpr double longest_period = 0.2;   // s for which the robot brakes in one command
-constexpr std::size_t most_dead_ends = 4;
+constexpr double max_period = 0.2;       // s for which the robot brakes in one command
+constexpr std::size_t max_dead_ends = 4;
 
 bool finite(const maps::Pose& pose) {
   return std::abs(pose.x) <= largest && std::abs(pose.y) <= largest && std::abs(pose.yaw) <= largest;
@@ -84,14 +84,14 @@ class Navigator::Implementation {
   NavigationMaps maps_;
   std::vector<maps::Point> points_;  ///< of a path that is being made
   std::vector<maps::Pose> chosen_;   ///< the last detour, which later searches prefer
-  std::array<maps::Point, most_dead_ends> dead_ends_{};
+  std::array<maps::Point, max_dead_ends> dead_ends_{};
   std::size_t dead_end_count_ = 0;
   double detour_left_ = std::numeric_limits<double>::infinity();  ///< m of path left where the detour ends
   double without_way_ = 0;   ///< s since the path is blocked and no way round was found
   double since_search_ = 0;  ///< s
   double since_solve_ = 0;   ///< s
-  double least_remaining_ = std::numeric_limits<double>::infinity();  ///< m
-  double without_progress_ = 0;                                       ///< s
+  double min_remaining_ = std::numeric_limits<double>::infinity();  ///< m
+  double without_progress_ = 0;                                     ///< s
 };
 
 void Navigator::Implementation::set_path(std::span<const maps::Pose> path) {
@@ -103,12 +103,12 @@ void Navigator::Implementation::set_path(std::span<const maps::Pose> path) {
                                   " must be finite and within 1e6 m of the origin");
     if (i > 0) length += distance(position(path[i]), position(path[i - 1]));
   }
-  if (guide_.empty() || distance(position(guide_.goal()), position(path.back())) > least_rejoin) {
+  if (guide_.empty() || distance(position(guide_.goal()), position(path.back())) > min_rejoin) {
     chosen_.clear();
     dead_end_count_ = 0;
   }
   // A detour is at most as long as a path of the search, and goes on along the path.
-  const double longest = length + 2 * static_cast<double>(PathPlanner::most_points) * PathPlanner::spacing;
+  const double longest = length + 2 * static_cast<double>(PathPlanner::max_points) * PathPlanner::spacing;
   guide_.reserve(longest);
   const std::size_t most = guide_.points_for(longest) + path.size();
   points_.reserve(most);
@@ -116,7 +116,7 @@ void Navigator::Implementation::set_path(std::span<const maps::Pose> path) {
   points_.clear();
   for (const maps::Pose& pose : path) points_.push_back(position(pose));
   guide_.set(points_, path.back());
-  detour_left_ = least_remaining_ = std::numeric_limits<double>::infinity();
+  detour_left_ = min_remaining_ = std::numeric_limits<double>::infinity();
   without_way_ = since_search_ = without_progress_ = 0;
 }
 
@@ -124,7 +124,7 @@ void Navigator::Implementation::reset(std::uint64_t seed) noexcept {
   guide_.clear();
   chosen_.clear();
   dead_end_count_ = 0;
-  detour_left_ = least_remaining_ = std::numeric_limits<double>::infinity();
+  detour_left_ = min_remaining_ = std::numeric_limits<double>::infinity();
   without_way_ = since_search_ = since_solve_ = without_progress_ = 0;
   model_->reset(seed);
 }
@@ -160,7 +160,7 @@ std::size_t Navigator::Implementation::first_closed(const Costmap& costmap) cons
 /// Whether a detour may end at a point: the path is open from there on for a while, or to its end.
 bool Navigator::Implementation::can_rejoin(const Costmap& costmap, std::size_t point) const noexcept {
   const std::span<const maps::Pose> path = guide_.points();
-  const std::size_t last = std::min(path.size() - 1, point + guide_.points_for(least_rejoin));
+  const std::size_t last = std::min(path.size() - 1, point + guide_.points_for(min_rejoin));
   for (std::size_t i = point; i <= last; ++i)
     if (is_closed(costmap, position(path[i]))) return false;
   return true;
@@ -190,7 +190,7 @@ bool Navigator::Implementation::find_way(const maps::Pose& pose, const Costmap& 
   const maps::Pose goal = guide_.goal();
   guide_.set(points_, goal);
   chosen_.assign(guide_.points().begin(), guide_.points().end());
-  least_remaining_ = std::numeric_limits<double>::infinity();
+  min_remaining_ = std::numeric_limits<double>::infinity();
   return true;
 }
 
@@ -223,8 +223,8 @@ bool Navigator::Implementation::keep_way(const maps::Pose& pose, const Costmap& 
 void Navigator::Implementation::watch_progress(double elapsed) noexcept {
   const double remaining = guide_.remaining();
   const bool waits = without_way_ > 0 || remaining < settling;
-  if (waits || remaining < least_remaining_ - progress_step) {
-    least_remaining_ = std::min(least_remaining_, remaining);
+  if (waits || remaining < min_remaining_ - progress_step) {
+    min_remaining_ = std::min(min_remaining_, remaining);
     without_progress_ = 0;
     return;
   }
@@ -260,7 +260,7 @@ NavigationResult Navigator::Implementation::stand(NavigationStatus status, const
   result.remaining = guide_.remaining();
   result.path = guide_.points();
   if (!finite(velocity)) return result;
-  const double period = std::clamp(elapsed, 0.0, longest_period);
+  const double period = std::clamp(elapsed, 0.0, max_period);
   const double speed = std::hypot(velocity.forward, velocity.left);
   const double kept = speed > 0 ? std::max(1 - options_.base.max_acceleration * period / speed, 0.0) : 0;
   const double turn = std::abs(velocity.turn);

@@ -7,21 +7,21 @@ namespace slalom::navigation::detail {
 
 namespace {
 
-constexpr std::size_t most_points = 240;   // of the window
+constexpr std::size_t max_points = 240;    // of the window
 constexpr double behind = 0.3, ahead = 2;  // m, where the nearest point is searched
 constexpr double finest = 0.05;            // m, cells of the map
-constexpr double most_cells = 120;         // of the map along each side
+constexpr double max_cells = 120;          // of the map along each side
 constexpr double margin = 0.4;             // m of map beyond the reach of plans
 
 /// Field around the robot, over a path as long as a window may be.
 maps::ReferenceField make_field(double reach) {
-  std::vector<maps::ReferencePoint> path(most_points);
+  std::vector<maps::ReferencePoint> path(max_points);
   for (std::size_t i = 0; i < path.size(); ++i)
     path[i] = {PathGuide::spacing * static_cast<double>(i), 0, 0, 0};
   maps::ReferenceFieldOptions options;
   options.length_x = options.length_y = 2 * (reach + margin);
-  options.resolution = std::max(finest, options.length_x / most_cells);
-  options.points = static_cast<int>(most_points);
+  options.resolution = std::max(finest, options.length_x / max_cells);
+  options.points = static_cast<int>(max_points);
   options.points_behind = 0;
   options.spacing = 0;
   return maps::ReferenceField(path, options);
@@ -35,7 +35,7 @@ double distance(const maps::Point& a, const maps::Point& b) {
 
 PathGuide::PathGuide(double reach)
     : reach_(reach), field_(make_field(reach)), cells_(field_.geometry().rows, field_.geometry().columns) {
-  window_.reserve(most_points);
+  window_.reserve(max_points);
   cells_.fill({0, 0, 0, 0});
 }
 
@@ -90,7 +90,7 @@ void PathGuide::write(const maps::Point& robot, NavigationMaps& maps) noexcept {
   const std::size_t first = nearest_ > back ? nearest_ - back : 0;
   const auto wanted = static_cast<std::size_t>((reach_ + margin + behind) / step) + 3;
   const std::size_t available = std::min(wanted, path_.size() - first);
-  const std::size_t stride = (available + most_points - 1) / most_points;
+  const std::size_t stride = (available + max_points - 1) / max_points;
   window_.clear();
   for (std::size_t i = 0; i < available; i += stride) {
     const maps::Pose& point = path_[first + i];

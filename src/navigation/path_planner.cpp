@@ -47,7 +47,7 @@ void visit_around(const maps::GridGeometry& geometry, const maps::Point& point, 
 PathPlanner::PathPlanner(const maps::GridGeometry& geometry, double half_width)
     : half_width_(half_width),
       geometry_(geometry),
-      grid_(geometry.rows, geometry.columns, geometry.resolution, most_points),
+      grid_(geometry.rows, geometry.columns, geometry.resolution, max_points),
       is_kept_(static_cast<std::size_t>(grid_.size())) {}
 
 bool PathPlanner::knows(const Costmap& costmap, const maps::Point& point) const noexcept {

@@ -5,7 +5,7 @@
 
 namespace slalom::tracking {
 
-double most_diameter(const TrackerOptions& options) noexcept {
+double max_diameter(const TrackerOptions& options) noexcept {
   return std::hypot(options.length + 3 * options.size_deviation, options.width + 3 * options.size_deviation);
 }
 
@@ -32,7 +32,7 @@ std::size_t find_clusters(std::span<const Reading> readings, double increment, c
       const Reading &a = readings[i - 1], &b = readings[i];
       const double apart = std::hypot(b.point.x - a.point.x, b.point.y - a.point.y);
       if (apart <= break_distance(std::min(a.range, b.range), (b.beam - a.beam) * increment,
-                                  options.least_incidence, options.range_deviation))
+                                  options.min_incidence, options.range_deviation))
         continue;
     }
     clusters[count++] = {begin, i};
@@ -91,7 +91,7 @@ void associate(std::span<const Reading> readings, std::span<const Cluster> clust
     }
     const std::size_t size = cluster.end - cluster.begin;
     if (only < 0 || several || 2 * owned < size ||
-        diameter(readings.subspan(cluster.begin, size)) > most_diameter(options))
+        diameter(readings.subspan(cluster.begin, size)) > max_diameter(options))
       continue;
     std::fill(owners.begin() + static_cast<std::ptrdiff_t>(cluster.begin),
               owners.begin() + static_cast<std::ptrdiff_t>(cluster.end), only);

@@ -15,7 +15,7 @@ struct Cluster {
 };
 
 /// m, the largest diameter of an object.
-double most_diameter(const TrackerOptions& options) noexcept;
+double max_diameter(const TrackerOptions& options) noexcept;
 /// m, the distance of the two readings farthest from the first one and from each other; at most the diameter.
 double diameter(std::span<const Reading> readings) noexcept;
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double right_angle = 0.5 * std::numbers::pi;
 constexpr int coarse_angles = 30, fine_angles = 6;
-constexpr std::size_t most_fitted = 60;  // readings of a fit, evenly taken
+constexpr std::size_t max_fitted = 60;  // readings of a fit, evenly taken
 
 struct Range {
   double low, high;
@@ -84,7 +84,7 @@ End find_end(std::size_t count, double sign, double deviation, const Along& alon
 }  // namespace
 
 BoxFit fit_box(std::span<const Reading> readings, double deviation) noexcept {
-  const std::size_t every = (readings.size() + most_fitted - 1) / most_fitted;
+  const std::size_t every = (readings.size() + max_fitted - 1) / max_fitted;
   double best = 0, most = -1;
   const auto attempt = [&](double angle) {
     const double score = closeness(readings, every, angle, deviation);
@@ -108,7 +108,7 @@ BoxFit fit_box(std::span<const Reading> readings, double deviation) noexcept {
 }
 
 void measure_box(const BoxPrior& prior, const Readings& scan, std::span<const Reading> readings,
-                 double least_incidence, double deviation, AxisMeasurement (&axes)[2]) noexcept {
+                 double min_incidence, double deviation, AxisMeasurement (&axes)[2]) noexcept {
   const double c = std::cos(prior.pose.yaw), s = std::sin(prior.pose.yaw);
   const auto along = [&](const maps::Point& p) {
     return c * (p.x - prior.pose.x) + s * (p.y - prior.pose.y);
@@ -119,8 +119,8 @@ void measure_box(const BoxPrior& prior, const Readings& scan, std::span<const Re
   const std::size_t count = readings.size();
   const auto a = [&](std::size_t i) { return along(readings[i].point); };
   const auto b = [&](std::size_t i) { return across(readings[i].point); };
-  const bool first_ends = scan.ends_at(readings.front().beam, -1, least_incidence, deviation),
-             last_ends = scan.ends_at(readings.back().beam, 1, least_incidence, deviation);
+  const bool first_ends = scan.ends_at(readings.front().beam, -1, min_incidence, deviation),
+             last_ends = scan.ends_at(readings.back().beam, 1, min_incidence, deviation);
   const maps::Point sensor{scan.sensor().x, scan.sensor().y};
   const double view[2] = {along(sensor), across(sensor)};
   // Where nothing but its outline ends, an object reaches half a beam farther than its last reading.

@@ -35,6 +35,6 @@ struct AxisMeasurement {
 /// faces the sensor gives the middle by half the size behind it; ends of a side give it by half the size
 /// between them; an end that something else hides gives nothing.
 void measure_box(const BoxPrior& prior, const Readings& scan, std::span<const Reading> readings,
-                 double least_incidence, double deviation, AxisMeasurement (&axes)[2]) noexcept;
+                 double min_incidence, double deviation, AxisMeasurement (&axes)[2]) noexcept;
 
 }  // namespace slalom::tracking

@@ -6,12 +6,12 @@
 namespace slalom::tracking {
 namespace {
 
-constexpr double odometry_error = 0.1;     // m per m from one scan to the other: added to margins
-constexpr double margin_angle = 0.02;      // rad, times the distance: added to margins
-constexpr double most_about = 40;          // beams to either side of a place
-constexpr double least_entered = 0.4;      // share of the readings of a cluster
-constexpr int least_left = 3;              // readings
-constexpr double most_where_it_was = 0.3;  // share of the readings of a cluster
+constexpr double odometry_error = 0.1;  // m per m from one scan to the other: added to margins
+constexpr double margin_angle = 0.02;   // rad, times the distance: added to margins
+constexpr double max_window = 40;       // beams to either side of a place
+constexpr double min_entered = 0.4;     // share of the readings of a cluster
+constexpr int min_left = 3;             // readings
+constexpr double max_unmoved = 0.3;     // share of the readings of a cluster
 
 struct Sight {
   bool through = false;  ///< all beams at the place went on behind it
@@ -25,7 +25,7 @@ Sight sight(const Readings& scan, const maps::Point& place, double margin) noexc
   const double distance = std::hypot(at.x, at.y), slack = margin + margin_angle * distance;
   const int beam = scan.beam_at(std::atan2(at.y, at.x));
   const int about = static_cast<int>(
-      std::clamp(std::ceil(margin / (std::max(distance, margin) * scan.increment())), 1.0, most_about));
+      std::clamp(std::ceil(margin / (std::max(distance, margin) * scan.increment())), 1.0, max_window));
   if (beam < about || beam + about >= scan.beams()) return {};
   Sight seen;
   int behind = 0, hits = 0;
@@ -47,8 +47,8 @@ double way(const maps::Pose& a, const maps::Pose& b) {
 
 }  // namespace
 
-FreeSpace::FreeSpace(int most_beams) : left_(2 * static_cast<std::size_t>(most_beams)) {
-  past_.resize(scans, {0, Readings(most_beams, 1e300)});
+FreeSpace::FreeSpace(int max_beams) : left_(2 * static_cast<std::size_t>(max_beams)) {
+  past_.resize(scans, {0, Readings(max_beams, 1e300)});
 }
 
 const FreeSpace::Past* FreeSpace::past(int back) const noexcept {
@@ -95,8 +95,8 @@ bool FreeSpace::moves(std::span<const Reading> cluster, double margin, double re
       entered += seen.through;
       there += seen.there;
     }
-    if (entered >= 2 && entered >= least_entered * size) return true;
-    if (left_near >= least_left && there <= most_where_it_was * size) return true;
+    if (entered >= 2 && entered >= min_entered * size) return true;
+    if (left_near >= min_left && there <= max_unmoved * size) return true;
   }
   return false;
 }

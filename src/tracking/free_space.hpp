@@ -12,8 +12,8 @@ namespace slalom::tracking {
 /// an earlier scan saw through its place; an earlier reading has left if the present scan sees through its.
 class FreeSpace {
  public:
-  /// Keeps scans of at most `most_beams`.
-  explicit FreeSpace(int most_beams);
+  /// Keeps scans of at most `max_beams`.
+  explicit FreeSpace(int max_beams);
 
   /// Forgets all scans.
   void clear() noexcept { kept_ = 0; }

@@ -10,9 +10,9 @@
 namespace slalom::tracking {
 namespace {
 
-constexpr int aligned_readings = 120, most_steps = 6;
+constexpr int aligned_readings = 120, max_steps = 6;
 constexpr double outlier = 0.15;  // m, distance at which a reading has a quarter of its weight
-constexpr double least_position_deviation = 1e-3, least_yaw_deviation = 1e-4;
+constexpr double min_position_deviation = 1e-3, min_yaw_deviation = 1e-4;
 
 const maps::OccupancyGrid& checked(const maps::OccupancyGrid& map) {
   if (map.width < 1 || map.height < 1 ||
@@ -103,11 +103,11 @@ maps::Pose MapBackground::align(const Readings& readings, const maps::Pose& sens
   const std::size_t every = std::max<std::size_t>(1, all.size() / aligned_readings);
   // Errors of the map count as those of the readings.
   const double noise = range_deviation * range_deviation + resolution_ * resolution_ / 4;
-  const double position = std::max(position_deviation, least_position_deviation),
-               yaw = std::max(yaw_deviation, least_yaw_deviation);
+  const double position = std::max(position_deviation, min_position_deviation),
+               yaw = std::max(yaw_deviation, min_yaw_deviation);
   const double prior[3] = {1 / (position * position), 1 / (position * position), 1 / (yaw * yaw)};
   double moved[3] = {};
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     double matrix[3][3] = {{prior[0], 0, 0}, {0, prior[1], 0}, {0, 0, prior[2]}};
     double vector[3] = {-prior[0] * moved[0], -prior[1] * moved[1], -prior[2] * moved[2]};
     const maps::Pose pose{sensor.x + moved[0], sensor.y + moved[1], sensor.yaw + moved[2]};

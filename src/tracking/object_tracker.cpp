@@ -16,14 +16,14 @@
 namespace slalom::tracking {
 namespace {
 
-constexpr double most_deviation = 0.8;  // m, of the position of an object that is not given up
-constexpr double longest_pause = 1.0;   // s between scans, after which all objects are forgotten
-constexpr double longest_jump = 0.5;    // m, of the sensor beyond its largest way, after which they are, too
-constexpr double most_behind_walls = 0.1;  // share of the readings; with more the pose is wrong
-constexpr double least_gap = 2.5;          // of the distance of neighbouring beams, where a cluster is split
-constexpr double largest_object = 1.3;     // of the largest diameter: a larger cluster is no object
-constexpr int longest_rest = 12;           // scans without a sign of motion, without a map
-constexpr int most_splits = 4;             // times that a cluster is halved
+constexpr double max_deviation = 0.8;  // m, of the position of an object that is not given up
+constexpr double max_pause = 1.0;      // s between scans, after which all objects are forgotten
+constexpr double max_jump = 0.5;       // m, of the sensor beyond its largest way, after which they are, too
+constexpr double max_behind_walls = 0.1;  // share of the readings; with more the pose is wrong
+constexpr double min_gap = 2.5;           // of the distance of neighbouring beams, where a cluster is split
+constexpr double largest_object = 1.3;    // of the largest diameter: a larger cluster is no object
+constexpr int max_scans_at_rest = 12;     // scans without a sign of motion, without a map
+constexpr int max_splits = 4;             // times that a cluster is halved
 
 bool is_finite(const maps::Pose& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
@@ -34,17 +34,17 @@ bool is_finite(const maps::Pose& pose) {
 struct ObjectTracker::Implementation {
   Implementation(const maps::OccupancyGrid* map, const TrackerOptions& given)
       : options((given.validate(), given)),
-        readings(given.most_beams, given.most_range),
-        candidates(static_cast<std::size_t>(given.most_beams)),
+        readings(given.max_beams, given.max_range),
+        candidates(static_cast<std::size_t>(given.max_beams)),
         owners(candidates.size()),
         clusters(candidates.size()),
         own(candidates.size()),
-        objects(static_cast<std::size_t>(given.most_objects)),
+        objects(static_cast<std::size_t>(given.max_objects)),
         reported(objects.size()) {
     if (map) {
       background.emplace(*map);
     } else {
-      free_space.emplace(given.most_beams);
+      free_space.emplace(given.max_beams);
     }
   }
 
@@ -105,7 +105,7 @@ bool ObjectTracker::Implementation::detect(const TrackerInput& input) noexcept {
     candidates[candidate_count++] = reading;
   }
   // Other cars hide walls, but let nobody look through them.
-  if (static_cast<double>(behind_walls) > most_behind_walls * static_cast<double>(readings.all().size()))
+  if (static_cast<double>(behind_walls) > max_behind_walls * static_cast<double>(readings.all().size()))
     return false;
   const std::span<const Reading> found(candidates.data(), candidate_count);
   cluster_count = find_clusters(found, readings.increment(), options, clusters);
@@ -122,8 +122,7 @@ void ObjectTracker::Implementation::leave_out_large_clusters() noexcept {
   std::size_t kept_candidates = 0, kept_clusters = 0;
   for (std::size_t c = 0; c < cluster_count; ++c) {
     const auto [begin, end] = clusters[c];
-    if (diameter({candidates.data() + begin, end - begin}) > largest_object * most_diameter(options))
-      continue;
+    if (diameter({candidates.data() + begin, end - begin}) > largest_object * max_diameter(options)) continue;
     clusters[kept_clusters++] = {kept_candidates, kept_candidates + (end - begin)};
     for (std::size_t i = begin; i < end; ++i) candidates[kept_candidates++] = candidates[i];
   }
@@ -153,8 +152,8 @@ bool ObjectTracker::Implementation::moves(std::span<const Reading> part) const n
   if (!free_space) return true;
   // What appears behind something else has not moved there.
   const bool isolated =
-      readings.ends_at(part.front().beam, -1, options.least_incidence, options.range_deviation) &&
-      readings.ends_at(part.back().beam, 1, options.least_incidence, options.range_deviation);
+      readings.ends_at(part.front().beam, -1, options.min_incidence, options.range_deviation) &&
+      readings.ends_at(part.back().beam, 1, options.min_incidence, options.range_deviation);
   return free_space->moves(part, options.free_margin, isolated ? 2 * options.length : 0);
 }
 
@@ -180,12 +179,12 @@ bool ObjectTracker::Implementation::seen_through(const Tracked& object) const no
 
 /// Begins an object with candidates [begin, end), or with the parts of it if it is too large for one.
 void ObjectTracker::Implementation::begin_object(std::size_t begin, std::size_t end, int splits) noexcept {
-  if (end - begin < static_cast<std::size_t>(options.least_points)) return;
+  if (end - begin < static_cast<std::size_t>(options.min_points)) return;
   const std::span<const Reading> part(candidates.data() + begin, end - begin);
-  const double size = diameter(part), most = most_diameter(options);
-  if (size > most && splits < most_splits) {
+  const double size = diameter(part), most = max_diameter(options);
+  if (size > most && splits < max_splits) {
     std::size_t cut = 0;
-    double widest = least_gap;
+    double widest = min_gap;
     for (std::size_t i = 1; i < part.size(); ++i) {
       const Reading &a = part[i - 1], &b = part[i];
       const double step = std::min(a.range, b.range) * readings.increment() * (b.beam - a.beam);
@@ -229,11 +228,11 @@ void ObjectTracker::Implementation::begin_objects() noexcept {
 
 void ObjectTracker::Implementation::remove_objects() noexcept {
   const auto given_up = [&](const Tracked& object) {
-    const int most_misses = object.confirmed() ? options.most_misses : 0;
-    return !object.finite() || object.misses() > most_misses || object.at_rest() > longest_rest ||
-           object.unseen() > options.longest_unseen ||
-           (!object.confirmed() && object.unseen() > 0.2 * options.longest_unseen) ||
-           (object.unseen() > 0 && object.position_variance() > most_deviation * most_deviation);
+    const int max_misses = object.confirmed() ? options.max_misses : 0;
+    return !object.finite() || object.misses() > max_misses || object.at_rest() > max_scans_at_rest ||
+           object.unseen() > options.max_unseen_time ||
+           (!object.confirmed() && object.unseen() > 0.2 * options.max_unseen_time) ||
+           (object.unseen() > 0 && object.position_variance() > max_deviation * max_deviation);
   };
   // Two objects cannot be in the same place: one is the double of the other.
   const auto doubles = [&](const Tracked& object, const Tracked& other) {
@@ -263,7 +262,7 @@ void ObjectTracker::Implementation::remove_objects() noexcept {
 void ObjectTracker::Implementation::report() noexcept {
   std::size_t count = 0;
   for (Tracked& object : active()) {
-    object.confirm(options, background ? 0 : options.least_speed);
+    object.confirm(options, background ? 0 : options.min_speed);
     if (object.confirmed()) reported[count++] = object.object();
   }
   std::sort(reported.begin(), reported.begin() + static_cast<std::ptrdiff_t>(count),
@@ -299,11 +298,11 @@ const TrackerOutput& ObjectTracker::update(const TrackerInput& input) noexcept {
   self.output.clusters = 0;
   if (!is_finite(input.sensor) || !std::isfinite(input.stamp)) return finish(TrackerStatus::bad_pose);
   double elapsed = self.started ? input.stamp - self.stamp : 0;
-  if (self.started && elapsed <= 0 && elapsed > -longest_pause) return finish(TrackerStatus::stale);
+  if (self.started && elapsed <= 0 && elapsed > -max_pause) return finish(TrackerStatus::stale);
   const double moved = std::hypot(input.sensor.x - self.last_sensor.x, input.sensor.y - self.last_sensor.y);
   // Also a clock that was set back, and a sensor that was placed elsewhere.
-  if (std::abs(elapsed) > longest_pause ||
-      (self.started && moved > self.options.most_speed * elapsed + longest_jump)) {
+  if (std::abs(elapsed) > max_pause ||
+      (self.started && moved > self.options.max_speed * elapsed + max_jump)) {
     self.forget();
     elapsed = 0;
   }

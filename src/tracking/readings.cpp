@@ -8,21 +8,21 @@
 namespace slalom::tracking {
 namespace {
 
-constexpr int most_lost = 5;  // beams without a reading within a surface
+constexpr int max_gap_beams = 5;  // beams without a reading within a surface
 
 }  // namespace
 
-double break_distance(double range, double increment, double least_incidence, double deviation) noexcept {
+double break_distance(double range, double increment, double min_incidence, double deviation) noexcept {
   // Above half of lambda the formula diverges: the beams are too far apart to tell surfaces.
-  const double angle = std::min(increment, 0.5 * least_incidence);
-  return range * std::sin(angle) / std::sin(least_incidence - angle) + 3 * deviation;
+  const double angle = std::min(increment, 0.5 * min_incidence);
+  return range * std::sin(angle) / std::sin(min_incidence - angle) + 3 * deviation;
 }
 
-Readings::Readings(int most_beams, double most_range)
-    : ranges_(static_cast<std::size_t>(most_beams)),
+Readings::Readings(int max_beams, double max_range)
+    : ranges_(static_cast<std::size_t>(max_beams)),
       directions_(ranges_.size()),
       readings_(ranges_.size()),
-      most_range_(most_range) {}
+      max_range_(max_range) {}
 
 bool Readings::set(const maps::LaserScanView& scan) noexcept {
   count_ = 0;
@@ -45,7 +45,7 @@ bool Readings::set(const maps::LaserScanView& scan) noexcept {
     const double range = static_cast<double>(scan.ranges[i]);
     const bool hit = range > std::max(scan.range_min, 0.0) && range < scan.range_max;
     ranges_[i] = hit ? range : range >= scan.range_max ? std::numeric_limits<double>::infinity() : 0;
-    if (hit && range <= most_range_) readings_[count_++] = {{}, range, static_cast<int>(i)};
+    if (hit && range <= max_range_) readings_[count_++] = {{}, range, static_cast<int>(i)};
   }
   known_directions_ = std::max(known_directions_, size);
   return true;
@@ -69,14 +69,14 @@ int Readings::beam_at(double bearing) const noexcept {
   return beam >= 0 && beam < beams_ ? static_cast<int>(beam) : -1;
 }
 
-bool Readings::ends_at(int beam, int step, double least_incidence, double deviation) const noexcept {
+bool Readings::ends_at(int beam, int step, double min_incidence, double deviation) const noexcept {
   const double here = range(beam);
-  for (int apart = 1; apart <= most_lost; ++apart) {
+  for (int apart = 1; apart <= max_gap_beams; ++apart) {
     const int next = beam + apart * step;
     if (next < 0 || next >= beams_) return false;
     const double there = range(next);
     if (there == 0 || std::isinf(there)) continue;
-    return there - here > break_distance(here, apart * increment_, least_incidence, deviation);
+    return there - here > break_distance(here, apart * increment_, min_incidence, deviation);
   }
   return true;
 }

@@ -18,8 +18,8 @@ struct Reading {
 /// The scan of an update with the directions of its beams.
 class Readings {
  public:
-  /// Room for scans of `most_beams`.
-  Readings(int most_beams, double most_range);
+  /// Room for scans of `max_beams`.
+  Readings(int max_beams, double max_range);
 
   /// Takes over a scan; false, and no readings, if it is empty, too long or of invalid geometry.
   bool set(const maps::LaserScanView& scan) noexcept;
@@ -41,7 +41,7 @@ class Readings {
   /// Whether the surface of which `beam` is the last reading in a direction (`step` is -1 or 1) ends there:
   /// what the next beam sees is farther away. False where something nearer may hide the rest, where the
   /// field of view ends, and where the surface goes on.
-  bool ends_at(int beam, int step, double least_incidence, double deviation) const noexcept;
+  bool ends_at(int beam, int step, double min_incidence, double deviation) const noexcept;
 
  private:
   std::vector<double> ranges_;
@@ -50,12 +50,12 @@ class Readings {
   std::size_t count_ = 0;
   std::size_t known_directions_ = 0;  ///< computed for the present geometry
   int beams_ = 0;
-  double angle_min_ = 0, increment_ = 0, most_range_;
+  double angle_min_ = 0, increment_ = 0, max_range_;
   maps::Pose sensor_;
 };
 
 /// m, the distance between readings of neighbouring beams above which a cluster ends: Borges & Aldon (2004),
 /// eq. 1, range sin(increment) / sin(lambda - increment) + 3 sigma.
-double break_distance(double range, double increment, double least_incidence, double deviation) noexcept;
+double break_distance(double range, double increment, double min_incidence, double deviation) noexcept;
 
 }  // namespace slalom::tracking

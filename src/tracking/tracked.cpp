@@ -11,7 +11,7 @@ constexpr double right_angle = 0.5 * std::numbers::pi;
 constexpr double new_position_deviation = 0.08;  // m, of a box whose yaw is not known
 constexpr double yaw_floor = 0.04;               // rad, of measured yaws
 constexpr double slip = 0.05;                    // rad, from the yaw to the direction of travel
-constexpr double least_travel = 1.0;             // m/s, from which the velocity gives the yaw
+constexpr double min_travel = 1.0;               // m/s, from which the velocity gives the yaw
 constexpr double known_speed = 4;                // standard deviations of a speed that gives the yaw
 constexpr double known_rest = 0.6;               // m/s, deviation of the speed of what stands or crawls
 constexpr double unknown_yaw_deviation = 0.4;    // rad
@@ -44,7 +44,7 @@ Tracked::Tracked(int id, const TrackerOptions& options, const Readings& scan,
   point_.mean[0] = middle.x;
   point_.mean[1] = middle.y;
   point_.covariance[0][0] = point_.covariance[1][1] = square(options.length);
-  point_.covariance[2][2] = point_.covariance[3][3] = square(options.most_speed / 3);
+  point_.covariance[2][2] = point_.covariance[3][3] = square(options.max_speed / 3);
   correct_new(options, scan, readings);
   scans_ = 1;
 }
@@ -88,13 +88,13 @@ void Tracked::correct_new(const TrackerOptions& options, const Readings& scan,
   const double bearing = std::atan2(point_.mean[1] - scan.sensor().y, point_.mean[0] - scan.sensor().x);
   yaw_ = yaw_of(fit, options, bearing);
   const double speed = std::hypot(point_.mean[2], point_.mean[3]);
-  if (scans_ > 1 && speed > least_travel) {
+  if (scans_ > 1 && speed > min_travel) {
     const double travel = std::atan2(point_.mean[3], point_.mean[2]);
     yaw_ += right_angle * std::round(maps::wrap_angle(travel - yaw_) / right_angle);
   }
   AxisMeasurement axes[2];
   measure_box({{point_.mean[0], point_.mean[1], yaw_}, {size_[0], size_[1]}, options.size_deviation}, scan,
-              readings, options.least_incidence, options.range_deviation, axes);
+              readings, options.min_incidence, options.range_deviation, axes);
   const double c = std::cos(yaw_), s = std::sin(yaw_);
   const double floor = square(new_position_deviation);
   // Both are measured from the same prediction.
@@ -139,14 +139,14 @@ void Tracked::correct(const TrackerOptions& options, const Readings& scan, std::
   }
   AxisMeasurement axes[2];
   measure_box({{x[0], x[1], x[2]}, {size_[0], size_[1]}, std::sqrt(size_variance_[0])}, scan, readings,
-              options.least_incidence, options.range_deviation, axes);
+              options.min_incidence, options.range_deviation, axes);
   const double c = std::cos(x[2]), s = std::sin(x[2]);
   const double before[2] = {x[0], x[1]};
   state_.correct({c, s, 0, 0, 0}, axes[0].offset, axes[0].variance);
   const double moved = -s * (x[0] - before[0]) + c * (x[1] - before[1]);
   state_.correct({-s, c, 0, 0, 0}, axes[1].offset - moved, axes[1].variance);
   correct_size(axes, options.range_deviation);
-  x[3] = std::clamp(x[3], -options.most_speed, options.most_speed);
+  x[3] = std::clamp(x[3], -options.max_speed, options.max_speed);
   if (x[3] < reversing) {
     x[2] += std::numbers::pi;
     x[3] = -x[3];
@@ -162,12 +162,12 @@ void Tracked::miss(bool seen_through) noexcept {
   if (seen_through) ++misses_;
 }
 
-void Tracked::confirm(const TrackerOptions& options, double least_speed) noexcept {
+void Tracked::confirm(const TrackerOptions& options, double min_speed) noexcept {
   // Without a map a scan says less.
-  if (confirmed_ || unseen_ > 0 || scans_ < (least_speed > 0 ? 2 : 1) * options.confirming_scans) return;
-  if (least_speed > 0) {
+  if (confirmed_ || unseen_ > 0 || scans_ < (min_speed > 0 ? 2 : 1) * options.confirming_scans) return;
+  if (min_speed > 0) {
     const Gaussian<5> motion = turning();
-    if (motion.mean[3] < least_speed || square(motion.mean[3]) < 4 * motion.covariance[3][3]) return;
+    if (motion.mean[3] < min_speed || square(motion.mean[3]) < 4 * motion.covariance[3][3]) return;
   }
   confirmed_ = true;
 }
@@ -177,7 +177,7 @@ Gaussian<5> Tracked::turning() const noexcept {
   if (turns_) return state_;
   const double vx = point_.mean[2], vy = point_.mean[3], speed = std::hypot(vx, vy);
   const double c = speed > 0 ? vx / speed : 1, s = speed > 0 ? vy / speed : 0;
-  const bool travels = speed > least_travel && square(speed) > 4 * point_.variance_along({0, 0, c, s});
+  const bool travels = speed > min_travel && square(speed) > 4 * point_.variance_along({0, 0, c, s});
   const double yaw = travels ? std::atan2(vy, vx) : yaw_;
   const double cosine = std::cos(yaw), sine = std::sin(yaw);
   Gaussian<5> state{{point_.mean[0], point_.mean[1], yaw, cosine * vx + sine * vy, 0}, {}};
@@ -194,7 +194,7 @@ Gaussian<5> Tracked::turning() const noexcept {
 void Tracked::take_over() noexcept {
   const double speed_variance = 0.5 * (point_.covariance[2][2] + point_.covariance[3][3]);
   const bool travels = square(point_.mean[2]) + square(point_.mean[3]) >
-                       std::max(square(least_travel), square(known_speed) * speed_variance);
+                       std::max(square(min_travel), square(known_speed) * speed_variance);
   if (!travels && speed_variance > square(known_rest)) return;
   state_ = turning();
   turns_ = true;

@@ -29,8 +29,8 @@ class Tracked {
   int id() const noexcept { return id_; }
   bool confirmed() const noexcept { return confirmed_; }
   bool finite() const noexcept;
-  /// Confirms it if it may be: enough scans, and with `least_speed` above 0 a motion beyond doubt.
-  void confirm(const TrackerOptions& options, double least_speed) noexcept;
+  /// Confirms it if it may be: enough scans, and with `min_speed` above 0 a motion beyond doubt.
+  void confirm(const TrackerOptions& options, double min_speed) noexcept;
   int misses() const noexcept { return misses_; }  ///< scans in a row that saw through its place
   /// Scans in a row with readings that do not show that it moves.
   int at_rest() const noexcept { return at_rest_; }

@@ -35,7 +35,7 @@ std::vector<std::uint64_t> bits(const LapResult& lap) {
   std::vector<std::uint64_t> all = {lap.seed, static_cast<std::uint64_t>(lap.steps),
                                     static_cast<std::uint64_t>(lap.collisions), lap.finished};
   for (const double value : {lap.time, lap.state_cost, lap.collision_cost, lap.input_error, lap.mean_speed,
-                             lap.mean_path_distance, lap.least_clearance, lap.mean_variance})
+                             lap.mean_path_distance, lap.min_clearance, lap.mean_variance})
     all.push_back(std::bit_cast<std::uint64_t>(value));
   return all;
 }
@@ -46,7 +46,7 @@ TEST(LapRunner, FinishesALap) {
   EXPECT_TRUE(lap.finished);
   EXPECT_FALSE(lap.timeout);
   EXPECT_EQ(lap.collisions, 0);
-  EXPECT_GT(lap.least_clearance, 0.05);
+  EXPECT_GT(lap.min_clearance, 0.05);
   EXPECT_LT(lap.time, 0.5 * runner.timeout());
   EXPECT_NEAR(lap.time, lap.steps * 0.025, 0.05);
   EXPECT_EQ(lap.mean_sequence_cost, lap.state_cost + lap.collision_cost);

@@ -9,7 +9,7 @@ namespace slalom::fuzz {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr int most_commands = 24, most_ticks = 12;
+constexpr int max_commands = 24, max_ticks = 12;
 
 std::vector<std::string> seeds() {
   return {R"({"do":"step","ticks":3,"id":1}
@@ -75,12 +75,12 @@ bool run(std::string_view bytes) {
   client.get("/ws", true);
   while (server.clients() == 0 && Clock::now() < until) server.wait(std::chrono::milliseconds(1));
   std::uint64_t sent = 0;
-  while (!bytes.empty() && sent < most_commands && Clock::now() < until) {
+  while (!bytes.empty() && sent < max_commands && Clock::now() < until) {
     const std::string_view line = bytes.substr(0, bytes.find('\n'));
     bytes.remove_prefix(std::min(bytes.size(), line.size() + 1));
     if (!client.send_message(line)) break;
     await(server, ++sent, until);
-    for (int ticks = 0; ticks < most_ticks && (ticks == 0 || session.is_stepping()); ++ticks) session.turn();
+    for (int ticks = 0; ticks < max_ticks && (ticks == 0 || session.is_stepping()); ++ticks) session.turn();
   }
   require(session.refused() <= sent, "a command is refused once");
   return sent > 0 && session.refused() == 0;

@@ -28,9 +28,9 @@ void write_seeds(const std::filesystem::path& corpus) {
 
 extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
   static std::vector<char*> changed(*arguments, *arguments + *count);
-  static std::string most_bytes = "-max_len=" + std::to_string(targets().front()->most_bytes());
+  static std::string max_bytes = "-max_len=" + std::to_string(targets().front()->max_bytes());
   if (changed.size() > 1 && changed[1][0] != '-') write_seeds(changed[1]);
-  changed.insert(changed.begin() + 1, most_bytes.data());
+  changed.insert(changed.begin() + 1, max_bytes.data());
   *count = static_cast<int>(changed.size());
   changed.push_back(nullptr);
   *arguments = changed.data();

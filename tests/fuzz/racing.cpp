@@ -15,7 +15,7 @@ std::vector<std::string> seeds() {
           "x;y\n1;2\n2;2.5\n3;2\n4;4e0\n" + std::string(1, separator) + "top_speed: 3\npower: 9\n"};
 }
 
-/// The line of least time, where the corridor is small enough for a test.
+/// The minimum-time line, where the corridor is small enough for a test.
 void solve(const vehicle::CentreLineFile& file, const vehicle::RacingCar& car) {
   const auto corridor =
       vehicle::corridor_from_widths(file.line.points, file.left, file.right, file.line.closed, 1);

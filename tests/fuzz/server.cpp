@@ -11,7 +11,7 @@ namespace slalom::fuzz {
 namespace {
 
 using testing::WebClient;
-constexpr std::size_t most_message = 1000;
+constexpr std::size_t max_message = 1000;
 
 /// A masked WebSocket frame.
 std::string frame(unsigned first, std::string_view payload) {
@@ -52,7 +52,7 @@ bool check_received(view::Server& server) {
   for (const view::Received& each : server.take()) {
     if (each.kind == view::Received::Kind::joined) ++clients;
     if (each.kind != view::Received::Kind::message) continue;
-    require(each.text.size() <= most_message, "messages are no longer than allowed");
+    require(each.text.size() <= max_message, "messages are no longer than allowed");
     require(is_utf8(each.text), "messages are UTF-8");
   }
   require(clients <= 1, "a connection is one client");
@@ -60,7 +60,7 @@ bool check_received(view::Server& server) {
 }
 
 bool run(std::string_view bytes) {
-  static view::Server server({.max_message = most_message},
+  static view::Server server({.max_message = max_message},
                              {{"/", {"text/html", "gzip", "compressed", "plain"}}});
   if (bytes.empty()) return false;
   std::string answer;

@@ -30,7 +30,7 @@ struct Folder {
 }  // namespace
 
 Target::Target(const char* target_name, std::size_t longest, Seeds make_seeds, Run take)
-    : name_(target_name), most_bytes_(longest), seeds_(make_seeds), run_(take) {
+    : name_(target_name), max_bytes_(longest), seeds_(make_seeds), run_(take) {
   all_targets().push_back(this);
 }
 

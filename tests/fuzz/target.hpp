@@ -27,13 +27,13 @@ class Target {
   Target& operator=(const Target&) = delete;
 
   const char* name() const noexcept { return name_; }
-  std::size_t most_bytes() const noexcept { return most_bytes_; }
+  std::size_t max_bytes() const noexcept { return max_bytes_; }
   std::vector<std::string> seeds() const { return seeds_(); }
   bool run(std::string_view bytes) const { return run_(bytes); }
 
  private:
   const char* name_;
-  std::size_t most_bytes_;
+  std::size_t max_bytes_;
   Seeds seeds_;
   Run run_;
 };

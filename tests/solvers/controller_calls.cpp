@@ -47,7 +47,7 @@ template <class P>
 void check_plan(const Plan<P>& plan, const PerInput& low, const PerInput& high, const P& problem) {
   for (const auto& u : plan.inputs)
     for (int i = 0; i < P::inputs; ++i) {
-      const double least = std::max(low[i], detail::least_input(problem, i));
+      const double least = std::max(low[i], detail::min_input(problem, i));
       const double most = std::min(high[i], detail::largest_input(problem, i));
       require(std::isfinite(u[i]) && u[i] >= least && u[i] <= most,
               "an input is within its bounds: " + std::to_string(u[i]));

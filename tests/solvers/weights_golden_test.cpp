@@ -16,11 +16,11 @@ void compare_softmax(const std::filesystem::path& folder) {
     auto exact = padded_numbers<double>(json["costs"], std::numeric_limits<double>::infinity());
     // Costs whose differences float32 cannot tell, for their size, are given relative to the least: the
     // weights do not depend on a common offset.
-    const double least_cost = *std::min_element(exact.begin(), exact.end());
+    const double min_cost = *std::min_element(exact.begin(), exact.end());
     const double resolution =
-        std::numeric_limits<Real>::epsilon() * std::abs(least_cost) / number(json["lambda"]);
+        std::numeric_limits<Real>::epsilon() * std::abs(min_cost) / number(json["lambda"]);
     if (sizeof(Real) == 4 && resolution > 0.1 * tolerance<Real>) {
-      for (double& cost : exact) cost -= least_cost;
+      for (double& cost : exact) cost -= min_cost;
       ++shifted;
     }
     const std::vector<Real> costs(exact.begin(), exact.end());

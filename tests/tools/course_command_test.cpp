@@ -34,8 +34,8 @@ TEST_F(CourseCommand, MakesACourseFromAMapAlone) {
   EXPECT_TRUE(loaded.notes.empty());
   EXPECT_NEAR(said["profile_lap_s"].get<double>(), vehicle::profile_time(loaded), 1e-3);
   EXPECT_NEAR(said["raceline_length_m"].get<double>(), loaded.length, 1e-3);
-  EXPECT_GT(said["least_clearance_m"].get<double>(), 0.04);
-  EXPECT_LE(said["most_curvature_per_m"].get<double>(), said["car_curvature_per_m"].get<double>());
+  EXPECT_GT(said["min_clearance_m"].get<double>(), 0.04);
+  EXPECT_LE(said["max_curvature_per_m"].get<double>(), said["car_curvature_per_m"].get<double>());
   EXPECT_TRUE(maps::load_ros_map(folder_ / "made/map.yaml").cells == testing::rectangular_course().cells);
 }
 

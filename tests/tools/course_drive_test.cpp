@@ -19,9 +19,9 @@ constexpr double half_body_width = 0.155;                    // m
 
 struct Lap {
   bool finished = false;
-  double time = 0;               ///< s
-  double least_clearance = 1e9;  ///< m, from the car's middle to a wall
-  double largest_error = 0;      ///< m, from the raceline
+  double time = 0;             ///< s
+  double min_clearance = 1e9;  ///< m, from the car's middle to a wall
+  double largest_error = 0;    ///< m, from the raceline
 };
 
 Lap drive(const vehicle::Course& course) {
@@ -44,7 +44,7 @@ Lap drive(const vehicle::Course& course) {
     const int column = static_cast<int>(std::floor(at.x / course.map.resolution));
     const int line = static_cast<int>(std::floor(at.y / course.map.resolution));
     if (!course.map.contains(column, line)) return lap;
-    lap.least_clearance = std::min(lap.least_clearance, distance.at(column, line));
+    lap.min_clearance = std::min(lap.min_clearance, distance.at(column, line));
     const auto nearest = pursuit.nearest({state.x, state.y});
     lap.largest_error = std::max(lap.largest_error, nearest.distance);
     row = nearest.segment;
@@ -64,7 +64,7 @@ TEST(ShippedCourse, CanBeLappedAtItsOwnProfile) {
     const vehicle::Course course = vehicle::load_course(std::filesystem::path(SLALOM_COURSES) / name);
     const Lap lap = drive(course);
     EXPECT_TRUE(lap.finished) << name;
-    EXPECT_GT(lap.least_clearance, half_body_width + 0.15) << name;
+    EXPECT_GT(lap.min_clearance, half_body_width + 0.15) << name;
     EXPECT_LT(lap.largest_error, 0.15) << name;
   }
 }

@@ -127,7 +127,7 @@ TEST(ObjectTracker, GivesUpWhatIsGone) {
   double time = 0;
   for (int k = 0; k < 20; ++k, time += Scene::period)
     tracker.update({scene.scan(sensor, {Scene::car(car)}), sensor, time});
-  for (int k = 0; k < tracker.options().most_misses; ++k, time += Scene::period)
+  for (int k = 0; k < tracker.options().max_misses; ++k, time += Scene::period)
     EXPECT_EQ(tracker.update({scene.scan(sensor, {}), sensor, time}).objects.size(), 1U);
   EXPECT_TRUE(tracker.update({scene.scan(sensor, {}), sensor, time}).objects.empty());
 }

@@ -158,7 +158,7 @@ TEST(MapBackground, AlignsAPoseThatIsWrong) {
 }
 
 TEST(ObjectTrackerInput, IsChecked) {
-  EXPECT_THROW(ObjectTracker({.most_objects = 0}), std::invalid_argument);
+  EXPECT_THROW(ObjectTracker({.max_objects = 0}), std::invalid_argument);
   EXPECT_THROW(ObjectTracker({.gate = std::numeric_limits<double>::quiet_NaN()}), std::invalid_argument);
   maps::OccupancyGrid map = turned_room();
   EXPECT_NO_THROW(ObjectTracker{map});

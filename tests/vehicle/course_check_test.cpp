@@ -56,7 +56,7 @@ TEST(CourseCheck, FindsNothingOnASlowCircleInTheOpen) {
   EXPECT_TRUE(check.grip.stretches.empty());
   EXPECT_TRUE(check.walls.stretches.empty());
   EXPECT_TRUE(sentences(check, options).empty());
-  EXPECT_NEAR(check.most_acceleration, 4, 0.05);
+  EXPECT_NEAR(check.max_acceleration, 4, 0.05);
 }
 
 TEST(CourseCheck, FindsAProfileThatAsksForTooMuchGrip) {
@@ -82,7 +82,7 @@ TEST(CourseCheck, FindsALineThatIsTooNearAWall) {
   const CourseCheckOptions options{.half_width = 0.15, .margin = 0.05, .limits = {}};
   const CourseCheck check = check_course(course, options);
   ASSERT_FALSE(check.walls.stretches.empty());
-  EXPECT_NEAR(check.least_distance, 0.1, 0.01);
+  EXPECT_NEAR(check.min_distance, 0.1, 0.01);
   EXPECT_NEAR(check.walls.stretches[0].worst.x, 4, 0.05);
   EXPECT_LT(check.walls.share, 0.05);
   EXPECT_TRUE(

@@ -47,7 +47,7 @@ TEST(LocaliserConstruction, RejectsInvalidOptionsByName) {
   EXPECT_EQ(with({}), "");
   EXPECT_NE(with({.beams = 4}).find("localiser.beams"), std::string::npos);
   EXPECT_NE(with({.beam = {.hit_deviation = NAN}}).find("localiser.hit_deviation"), std::string::npos);
-  EXPECT_NE(with({.particles = {.least_particles = 900, .most_particles = 800}}).find("least_particles"),
+  EXPECT_NE(with({.particles = {.min_particles = 900, .max_particles = 800}}).find("min_particles"),
             std::string::npos);
   EXPECT_NE(with({.recovery = {.slow_rate = 0.5}}).find("slow_rate"), std::string::npos);
 }
@@ -138,7 +138,7 @@ TEST(Localiser, ResetEqualsConstruction) {
 }
 
 TEST(Localiser, TakesFewerParticlesOnceItIsSure) {
-  Localiser localiser(wren().course.map, {.particles = {.least_particles = 300, .most_particles = 4000}});
+  Localiser localiser(wren().course.map, {.particles = {.min_particles = 300, .max_particles = 4000}});
   Drive drive(wren(), wren().at(0.2), 3);
   EXPECT_EQ(localiser.particle_count(), 4000);
   localiser.start_at(drive.truth());

@@ -12,7 +12,7 @@
 namespace slalom::tools {
 namespace {
 
-constexpr double longest_gap = 0.2;  // s between two poses, and from a measured speed to its use
+constexpr double max_gap = 0.2;  // s between two poses, and from a measured speed to its use
 
 struct Topics {
   std::vector<ros::Scan> scans;
@@ -65,7 +65,7 @@ std::optional<maps::Pose> pose_at(const std::vector<ros::Odometry>& poses, doubl
   if (next == poses.begin()) return {};
   const ros::Odometry& before = *std::prev(next);
   if (stamp - before.header.stamp <= same) return before.pose;
-  if (next == poses.end() || next->header.stamp - before.header.stamp > longest_gap) return {};
+  if (next == poses.end() || next->header.stamp - before.header.stamp > max_gap) return {};
   const double share = (stamp - before.header.stamp) / (next->header.stamp - before.header.stamp);
   const maps::Pose &a = before.pose, &b = next->pose;
   return maps::Pose{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y),
@@ -82,8 +82,8 @@ void join(Topics& topics, BagDrive& drive) {
     auto command = after(topics.commands, stamp);
     if (command == topics.commands.end() && command != topics.commands.begin()) --command;
     if (!pose || speed == topics.odometry.begin() || command == topics.commands.end() ||
-        stamp - std::prev(speed)->header.stamp > longest_gap ||
-        std::abs(command->header.stamp - stamp) > longest_gap) {
+        stamp - std::prev(speed)->header.stamp > max_gap ||
+        std::abs(command->header.stamp - stamp) > max_gap) {
       ++drive.left_out;
       continue;
     }

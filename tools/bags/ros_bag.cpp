@@ -10,7 +10,7 @@
 namespace slalom::tools {
 namespace {
 
-constexpr std::uint64_t most_bytes = std::uint64_t{1} << 32;
+constexpr std::uint64_t max_bytes = std::uint64_t{1} << 32;
 constexpr std::string_view magic = "#ROSBAG V2.0\n";
 
 enum class Op : unsigned char { message = 2, bag = 3, index = 4, chunk = 5, chunk_info = 6, connection = 7 };
@@ -128,7 +128,7 @@ bool is_bag(const std::string& file) {
 }
 
 void read_bag(const std::string& file, const std::function<void(const BagMessage&)>& take) {
-  const std::string bytes = read_file(file, most_bytes);
+  const std::string bytes = read_file(file, max_bytes);
   if (bytes.compare(0, magic.size(), magic) != 0) throw IoError(file, 0, "is not a ROS 1 bag (format 2.0)");
   Reader(file, take).records(std::string_view(bytes).substr(magic.size()));
 }

@@ -60,7 +60,7 @@ class Fields {
 };
 
 // Bytes on the wire, of a header with an empty frame.
-constexpr std::size_t least_header = 16, pose_size = 7 * sizeof(double), twist_size = 6 * sizeof(double);
+constexpr std::size_t min_header = 16, pose_size = 7 * sizeof(double), twist_size = 6 * sizeof(double);
 constexpr std::size_t covariance = 36 * sizeof(double);
 
 }  // namespace
@@ -135,12 +135,12 @@ maps::OccupancyGrid map(std::string_view bytes) {
 std::vector<Waypoint> waypoints(std::string_view bytes) {
   Fields f(bytes);
   f.header();
-  std::vector<Waypoint> points(f.count(least_header + pose_size));
+  std::vector<Waypoint> points(f.count(min_header + pose_size));
   for (Waypoint& point : points) {
     f.header();
     point.pose = f.pose();
   }
-  if (f.count(least_header + twist_size) != points.size())
+  if (f.count(min_header + twist_size) != points.size())
     throw std::invalid_argument("has different numbers of poses and speeds");
   for (Waypoint& point : points) {
     f.header();
@@ -152,7 +152,7 @@ std::vector<Waypoint> waypoints(std::string_view bytes) {
 
 std::vector<Transform> transforms(std::string_view bytes) {
   Fields f(bytes);
-  std::vector<Transform> all(f.count(least_header + sizeof(std::uint32_t) + pose_size));
+  std::vector<Transform> all(f.count(min_header + sizeof(std::uint32_t) + pose_size));
   for (Transform& each : all) {
     each.parent = f.header().frame;
     each.child = f.text();

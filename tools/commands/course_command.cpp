@@ -115,10 +115,10 @@ Json summary_of(const RaceCourse& course, const RacingCar& car, const Arguments&
                   {"profile_lap_s", course.raceline.time},
                   {"slowest_mps", slowest->speed},
                   {"fastest_mps", fastest->speed},
-                  {"most_curvature_per_m", sharpest},
+                  {"max_curvature_per_m", sharpest},
                   {"car_curvature_per_m", vehicle::max_curvature(car)},
-                  {"least_clearance_m", *nearest - 0.5 * car.width},
-                  {"least_clearance_at", {tightest.x, tightest.y}},
+                  {"min_clearance_m", *nearest - 0.5 * car.width},
+                  {"min_clearance_at", {tightest.x, tightest.y}},
                   {"start", {course.start.x, course.start.y, course.start.yaw}},
                   {"notes", Json::array()}};
   for (const std::string& note : course.notes) summary["notes"].push_back(note);
@@ -149,8 +149,8 @@ void run(Arguments arguments) {
       "%.2f m from body to wall\n",
       arguments.name.c_str(), vehicle::length(course.corridor), summary["narrowest_m"].get<double>(),
       course.corridor.closed ? "lap" : "drive", course.raceline.time, summary["slowest_mps"].get<double>(),
-      summary["fastest_mps"].get<double>(), 1 / std::max(summary["most_curvature_per_m"].get<double>(), 1e-9),
-      summary["least_clearance_m"].get<double>());
+      summary["fastest_mps"].get<double>(), 1 / std::max(summary["max_curvature_per_m"].get<double>(), 1e-9),
+      summary["min_clearance_m"].get<double>());
   words << text << "written to " << arguments.out << "\n";
   if (!arguments.json.empty()) write_json(summary, arguments.json);
 }
@@ -158,7 +158,7 @@ void run(Arguments arguments) {
 }  // namespace
 
 void declare_course(Subcommand& command) {
-  command.summary("Make a course from a map: corridor, centre line, raceline of least time, picture");
+  command.summary("Make a course from a map: corridor, centre line, minimum-time raceline, picture");
   const auto arguments = std::make_shared<Arguments>();
   command
       .option("input", arguments->input,

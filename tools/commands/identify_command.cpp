@@ -97,7 +97,7 @@ void declare_identify(Subcommand& command) {
       .required();
   command.option("--wheelbase", arguments->options.wheelbase, "Measured wheelbase, m [estimated]")
       .range(0.01, 20.0);
-  command.option("--least-speed", arguments->options.least_speed, "Samples below this speed are ignored, m/s")
+  command.option("--least-speed", arguments->options.min_speed, "Samples below this speed are ignored, m/s")
       .range(0.01, 100.0)
       .show_default();
   command.option("--json", arguments->json,

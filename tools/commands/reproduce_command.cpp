@@ -186,8 +186,9 @@ void declare_reproduce(Subcommand& command) {
       "racing: the benchmark of Evans et al. (arXiv 2402.18558) instead; --course is the folder of its "
       "maps aut, esp, gbr and mco, and no --out is needed");
   command
-      .option("--driver", arguments->driver,
-              "With --benchmark: a method, whose planner follows the line of least time, or follow_the_gap")
+      .option(
+          "--driver", arguments->driver,
+          "With --benchmark: a method, whose planner follows the minimum-time raceline, or follow_the_gap")
       .show_default();
   command.option("--published", arguments->published, "Folder of the authors' logs");
   command

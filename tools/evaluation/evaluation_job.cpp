@@ -53,7 +53,7 @@ Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
 /// Rejects settings that are JSON but not an object. The store itself rejects a text that is not JSON.
 void require_object(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return;
-  const Json there = Json::parse_or_null(read_file(file, Json::most_bytes));
+  const Json there = Json::parse_or_null(read_file(file, Json::max_bytes));
   if (!there.is_null() && !there.is_object()) throw IoError(file.string(), 0, "is not a JSON object");
 }
 

@@ -112,7 +112,7 @@ Json racing_results(const std::vector<RacingLap>& laps) {
     if (!lap.completed) continue;
     sum += lap.time;
     ++completed;
-    at_limit += lap.time > sim::RacingBenchmark::most_time;
+    at_limit += lap.time > sim::RacingBenchmark::max_time;
   }
   return {{"mean_s", completed > 0 ? Json(sum / completed) : Json(nullptr)},
           {"completed", completed},

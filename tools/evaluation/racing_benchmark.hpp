@@ -40,7 +40,7 @@ class RacingDriver {
 /// The driver by which the world is compared with the published one (sim::FollowTheGap).
 std::unique_ptr<RacingDriver> make_gap_driver();
 
-/// A planner of this library along the line of least time of a map, for a car with the grip of the
+/// A planner of this library along the minimum-time line of a map, for a car with the grip of the
 /// benchmark.
 std::unique_ptr<RacingDriver> make_planner_driver(const RacingMap& map,
                                                   const vehicle::Configuration& configuration,

@@ -75,7 +75,7 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
   const fs::path file = folder / "settings.json";
   if (!fs::exists(file))
     throw IoError(file.string(), 0, "cannot be read; the folder must be the output folder of slalom eval");
-  stored.settings = read_file(file, Json::most_bytes);
+  stored.settings = read_file(file, Json::max_bytes);
   bool settings_checked = false;
   std::uint64_t seed0 = 0;
   try {

@@ -142,7 +142,7 @@ void TuningJob::keep_plan() const {
                   "contains a search; continue it with --resume, or use another folder");
   Json there;
   try {
-    there = Json::parse(read_file(file, Json::most_bytes));
+    there = Json::parse(read_file(file, Json::max_bytes));
   } catch (const JsonError& failure) {
     throw IoError(file.string(), 0, std::string("is not JSON: ") + failure.what());
   }

@@ -53,8 +53,8 @@ class Json {
   static Json array(std::initializer_list<Json> elements);
   static Json object();
 
-  static constexpr int deepest = 64;                       ///< levels of arrays and objects that are parsed
-  static constexpr std::uint64_t most_bytes = 1ULL << 24;  ///< of a JSON file that is read
+  static constexpr int deepest = 64;                      ///< levels of arrays and objects that are parsed
+  static constexpr std::uint64_t max_bytes = 1ULL << 24;  ///< of a JSON file that is read
 
   /// Throws JsonError if the text is not JSON or nests deeper than `deepest`.
   static Json parse(std::string_view text);

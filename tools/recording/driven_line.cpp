@@ -9,9 +9,9 @@
 namespace slalom::tools {
 namespace {
 
-constexpr double spacing = 0.1;   // m between the points that are kept
-constexpr double meeting = 1.0;   // m, within which a lap ends where it began
-constexpr double least_lap = 10;  // m
+constexpr double spacing = 0.1;  // m between the points that are kept
+constexpr double meeting = 1.0;  // m, within which a lap ends where it began
+constexpr double min_lap = 10;   // m
 
 }  // namespace
 
@@ -30,7 +30,7 @@ vehicle::GuideLine driven_line(const std::string& file) {
     line.points.push_back({sample.x, sample.y});
     const maps::Point& first = line.points.front();
     const double apart = std::hypot(sample.x - first.x, sample.y - first.y);
-    if (driven < least_lap) continue;
+    if (driven < min_lap) continue;
     if (apart < nearest) {
       nearest = apart;
       lap = line.points.size();

@@ -28,15 +28,15 @@ std::vector<vehicle::DrivenSample> read_bag_samples(const std::string& file) {
   return samples;
 }
 
-/// The next line, of at most `most_line` bytes, without its end; false at the end of the file.
+/// The next line, of at most `max_line` bytes, without its end; false at the end of the file.
 bool next_line(std::istream& stream, std::string& line, const std::string& file, int number) {
-  constexpr std::size_t most_line = std::size_t{1} << 22;
+  constexpr std::size_t max_line = std::size_t{1} << 22;
   line.clear();
   for (int c = stream.get(); c != std::istream::traits_type::eof(); c = stream.get()) {
     if (c == '\n') return true;
-    if (line.size() == most_line)
+    if (line.size() == max_line)
       throw IoError(file, number,
-                    "is longer than " + std::to_string(most_line) + " bytes: it is not a record");
+                    "is longer than " + std::to_string(max_line) + " bytes: it is not a record");
     line += static_cast<char>(c);
   }
   return !line.empty();

@@ -68,7 +68,7 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
             {"mean_speed", finite_or_null(lap.mean_speed)},
             {"mean_path_distance", finite_or_null(lap.mean_path_distance)},
             {"max_path_distance", finite_or_null(lap.max_path_distance)},
-            {"least_clearance", finite_or_null(lap.least_clearance)},
+            {"least_clearance", finite_or_null(lap.min_clearance)},
             {"impassable", lap.impassable},
             {"mean_variance", finite_or_null(lap.mean_variance)},
             {"mean_effective_samples", finite_or_null(lap.mean_effective_samples)},

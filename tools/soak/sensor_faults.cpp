@@ -17,7 +17,7 @@ namespace {
 using vehicle::PlannerStatus;
 
 constexpr double interval = 2, duration = 0.3;  // s, between the beginnings of faults, and of each
-constexpr double longest_return = 0.1;          // s
+constexpr double max_return_time = 0.1;         // s
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 /// One kind of fault.
@@ -106,7 +106,7 @@ class FaultyDrive {
     if (fault_ && fault_->expected != PlannerStatus::ok) {
       if (output.status != fault_->expected) broken(std::string("status ") + name(output.status));
       if (command.speed > std::max(speed, 0.0)) broken("a command that is faster than the car");
-    } else if (unusable && !(ended_ && world_.time() - ended_at_ < longest_return)) {
+    } else if (unusable && !(ended_ && world_.time() - ended_at_ < max_return_time)) {
       broken(std::string("status ") + name(output.status) + " without a fault of that kind");
     }
     if (ended_ && !fault_ && !unusable) {

@@ -213,8 +213,8 @@ class Soak {
 }  // namespace
 
 bool SoakResult::passed() const {
-  constexpr long least_growth = 16 << 20;  // bytes
-  const bool grown = memory_last > memory_first + std::max(memory_first / 10, least_growth);
+  constexpr long min_growth = 16 << 20;  // bytes
+  const bool grown = memory_last > memory_first + std::max(memory_first / 10, min_growth);
   return laps.failures.empty() && faults.failures.empty() && stalls.failures.empty() &&
          kills.failures.empty() && !grown && descriptors_last <= descriptors_first && !interrupted;
 }

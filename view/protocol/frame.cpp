@@ -220,7 +220,7 @@ void FrameEncoder::put_candidates(FrameWriter& to, const ControlStep& tick) {
   const SolveResult& solve = *tick.output.solve;
   if (!solve.samples || solve.costs.empty()) return;
   const SequenceBatch& batch = *solve.samples;
-  const int count = std::min(most_candidates_, batch.samples()), steps = batch.steps();
+  const int count = std::min(max_candidates_, batch.samples()), steps = batch.steps();
   const int inputs = batch.inputs();
   // Evenly spread over the samples, so that the picture is as dense in every region as they are.
   const auto chosen = [&](int i) {

@@ -26,7 +26,7 @@ struct StepFacts {
 class FrameEncoder {
  public:
   /// `candidates`: at most so many of the samples are sent.
-  explicit FrameEncoder(int candidates = 160) : most_candidates_(candidates) {}
+  explicit FrameEncoder(int candidates = 160) : max_candidates_(candidates) {}
 
   /// A control step without its bodies.
   std::string encode(const evaluation::ControlStep& tick, const StepFacts& facts);
@@ -41,7 +41,7 @@ class FrameEncoder {
   void put_guides(FrameWriter& to, const evaluation::ControlStep& tick);
   void put_plan(FrameWriter& to, const evaluation::ControlStep& tick);
 
-  int most_candidates_;
+  int max_candidates_;
   std::vector<vehicle::PredictedState> states_;
   std::vector<float> sequence_;
   vehicle::PredictedCost cost_;

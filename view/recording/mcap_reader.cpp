@@ -11,8 +11,8 @@
 namespace slalom::view::mcap {
 namespace {
 
-constexpr std::uint64_t most_record = std::uint64_t{1} << 30;   // bytes
-constexpr std::uint64_t most_summary = std::uint64_t{1} << 26;  // bytes
+constexpr std::uint64_t max_record = std::uint64_t{1} << 30;   // bytes
+constexpr std::uint64_t max_summary = std::uint64_t{1} << 26;  // bytes
 constexpr std::uint64_t footer_size = 1 + 8 + 20;
 
 class File {
@@ -53,10 +53,10 @@ class File {
     reader.get<std::uint64_t>();
     const auto sum = reader.get<std::uint32_t>();
     if (start == 0 || start > at) throw IoError(name_, 0, "has no index");
-    if (at - start > most_summary)
+    if (at - start > max_summary)
       throw IoError(name_, 0,
                     "has an index of " + std::to_string(at - start) + " bytes; at most " +
-                        std::to_string(most_summary) + " are read");
+                        std::to_string(max_summary) + " are read");
     const std::string bytes = read(start, at + footer_size - 4 - start);
     if (sum != 0 && crc(bytes) != sum) throw IoError(name_, 0, "is damaged: its index has a wrong checksum");
     return bytes.substr(0, at - start);
@@ -91,7 +91,7 @@ class Records {
     Reader reader(bytes, file_.name());
     op_ = static_cast<Op>(reader.get<std::uint8_t>());
     const auto length = reader.get<std::uint64_t>();
-    if (length > std::min(most_record, file_.size() - at_ - head)) return false;
+    if (length > std::min(max_record, file_.size() - at_ - head)) return false;
     content_ = file_.read(at_ + head, length);
     at_ += head + length;
     return true;

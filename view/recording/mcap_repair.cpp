@@ -12,7 +12,7 @@
 namespace slalom::view::mcap {
 namespace {
 
-constexpr std::uint64_t most_uncompressed = std::uint64_t{1} << 28;  // bytes of a chunk
+constexpr std::uint64_t max_uncompressed = std::uint64_t{1} << 28;  // bytes of a chunk
 
 /// The records of a chunk. Throws IoError if the chunk is damaged, or compressed in another way.
 std::string unpack(std::string_view chunk, const std::string& file) {
@@ -23,7 +23,7 @@ std::string unpack(std::string_view chunk, const std::string& file) {
   const std::string compression = reader.text();
   const std::string_view packed = reader.take(reader.get<std::uint64_t>());
   if (compression != "zstd") throw IoError(file, 0, "has a chunk compressed with '" + compression + "'");
-  if (size > most_uncompressed) throw IoError(file, 0, "is damaged: a chunk is too large");
+  if (size > max_uncompressed) throw IoError(file, 0, "is damaged: a chunk is too large");
   std::string records(size, '\0');
   const std::size_t got = ZSTD_decompress(records.data(), records.size(), packed.data(), packed.size());
   if (ZSTD_isError(got) || got != size || (sum != 0 && crc(records) != sum))

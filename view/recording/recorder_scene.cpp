@@ -9,7 +9,7 @@ namespace {
 
 using foxglove::Color;
 
-constexpr std::size_t most_candidates = 40;  // in Foxglove's JSON; the page's own messages have them all
+constexpr std::size_t max_candidates = 40;  // in Foxglove's JSON; the page's own messages have them all
 constexpr Color car_color{0.95, 0.96, 0.98, 1}, ghost_color{0.78, 0.61, 1, 0.7},
     plan_color{0.1, 0.8, 0.65, 1}, nominal_color{0.6, 0.65, 0.7, 0.9}, guide_color{0.8, 0.35, 0.85, 0.9},
     obstacle_color{0.91, 0.63, 0.23, 1}, hit_color{1, 0.35, 0.21, 1}, collided_color{1, 0.35, 0.21, 0.35};
@@ -117,7 +117,7 @@ void Recorder::add_candidates(const FrameReader& reader) {
     std::sort(sorted.begin(), sorted.end());
     const double low = sorted.empty() ? 0 : sorted.front(),
                  high = sorted.empty() ? 1 : std::max(low + 1e-9, sorted[sorted.size() * 9 / 10]);
-    const std::size_t shown = std::min(most_candidates, count);
+    const std::size_t shown = std::min(max_candidates, count);
     for (std::size_t k = 0; k < shown; ++k) {
       const std::size_t i = k * count / shown;
       const Color color = collided[i] != 0 ? collided_color : cost_color((costs[i] - low) / (high - low));

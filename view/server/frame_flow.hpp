@@ -8,13 +8,13 @@ namespace slalom::view {
 /// client shows a recent frame, with the delay of two frames and not that of a full socket buffer.
 class FrameFlow {
  public:
-  static constexpr std::uint32_t most_in_flight = 2;  ///< frames sent and not yet acknowledged
+  static constexpr std::uint32_t max_in_flight = 2;  ///< frames sent and not yet acknowledged
 
   /// `is_controlled`: the client acknowledges frames; otherwise it gets them as fast as its socket takes
   /// them.
   explicit FrameFlow(bool is_controlled) noexcept : is_controlled_(is_controlled) {}
 
-  bool may_send() const noexcept { return !is_controlled_ || sent_ - acknowledged_ < most_in_flight; }
+  bool may_send() const noexcept { return !is_controlled_ || sent_ - acknowledged_ < max_in_flight; }
   void count_sent() noexcept { ++sent_; }
 
   /// `frames`: how many the client has shown since it connected. False if that is impossible or not new.

@@ -13,7 +13,7 @@
 /// Included by network.cpp only: Boost takes long to compile.
 namespace slalom::view {
 
-inline constexpr std::uint32_t most_request = 8192;     // bytes of a request
+inline constexpr std::uint32_t max_request = 8192;      // bytes of a request
 inline constexpr std::chrono::seconds closing_time{2};  // for the other side to close
 
 inline std::string_view view_of(beast::string_view text) {
@@ -25,7 +25,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
   HttpConnection(ServerState& state, tcp::socket&& socket) : state_(state), stream_(std::move(socket)) {
     ++state_.open_connections;
-    parser_.header_limit(most_request);
+    parser_.header_limit(max_request);
   }
   ~HttpConnection() {
     if (!is_handed_over_) --state_.open_connections;
@@ -115,7 +115,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 
   ServerState& state_;
   beast::tcp_stream stream_;
-  beast::flat_buffer buffer_{2 * most_request};
+  beast::flat_buffer buffer_{2 * max_request};
   http::request_parser<http::empty_body> parser_;
   http::response<http::span_body<const char>> response_;  // views of the resources
   std::array<char, 1024> rest_{};

@@ -5,7 +5,7 @@
 namespace slalom::view {
 namespace {
 
-constexpr std::size_t most_received = 1024;
+constexpr std::size_t max_received = 1024;
 
 }  // namespace
 
@@ -13,7 +13,7 @@ void Inbox::deliver(Received received) {
   const bool is_message = received.kind == Received::Kind::message;
   {
     const std::lock_guard lock(mutex_);
-    if (is_message && received_.size() >= most_received) {
+    if (is_message && received_.size() >= max_received) {
       ++counters_.refused_rate;
       return;
     }

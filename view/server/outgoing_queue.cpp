@@ -5,13 +5,13 @@
 namespace slalom::view {
 namespace {
 
-constexpr std::size_t most_messages = 256;
-constexpr std::size_t most_bytes = 64 << 20;
+constexpr std::size_t max_messages = 256;
+constexpr std::size_t max_bytes = 64 << 20;
 
 }  // namespace
 
 bool OutgoingQueue::push(const Message& message) {
-  if (messages_.size() >= most_messages || bytes_ >= most_bytes) return false;
+  if (messages_.size() >= max_messages || bytes_ >= max_bytes) return false;
   bytes_ += message.body->size();
   messages_.push_back(message);
   return true;

@@ -9,10 +9,10 @@
 namespace slalom::view {
 namespace {
 
-constexpr std::size_t most_history_bytes = 400u << 20;
-constexpr auto least_frame_gap = std::chrono::milliseconds(12);  // no screen shows more
+constexpr std::size_t max_history_bytes = 400u << 20;
+constexpr auto min_frame_gap = std::chrono::milliseconds(12);  // no screen shows more
 constexpr auto state_gap = std::chrono::milliseconds(250);
-constexpr int most_catching_up = 4;  // ticks that a late clock may owe
+constexpr int max_late_ticks = 4;  // ticks that a late clock may owe
 
 }  // namespace
 
@@ -111,7 +111,7 @@ void Session::tick() {
   const auto period = std::chrono::duration<double>(simulation_->loop().runner().control_period());
   if (rate_ > 0) {
     const auto step = std::chrono::duration_cast<Clock::duration>(period / rate_);
-    due_ = std::max(due_ + step, now - most_catching_up * step);
+    due_ = std::max(due_ + step, now - max_late_ticks * step);
   }
   Step made;
   std::string ghost, ghost_bodies;
@@ -142,7 +142,7 @@ void Session::tick() {
     state_changed_ = true;
   }
   is_newest_published_ = false;
-  if (Clock::now() - last_frame_ >= least_frame_gap || paused_) publish_newest();
+  if (Clock::now() - last_frame_ >= min_frame_gap || paused_) publish_newest();
 }
 
 StepFacts Session::facts_of(const evaluation::LapRunner& runner) const {
@@ -195,7 +195,7 @@ void Session::keep(Step step) {
   history_.push_back(std::move(step));
   const auto most =
       static_cast<std::size_t>(options_.history / simulation_->loop().runner().control_period());
-  while (history_.size() > 1 && (history_.size() > most || history_bytes_ > most_history_bytes)) {
+  while (history_.size() > 1 && (history_.size() > most || history_bytes_ > max_history_bytes)) {
     history_bytes_ -= bytes_of(history_.front());
     history_.pop_front();
   }

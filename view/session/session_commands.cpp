@@ -11,8 +11,8 @@
 namespace slalom::view {
 namespace {
 
-constexpr int most_steps = 400;             // of one command "step"
-constexpr std::size_t most_deferred = 256;  // commands that wait for steps
+constexpr int max_steps = 400;             // of one command "step"
+constexpr std::size_t max_deferred = 256;  // commands that wait for steps
 constexpr double slowest_rate = 0.001;
 
 /// A malformed command, in contrast to one that cannot be executed.
@@ -91,7 +91,7 @@ bool Session::must_wait(const Received& received) const {
 }
 
 void Session::defer(Received received) {
-  if (deferred_.size() < most_deferred) return deferred_.push_back(std::move(received));
+  if (deferred_.size() < max_deferred) return deferred_.push_back(std::move(received));
   ++refused_;
   refuse(received.client, "step: too many commands wait for the steps before them");
 }
@@ -140,12 +140,12 @@ void Session::handle(std::uint64_t client, const Json& command) {
 
 /// Asks for ticks, which `turn` then drives.
 void Session::handle_step(std::uint64_t client, const Json& command) {
-  const int ticks = command.contains("ticks") ? std::clamp(integer(command, "ticks"), 1, most_steps) : 1;
+  const int ticks = command.contains("ticks") ? std::clamp(integer(command, "ticks"), 1, max_steps) : 1;
   go_to_viewed();
   waiting_ = false;
   paused_ = true;
   stepping_client_ = client;
-  steps_left_ = std::min(steps_left_ + ticks, most_steps);
+  steps_left_ = std::min(steps_left_ + ticks, max_steps);
 }
 
 /// Pauses. A client that is more than 0.25 s behind keeps in view the tick that it says it shows.

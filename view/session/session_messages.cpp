@@ -10,7 +10,7 @@
 namespace slalom::view {
 namespace {
 
-constexpr int most_past = 800;  // ticks in one message
+constexpr int max_ticks_per_message = 800;  // ticks in one message
 
 /// The values of the scalars of a frame, as they stand in it.
 std::string_view scalars_of(const std::string& frame) {
@@ -57,7 +57,7 @@ void Session::tell_past(std::uint64_t client, int from, int to) {
   if (!history_.empty()) {
     const int oldest = history_.front().tick;
     to = std::min(to, history_.back().tick);
-    from = std::max({from, oldest, to - most_past + 1});
+    from = std::max({from, oldest, to - max_ticks_per_message + 1});
     for (int tick = from; tick <= to; ++tick)
       past.append(scalars_of(history_[static_cast<std::size_t>(tick - oldest)].without_bodies));
   }

@@ -37,7 +37,7 @@ double rollout_steps(const vehicle::Configuration& configuration, const std::str
 
 void check_work(const vehicle::Configuration& configuration, const std::string& method) {
   const double steps = rollout_steps(configuration, method);
-  if (steps <= most_rollout_steps) return;
+  if (steps <= max_rollout_steps) return;
   throw std::invalid_argument(
       method + ": a solve would take about " + std::to_string(std::llround(steps / 1e6)) +
       " million rollout steps; the live view allows 5 million. Use fewer samples, iterations or "

@@ -174,7 +174,7 @@ py::dict lap_dict(const evaluation::LapResult& lap) {
   all["collision_cost"] = lap.collision_cost;
   all["mean_sequence_cost"] = lap.mean_sequence_cost;
   all["mean_speed"] = lap.mean_speed;
-  all["least_clearance"] = lap.least_clearance;
+  all["min_clearance"] = lap.min_clearance;
   all["solve_ms"] = py::array_t<float>(static_cast<py::ssize_t>(lap.solve_ms.size()), lap.solve_ms.data());
   return all;
 }

@@ -148,7 +148,7 @@ class BuiltIn final : public AnyProblem {
     return d;
   }
 
-  double input_min(int input) const override { return slalom::detail::least_input(problem(), input); }
+  double input_min(int input) const override { return slalom::detail::min_input(problem(), input); }
   double input_max(int input) const override { return slalom::detail::largest_input(problem(), input); }
   bool hold_rates(std::span<const double> previous, std::span<double> u) const override {
     if constexpr (slalom::detail::limits_rates<P>) {

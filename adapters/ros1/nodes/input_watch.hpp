@@ -12,12 +12,12 @@
 namespace slalom_ros {
 
 struct WatchLimits {
-  double most_age = 0.15;     ///< s, of a scan or an odometry
-  double most_ahead = 0.05;   ///< s, that a stamp may be in the future
+  double max_age = 0.15;      ///< s, of a scan or an odometry
+  double max_future = 0.05;   ///< s, that a stamp may be in the future
   double settle_time = 0.25;  ///< s
   double jump = 0.3;          ///< m, beyond what the car can have driven, or rad
-  double most_speed = 12;     ///< m/s
-  double most_turn = 12;      ///< rad/s
+  double max_speed = 12;      ///< m/s
+  double max_turn = 12;       ///< rad/s
 };
 
 class InputWatch {
@@ -55,11 +55,11 @@ class InputWatch {
   /// far.
   bool accepts(const char* what, ros::Time stamp, ros::Time last) {
     const double age = (ros::Time::now() - stamp).toSec();
-    if (age < -limits_.most_ahead)
+    if (age < -limits_.max_future)
       report(std::string(what) + " from the future, by " + seconds(-age));
     else if (!last.isZero() && stamp < last)
       report(std::string(what) + " out of order");
-    else if (age > limits_.most_age)
+    else if (age > limits_.max_age)
       report(std::string(what) + " late by " + seconds(age));
     else
       return true;
@@ -69,7 +69,7 @@ class InputWatch {
   /// Whether an input is recent enough; otherwise reports the fault, unless its cause is known.
   bool fresh(const char* what, ros::Time stamp) {
     const double age = (ros::Time::now() - stamp).toSec();
-    if (!stamp.isZero() && age <= limits_.most_age) return true;
+    if (!stamp.isZero() && age <= limits_.max_age) return true;
     report_consequence(std::string("no ") + what + (stamp.isZero() ? " yet" : " for " + seconds(age)));
     return false;
   }
@@ -85,8 +85,8 @@ class InputWatch {
       const double dt = std::max(0.0, (stamp - last_pose_stamp_).toSec());
       const double way = std::hypot(pose.x - last_pose_->x, pose.y - last_pose_->y);
       const double turn = angle_between(pose.yaw, last_pose_->yaw);
-      plausible = dt > 0.5 || (way < limits_.most_speed * dt + limits_.jump &&
-                               turn < limits_.most_turn * dt + limits_.jump);
+      plausible = dt > 0.5 || (way < limits_.max_speed * dt + limits_.jump &&
+                               turn < limits_.max_turn * dt + limits_.jump);
       if (!plausible) report("pose jumped by " + std::to_string(way) + " m");
     }
     last_pose_ = pose;

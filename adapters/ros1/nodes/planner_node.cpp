@@ -28,7 +28,7 @@ const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
 
 WatchLimits limits_from(ros::NodeHandle& own) {
   WatchLimits l;
-  l.most_age = own.param("timeout", l.most_age);
+  l.max_age = own.param("timeout", l.max_age);
   l.settle_time = own.param("settle_time", l.settle_time);
   return l;
 }
@@ -45,7 +45,7 @@ bool is_closed(const std::vector<slalom_bridge::Waypoint>& path) {
 /// Statistics since the last report.
 struct Second {
   int plans = 0, stops = 0, late = 0, corrections = 0;
-  double slowest = 0, least_samples = 1e300;
+  double slowest = 0, min_samples = 1e300;
   std::string why;
 };
 
@@ -219,7 +219,7 @@ class PlannerNode {
     second_.late += command.update_time > planner_.control_period();
     second_.slowest = std::max(second_.slowest, command.update_time);
     second_.corrections += command.corrections;
-    second_.least_samples = std::min(second_.least_samples, command.effective_samples);
+    second_.min_samples = std::min(second_.min_samples, command.effective_samples);
     if (!command.ok) {
       second_.why = command.status;
       log_("braking: " + command.status);
@@ -294,7 +294,7 @@ class PlannerNode {
       diagnostics_.add("steering delay, ms", 1e3 * known_.delay);
       diagnostics_.add("slip angle, rad", known_.slip);
     }
-    if (second_.plans > 0) diagnostics_.add("least effective sample size", second_.least_samples);
+    if (second_.plans > 0) diagnostics_.add("least effective sample size", second_.min_samples);
     const int level = second_.stops > 0 || second_.plans == 0    ? 2
                       : second_.late > 0 || !second_.why.empty() ? 1
                                                                  : 0;

@@ -86,13 +86,13 @@ class Driver {
       });
       take_all<LaserScan>(scan_in_, [&](const LaserScan& m) { hear_scan(m); });
       if (steady() - sent_ < 1.6 * planner_.control_period()) continue;
-      if (last_scan_ == 0 || now() - last_scan_ > most_age) fault("no scan");
+      if (last_scan_ == 0 || now() - last_scan_ > max_age) fault("no scan");
       if (steady() - fault_at_ < settle_time) stop();
     }
   }
 
  private:
-  static constexpr double most_age = 0.15, most_ahead = 0.05, settle_time = 0.25;  // s
+  static constexpr double max_age = 0.15, max_future = 0.05, settle_time = 0.25;  // s
 
   void use_map(const slalom_bridge::Grid& map) {
     localiser_.use_map(map);
@@ -113,12 +113,12 @@ class Driver {
 
   bool in_time(const char* what, double stamp, double last) {
     const double age = now() - stamp;
-    if (age < -most_ahead) {
+    if (age < -max_future) {
       fault(std::string(what) + " from the future");
     } else if (stamp <= last) {
       fault(std::string(what) + " out of order");
-      if (last - now() > most_ahead) last_scan_ = last_odometry_ = 0;  // the clock was set back
-    } else if (age > most_age) {
+      if (last - now() > max_future) last_scan_ = last_odometry_ = 0;  // the clock was set back
+    } else if (age > max_age) {
       fault(std::string(what) + " late");
     } else {
       return true;

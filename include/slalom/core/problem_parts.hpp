@@ -127,7 +127,7 @@ double time_step_of(const P& problem) noexcept {
 
 /// The bounds that a problem states for an input; infinite where it states none.
 template <class P>
-double least_input(const P& problem, int input) noexcept {
+double min_input(const P& problem, int input) noexcept {
   if constexpr (has_input_min<P>) return entry(problem.input_min, input);
   return -std::numeric_limits<double>::infinity();
 }
@@ -149,7 +149,7 @@ InputBounds stated_bounds(const P& problem) {
   };
   InputBounds bounds(P::inputs);
   for (int i = 0; i < P::inputs; ++i) {
-    const double low = least_input(problem, i), high = largest_input(problem, i);
+    const double low = min_input(problem, i), high = largest_input(problem, i);
     require(!std::isnan(low), ".input_min", low, "a number");
     require(!std::isnan(high), ".input_max", high, "a number");
     if constexpr (limits_rates<P>) {

@@ -24,7 +24,7 @@ struct HardwareConditions {
   double steering_offset = 0.01;         ///< rad, to the left
   double speed_gain = 3.0;               ///< 1/s, acceleration / speed error
   double acceleration_max = 6.0;         ///< m/s^2, also of braking
-  double longest_blind =
+  double max_blind_time =
       0.1;          ///< s without localisation for which odometry alone is used; then the car stops
   bool imu = true;  ///< the planner gets the readings of an inertial measurement unit
   sim::WheelOdometryOptions wheels;  ///< errors of the wheel odometry; its seed is that of the lap
@@ -48,8 +48,8 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.speed_gain, Declaration{"speed_gain", "", "1/s", "acceleration / speed error", 0.1, 100});
   visit(o.acceleration_max,
         Declaration{"acceleration_max", "", "m/s^2", "largest acceleration, also of braking", 0.1, 100});
-  visit(o.longest_blind,
-        Declaration{"longest_blind", "", "s", "without localisation before the car stops", 0, 10});
+  visit(o.max_blind_time,
+        Declaration{"max_blind_time", "", "s", "without localisation before the car stops", 0, 10});
   visit(o.imu, Declaration{.name = "imu", .help = "an inertial measurement unit for the planner"});
 }
 

@@ -79,7 +79,7 @@ struct LapResult {
   /// m, the least over the control steps: from the corners of the car to a wall (0 in a wall, with the error
   /// of Track::distance_to_wall) and from its outline to other bodies (negative in a collision). Infinite if
   /// there is neither.
-  double least_clearance = 0;
+  double min_clearance = 0;
   double mean_variance = 0;             ///< of the steering in the solver's distribution, rad^2; over solves
   double mean_effective_samples = 0;    ///< mean of the solver's effective sample size over solves
   std::array<int, 7> planner_status{};  ///< control steps by vehicle::PlannerStatus

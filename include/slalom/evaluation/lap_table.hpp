@@ -54,7 +54,7 @@ struct LapRow {
   int collided_bodies = 0;       ///< different bodies hit, all walls as one; column `contacts`
   bool wall = false;             ///< whether the car hit a wall
   int impassable = 0;            ///< number of obstacles in impassable_obstacles
-  double minimum_clearance = 0;  ///< m, LapResult::least_clearance
+  double minimum_clearance = 0;  ///< m, LapResult::min_clearance
   double mean_speed = 0;         ///< m/s
   double mean_path_distance = 0, max_path_distance = 0;  ///< m
   double mean_variance = 0, mean_effective_samples = 0;  ///< of the solver, means over its solves

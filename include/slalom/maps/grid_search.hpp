@@ -13,7 +13,7 @@ namespace slalom::maps {
 class GridSearch {
  public:
   /// A grid of so many cells along x and y, and paths of at most so many points.
-  GridSearch(int columns, int rows, double cell_size, std::size_t most_points);
+  GridSearch(int columns, int rows, double cell_size, std::size_t max_points);
 
   /// Moves the corner of the grid with the least x and y, m.
   void set_corner(const Point& corner) noexcept { corner_ = corner; }
@@ -49,7 +49,7 @@ class GridSearch {
 
   int columns_, rows_;
   double cell_size_;  ///< m
-  std::size_t most_points_;
+  std::size_t max_points_;
   Point corner_;
   std::vector<float> prices_;   ///< of driving 1 m in a cell
   std::vector<float> costs_;    ///< of reaching a cell

@@ -18,9 +18,9 @@ class Footprint {
     double contained = 0;  ///< m, radius of a disc that lies in the body
     double covering = 0;   ///< m, radius of a disc that covers the part
   };
-  static constexpr int part_count = 3;        ///< along the longer side of the bounding box
-  static constexpr int most_vertices = 32;    ///< of an outline
-  static constexpr double most_extent = 100;  ///< m, from the origin to a vertex
+  static constexpr int part_count = 3;       ///< along the longer side of the bounding box
+  static constexpr int max_vertices = 32;    ///< of an outline
+  static constexpr double max_extent = 100;  ///< m, from the origin to a vertex
 
   /// A simple polygon, its vertices in order, in either direction. Throws std::invalid_argument, naming the
   /// vertex, unless there are 3 to 32 of them, all finite and within 100 m of the origin, which enclose an

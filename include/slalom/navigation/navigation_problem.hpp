@@ -23,14 +23,14 @@ namespace slalom::navigation {
 /// as a step is shorter than a cell.
 class BodyCheck {
  public:
-  static constexpr std::size_t most_points = 512;  ///< of an outline
+  static constexpr std::size_t max_points = 512;  ///< of an outline
 
   /// For costmaps of this resolution (m). Throws std::invalid_argument if the outline is longer than 512
   /// cells.
   BodyCheck(const Footprint& footprint, double resolution)
       : unsure_(1.42 * resolution), half_cell_(0.5 * resolution) {
     const std::vector<maps::Point> points = footprint.outline_points(resolution);
-    if (points.size() > most_points) {
+    if (points.size() > max_points) {
       throw std::invalid_argument("footprint: the outline is " + std::to_string(points.size()) +
                                   " cells long, must be at most 512 cells of the costmap");
     }
@@ -92,9 +92,9 @@ class BodyCheck {
   }
 
   std::array<Part, Footprint::part_count> parts_;
-  std::array<Place, most_points> points_;  ///< of the outline, part by part
-  Coefficient unsure_;                     ///< m of clearance below which the outline decides
-  Coefficient half_cell_;                  ///< m
+  std::array<Place, max_points> points_;  ///< of the outline, part by part
+  Coefficient unsure_;                    ///< m of clearance below which the outline decides
+  Coefficient half_cell_;                 ///< m
 };
 
 /// The maps of a solve, in the map frame, and the goal.
@@ -195,7 +195,7 @@ class NavigationProblem {
     const T moving = T(costs_.reverse) * max(T(0) - motion.forward, T(0)) +
                      T(costs_.sideways) * abs(motion.left) + T(costs_.turning) * square(motion.turn) +
                      T(costs_.unknown) * seen.price;
-    return {{T(costs_.progress) * on_path.left, T(costs_.path) * min(on_path.squared, T(costs_.most_squared)),
+    return {{T(costs_.progress) * on_path.left, T(costs_.path) * min(on_path.squared, T(costs_.max_squared)),
              T(costs_.heading) * (T(1) - near) * on_path.heading_error,
              T(costs_.clearance) * (T(1) - near) *
                  exp(T(costs_.falloff) * min(seen.obstacle.clearance, T(farthest))),
@@ -219,7 +219,7 @@ class NavigationProblem {
         : progress(o.progress * step),
           final_progress(o.final_progress),
           path(o.path * step),
-          most_squared(o.path_reach * o.path_reach),
+          max_squared(o.path_reach * o.path_reach),
           heading(o.heading * step),
           clearance(o.clearance * step),
           falloff(-o.clearance_falloff),
@@ -230,7 +230,7 @@ class NavigationProblem {
           goal_heading(o.goal_heading * step),
           per_goal_reach(1 / o.goal_reach),
           collision(o.collision * step) {}
-    Coefficient progress, final_progress, path, most_squared, heading, clearance, falloff, reverse, sideways,
+    Coefficient progress, final_progress, path, max_squared, heading, clearance, falloff, reverse, sideways,
         turning, unknown, goal_heading, per_goal_reach, collision;
   };
 

@@ -13,8 +13,8 @@ namespace slalom::navigation {
 /// what it needs cost up to five times as much. After construction nothing allocates.
 class PathPlanner {
  public:
-  static constexpr std::size_t most_points = 4000;  ///< of a path
-  static constexpr double spacing = 0.05;           ///< m, between the points of a path
+  static constexpr std::size_t max_points = 4000;  ///< of a path
+  static constexpr double spacing = 0.05;          ///< m, between the points of a path
 
   /// For costmaps of this size, and a body with this half width (m).
   PathPlanner(const maps::GridGeometry& geometry, double half_width);

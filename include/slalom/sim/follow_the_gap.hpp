@@ -13,7 +13,7 @@ struct FollowTheGapOptions {
   int smoothing = 3;           ///< beams, of the mean over neighbours
   double range_max = 10;       ///< m, longer ranges count as this
   int bubble = 160;            ///< beams to each side of the nearest return that count as blocked
-  int least_gap = 5;           ///< beams; a gap must have more
+  int min_gap = 5;             ///< beams; a gap must have more
   int target_width = 80;       ///< beams, of the mean whose maximum is steered for
   double steer_max = 0.4;      ///< rad
   double slow_above = 0.174;   ///< rad, of steering

@@ -68,7 +68,7 @@ class RacingBenchmark {
  public:
   static constexpr double time_step = 0.01;         ///< s, of the physics
   static constexpr int steps_per_command = 4;       ///< time steps of a control period
-  static constexpr double most_time = 250;          ///< s; a lap that takes longer ends as complete
+  static constexpr double max_time = 250;           ///< s; a lap that takes longer ends as complete
   static constexpr double collision_limit = 0.001;  ///< m, a corner this near to a wall cell collides
 
   /// A world for the laps on one map. The track must have no unknown cells that count as walls for the

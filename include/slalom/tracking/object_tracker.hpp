@@ -81,7 +81,7 @@ struct TrackerOutput {
 };
 
 /// Detects and follows objects. After construction nothing allocates or throws. The time of an update is
-/// bounded by `most_beams` and `most_objects`. The same inputs give the same bits on one machine.
+/// bounded by `max_beams` and `max_objects`. The same inputs give the same bits on one machine.
 class ObjectTracker {
  public:
   /// Without a map: objects are what moves. Throws std::invalid_argument on options out of range.

@@ -6,32 +6,32 @@ namespace slalom::tracking {
 
 /// Options of ObjectTracker. The sizes are those of a 1/10-scale racing car.
 struct TrackerOptions {
-  int most_beams = 4000;          ///< of a scan; longer scans are rejected
-  int most_objects = 32;          ///< that are followed at a time, with those not yet confirmed
-  double most_range = 15;         ///< m, farther readings are not used
+  int max_beams = 4000;           ///< of a scan; longer scans are rejected
+  int max_objects = 32;           ///< that are followed at a time, with those not yet confirmed
+  double max_range = 15;          ///< m, farther readings are not used
   double range_deviation = 0.02;  ///< m, standard deviation of a reading
 
   double wall_distance = 0.06;  ///< m, of readings to the obstacles of the map, beside 3 range deviations
   double wall_angle = 0.008;    ///< rad, times the range: added to wall_distance for errors of the yaw
 
-  double least_incidence = 0.26;  ///< lambda, rad, of a beam on a surface that is still one cluster
-  int least_points = 4;           ///< readings of a cluster that begins an object
+  double min_incidence = 0.26;  ///< lambda, rad, of a beam on a surface that is still one cluster
+  int min_points = 4;           ///< readings of a cluster that begins an object
 
   double length = 0.58;          ///< m, expected
   double width = 0.31;           ///< m, expected
   double size_deviation = 0.03;  ///< m, standard deviation of length and width among objects
 
-  double most_speed = 10;                  ///< m/s
+  double max_speed = 10;                   ///< m/s
   double acceleration_deviation = 5;       ///< m/s^2, along the object
   double yaw_acceleration_deviation = 10;  ///< rad/s^2
   double gate = 3.5;  ///< standard deviations from the predicted outline to readings of an object
 
-  int confirming_scans = 2;     ///< with readings of an object, before it is reported
-  int most_misses = 3;          ///< scans that see through the place of an object, before it is given up
-  double longest_unseen = 1.5;  ///< s, before an object that is out of view is given up
+  int confirming_scans = 2;      ///< with readings of an object, before it is reported
+  int max_misses = 3;            ///< scans that see through the place of an object, before it is given up
+  double max_unseen_time = 1.5;  ///< s, before an object that is out of view is given up
 
   double free_margin = 0.15;  ///< m, without a map: what counts as moved into or out of free space
-  double least_speed = 0.5;   ///< m/s, without a map: of an object when it is confirmed
+  double min_speed = 0.5;     ///< m/s, without a map: of an object when it is confirmed
 
   /// Throws std::invalid_argument naming the option, its value and the rule.
   void validate() const { validate_options(*this, "tracker"); }
@@ -41,10 +41,10 @@ struct TrackerOptions {
 template <class Options, class Visit>
 requires is_options_of<Options, TrackerOptions>
 void visit_options(Options& o, Visit&& visit) {
-  visit(o.most_beams,
-        Declaration{"most_beams", "", "", "readings of a scan; longer scans are rejected", 8, 1e5});
-  visit(o.most_objects, Declaration{"most_objects", "", "", "objects followed at a time", 1, 256});
-  visit(o.most_range, Declaration{"most_range", "", "m", "farther readings are not used", 0.5, 1000});
+  visit(o.max_beams,
+        Declaration{"max_beams", "", "", "readings of a scan; longer scans are rejected", 8, 1e5});
+  visit(o.max_objects, Declaration{"max_objects", "", "", "objects followed at a time", 1, 256});
+  visit(o.max_range, Declaration{"max_range", "", "m", "farther readings are not used", 0.5, 1000});
   visit(o.range_deviation,
         Declaration{"range_deviation", "sigma_r", "m", "standard deviation of a reading", 1e-3, 1});
   visit(o.wall_distance,
@@ -52,14 +52,14 @@ void visit_options(Options& o, Visit&& visit) {
                     "readings this far and 3 range deviations from an obstacle of the map belong to it", 0,
                     10});
   visit(o.wall_angle, Declaration{"wall_angle", "", "rad", "times the range: added to wall_distance", 0, 1});
-  visit(o.least_incidence, Declaration{"least_incidence", "lambda", "rad",
-                                       "least angle of a beam to a surface that is one cluster", 0.01, 1.5});
-  visit(o.least_points, Declaration{"least_points", "", "", "readings of a new object", 2, 1000});
+  visit(o.min_incidence, Declaration{"min_incidence", "lambda", "rad",
+                                     "least angle of a beam to a surface that is one cluster", 0.01, 1.5});
+  visit(o.min_points, Declaration{"min_points", "", "", "readings of a new object", 2, 1000});
   visit(o.length, Declaration{"length", "", "m", "expected length of objects", 0.01, 100});
   visit(o.width, Declaration{"width", "", "m", "expected width of objects", 0.01, 100});
   visit(o.size_deviation,
         Declaration{"size_deviation", "", "m", "standard deviation of the sizes of objects", 1e-3, 10});
-  visit(o.most_speed, Declaration{"most_speed", "", "m/s", "largest speed of objects", 0.1, 100});
+  visit(o.max_speed, Declaration{"max_speed", "", "m/s", "largest speed of objects", 0.1, 100});
   visit(o.acceleration_deviation, Declaration{"acceleration_deviation", "sigma_a", "m/s^2",
                                               "standard deviation of the acceleration", 1e-3, 100});
   visit(o.yaw_acceleration_deviation, Declaration{"yaw_acceleration_deviation", "sigma_alpha", "rad/s^2",
@@ -68,15 +68,14 @@ void visit_options(Options& o, Visit&& visit) {
         Declaration{"gate", "", "", "standard deviations from the predicted outline to readings", 1, 10});
   visit(o.confirming_scans,
         Declaration{"confirming_scans", "", "", "scans with an object before it is reported", 1, 100});
-  visit(o.most_misses,
-        Declaration{"most_misses", "", "", "scans that see through an object's place before it is given up",
-                    0, 1000});
-  visit(o.longest_unseen,
-        Declaration{"longest_unseen", "", "s", "time out of view before an object is given up", 0, 100});
+  visit(o.max_misses, Declaration{"max_misses", "", "",
+                                  "scans that see through an object's place before it is given up", 0, 1000});
+  visit(o.max_unseen_time,
+        Declaration{"max_unseen_time", "", "s", "time out of view before an object is given up", 0, 100});
   visit(o.free_margin, Declaration{"free_margin", "", "m",
                                    "without a map: least motion into or out of free space", 0.01, 10});
-  visit(o.least_speed,
-        Declaration{"least_speed", "", "m/s", "without a map: least speed of a new object", 0, 100});
+  visit(o.min_speed,
+        Declaration{"min_speed", "", "m/s", "without a map: least speed of a new object", 0, 100});
 }
 
 }  // namespace slalom::tracking

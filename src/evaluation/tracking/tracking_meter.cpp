@@ -11,10 +11,10 @@ namespace slalom::evaluation {
 namespace {
 
 constexpr double far_away = 8;          // m, farther bodies do not count
-constexpr int least_beams = 5;          // on a body in view
+constexpr int min_beams = 5;            // on a body in view
 constexpr double long_in_view = 0.2;    // s
 constexpr double match_distance = 0.5;  // m
-constexpr double least_speed = 0.5;     // m/s, of bodies that count without a map
+constexpr double min_speed = 0.5;       // m/s, of bodies that count without a map
 
 sim::WheelOdometryOptions seeded_wheels(TrackingMode mode, std::uint64_t seed) {
   sim::WheelOdometryOptions options;
@@ -117,7 +117,7 @@ void TrackingMeter::find_in_view(const sim::World& world, const maps::Pose& sens
   for (std::size_t body = 1; body < bodies; ++body) lidar.cast(sensor, world.outline(body), ranges_);
   for (std::size_t body = 1; body < bodies; ++body) {
     const sim::Box box = world.outline(body);
-    const bool moves = body < world.cars() && std::abs(world.state(body).speed) >= least_speed;
+    const bool moves = body < world.cars() && std::abs(world.state(body).speed) >= min_speed;
     int beams = 0;
     if (std::hypot(box.pose.x - sensor.x, box.pose.y - sensor.y) <= far_away &&
         (moves || mode_ != TrackingMode::mapless)) {
@@ -125,7 +125,7 @@ void TrackingMeter::find_in_view(const sim::World& world, const maps::Pose& sens
       lidar.cast(sensor, box, body_ranges_);
       for (std::size_t i = 0; i < lidar.angles().size(); ++i) beams += body_ranges_[i] <= ranges_[i];
     }
-    in_view_[body] = beams >= least_beams;
+    in_view_[body] = beams >= min_beams;
     in_view_since_[body] = in_view_[body] ? std::min(in_view_since_[body], world.time())
                                           : std::numeric_limits<double>::infinity();
   }
@@ -179,7 +179,7 @@ void TrackingMeter::compare(const sim::World& world, const tracking::TrackerOutp
     const maps::Pose found = in_map(object->pose);
     const double speed = body < world.cars() ? world.state(body).speed : 0;
     double turned = maps::wrap_angle(found.yaw - truth.yaw);
-    if (std::abs(speed) < least_speed) turned = std::remainder(turned, std::numbers::pi);
+    if (std::abs(speed) < min_speed) turned = std::remainder(turned, std::numbers::pi);
     const double apart = distance(truth, found);
     record_.position_error += apart * apart;
     record_.speed_error += (object->speed - speed) * (object->speed - speed);

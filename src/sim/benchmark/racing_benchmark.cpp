@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint64_t seed = 12345;
 constexpr double steering_delay = 0.02;                // s
 constexpr double lap_end = 0.995, past_start = 0.999;  // shares of a lap
-constexpr double least_time = 5;                       // s, of a lap
+constexpr double min_time = 5;                         // s, of a lap
 
 PlantOptions plant_options() {
   PlantOptions options;
@@ -87,7 +87,7 @@ void RacingBenchmark::step(const Command& command) {
   const double along = line_.progress({state.x, state.y});
   progress_ = along - start_progress_ + (along > start_progress_ ? 0 : 1);
   if (progress_ > past_start) progress_ = 0;
-  complete_ = (progress_ > lap_end && time() > least_time) || time() > most_time;
+  complete_ = (progress_ > lap_end && time() > min_time) || time() > max_time;
   look();
 }
 

@@ -43,7 +43,7 @@ Command FollowTheGap::command(std::span<const double> scan) {
     while (end > 0 && ranges_[static_cast<std::size_t>(end - 1)] == 0) --end;
     begin = end;
     while (begin > 0 && ranges_[static_cast<std::size_t>(begin - 1)] != 0) --begin;
-    if (end - begin > options_.least_gap) break;
+    if (end - begin > options_.min_gap) break;
   }
   if (end == 0) return {};
   const auto gap =

@@ -48,9 +48,9 @@ struct WeightSums {
 /// Statistics of the costs of a range of samples.
 template <class Real>
 struct CostStatistics {
-  Real least_cost = 0;   ///< lowest cost; infinite if none is finite
-  Real least_total = 0;  ///< lowest total; infinite if none is finite
-  int finite = 0;        ///< number of finite totals
+  Real min_cost = 0;   ///< lowest cost; infinite if none is finite
+  Real min_total = 0;  ///< lowest total; infinite if none is finite
+  int finite = 0;      ///< number of finite totals
 };
 
 /// Number of sums per row in `two_moments`: the sums of w[k] v[row][k] and w[k] (v[row][k] - centre[row])^2

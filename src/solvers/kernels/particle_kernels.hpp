@@ -75,7 +75,7 @@ struct SampleAround {
 
 /// Kernel values below exp of this count as 0, which is negligible next to the 1 of a particle with itself.
 /// Operations on subnormal values would be slow.
-constexpr double least_exponent = -70;
+constexpr double min_exponent = -70;
 
 /// phi of `packs` packs of particles that begin at particle i: see `SteinDirections`.
 template <int packs, class F>
@@ -111,7 +111,7 @@ SLALOM_INLINE void stein_block(const Rows<RealOf<F>>& x, const Rows<RealOf<F>>& 
       for (int q = 0; q < together; ++q) {
         const F exponent = kernel[b][q] * negative_inverse;
         const F weight = exp(exponent) * (j + q < count ? share : F(0.0f));
-        kernel[b][q] = select(exponent < F(Real(least_exponent)), F(0.0f), weight);
+        kernel[b][q] = select(exponent < F(Real(min_exponent)), F(0.0f), weight);
         kernel_sum[b] = kernel_sum[b] + kernel[b][q];
       }
     }

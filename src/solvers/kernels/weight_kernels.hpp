@@ -96,7 +96,7 @@ struct Finish {
     using Real = RealIn<Target>;
     const F largest(std::numeric_limits<Real>::max()), infinite(std::numeric_limits<Real>::infinity());
     const F zero(0.0f), one(1.0f);
-    F least_cost = infinite, least_total = infinite, finite = zero;
+    F min_cost = infinite, min_total = infinite, finite = zero;
     for (int k = range.first; k < range.first + range.count; k += L::count) {
       const F given = L::load(costs + k);
       const F cost = select(abs(given) <= largest, given, infinite);
@@ -114,11 +114,11 @@ struct Finish {
         total = select(abs(total) <= largest, total, infinite);
       }
       L::store(total, totals + k);
-      least_cost = min(least_cost, cost);
-      least_total = min(least_total, total);
+      min_cost = min(min_cost, cost);
+      min_total = min(min_total, total);
       finite = finite + select(total < infinite, one, zero);
     }
-    return {L::least(least_cost), L::least(least_total), static_cast<int>(L::sum(finite))};
+    return {L::least(min_cost), L::least(min_total), static_cast<int>(L::sum(finite))};
   }
 };
 

@@ -26,7 +26,7 @@ class CemSolver final : public SolverBase {
         mean_(size()),
         variance_(size()),
         first_variance_(spread(options.variance)),
-        least_variance_(spread(options.variance_min)),
+        min_variance_(spread(options.variance_min)),
         deviation_(size()),
         zero_(size()),
         elite_mean_(size()),
@@ -125,7 +125,7 @@ class CemSolver final : public SolverBase {
     samples_.weighted_squares(elite_mean_.data(), sums_.data(), pool());
     const float kept = static_cast<float>(options_.smoothing);
     for (std::size_t r = 0; r < size(); ++r) {
-      const float least = std::min(least_variance_[r], first_variance_[r]);
+      const float least = std::min(min_variance_[r], first_variance_[r]);
       const float variance = static_cast<float>(sums_[r]);
       variance_[r] = std::clamp(variance + kept * (variance_[r] - variance), least, 1e12f);
       mean_[r] = elite_mean_[r] + kept * (mean_[r] - elite_mean_[r]);
@@ -138,7 +138,7 @@ class CemSolver final : public SolverBase {
   detail::SampleSet samples_;
   int elites_;
   std::vector<int> order_;
-  std::vector<float> mean_, variance_, first_variance_, least_variance_, deviation_, zero_, elite_mean_,
+  std::vector<float> mean_, variance_, first_variance_, min_variance_, deviation_, zero_, elite_mean_,
       best_;                  ///< [row]
   std::vector<double> sums_;  ///< [row]
   SolveResult result_;

@@ -13,8 +13,8 @@ namespace slalom::detail {
 /// equidistant points from one random start; the alternative draws independently.
 class Resampler {
  public:
-  Resampler(int samples, int most_wanted)
-      : running_(samples), cut_(samples + 1), mark_(std::max(samples, most_wanted) + 1) {}
+  Resampler(int samples, int max_resampled)
+      : running_(samples), cut_(samples + 1), mark_(std::max(samples, max_resampled) + 1) {}
 
   /// Selects `wanted` samples (with repetition) and writes their indices. Weights are in [0, 1], and at least
   /// one is 2^-40 or more.

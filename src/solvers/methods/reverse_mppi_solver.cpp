@@ -30,7 +30,7 @@ class ReverseMppiSolver final : public SolverBase {
             options.horizon, inputs,
             std::max(options.samples, static_cast<int>(std::lround(options.samples * options.inflation)))),
         first_variance_(spread(options.variance)),
-        least_variance_(spread(options.variance_min)),
+        min_variance_(spread(options.variance_min)),
         deviation_(size()),
         linear_(size()),
         inverse_(size()),
@@ -219,7 +219,7 @@ class ReverseMppiSolver final : public SolverBase {
     detail::mirror_descent<float>(options_.step, moment_mean_.data(), moment_variance_.data(), rows(),
                                   g.mean.data(), g.variance.data());
     for (std::size_t r = 0; r < size(); ++r) {
-      const float least = std::min(least_variance_[r], first_variance_[r]);
+      const float least = std::min(min_variance_[r], first_variance_[r]);
       g.variance[r] = std::clamp(g.variance[r], least, 1e12f);
       g.mean[r] = std::clamp(g.mean[r], -1e30f, 1e30f);
     }
@@ -246,7 +246,7 @@ class ReverseMppiSolver final : public SolverBase {
   ReverseMppiOptions options_;
   detail::SampleSet samples_, inflated_;
   Gaussian now_, now_rejected_, start_, start_rejected_;
-  std::vector<float> first_variance_, least_variance_, deviation_, linear_, inverse_, zero_,
+  std::vector<float> first_variance_, min_variance_, deviation_, linear_, inverse_, zero_,
       shifted_;                                       ///< [row]
   std::vector<double> sums_;                          ///< [row]
   std::vector<float> moment_mean_, moment_variance_;  ///< [row]

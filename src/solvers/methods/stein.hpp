@@ -16,7 +16,7 @@
 namespace slalom::detail {
 
 /// The smallest bandwidth.
-inline constexpr double least_bandwidth = 1e-5;
+inline constexpr double min_bandwidth = 1e-5;
 
 /// The bandwidth h = median / log n, at least 1e-5. `particles` is n. The median is element count/2 of the
 /// sorted values; `values` is reordered.
@@ -25,7 +25,7 @@ Real bandwidth(Real* values, int count, int particles) noexcept {
   Real* middle = values + count / 2;
   std::nth_element(values, middle, values + count);
   const Real h = *middle / std::log(Real(particles));
-  return std::max(Real(least_bandwidth), h);
+  return std::max(Real(min_bandwidth), h);
 }
 
 /// Squared distances between all pairs of at most 64 evenly selected particles. Their median is an estimate

@@ -30,7 +30,7 @@ class SvMpcSolver final : public SolverBase {
         mean_(size()),
         variance_(size()),
         first_variance_(spread(options.variance)),
-        least_variance_(spread(options.variance_min)),
+        min_variance_(spread(options.variance_min)),
         deviation_(spread(options.gradient_variance)),
         inverse_(deviation_),
         prior_inverse_(size()),
@@ -220,7 +220,7 @@ class SvMpcSolver final : public SolverBase {
     particles_.weighted_squares(mean_.data(), sums_.data(), pool());
     for (std::size_t r = 0; r < size(); ++r) {
       const double scale = options_.published.dimensionless_variance ? prior_inverse_[r] : 1.0;
-      const float least = std::min(least_variance_[r], first_variance_[r]);
+      const float least = std::min(min_variance_[r], first_variance_[r]);
       variance_[r] = std::clamp(static_cast<float>(sums_[r] * scale), least, 1e12f);
     }
     particles_.weighted_sums(zero_.data(), sums_.data(), pool());
@@ -242,7 +242,7 @@ class SvMpcSolver final : public SolverBase {
   std::vector<std::uint8_t> collided_;
   SequenceBatch gradient_, phi_;
   std::vector<float> distances_;
-  std::vector<float> solution_, mean_, variance_, first_variance_, least_variance_, deviation_, inverse_,
+  std::vector<float> solution_, mean_, variance_, first_variance_, min_variance_, deviation_, inverse_,
       prior_inverse_, linear_, control_, step_, limited_step_, zero_, particle_, shifted_;  ///< [row]
   std::vector<double> sums_;                                                                ///< [row]
   SolveResult result_;

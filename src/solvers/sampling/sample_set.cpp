@@ -70,8 +70,8 @@ void SampleSet::finish_tile(int tile, const BatchEvaluator* evaluator, const flo
     collided_[i] = 0;
   }
   const CostStatistics<float> found = kernels().finish(row_view(), linear, r, costs_.data(), totals_.data());
-  statistics.minimum_cost = found.least_cost;
-  statistics.minimum_total = found.least_total;
+  statistics.minimum_cost = found.min_cost;
+  statistics.minimum_total = found.min_total;
   statistics.finite = found.finite;
   statistics.evaluated = count;
   const std::uint8_t* hit = collided_.data() + r.first;

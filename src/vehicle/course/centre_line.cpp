@@ -11,17 +11,17 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double turning_radius = 0.9;  // m, more than the 0.74 m of a 1/10 car at full lock
 constexpr double step = 0.1;            // m, of the finished centre line
-constexpr int most_draws = 6000;
+constexpr int max_draws = 6000;
 
 /// The parameters of the polygons of a character.
 struct Style {
-  double corner_spacing;               ///< m of centre line per corner
-  double depth;                        ///< how far corners move inwards, as a fraction of the radius
-  double stretch;                      ///< largest ratio of the sides
-  double swirl;                        ///< largest rotation of the rim against the centre, rad
-  double small_radius, large_radius;   ///< m, range of the radii of corners
-  double smoothing;                    ///< m, standard deviation along the path
-  double least_winding, most_winding;  ///< integral of |curvature| in multiples of 2 pi, at 60 m of length
+  double corner_spacing;              ///< m of centre line per corner
+  double depth;                       ///< how far corners move inwards, as a fraction of the radius
+  double stretch;                     ///< largest ratio of the sides
+  double swirl;                       ///< largest rotation of the rim against the centre, rad
+  double small_radius, large_radius;  ///< m, range of the radii of corners
+  double smoothing;                   ///< m, standard deviation along the path
+  double min_winding, max_winding;    ///< integral of |curvature| in multiples of 2 pi, at 60 m of length
 };
 
 Style style_of(TrackCharacter character) {
@@ -125,7 +125,7 @@ Curve rounded(const Curve& polygon, const std::vector<double>& radii, const Trac
     for (std::size_t i = 0; i < n; ++i) {
       const double fitted = round_corner(path, scale * polygon[(i + n - 1) % n], scale * polygon[i],
                                          scale * polygon[(i + 1) % n], radii[i]);
-      if (fitted < 0.6 * least_radius(options)) return {};
+      if (fitted < 0.6 * min_radius(options)) return {};
     }
     scale *= options.length / detail::length(path);
   }
@@ -142,15 +142,15 @@ double winding(const std::vector<double>& curvature, double spacing) {
   return sum / (2 * pi);
 }
 
-bool acceptable(const Curve& curve, const TrackGeneratorOptions& options, double least_winding,
-                double most_winding) {
-  const double radius = least_radius(options);
+bool acceptable(const Curve& curve, const TrackGeneratorOptions& options, double min_winding,
+                double max_winding) {
+  const double radius = min_radius(options);
   const auto bends = curvature(curve, 2);
   for (const double k : bends)
     if (std::abs(k) > 1 / radius) return false;
   const double winds = winding(bends, options.length / static_cast<double>(curve.size()));
-  if (winds < least_winding - 0.01 || winds > most_winding) return false;
-  return least_gap(curve, pi * radius) >= options.width + 2 * options.wall;
+  if (winds < min_winding - 0.01 || winds > max_winding) return false;
+  return min_gap(curve, pi * radius) >= options.width + 2 * options.wall;
 }
 
 /// Turns the curve about the origin so that it is as small as possible in y, so that maps and pictures have
@@ -175,7 +175,7 @@ void lay_flat(Curve& curve) {
 
 }  // namespace
 
-double least_radius(const TrackGeneratorOptions& options) {
+double min_radius(const TrackGeneratorOptions& options) {
   const double half = 0.5 * options.width;
   return std::max(half + options.wall, half - options.wall_margin + turning_radius);
 }
@@ -183,19 +183,19 @@ double least_radius(const TrackGeneratorOptions& options) {
 Curve make_centre_line(const TrackGeneratorOptions& options) {
   const Style style = style_of(options.character);
   Draw draw(options.seed);
-  const double small = std::max(style.small_radius, 1.1 * least_radius(options));
+  const double small = std::max(style.small_radius, 1.1 * min_radius(options));
   const double large = std::max(style.large_radius, 1.5 * small);
-  for (int i = 0; i < most_draws; ++i) {
+  for (int i = 0; i < max_draws; ++i) {
     // After failed candidates (short or wide tracks) the next ones are closer to a circle.
-    const double calm = std::max(0.0, 2.0 * i / most_draws - 1);
+    const double calm = std::max(0.0, 2.0 * i / max_draws - 1);
     const Curve polygon = draw_polygon(draw, style, options.length, calm);
     std::vector<double> radii;
     for (std::size_t k = 0; k < polygon.size(); ++k) radii.push_back(draw.uniform(small, large));
     const bool backwards = draw.uniform(0, 1) < 0.5;
     Curve curve = rounded(polygon, radii, options, style.smoothing * (1 - 0.5 * calm));
-    const double least_winding = 1 + (style.least_winding - 1) * std::max(0.0, 1 - 4.0 * i / most_draws);
+    const double min_winding = 1 + (style.min_winding - 1) * std::max(0.0, 1 - 4.0 * i / max_draws);
     if (curve.empty() ||
-        !acceptable(curve, options, least_winding, style.most_winding * std::max(1.0, options.length / 60)))
+        !acceptable(curve, options, min_winding, style.max_winding * std::max(1.0, options.length / 60)))
       continue;
     if (backwards) std::reverse(curve.begin(), curve.end());
     lay_flat(curve);

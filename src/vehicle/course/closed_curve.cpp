@@ -96,7 +96,7 @@ Curve smoothed(const Curve& curve, double width) {
   return result;
 }
 
-double least_gap(const Curve& curve, double apart) {
+double min_gap(const Curve& curve, double apart) {
   const int n = static_cast<int>(curve.size());
   const int away = static_cast<int>(std::ceil(apart / (length(curve) / n)));
   double least = std::numeric_limits<double>::infinity();

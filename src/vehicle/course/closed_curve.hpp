@@ -48,6 +48,6 @@ Curve smoothed(const Curve& curve, double width);
 
 /// The least distance (m) between points that are more than `apart` m of curve away from each other, either
 /// way round.
-double least_gap(const Curve& curve, double apart);
+double min_gap(const Curve& curve, double apart);
 
 }  // namespace slalom::vehicle::detail

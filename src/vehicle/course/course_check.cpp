@@ -78,7 +78,7 @@ void check_walls(const Course& course, const PathGeometry& path, const CourseChe
                  CourseCheck& check) {
   const double needed = options.half_width + options.margin;
   Stretches stretches(course.length, false);
-  check.least_distance = needed;
+  check.min_distance = needed;
   const std::size_t n = course.waypoints.size(), segments = path.closed ? n : n - 1;
   double begin = 0;
   for (std::size_t i = 0; i < segments; ++i) {
@@ -88,7 +88,7 @@ void check_walls(const Course& course, const PathGeometry& path, const CourseChe
       const double share = (k + 0.5) / parts, part = path.step[i] / parts;
       const maps::Point place{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
       const double distance = distance_to_wall(course.map, place, needed);
-      check.least_distance = std::min(check.least_distance, distance);
+      check.min_distance = std::min(check.min_distance, distance);
       stretches.add(begin, begin + part, place, distance, distance < needed);
       begin += part;
     }
@@ -111,7 +111,7 @@ void check_grip(const Course& course, const PathGeometry& path, const CourseChec
     const double strongest = along > 0 ? limits.acceleration : limits.braking;
     const double used = std::hypot(across / limits.lateral_acceleration, along / strongest);
     const double asked = std::hypot(across, along);
-    check.most_acceleration = std::max(check.most_acceleration, asked);
+    check.max_acceleration = std::max(check.max_acceleration, asked);
     stretches.add(begin, begin + path.step[i], {course.waypoints[i].x, course.waypoints[i].y}, asked,
                   used > 1 + options.tolerance || v > limits.top_speed);
     begin += path.step[i];

@@ -13,7 +13,7 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-constexpr std::uint64_t most_bytes = std::uint64_t{1} << 26;
+constexpr std::uint64_t max_bytes = std::uint64_t{1} << 26;
 constexpr int raceline_columns = 7;
 const char* const raceline_header = "s_m;x_m;y_m;psi_rad;kappa_radpm;vx_mps;ax_mps2";
 
@@ -40,7 +40,7 @@ struct Line {
 };
 
 std::vector<Line> read_lines(const std::filesystem::path& file) {
-  std::istringstream stream(read_file(file, most_bytes));
+  std::istringstream stream(read_file(file, max_bytes));
   std::vector<Line> lines;
   std::string text;
   for (int number = 1; std::getline(stream, text); ++number) {

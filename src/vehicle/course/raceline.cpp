@@ -18,7 +18,7 @@ using detail::operator*;
 
 constexpr double relaxation = 1.6;  // 1 is Gauss-Seidel, below 2 converges
 constexpr double tolerance = 1e-6;  // m per sweep
-constexpr int most_sweeps = 20000;
+constexpr int max_sweeps = 20000;
 constexpr std::size_t fewest_points = 24;  // of the coarsest level
 
 /// One level of the quadratic program. Updates the second differences when an offset changes.
@@ -76,7 +76,7 @@ std::vector<double> solve(const Curve& points, const Curve& normals, double boun
     }
   }
   Level level(points, normals, offsets);
-  for (int k = 0; k < most_sweeps && level.sweep(bound) > tolerance; ++k) {
+  for (int k = 0; k < max_sweeps && level.sweep(bound) > tolerance; ++k) {
   }
   return offsets;
 }

@@ -10,11 +10,11 @@ namespace {
 
 constexpr double lowest_friction = 0.25, highest_friction = 1.5;
 constexpr double lowest_gain = 0.85, highest_gain = 1.15;
-constexpr double longest_delay = 0.2;  // s
-constexpr double slowest = 1.0;        // m/s, below it tyres hardly slip
-constexpr double turning = 3.0;        // m/s^2, lateral acceleration from which on all is learned anew
-constexpr double farthest = 0.5;       // m or rad between poses: a jump of the localisation
-constexpr double largest_error = 5;    // deviations
+constexpr double max_delay = 0.2;    // s
+constexpr double slowest = 1.0;      // m/s, below it tyres hardly slip
+constexpr double turning = 3.0;      // m/s^2, lateral acceleration from which on all is learned anew
+constexpr double farthest = 0.5;     // m or rad between poses: a jump of the localisation
+constexpr double largest_error = 5;  // deviations
 
 double ratio() noexcept {
   return std::log(highest_friction / lowest_friction) / (ParameterEstimator::frictions - 1);
@@ -23,7 +23,7 @@ double gain_at(int i) noexcept {
   return lowest_gain + (highest_gain - lowest_gain) * i / (ParameterEstimator::gains - 1);
 }
 double delay_at(int i) noexcept {
-  return longest_delay * i / (ParameterEstimator::delays - 1);
+  return max_delay * i / (ParameterEstimator::delays - 1);
 }
 double square_of(double value) noexcept {
   return value * value;
@@ -54,7 +54,7 @@ ParameterEstimator::ParameterEstimator(const SingleTrackDynamics& dynamics, cons
       friction_(friction),
       delay_(delay),
       period_(period),
-      window_(std::clamp(static_cast<int>(std::lround(options.window / period)), 2, longest_window)),
+      window_(std::clamp(static_cast<int>(std::lround(options.window / period)), 2, max_window)),
       log_prior_(hypotheses),
       evidence_(hypotheses),
       lateral_error_(hypotheses),
@@ -129,8 +129,8 @@ const ParameterEstimate& ParameterEstimator::update(const MeasuredMotion& now) n
 }
 
 void ParameterEstimator::weigh() noexcept {
-  std::array<float, (longest_window + 1) * delays> angles;
-  std::array<float, longest_window + 1> speed, acceleration;
+  std::array<float, (max_window + 1) * delays> angles;
+  std::array<float, max_window + 1> speed, acceleration;
   std::array<float, gains> gain;
   std::array<float, frictions> friction;
   double used = 0;
@@ -218,7 +218,7 @@ void ParameterEstimator::summarise() noexcept {
   using detail::Moments;
   const Moments logarithm = moments(of_friction, ratio(), [](int i) { return std::log(friction_at(i)); });
   const Moments gain = moments(of_gain, (highest_gain - lowest_gain) / (gains - 1), gain_at);
-  const Moments delay = moments(of_delay, longest_delay / (delays - 1), delay_at);
+  const Moments delay = moments(of_delay, max_delay / (delays - 1), delay_at);
   if (moments_ == 0) prior_ = {logarithm, gain, delay};
   // A grid cuts the prior, whose mean is then not the given value. What has been learned replaces the given
   // value, not the mean of the cut prior.

@@ -9,10 +9,10 @@ namespace {
 
 enum Index { x, y, yaw, speed, yaw_rate, lateral, bias };
 
-constexpr double piece = 0.005;    // s, of a prediction
-constexpr double farthest = 0.5;   // m or rad; a pose further from the predicted one was reset
-constexpr double slow = 0.5;       // m/s, below it tyres do not slip
-constexpr double most_slip = 1.2;  // rad
+constexpr double piece = 0.005;   // s, of a prediction
+constexpr double farthest = 0.5;  // m or rad; a pose further from the predicted one was reset
+constexpr double slow = 0.5;      // m/s, below it tyres do not slip
+constexpr double max_slip = 1.2;  // rad
 constexpr double bias_spread = 0.02, bias_drift = 1e-4;  // rad/s, at the start and in a period
 
 double square_of(double value) noexcept {
@@ -21,7 +21,7 @@ double square_of(double value) noexcept {
 
 double slip_from(double sideways, double along) noexcept {
   const double safe = std::copysign(std::max(std::abs(along), 0.1), along);
-  return std::asin(std::clamp(sideways / safe, -std::sin(most_slip), std::sin(most_slip)));
+  return std::asin(std::clamp(sideways / safe, -std::sin(max_slip), std::sin(max_slip)));
 }
 
 }  // namespace

@@ -23,14 +23,14 @@ constexpr double clock_set_back = 1.0;
 /// Tolerance of the limits for a motion of the odometry: m, rad.
 constexpr double jump_slack = 0.1;
 /// After a jump of the odometry the last motion is continued for at most this time, s.
-constexpr double longest_guess = 0.2;
+constexpr double max_prediction = 0.2;
 
 /// A hypothesis within this distance (m, rad) is the same place.
 constexpr double near_place = 0.5, near_yaw = 0.3;
 /// The longer a place has fitted well, the larger the margin by which another one must fit better, since the
 /// two directions of a corridor look alike: the margin grows by `rival_margin` per `trust_unit` (s), and each
 /// doubtful update reduces it by a factor.
-constexpr double trust_unit = 0.3, most_trust = 5, doubt_keeps = 0.93, least_trust = 0.3;
+constexpr double trust_unit = 0.3, max_trust = 5, doubt_keeps = 0.93, min_trust = 0.3;
 constexpr double relocated_deviation = 0.15, relocated_yaw_deviation = 0.08;
 
 bool is_finite(const maps::Pose& pose) {
@@ -96,7 +96,7 @@ struct Localiser::Implementation {
                            next_key());
     forget();
     output.pose = pose;
-    trust = most_trust;
+    trust = max_trust;
     settled = true;
   }
   void forget() noexcept {
@@ -148,7 +148,7 @@ LocaliserStatus Localiser::Implementation::move(const LocaliserInput& input) noe
     const bool jumped = elapsed <= 0 || distance > options.motion.max_speed * elapsed + jump_slack ||
                         std::abs(motion.step.yaw) > options.motion.max_yaw_rate * elapsed + jump_slack;
     if (jumped) {
-      const double guess = std::clamp(elapsed, 0.0, longest_guess);
+      const double guess = std::clamp(elapsed, 0.0, max_prediction);
       motion.step = {velocity.x * guess, velocity.y * guess, velocity.yaw * guess};
       status = LocaliserStatus::odometry_jump;
     } else {
@@ -208,13 +208,13 @@ void Localiser::Implementation::use_scan() noexcept {
 
 /// Searches other places while there is cause to, and moves the particles to one that fits better.
 void Localiser::Implementation::look_elsewhere() noexcept {
-  const bool doubtful = options.recovery.recovery_margin * fast < std::max(slow, options.recovery.least_fit);
+  const bool doubtful = options.recovery.recovery_margin * fast < std::max(slow, options.recovery.min_fit);
   const bool was_searching = output.searching;
   // A place that this search has found competes with the others on equal terms until the search is over.
   if (doubtful) {
     trust *= doubt_keeps;
   } else if (settled) {
-    trust = std::min(trust + std::max(0.0, elapsed), most_trust);
+    trust = std::min(trust + std::max(0.0, elapsed), max_trust);
   }
   if (doubtful) search_until = stamp + options.recovery.search_time;
   output.searching = doubtful || (was_searching && stamp < search_until);
@@ -284,7 +284,7 @@ const LocaliserOutput& Localiser::update(const LocaliserInput& input) noexcept {
   self.use_scan();
   if (moved != LocaliserStatus::ok) return finish(moved);
   const bool good =
-      out.share >= self.options.good_share && out.fit >= self.options.good_fit && self.trust >= least_trust;
+      out.share >= self.options.good_share && out.fit >= self.options.good_fit && self.trust >= min_trust;
   return finish(good ? LocaliserStatus::ok : LocaliserStatus::uncertain);
 }
 

@@ -65,7 +65,7 @@ bool choose_beams(const maps::LaserScanView& scan, const LocaliserOptions& optio
     beams.range[to] = beams.range[lost];
     beams.bin[to] = beams.bin[lost];
   }
-  return beams.hits >= options.least_beams;
+  return beams.hits >= options.min_beams;
 }
 
 }  // namespace slalom::vehicle::detail

@@ -7,13 +7,13 @@ namespace slalom::vehicle {
 
 void LocaliserOptions::validate() const {
   validate_options(*this, "localiser");
-  if (particles.most_particles < particles.least_particles) {
-    throw std::invalid_argument("localiser.most_particles: " + std::to_string(particles.most_particles) +
-                                " must be at least least_particles, " +
-                                std::to_string(particles.least_particles));
+  if (particles.max_particles < particles.min_particles) {
+    throw std::invalid_argument("localiser.max_particles: " + std::to_string(particles.max_particles) +
+                                " must be at least min_particles, " +
+                                std::to_string(particles.min_particles));
   }
-  if (least_beams > beams) {
-    throw std::invalid_argument("localiser.least_beams: " + std::to_string(least_beams) +
+  if (min_beams > beams) {
+    throw std::invalid_argument("localiser.min_beams: " + std::to_string(min_beams) +
                                 " must be at most beams, " + std::to_string(beams));
   }
   if (!(recovery.slow_rate < recovery.fast_rate)) {

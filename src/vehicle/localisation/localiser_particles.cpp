@@ -40,15 +40,15 @@ maps::Pose FreeSpace::random_pose(RandomStream& random) const noexcept {
 Particles::Particles(const maps::OccupancyGrid& map, const LocaliserOptions& options)
     : options_(options),
       free_space_(map),
-      now_(1, 3, options.particles.most_particles),
-      next_(1, 3, options.particles.most_particles),
-      noise_(1, 3, options.particles.most_particles),
-      log_fit_(static_cast<std::size_t>(padded(options.particles.most_particles))),
-      weights_(static_cast<std::size_t>(options.particles.most_particles)),
+      now_(1, 3, options.particles.max_particles),
+      next_(1, 3, options.particles.max_particles),
+      noise_(1, 3, options.particles.max_particles),
+      log_fit_(static_cast<std::size_t>(padded(options.particles.max_particles))),
+      weights_(static_cast<std::size_t>(options.particles.max_particles)),
       cumulative_(weights_.size()),
       guide_(weights_.size()),
-      bins_(options.particles.most_particles, options.particles.bin_size, options.particles.bin_angle),
-      places_(options.particles.most_particles, place_size, place_angle) {}
+      bins_(options.particles.max_particles, options.particles.bin_size, options.particles.bin_angle),
+      places_(options.particles.max_particles, place_size, place_angle) {}
 
 void Particles::put(SequenceBatch& to, int i, const maps::Pose& pose) noexcept {
   to.at(0, 0, i) = static_cast<float>(pose.x);
@@ -64,18 +64,18 @@ void Particles::make_uniform(int count) noexcept {
 void Particles::spread_about(const maps::Pose& pose, double deviation, double yaw_deviation,
                              RandomKey key) noexcept {
   fill_normal(noise_, 0, noise_.stride(), key);
-  for (int i = 0; i < options_.particles.most_particles; ++i) {
+  for (int i = 0; i < options_.particles.max_particles; ++i) {
     put(now_, i,
         {pose.x + deviation * noise_.at(0, 0, i), pose.y + deviation * noise_.at(0, 1, i),
          maps::wrap_angle(pose.yaw + yaw_deviation * noise_.at(0, 2, i))});
   }
-  make_uniform(options_.particles.most_particles);
+  make_uniform(options_.particles.max_particles);
 }
 
 void Particles::spread_everywhere(RandomKey key) noexcept {
   RandomStream random(key);
-  for (int i = 0; i < options_.particles.most_particles; ++i) put(now_, i, free_space_.random_pose(random));
-  make_uniform(options_.particles.most_particles);
+  for (int i = 0; i < options_.particles.max_particles; ++i) put(now_, i, free_space_.random_pose(random));
+  make_uniform(options_.particles.max_particles);
 }
 
 void Particles::move(const Motion& motion, RandomKey key) noexcept {
@@ -144,15 +144,15 @@ void Particles::resample(RandomKey key) noexcept {
   const double shift = RandomStream(key).uniform();
   bins_.clear();
   int drawn = 0;
-  double wanted = options_.particles.least_particles;
-  while (drawn < wanted && drawn < options_.particles.most_particles) {
+  double wanted = options_.particles.min_particles;
+  while (drawn < wanted && drawn < options_.particles.max_particles) {
     double uniform = radical_inverse(static_cast<std::uint32_t>(drawn)) + shift;
     uniform -= uniform >= 1;
     const maps::Pose chosen = pose(draw(uniform));
     put(next_, drawn++, chosen);
     if (bins_.add(chosen.x, chosen.y, chosen.yaw, 1))
       wanted = std::max<double>(
-          options_.particles.least_particles,
+          options_.particles.min_particles,
           kld_sample_size(bins_.occupied(), options_.particles.kld_error, options_.particles.kld_quantile));
   }
   std::swap(now_, next_);

@@ -23,10 +23,10 @@ bool same(const maps::Pose& a, const maps::Pose& b) {
 Search::Search(const maps::OccupancyGrid& map, const LocaliserOptions& options)
     : options_(options),
       free_space_(map),
-      poses_(1, 3, options.recovery.most_hypotheses * (copies + options.recovery.search_factor)),
-      noise_(1, 3, options.recovery.most_hypotheses * copies),
+      poses_(1, 3, options.recovery.max_hypotheses * (copies + options.recovery.search_factor)),
+      noise_(1, 3, options.recovery.max_hypotheses * copies),
       log_fit_(static_cast<std::size_t>(poses_.stride())),
-      hypotheses_(static_cast<std::size_t>(options.recovery.most_hypotheses)),
+      hypotheses_(static_cast<std::size_t>(options.recovery.max_hypotheses)),
       newcomers_(static_cast<std::size_t>(newcomers)) {}
 
 maps::Pose Search::batch_pose(int i) const noexcept {
@@ -102,7 +102,7 @@ void Search::admit(int first) noexcept {
   for (int n = 0; n < chosen; ++n) {
     const int from = newcomers_[static_cast<std::size_t>(n)];
     int to = count_;
-    if (count_ < options_.recovery.most_hypotheses) {
+    if (count_ < options_.recovery.max_hypotheses) {
       ++count_;
     } else {
       to = -1;

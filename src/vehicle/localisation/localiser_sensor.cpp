@@ -15,7 +15,7 @@ namespace {
 constexpr float log_in_wall = -1.0F;
 /// Standard deviations from a wall within which a beam counts as explained by it.
 constexpr double explained_within = 2.5;
-constexpr std::size_t most_entries = std::size_t{1} << 27;
+constexpr std::size_t max_entries = std::size_t{1} << 27;
 
 maps::GridGeometry geometry_of(const maps::OccupancyGrid& map, double resolution) {
   const double length = map.width * map.resolution, width = map.height * map.resolution;
@@ -105,7 +105,7 @@ void SensorTables::make_ranges(const maps::OccupancyGrid& map, const LocaliserOp
     }
   }
   const std::size_t angles = static_cast<std::size_t>(table_.angles);
-  if (origins.size() * angles > most_entries) {
+  if (origins.size() * angles > max_entries) {
     throw std::invalid_argument("localiser.table_cell: " + std::to_string(options.table_cell) +
                                 ": the table of ranges would have more than 2^27 entries; use a larger cell, "
                                 "fewer table_angles or the likelihood field");

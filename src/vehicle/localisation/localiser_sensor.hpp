@@ -37,7 +37,7 @@ struct ScanBeams {
 };
 
 /// Chooses readings evenly over the scan: of every part of it the first usable one. False where the scan has
-/// an invalid geometry or fewer than `least_beams` usable readings.
+/// an invalid geometry or fewer than `min_beams` usable readings.
 bool choose_beams(const maps::LaserScanView& scan, const LocaliserOptions& options,
                   ScanBeams& beams) noexcept;
 

@@ -17,10 +17,10 @@ constexpr int parameters = 6;  // gain, offset, delay, time constant, wheelbase,
 using Parameters = std::array<double, parameters>;
 using Normal = std::array<std::array<double, parameters>, parameters>;
 
-constexpr double longest_gap = 0.2;  // s
-constexpr double settling = 0.5;     // s at the beginning of a segment, while the wheels' angle is not known
-constexpr double longest_delay = 0.3;  // s
-constexpr int least_samples = 200;
+constexpr double max_gap = 0.2;    // s
+constexpr double settling = 0.5;   // s at the beginning of a segment, while the wheels' angle is not known
+constexpr double max_delay = 0.3;  // s
+constexpr int min_samples = 200;
 constexpr double steps[parameters] = {1e-4, 1e-5, 1e-4, 1e-4, 1e-4, 1e-5};  // of the central differences
 
 /// The change of yaw from one sample to the next.
@@ -33,7 +33,7 @@ struct Turn {
   bool counts = false;        ///< whether the fit uses it
 };
 
-std::vector<Turn> turns_of(std::span<const DrivenSample> samples, double least_speed) {
+std::vector<Turn> turns_of(std::span<const DrivenSample> samples, double min_speed) {
   std::vector<Turn> turns;
   double segment_begin = 0;
   bool first = true;
@@ -42,14 +42,14 @@ std::vector<Turn> turns_of(std::span<const DrivenSample> samples, double least_s
     const double dt = b.time - a.time;
     const double all =
         a.time + b.time + a.yaw + b.yaw + a.speed + b.speed + a.steer_command + a.x + b.x + a.y + b.y;
-    if (!std::isfinite(all) || dt <= 0 || dt > longest_gap) {
+    if (!std::isfinite(all) || dt <= 0 || dt > max_gap) {
       first = true;
       continue;
     }
     Turn t{a.time, b.time, maps::wrap_angle(b.yaw - a.yaw), 0.5 * (a.speed + b.speed), i, first, false};
     if (first) segment_begin = a.time;
     first = false;
-    t.counts = std::abs(t.speed) >= least_speed && a.time - segment_begin >= settling;
+    t.counts = std::abs(t.speed) >= min_speed && a.time - segment_begin >= settling;
     turns.push_back(t);
   }
   return turns;
@@ -108,7 +108,7 @@ double square_sum(const std::vector<double>& values) {
 Parameters within_bounds(Parameters p) {
   p[0] = std::clamp(p[0], 0.05, 20.0);
   p[1] = std::clamp(p[1], -0.5, 0.5);
-  p[2] = std::clamp(p[2], 0.0, longest_delay);
+  p[2] = std::clamp(p[2], 0.0, max_delay);
   p[3] = std::clamp(p[3], 2e-3, 2.0);
   p[4] = std::clamp(p[4], 0.02, 20.0);
   p[5] = std::clamp(p[5], -0.02, 1.0);
@@ -226,9 +226,9 @@ void require_enough(std::span<const DrivenSample> samples, const std::vector<Tur
     low = std::min(low, samples[t.sample].steer_command);
     high = std::max(high, samples[t.sample].steer_command);
   }
-  if (used < least_samples)
+  if (used < min_samples)
     throw std::invalid_argument("identify: " + std::to_string(used) + " usable samples, must be at least " +
-                                std::to_string(least_samples) + "; drive for longer");
+                                std::to_string(min_samples) + "; drive for longer");
   if (high - low < 0.1)
     throw std::invalid_argument("identify: the steering commands span " + std::to_string(high - low) +
                                 " rad, must span at least 0.1 rad; drive curves to both sides");
@@ -258,9 +258,9 @@ double speed_scale(std::span<const DrivenSample> samples, const std::vector<Turn
 }  // namespace
 
 Identification identify(std::span<const DrivenSample> samples, const IdentificationOptions& options) {
-  if (!(options.wheelbase >= 0) || !(options.least_speed > 0))
-    throw std::invalid_argument("identify: wheelbase must be at least 0 m, least_speed above 0 m/s");
-  const std::vector<Turn> turns = turns_of(samples, options.least_speed);
+  if (!(options.wheelbase >= 0) || !(options.min_speed > 0))
+    throw std::invalid_argument("identify: wheelbase must be at least 0 m, min_speed above 0 m/s");
+  const std::vector<Turn> turns = turns_of(samples, options.min_speed);
   require_enough(samples, turns);
   const Model model(samples, turns);
   const bool given = options.wheelbase > 0;

@@ -8,10 +8,10 @@ namespace slalom::vehicle {
 
 namespace {
 
-constexpr double gravity = 9.81;          // m/s^2
-constexpr double tyre_shape = 1.5;        // C of Pacejka's curve
-constexpr double longest_piece = 0.0125;  // s, of a prediction by commands
-constexpr double braking_share = 0.8;     // of the usable grip, that curves leave for braking
+constexpr double gravity = 9.81;       // m/s^2
+constexpr double tyre_shape = 1.5;     // C of Pacejka's curve
+constexpr double max_step = 0.0125;    // s, of a prediction by commands
+constexpr double braking_share = 0.8;  // of the usable grip, that curves leave for braking
 
 }  // namespace
 
@@ -95,7 +95,7 @@ void SingleTrack::randomize(RandomStream& random) noexcept {
 VehicleStart SingleTrack::advance(const VehicleStart& start, const Command& command,
                                   double duration) const noexcept {
   State<double> s = this->start(start, 0);
-  const int pieces = static_cast<int>(std::ceil(duration / longest_piece - 1e-9));
+  const int pieces = static_cast<int>(std::ceil(duration / max_step - 1e-9));
   const double dt = duration / pieces, friction = double(friction_);
   for (int i = 0; i < pieces; ++i) {
     double acceleration = 0;

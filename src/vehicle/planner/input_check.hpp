@@ -9,7 +9,7 @@ namespace slalom::vehicle::detail {
 /// Whether odometry is a number and as large as that of a car may be.
 inline bool plausible(const Odometry& o) {
   return std::abs(o.pose.x) <= Odometry::furthest && std::abs(o.pose.y) <= Odometry::furthest &&
-         std::abs(o.pose.yaw) <= Odometry::most_turned && std::abs(o.speed) <= Odometry::fastest;
+         std::abs(o.pose.yaw) <= Odometry::max_yaw && std::abs(o.speed) <= Odometry::fastest;
 }
 
 }  // namespace slalom::vehicle::detail

@@ -15,7 +15,7 @@ namespace slalom::vehicle::detail {
 /// what it has passed: where the scan does not reach, they are obstacles still.
 class ObstacleMemory {
  public:
-  ObstacleMemory() { blind_.reserve(scans * most_points); }
+  ObstacleMemory() { blind_.reserve(scans * max_points); }
 
   void reset() noexcept {
     for (Scan& scan : scans_) scan.count = 0;
@@ -30,8 +30,8 @@ class ObstacleMemory {
     Scan& scan = scans_[next_];
     next_ = (next_ + 1) % scans;
     scan.count = 0;
-    const std::size_t stride = seen.size() / most_points + 1;
-    for (std::size_t i = 0; i < seen.size() && scan.count < most_points; i += stride) {
+    const std::size_t stride = seen.size() / max_points + 1;
+    for (std::size_t i = 0; i < seen.size() && scan.count < max_points; i += stride) {
       const maps::Point point{static_cast<double>(seen[i].x), static_cast<double>(seen[i].y)};
       if (point.x * point.x + point.y * point.y < reach * reach)
         scan.points[scan.count++] = maps::transform(pose, point);
@@ -57,12 +57,12 @@ class ObstacleMemory {
   }
 
  private:
-  static constexpr std::size_t scans = 24, most_points = 160;
+  static constexpr std::size_t scans = 24, max_points = 160;
   static constexpr double interval = 0.2;  ///< s between scans that are kept
   static constexpr double reach = 4;       ///< m, of points that are kept
 
   struct Scan {
-    std::array<maps::Point, most_points> points;  ///< map frame
+    std::array<maps::Point, max_points> points;  ///< map frame
     std::size_t count = 0;
   };
   std::array<Scan, scans> scans_{};

@@ -7,12 +7,12 @@ namespace slalom::vehicle::detail {
 
 namespace {
 
-constexpr double gravity = 9.81;                          // m/s^2
-constexpr double side_step = 0.75;                        // car widths from one way to the next
-constexpr double slow_speeds[] = {1.5, 3, 1e3};           // m/s at most
-constexpr double turning_share = 0.6;                     // of the usable grip
-constexpr double braking = 0.8, accelerating = 0.5;       // of the largest deceleration and acceleration
-constexpr double look_ahead = 0.4, least_wheelbases = 2;  // s, and wheelbases on top of it
+constexpr double gravity = 9.81;                        // m/s^2
+constexpr double side_step = 0.75;                      // car widths from one way to the next
+constexpr double slow_speeds[] = {1.5, 3, 1e3};         // m/s at most
+constexpr double turning_share = 0.6;                   // of the usable grip
+constexpr double braking = 0.8, accelerating = 0.5;     // of the largest deceleration and acceleration
+constexpr double look_ahead = 0.4, min_wheelbases = 2;  // s, and wheelbases on top of it
 
 double distance(const maps::ReferencePoint& point, double x, double y) {
   return std::hypot(point.x - x, point.y - y);
@@ -73,7 +73,7 @@ void WaysAround::draw_way(int way, Car car, std::span<const double> path_speeds,
 /// The tangent of the wheels' angle that leads, on a circle, to the line `offset` m left of the path (pure
 /// pursuit; Coulter, CMU-RI-TR-92-01, 1992).
 double WaysAround::steering_to(const Car& car, double offset) const noexcept {
-  const double ahead = look_ahead * car.speed + least_wheelbases * traits_.wheelbase;
+  const double ahead = look_ahead * car.speed + min_wheelbases * traits_.wheelbase;
   std::size_t to = car.at;
   for (double way = 0; way < ahead;) {
     const std::size_t before = to;

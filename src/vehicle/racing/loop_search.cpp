@@ -12,8 +12,8 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-constexpr std::size_t most_areas = 3;    // of free space, the largest, that are searched
-constexpr std::size_t most_islands = 5;  // of an area, the largest, that are tried
+constexpr std::size_t max_areas = 3;    // of free space, the largest, that are searched
+constexpr std::size_t max_islands = 5;  // of an area, the largest, that are tried
 
 constexpr int steps[8][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
 
@@ -208,10 +208,10 @@ std::vector<maps::Point> find_loop(const FreeSpace& space, double keep,
     std::size_t searched = 0;
     for (const int area : largest(areas, areas.regions().size())) {
       if (areas.regions()[static_cast<std::size_t>(area)].at_border != surroundings) continue;
-      if (++searched > most_areas) break;
+      if (++searched > max_areas) break;
       const Area ground(space, areas, area);
       const CellRegions islands = ground.islands();
-      for (const int island : largest(islands, most_islands + 1)) {
+      for (const int island : largest(islands, max_islands + 1)) {
         if (island == islands.at(0, 0)) continue;
         std::vector<maps::Point> loop = ground.way_round(islands, island);
         const double slender = slenderness(space, loop);

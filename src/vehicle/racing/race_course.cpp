@@ -15,12 +15,12 @@
 namespace slalom::vehicle {
 namespace {
 
-constexpr double widest = 25;         // of half the car's width: the reach of a corridor to one side
-constexpr double most_points = 3000;  // of a centre line
-constexpr int most_rounds = 4;        // of improving a line along its own normals
-constexpr double least_gain = 5e-4;   // share of the time, by which a round must improve it
-constexpr double least_room = 1e-3;   // m, between the bounds of a line
-constexpr double most_turned = 0.6;   // rad, of the way from the x axis at a start that is found
+constexpr double widest = 25;        // of half the car's width: the reach of a corridor to one side
+constexpr double max_points = 3000;  // of a centre line
+constexpr int max_rounds = 4;        // of improving a line along its own normals
+constexpr double min_gain = 5e-4;    // share of the time, by which a round must improve it
+constexpr double min_room = 1e-3;    // m, between the bounds of a line
+constexpr double max_yaw = 0.6;      // rad, of the way from the x axis at a start that is found
 constexpr double half_turn = 3.14159265358979323846;  // rad
 
 double distance(const maps::Point& a, const maps::Point& b) {
@@ -90,16 +90,16 @@ void begin_at_start(RaceCourse& course, const std::optional<maps::Pose>& start) 
 Raceline fastest_line(const detail::FreeSpace& space, const Corridor& corridor, const RacingCar& car,
                       const detail::CorridorMeasure& measure) {
   Raceline best = minimum_time_raceline(corridor, car);
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     std::vector<maps::Point> line;
     for (const RacelinePoint& point : best.points) line.push_back({point.x, point.y});
     const Corridor along_line = detail::measured_corridor(space, line, best.closed, measure);
     for (std::size_t i = 0; i < along_line.left.size(); ++i)
-      if (along_line.left[i] + along_line.right[i] <= 2 * measure.keep + least_room) return best;
+      if (along_line.left[i] + along_line.right[i] <= 2 * measure.keep + min_room) return best;
     Raceline next = minimum_time_raceline(along_line, car);
     const bool turns_more = next.curvature_limit > best.curvature_limit;
     if (turns_more || next.time >= best.time) return best;
-    const bool done = next.time > (1 - least_gain) * best.time;
+    const bool done = next.time > (1 - min_gain) * best.time;
     best = std::move(next);
     if (done) return best;
   }
@@ -153,7 +153,7 @@ std::vector<maps::Point> found_loop(const detail::FreeSpace& space, double keep,
   }
   const maps::Point &origin{0, 0}, &passed = line[nearest_row(line, origin)];
   if (!start && space.clearance(origin) >= keep && distance(passed, origin) <= 2 * space.clearance(passed) &&
-      std::abs(along(line, true, {})) > std::cos(most_turned)) {
+      std::abs(along(line, true, {})) > std::cos(max_yaw)) {
     start = maps::Pose{};
     notes.emplace_back("the start is the origin of the map frame, along +x, since none was given");
   }
@@ -178,7 +178,7 @@ void check_finite(const GuideLine& guide) {
 }  // namespace
 
 double centre_line_step(const RacingCar& car, double length) {
-  return std::max(0.5 * car.wheelbase, length / most_points);
+  return std::max(0.5 * car.wheelbase, length / max_points);
 }
 
 RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, const RaceCourseOptions& options,

@@ -1,4 +1,4 @@
-// The line of least time: known answers, limits, optimality, errors.
+// The minimum-time line: known answers, limits, optimality, errors.
 #include "slalom/vehicle/racing/minimum_time.hpp"
 
 #include <gtest/gtest.h>
@@ -101,8 +101,8 @@ TEST(MinimumTime, StaysInTheCorridorAndWithinTheLimits) {
 TEST(MinimumTime, IsFasterThanTheLineOfLeastCurvature) {
   const RacingCar car;
   const Corridor corridor = winding(1.1);
-  const auto least_curvature = minimum_curvature_offsets(corridor.centre_line, 1.1 - wall_distance(car));
-  EXPECT_LT(minimum_time_raceline(corridor, car).time, time_of(corridor, least_curvature, car));
+  const auto min_curvature = minimum_curvature_offsets(corridor.centre_line, 1.1 - wall_distance(car));
+  EXPECT_LT(minimum_time_raceline(corridor, car).time, time_of(corridor, min_curvature, car));
 }
 
 TEST(MinimumTime, NoSmoothChangeOfTheLineIsFaster) {

@@ -47,8 +47,8 @@ namespace detail {
 /// Parameters in the order in which the layers read them, with normalisation and padding in them.
 class MlpNetwork {
  public:
-  static constexpr int most_layers = 8;  ///< hidden layers and the output layer
-  static constexpr int most_neurons = 64;
+  static constexpr int max_layers = 8;  ///< hidden layers and the output layer
+  static constexpr int max_neurons = 64;
   static constexpr int block = 8;  ///< neurons that are computed together
 
   /// A network without hidden layers whose outputs are 0.
@@ -56,7 +56,7 @@ class MlpNetwork {
   /// Throws std::invalid_argument where the parameters do not fit together or to these sizes.
   MlpNetwork(const MlpParameters& parameters, int inputs, int outputs);
 
-  /// The outputs for `values` [inputs], which become those [outputs]; the array has room for `most_neurons`.
+  /// The outputs for `values` [inputs], which become those [outputs]; the array has room for `max_neurons`.
   template <class T>
   SLALOM_INLINE_CALLS void evaluate(T* values, T* other) const {
     const float* weight = weights_.get();
@@ -116,7 +116,7 @@ class MlpNetwork {
   }
 
   int layers_ = 1;
-  int sizes_[most_layers + 1] = {};  ///< values that enter each layer, then the outputs
+  int sizes_[max_layers + 1] = {};  ///< values that enter each layer, then the outputs
   Activation activation_ = Activation::tanh;
   std::shared_ptr<const float[]> weights_;
 };
@@ -134,9 +134,9 @@ class MlpNetwork {
 /// Inputs, outputs and hidden layers have at most 64 values, and there are at most 7 hidden layers.
 template <int Inputs, int Outputs>
 class Mlp {
-  static_assert(Inputs >= 1 && Inputs <= detail::MlpNetwork::most_neurons,
+  static_assert(Inputs >= 1 && Inputs <= detail::MlpNetwork::max_neurons,
                 "slalom: an Mlp has 1 to 64 inputs");
-  static_assert(Outputs >= 1 && Outputs <= detail::MlpNetwork::most_neurons,
+  static_assert(Outputs >= 1 && Outputs <= detail::MlpNetwork::max_neurons,
                 "slalom: an Mlp has 1 to 64 outputs");
 
  public:
@@ -159,7 +159,7 @@ class Mlp {
   requires(1 + sizeof...(More) == Inputs) SLALOM_INLINE_CALLS Result<T>
   operator()(const T& first, const More&... more) const {
     const T inputs[Inputs] = {first, T(more)...};
-    T values[detail::MlpNetwork::most_neurons], other[detail::MlpNetwork::most_neurons];
+    T values[detail::MlpNetwork::max_neurons], other[detail::MlpNetwork::max_neurons];
     for (int i = 0; i < Inputs; ++i) values[i] = inputs[i];
     network_.evaluate(values, other);
     Result<T> result;

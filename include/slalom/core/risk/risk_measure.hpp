@@ -6,8 +6,8 @@ namespace slalom {
 
 /// The costs of a range of samples in every variant of the world, [variant][sample].
 struct VariantCosts {
-  static constexpr int capacity = 128;                ///< samples
-  alignas(64) float values[most_variants][capacity];  ///< the costs
+  static constexpr int capacity = 128;               ///< samples
+  alignas(64) float values[max_variants][capacity];  ///< the costs
 };
 
 /// The risk of the first `count` samples: what `options.measure` makes of their costs in the first

@@ -32,7 +32,7 @@ struct RiskOptions {
 };
 
 /// The most variants of a world.
-inline constexpr int most_variants = 32;
+inline constexpr int max_variants = 32;
 
 /// Declares every option by name, unit, help and range.
 template <class Options, class Visit>
@@ -42,7 +42,7 @@ void visit_options(Options& o, Visit&& visit) {
                                 .symbol = "M",
                                 .help = "variants of the world in which every sample is rolled out",
                                 .min = 1,
-                                .max = most_variants});
+                                .max = max_variants});
   visit(o.measure, Declaration{.name = "risk_measure", .help = "what of a sample's costs in them counts"});
   visit(o.tail, Declaration{.name = "risk_tail",
                             .symbol = "alpha",

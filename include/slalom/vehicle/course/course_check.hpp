@@ -34,9 +34,9 @@ struct CourseFinding {
 struct CourseCheck {
   CourseFinding walls;  ///< nearer to a wall than half the width and the margin; value: m from line to wall
   CourseFinding grip;   ///< asks for more than the limits; value: the acceleration asked for, m/s^2
-  double least_distance =
+  double min_distance =
       0;  ///< m from the line to a wall: the least, where it is below the reach of the check
-  double most_acceleration = 0;  ///< m/s^2, the most that the profile asks for, along and across together
+  double max_acceleration = 0;  ///< m/s^2, the most that the profile asks for, along and across together
 };
 
 /// Compares the line of a course with its walls, and its profile with the limits of a car: the lateral

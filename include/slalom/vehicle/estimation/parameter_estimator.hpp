@@ -59,10 +59,10 @@ struct Moments {
 /// An update takes no time that depends on data, and neither allocates nor throws.
 class ParameterEstimator {
  public:
-  static constexpr int frictions = 16;       ///< geometric, 0.25 .. 1.5
-  static constexpr int gains = 5;            ///< 0.85 .. 1.15
-  static constexpr int delays = 9;           ///< 0 .. 0.2 s
-  static constexpr int longest_window = 40;  ///< control periods
+  static constexpr int frictions = 16;   ///< geometric, 0.25 .. 1.5
+  static constexpr int gains = 5;        ///< 0.85 .. 1.15
+  static constexpr int delays = 9;       ///< 0 .. 0.2 s
+  static constexpr int max_window = 40;  ///< control periods
 
   /// `friction` and `delay` (s) are those that were given, `period` (s) is the control period.
   ParameterEstimator(const SingleTrackDynamics& dynamics, const EstimationOptions& options, double friction,

@@ -28,7 +28,7 @@
 /// better for some time. Resampling uses a shifted radical inverse sequence, so that any number of draws is
 /// nearly stratified. The averaged fit is that of the estimate by the likelihood field, the mean over beams,
 /// so that neither the number of beams nor a parked car that is not on the map triggers a search. The
-/// long-term average is at least `least_fit`, so that a global start begins with a search. A rear axle in a
+/// long-term average is at least `min_fit`, so that a global start begins with a search. A rear axle in a
 /// wall counts as improbable.
 namespace slalom::vehicle {
 

@@ -44,8 +44,8 @@ struct LocaliserMotionOptions {
 
 /// Number of particles (KLD sampling) and resampling.
 struct LocaliserParticleOptions {
-  int least_particles = 500;    ///< 64 .. 1000000
-  int most_particles = 4000;    ///< least_particles .. 1000000
+  int min_particles = 500;      ///< 64 .. 1000000
+  int max_particles = 4000;     ///< min_particles .. 1000000
   double kld_error = 0.05;      ///< epsilon, bound on the Kullback-Leibler divergence
   double kld_quantile = 2.326;  ///< z_(1 - delta) of the standard normal; 2.326: kept in 99 % of updates
   double bin_size = 0.25;       ///< m, size of the bins whose number determines that of the particles
@@ -58,11 +58,11 @@ struct LocaliserRecoveryOptions {
   double slow_rate = 0.01;        ///< alpha_slow, of the long-term average of the fit of the particles
   double fast_rate = 0.3;         ///< alpha_fast, of the short-term average
   double recovery_margin = 1.25;  ///< nu: a search starts where nu * fast < slow
-  double least_fit = 0.6;         ///< lower bound of the long-term average
+  double min_fit = 0.6;           ///< lower bound of the long-term average
   double search_time = 2.0;       ///< s, of the search after its last cause
   double search_memory = 0.25;    ///< s, time constant of the average fit by which places are compared
   double rival_margin = 0.05;     ///< in log fit, by which another place must be better
-  int most_hypotheses = 96;       ///< number of hypotheses, 16 .. 4096
+  int max_hypotheses = 96;        ///< number of hypotheses, 16 .. 4096
   int search_factor = 28;         ///< random poses per hypothesis in each update of the search
 };
 
@@ -77,7 +77,7 @@ struct LocaliserOptions {
   int scan_readings = 0;   ///< number of readings of a valid scan; 0: any
 
   int beams = 60;               ///< number used per scan, evenly spaced; 8 .. 1024
-  int least_beams = 12;         ///< a scan with fewer usable readings is not used
+  int min_beams = 12;           ///< a scan with fewer usable readings is not used
   double range_cap = 12;        ///< m, longer readings are not used
   LocaliserBeamOptions beam{};  ///< probabilities of ranges
   double table_cell = 0.1;      ///< m, cell of the table of ranges; beam model only
@@ -107,8 +107,8 @@ void visit_localiser_scan(Options& o, Visit&& visit) {
   visit(o.scan_readings,
         Declaration{"scan_readings", "", "", "number of readings of a valid scan; 0: any", 0, 1e6});
   visit(o.beams, Declaration{"beams", "", "", "number of beams used per scan", 8, 1024});
-  visit(o.least_beams,
-        Declaration{"least_beams", "", "", "a scan with fewer usable readings is not used", 1, 1024});
+  visit(o.min_beams,
+        Declaration{"min_beams", "", "", "a scan with fewer usable readings is not used", 1, 1024});
   visit(o.range_cap, Declaration{"range_cap", "", "m", "longer readings are not used", 0.5, 1000});
   visit(o.beam.hit_deviation,
         Declaration{"hit_deviation", "", "m", "standard deviation of range and map together", 1e-3, 10});
@@ -142,11 +142,10 @@ void visit_localiser_filter(Options& o, Visit&& visit) {
         Declaration{"start_deviation", "", "m", "of the particles around a given start", 0, 100});
   visit(o.start_yaw_deviation,
         Declaration{"start_yaw_deviation", "", "rad", "of the particles around a given start", 0, 7});
-  visit(o.particles.least_particles,
-        Declaration{"least_particles", "", "", "least number of particles", 64, 1e6});
-  visit(o.particles.most_particles,
-        Declaration{"most_particles", "", "", "largest number of particles, at least least_particles", 64,
-                    1e6});
+  visit(o.particles.min_particles,
+        Declaration{"min_particles", "", "", "smallest number of particles", 64, 1e6});
+  visit(o.particles.max_particles,
+        Declaration{"max_particles", "", "", "largest number of particles, at least min_particles", 64, 1e6});
   visit(o.particles.kld_error,
         Declaration{"kld_error", "", "", "bound on the Kullback-Leibler divergence", 1e-3, 1});
   visit(o.particles.kld_quantile,
@@ -164,7 +163,7 @@ void visit_localiser_filter(Options& o, Visit&& visit) {
         Declaration{"fast_rate", "", "", "rate of the short-term average of the fit", 1e-6, 1});
   visit(o.recovery.recovery_margin,
         Declaration{"recovery_margin", "", "", "search where margin * fast < slow", 1, 100});
-  visit(o.recovery.least_fit, Declaration{"least_fit", "", "", "lower bound of the long-term average", 0, 1});
+  visit(o.recovery.min_fit, Declaration{"min_fit", "", "", "lower bound of the long-term average", 0, 1});
   visit(o.recovery.search_time,
         Declaration{"search_time", "", "s", "duration of a search after its last cause", 0, 1000});
   visit(o.recovery.search_memory,
@@ -172,7 +171,7 @@ void visit_localiser_filter(Options& o, Visit&& visit) {
                     1000});
   visit(o.recovery.rival_margin,
         Declaration{"rival_margin", "", "", "in log fit, by which another place must be better", 0, 10});
-  visit(o.recovery.most_hypotheses, Declaration{"most_hypotheses", "", "", "number of hypotheses", 16, 4096});
+  visit(o.recovery.max_hypotheses, Declaration{"max_hypotheses", "", "", "number of hypotheses", 16, 4096});
   visit(o.recovery.search_factor,
         Declaration{"search_factor", "", "", "random poses per hypothesis and update", 1, 1000});
   visit(o.good_share,

@@ -27,8 +27,8 @@ struct DrivenSample {
 
 /// What is known in advance.
 struct IdentificationOptions {
-  double wheelbase = 0;      ///< m; 0: estimated as well
-  double least_speed = 0.5;  ///< m/s, > 0; slower samples are not used
+  double wheelbase = 0;    ///< m; 0: estimated as well
+  double min_speed = 0.5;  ///< m/s, > 0; slower samples are not used
 };
 
 /// An estimate and its standard deviation.
@@ -57,7 +57,7 @@ struct Identification {
 /// Fits the model. A gap of more than 0.2 s between samples, a time that does not increase, or a value that
 /// is not finite begins a new segment; the first 0.5 s of a segment are not used. Throws
 /// std::invalid_argument if fewer than 200 samples are usable or the commands span less than 0.1 rad; the
-/// message says what is missing. Throws it also if the wheelbase is negative or `least_speed` not above 0.
+/// message says what is missing. Throws it also if the wheelbase is negative or `min_speed` not above 0.
 Identification identify(std::span<const DrivenSample> samples, const IdentificationOptions& options = {});
 
 }  // namespace slalom::vehicle

@@ -31,10 +31,10 @@ class ObstacleCost {
     if (discs_) {
       T sine, cosine;
       sin_cos(yaw, sine, cosine);
-      return disc_value(least_clearance(T(to_local_[0]) * x + (T(to_local_[1]) * y + T(to_local_[2])),
-                                        T(to_local_[3]) * x + (T(to_local_[4]) * y + T(to_local_[5])),
-                                        T(to_local_[0]) * cosine + T(to_local_[1]) * sine,
-                                        T(to_local_[3]) * cosine + T(to_local_[4]) * sine));
+      return disc_value(min_clearance(T(to_local_[0]) * x + (T(to_local_[1]) * y + T(to_local_[2])),
+                                      T(to_local_[3]) * x + (T(to_local_[4]) * y + T(to_local_[5])),
+                                      T(to_local_[0]) * cosine + T(to_local_[1]) * sine,
+                                      T(to_local_[3]) * cosine + T(to_local_[4]) * sine));
     }
     if constexpr (is_pack<T>) {
       // From the map frame to cells in one step.
@@ -65,7 +65,7 @@ class ObstacleCost {
     if (discs_) {
       T sine, cosine;
       sin_cos(yaw, sine, cosine);
-      return disc_value(least_clearance(x, y, cosine, sine));
+      return disc_value(min_clearance(x, y, cosine, sine));
     }
     return slalom::look_up(obstacles_, x, y);
   }
@@ -73,7 +73,7 @@ class ObstacleCost {
  private:
   /// The least clearance of the discs' centres, m.
   template <class T>
-  SLALOM_INLINE T least_clearance(const T& x, const T& y, const T& heading_x, const T& heading_y) const {
+  SLALOM_INLINE T min_clearance(const T& x, const T& y, const T& heading_x, const T& heading_y) const {
     T least = slalom::look_up(obstacles_, x + T(disc_[0]) * heading_x, y + T(disc_[0]) * heading_y);
     least = min(least, slalom::look_up(obstacles_, x + T(disc_[1]) * heading_x, y + T(disc_[1]) * heading_y));
     return min(least, slalom::look_up(obstacles_, x + T(disc_[2]) * heading_x, y + T(disc_[2]) * heading_y));

@@ -27,11 +27,11 @@ namespace slalom::vehicle {
 
 /// Pose (of the rear axle, map frame) and speed (m/s) as odometry or localisation gives them.
 struct Odometry {
-  static constexpr double furthest = 1e7;     ///< m, largest magnitude that a planner takes as a coordinate
-  static constexpr double most_turned = 1e6;  ///< rad, largest magnitude that a planner takes as a yaw
-  static constexpr double fastest = 200;      ///< m/s, largest magnitude that a planner takes as a speed
-  maps::Pose pose;                            ///< m, m, rad, in the map frame
-  double speed = 0;                           ///< m/s
+  static constexpr double furthest = 1e7;  ///< m, largest magnitude that a planner takes as a coordinate
+  static constexpr double max_yaw = 1e6;   ///< rad, largest magnitude that a planner takes as a yaw
+  static constexpr double fastest = 200;   ///< m/s, largest magnitude that a planner takes as a speed
+  maps::Pose pose;                         ///< m, m, rad, in the map frame
+  double speed = 0;                        ///< m/s
   double position_deviation = 0;  ///< m, standard deviation of the position along each axis; 0: not known
   double yaw_deviation = 0;       ///< rad, standard deviation of the yaw; 0: not known
 };

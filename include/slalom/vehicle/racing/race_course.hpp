@@ -33,7 +33,7 @@ struct GuideLine {
 struct RaceCourse {
   maps::OccupancyGrid map;         ///< the map
   Corridor corridor;               ///< the free space along the course
-  Raceline raceline;               ///< the line of least time; begins beside the start
+  Raceline raceline;               ///< the minimum-time line; begins beside the start
   std::vector<double> distance;    ///< m from each point of the raceline to the nearest wall
   maps::Pose start;                ///< pose of the car
   std::vector<std::string> notes;  ///< what was decided or ignored and why, one sentence each

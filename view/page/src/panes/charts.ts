@@ -5,7 +5,7 @@ import type { Frame, Hello } from "../protocol";
 import { needsEstimates, strips, type Line, type Strip } from "./strips";
 
 const span = 20; // s that the strips show
-const most_ticks = 500; // of the histogram
+const max_ticks = 500; // of the histogram
 
 function css(name: string) { return getComputedStyle(document.documentElement).getPropertyValue(name).trim(); }
 
@@ -43,7 +43,7 @@ export class Charts {
       this.plotted.push({ strip, box, holder, values, columns: strip.lines.map(() => []) });
     }
     this.covariance = this.frame("Standard deviation of the steering along the plan, rad", []);
-    const h = this.frame(`Planner time, last ${most_ticks} ticks, ms`, [{ name: "", label: "", colour: "" }]);
+    const h = this.frame(`Planner time, last ${max_ticks} ticks, ms`, [{ name: "", label: "", colour: "" }]);
     this.histogram = { holder: h.holder, value: h.values[0] };
     new ResizeObserver(() => this.rebuild()).observe(root);
   }
@@ -197,7 +197,7 @@ export class Charts {
 
   private drawHistogram() {
     const { past } = this.setting, index = this.hello!.scalars.indexOf("tick_ms"), all: number[] = [];
-    for (let position = past.newest; position >= past.oldest && all.length < most_ticks; --position) { const v = past.at(position)?.[index] ?? NaN; if (Number.isFinite(v)) all.push(v); }
+    for (let position = past.newest; position >= past.oldest && all.length < max_ticks; --position) { const v = past.at(position)?.[index] ?? NaN; if (Number.isFinite(v)) all.push(v); }
     this.histogram.holder.parentElement!.hidden = !all.length;
     if (!all.length) return;
     all.sort((a, b) => a - b);

@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 
 const slowdown = 6; // of the browser's processor
-const most_lag = 0.3; // s of simulated time between the tick shown at the click and that of the pause
-const most_waiting = 2; // frames
+const max_lag = 0.3; // s of simulated time between the tick shown at the click and that of the pause
+const max_waiting = 2; // frames
 
 export default async function (h) {
   await h.test("a slow browser pauses at the tick that it shows, and frames do not pile up", async () => {
@@ -31,8 +31,8 @@ export default async function (h) {
       const seen = await page.evaluate(() => ({ tick: slalom.state.tick, period: slalom.state.control_period, longest: longest / 1000, waiting }));
       const lag = (seen.tick - tick) * seen.period;
       console.log(`      paused ${lag.toFixed(2)} s after the tick shown; a draw takes up to ${seen.longest.toFixed(2)} s`);
-      assert.ok(seen.waiting <= most_waiting, `${seen.waiting} frames waited in the page`);
-      assert.ok(Math.abs(lag) <= most_lag, `the pause holds ${lag.toFixed(2)} s after the tick shown`);
+      assert.ok(seen.waiting <= max_waiting, `${seen.waiting} frames waited in the page`);
+      assert.ok(Math.abs(lag) <= max_lag, `the pause holds ${lag.toFixed(2)} s after the tick shown`);
     }
     await tools.send("Emulation.setCPUThrottlingRate", { rate: 1 });
     await page.close();
