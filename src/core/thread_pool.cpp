@@ -48,8 +48,9 @@ struct ThreadPool::Shared {
   alignas(64) std::atomic<std::uint64_t> open{0};
   alignas(64) std::atomic<std::uint32_t> unfinished{0};
   Call call =
-      nullptr;  // these two are released by `open`, and kept until the last task taken from it has ended
+      nullptr;  // these three are released by `open`, and kept until the last task taken from it has ended
   void* context = nullptr;
+  std::uint32_t tasks = 0;
   std::atomic<bool> quit{false};
   std::vector<std::thread> workers;
 
@@ -59,7 +60,8 @@ struct ThreadPool::Shared {
       if (!open.compare_exchange_weak(ticket, ticket - 1, std::memory_order_acq_rel,
                                       std::memory_order_acquire))
         continue;
-      call(context, static_cast<int>(static_cast<std::uint32_t>(ticket) - 1));
+      // The first task begins first: callers put the longest there.
+      call(context, static_cast<int>(tasks - static_cast<std::uint32_t>(ticket)));
       if (unfinished.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished.notify_one();
       ticket = open.load(std::memory_order_acquire);
     }
@@ -117,6 +119,7 @@ void ThreadPool::run_erased(int count, Call call, void* context) noexcept {
                       round = s.round.load(std::memory_order_relaxed) + 1;
   s.call = call;
   s.context = context;
+  s.tasks = tasks;
   s.unfinished.store(tasks, std::memory_order_relaxed);
   s.open.store(static_cast<std::uint64_t>(round) << 32 | tasks, std::memory_order_release);
   s.round.store(round, std::memory_order_release);

@@ -189,22 +189,7 @@ void Guides::step(int g, int iteration) noexcept {
   std::copy_n(guides_[g], rows_, path_float_[point(iteration, g)]);
 }
 
-void Guides::move_guides(const BatchEvaluator& evaluator, RandomKey key, int first, int last, int iterations,
-                         const Deadline& deadline, int& made) noexcept {
-  for (int l = 0; l < iterations && !deadline.passed(); ++l) {
-    fill_blocks({key.seed, key.stream + l}, first, last);
-    // One guide at a time: the borders of what is evaluated together must not depend on the threads, since a
-    // compiler may fuse products and sums differently at the end of a range.
-    for (int g = first; g < last; ++g)
-      evaluator.evaluate(batch_, g * block_, block_, costs_.data(), collided_.data());
-    kernels().make_finite({first * block_, (last - first) * block_}, costs_.data());
-    for (int g = first; g < last; ++g) step(g, l);
-    made = l + 1;
-  }
-}
-
-int Guides::move(const BatchEvaluator& evaluator, RandomKey key, const float* solution, const float* nominal,
-                 ThreadPool& pool, const Deadline& deadline) noexcept {
+void Guides::begin_move(const float* solution, const float* nominal, int shares) noexcept {
   for (int r = 0; r < rows_; ++r) {
     const double inverse =
         options_.guides.gradient_temperature *
@@ -216,29 +201,38 @@ int Guides::move(const BatchEvaluator& evaluator, RandomKey key, const float* so
   }
   std::fill(path_costs_.begin(), path_costs_.end(), infinite);
   std::fill(made_.begin(), made_.end(), 0);
-  // Guides are independent, so each thread makes all iterations of its guides.
-  const int shares = std::min(pool.threads(), count_);
-  pool.run(shares, [&](int share) {
-    move_guides(evaluator, key, count_ * share / shares, count_ * (share + 1) / shares,
-                options_.guides.iterations, deadline, made_[share]);
-  });
-  iterations_ = *std::min_element(made_.begin(), made_.begin() + shares);
-  evaluate_ends(evaluator, iterations_);
-  return iterations_;
+  shares_ = shares;
 }
 
-/// Computes the final costs of the guides and selects the best guide (equation (12)).
-void Guides::evaluate_ends(const BatchEvaluator& evaluator, int iterations) noexcept {
+void Guides::move_share(int share, const BatchEvaluator& evaluator, RandomKey key,
+                        const Deadline& deadline) noexcept {
+  // Guides are independent, so each share makes all iterations of its guides.
+  const int first = count_ * share / shares_, last = count_ * (share + 1) / shares_;
+  for (int l = 0; l < options_.guides.iterations && !deadline.passed(); ++l) {
+    fill_blocks({key.seed, key.stream + l}, first, last);
+    // One guide at a time: the borders of what is evaluated together must not depend on the threads, since a
+    // compiler may fuse products and sums differently at the end of a range.
+    for (int g = first; g < last; ++g)
+      evaluator.evaluate(batch_, g * block_, block_, costs_.data(), collided_.data());
+    kernels().make_finite({first * block_, (last - first) * block_}, costs_.data());
+    for (int g = first; g < last; ++g) step(g, l);
+    made_[share] = l + 1;
+  }
+}
+
+int Guides::end_move(const BatchEvaluator& evaluator) noexcept {
+  iterations_ = *std::min_element(made_.begin(), made_.begin() + shares_);
   for (int g = 0; g < count_; ++g) ends_.set_sample(g, std::span<const float>(guides_[g], rows_));
   evaluator.evaluate(ends_, 0, count_, end_costs_.data(), end_collided_.data());
   kernels().make_finite({0, padded(count_)}, end_costs_.data());
   best_ = 0;
   for (int g = 0; g < count_; ++g) {
-    if (iterations > 0) path_costs_[point(iterations - 1, g)] = end_costs_[g];
+    if (iterations_ > 0) path_costs_[point(iterations_ - 1, g)] = end_costs_[g];
     if (end_costs_[g] < end_costs_[best_]) best_ = g;
   }
   best_cost_ = end_costs_[best_];
   best_collides_ = end_collided_[best_] != 0;
+  return iterations_;
 }
 
 /// Computes q* (equation (5)) at points of the paths: exp(-S / lambda), multiplied by the density around the

@@ -29,11 +29,15 @@ class Guides {
   /// With `restart_guides`, moves the best guide to index 0 and draws all others around it.
   void restart_others(RandomKey key) noexcept;
 
-  /// Moves the guides `guide_iterations` times, each time with new samples. Stops at the deadline. Iteration
-  /// l uses the random stream `key.stream` + l. `solution` (u) and `nominal` (n) are [row]. Returns the
-  /// number of iterations made.
-  int move(const BatchEvaluator& evaluator, RandomKey key, const float* solution, const float* nominal,
-           ThreadPool& pool, const Deadline& deadline) noexcept;
+  /// Moves the guides `guide_iterations` times, each time with new samples, in three parts: `begin_move`,
+  /// `move_share` for each share, which may run at the same time, and `end_move`. `solution` (u) and
+  /// `nominal` (n) are [row]; `shares` is in [1, number of guides].
+  void begin_move(const float* solution, const float* nominal, int shares) noexcept;
+  /// Stops at the deadline. Iteration l uses the random stream `key.stream` + l.
+  void move_share(int share, const BatchEvaluator& evaluator, RandomKey key,
+                  const Deadline& deadline) noexcept;
+  /// Selects the best guide (equation (12)). Returns the number of iterations made.
+  int end_move(const BatchEvaluator& evaluator) noexcept;
 
   /// The index of the guide with the lowest cost after the last move.
   int best() const noexcept { return best_; }
@@ -56,11 +60,8 @@ class Guides {
   std::span<const float> path_costs() const noexcept;
 
  private:
-  void move_guides(const BatchEvaluator& evaluator, RandomKey key, int first, int last, int iterations,
-                   const Deadline& deadline, int& made) noexcept;
   void fill_blocks(RandomKey key, int first, int last) noexcept;
   void step(int guide, int iteration) noexcept;
-  void evaluate_ends(const BatchEvaluator& evaluator, int iterations) noexcept;
   void densities(std::span<const int> points) noexcept;
 
   /// The index of a point of the paths: a guide after an iteration.
@@ -90,9 +91,10 @@ class Guides {
   Matrix<double> path_;                                                       ///< [point][row]
   Matrix<float> path_float_;                                                  ///< `path_` as float32
   std::vector<float> path_costs_;                                             ///< [point]
-  std::vector<int> made_;                                                     ///< iterations made [thread]
+  std::vector<int> made_;                                                     ///< iterations made [share]
   std::vector<int> fit_points_;                                  ///< indices of the fitted points
   std::vector<double> density_, square_, logarithm_, abscissa_;  ///< [fitted point]
+  int shares_ = 1;
   int iterations_ = 0;
   int best_ = 0;
   bool best_collides_ = false;

@@ -57,9 +57,7 @@ class SvgMppiSolver final : public SolverBase {
 
     if (around_nominal_) guides_.take_in(evaluator, mean_.data());
     guides_.restart_others(key(restarts));
-    // The guides may use half of the time: without samples, they do not give a solution.
-    result_.iterations =
-        guides_.move(evaluator, key(gradients), mean_.data(), nominal_.data(), pool(), deadline.part(0.5));
+    move_guides(evaluator, deadline);
     if (use_nominal_ && guides_.best_cost() < std::numeric_limits<float>::infinity()) {
       std::copy_n(guides_.best_sequence().data(), size(), nominal_.data());
     } else if (around_nominal_) {
@@ -81,6 +79,26 @@ class SvgMppiSolver final : public SolverBase {
  private:
   /// The random streams of a solve.
   enum Stage { first_guides, samples, gradients, restarts = 65535 };
+
+  /// Moves the guides. With several threads, those that have no guide to move draw the noise of the samples.
+  void move_guides(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
+    detail::SampleSet& set = update_.samples();
+    const bool parallel = pool().threads() > 1;
+    const bool draws = parallel && set.lacks_noise(evaluator, key(samples));
+    const int shares = parallel ? guides_.sequences().sequences : 1;
+    // The guides may use half of the time: without samples, they do not give a solution.
+    const Deadline half = deadline.part(0.5);
+    guides_.begin_move(mean_.data(), nominal_.data(), shares);
+    pool().run(draws ? shares + set.tiles() : shares, [&](int task) {
+      if (task < shares) {
+        guides_.move_share(task, evaluator, key(gradients), half);
+      } else {
+        set.prepare_tile(task - shares, key(samples));
+      }
+    });
+    if (draws) set.set_prepared(key(samples));
+    result_.iterations = guides_.end_move(evaluator);
+  }
 
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;

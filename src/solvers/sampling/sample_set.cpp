@@ -53,9 +53,17 @@ void SampleSet::fill_noise(const Sampler* sampler, SequenceBatch& to, Range r, R
 }
 
 void SampleSet::prepare(RandomKey key, ThreadPool& pool) noexcept {
-  pool.run(tiles(), [&](int tile) { fill_noise(nullptr, noise_, range(tile), key); });
+  pool.run(tiles(), [&](int tile) { prepare_tile(tile, key); });
+  set_prepared(key);
+}
+
+void SampleSet::set_prepared(RandomKey key) noexcept {
   prepared_ = true;
   prepared_key_ = key;
+}
+
+bool SampleSet::lacks_noise(const BatchEvaluator& evaluator, RandomKey key) const noexcept {
+  return !evaluator.sampler() && !prepared_for(key);
 }
 
 /// Evaluates a tile if `evaluator` is not null, sets its costs to infinity where they are not finite and in
@@ -105,8 +113,7 @@ BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, Ra
                                              const SamplingDistribution<float>& to, const float* linear,
                                              ThreadPool& pool, const Deadline& deadline) noexcept {
   const Sampler* const sampler = evaluator.sampler();
-  const bool ready =
-      !sampler && prepared_ && prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
+  const bool ready = !sampler && prepared_for(key);
   prepared_ = false;
   if (evaluator.whole_batches()) {
     draw_all(sampler, key, to, ready, pool);

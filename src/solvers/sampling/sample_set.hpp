@@ -60,6 +60,12 @@ class SampleSet {
 
   /// Draws the normal values for `key` in advance.
   void prepare(RandomKey key, ThreadPool& pool) noexcept;
+  /// The same in `tiles()` tasks, which may run at the same time, and then `set_prepared`.
+  void prepare_tile(int tile, RandomKey key) noexcept { fill_noise(nullptr, noise_, range(tile), key); }
+  void set_prepared(RandomKey key) noexcept;
+  /// Whether samples for this evaluator and `key` need normal values that have not been drawn.
+  bool lacks_noise(const BatchEvaluator& evaluator, RandomKey key) const noexcept;
+  int tiles() const noexcept { return (values_.stride() + tile_ - 1) / tile_; }
 
   /// Draws and evaluates the samples. Their totals are cost + sum of linear[row] v[row]; `linear` may be
   /// null. Omits tiles that have not started at the deadline.
@@ -102,7 +108,9 @@ class SampleSet {
   using RowSums = void (*)(const Rows<float>&, const float*, const float*, Range, float*);
 
   std::size_t count() const noexcept { return static_cast<std::size_t>(values_.samples()); }
-  int tiles() const noexcept { return (values_.stride() + tile_ - 1) / tile_; }
+  bool prepared_for(RandomKey key) const noexcept {
+    return prepared_ && prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
+  }
   Range range(int tile) const noexcept;
   void fill_noise(const Sampler* sampler, SequenceBatch& to, Range range, RandomKey key) noexcept;
   void draw_all(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to, bool ready,
