@@ -1,79 +1,122 @@
-"""Writes type stubs of the compiled module: python3 make_stubs.py OUT.pyi"""
+"""Writes type stubs of the compiled modules beside them: python3 make_stubs.py FOLDER"""
 
 import inspect
 import re
 import sys
+from pathlib import Path
 
 import slalom
 from slalom import _slalom
 
-TYPES = {"flag": "bool", "integer": "int", "number": "float", "numbers": "float | Sequence[float]", "choice": "str"}
+OPTIONS = {"flag": "bool", "integer": "int", "number": "float", "numbers": "float | Sequence[float]", "choice": "str"}
 METHOD_OF = {"".join(word.capitalize() for word in method.split("_")): method for method in slalom.methods()}
+GENERIC = {"dict": "dict[str, Any]", "tuple": "tuple[Any, ...]", "list": "list[Any]", "object": "Any", "function": "Any"}
+HEAD = """from typing import Any, Callable, Sequence
+
+from numpy.typing import ArrayLike, NDArray
+"""
 
 
-def keyword(option):
-    return f"{option['name']}: {TYPES[option['type']]} = ..."
+def split(text):
+    """The parts of a list of arguments, which may have commas in brackets and quotes."""
+    parts, depth, quoted, part = [], 0, False, ""
+    for c in text:
+        quoted ^= c == "'"
+        depth += (c in "[({") - (c in "])}") if not quoted else 0
+        if c == "," and depth == 0 and not quoted:
+            parts, part = [*parts, part.strip()], ""
+        else:
+            part += c
+    return [*parts, part.strip()] if part.strip() else parts
+
+
+def translate(kind, argument):
+    """The type of pybind11's signature as one of an argument or of a result."""
+    kind = re.sub(r"(slalom\.)?(_slalom|_driving)\.", "", kind)
+    if kind.startswith("numpy.ndarray") or kind.startswith("List[") and argument:
+        return "ArrayLike" if argument else "NDArray[Any]"
+    if kind.startswith("Union["):
+        return " | ".join(translate(part, argument) for part in split(kind[6:-1]))
+    if kind.startswith("Optional["):
+        return translate(kind[9:-1], argument) + " | None"
+    if kind.startswith("List["):
+        return f"list[{translate(kind[5:-1], argument)}]"
+    return GENERIC.get(kind, kind)
+
+
+def argument(text):
+    if text.startswith("*") or text == "self":
+        return text + ": Any" * text.startswith("**")
+    name, _, rest = text.partition(": ")
+    if name == "self":
+        return name
+    kind, default, _ = rest.partition(" = ")
+    return f"{name}: {translate(kind, True)}" + " = ..." * bool(default)
 
 
 def signature(function):
-    """The signature at the start of a bound function's docstring."""
-    first = (function.__doc__ or "").split("\n")[0]
-    match = re.match(r"\w+\((.*)\) -> (.*)$", first)
+    """Arguments and result, from the signature at the start of a bound function's docstring."""
+    match = re.match(r"\w+\((.*)\) -> (.*)$", (function.__doc__ or "").split("\n")[0])
     if not match:
-        return "*args: Any, **kwargs: Any", "Any"
-    arguments = re.sub(r"_slalom\.", "", match[1])
-    arguments = re.sub(r"self: [\w.]+", "self", arguments)
-    arguments = re.sub(r"(List|Dict|Tuple)\[", lambda m: m[1].lower() + "[", arguments)
-    arguments = re.sub(r"numpy\.ndarray(\[[^\]]*\])?", "Any", arguments)
-    arguments = re.sub(r": [^,=]*\[[^=]*?\]\]?( = |,|$)", r": Any\1", arguments)
-    arguments = re.sub(r" = [^,)]+(\[[^\]]*\])?", " = ...", arguments)
-    result = re.sub(r"_slalom\.|numpy\.", "", match[2])
-    result = re.sub(r"List\[", "list[", result)
-    return arguments, "NDArray[Any]" if result.startswith("ndarray") or result == "array" else result
+        plain = inspect.signature(function)
+        return ", ".join(plain.parameters), "str" if function.__name__ in ("__repr__", "_repr_html_") else "Any"
+    return ", ".join(map(argument, split(match[1]))), translate(match[2], False)
+
+
+def option_keywords(options):
+    return "".join(f", {o['name']}: {OPTIONS[o['type']]} = ..." for o in options)
+
+
+def constructor(name, cls):
+    """The arguments of a constructor, whose keyword arguments are options."""
+    if name in METHOD_OF:
+        return "self, problem: AnyProblem, *" + option_keywords(slalom.options(METHOD_OF[name]))
+    arguments = signature(cls.__init__)[0]
+    values = [m for m, value in vars(cls).items() if isinstance(value, property) and value.fset]
+    if issubclass(cls, _slalom.AnyProblem) and arguments.endswith("**kwargs: Any") and values:
+        return "self, *" + "".join(f", {m}: {property_type(vars(cls)[m])} = ..." for m in values if m != "discs")
+    return arguments
 
 
 def property_type(value):
-    """The type of a property, from its getter's signature; of arrays from the docstring."""
-    first = (value.fget.__doc__ or "").split("\n")[0]
-    match = re.search(r"-> (.*)$", first)
-    if re.match(r"(float32|float64|uint8) \[", value.__doc__ or ""):
-        return "NDArray[Any]"
-    if not match or match[1] == "object":
-        return "Any"
-    result = re.sub(r"_slalom\.|slalom\.", "", match[1])
-    if result.startswith("numpy.ndarray"):
-        return "NDArray[Any]"
-    return re.sub(r"(List|Dict|Tuple)\b", lambda m: m[1].lower(), result)
+    """The type of a property, from its getter's signature; of arrays and callables from the docstring."""
+    words = value.__doc__ or ""
+    match = re.search(r"-> (.*)$", (value.fget.__doc__ or "").split("\n")[0])
+    if words.startswith("the callable"):
+        return "Callable[..., Any] | None" if "None" in words else "Callable[..., Any]"
+    if match and match[1] == "object" and value.fset:
+        return "float"
+    return translate(match[1], False) if match else "Any"
 
 
 def class_lines(name, cls):
     base = cls.__mro__[1].__name__
-    yield f"class {name}({base}):" if not base.startswith("pybind11") else f"class {name}:"
+    yield f"class {name}({base}):" if base not in ("object", "pybind11_object") else f"class {name}:"
     yield f'    """{(cls.__doc__ or "").strip()}"""'
-    if name in METHOD_OF:
-        options = ", ".join(keyword(option) for option in slalom.options(METHOD_OF[name]))
-        yield f"    def __init__(self, problem: AnyProblem, *, {options}) -> None: ..."
     for member, value in vars(cls).items():
         if isinstance(value, property):
             kind = property_type(value)
             words = (value.__doc__ or "").strip().replace('"', "'")
             yield f'    @property\n    def {member}(self) -> {kind}:\n        """{words}"""'
             if value.fset:
-                yield f"    @{member}.setter\n    def {member}(self, value: Any) -> None: ..."
-        elif member == "__init__" and name not in METHOD_OF:
-            arguments, _ = signature(value)
-            yield f"    def __init__({arguments or 'self'}) -> None: ..."
-        elif not member.startswith("_") and callable(value):
+                setter = "Sequence[Sequence[float]]" if kind.startswith("list") else kind
+                yield f"    @{member}.setter\n    def {member}(self, value: {setter}) -> None: ..."
+        elif member == "__init__" and "->" in (value.__doc__ or ""):
+            yield f"    def __init__({constructor(name, cls)}) -> None: ..."
+        elif member == "_repr_html_":
+            yield "    def _repr_html_(self) -> str: ..."
+        elif not member.startswith("_") and callable(getattr(value, "__func__", value)):
             arguments, result = signature(getattr(value, "__func__", value))
             if isinstance(value, staticmethod):
                 yield "    @staticmethod"
             yield f"    def {member}({arguments}) -> {result}: ..."
 
 
-def main(out):
-    lines = ["from typing import Any, Sequence", "", "from numpy.typing import NDArray", "", "__version__: str", ""]
-    for name in dir(_slalom):
-        value = getattr(_slalom, name)
+def stub(module):
+    lines = [HEAD]
+    if module is _slalom:
+        lines += ["__version__: str", ""]
+    for name, value in sorted(vars(module).items()):
         if name.startswith("_"):
             continue
         if inspect.isclass(value) and issubclass(value, Exception):
@@ -83,10 +126,17 @@ def main(out):
         else:
             arguments, result = signature(value)
             lines += [f"def {name}({arguments}) -> {result}: ...", ""]
-    text = "\n".join(lines)
-    compile(text, out, "exec")
-    with open(out, "w") as file:
-        file.write(text)
+    return "\n".join(lines)
+
+
+def main(folder):
+    for module in (slalom._slalom, slalom._driving):
+        if module is None:
+            continue
+        file = Path(folder) / f"{module.__name__.split('.')[-1]}.pyi"
+        text = stub(module)
+        compile(text, file, "exec")
+        file.write_text(text)
 
 
 if __name__ == "__main__":

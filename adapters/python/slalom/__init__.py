@@ -8,14 +8,30 @@
         torque = plan.inputs[0]
 """
 
-from . import _slalom
+from . import _slalom, display
 from ._slalom import *  # noqa: F401,F403
 from ._slalom import __version__
 
+try:
+    from . import _driving
+    from ._driving import *  # noqa: F401,F403
+except ModuleNotFoundError:  # built without the layers for cars
+    _driving = None  # type: ignore[assignment]
+
+_DRIVING = ("Course", "Planner", "RacingCar", "World", "courses", "drive_lap", "race_course", "raceline", "racing_speeds")
 
 
 class FewSamplesWarning(RuntimeWarning):
     """The effective sample size of a controller stays below 3, so its plans follow single samples."""
 
 
-__all__ = [name for name in dir(_slalom) if not name.startswith("_")] + ["FewSamplesWarning", "__version__"]
+def __getattr__(name: str) -> object:
+    if name in _DRIVING:
+        raise AttributeError(f"slalom.{name} is not in this build, which has no cars, courses and simulator: install it "
+                             "with SLALOM_DRIVING=1 pip install, or build all layers with CMake")
+    raise AttributeError(f"module 'slalom' has no attribute '{name}'")
+
+
+display.install(_slalom, _driving)
+__all__ = [name for module in (_slalom, _driving) if module for name in dir(module) if not name.startswith("_")]
+__all__ += ["FewSamplesWarning", "__version__"]

@@ -1,40 +1,45 @@
 """The simulator with the interface of Gymnasium, which need not be installed."""
 
+from __future__ import annotations
+
 import math
+from typing import Any, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from ._slalom import Course, World
+from ._driving import Course, World
 
+Base: Any = object
 try:
-    import gymnasium
+    import gymnasium  # type: ignore[import]
 
     Base = gymnasium.Env
     Box = gymnasium.spaces.Box
 except ImportError:
-    Base = object
 
-    class Box:
+    class Box:  # type: ignore[no-redef]
         """An interval for each entry of an array: the part of gymnasium.spaces.Box that is used here."""
 
-        def __init__(self, low, high, shape=None, dtype=np.float32):
+        def __init__(self, low: ArrayLike, high: ArrayLike, shape: Sequence[int] | None = None,
+                     dtype: Any = np.float32) -> None:
             self.shape = tuple(shape) if shape is not None else np.shape(low)
             self.dtype = np.dtype(dtype)
             self.low = np.broadcast_to(np.asarray(low, dtype), self.shape)
             self.high = np.broadcast_to(np.asarray(high, dtype), self.shape)
             self._random = np.random.default_rng(0)
 
-        def sample(self):
+        def sample(self) -> NDArray[Any]:
             return self._random.uniform(self.low, self.high).astype(self.dtype)
 
-        def contains(self, x):
+        def contains(self, x: ArrayLike) -> bool:
             return np.shape(x) == self.shape and bool(np.all(x >= self.low) and np.all(x <= self.high))
 
-        def seed(self, seed=None):
+        def seed(self, seed: int | None = None) -> None:
             self._random = np.random.default_rng(seed)
 
 
-class RacingEnv(Base):
+class RacingEnv(Base):  # type: ignore[misc]
     """One car on a course.
 
     Action: (steering angle rad, speed m/s). Observation: the LiDAR ranges (m), then speed (m/s), yaw rate
@@ -42,10 +47,11 @@ class RacingEnv(Base):
     episode and costs `contact_penalty`; a complete lap also ends it.
     """
 
-    metadata = {"render_modes": []}
+    metadata: dict[str, Any] = {"render_modes": []}
 
-    def __init__(self, course="wren", *, control_period=0.025, beams=108, max_speed=8.0, max_steer=0.4189,
-                 contact_penalty=10.0, timeout=60.0):
+    def __init__(self, course: str | Course = "wren", *, control_period: float = 0.025, beams: int = 108,
+                 max_speed: float = 8.0, max_steer: float = 0.4189, contact_penalty: float = 10.0,
+                 timeout: float = 60.0) -> None:
         self.course = Course(course) if isinstance(course, str) else course
         steps = max(1, math.ceil(control_period / 0.005 - 1e-9))
         self.world = World(self.course, time_step=control_period / steps, beams=beams)
@@ -59,14 +65,15 @@ class RacingEnv(Base):
         high = np.concatenate([np.full(beams, 100), [50, 50, 1.6]]).astype(np.float32)
         self.observation_space = Box(low, high)
 
-    def _observe(self):
+    def _observe(self) -> tuple[NDArray[np.float32], dict[str, Any]]:
         seen = self.world.observe()
         rest = [seen["speed"], seen["yaw_rate"], seen["steer"]]
         keep = ("pose", "time", "contact", "laps", "progress", "lateral")
         info = {key: seen[key] for key in keep if key in seen}
         return np.concatenate([seen["ranges"], rest]).astype(np.float32), info
 
-    def reset(self, *, seed=None, options=None):
+    def reset(self, *, seed: int | None = None,
+              options: dict[str, Any] | None = None) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Returns the first observation and info. `options` may have "start" and "parked" (poses x, y, yaw)."""
         if Base is not object:
             super().reset(seed=seed)
@@ -77,7 +84,7 @@ class RacingEnv(Base):
         self._progress = info["progress"]
         return observation, info
 
-    def step(self, action):
+    def step(self, action: ArrayLike) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Returns observation, reward, terminated, truncated, info."""
         action = np.asarray(action, float)
         if action.shape != (2,):
@@ -95,5 +102,5 @@ class RacingEnv(Base):
         done = bool(contact or info["laps"] > 0)
         return observation, float(reward), done, info["time"] >= self.timeout, info
 
-    def close(self):
+    def close(self) -> None:
         pass

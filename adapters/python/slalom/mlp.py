@@ -1,15 +1,24 @@
 """Small neural networks for learned dynamics: trained with numpy, stored for slalom::Mlp in C++."""
 
+from __future__ import annotations
+
+import os
+from typing import Any, Sequence
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[Any]
 
 _ACTIVATIONS = ("tanh", "relu", "softplus", "silu")
 
 
-def _sigmoid(x):
-    return np.exp(-np.logaddexp(0, -x))
+def _sigmoid(x: Array) -> Array:
+    result: Array = np.exp(-np.logaddexp(0, -x))
+    return result
 
 
-def _activate(name, x):
+def _activate(name: str, x: Array) -> tuple[Array, Array]:
     """The activation and its derivative."""
     if name == "tanh":
         y = np.tanh(x)
@@ -32,8 +41,10 @@ class Mlp:
     residual: whether the first inputs are added to the outputs
     """
 
-    def __init__(self, layers, activation="tanh", *, input_mean=None, input_scale=None, output_mean=None,
-                 output_scale=None, residual=False):
+    def __init__(self, layers: Sequence[tuple[ArrayLike, ArrayLike]], activation: str = "tanh", *,
+                 input_mean: ArrayLike | None = None, input_scale: ArrayLike | None = None,
+                 output_mean: ArrayLike | None = None, output_scale: ArrayLike | None = None,
+                 residual: bool = False) -> None:
         if activation not in _ACTIVATIONS:
             raise ValueError(f"Mlp.activation: {activation!r} must be one of {', '.join(_ACTIVATIONS)}")
         self.layers = [(np.array(w, np.float32), np.array(b, np.float32)) for w, b in layers]
@@ -45,16 +56,17 @@ class Mlp:
         self.output_scale = np.ones(outputs, np.float32) if output_scale is None else np.array(output_scale, np.float32)
         self.residual = bool(residual)
 
-    def __call__(self, x):
+    def __call__(self, x: ArrayLike) -> Array:
         x = np.asarray(x)
         y = (x - self.input_mean) / self.input_scale
         for weights, biases in self.layers[:-1]:
             y, _ = _activate(self.activation, y @ weights.T + biases)
         weights, biases = self.layers[-1]
         y = (y @ weights.T + biases) * self.output_scale + self.output_mean
-        return y + x[:, :y.shape[1]] if self.residual else y
+        result: Array = y + x[:, :y.shape[1]] if self.residual else y
+        return result
 
-    def save(self, file):
+    def save(self, file: str | os.PathLike[str]) -> None:
         """Writes the network to a file for `slalom::load_mlp` and `Mlp.load`."""
         arrays = {"activation": np.array(self.activation), "residual": np.array(self.residual)}
         for name in "input_mean", "input_scale", "output_mean", "output_scale":
@@ -65,7 +77,7 @@ class Mlp:
             np.savez(stream, **arrays)
 
     @classmethod
-    def load(cls, file):
+    def load(cls, file: str | os.PathLike[str]) -> Mlp:
         """The network that `save` wrote."""
         with np.load(file, allow_pickle=False) as arrays:
             count = sum(name.startswith("weights_") for name in arrays)
@@ -75,8 +87,9 @@ class Mlp:
             return cls(layers, str(arrays["activation"]), residual=bool(arrays.get("residual", False)), **normalisation)
 
 
-def train_mlp(inputs, outputs, *, hidden=(32, 32), activation="tanh", residual=False, epochs=200, batch=256,
-              learning_rate=3e-3, seed=0):
+def train_mlp(inputs: ArrayLike, outputs: ArrayLike, *, hidden: Sequence[int] = (32, 32), activation: str = "tanh",
+              residual: bool = False, epochs: int = 200, batch: int = 256, learning_rate: float = 3e-3,
+              seed: int = 0) -> Mlp:
     """An Mlp that maps inputs [K, n] to outputs [K, m] with the least mean squared error, of normalised outputs.
 
     Adam (Kingma and Ba, 2015) on batches, with a learning rate that falls to 0 along a cosine. With `residual` the
@@ -116,20 +129,20 @@ def train_mlp(inputs, outputs, *, hidden=(32, 32), activation="tanh", residual=F
                output_mean=output_mean, output_scale=output_scale, residual=residual)
 
 
-def _normalisation(values):
+def _normalisation(values: Array) -> tuple[Array, Array]:
     """Mean and standard deviation of each column; 1 for a column that does not vary."""
     scale = values.std(axis=0)
     return values.mean(axis=0), np.where(scale > 1e-12 * (1 + np.abs(values).max(axis=0)), scale, 1)
 
 
-def _gradients(parameters, activation, x, y):
+def _gradients(parameters: list[Array], activation: str, x: Array, y: Array) -> list[Array]:
     """Derivatives of half the mean squared error by all parameters, by backpropagation."""
     entering, slopes = [x], []
     for weights, biases in zip(parameters[:-2:2], parameters[1:-2:2]):
         value, slope = _activate(activation, entering[-1] @ weights.T + biases)
         entering.append(value)
         slopes.append(slope)
-    error = (entering[-1] @ parameters[-2].T + parameters[-1] - y) / len(x)
+    error: Any = (entering[-1] @ parameters[-2].T + parameters[-1] - y) / len(x)
     gradients = []
     for layer in reversed(range(len(entering))):
         gradients += [error.sum(axis=0), error.T @ entering[layer]]

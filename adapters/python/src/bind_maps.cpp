@@ -228,13 +228,14 @@ void bind_maps(py::module_& module) {
   bind_field(module);
   module.def(
       "load_ros_map", [](const std::string& file) { return maps::load_ros_map(file); }, py::arg("file"),
-      "Loads a map of ROS map_server from its yaml file.");
+      py::call_guard<py::gil_scoped_release>(), "Loads a map of ROS map_server from its yaml file.");
   module.def(
       "signed_distance",
       [](const OccupancyGrid& grid, bool unknown_is_obstacle, bool outside_is_obstacle) {
         return maps::signed_distance(grid, {unknown_is_obstacle, outside_is_obstacle});
       },
       py::arg("grid"), py::arg("unknown_is_obstacle") = true, py::arg("outside_is_obstacle") = true,
+      py::call_guard<py::gil_scoped_release>(),
       "The Field of the distance to the nearest edge of an obstacle, m: above 0 in free space, below 0 in "
       "obstacles.");
 }

@@ -93,6 +93,12 @@ std::vector<double> to_values(const Limits& bound) {
   return {};
 }
 
+/// The same as Python gave it.
+py::object to_limits(const std::vector<double>& values) {
+  if (values.empty()) return py::none();
+  return values.size() == 1 ? py::object(py::float_(values[0])) : py::object(py::cast(values));
+}
+
 std::span<const double> checked(const std::vector<double>& values, int count, const char* what) {
   if (static_cast<int>(values.size()) != count)
     throw std::invalid_argument(std::string(what) + ": has " + std::to_string(values.size()) +
@@ -120,7 +126,7 @@ void bind_problems(py::module_& module) {
             return self.predict(checked(state, self.states(), "state"), {}).collided;
           },
           py::arg("state"), "Whether a state collides, according to the terminal cost.");
-  py::class_<CallableProblem, AnyProblem>(
+  py::class_<CallableProblem, AnyProblem> problem(
       module, "Problem",
       "A problem of your own: callables on batches of K samples.\n\n"
       "dynamics(x[K, states], u[K, inputs]) -> x[K, states]\n"
@@ -131,7 +137,8 @@ void bind_problems(py::module_& module) {
       "sampler(random, samples, horizon, inputs) -> [samples, horizon, inputs]: noise instead of standard "
       "normal values, drawn only from the numpy Generator `random`\n\n"
       "x and u are float32, with contiguous columns; u is a view of the solver's "
-      "memory, valid during the call. The result of dynamics is not copied.")
+      "memory, valid during the call. The result of dynamics is not copied.");
+  problem
       .def(py::init([](py::object dynamics, py::object cost, py::object terminal_cost, int states, int inputs,
                        double dt, const Limits& input_min, const Limits& input_max,
                        const Limits& input_rate_max, py::object sampler) {
@@ -144,8 +151,21 @@ void bind_problems(py::module_& module) {
            py::arg("states"), py::arg("inputs"), py::arg("dt") = 0.0, py::arg("input_min") = py::none(),
            py::arg("input_max") = py::none(), py::arg("input_rate_max") = py::none(),
            py::arg("sampler") = py::none())
-      .def_property("dt", &CallableProblem::dt, &CallableProblem::set_dt,
-                    "s, duration of a step; 0: unknown");
+      .def_property("dt", &CallableProblem::dt, &CallableProblem::set_dt, "s, duration of a step; 0: unknown")
+      .def_property_readonly("dynamics", &CallableProblem::dynamics, "the callable")
+      .def_property_readonly("cost", &CallableProblem::cost, "the callable")
+      .def_property_readonly("terminal_cost", &CallableProblem::terminal_cost, "the callable, or None")
+      .def_property_readonly(
+          "sampler", [](const CallableProblem& p) { return p.parts().sampler; }, "the callable, or None")
+      .def_property_readonly(
+          "input_min", [](const CallableProblem& p) { return to_limits(p.parts().input_min); },
+          "as given: a number, one for each input, or None")
+      .def_property_readonly(
+          "input_max", [](const CallableProblem& p) { return to_limits(p.parts().input_max); },
+          "as given: a number, one for each input, or None")
+      .def_property_readonly(
+          "input_rate_max", [](const CallableProblem& p) { return to_limits(p.parts().input_rate_max); },
+          "per s, as given: a number, one for each input, or None");
   bind_arm(module);
   bind_problem<problems::Pendulum>(
       module, "Pendulum",

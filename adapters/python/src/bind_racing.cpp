@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "controller.hpp"
+#include "driving.hpp"
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
 
@@ -70,7 +70,11 @@ py::dict raceline(const Points& centre_line, const RacingCar& car, bool closed, 
   }
   const double spacing = step.value_or(vehicle::centre_line_step(car, length));
   const auto corridor = vehicle::corridor_from_widths(points, left, right, closed, spacing);
-  return to_dict(vehicle::minimum_time_raceline(corridor, car));
+  const auto line = [&] {
+    const py::gil_scoped_release unlock;
+    return vehicle::minimum_time_raceline(corridor, car);
+  }();
+  return to_dict(line);
 }
 
 py::array_t<double> racing_speeds(const Points& curvature, const Points& step, bool closed,
@@ -87,7 +91,10 @@ py::dict race_course(const std::string& map, const RacingCar& car, const std::st
   vehicle::RaceCourseOptions options;
   options.reverse = reverse;
   if (start) options.start = maps::Pose{(*start)[0], (*start)[1], (*start)[2]};
-  const auto course = vehicle::race_course(maps::load_ros_map(map), car, options);
+  const auto course = [&] {
+    const py::gil_scoped_release unlock;
+    return vehicle::race_course(maps::load_ros_map(map), car, options);
+  }();
   const std::string name = std::filesystem::absolute(out).lexically_normal().filename().string();
   if (!out.empty()) vehicle::save_race_course(course, out, {name, "", "slalom course"});
   auto lines = table(course.corridor.centre_line.size(), 4);

@@ -47,6 +47,10 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
                 std::uint8_t* collided) const noexcept override;
 
+  const py::object& dynamics() const noexcept { return dynamics_; }
+  const py::object& cost() const noexcept { return cost_; }
+  const py::object& terminal_cost() const noexcept { return terminal_cost_; }
+  const CallableParts& parts() const noexcept { return parts_; }
   double dt() const noexcept { return parts_.dt; }
   void set_dt(double dt);
 

@@ -62,7 +62,6 @@ void bind_controllers(py::module_& module);
 void bind_feedback(py::module_& module);
 void bind_maps(py::module_& module);
 void bind_problems(py::module_& module);
-void bind_driving(py::module_& module);
-void bind_racing(py::module_& module);
+void bind_risk(py::module_& module);
 
 }  // namespace slalom::python

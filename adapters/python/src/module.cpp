@@ -6,10 +6,9 @@ PYBIND11_MODULE(_slalom, module) {
   module.doc() = "Real-time sampling-based stochastic optimal control.";
   pybind11::register_exception<slalom::IoError>(module, "IoError", PyExc_OSError);
   slalom::python::bind_problems(module);
+  slalom::python::bind_risk(module);
   slalom::python::bind_controllers(module);
   slalom::python::bind_feedback(module);
   slalom::python::bind_maps(module);
-  slalom::python::bind_driving(module);
-  slalom::python::bind_racing(module);
   module.attr("__version__") = slalom::version();
 }

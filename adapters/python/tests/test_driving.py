@@ -1,9 +1,8 @@
-import ast
-import pathlib
-
 import numpy as np
 import pytest
 import slalom
+
+pytest.importorskip("slalom._driving")
 from slalom.env import RacingEnv
 
 
@@ -70,9 +69,56 @@ def test_errors_name_the_mistake():
         world.step([])
 
 
-def test_the_stubs_name_everything():
-    text = (pathlib.Path(slalom.__file__).parent / "_slalom.pyi").read_text()
-    names = {node.name for node in ast.parse(text).body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
-    written_in_python = {"FewSamplesWarning", "__version__"}
-    assert set(slalom.__all__) - written_in_python <= names
-    assert "gradient_samples: int = ..." in text
+def test_a_world_takes_the_options_of_the_simulator():
+    course = slalom.Course("wren")
+    world = slalom.World(course, beams=27, friction=0.4, wall_response="slide", model="saturating")
+    chosen = {"beams": 27, "friction": 0.4, "wall_response": "slide", "model": "saturating", "time_step": 0.005}
+    assert chosen.items() <= world.options.items()
+    assert slalom.World(course).options["body_response"] == "slide"
+    for changes, error, text in [({"beam": 3}, TypeError, "unknown option 'beam'; did you mean 'beams'"),
+                                 ({"beams": 0}, ValueError, "beams"), ({"model": "rail"}, ValueError, "World.model")]:
+        with pytest.raises(error, match=text):
+            slalom.World(course, **changes)
+
+    def speed_after_half_a_second(**options):
+        world = slalom.World(course, beams=3, **options)
+        world.reset(0, [course.start])
+        world.step([(0.0, 2.0)], steps=100)
+        return world.observe()["speed"]
+
+    assert speed_after_half_a_second(acceleration_max=1) < 0.6 < 1.5 < speed_after_half_a_second()
+
+
+def test_bodies_are_placed_moved_and_taken_away():
+    course = slalom.Course("wren")
+    world = slalom.World(course, beams=1, noise=0)
+    world.reset(0, [course.start])
+    x, y, yaw = course.start
+
+    def seen():
+        world.step([(0.0, 0.0)])
+        return float(world.observe()["ranges"][0])
+
+    def ahead(way):
+        return x + way * np.cos(yaw), y + way * np.sin(yaw), yaw
+
+    free = seen()
+    box = world.add_box(ahead(1.5), 0.2, 0.2)
+    assert world.cars == 1 and box == 1 and seen() == pytest.approx(1.5 - 0.1 - 0.10355, abs=0.01)
+    world.move_body(box, ahead(1.0))
+    assert seen() == pytest.approx(1.0 - 0.1 - 0.10355, abs=0.01)
+    world.remove_body(box)
+    assert seen() == pytest.approx(free, abs=1e-6)
+    world.add_disc(*ahead(1.2)[:2], 0.3)
+    assert seen() == pytest.approx(0.9 - 0.10355, abs=0.01)
+    with pytest.raises(ValueError):
+        world.add_box(ahead(1), 0, 1)
+
+
+def test_a_lap_is_driven_in_a_changed_world():
+    course = slalom.Course("wren")
+    laps = [slalom.drive_lap(course, "svg_mppi", seed=1, config="default", options={"samples": 256, **world})
+            for world in ({}, {"world.friction": 0.5})]
+    assert laps[0]["time"] != laps[1]["time"]
+    with pytest.raises(ValueError, match="world.friction"):
+        slalom.drive_lap(course, options={"world.friction": -1})

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import slalom
 
+pytest.importorskip("slalom._driving")
 WREN = pathlib.Path(__file__).resolve().parents[3] / "courses" / "wren" / "map.yaml"
 
 

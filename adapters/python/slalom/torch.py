@@ -1,0 +1,52 @@
+"""Callables of a problem on torch tensors, which share the memory of the arrays."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any, Callable
+
+import numpy as np
+import torch
+
+
+def on_tensors(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Decorates dynamics, a cost or a terminal cost that is written for torch tensors:
+
+        @on_tensors
+        def dynamics(x, u):           # tensors x [K, states], u [K, inputs] on the CPU
+            return torch.stack([x[:, 0] + 0.1 * x[:, 1], x[:, 1] + 0.1 * u[:, 0]]).T
+
+    Its arguments are tensors on the memory of the solver's arrays, and its results are passed on as arrays on the memory
+    of the tensors: nothing is copied. The arguments must not be changed. Gradients are not recorded.
+    """
+
+    @functools.wraps(function)
+    def on_arrays(*arrays: Any) -> Any:
+        with torch.no_grad():
+            return _to_arrays(function(*(torch.from_numpy(_writable(array)) for array in arrays)))
+
+    return on_arrays
+
+
+class _Memory:
+    """The memory of an array, without the mark that it must not be written: torch warns of such arrays."""
+
+    def __init__(self, array: Any) -> None:
+        interface = dict(array.__array_interface__)
+        interface["data"] = (interface["data"][0], False)
+        self.__array_interface__ = interface
+        self.array = array  # keeps the memory
+
+
+def _writable(array: Any) -> Any:
+    return array if array.flags.writeable else np.asarray(_Memory(array))
+
+
+def _to_arrays(result: Any) -> Any:
+    if isinstance(result, torch.Tensor):
+        return result.detach().numpy()
+    if isinstance(result, tuple):
+        return tuple(_to_arrays(part) for part in result)
+    if isinstance(result, dict):
+        return {name: _to_arrays(part) for name, part in result.items()}
+    return result

@@ -1,0 +1,195 @@
+#include <algorithm>
+#include <exception>
+
+#include "controller.hpp"
+#include "slalom/core/risk/risk_measure.hpp"
+
+namespace slalom::python {
+namespace {
+
+/// A problem in several variants of the world, as `RiskEvaluator` of C++. The variants are made once.
+class RiskProblem final : public AnyProblem, public BatchEvaluator {
+ public:
+  using Variants = std::vector<std::unique_ptr<AnyProblem>>;
+
+  /// The first variant is the problem itself.
+  RiskProblem(Variants variants, py::object randomize, const RiskOptions& options)
+      : variants_(std::move(variants)), randomize_(std::move(randomize)), options_(options) {}
+
+  std::unique_ptr<AnyProblem> clone() const override {
+    Variants copies;
+    for (const auto& variant : variants_) copies.push_back(variant->clone());
+    return std::make_unique<RiskProblem>(std::move(copies), randomize_, options_);
+  }
+  std::string name() const override { return "RiskEvaluator"; }
+  int states() const noexcept override { return problem().states(); }
+  int inputs() const noexcept override { return problem().inputs(); }
+  const BatchEvaluator& evaluator() const noexcept override { return *this; }
+  double time_step() const noexcept override { return problem().evaluator().time_step(); }
+  const Sampler* sampler() const noexcept override { return problem().evaluator().sampler(); }
+  bool whole_batches() const noexcept override {
+    return std::any_of(variants_.begin(), variants_.end(),
+                       [](const auto& variant) { return variant->evaluator().whole_batches(); });
+  }
+  double input_min(int input) const override { return problem().input_min(input); }
+  double input_max(int input) const override { return problem().input_max(input); }
+  bool hold_rates(std::span<const double> previous, std::span<double> u) const override {
+    return problem().hold_rates(previous, u);
+  }
+  void set_state(std::span<const double> state) override {
+    for (const auto& variant : variants_) variant->set_state(state);
+  }
+  void set_previous_input(std::span<const double> u) override {
+    for (const auto& variant : variants_) variant->set_previous_input(u);
+  }
+  void begin(py::handle owner) override {
+    for (const auto& variant : variants_) variant->begin(owner);
+  }
+  void finish() override {
+    std::exception_ptr first;
+    for (const auto& variant : variants_) {
+      try {
+        variant->finish();
+      } catch (...) {
+        if (!first) first = std::current_exception();
+      }
+    }
+    if (first) std::rethrow_exception(first);
+  }
+  std::vector<double> step(std::span<const double> state, std::span<const double> input) override {
+    return variants_.front()->step(state, input);
+  }
+  /// The states of the problem itself, and the cost as of `evaluate`.
+  Prediction predict(std::span<const double> state, std::span<const double> inputs) override {
+    Prediction result = variants_.front()->predict(state, inputs);
+    VariantCosts costs;
+    costs.values[0][0] = static_cast<float>(result.cost);
+    for (std::size_t m = 1; m < variants_.size(); ++m) {
+      const Prediction other = variants_[m]->predict(state, inputs);
+      costs.values[m][0] = static_cast<float>(other.cost);
+      result.collided = result.collided || other.collided;
+    }
+    float risk = 0;
+    measure_risk(costs, 1, options_, &risk);
+    result.cost = static_cast<double>(risk);
+    result.terms = {{"total", result.cost}};
+    return result;
+  }
+  Derivatives derivatives(std::span<const double>, std::span<const double>) override { throw_derivatives(); }
+  Derivatives terminal_derivatives(std::span<const double>) override { throw_derivatives(); }
+
+  void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
+                std::uint8_t* collided) const noexcept override {
+    // Callables take all samples of a batch at once, so the costs of all samples are kept for each variant.
+    const auto samples = static_cast<std::size_t>(count);
+    std::vector<float> all(variants_.size() * samples);
+    std::vector<std::uint8_t> any(samples);
+    for (std::size_t m = 0; m < variants_.size(); ++m) {
+      variants_[m]->evaluator().evaluate(batch, first, count, costs, collided);
+      std::copy_n(costs + first, count, &all[m * samples]);
+      for (std::size_t i = 0; i < samples; ++i) any[i] |= collided[first + static_cast<int>(i)];
+    }
+    VariantCosts part;
+    for (int done = 0; done < count; done += VariantCosts::capacity) {
+      const int size = std::min(count - done, VariantCosts::capacity);
+      for (std::size_t m = 0; m < variants_.size(); ++m)
+        std::copy_n(&all[m * samples + static_cast<std::size_t>(done)], size, part.values[m]);
+      measure_risk(part, size, options_, costs + first + done);
+    }
+    std::copy_n(any.data(), count, collided + first);
+  }
+
+  const AnyProblem& problem() const noexcept { return *variants_.front(); }
+  /// 0: the problem itself.
+  AnyProblem& variant(std::size_t index) const { return *variants_.at(index); }
+  const py::object& randomize() const noexcept { return randomize_; }
+  const RiskOptions& options() const noexcept { return options_; }
+
+ private:
+  [[noreturn]] static void throw_derivatives() {
+    throw std::invalid_argument("RiskEvaluator: has no derivatives; use those of its problem");
+  }
+
+  Variants variants_;
+  py::object randomize_;
+  RiskOptions options_;
+};
+
+/// The problem and what `randomize` makes of it; variants 2m and 2m + 1 from mirrored random numbers.
+RiskProblem::Variants make_variants(const AnyProblem& problem, const py::object& randomize,
+                                    const RiskOptions& options) {
+  if (!PyCallable_Check(randomize.ptr()))
+    throw std::invalid_argument("RiskEvaluator.randomize: must be callable");
+  RiskProblem::Variants variants;
+  variants.push_back(problem.clone());
+  for (std::uint64_t m = 1; m < static_cast<std::uint64_t>(options.variants); ++m) {
+    RandomStream random({options.seed, (m + 1) / 2}, m % 2 == 0);
+    const py::object made = randomize(py::cast(&random, py::return_value_policy::copy));
+    if (!py::isinstance<AnyProblem>(made))
+      throw py::type_error("RiskEvaluator.randomize: returned " +
+                           py::repr(py::type::of(made)).cast<std::string>() + ", must be a problem");
+    const auto& variant = made.cast<const AnyProblem&>();
+    if (variant.states() != problem.states() || variant.inputs() != problem.inputs())
+      throw py::value_error("RiskEvaluator.randomize: returned a problem with " +
+                            std::to_string(variant.states()) + " states and " +
+                            std::to_string(variant.inputs()) + " inputs, must have " +
+                            std::to_string(problem.states()) + " and " + std::to_string(problem.inputs()));
+    variants.push_back(variant.clone());
+  }
+  return variants;
+}
+
+std::unique_ptr<RiskProblem> make_risk(const AnyProblem& problem, const py::object& randomize, int variants,
+                                       const std::string& measure, double tail, double aversion,
+                                       std::uint64_t seed) {
+  RiskOptions options{variants, {}, tail, aversion, seed};
+  set_field(options.measure, "RiskEvaluator.measure", py::str(measure));
+  validate_options(options, "RiskEvaluator");
+  return std::make_unique<RiskProblem>(make_variants(problem, randomize, options), randomize, options);
+}
+
+}  // namespace
+
+void bind_risk(py::module_& module) {
+  py::class_<RandomStream>(module, "RandomStream", "Random numbers of one variant of the world.")
+      .def(
+          "uniform", [](RandomStream& r, double low, double high) { return r.uniform(low, high); },
+          py::arg("low") = 0.0, py::arg("high") = 1.0, "A uniform value in [low, high).")
+      .def("normal", &RandomStream::normal, "A standard normal value.");
+  py::class_<RiskProblem, AnyProblem>(
+      module, "RiskEvaluator",
+      "A problem in several variants of the world: a controller of it finds inputs that are good in all of "
+      "them.\n\n"
+      "problem: the first variant\n"
+      "randomize(random) -> problem: makes another one, with random numbers drawn from the RandomStream\n"
+      "variants: 1 ... 32; an odd number deviates to all sides alike, since the random numbers come in "
+      "mirrored pairs\n"
+      "measure: what of the costs in them counts: 'mean', 'worst', 'cvar' (mean of the worst share `tail`) "
+      "or 'exponential' (weight `aversion` of high costs)\n\n"
+      "The variants are made once, so all samples of all solves meet the same ones. A sequence collides if "
+      "it collides in any.")
+      .def(py::init(&make_risk), py::arg("problem"), py::arg("randomize"), py::kw_only(),
+           py::arg("variants") = 9, py::arg("measure") = "mean", py::arg("tail") = RiskOptions{}.tail,
+           py::arg("aversion") = RiskOptions{}.aversion, py::arg("seed") = RiskOptions{}.seed)
+      .def_property_readonly(
+          "problem", [](const RiskProblem& r) -> AnyProblem& { return r.variant(0); },
+          py::return_value_policy::reference_internal, "the problem itself")
+      .def("variant", &RiskProblem::variant, py::return_value_policy::reference_internal, py::arg("index"),
+           "The problem (index 0) or one of its variants.")
+      .def_property_readonly("randomize", &RiskProblem::randomize, "the callable")
+      .def_property_readonly(
+          "options",
+          [](const RiskProblem& r) {
+            const RiskOptions& o = r.options();
+            py::dict all;
+            all["variants"] = o.variants;
+            all["measure"] = enum_names(o.measure)[static_cast<int>(o.measure)];
+            all["tail"] = o.tail;
+            all["aversion"] = o.aversion;
+            all["seed"] = o.seed;
+            return all;
+          },
+          "the options by name");
+}
+
+}  // namespace slalom::python

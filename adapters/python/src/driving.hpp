@@ -1,0 +1,33 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+
+#include <array>
+#include <filesystem>
+
+#include "keywords.hpp"
+#include "slalom/evaluation/environment.hpp"
+#include "slalom/maps/pose.hpp"
+
+namespace slalom::python {
+
+using Folders = std::vector<std::filesystem::path>;
+
+/// Where a program in the package's folder looks, then what lies above it: `what` of the source tree it was
+/// built in, or share/slalom/`what` of the package or of the prefix it was installed to.
+Folders folders_of(Folders (*search)(const std::filesystem::path&), const char* what);
+Folders course_folders();
+
+/// Poses are tuples in Python.
+inline py::tuple to_tuple(const maps::Pose& pose) {
+  return py::make_tuple(pose.x, pose.y, pose.yaw);
+}
+inline maps::Pose to_pose(const std::array<double, 3>& pose) {
+  return {pose[0], pose[1], pose[2]};
+}
+
+void bind_driving(py::module_& module);
+void bind_racing(py::module_& module);
+void bind_world(py::module_& module);
+
+}  // namespace slalom::python

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "slalom/core/options.hpp"
+#include "slalom/sim/world.hpp"
+
+/// The options of a world by name, for keyword arguments. `WorldOptions::validate` checks them together.
+namespace slalom::sim {
+
+inline const char* const* enum_names(CollisionResponse) {
+  static constexpr const char* names[] = {"stop", "slide", "count_only", nullptr};
+  return names;
+}
+inline const char* const* enum_names(Model) {
+  static constexpr const char* names[] = {"kinematic", "single_track", "saturating", nullptr};
+  return names;
+}
+inline const char* const* enum_names(SteeringInput) {
+  static constexpr const char* names[] = {"angle", "rate", nullptr};
+  return names;
+}
+inline const char* const* enum_names(SpeedInput) {
+  static constexpr const char* names[] = {"speed", "acceleration", nullptr};
+  return names;
+}
+
+template <class Options, class Visit>
+requires is_options_of<Options, WorldOptions>
+void visit_options(Options& o, Visit&& visit) {
+  const auto option = [&](auto& field, const char* name, const char* unit, const char* help) {
+    visit(field, Declaration{.name = name, .unit = unit, .help = help});
+  };
+  option(o.time_step, "time_step", "s", "duration of a step");
+  option(o.lidar.beams, "beams", "", "of the LiDAR");
+  option(o.lidar.field_of_view, "field_of_view", "rad", "from the first beam to the last");
+  option(o.lidar.range_max, "range_max", "m", "what is farther reads range_max");
+  option(o.lidar.noise, "noise", "m", "standard deviation of each range");
+  option(o.lidar.dropout, "dropout", "", "fraction of beams without a return");
+  option(o.lidar.rate, "scan_rate", "Hz", "of the LiDAR; 0 scans in every step");
+  option(o.plant.dynamics.model, "model", "", "equations of motion");
+  option(o.plant.steering_dead_time, "steering_dead_time", "s", "from a steering command to its effect");
+  option(o.plant.steering_input, "steering_input", "", "what the steering command is");
+  option(o.plant.speed_input, "speed_input", "", "what the speed command is");
+  option(o.car.friction, "friction", "", "coefficient between tyre and road");
+  option(o.car.mass, "mass", "kg", "of a car");
+  option(o.car.length, "length", "m", "of a car's body");
+  option(o.car.width, "width", "m", "of a car's body");
+  option(o.car.steer_max, "steer_max", "rad", "largest steering angle to the left");
+  option(o.car.steer_min, "steer_min", "rad", "largest steering angle to the right, negative");
+  option(o.car.acceleration_max, "acceleration_max", "m/s^2", "of motor and brakes");
+  option(o.car.speed_max, "speed_max", "m/s", "highest speed of a car");
+  option(o.wall_response, "wall_response", "", "what a collision with a wall does");
+  option(o.body_response, "body_response", "", "what a collision with a car, disc or box does");
+}
+
+}  // namespace slalom::sim

@@ -1,0 +1,202 @@
+"""How objects print, are pickled and copied; the type stubs; callables of torch."""
+
+import ast
+import copy
+import pathlib
+import pickle
+import re
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import slalom
+
+FOLDER = pathlib.Path(slalom.__file__).parent
+
+
+def dynamics(x, u):
+    return np.stack([x[:, 0] + np.float32(0.1) * x[:, 1], x[:, 1] + np.float32(0.1) * u[:, 0]]).T
+
+
+def cost(x, u):
+    return x[:, 0] ** 2 + np.float32(0.1) * u[:, 0] ** 2
+
+
+def point(**changes):
+    return slalom.Problem(**{"dynamics": dynamics, "cost": cost, "states": 2, "inputs": 1, "dt": 0.1, "input_min": -2,
+                             "input_max": [2], **changes})
+
+
+def test_problems_print_as_they_are_made():
+    assert repr(slalom.CartPole()) == "slalom.CartPole()"
+    assert repr(slalom.CartPole(track=3.5)) == "slalom.CartPole(track=3.5)"
+    drive = slalom.DifferentialDrive(goal_x=3)
+    drive.discs = [(1, 0, 0.5)] * 3
+    assert repr(drive) == "slalom.DifferentialDrive(goal_x=3.0, discs=[(1.0, 0.0, 0.5), (1.0, 0.0, 0.5), (1.0, 0.0, 0.5)])"
+    assert repr(point()) == ("slalom.Problem(dynamics=dynamics, cost=cost, states=2, inputs=1, dt=0.1, input_min=-2.0, "
+                             "input_max=2.0)")
+
+
+def test_controllers_print_what_differs_from_the_defaults():
+    controller = slalom.SvgMppi(slalom.CartPole(), horizon=12, input_min=-10, input_max=10)
+    assert repr(controller) == "slalom.SvgMppi(slalom.CartPole(), horizon=12, input_min=-10.0, input_max=10.0)"
+    assert eval(repr(controller)).options == controller.options
+    general = slalom.Controller("mppi", slalom.CartPole(), samples=10)
+    assert repr(general) == "slalom.Controller('mppi', slalom.CartPole(), samples=10)"
+    page = controller._repr_html_()
+    assert page.startswith("<table>") and "<th style='text-align:left'>temperature</th>" in page
+
+
+def test_plans_print_their_outcome_and_do_not_break_once_they_are_old():
+    controller = slalom.Mppi(slalom.CartPole(), horizon=12, samples=100)
+    plan = controller.solve([0, 0, 0.1, 0])
+    assert repr(plan).startswith(f"<slalom.Plan 'ok' by mppi: 12 steps, cost {plan.cost:.6g}, ")
+    assert "of 100" in repr(plan) and "<table>" in plan._repr_html_() and "float64 [13, 4]" in plan._repr_html_()
+    assert "effective sample size" in repr(plan.stats) and "float32 [100, 12, 1]" in plan.stats._repr_html_()
+    controller.solve([0, 0, 0.1, 0])
+    assert repr(plan) == "<slalom.Plan of an earlier solve>" and "<table>" in plan._repr_html_()
+
+
+def test_names_are_escaped_in_html():
+    def evil(x, u):
+        return dynamics(x, u)
+
+    evil.__qualname__ = "<script>"
+    assert "<script>" not in point(dynamics=evil)._repr_html_()
+
+
+def test_everything_public_prints_its_name():
+    course = slalom.Course("wren") if hasattr(slalom, "Course") else None
+    controller = slalom.Mppi(slalom.Pendulum(), horizon=5, samples=10)
+    controller.solve([1, 0])
+    shown = [slalom.linearize(slalom.Pendulum(), [1, 0], [0]), slalom.expand_terminal_cost(slalom.Pendulum(), [1, 0]),
+             slalom.Feedback(controller), slalom.OccupancyGrid(np.zeros((2, 3), bool), 0.1)]
+    if course:
+        shown += [course, slalom.World(course), slalom.RacingCar()]
+    for each in shown:
+        assert f"slalom.{type(each).__name__}" in repr(each) and "object at" not in repr(each)
+
+
+@pytest.mark.parametrize("problem", [slalom.CartPole(track=3.5), slalom.Arm(ball_radius=0.2), point(), point(dt=0)])
+@pytest.mark.parametrize("again", [lambda x: pickle.loads(pickle.dumps(x)), copy.deepcopy])
+def test_problems_and_controllers_are_pickled(problem, again):
+    assert repr(again(problem)) == repr(problem)
+    state = np.full(problem.states, 0.1)
+    controller = slalom.SvgMppi(problem, horizon=8, samples=64, input_max=1, seed=3)
+    same = again(controller)
+    assert type(same) is slalom.SvgMppi and same.options == controller.options
+    assert np.array_equal(same.solve(state).inputs, controller.solve(state).inputs)
+    general = again(slalom.Controller("mppi", problem, samples=10))
+    assert type(general) is slalom.Controller and general.options["samples"] == 10
+
+
+def test_options_are_pickled():
+    controller = slalom.Mppi(slalom.Pendulum(), samples=10)
+    options = pickle.loads(pickle.dumps(controller.options))
+    assert options == controller.options and slalom.Mppi(slalom.Pendulum(), **options).options == options
+
+
+def test_what_cannot_be_pickled_says_so():
+    with pytest.raises((AttributeError, pickle.PicklingError), match="lambda"):
+        pickle.dumps(point(cost=lambda x, u: x[:, 0]))
+
+
+def test_copies_of_a_plan_stay_valid():
+    controller = slalom.SvgMppi(slalom.CartPole(), horizon=8, samples=64)
+    plan = controller.solve([0, 0, 0.1, 0])
+    arrays = plan.to_numpy()
+    shapes = {"inputs": (8, 1), "states": (9, 4), "nominal": (8, 1), "variances": (8, 1), "samples": (64, 8, 1),
+              "costs": (64,), "weights": (64,), "samples_collided": (64,), "guides": (plan.guides.shape[0], 8, 1)}
+    assert {name: array.shape for name, array in arrays.items()} == shapes
+    before = {name: array.copy() for name, array in arrays.items()}
+    controller.solve([0, 0, 1.0, 0])
+    assert all(np.array_equal(arrays[name], before[name]) and arrays[name].flags.writeable for name in arrays)
+    with pytest.raises(RuntimeError, match="solved again"):
+        plan.to_numpy()
+
+
+def test_statistics_have_the_names_of_cpp():
+    header = (pathlib.Path(__file__).resolve().parents[3] / "include/slalom/solvers/solver.hpp").read_text()
+    body = header[header.index("struct SolveResult {"):header.index("class Solver {")]
+    names = set(re.findall(r"^  (?!static)[^/;(]*?\b(\w+)(?: = [^;]*)?;\s+///<", body, re.M))
+    assert {"weights", "effective_sample_size", "temperature", "times"} <= names
+    controller = slalom.SvgMppi(slalom.CartPole(), horizon=8, samples=64)
+    plan = controller.solve([0, 0, 0.1, 0])
+    missing = [name for name in sorted(names - {"inputs"}) if not hasattr(plan.stats, name)]
+    assert not missing
+    assert plan.stats.effective_sample_size == plan.effective_sample_size
+    assert np.array_equal(plan.stats.collided, plan.samples_collided) and plan.stats.mean.shape == (8, 1)
+    assert plan.controller is controller
+
+
+def test_the_stubs_name_everything():
+    names = set()
+    for stub in FOLDER.glob("*.pyi"):
+        names |= {node.name for node in ast.parse(stub.read_text()).body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+    assert set(slalom.__all__) - {"FewSamplesWarning", "__version__"} <= names
+    assert "gradient_samples: int = ..." in (FOLDER / "_slalom.pyi").read_text()
+
+
+USE = """
+import numpy as np
+import slalom
+from slalom.env import RacingEnv
+from slalom.mlp import Mlp
+
+controller = slalom.SvgMppi(slalom.CartPole(track=3.0), horizon=10, input_min=-10, input_max=[10])
+plan = controller.solve(np.zeros(4), elapsed=0.1)
+size: float = plan.stats.effective_sample_size
+inputs: list[float] = plan.inputs[0].tolist()
+terms: dict[str, float] = plan.cost_terms
+step = controller.problem.step([0, 0, 0, 0], [1.0])
+walls = slalom.signed_distance(slalom.OccupancyGrid(np.zeros((3, 3), bool), resolution=0.1))
+"""
+
+
+def test_mypy_accepts_the_package_and_finds_mistakes(tmp_path):
+    mypy = shutil.which("mypy", path="/usr/bin") or shutil.which("mypy")
+    if not mypy:
+        pytest.skip("mypy is missing (Debian: mypy)")
+    mistakes = {"slalom.Mppi(slalom.CartPole(), sample=10)": "sample", "slalom.CartPole(tack=1)": "tack",
+                "slalom.Mppi(slalom.CartPole()).solve([0]).input": "input", "x: str = plan.cost": "str"}
+    program = tmp_path / "use.py"
+    program.write_text(USE + "\n".join(mistakes) + "\n")
+    run = subprocess.run([mypy, "--strict", "--python-executable", sys.executable, "--cache-dir", tmp_path, program],
+                         capture_output=True, text=True, env={"MYPYPATH": str(FOLDER.parent), "PATH": "/usr/bin:/bin"})
+    errors = [line for line in run.stdout.splitlines() if ": error:" in line]
+    first = len(USE.splitlines()) + 1
+    assert len(errors) == len(mistakes), run.stdout
+    for line, (error, word) in enumerate(zip(errors, mistakes.values()), first):
+        assert f"use.py:{line}: error" in error and word in error
+
+
+def test_tensors_share_the_memory_of_the_solver():
+    torch = pytest.importorskip("torch")
+    from slalom.torch import on_tensors
+
+    seen = []
+
+    @on_tensors
+    def tensor_dynamics(x, u):
+        seen.append((u.data_ptr(), tuple(u.shape), u.dtype))
+        return torch.stack([x[:, 0] + 0.1 * x[:, 1], x[:, 1] + 0.1 * u[:, 0]]).T
+
+    @on_tensors
+    def tensor_cost(x, u):
+        return {"distance": x[:, 0] ** 2, "effort": 0.1 * u[:, 0] ** 2}, x[:, 0] > 100
+
+    kept = []
+
+    def spied(x, u):
+        kept.append(u.__array_interface__["data"][0])
+        result = tensor_dynamics(x, u)
+        assert result.base is not None  # the memory of the tensor
+        return result
+
+    plans = [slalom.Mppi(problem, horizon=10, samples=128, seed=5).solve([1, 0])
+             for problem in (point(dynamics=spied, cost=tensor_cost), point())]
+    assert [data for data, *_ in seen] == kept and seen[0][1:] == ((128, 1), torch.float32)
+    np.testing.assert_allclose(plans[0].inputs, plans[1].inputs, atol=1e-4)
+    assert list(plans[0].cost_terms) == ["distance", "effort"]
