@@ -8,14 +8,16 @@
         torque = plan.inputs[0]
 """
 
+import importlib.util
+
 from . import _slalom, display
 from ._slalom import *  # noqa: F401,F403
 from ._slalom import __version__
 
-try:
+if importlib.util.find_spec("slalom._driving"):
     from . import _driving
     from ._driving import *  # noqa: F401,F403
-except ModuleNotFoundError:  # built without the layers for cars
+else:  # built without the layers for cars
     _driving = None  # type: ignore[assignment]
 
 _DRIVING = ("Course", "Planner", "RacingCar", "World", "courses", "drive_lap", "race_course", "raceline", "racing_speeds")
