@@ -5,7 +5,9 @@
 //   METHOD[:OPTION=VALUE]...,...]
 //                        [--temperatures NUMBER,...]
 
+#include <cmath>
 #include <cstdio>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -40,13 +42,22 @@ SvgMppiOptions svg_mppi_options(const Task& task, double temperature) {
   return o;
 }
 
+/// The samples of an iteration, so that all iterations of a solve have as many rollouts as the other methods.
+int samples_of_iteration(const SolverOptions& options) {
+  const int* const iterations = options.find<int>("iterations");
+  const double* const decay = options.find<double>("sample_decay");
+  double batches = 1;
+  for (int i = 1; iterations && i < *iterations; ++i) batches += std::pow(decay ? *decay : 1, -i);
+  return static_cast<int>(rollouts / batches);
+}
+
 /// Options of a method, by the same rule for every task: those of docs/writing-a-problem.md, "Units".
 SolverOptions method_options(const std::string& method, const Task& task, double temperature) {
   SolverOptions options = solver_options(method);
   if (method == SvgMppiOptions::method) {
     options = svg_mppi_options(task, temperature);
   } else {
-    *options.find<int>("samples") = rollouts;
+    *options.find<int>("samples") = samples_of_iteration(options);
     *options.find<PerInput>("variance") = scaled_squares(task.deviation, 1);
     if (double* const option = options.find<double>("temperature")) *option = temperature;
   }
@@ -135,11 +146,14 @@ void run(const Arguments& a) {
   std::printf("task,several_ways,method,temperature,seeds,solved,effective_sample_size\n");
   for (const Task& task : tasks_named(a.tasks)) {
     for (const std::string& method : a.methods) {
+      std::optional<Outcome> of_any_temperature;  // of a method without one
       for (const std::string& temperature : a.temperatures) {
         const std::vector<std::string> parts = split(method, ':');
         SolverOptions options = method_options(parts[0], task, std::stod(temperature));
         set_options(options, parts);
-        const Outcome outcome = task.run(options, a.first_seed, a.seeds);
+        const Outcome outcome =
+            of_any_temperature ? *of_any_temperature : task.run(options, a.first_seed, a.seeds);
+        if (!options.find<double>("temperature")) of_any_temperature = outcome;
         std::printf("%s,%d,%s,%s,%d,%d,%.4g\n", task.name.c_str(), task.several_ways, method.c_str(),
                     temperature.c_str(), a.seeds, outcome.solved, median(outcome.effective_sample_sizes));
         std::fflush(stdout);

@@ -18,6 +18,7 @@
 #include "slalom/solvers/cem.hpp"
 #include "slalom/solvers/controller.hpp"
 #include "slalom/solvers/feedback.hpp"
+#include "slalom/solvers/icem.hpp"
 #include "slalom/solvers/mppi.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/solvers/reverse_mppi.hpp"

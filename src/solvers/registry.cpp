@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "slalom/solvers/cem_options.hpp"
+#include "slalom/solvers/icem_options.hpp"
 #include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/reverse_mppi_options.hpp"
 #include "slalom/solvers/sv_mpc_options.hpp"
@@ -22,6 +23,7 @@ struct Registry {
       ReverseMppiOptions{},  //
       SvMpcOptions{},        //
       CemOptions{},          //
+      IcemOptions{},         //
   };
   std::vector<const char*> names;
 

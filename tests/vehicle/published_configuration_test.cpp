@@ -13,6 +13,7 @@ TEST(PublishedConfiguration, EqualsTheOptionsOfTheGoldenTests) {
   int compared = 0;
   for (const SolverOptions& method : file.methods) {
     const std::string name = solver_name(method);
+    if (name == "icem") continue;  // the paper's program does not have it
     const auto ours = list_options(method), golden = list_options(published_solver_options(name));
     ASSERT_EQ(ours.size(), golden.size()) << name;
     for (std::size_t i = 0; i < ours.size(); ++i) {

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import slalom
 
-CLASSES = [slalom.Mppi, slalom.SvgMppi, slalom.ReverseMppi, slalom.SvMpc, slalom.Cem]
+CLASSES = [slalom.Mppi, slalom.SvgMppi, slalom.ReverseMppi, slalom.SvMpc, slalom.Cem, slalom.Icem]
 
 
 def linear(**changes):

@@ -37,25 +37,7 @@ template <class Options, class Visit>
 requires is_options_of<Options, CemOptions>
 void visit_options(Options& o, Visit&& visit) {
   detail::visit_sampling_options(o, visit);
-  visit(o.iterations,
-        Declaration{
-            .name = "iterations", .help = "refits of the distribution in a solve", .min = 1, .max = 10000});
-  visit(o.elite_share, Declaration{.name = "elite_share",
-                                   .symbol = "rho",
-                                   .help = "share of the samples that the distribution is refitted to",
-                                   .min = 0,
-                                   .max = 1});
-  visit(o.smoothing, Declaration{.name = "smoothing",
-                                 .help = "share of the old distribution kept in an update",
-                                 .min = 0,
-                                 .max = 1});
-  visit(o.variance_min, Declaration{.name = "variance_min",
-                                    .unit = "input^2",
-                                    .help = "least variance",
-                                    .min = 0,
-                                    .max = detail::finite});
-  visit(o.send_best,
-        Declaration{.name = "send_best", .help = "send the best sample seen instead of the mean"});
+  detail::visit_cross_entropy_options(o, visit);
   detail::visit_noise_options(o.noise, visit);
   detail::visit_run_options(o, visit);
 }

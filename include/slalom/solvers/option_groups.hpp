@@ -124,6 +124,27 @@ void visit_smoothing_options(Options& o, Visit&& visit) {
 }
 
 template <class Options, class Visit>
+void visit_cross_entropy_options(Options& o, Visit&& visit) {
+  visit(o.iterations,
+        Declaration{
+            .name = "iterations", .help = "refits of the distribution in a solve", .min = 1, .max = 10000});
+  visit(o.elite_share, Declaration{.name = "elite_share",
+                                   .symbol = "rho",
+                                   .help = "share of the samples that the distribution is refitted to",
+                                   .min = 0,
+                                   .max = 1});
+  visit(o.smoothing, Declaration{.name = "smoothing",
+                                 .help = "share of the old distribution kept in an update",
+                                 .min = 0,
+                                 .max = 1});
+  visit(o.variance_min,
+        Declaration{
+            .name = "variance_min", .unit = "input^2", .help = "least variance", .min = 0, .max = finite});
+  visit(o.send_best,
+        Declaration{.name = "send_best", .help = "send the best sample seen instead of the mean"});
+}
+
+template <class Options, class Visit>
 void visit_control_cost_options(Options& o, Visit&& visit) {
   visit(o.control_cost_discount,
         Declaration{.name = "control_cost_discount",

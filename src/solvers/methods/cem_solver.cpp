@@ -4,25 +4,49 @@
 #include <numeric>
 
 #include "slalom/solvers/cem_options.hpp"
+#include "slalom/solvers/icem_options.hpp"
 #include "solvers/sampling/sample_report.hpp"
 
 namespace slalom {
 
 namespace {
 
+/// What `icem` adds to `cem`; with these defaults nothing.
+struct Memory {
+  double kept_elite_share = 0;  ///< xi, of the elites, that stay as samples
+  double sample_decay = 1;      ///< gamma, by which every iteration has fewer samples
+  bool add_mean = false;        ///< the mean is a sample of the last iteration
+};
+
+/// The number of samples of each iteration, of which the last entry holds for all later ones:
+/// max(K gamma^-i, 2 elites).
+std::vector<int> batch_sizes(int samples, int iterations, int elites, double decay) {
+  std::vector<int> sizes{samples};
+  const int min_size = std::min(samples, 2 * elites);
+  double wanted = samples;
+  while (static_cast<int>(sizes.size()) < iterations && sizes.back() > min_size && decay > 1) {
+    wanted /= decay;
+    sizes.push_back(std::max(static_cast<int>(std::lround(wanted)), min_size));
+  }
+  return sizes;
+}
+
 /// `cem`, the cross-entropy method (Rubinstein 1999; Kobilarov 2012): draws samples, fits mean and variance
-/// to the fraction with the lowest costs, and repeats this.
+/// to the fraction with the lowest costs, and repeats this. With `Memory` it is `icem` (Pinneri et al. 2020,
+/// algorithm 1).
 class CemSolver final : public SolverBase {
  public:
-  CemSolver(const CemOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
+  CemSolver(const char* name, const CemOptions& options, const Memory& memory, int inputs,
+            std::shared_ptr<ThreadPool> pool)
       : SolverBase(options, inputs, std::move(pool)),
+        name_(name),
         options_(options),
-        samples_(options.horizon, inputs, options.samples,
-                 detail::NoiseShape(options.noise.exponent, options.noise.log_normal_spread, options.horizon,
-                                    inputs, options.samples)),
+        memory_(memory),
         elites_(std::clamp(static_cast<int>(std::lround(options.elite_share * options.samples)), 1,
                            options.samples)),
+        max_kept_(static_cast<int>(std::lround(memory.kept_elite_share * elites_))),
         order_(options.samples),
+        kept_(static_cast<std::size_t>(max_kept_) * size()),
         mean_(size()),
         variance_(size()),
         first_variance_(spread(options.variance)),
@@ -32,10 +56,14 @@ class CemSolver final : public SolverBase {
         elite_mean_(size()),
         best_(size()),
         sums_(size()) {
+    for (const int samples : batch_sizes(options.samples, options.iterations, elites_, memory.sample_decay))
+      batches_.emplace_back(options.horizon, inputs, samples,
+                            detail::NoiseShape(options.noise.exponent, options.noise.log_normal_spread,
+                                               options.horizon, inputs, samples));
     reset(options.seed);
   }
 
-  const char* name() const noexcept override { return CemOptions::method; }
+  const char* name() const noexcept override { return name_; }
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
@@ -43,6 +71,7 @@ class CemSolver final : public SolverBase {
     clamp(mean_.data());
     std::copy(mean_.begin(), mean_.end(), best_.begin());
     std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
+    kept_count_ = 0;
     result_ = {};
     result_.mean = mean_;
     result_.inputs = options_.send_best ? best_ : mean_;
@@ -57,33 +86,30 @@ class CemSolver final : public SolverBase {
     if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
     std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
 
+    detail::SampleSet* batch = &batches_.front();
     detail::BatchStatistics statistics;
     Status status = Status::deadline;
     float best_cost = std::numeric_limits<float>::infinity();
     int iteration = 0;
     for (; iteration < options_.iterations && !deadline.passed(); ++iteration) {
-      for (std::size_t r = 0; r < size(); ++r) deviation_[r] = std::sqrt(variance_[r]);
-      statistics = samples_.draw_and_evaluate(evaluator, key(iteration),
-                                              {mean_.data(), deviation_.data(), low().data(), high().data(),
-                                               zero_mean_from(samples_.samples(), options_.zero_mean_share)},
-                                              nullptr, pool(), deadline);
+      batch = &batches_[std::min(static_cast<std::size_t>(iteration), batches_.size() - 1)];
+      statistics = sample(*batch, evaluator, iteration, deadline);
       result_.times.draw += statistics.draw_time;
       result_.times.evaluate += statistics.evaluate_time;
       status = statistics.finite == 0 ? Status::degenerate : Status::ok;
       if (status != Status::ok || statistics.evaluated == 0) break;
-      refit(best_cost);
+      refit(*batch, best_cost);
     }
-    if (status == Status::ok &&
-        (iteration < options_.iterations || statistics.evaluated < samples_.samples()))
+    if (status == Status::ok && (iteration < options_.iterations || statistics.evaluated < batch->samples()))
       status = Status::deadline;
     if (statistics.evaluated == 0) status = Status::deadline;
-    if (status == Status::ok && statistics.collided == samples_.samples()) status = Status::all_collided;
+    if (status == Status::ok && statistics.collided == batch->samples()) status = Status::all_collided;
     if (!(best_cost < std::numeric_limits<float>::infinity()))
       std::copy(mean_.begin(), mean_.end(), best_.begin());
     result_.status = status;
     result_.iterations = iteration;
     const StageTimes times = result_.times;
-    detail::report_samples(samples_, statistics, samples_.sum_weights(), result_);
+    detail::report_samples(*batch, statistics, batch->sum_weights(), result_);
     result_.times = times;
     next_solve();
     result_.times.total = detail::seconds(begin, detail::Clock::now());
@@ -93,51 +119,88 @@ class CemSolver final : public SolverBase {
  private:
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
-    shift_sequence(mean_.data(), horizon(), inputs(), steps, elite_mean_.data());
-    std::copy(elite_mean_.begin(), elite_mean_.end(), mean_.begin());
+    const auto move = [&](float* sequence) {
+      shift_sequence(sequence, horizon(), inputs(), steps, elite_mean_.data());
+      std::copy(elite_mean_.begin(), elite_mean_.end(), sequence);
+    };
+    move(mean_.data());
+    for (int i = 0; i < kept_count_; ++i) move(kept(i).data());
+  }
+
+  std::span<float> kept(int index) noexcept {
+    return std::span(kept_).subspan(static_cast<std::size_t>(index) * size(), size());
+  }
+
+  /// Draws the samples of an iteration, replaces the last ones by what is remembered, and evaluates all.
+  detail::BatchStatistics sample(detail::SampleSet& batch, const BatchEvaluator& evaluator, int iteration,
+                                 const Deadline& deadline) noexcept {
+    for (std::size_t r = 0; r < size(); ++r) deviation_[r] = std::sqrt(variance_[r]);
+    const detail::SamplingDistribution<float> to{mean_.data(), deviation_.data(), low().data(), high().data(),
+                                                 zero_mean_from(batch.samples(), options_.zero_mean_share)};
+    const bool with_mean = memory_.add_mean && iteration + 1 == options_.iterations;
+    if (kept_count_ == 0 && !with_mean)
+      return batch.draw_and_evaluate(evaluator, key(iteration), to, nullptr, pool(), deadline);
+    const auto begin = detail::Clock::now();
+    batch.draw(key(iteration), to, pool(), evaluator.sampler());
+    int at = batch.samples();
+    for (int i = 0; i < kept_count_ && at > 0; ++i) batch.values().set_sample(--at, kept(i));
+    if (with_mean && at > 0) batch.values().set_sample(--at, mean_);
+    const double drawn = detail::seconds(begin, detail::Clock::now());
+    detail::BatchStatistics statistics = batch.evaluate(evaluator, nullptr, pool(), deadline);
+    statistics.draw_time = drawn;
+    return statistics;
   }
 
   /// Fits the distribution to the elites, which have equal weights.
-  void refit(float& best_cost) noexcept {
+  void refit(detail::SampleSet& batch, float& best_cost) noexcept {
     const auto begin = detail::Clock::now();
-    const auto costs = samples_.costs();
-    std::iota(order_.begin(), order_.end(), 0);
+    const auto costs = batch.costs();
+    const auto order = std::span(order_).first(costs.size());
+    std::iota(order.begin(), order.end(), 0);
     // The smaller index wins ties, so that the choice does not depend on the library's algorithm.
     const auto better = [&](int a, int b) { return costs[a] < costs[b] || (costs[a] == costs[b] && a < b); };
-    std::nth_element(order_.begin(), order_.begin() + elites_ - 1, order_.end(), better);
-    std::fill(samples_.weights().begin(), samples_.weights().end(), 0.0f);
-    int used = 0, best = order_[0];
+    std::nth_element(order.begin(), order.begin() + elites_ - 1, order.end(), better);
+    std::fill(batch.weights().begin(), batch.weights().end(), 0.0f);
+    int used = 0, best = order[0];
     for (int i = 0; i < elites_; ++i) {
-      const int k = order_[i];
+      const int k = order[i];
       if (std::isfinite(costs[k])) ++used;
       if (better(k, best)) best = k;
     }
     for (int i = 0; i < elites_; ++i) {
-      const int k = order_[i];
-      if (std::isfinite(costs[k])) samples_.weights()[k] = 1.0f / used;
+      const int k = order[i];
+      if (std::isfinite(costs[k])) batch.weights()[k] = 1.0f / used;
     }
     if (costs[best] < best_cost) {
       best_cost = costs[best];
-      samples_.values().get_sample(best, best_);
+      batch.values().get_sample(best, best_);
     }
-    samples_.weighted_sums(zero_.data(), sums_.data(), pool());
+    batch.weighted_sums(zero_.data(), sums_.data(), pool());
     std::copy(sums_.begin(), sums_.end(), elite_mean_.begin());
-    samples_.weighted_squares(elite_mean_.data(), sums_.data(), pool());
-    const float kept = static_cast<float>(options_.smoothing);
+    batch.weighted_squares(elite_mean_.data(), sums_.data(), pool());
+    const float kept_share = static_cast<float>(options_.smoothing);
     for (std::size_t r = 0; r < size(); ++r) {
       const float least = std::min(min_variance_[r], first_variance_[r]);
       const float variance = static_cast<float>(sums_[r]);
-      variance_[r] = std::clamp(variance + kept * (variance_[r] - variance), least, 1e12f);
-      mean_[r] = elite_mean_[r] + kept * (mean_[r] - elite_mean_[r]);
+      variance_[r] = std::clamp(variance + kept_share * (variance_[r] - variance), least, 1e12f);
+      mean_[r] = elite_mean_[r] + kept_share * (mean_[r] - elite_mean_[r]);
     }
     clamp(mean_.data());
+    kept_count_ = std::min(max_kept_, used);
+    std::partial_sort(order.begin(), order.begin() + kept_count_, order.begin() + elites_, better);
+    for (int i = 0; i < kept_count_; ++i) batch.values().get_sample(order[i], kept(i));
     result_.times.update += detail::seconds(begin, detail::Clock::now());
   }
 
+  const char* name_;
   CemOptions options_;
-  detail::SampleSet samples_;
+  Memory memory_;
+  std::vector<detail::SampleSet> batches_;  ///< of the iterations; the last one also of all later ones
   int elites_;
+  int max_kept_;
+  int kept_count_ = 0;
   std::vector<int> order_;
+  std::vector<float> kept_;  ///< [elite][row], the best first
   std::vector<float> mean_, variance_, first_variance_, min_variance_, deviation_, zero_, elite_mean_,
       best_;                  ///< [row]
   std::vector<double> sums_;  ///< [row]
@@ -148,7 +211,28 @@ class CemSolver final : public SolverBase {
 
 std::unique_ptr<Solver> make_solver(const CemOptions& options, int inputs, std::shared_ptr<ThreadPool> pool) {
   validate_options(options, CemOptions::method, inputs);
-  return std::make_unique<CemSolver>(options, inputs, std::move(pool));
+  return std::make_unique<CemSolver>(CemOptions::method, options, Memory{}, inputs, std::move(pool));
+}
+
+std::unique_ptr<Solver> make_solver(const IcemOptions& o, int inputs, std::shared_ptr<ThreadPool> pool) {
+  validate_options(o, IcemOptions::method, inputs);
+  const CemOptions options{.horizon = o.horizon,
+                           .samples = o.samples,
+                           .variance = o.variance,
+                           .input_min = o.input_min,
+                           .input_max = o.input_max,
+                           .iterations = o.iterations,
+                           .elite_share = o.elite_share,
+                           .smoothing = o.smoothing,
+                           .variance_min = o.variance_min,
+                           .send_best = o.send_best,
+                           .noise = o.noise,
+                           .zero_mean_share = o.zero_mean_share,
+                           .shift_warm_start = o.shift_warm_start,
+                           .seed = o.seed,
+                           .threads = o.threads};
+  const Memory memory{o.kept_elite_share, o.sample_decay, true};
+  return std::make_unique<CemSolver>(IcemOptions::method, options, memory, inputs, std::move(pool));
 }
 
 }  // namespace slalom

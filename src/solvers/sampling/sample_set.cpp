@@ -150,8 +150,9 @@ void SampleSet::draw_all(const Sampler* sampler, RandomKey key, const SamplingDi
   });
 }
 
-void SampleSet::draw(RandomKey key, const SamplingDistribution<float>& to, ThreadPool& pool) noexcept {
-  draw_all(nullptr, key, to, false, pool);
+void SampleSet::draw(RandomKey key, const SamplingDistribution<float>& to, ThreadPool& pool,
+                     const Sampler* sampler) noexcept {
+  draw_all(sampler, key, to, false, pool);
 }
 
 BatchStatistics SampleSet::evaluate_whole(const BatchEvaluator& evaluator, const float* linear,

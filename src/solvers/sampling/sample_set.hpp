@@ -73,8 +73,9 @@ class SampleSet {
                                     const SamplingDistribution<float>& to, const float* linear,
                                     ThreadPool& pool, const Deadline& deadline) noexcept;
 
-  /// Draws the samples without evaluating them.
-  void draw(RandomKey key, const SamplingDistribution<float>& to, ThreadPool& pool) noexcept;
+  /// Draws the samples without evaluating them, with normal noise or that of a problem's `sampler`.
+  void draw(RandomKey key, const SamplingDistribution<float>& to, ThreadPool& pool,
+            const Sampler* sampler = nullptr) noexcept;
 
   /// Evaluates the present values.
   BatchStatistics evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,

@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "slalom/solvers/icem_options.hpp"
+#include "slalom/solvers/registry.hpp"
+#include "solvers/problems.hpp"
+
+/// What distinguishes `icem` from `cem`; solver_contract_test.cpp tests what every method has to do.
+namespace slalom {
+namespace {
+
+/// A cost with many local minima.
+auto rough() {
+  return testing::FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
+    double cost = 0;
+    for (int t = 0; t < batch.steps(); ++t) {
+      const auto v = static_cast<double>(batch.at(t, 0, k));
+      cost += (v - 1) * (v - 1) + 2 * std::sin(9 * v + t) * std::sin(9 * v + t);
+    }
+    return std::pair(cost, false);
+  });
+}
+
+std::vector<float> sample(const SequenceBatch& batch, int k) {
+  std::vector<float> values(static_cast<std::size_t>(batch.rows()));
+  batch.get_sample(k, values);
+  return values;
+}
+
+TEST(Icem, SamplesFallByTheDecayToTwiceTheElites) {
+  const auto evaluator = rough();
+  const auto last_batch = [&](int iterations, double decay) {
+    const auto solver = make_solver(
+        IcemOptions{.samples = 100, .iterations = iterations, .elite_share = 0.1, .sample_decay = decay}, 1);
+    return solver->solve(evaluator, {}).samples->samples();
+  };
+  EXPECT_EQ(last_batch(1, 1.25), 100);
+  EXPECT_EQ(last_batch(2, 1.25), 80);
+  EXPECT_EQ(last_batch(4, 1.25), 51);  // 100 / 1.25^3 = 51.2
+  EXPECT_EQ(last_batch(20, 1.25), 20);
+  EXPECT_EQ(last_batch(20, 1), 100);
+}
+
+TEST(Icem, ElitesStayInTheNextSolve) {
+  const auto evaluator = rough();
+  const auto falls = [&](double kept_share) {
+    const auto solver = make_solver(IcemOptions{.horizon = 12,
+                                                .samples = 60,
+                                                .iterations = 1,
+                                                .elite_share = 0.1,
+                                                .kept_elite_share = kept_share,
+                                                .shift_warm_start = false},
+                                    1);
+    bool always = true;
+    double before = solver->solve(evaluator, {}).minimum_cost;
+    for (int i = 0; i < 20; ++i) {
+      const double now = solver->solve(evaluator, {}).minimum_cost;
+      always = always && now <= before;
+      before = now;
+    }
+    return always;
+  };
+  EXPECT_TRUE(falls(0.5));
+  EXPECT_FALSE(falls(0));
+}
+
+TEST(Icem, ElitesAreTheBestSamplesAndMoveWithTheTime) {
+  const auto evaluator = rough();
+  const auto solver = make_solver(
+      IcemOptions{.horizon = 6, .samples = 50, .iterations = 1, .elite_share = 0.1, .kept_elite_share = 0.4},
+      1);
+  const SolveResult& result = solver->solve(evaluator, {});
+  std::vector<int> order(50);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return result.costs[static_cast<std::size_t>(a)] < result.costs[static_cast<std::size_t>(b)];
+  });
+  std::vector<std::vector<float>> best;
+  for (int i = 0; i < 2; ++i) {
+    best.push_back(sample(*result.samples, order[static_cast<std::size_t>(i)]));
+    best.back().erase(best.back().begin());  // one step of time passes
+    best.back().push_back(best.back().back());
+  }
+  solver->solve(evaluator, {.elapsed = evaluator.time_step()});
+  EXPECT_EQ(sample(*result.samples, 49), best[0]);
+  EXPECT_EQ(sample(*result.samples, 48), best[1]);
+  solver->reset(0);
+  const auto again = make_solver(
+      IcemOptions{.horizon = 6, .samples = 50, .iterations = 1, .elite_share = 0.1, .kept_elite_share = 0.4},
+      1);
+  const std::vector<float> fresh = sample(*again->solve(evaluator, {}).samples, 49);
+  EXPECT_EQ(sample(*solver->solve(evaluator, {}).samples, 49), fresh) << "a reset forgets the elites";
+}
+
+TEST(Icem, TheMeanIsASampleOfTheLastIteration) {
+  const auto evaluator = rough();
+  const IcemOptions options{
+      .horizon = 6, .samples = 50, .iterations = 1, .kept_elite_share = 0, .shift_warm_start = false};
+  const auto solver = make_solver(options, 1);
+  const SolveResult& result = solver->solve(evaluator, {});
+  const std::vector<float> mean(result.mean.begin(), result.mean.end());
+  solver->solve(evaluator, {});
+  EXPECT_EQ(sample(*result.samples, 49), mean);
+}
+
+}  // namespace
+}  // namespace slalom
