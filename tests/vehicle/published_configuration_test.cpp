@@ -10,10 +10,11 @@ namespace {
 
 TEST(PublishedConfiguration, EqualsTheOptionsOfTheGoldenTests) {
   const Configuration file = load_configuration(SLALOM_CONFIGS "/published.yaml");
-  int compared = 0;
+  int compared = 0, methods = 0;
   for (const SolverOptions& method : file.methods) {
     const std::string name = solver_name(method);
     if (name == "icem") continue;  // the paper's program does not have it
+    ++methods;
     const auto ours = list_options(method), golden = list_options(published_solver_options(name));
     ASSERT_EQ(ours.size(), golden.size()) << name;
     for (std::size_t i = 0; i < ours.size(); ++i) {
@@ -22,7 +23,7 @@ TEST(PublishedConfiguration, EqualsTheOptionsOfTheGoldenTests) {
       compared += option != "seed" && option != "threads";
     }
   }
-  std::printf("[ options  ] %d options of %zu methods compared\n", compared, file.methods.size());
+  std::printf("[ options  ] %d options of %d methods compared\n", compared, methods);
   EXPECT_EQ(file.methods.size(), solver_names().size());
 }
 
