@@ -10,6 +10,7 @@
 #include "slalom/evaluation/lap_runner.hpp"
 #include "slalom/sim/collision_log.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
+#include "slalom/tracking/predictor.hpp"
 
 namespace slalom::evaluation {
 
@@ -33,8 +34,9 @@ struct LapRunner::LapInProgress {
   sim::World world;
   std::unique_ptr<vehicle::Planner> planner;
   SequenceCostMeter meter;
-  std::unique_ptr<HardwareModel> hardware;  ///< null where the planner gets exact measurements
-  std::unique_ptr<TrackingMeter> tracking;  ///< null with TrackingMode::off
+  std::unique_ptr<HardwareModel> hardware;       ///< null where the planner gets exact measurements
+  std::unique_ptr<TrackingMeter> tracking;       ///< null with TrackingMode::off
+  std::optional<tracking::Predictor> predictor;  ///< with `tracking`
   sim::CollisionLog log;
   LapResult result;
   Sums sums;

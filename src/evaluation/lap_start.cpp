@@ -79,9 +79,11 @@ std::unique_ptr<LapRunner::LapInProgress> LapRunner::begin(std::uint64_t seed) c
     lap->hardware =
         std::make_unique<HardwareModel>(*settings_.hardware, environment_->course.map, options.car,
                                         lap->world.state(0), solver_seed(seed, "hardware"));
-  if (settings_.tracking != TrackingMode::off)
+  if (settings_.tracking != TrackingMode::off) {
     lap->tracking = std::make_unique<TrackingMeter>(settings_.tracking, environment_->course.map, lap->world,
                                                     solver_seed(seed, "tracking"));
+    lap->predictor.emplace(path_);
+  }
   return lap;
 }
 

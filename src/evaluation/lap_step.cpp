@@ -51,7 +51,8 @@ void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, 
   const LapRules& rules = rules_of(environment_->protocol);
   const sim::Observation seen = lap.world.observe(0);
   const maps::LaserScanView scan = rules.scan(seen, lap.world);
-  if (lap.tracking) lap.tracking->observe(lap.world, scan);
+  std::span<const maps::PredictedObstacle> others;
+  if (lap.tracking) others = lap.predictor->update(lap.tracking->observe(lap.world, scan), seen.time);
   vehicle::Odometry odometry = odometry_of(seen, lap.world.options().car.rear_length);
   bool localised = true;
   if (lap.hardware) {
@@ -64,7 +65,8 @@ void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, 
   const vehicle::PlannerOutput& output = lap.planner->update(
       {.scan = scan,
        .odometry = localised ? odometry : vehicle::Odometry{{unknown, unknown, unknown}, odometry.speed},
-       .imu = lap.hardware ? lap.hardware->read_imu() : std::nullopt});
+       .imu = lap.hardware ? lap.hardware->read_imu() : std::nullopt,
+       .others = others});
   if (localised) record_estimate(lap.result.estimation, output, seen);
 
   // If the planner's cost map has the options of the meter's, it is not computed twice.

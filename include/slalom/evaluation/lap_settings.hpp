@@ -31,7 +31,7 @@ struct LapSettings {
   double steering_gain = 1;                   ///< angle of the wheels / commanded angle
   double range_noise = 0.01;                  ///< m, standard deviation of each range
   double dropout = 0;                         ///< fraction of beams without a return
-  TrackingMode tracking = TrackingMode::off;  ///< measures a tracker of other cars; no effect on the lap
+  TrackingMode tracking = TrackingMode::off;  ///< tracks other cars for planner and figures
 };
 
 /// Declares the options of the world, in the section `world`.
@@ -54,8 +54,10 @@ void visit_options(Options& o, Visit&& visit) {
   number(o.range_noise, "range_noise", "m", "standard deviation of each range", 0, 1);
   number(o.dropout, "dropout", "", "fraction of beams without a return", 0, 1);
   visit(o.tracking,
-        Declaration{.name = "tracking",
-                    .help = "measure a tracker of other cars, with this pose; no effect on the lap"});
+        Declaration{
+            .name = "tracking",
+            .help =
+                "track other cars with this pose: measures the tracker, and planner.predict_others uses it"});
 }
 
 /// Sets the option that `key` names, for instance "world.friction", from text. Returns false if `key` does

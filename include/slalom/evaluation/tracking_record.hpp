@@ -4,7 +4,8 @@
 
 namespace slalom::evaluation {
 
-/// Whether a tracker of other cars runs on the scans of a lap, and on which pose. It does not drive.
+/// Whether a tracker of other cars runs on the scans of a lap, and on which pose. With a map, the planner is
+/// given what its objects will do.
 enum class TrackingMode {
   off,
   exact,      ///< with the map and the true pose

@@ -99,13 +99,16 @@ tracking::TrackerInput TrackingMeter::locate(const sim::Observation& seen,
   return input;
 }
 
-void TrackingMeter::observe(const sim::World& world, const maps::LaserScanView& scan) {
+std::span<const tracking::TrackedObject> TrackingMeter::observe(const sim::World& world,
+                                                                const maps::LaserScanView& scan) {
   const sim::Observation seen = world.observe(0);
   const tracking::TrackerOutput& output = tracker_.update(locate(seen, scan));
   aligned_ = output.sensor;
   record_.update_ms.push_back(static_cast<float>(1e3 * output.update_time));
   find_in_view(world, seen.sensor);
   compare(world, output, seen.sensor);
+  if (mode_ == TrackingMode::mapless) return {};
+  return output.objects;
 }
 
 void TrackingMeter::find_in_view(const sim::World& world, const maps::Pose& sensor) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/reference_field.hpp"
 #include "vehicle/planner/back_up.hpp"
 #include "vehicle/planner/car_estimator.hpp"
@@ -16,7 +15,7 @@
 #include "vehicle/planner/input_check.hpp"
 #include "vehicle/planner/local_frame.hpp"
 #include "vehicle/planner/map_options.hpp"
-#include "vehicle/planner/obstacle_memory.hpp"
+#include "vehicle/planner/obstacles.hpp"
 #include "vehicle/planner/recovery.hpp"
 #include "vehicle/planner/sequence_choice.hpp"
 #include "vehicle/planner/ways_around.hpp"
@@ -33,10 +32,9 @@ struct Planner::Implementation {
   std::unique_ptr<VehicleModel> model;
   VehicleTraits traits;
   std::unique_ptr<Solver> solver;
-  maps::LocalCostMap cost_map;
   double stopping_time;  ///< s, by which maps reach beyond plans at the given friction
   double reach;          ///< m, of maps
-  maps::ClearanceMap clearance_map;
+  Obstacles obstacles;
   maps::ReferenceField field;
   FeasibleSpeeds speeds;
   CarEstimator car;  ///< of models with tyres that slip; others have `history`
@@ -44,11 +42,10 @@ struct Planner::Implementation {
   BackUp back_up;
   Recovery recovery;               ///< of models with tyres that slip; others have `back_up`
   std::unique_ptr<Detour> detour;  ///< of models with tyres that slip
-  ObstacleMemory memory;
-  double planned_steer = 0;  ///< rad, before it was limited
-  bool brakes = false;       ///< this update brakes: the command must not be faster than the car
-  double path_friction = 0;  ///< of the path's speeds
-  double speed_ahead = 0;    ///< m/s, when the next command takes effect
+  double planned_steer = 0;        ///< rad, before it was limited
+  bool brakes = false;             ///< this update brakes: the command must not be faster than the car
+  double path_friction = 0;        ///< of the path's speeds
+  double speed_ahead = 0;          ///< m/s, when the next command takes effect
   SequenceChoice choice;
   WaysAround ways;  ///< of models with tyres that slip
   std::vector<PredictedState> states;
@@ -61,10 +58,9 @@ struct Planner::Implementation {
         model(std::move(m)),
         traits(model->traits()),
         solver(std::move(s)),
-        cost_map(cost_map_options(o, traits)),
         stopping_time(detail::stopping_time(path, o, traits)),
         reach(plan_reach(path, o, traits.time_step * solver->horizon() + stopping_time)),
-        clearance_map(clearance_options(traits, reach)),
+        obstacles(o, traits, solver->horizon(), reach),
         field(limited_path(relative(path, origin), o, traits), field_options(o, traits, reach)),
         speeds(limited_path(relative(path, origin), o, traits)),
         car(o, *model),
@@ -142,8 +138,7 @@ struct Planner::Implementation {
         here.distance >= field.options().outside.distance) {
       return stop(PlannerStatus::off_course);
     }
-    const bool clearance = traits.obstacle_map == ObstacleMap::clearance;
-    model->set_maps({followed, clearance ? clearance_map.view() : cost_map.view(), odometry.pose});
+    model->set_maps(obstacles.seen_from(odometry.pose, followed, origin));
     model->set_start(start, traits.follows_path ? here.speed : traits.reference_speed);
     SolveRequest request{.elapsed = options.control_period};
     if (options.deadline > 0) request.deadline = options.deadline;
@@ -192,7 +187,7 @@ struct Planner::Implementation {
                     speeds.speeds()[static_cast<std::size_t>(nearest)], options.control_period);
     detour->note(recovery, odometry.pose);
     model->set_reverse(recovery.reversing() ? Recovery::speed : 0);
-    if (recovery.tries_again() && detour->search(clearance_map, odometry.pose, nearest)) {
+    if (recovery.tries_again() && detour->search(obstacles.clearance_map(), odometry.pose, nearest)) {
       model->set_urgency(Urgency::detour);
       return detour->field_around({start.x, start.y}).view();
     }
@@ -290,23 +285,13 @@ const PlannerOutput& Planner::update(const PlannerInput& input) noexcept {
   const auto begin = std::chrono::steady_clock::now();
   Implementation& p = *implementation_;
   PlannerOutput& out = p.output;
-  out.scan = p.cost_map.update(input.scan);
-  p.cost_map.add_points(input.obstacles);
-  if (p.traits.obstacle_map == ObstacleMap::clearance) {
-    p.clearance_map.clear();
-    p.clearance_map.add(p.cost_map.points());
-    p.clearance_map.add(input.obstacles);
-    if (p.model->has_dynamics() && out.scan.accepted && plausible(input.odometry)) {
-      const maps::Pose laser{p.options.laser_x, p.options.laser_y, p.options.laser_yaw};
-      p.clearance_map.add(p.memory.blind_points(input.odometry.pose, laser, input.scan));
-      p.memory.remember(p.cost_map.points(), input.odometry.pose, p.options.control_period);
-    }
-  }
+  const bool placed = plausible(input.odometry);
+  out.scan = p.obstacles.update(input, placed);
   out.steer_estimate = p.steer_estimate();
   p.brakes = false;
   const bool blind = !out.scan.accepted || out.scan.invalid == out.scan.beams;
   const bool seen_free = out.scan.accepted && input.scan.ranges.size() > 1 && !blind;
-  if (!plausible(input.odometry)) {
+  if (!placed) {
     p.stop(PlannerStatus::bad_odometry);
   } else if (!seen_free) {
     p.stop(PlannerStatus::bad_scan);
@@ -325,10 +310,9 @@ void Planner::reset(std::uint64_t seed) noexcept {
   implementation_->forget_car();
   implementation_->back_up.reset();
   implementation_->recovery.reset();
-  implementation_->memory.reset();
   implementation_->choice.reset();
   implementation_->solver->reset(seed);
-  implementation_->cost_map.clear();
+  implementation_->obstacles.reset();
   implementation_->output = {};
 }
 
@@ -344,7 +328,7 @@ const Solver& Planner::solver() const noexcept {
   return *implementation_->solver;
 }
 const maps::LocalCostMap& Planner::cost_map() const noexcept {
-  return implementation_->cost_map;
+  return implementation_->obstacles.cost_map();
 }
 
 }  // namespace slalom::vehicle

@@ -61,7 +61,11 @@ class PathTracking {
 
   /// Options must be valid (see validate_options).
   explicit PathTracking(const PathTrackingOptions& options, const Options& own = {})
-      : options_(options), motion_(options, own), cost_(options), obstacles_(options.body) {}
+      : options_(options),
+        motion_(options, own),
+        cost_(options),
+        obstacles_(options.body),
+        collision_weight_(options.cost.collision_weight) {}
 
   /// The options given at construction.
   const PathTrackingOptions& options() const { return options_; }
@@ -69,6 +73,7 @@ class PathTracking {
   /// What the planner needs to know of the model.
   VehicleTraits traits() const {
     VehicleTraits traits = traits_of(options_, plans_speed);
+    traits.meets_others = true;
     if constexpr (requires { motion_.complete(traits); }) motion_.complete(traits);
     return traits;
   }
@@ -81,6 +86,7 @@ class PathTracking {
   void set_maps(const VehicleMaps& maps) noexcept {
     cost_.set_reference(maps.reference);
     obstacles_.set_map(maps.obstacles, maps.robot);
+    others_ = maps.others;
   }
 
   /// Makes a variant of the world, if the motion model does (see RandomizableProblem).
@@ -128,10 +134,11 @@ class PathTracking {
     return motion_.step(s, seen.speed, u, k);
   }
 
-  /// Cost of a step.
+  /// Cost of step `k`.
   template <class T>
-  Cost<T> stage_cost(const State<T>& s, const Surroundings<T>& seen, const Input<T, inputs>&) const {
-    return with_speed(cost_.stage(s.yaw, seen), s, seen);
+  Cost<T> stage_cost(const State<T>& s, const Surroundings<T>& seen, const Input<T, inputs>&,
+                     int k = 0) const {
+    return with_others(with_speed(cost_.stage(s.yaw, seen), s, seen), s, k);
   }
   /// Cost of the last state.
   template <class T>
@@ -140,12 +147,14 @@ class PathTracking {
     if constexpr (requires { motion_.stopping_distance(s); }) {
       cost.value = cost.value + motion_.collision_ahead_cost() * speed_of_collision(s);
     }
-    return cost;
+    return with_others(cost, s, others_.last_step());
   }
   /// The part of a cost that collisions make.
   double collision_part(const Surroundings<double>& seen, bool last) const {
     return cost_.collision_part(seen, last);
   }
+  /// The part of the cost of a state at step `k` that obstacles which move make.
+  double others_part(const State<double>& s, int k) const { return with_others({0.0, false}, s, k).value; }
   /// The part of a cost that the distance to the path makes.
   double distance_part(const Surroundings<double>& seen, bool last) const {
     return cost_.distance_part(seen, last);
@@ -174,6 +183,16 @@ class PathTracking {
     return share;
   }
 
+  /// `cost` with that of the obstacles that move.
+  template <class T>
+  SLALOM_INLINE Cost<T> with_others(const Cost<T>& cost, const State<T>& s, int k) const {
+    if (others_.empty()) return cost;
+    T sine, cosine;
+    sin_cos(s.yaw, sine, cosine);
+    const Cost<T> met = others_.cost(s.x, s.y, sine, cosine, k);
+    return {cost.value + T(collision_weight_) * met.value, mask_t<T>(cost.collided | met.collided)};
+  }
+
   template <class T>
   SLALOM_INLINE Cost<T> with_speed(const Cost<T>& cost, const State<T>& s,
                                    const Surroundings<T>& seen) const {
@@ -191,6 +210,8 @@ class PathTracking {
   Motion motion_;
   TrackingCost cost_;       ///< cost of path and speed errors
   ObstacleCost obstacles_;  ///< cost of obstacles
+  maps::MovingObstaclesView others_;
+  Coefficient collision_weight_;
 };
 
 }  // namespace slalom::vehicle

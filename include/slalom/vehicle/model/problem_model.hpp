@@ -117,7 +117,8 @@ class ProblemModel final : public VehicleModel {
       const int step = static_cast<int>(k);
       const Cost<double> cost = last ? slalom::detail::terminal_cost<P, double>(problem, s, seen)
                                      : slalom::detail::stage_cost<P, double>(problem, s, seen, u, step);
-      const double collision = problem.collision_part(seen, last);
+      double collision = problem.collision_part(seen, last);
+      if constexpr (requires { problem.others_part(s, step); }) collision += problem.others_part(s, step);
       total.state += cost.value - collision;
       total.distance += problem.distance_part(seen, last);
       total.collision += collision;

@@ -4,6 +4,7 @@
 
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/problem.hpp"
+#include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
 
@@ -34,13 +35,15 @@ struct VehicleMaps {
   GridView<4> reference;  ///< {distance to the path in m, yaw in rad, speed in m/s, 1 off the map}, map frame
   GridView<1> obstacles;  ///< as VehicleTraits::obstacle_map says, robot's frame; its ring is negative
   maps::Pose robot;       ///< the robot's frame, in the map frame
+  maps::MovingObstaclesView others{};  ///< obstacles that move, map frame
 
   /// The same maps in a frame that is parallel to the map frame and begins at `origin` (m). Rollouts in
   /// float32 need it: at 1e6 m from the origin of their frame a float32 resolves 0.06 m.
   VehicleMaps relative_to(const maps::Point& origin) const noexcept {
     return {reference.relative_to(origin.x, origin.y),
             obstacles,
-            {robot.x - origin.x, robot.y - origin.y, robot.yaw}};
+            {robot.x - origin.x, robot.y - origin.y, robot.yaw},
+            others.relative_to(origin)};
   }
 };
 
@@ -68,6 +71,7 @@ struct VehicleTraits {
   double max_deceleration = 0;  ///< m/s^2, with which the car brakes
   bool unlimited_acceleration = false;  ///< the predicted speed may be at once that of the reference field
   bool plans_speed = false;             ///< the speed to command is that of the plan, not that of the path
+  bool meets_others = false;            ///< rollouts meet obstacles that move
   bool follows_path = true;             ///< false: drives by the obstacles alone, at `reference_speed`
   double reference_speed = 0;           ///< m/s, without a path
   ObstacleMap obstacle_map = ObstacleMap::inflated;  ///< what the map of obstacles holds

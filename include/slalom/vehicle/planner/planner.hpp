@@ -9,6 +9,7 @@
 #include "slalom/maps/imu_reading.hpp"
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/local_cost_map.hpp"
+#include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/solvers/solver.hpp"
@@ -75,6 +76,9 @@ struct PlannerInput {
   std::span<const maps::Point> obstacles{};  ///< further obstacle points, robot frame, m
   std::optional<ImuReading> imu{};  ///< mean since the last update, where there is a unit; it is used
                                     ///< with models whose tyres slip
+  /// Other cars with what they will do from the time of the scan on, map frame; with `predict_others`. The
+  /// readings that end on them are not obstacles, and count as invalid in the report of the scan.
+  std::span<const maps::PredictedObstacle> others{};
 };
 
 /// The outcome of an update. Spans stay valid until the next one. For any input the command is finite,

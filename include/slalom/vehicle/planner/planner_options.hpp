@@ -26,6 +26,8 @@ struct PlannerOptions {
                             ///< best sample that does not
   bool back_up = true;  ///< with `stop_when_blocked` and `verify_plan`: where the car stands and every plan
                         ///< collides, it reverses a little and tries again
+  bool predict_others = true;           ///< plans meet `PlannerInput::others` where they will be
+  double collision_probability = 0.2;   ///< of others in a step, above which a plan collides
   EstimationOptions estimation;         ///< of state, car and ground, for models whose tyres slip
   published::PlannerOptions published;  ///< to reproduce the program of proj-svg_mppi
 };
@@ -93,6 +95,15 @@ void visit_options(Options& o, Visit&& visit) {
                                    .help = "if the solution collides, send another sequence that does not"});
   visit(o.back_up, Declaration{.name = "back_up",
                                .help = "reverse a little where the car stands and every plan collides"});
+  visit(o.predict_others,
+        Declaration{.name = "predict_others",
+                    .help = "meet other cars that are tracked where they will be, not where they are"});
+  visit(o.collision_probability,
+        Declaration{
+            .name = "collision_probability",
+            .help = "probability of a collision with another car in a step, above which a plan collides",
+            .min = 0,
+            .max = 1});
   visit_options(o.estimation, visit);
   visit(o.published.maps, Declaration{.name = "published_maps",
                                       .help = "cost map and reference field as in the paper's program"});

@@ -1,0 +1,228 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "slalom/core/math.hpp"
+#include "slalom/core/options.hpp"
+#include "slalom/core/problem.hpp"
+#include "slalom/maps/pose.hpp"
+
+/// Obstacles that move, in rollouts: every state meets them where they may be at its step.
+///
+///     MovingObstacles others({.front = 0.46, .rear = 0.12, .width = 0.31}, horizon);
+///     others.update(predictions, {robot.x, robot.y}, 0, dt);   // before a solve
+///     problem.others = others.view();
+///     ...
+///     template <class T> Cost<T> stage_cost(const State<T>& x, const Input<T, 2>& u, int k) const {
+///       T sine, cosine;
+///       sin_cos(x.yaw, sine, cosine);
+///       const Cost<T> met = others.cost(x.x, x.y, sine, cosine, k);
+///       return {own_cost(x, u) + met.value, met.collided};
+///     }
+namespace slalom::maps {
+
+/// Where an obstacle is expected at a moment: the middle of its box, with its standard deviations along the
+/// box and across it.
+struct PredictedPose {
+  Pose pose;                    ///< of the middle
+  double along_deviation = 0;   ///< m
+  double across_deviation = 0;  ///< m
+};
+
+/// A rectangular obstacle that moves, with hypotheses of what it will do. Poses are valid as long as what
+/// they are a view of.
+struct PredictedObstacle {
+  static constexpr int max_hypotheses = 4;  ///< of an obstacle
+
+  int id = 0;                                    ///< as its tracker has it
+  double length = 0;                             ///< m
+  double width = 0;                              ///< m
+  double interval = 0;                           ///< s, from one pose to the next, > 0
+  int hypotheses = 0;                            ///< 1 ... max_hypotheses
+  std::array<double, max_hypotheses> weights{};  ///< their probabilities; the sum is 1
+  /// [hypothesis][time], as many for each: the first is that of now, after the last the obstacle keeps its
+  /// last velocity
+  std::span<const PredictedPose> poses;
+
+  /// How many poses a hypothesis has.
+  std::size_t times() const noexcept { return poses.size() / static_cast<std::size_t>(hypotheses); }
+  /// A hypothesis at a time (s, >= 0), by interpolation.
+  PredictedPose at(int hypothesis, double time) const noexcept;
+};
+
+/// Options of MovingObstacles.
+struct MovingObstacleOptions {
+  double front = 0.461;          ///< m, reach of the own body ahead of its reference point
+  double rear = 0.119;           ///< m, behind it
+  double width = 0.31;           ///< m
+  double margin = 0.05;          ///< m, distance below which bodies collide
+  double soft_margin = 0.25;     ///< m, distance beyond `margin` in which nearness has a cost
+  double collision_cost = 100;   ///< of a collision that is certain
+  double soft_cost = 20;         ///< of a state that almost collides; falls off as the square of the distance
+  double deviations = 1;         ///< standard deviations by which boxes are inflated
+  double max_probability = 0.2;  ///< of a collision in a step; a state above it collides
+
+  /// Throws std::invalid_argument naming the option, its value and the rule.
+  void validate() const { validate_options(*this, "moving_obstacles"); }
+};
+
+/// Declares the options above.
+template <class Options, class Visit>
+requires is_options_of<Options, MovingObstacleOptions>
+void visit_options(Options& o, Visit&& visit) {
+  const auto number = [&](auto& field, const char* name, const char* unit, const char* help, double max) {
+    visit(field, Declaration{.name = name, .unit = unit, .help = help, .min = 0, .max = max});
+  };
+  number(o.front, "front", "m", "reach of the own body ahead of its reference point", 100);
+  number(o.rear, "rear", "m", "reach behind it", 100);
+  number(o.width, "width", "m", "width of the own body", 100);
+  number(o.margin, "margin", "m", "distance below which bodies collide", 100);
+  number(o.soft_margin, "soft_margin", "m", "distance beyond `margin` in which nearness has a cost", 100);
+  number(o.collision_cost, "collision_cost", "", "cost of a collision that is certain", 1e9);
+  number(o.soft_cost, "soft_cost", "", "cost of a state that almost collides", 1e9);
+  number(o.deviations, "deviations", "", "standard deviations by which boxes are inflated", 10);
+  number(o.max_probability, "max_probability", "", "probability of a collision above which a state collides",
+         1);
+}
+
+/// What rollouts see of moving obstacles; it must not outlive them. By default there are none.
+class MovingObstaclesView {
+ public:
+  MovingObstaclesView() = default;
+
+  /// Whether there are none.
+  bool empty() const noexcept { return obstacles_ == 0; }
+  /// The last step at which they are known.
+  int last_step() const noexcept { return steps_; }
+
+  /// The same obstacles in a frame that is parallel to theirs and begins at `origin` (m). Rollouts in float32
+  /// need it (see GridView::relative_to).
+  MovingObstaclesView relative_to(const Point& origin) const noexcept {
+    MovingObstaclesView moved = *this;
+    moved.x_ = double(x_) + origin.x;
+    moved.y_ = double(y_) + origin.y;
+    return moved;
+  }
+
+  /// The cost of the own body at (x, y) (m), turned by the angle of this sine and cosine, at step `k`, and
+  /// whether it collides. With g_h the gap between the own box and that of hypothesis h, which is inflated by
+  /// the margin and its deviations, and w_h its weight, an obstacle costs
+  ///
+  ///     sum_h w_h (g_h < 0 ? collision_cost : soft_cost max(1 - g_h / soft_margin, 0)^2)
+  ///
+  /// and collides where the sum of the weights of the boxes that are met is above `max_probability`: a
+  /// chance constraint for each step. Boxes meet exactly where no side of either separates them (the
+  /// separating axis theorem); g is the widest separation along their four axes.
+  template <class T>
+  SLALOM_INLINE_CALLS Cost<T> cost(const T& x, const T& y, const T& sine, const T& cosine, int k) const {
+    Cost<T> sum{T(0), mask_t<T>(false)};
+    if (obstacles_ == 0) return sum;
+    const T middle_x = x + T(x_) + T(lead_) * cosine, middle_y = y + T(y_) + T(lead_) * sine;
+    for (int i = 0; i < obstacles_; ++i) {
+      const Reach& reach = reaches_[k * obstacles_ + i];
+      const T near_x = middle_x - T(reach.x), near_y = middle_y - T(reach.y);
+      if (!any(mask_t<T>(near_x * near_x + near_y * near_y < T(reach.squared)))) continue;
+      T met(0);
+      for (int h = reach.first; h < reach.end; ++h) {
+        const Box& box = boxes_[h];
+        const T gap = gap_to(box, middle_x - T(box.x), middle_y - T(box.y), sine, cosine);
+        const T near = max(T(1) - gap * T(inverse_soft_margin_), T(0));
+        const mask_t<T> meets(gap < T(0));
+        sum.value =
+            sum.value + T(box.weight) * select(meets, T(collision_cost_), T(soft_cost_) * near * near);
+        met = met + select(meets, T(box.weight), T(0));
+      }
+      sum.collided = sum.collided | mask_t<T>(met > T(max_probability_));
+    }
+    return sum;
+  }
+
+ private:
+  friend class MovingObstacles;
+
+  /// A hypothesis at a step.
+  struct Box {
+    float x, y;  ///< m, of the middle
+    float sine, cosine;
+    float half_length, half_width;  ///< m, inflated
+    float weight;
+  };
+  /// A circle beyond which an obstacle costs nothing at a step, and its boxes.
+  struct Reach {
+    float x, y;     ///< m
+    float squared;  ///< m^2
+    int first, end;
+  };
+
+  /// The gap between the own body, whose middle is at (dx, dy) from that of the box, and the box, m.
+  template <class T>
+  SLALOM_INLINE_CALLS T gap_to(const Box& box, const T& dx, const T& dy, const T& sine,
+                               const T& cosine) const {
+    const T bc = T(box.cosine), bs = T(box.sine), half_length = T(half_length_), half_width = T(half_width_);
+    const T turned_cosine = abs(cosine * bc + sine * bs), turned_sine = abs(sine * bc - cosine * bs);
+    const T of_box = max(abs(dx * bc + dy * bs) -
+                             (T(box.half_length) + half_length * turned_cosine + half_width * turned_sine),
+                         abs(dy * bc - dx * bs) -
+                             (T(box.half_width) + half_length * turned_sine + half_width * turned_cosine));
+    const T of_body =
+        max(abs(dx * cosine + dy * sine) -
+                (half_length + T(box.half_length) * turned_cosine + T(box.half_width) * turned_sine),
+            abs(dy * cosine - dx * sine) -
+                (half_width + T(box.half_length) * turned_sine + T(box.half_width) * turned_cosine));
+    return max(of_box, of_body);
+  }
+
+  const Box* boxes_ = nullptr;
+  const Reach* reaches_ = nullptr;  ///< [step][obstacle]
+  int obstacles_ = 0, steps_ = 0;
+  Coefficient x_, y_;                     ///< m, the origin of rollouts in the frame of the boxes
+  Coefficient lead_;                      ///< m, of the own body's middle ahead of its reference point
+  Coefficient half_length_, half_width_;  ///< m, of the own body
+  Coefficient inverse_soft_margin_, soft_cost_, collision_cost_, max_probability_;
+};
+
+/// The boxes of moving obstacles at every step of a horizon. After construction nothing allocates.
+class MovingObstacles {
+ public:
+  static constexpr int max_count = 16;  ///< obstacles that count; of more, the nearest ones do
+
+  /// For `steps` steps. Throws std::invalid_argument on options out of range and on `steps` < 1.
+  explicit MovingObstacles(const MovingObstacleOptions& options, int steps);
+  /// Views stay valid where obstacles are moved; they cannot be copied.
+  MovingObstacles(MovingObstacles&&) noexcept = default;
+  /// As above.
+  MovingObstacles& operator=(MovingObstacles&&) noexcept = default;
+
+  /// Forgets all obstacles.
+  void clear() noexcept { view_.obstacles_ = 0; }
+  /// Takes predictions to the times `first` + k `time_step` (s from now), k = 0 ... steps. They are kept
+  /// relative to `origin` (m), a point near which rollouts begin, and must live until the next update.
+  /// Obstacles whose numbers are not finite are left out.
+  void update(std::span<const PredictedObstacle> predicted, const Point& origin, double first,
+              double time_step) noexcept;
+
+  /// Those of the last update that count.
+  std::span<const PredictedObstacle* const> taken() const noexcept {
+    return {taken_.data(), static_cast<std::size_t>(view_.obstacles_)};
+  }
+
+  /// The obstacles in the frame in which they are given.
+  MovingObstaclesView view() const noexcept { return view_; }
+
+ private:
+  void place(const PredictedObstacle& obstacle, double time, MovingObstaclesView::Reach& reach) noexcept;
+
+  MovingObstacleOptions options_;
+  int steps_;
+  Point origin_;
+  std::vector<MovingObstaclesView::Box> boxes_;
+  std::vector<MovingObstaclesView::Reach> reaches_;
+  std::array<const PredictedObstacle*, max_count> taken_{};
+  int count_ = 0;  ///< boxes
+  MovingObstaclesView view_;
+};
+
+}  // namespace slalom::maps

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "slalom/maps/moving_obstacles.hpp"
+#include "slalom/maps/reference_path.hpp"
+#include "slalom/tracking/object_tracker.hpp"
+#include "slalom/tracking/predictor_options.hpp"
+
+/// What tracked objects will do, in hypotheses with weights:
+///
+///     Predictor predictor(path);
+///     while (driving) {
+///       const TrackerOutput& seen = tracker.update({scan, sensor_pose, stamp});
+///       planner.update({.scan = scan, .odometry = odometry, .others = predictor.update(seen.objects,
+///       stamp)});
+///     }
+///
+/// Along a course an object with offset d from it and speed v
+///  1. keeps its offset,
+///  2. follows the course: d goes to 0,
+///  3. brakes,
+///  4. moves to the left or 5. to the right of where it is,
+/// and but for the third keeps the ratio of its speed to that of the course. Without a course, far from it or
+/// across it, an object keeps its turn rate and speed, or brakes.
+///
+/// Weights are probabilities. Every `memory` seconds each hypothesis of that time ago is compared with what
+/// the object has done since: w_h <- (1 - f) w_h L_h / sum + f p_h, with L_h the normal density of its error
+/// in arc length, offset and speed, f the `forgetting` and p_h the weights of an unknown object (the steps of
+/// a filter for a hidden Markov chain, in which an object changes its mind with probability f). The four
+/// heaviest hypotheses are returned. Deviations grow from those of the track.
+namespace slalom::tracking {
+
+/// Predicts objects. After construction nothing allocates or throws.
+class Predictor {
+ public:
+  /// Without a course. Throws std::invalid_argument on options out of range.
+  explicit Predictor(const PredictorOptions& options = {});
+  /// Along a course, which is closed if its ends are about as near as its points. Throws
+  /// std::invalid_argument on options out of range and where check_reference_path does.
+  explicit Predictor(std::span<const maps::ReferencePoint> course, const PredictorOptions& options = {});
+  ~Predictor();
+  /// Moves.
+  Predictor(Predictor&&) noexcept;
+  /// Moves.
+  Predictor& operator=(Predictor&&) noexcept;
+
+  /// Predictions of the objects that move, as they are at `stamp` (s), in their frame, which is that of the
+  /// course. Valid until the next call.
+  std::span<const maps::PredictedObstacle> update(std::span<const TrackedObject> objects,
+                                                  double stamp) noexcept;
+  /// Forgets what objects did.
+  void reset() noexcept;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace slalom::tracking

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+
+#include "slalom/maps/moving_obstacles.hpp"
+#include "slalom/tracking/object_tracker.hpp"
+#include "slalom/tracking/predictor_options.hpp"
+#include "tracking/course_line.hpp"
+
+namespace slalom::tracking {
+
+/// What an object may do. The first two are also those of an object without a course.
+enum class Manoeuvre { keep, brake, follow, left, right };
+inline constexpr int manoeuvres = 5, manoeuvres_without_course = 2;
+/// Their weights before an object is known.
+inline constexpr std::array<double, manoeuvres> usual_weights{0.4, 0.08, 0.36, 0.08, 0.08};
+
+/// The motion of an object from which hypotheses are drawn.
+struct Motion {
+  bool on_course = false;
+  maps::Pose pose;      ///< of the middle
+  double speed = 0;     ///< m/s; on a course along it
+  double yaw_rate = 0;  ///< rad/s, without a course
+  double arc = 0;       ///< m, on a course
+  double offset = 0;    ///< m, on a course
+  double drift = 0;     ///< m/s, by which the offset grows
+};
+
+/// The motion of an object: on the course if there is one and it drives along it.
+Motion motion_of(const TrackedObject& object, const CourseLine& course,
+                 const PredictorOptions& options) noexcept;
+
+/// An object on its way through a hypothesis.
+class Way {
+ public:
+  Way(const Motion& motion, Manoeuvre manoeuvre, const CourseLine& course, const PredictorOptions& options)
+      : start_(motion), now_(motion), manoeuvre_(manoeuvre), course_(course), options_(options) {}
+  /// Goes on for `duration` (s).
+  void advance(double duration) noexcept;
+  const Motion& now() const noexcept { return now_; }
+  maps::Pose pose() const noexcept;
+
+ private:
+  void advance_on_course(double duration) noexcept;
+
+  Motion start_, now_;
+  Manoeuvre manoeuvre_;
+  const CourseLine& course_;
+  const PredictorOptions& options_;
+  double time_ = 0;
+};
+
+}  // namespace slalom::tracking

@@ -1,0 +1,207 @@
+#include "slalom/tracking/predictor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tracking/manoeuvres.hpp"
+
+namespace slalom::tracking {
+namespace {
+
+constexpr double arc_error = 0.15, offset_error = 0.06, speed_error = 0.5;  // m, m, m/s: of comparisons
+
+using Weights = std::array<double, manoeuvres>;
+
+/// What is remembered of an object.
+struct Remembered {
+  int id = 0;
+  double since = 0;  ///< s, when `motion` was
+  Motion motion;
+  Weights weights{};
+};
+
+int possible(const Motion& motion) noexcept {
+  return motion.on_course ? manoeuvres : manoeuvres_without_course;
+}
+
+/// The weights of an object of which nothing is known.
+Weights first_weights(const Motion& motion) noexcept {
+  Weights weights = usual_weights;
+  double sum = 0;
+  for (int m = 0; m < manoeuvres; ++m) sum += m < possible(motion) ? weights[static_cast<std::size_t>(m)] : 0;
+  for (int m = 0; m < manoeuvres; ++m) {
+    double& weight = weights[static_cast<std::size_t>(m)];
+    weight = m < possible(motion) ? weight / sum : 0;
+  }
+  return weights;
+}
+
+double square(double value) {
+  return value * value;
+}
+
+}  // namespace
+
+struct Predictor::Implementation {
+  PredictorOptions options;
+  CourseLine course;
+  std::size_t times;
+  std::vector<Remembered> remembered;  ///< ascending by id
+  std::vector<maps::PredictedPose> poses;
+  std::vector<maps::PredictedObstacle> predicted;
+
+  Implementation(const PredictorOptions& o, CourseLine line) : options(o), course(std::move(line)) {
+    options.validate();
+    const auto most = static_cast<std::size_t>(o.max_objects);
+    times = static_cast<std::size_t>(std::ceil(o.horizon / o.interval - 1e-9)) + 1;
+    remembered.reserve(most);
+    poses.resize(most * maps::PredictedObstacle::max_hypotheses * times);
+    predicted.reserve(most);
+  }
+
+  Remembered* find(int id) noexcept {
+    for (Remembered& each : remembered)
+      if (each.id == id) return &each;
+    return nullptr;
+  }
+
+  /// The error of a hypothesis as the exponent of its likelihood.
+  double mismatch(const Remembered& past, Manoeuvre manoeuvre, const Motion& now,
+                  double elapsed) const noexcept {
+    Way way(past.motion, manoeuvre, course, options);
+    way.advance(elapsed);
+    double along = 0, across = 0;
+    if (now.on_course) {
+      along = course.between(way.now().arc, now.arc);
+      across = now.offset - way.now().offset;
+    } else {
+      const maps::Point apart = maps::inverse_transform(now.pose, {way.pose().x, way.pose().y});
+      along = apart.x;
+      across = apart.y;
+    }
+    return 0.5 * (square(along / arc_error) + square(across / offset_error) +
+                  square((now.speed - way.now().speed) / speed_error));
+  }
+
+  /// Compares the hypotheses of a while ago with what the object did.
+  void learn(Remembered& past, const Motion& now, double elapsed) noexcept {
+    const Weights first = first_weights(now);
+    std::array<double, manoeuvres> mismatches{};
+    const int count = possible(now);
+    double least = 1e300, sum = 0;
+    for (int m = 0; m < count; ++m) {
+      double& each = mismatches[static_cast<std::size_t>(m)];
+      each = mismatch(past, static_cast<Manoeuvre>(m), now, elapsed);
+      least = std::min(least, each);
+    }
+    for (int m = 0; m < count; ++m) {
+      const auto i = static_cast<std::size_t>(m);
+      past.weights[i] *= std::exp(least - mismatches[i]);
+      sum += past.weights[i];
+    }
+    for (std::size_t i = 0; i < past.weights.size(); ++i) {
+      const double posterior = sum > 0 ? past.weights[i] / sum : first[i];
+      past.weights[i] = (1 - options.forgetting) * posterior + options.forgetting * first[i];
+    }
+  }
+
+  /// The weights of an object's hypotheses after it was seen in this motion.
+  const Weights& weigh(int id, const Motion& now, double stamp) noexcept {
+    Remembered* past = find(id);
+    if (!past) {
+      remembered.push_back({id, stamp, now, first_weights(now)});
+      return remembered.back().weights;
+    }
+    if (past->motion.on_course != now.on_course) {
+      *past = {id, stamp, now, first_weights(now)};
+    } else if (const double elapsed = stamp - past->since; elapsed >= options.memory - 1e-9) {
+      learn(*past, now, elapsed);
+      past->since = stamp;
+      past->motion = now;
+    }
+    return past->weights;
+  }
+
+  /// Standard deviations along and across the object, `time` (s) after what `object` says.
+  maps::PredictedPose spread(const TrackedObject& object, const maps::Pose& pose,
+                             double time) const noexcept {
+    const double c = std::cos(object.pose.yaw), s = std::sin(object.pose.yaw);
+    const auto variance = [&](double x, double y) {
+      return x * x * object.covariance[0][0] + 2 * x * y * object.covariance[0][1] +
+             y * y * object.covariance[1][1];
+    };
+    const double along = variance(c, s) + square(time) * object.covariance[3][3] +
+                         square(0.5 * options.acceleration_deviation * square(time));
+    const double across = variance(-s, c) + square(options.drift_deviation * time);
+    return {pose, std::sqrt(std::max(along, 0.0)), std::sqrt(std::max(across, 0.0))};
+  }
+
+  /// Appends the prediction of an object: its heaviest hypotheses.
+  void predict(const TrackedObject& object, const Motion& motion, const Weights& weights) noexcept {
+    maps::PredictedObstacle made;
+    made.id = object.id;
+    made.length = object.length;
+    made.width = object.width;
+    made.interval = options.interval;
+    std::array<int, manoeuvres> order{0, 1, 2, 3, 4};
+    std::sort(order.begin(), order.end(), [&](int a, int b) {
+      const double one = weights[static_cast<std::size_t>(a)], other = weights[static_cast<std::size_t>(b)];
+      return one != other ? one > other : a < b;
+    });
+    made.hypotheses = std::min(possible(motion), maps::PredictedObstacle::max_hypotheses);
+    const std::size_t begin = predicted.size() * maps::PredictedObstacle::max_hypotheses * times;
+    double sum = 0;
+    for (int h = 0; h < made.hypotheses; ++h) {
+      const int chosen = order[static_cast<std::size_t>(h)];
+      made.weights[static_cast<std::size_t>(h)] = weights[static_cast<std::size_t>(chosen)];
+      sum += weights[static_cast<std::size_t>(chosen)];
+      Way way(motion, static_cast<Manoeuvre>(chosen), course, options);
+      for (std::size_t k = 0; k < times; ++k) {
+        if (k > 0) way.advance(options.interval);
+        const maps::Pose pose = k > 0 ? way.pose() : object.pose;
+        poses[begin + static_cast<std::size_t>(h) * times + k] =
+            spread(object, pose, static_cast<double>(k) * options.interval);
+      }
+    }
+    for (double& weight : made.weights) weight /= sum;
+    made.poses = {poses.data() + begin, static_cast<std::size_t>(made.hypotheses) * times};
+    predicted.push_back(made);
+  }
+};
+
+Predictor::Predictor(const PredictorOptions& options)
+    : implementation_(std::make_unique<Implementation>(options, CourseLine{})) {}
+Predictor::Predictor(std::span<const maps::ReferencePoint> course, const PredictorOptions& options)
+    : implementation_(std::make_unique<Implementation>(options, CourseLine(course))) {}
+Predictor::~Predictor() = default;
+Predictor::Predictor(Predictor&&) noexcept = default;
+Predictor& Predictor::operator=(Predictor&&) noexcept = default;
+
+std::span<const maps::PredictedObstacle> Predictor::update(std::span<const TrackedObject> objects,
+                                                           double stamp) noexcept {
+  Implementation& p = *implementation_;
+  p.predicted.clear();
+  const auto gone = [&](const Remembered& each) {
+    return std::none_of(objects.begin(), objects.end(),
+                        [&](const TrackedObject& object) { return object.id == each.id; });
+  };
+  std::erase_if(p.remembered, gone);
+  for (const TrackedObject& object : objects) {
+    if (p.predicted.size() == p.predicted.capacity()) break;
+    const bool moves =
+        object.speed >= p.options.min_speed && square(object.speed) > 9 * object.covariance[3][3];
+    if (!moves) continue;
+    const bool room = p.remembered.size() < p.remembered.capacity() || p.find(object.id);
+    if (!room) continue;
+    const Motion motion = motion_of(object, p.course, p.options);
+    p.predict(object, motion, p.weigh(object.id, motion, stamp));
+  }
+  return p.predicted;
+}
+
+void Predictor::reset() noexcept {
+  implementation_->remembered.clear();
+}
+
+}  // namespace slalom::tracking

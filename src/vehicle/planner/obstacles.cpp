@@ -1,0 +1,110 @@
+#include "vehicle/planner/obstacles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "vehicle/planner/car_estimator.hpp"
+#include "vehicle/planner/map_options.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+constexpr double tracking_error = 0.12;  // m, between readings of a car and its box
+
+maps::MovingObstacleOptions moving_options(const PlannerOptions& options, const BodyOptions& body) {
+  maps::MovingObstacleOptions made;
+  made.front = body.front;
+  made.rear = body.rear;
+  made.width = body.width;
+  made.margin = body.margin;
+  made.soft_margin = body.soft_margin;
+  made.soft_cost = body.soft_cost;
+  made.max_probability = options.collision_probability;
+  return made;
+}
+
+}  // namespace
+
+Obstacles::Obstacles(const PlannerOptions& options, const VehicleTraits& traits, int horizon, double reach)
+    : laser_{options.laser_x, options.laser_y, options.laser_yaw},
+      control_period_(options.control_period),
+      time_step_(traits.time_step),
+      delay_(delay_of(options, traits)),
+      has_clearance_(traits.obstacle_map == ObstacleMap::clearance),
+      slips_(traits.friction > 0),
+      meets_others_(options.predict_others && traits.meets_others),
+      cost_map_(cost_map_options(options, traits)),
+      clearance_map_(clearance_options(traits, reach)),
+      others_(moving_options(options, traits.body), horizon),
+      ranges_(meets_others_ ? static_cast<std::size_t>(cost_map_.options().max_beams) : 0) {}
+
+maps::ScanReport Obstacles::update(const PlannerInput& input, bool placed) noexcept {
+  const bool predicts = meets_others_ && placed;
+  const auto others = predicts ? input.others : std::span<const maps::PredictedObstacle>{};
+  others_.update(others, {input.odometry.pose.x, input.odometry.pose.y}, delay_, time_step_);
+  const maps::LaserScanView scan = others_.view().empty() ? input.scan : without_others(input);
+  const maps::ScanReport report = cost_map_.update(scan);
+  cost_map_.add_points(input.obstacles);
+  if (!has_clearance_) return report;
+  clearance_map_.clear();
+  clearance_map_.add(cost_map_.points());
+  clearance_map_.add(input.obstacles);
+  if (slips_ && report.accepted && placed) {
+    clearance_map_.add(memory_.blind_points(input.odometry.pose, laser_, input.scan));
+    memory_.remember(cost_map_.points(), input.odometry.pose, control_period_);
+  }
+  return report;
+}
+
+void Obstacles::reset() noexcept {
+  memory_.reset();
+  cost_map_.clear();
+  others_.clear();
+}
+
+VehicleMaps Obstacles::seen_from(const maps::Pose& robot, const GridView<4>& reference,
+                                 const maps::Point& origin) const noexcept {
+  return {reference, has_clearance_ ? clearance_map_.view() : cost_map_.view(), robot,
+          others_.view().relative_to(origin)};
+}
+
+/// The scan without the readings that end on other cars as they are now.
+maps::LaserScanView Obstacles::without_others(const PlannerInput& input) noexcept {
+  maps::LaserScanView scan = input.scan;
+  if (scan.ranges.size() > ranges_.size() || !(scan.angle_increment > 0)) return scan;
+  std::copy(scan.ranges.begin(), scan.ranges.end(), ranges_.begin());
+  const maps::Point at = maps::transform(input.odometry.pose, {laser_.x, laser_.y});
+  const maps::Pose sensor{at.x, at.y, input.odometry.pose.yaw + laser_.yaw};
+  for (const maps::PredictedObstacle* const other : others_.taken()) {
+    const maps::Pose box = other->poses.front().pose;
+    const double half_length = 0.5 * other->length + tracking_error,
+                 half_width = 0.5 * other->width + tracking_error;
+    const double distance = std::hypot(box.x - at.x, box.y - at.y),
+                 radius = std::hypot(half_length, half_width);
+    const double bearing = std::atan2(box.y - at.y, box.x - at.x) - sensor.yaw;
+    const double reach = distance > radius ? std::asin(radius / distance) : std::numbers::pi;
+    const double first = (maps::wrap_angle(bearing - scan.angle_min - reach)) / scan.angle_increment;
+    if (!std::isfinite(first)) continue;
+    const double turn = 2 * std::numbers::pi / scan.angle_increment;
+    // Beams may cover more than a turn, and angles are known up to whole turns.
+    for (double begin = first - turn; begin < static_cast<double>(scan.ranges.size()); begin += turn) {
+      const double end =
+          std::min(begin + 2 * reach / scan.angle_increment + 1, static_cast<double>(scan.ranges.size()));
+      for (double beam = std::max(std::floor(begin), 0.0); beam < end; ++beam) {
+        float& range = ranges_[static_cast<std::size_t>(beam)];
+        const double angle = sensor.yaw + scan.angle_min + beam * scan.angle_increment;
+        const maps::Point point =
+            maps::inverse_transform(box, {at.x + static_cast<double>(range) * std::cos(angle),
+                                          at.y + static_cast<double>(range) * std::sin(angle)});
+        if (std::abs(point.x) <= half_length && std::abs(point.y) <= half_width)
+          range = std::numeric_limits<float>::quiet_NaN();
+      }
+    }
+  }
+  scan.ranges = {ranges_.data(), scan.ranges.size()};
+  return scan;
+}
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "slalom/maps/clearance_map.hpp"
+#include "slalom/maps/local_cost_map.hpp"
+#include "slalom/maps/moving_obstacles.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
+#include "vehicle/planner/obstacle_memory.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// What the planner must not hit: the maps that it makes of scans, and other cars where they will be.
+class Obstacles {
+ public:
+  /// For a model with these traits and plans of `horizon` steps; maps reach `reach` (m).
+  Obstacles(const PlannerOptions& options, const VehicleTraits& traits, int horizon, double reach);
+
+  /// Takes the scan and what else an input says. Readings of cars whose future is known are left out of the
+  /// maps. `placed`: the odometry can be used.
+  maps::ScanReport update(const PlannerInput& input, bool placed) noexcept;
+  /// Forgets all.
+  void reset() noexcept;
+
+  /// The maps for rollouts over this reference field, by a robot there; in the frame that begins at `origin`
+  /// (m, map frame).
+  VehicleMaps seen_from(const maps::Pose& robot, const GridView<4>& reference,
+                        const maps::Point& origin) const noexcept;
+
+  const maps::LocalCostMap& cost_map() const noexcept { return cost_map_; }
+  const maps::ClearanceMap& clearance_map() const noexcept { return clearance_map_; }
+
+ private:
+  maps::LaserScanView without_others(const PlannerInput& input) noexcept;
+
+  maps::Pose laser_;
+  double control_period_, time_step_, delay_;  ///< s
+  bool has_clearance_, slips_, meets_others_;
+  maps::LocalCostMap cost_map_;
+  maps::ClearanceMap clearance_map_;
+  ObstacleMemory memory_;
+  maps::MovingObstacles others_;
+  std::vector<float> ranges_;  ///< of a scan without the readings of other cars
+};
+
+}  // namespace slalom::vehicle::detail

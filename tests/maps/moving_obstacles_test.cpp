@@ -1,0 +1,265 @@
+#include "slalom/maps/moving_obstacles.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "slalom/core/problem_evaluator.hpp"
+#include "support/allocations.hpp"
+
+namespace slalom::maps {
+namespace {
+
+/// An obstacle with these hypotheses, each of which goes along x from its place.
+struct Predicted {
+  struct Hypothesis {
+    double weight;
+    Pose from;
+    double speed = 0;  // m/s, along x
+    double along = 0, across = 0;
+  };
+  Predicted(double length, double width, const std::vector<Hypothesis>& hypotheses) {
+    for (std::size_t h = 0; h < hypotheses.size(); ++h) {
+      const Hypothesis& each = hypotheses[h];
+      obstacle.weights[h] = each.weight;
+      for (int k = 0; k < 5; ++k)
+        poses.push_back(
+            {{each.from.x + 0.25 * k * each.speed, each.from.y, each.from.yaw}, each.along, each.across});
+    }
+    obstacle.length = length;
+    obstacle.width = width;
+    obstacle.interval = 0.25;
+    obstacle.hypotheses = static_cast<int>(hypotheses.size());
+    obstacle.poses = poses;
+  }
+  Predicted(const Predicted&) = delete;
+  std::vector<PredictedPose> poses;
+  PredictedObstacle obstacle;
+};
+
+/// A body of 0.6 m x 0.3 m round its reference point, which collides where it touches.
+MovingObstacleOptions touching() {
+  MovingObstacleOptions options;
+  options.front = options.rear = 0.3;
+  options.width = 0.3;
+  options.margin = 0;
+  options.soft_margin = 0.2;
+  options.soft_cost = 10;
+  return options;
+}
+
+Cost<double> cost_at(const MovingObstaclesView& view, const Pose& pose, int k = 0) {
+  return view.cost(pose.x, pose.y, std::sin(pose.yaw), std::cos(pose.yaw), k);
+}
+
+/// Whether two boxes overlap, from their corners and sides.
+bool overlap(const Pose& a, double la, double wa, const Pose& b, double lb, double wb) {
+  const auto corner = [](const Pose& box, double length, double width, int i) {
+    const double u = (i == 0 || i == 3 ? 0.5 : -0.5) * length, v = (i < 2 ? 0.5 : -0.5) * width;
+    return transform(box, {u, v});
+  };
+  const auto inside = [](const Pose& box, double length, double width, const Point& point) {
+    const Point own = inverse_transform(box, point);
+    return std::abs(own.x) < 0.5 * length && std::abs(own.y) < 0.5 * width;
+  };
+  const auto side_of = [](const Point& from, const Point& to, const Point& point) {
+    return (to.x - from.x) * (point.y - from.y) - (to.y - from.y) * (point.x - from.x) > 0;
+  };
+  for (int i = 0; i < 4; ++i) {
+    const Point a0 = corner(a, la, wa, i), a1 = corner(a, la, wa, (i + 1) % 4);
+    if (inside(b, lb, wb, a0) || inside(a, la, wa, corner(b, lb, wb, i))) return true;
+    for (int j = 0; j < 4; ++j) {
+      const Point b0 = corner(b, lb, wb, j), b1 = corner(b, lb, wb, (j + 1) % 4);
+      if (side_of(a0, a1, b0) != side_of(a0, a1, b1) && side_of(b0, b1, a0) != side_of(b0, b1, a1))
+        return true;
+    }
+  }
+  return false;
+}
+
+TEST(MovingObstacles, CollideWhereTheBoxesOverlap) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(-1, 1), size(0.05, 1.2), turn(-4, 4);
+  MovingObstacles others(touching(), 1);
+  int overlaps = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double length = size(random), width = size(random);
+    const Pose body{place(random), place(random), turn(random)},
+        box{place(random), place(random), turn(random)};
+    const Predicted predicted(length, width, {{1, box}});
+    others.update({&predicted.obstacle, 1}, {0, 0}, 0, 0.1);
+    const bool expected = overlap(body, 0.6, 0.3, box, length, width);
+    // Boxes are kept as float32: what touches within 1e-6 m is left to chance.
+    if (overlap(body, 0.600001, 0.300001, box, length, width) !=
+        overlap(body, 0.599999, 0.299999, box, length, width))
+      continue;
+    const Cost<double> cost = cost_at(others.view(), body);
+    EXPECT_EQ(cost.collided, expected) << i;
+    EXPECT_EQ(cost.value >= 100, expected) << i;
+    overlaps += expected;
+  }
+  EXPECT_GT(overlaps, 4000);
+  EXPECT_LT(overlaps, 16000);
+}
+
+TEST(MovingObstacles, HypothesesCountByTheirWeights) {
+  MovingObstacleOptions options = touching();
+  options.max_probability = 0.5;
+  MovingObstacles others(options, 4);
+  const Predicted predicted(0.6, 0.3, {{0.3, {0, 0, 0}}, {0.7, {0, 5, 0}}});
+  others.update({&predicted.obstacle, 1}, {0, 0}, 0, 0.1);
+  const Cost<double> at_first = cost_at(others.view(), {0, 0.1, 0}),
+                     at_second = cost_at(others.view(), {0, 5, 1});
+  EXPECT_NEAR(at_first.value, 30, 1e-4);
+  EXPECT_FALSE(at_first.collided);
+  EXPECT_NEAR(at_second.value, 70, 1e-4);
+  EXPECT_TRUE(at_second.collided);
+}
+
+TEST(MovingObstacles, NearnessCostsAsTheSquareOfTheDistance) {
+  MovingObstacles others(touching(), 1);
+  const Predicted predicted(1, 1, {{1, {0, 0, 0}}});
+  others.update({&predicted.obstacle, 1}, {0, 0}, 0, 0.1);
+  EXPECT_NEAR(cost_at(others.view(), {0.9, 0, 0}).value, 2.5, 1e-3);  // a gap of 0.1 m, half of the margin
+  EXPECT_EQ(cost_at(others.view(), {1.01, 0, 0}).value, 0);
+  EXPECT_EQ(cost_at(others.view(), {0.9, 0, 0}, 1).collided, false);
+}
+
+TEST(MovingObstacles, BoxesGrowByTheirDeviations) {
+  MovingObstacleOptions options = touching();
+  options.deviations = 2;
+  MovingObstacles others(options, 1);
+  const Predicted predicted(1, 1, {{1, {0, 0, 0}, 0, 0.3, 0.1}});
+  others.update({&predicted.obstacle, 1}, {0, 0}, 0, 0.1);
+  EXPECT_TRUE(cost_at(others.view(), {1.39, 0, 0}).collided);  // 0.5 + 2 x 0.3 + 0.3
+  EXPECT_FALSE(cost_at(others.view(), {1.41, 0, 0}).collided);
+  EXPECT_TRUE(cost_at(others.view(), {0, 0.84, 0}).collided);  // 0.5 + 2 x 0.1 + 0.15
+  EXPECT_FALSE(cost_at(others.view(), {0, 0.86, 0}).collided);
+}
+
+TEST(MovingObstacles, AreMetWhereTheyWillBe) {
+  MovingObstacles others(touching(), 30);
+  const Predicted predicted(0.6, 0.3, {{1, {1, 0, 0}, 2}});
+  others.update({&predicted.obstacle, 1}, {0, 0}, 0.1, 0.05);
+  for (const int k : {0, 1, 7, 20, 30}) {  // the predictions end after 1 s, k = 18
+    const double x = 1 + 2 * (0.1 + 0.05 * k);
+    EXPECT_TRUE(cost_at(others.view(), {x - 0.59, 0, 0}, k).collided) << k;
+    EXPECT_FALSE(cost_at(others.view(), {x - 0.61, 0, 0}, k).collided) << k;
+    EXPECT_TRUE(cost_at(others.view(), {x + 0.59, 0, 0}, k).collided) << k;
+    EXPECT_FALSE(cost_at(others.view(), {x + 0.61, 0, 0}, k).collided) << k;
+  }
+}
+
+/// A point that drives along x, among others.
+struct Walker {
+  template <class T>
+  struct State {
+    T x, y;
+  };
+  static constexpr int inputs = 2;
+  static constexpr double dt = 0.1;
+  MovingObstaclesView others{};
+
+  template <class T>
+  State<T> step(const State<T>& s, const Input<T, 2>& u) const {
+    return {s.x + T(dt) * u[0], s.y + T(dt) * u[1]};
+  }
+  template <class T>
+  Cost<T> stage_cost(const State<T>& s, const Input<T, 2>& u, int k) const {
+    const Cost<T> met = others.cost(s.x, s.y, T(0), T(1), k);
+    return {square(u[0] - T(1)) + met.value, met.collided};
+  }
+  template <class T>
+  T terminal_cost(const State<T>&) const {
+    return T(0);
+  }
+};
+
+TEST(MovingObstacles, EveryProblemMeetsThemInLanesAsInDouble) {
+  constexpr int steps = 20, samples = 256;
+  const Point far{5e6, -3e6};
+  MovingObstacles others(touching(), steps);
+  const Predicted one(0.6, 0.3,
+                      {{0.6, {far.x + 3, far.y, 0.3}, -1, 0.1, 0.05}, {0.4, {far.x + 1, far.y + 1, 2}}}),
+      other(0.5, 0.5, {{1, {far.x + 1.5, far.y - 0.5, 0}, 0.5}});
+  const std::vector<PredictedObstacle> all{one.obstacle, other.obstacle};
+  others.update(all, {far.x + 0.7, far.y}, 0.05, Walker::dt);
+  Walker walker{others.view().relative_to(far)};
+  SequenceBatch batch(steps, 2, samples);
+  std::mt19937 random(5);
+  std::normal_distribution<float> normal(0, 1);
+  for (int i = 0; i < samples; ++i) {
+    const float u = 1 + normal(random), v = normal(random);
+    for (int k = 0; k < steps; ++k) {
+      batch.at(k, 0, i) = u;
+      batch.at(k, 1, i) = v;
+    }
+  }
+  for (const simd::Target target :
+       {simd::Target::generic, simd::Target::sse4, simd::Target::avx2, simd::Target::avx512}) {
+    if (!simd::supported(target)) continue;
+    ProblemEvaluator<Walker> evaluator(walker, target);
+    evaluator.set_state({0, 0});
+    std::vector<float> costs(static_cast<std::size_t>(batch.stride()));
+    std::vector<std::uint8_t> collided(costs.size());
+    evaluator.evaluate(batch, 0, samples, costs.data(), collided.data());
+    int collisions = 0, differ = 0;
+    for (int i = 0; i < samples; ++i) {
+      const Input<double, 2> u{{double(batch.at(0, 0, i)), double(batch.at(0, 1, i))}};
+      const std::vector<Input<double, 2>> inputs(steps, u);
+      const Cost<double> exact = predict(walker, {0.0, 0.0}, inputs.data(), steps, nullptr);
+      const auto k = static_cast<std::size_t>(i);
+      // Rounding may move a state across the edge of a box.
+      differ += std::abs(static_cast<double>(costs[k]) - exact.value) > 1e-3 * (1 + exact.value) ||
+                exact.collided != (collided[k] != 0);
+      collisions += exact.collided;
+    }
+    EXPECT_LE(differ, 1);
+    EXPECT_GT(collisions, samples / 8);
+    EXPECT_LT(collisions, samples * 7 / 8);
+  }
+}
+
+TEST(MovingObstacles, TheNearestCountAndBadNumbersDoNot) {
+  MovingObstacles others(touching(), 1);
+  std::vector<std::unique_ptr<Predicted>> made;
+  std::vector<PredictedObstacle> all;
+  for (int i = 0; i < MovingObstacles::max_count + 4; ++i) {
+    const double x = 100 - 2.0 * i;
+    made.push_back(std::make_unique<Predicted>(0.6, 0.3, std::vector<Predicted::Hypothesis>{{1, {x, 0, 0}}}));
+    all.push_back(made.back()->obstacle);
+  }
+  others.update(all, {0, 0}, 0, 0.1);
+  EXPECT_TRUE(cost_at(others.view(), {100 - 2.0 * (MovingObstacles::max_count + 3), 0, 0}).collided);
+  EXPECT_TRUE(cost_at(others.view(), {100 - 2.0 * 4, 0, 0}).collided);
+  EXPECT_FALSE(cost_at(others.view(), {100 - 2.0 * 3, 0, 0}).collided);
+
+  const Predicted bad(0.6, 0.3, {{1, {std::numeric_limits<double>::quiet_NaN(), 0, 0}}});
+  others.update({&bad.obstacle, 1}, {0, 0}, 0, 0.1);
+  EXPECT_TRUE(others.view().empty());
+  EXPECT_EQ(cost_at(others.view(), {0, 0, 0}).value, 0);
+}
+
+TEST(MovingObstacles, AllocateNothingAfterConstruction) {
+  MovingObstacles others(touching(), 20);
+  const Predicted predicted(0.6, 0.3, {{0.3, {0, 0, 0}}, {0.7, {0, 5, 0}}});
+  const std::vector<PredictedObstacle> all(40, predicted.obstacle);
+  const long before = testing::allocations();
+  for (int i = 0; i < 5; ++i) others.update(all, {0, 0}, 0.1, 0.05);
+  EXPECT_EQ(testing::allocations(), before);
+}
+
+TEST(MovingObstacles, RefuseOptionsOutOfRange) {
+  MovingObstacleOptions options;
+  options.max_probability = 1.5;
+  EXPECT_THROW(MovingObstacles(options, 1), std::invalid_argument);
+  EXPECT_THROW(MovingObstacles({}, 0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slalom::maps

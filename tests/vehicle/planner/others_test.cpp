@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "slalom/maps/moving_obstacles.hpp"
+#include "slalom/solvers/svg_mppi_options.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
+#include "support/allocations.hpp"
+
+namespace slalom::vehicle {
+namespace {
+
+constexpr double speed = 3;                            // m/s, of the path
+constexpr double car_length = 0.58, car_width = 0.31;  // m
+
+Planner make_planner(const PlannerOptions& options = {}) {
+  std::vector<maps::ReferencePoint> path;
+  for (int i = 0; i < 600; ++i) path.push_back({0.1 * i, 0, 0, speed});
+  SvgMppiOptions method;
+  method.horizon = 20;
+  method.samples = 512;
+  method.variance = 0.03;
+  method.guides.variance = method.guides.gradient_variance = 0.01;
+  method.guides.step = 0.005;
+  method.variance_min = 0.001;
+  method.variance_max = 0.1;
+  method.input_min = -0.4;
+  method.input_max = 0.4;
+  VehicleOptions vehicle;
+  vehicle.cost.outside_cost = vehicle.cost.outside_terminal_cost = 0;
+  return {options, make_vehicle_model(vehicle), path, make_solver(method, 1)};
+}
+
+/// What a laser 0.275 m ahead of the rear axle sees of a lane of this half width and of a car in its middle,
+/// whose rear end is `car` m ahead of the axle.
+struct Lane {
+  double half_width = 1, car = 1e9;  // m
+  std::vector<float> ranges = std::vector<float>(541);
+
+  maps::LaserScanView scan() {
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      const double angle = angle_min + static_cast<double>(i) * step;
+      const double c = std::cos(angle), s = std::sin(angle);
+      double range = std::abs(s) > 1e-6 ? half_width / std::abs(s) : 29;
+      if (c > 1e-6 && std::abs((car - 0.275) / c * s) < 0.5 * car_width)
+        range = std::min(range, (car - 0.275) / c);
+      ranges[i] = static_cast<float>(std::min(range, 29.0));
+    }
+    return {ranges, angle_min, step, 0.05, 30};
+  }
+  static constexpr double angle_min = -2.35, step = 4.7 / 540;
+};
+
+/// A car on the lane whose rear end is at `rear` (m), at this speed (m/s), with one hypothesis.
+struct Other {
+  Other(double rear, double driven, double y = 0) {
+    for (int k = 0; k < 17; ++k)
+      poses.push_back({{rear + 0.5 * car_length + 0.1 * k * driven, y, 0}, 0.05, 0.02});
+    obstacle.length = car_length;
+    obstacle.width = car_width;
+    obstacle.interval = 0.1;
+    obstacle.hypotheses = 1;
+    obstacle.weights[0] = 1;
+    obstacle.poses = poses;
+  }
+  Other(const Other&) = delete;
+  std::vector<maps::PredictedPose> poses;
+  maps::PredictedObstacle obstacle;
+};
+
+/// The output after some updates at the same place.
+const PlannerOutput& settle(Planner& planner, Lane& lane, std::span<const maps::PredictedObstacle> others) {
+  for (int i = 0; i < 10; ++i)
+    planner.update({.scan = lane.scan(), .odometry = {{5, 0, 0}, speed}, .others = others});
+  return planner.update({.scan = lane.scan(), .odometry = {{5, 0, 0}, speed}, .others = others});
+}
+
+TEST(PlannerAmongOthers, FollowsACarThatIsAsFast) {
+  Lane narrow{.half_width = 0.45, .car = 1.3};
+  Planner reacts = make_planner(), predicts = make_planner();
+  const Other other(5 + narrow.car, speed);
+  const PlannerOutput& blocked = settle(reacts, narrow, {});
+  EXPECT_EQ(blocked.status, PlannerStatus::blocked);
+  EXPECT_LT(blocked.command.speed, speed);
+  const PlannerOutput& follows = settle(predicts, narrow, {&other.obstacle, 1});
+  EXPECT_EQ(follows.status, PlannerStatus::ok);
+  EXPECT_DOUBLE_EQ(follows.command.speed, speed);
+}
+
+TEST(PlannerAmongOthers, PassesACarThatIsSlower) {
+  Lane wide{.half_width = 1.5, .car = 1.5};
+  Planner planner = make_planner();
+  const Other other(5 + wide.car, 1);
+  const PlannerOutput& out = settle(planner, wide, {&other.obstacle, 1});
+  EXPECT_EQ(out.status, PlannerStatus::ok);
+  double closest = 10;
+  for (std::size_t k = 0; k < out.predicted.size(); ++k) {
+    const maps::PredictedPose at = other.obstacle.at(0, 0.05 * static_cast<double>(k));
+    const maps::Pose& pose = out.predicted[k].pose;
+    if (std::abs(pose.x + 0.17 - at.pose.x) < car_length) closest = std::min(closest, std::abs(pose.y));
+  }
+  EXPECT_LT(closest, 10) << "the plan does not reach the car";
+  EXPECT_GT(closest, car_width);
+}
+
+TEST(PlannerAmongOthers, AvoidsWhatIsNotInTheWayYet) {
+  Lane wide{.half_width = 1.5};
+  Planner planner = make_planner();
+  const Other comes(5 + 5, -2);  // meets the car after 0.9 s
+  const PlannerOutput& out = settle(planner, wide, {&comes.obstacle, 1});
+  EXPECT_GT(std::abs(out.predicted[18].pose.y), car_width);
+}
+
+TEST(PlannerAmongOthers, WithoutPredictionTheyAreWhatTheScanSees) {
+  Lane wide{.half_width = 1.5, .car = 1.5};
+  PlannerOptions options;
+  options.predict_others = false;
+  Planner one = make_planner(options), other = make_planner();
+  const Other ahead(5 + wide.car, 1);
+  Other unusable(5 + wide.car, 1);
+  unusable.poses[3].pose.x = std::numeric_limits<double>::quiet_NaN();
+  Planner third = make_planner();
+  const double expected = settle(other, wide, {}).command.steer;
+  EXPECT_EQ(settle(one, wide, {&ahead.obstacle, 1}).command.steer, expected);
+  EXPECT_EQ(settle(third, wide, {&unusable.obstacle, 1}).command.steer, expected);
+}
+
+TEST(PlannerAmongOthers, CarsFarAwayChangeNoBit) {
+  Lane wide{.half_width = 1.5};
+  Planner alone = make_planner(), among = make_planner();
+  const Other far(60, 3);
+  const PlannerOutput &one = settle(alone, wide, {}), &other = settle(among, wide, {&far.obstacle, 1});
+  EXPECT_EQ(one.command.steer, other.command.steer);
+  EXPECT_EQ(one.state_cost, other.state_cost);
+  EXPECT_TRUE(std::equal(one.inputs.begin(), one.inputs.end(), other.inputs.begin(), other.inputs.end()));
+}
+
+TEST(PlannerAmongOthers, UpdatesAllocateNothing) {
+  Lane wide{.half_width = 1.5, .car = 1.5};
+  Planner planner = make_planner();
+  const Other ahead(5 + wide.car, 1), beside(6, 2, 0.8);
+  const std::vector<maps::PredictedObstacle> others{ahead.obstacle, beside.obstacle};
+  settle(planner, wide, others);
+  const long before = testing::allocations();
+  settle(planner, wide, others);
+  EXPECT_EQ(testing::allocations(), before);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle
