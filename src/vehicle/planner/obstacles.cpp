@@ -73,6 +73,7 @@ VehicleMaps Obstacles::seen_from(const maps::Pose& robot, const GridView<4>& ref
 /// The scan without the readings that end on other cars as they are now.
 maps::LaserScanView Obstacles::without_others(const PlannerInput& input) noexcept {
   maps::LaserScanView scan = input.scan;
+  // A scan whose beams run clockwise keeps all readings: the cars of now are obstacles, too.
   if (scan.ranges.size() > ranges_.size() || !(scan.angle_increment > 0)) return scan;
   std::copy(scan.ranges.begin(), scan.ranges.end(), ranges_.begin());
   const maps::Point at = maps::transform(input.odometry.pose, {laser_.x, laser_.y});
