@@ -122,9 +122,14 @@ void ReferenceField::set_speeds(std::span<const double> speeds) noexcept {
   for (std::size_t i = 0; i < speeds.size(); ++i) path_[i].speed = speeds[i];
 }
 
+void ReferenceField::set_curvatures(std::span<const double> curvatures) {
+  if (curvatures.size() == path_.size()) curvature_.assign(curvatures.begin(), curvatures.end());
+}
+
 bool ReferenceField::set_path(std::span<const ReferencePoint> path) noexcept {
   if (path.size() < 3 || path.size() > path_.capacity()) return false;
   path_.assign(path.begin(), path.end());
+  curvature_.clear();
   path_x_.resize(path.size());
   path_y_.resize(path.size());
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -190,9 +195,13 @@ void ReferenceField::choose_window() noexcept {
 void ReferenceField::make_sites() noexcept {
   const double first = geometry_.cell_y(0);
   for (std::size_t k = 0; k < window_size_; ++k) {
-    const ReferencePoint& point = path_[static_cast<std::size_t>(window_[k])];
+    const auto i = static_cast<std::size_t>(window_[k]);
+    const ReferencePoint& point = path_[i];
     sites_[k] = {point.x, point.y, (first - point.y) / geometry_.resolution, static_cast<float>(point.yaw),
                  static_cast<float>(point.speed)};
+    if (curvature_.empty()) continue;
+    sites_[k].left_x = -curvature_[i] * std::sin(point.yaw);
+    sites_[k].left_y = curvature_[i] * std::cos(point.yaw);
   }
   std::sort(sites_.begin(), sites_.begin() + static_cast<std::ptrdiff_t>(window_size_),
             [](const Site& a, const Site& b) { return a.u < b.u; });
@@ -229,6 +238,7 @@ void ReferenceField::write_row(int row, int begin, int end, int parabolas) noexc
     const double stop = k + 1 < parabolas ? envelope_[static_cast<std::size_t>(k + 1)].start : end;
     if (!(stop >= column)) continue;
     const int last = stop >= end ? end : static_cast<int>(stop) + 1;
+    const int first = column;
     const double dx = x - site.x;
     const auto dx2 = static_cast<float>(dx * dx);
     float* cell = cells_.at(row, column);
@@ -250,6 +260,17 @@ void ReferenceField::write_row(int row, int begin, int end, int parabolas) noexc
       }
       column += here;
     }
+    if (!curvature_.empty()) write_progress(row, first, last, site);
+  }
+}
+
+void ReferenceField::write_progress(int row, int begin, int end, const Site& site) noexcept {
+  constexpr double least = 0.25;  // of 1 - k d, which is 0 at the centre of the path's curve
+  const double beside = 1 - (geometry_.cell_x(row) - site.x) * site.left_x;
+  float* cell = cells_.at(row, begin);
+  for (int column = begin; column < end; ++column, cell += 4) {
+    const double y = column_y_[static_cast<std::size_t>(column)] - site.y;
+    cell[3] = static_cast<float>(-1 / std::clamp(beside - y * site.left_y, least, 1 / least));
   }
 }
 

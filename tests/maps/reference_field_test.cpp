@@ -136,6 +136,30 @@ TEST(ReferenceField, WithSecondsItReachesAsFarAsItsSpeedsLead) {
   EXPECT_EQ(field.reach(), 5.0);
 }
 
+TEST(ReferenceField, KnowsTheProgressBesideACurve) {
+  const double radius = 5;
+  const auto path = circle(600, radius);
+  ReferenceField field(path);
+  ASSERT_TRUE(field.update({5, 0}));
+  EXPECT_EQ(field.at(4, 0.5).outside, 0);
+  field.set_curvatures(std::vector<double>(599, 1 / radius));  // has no effect: one is missing
+  ASSERT_TRUE(field.update({5, 0}));
+  EXPECT_EQ(field.at(4, 0.5).outside, 0);
+  field.set_curvatures(std::vector<double>(600, 1 / radius));
+  ASSERT_TRUE(field.update({5, 0}));
+  const GridGeometry& geometry = field.geometry();
+  for (const double x : {2.0, 4.0, 5.0, 6.5, 9.0}) {
+    const int row = geometry.row(x), column = geometry.column(0.5);
+    const double from_centre = std::hypot(geometry.cell_x(row), geometry.cell_y(column));
+    // On a circle of this radius a metre is radius / from_centre metres of the path.
+    EXPECT_NEAR(field.at(x, 0.5).outside, -radius / from_centre, 1e-3) << x;
+  }
+  EXPECT_NEAR(field.at(0.05, 0.05).outside, -4, 1e-6) << "limited near the centre of the curve";
+  ASSERT_TRUE(field.set_path(path));
+  ASSERT_TRUE(field.update({5, 0}));
+  EXPECT_EQ(field.at(4, 0.5).outside, 0) << "a new path has no curvatures";
+}
+
 TEST(ReferenceField, OutsideAndBadPositions) {
   const auto path = circle(600, 5);
   ReferenceField field(path, {.outside = {.distance = 20, .yaw = 2, .speed = 0}});

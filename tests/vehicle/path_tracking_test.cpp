@@ -50,6 +50,25 @@ TEST(PathTracking, RearAxleDrivesTheCircleOfItsSteeringAngle) {
   EXPECT_NEAR(s.y, radius * (1 - std::cos(turn)), 1e-3);
 }
 
+TEST(TrackingCost, ForTheLapTimeSpeedAboveThePathsIsTimeWon) {
+  PathTrackingOptions options;
+  options.cost.speed_weight = 30;
+  const auto lost = [&](bool lap_time, double speed, double outside) {
+    TrackingCost cost(options);
+    if (lap_time) cost.set_lap_time();
+    return cost.with_time_lost(Cost<double>{0, false}, 0.0, speed, Surroundings<double>{0, 0, 4, outside, 0})
+        .value;
+  };
+  for (const bool lap_time : {false, true}) {
+    EXPECT_NEAR(lost(lap_time, 3, 0), 30 * 0.25, 1e-9);
+    EXPECT_NEAR(lost(lap_time, 4, 0), 0, 1e-9);
+    // Outside of a curve, where 3 m are 2 m of the path.
+    EXPECT_NEAR(lost(lap_time, 3, -2.0 / 3), 30 * 0.5, 1e-9);
+  }
+  EXPECT_EQ(lost(false, 5, 0), 0);
+  EXPECT_NEAR(lost(true, 5, 0), -30 * 0.25, 1e-9);
+}
+
 TEST(PublishedVehicle, YawGainIsTooHighBy42Percent) {
   const Maps maps;
   const auto yaw_gain = [&](auto car) {

@@ -127,9 +127,65 @@ TEST(SingleTrack, BrakesNoHarderThanTurningLeavesGrip) {
   const double most = 0.9 * own.friction * 9.81;
   for (const double turning : {0.0, 0.5, 0.9, 2.0}) {
     const SingleTrackState<double> s{0, 0, 0, 5, 0, turning * most / 5, 0};
-    const double left = dynamics.braking_limit(s, own.friction);
+    const double left = dynamics.braking_limit(dynamics.grip_left(s, own.friction));
     EXPECT_NEAR(left, most * std::max(0.1, std::sqrt(std::max(1 - turning * turning, 0.0))), 1e-9) << turning;
   }
+}
+
+TEST(SingleTrack, KnowsTheForceOfTheStepBefore) {
+  SingleTrackOptions own;
+  own.tyres = TyreModel::linear;
+  own.braking_share = 0.5;
+  const SingleTrackDynamics dynamics(car_options(), own);
+  SingleTrackState<double> s{0, 0, 0, 6, 0, 0, 0};
+  for (int k = 0; k < 40; ++k) s = dynamics.advance(s, 0.05, 0.0, own.friction, 0.05);
+  EXPECT_GT(s.speed * s.yaw_rate, 4);
+  EXPECT_NEAR(std::sqrt(s.squared_force), s.speed * s.yaw_rate, 0.01)
+      << "on a circle that is the lateral acceleration";
+  EXPECT_NEAR(dynamics.grip_share(4.0, own.friction), 4 / (own.friction * 9.81), 1e-9);
+  const SingleTrackState<double> straight{0, 0, 0, 6, 0, 0, 0};
+  const auto force = [&](double acceleration) {
+    return std::sqrt(dynamics.advance(straight, 0.0, acceleration, own.friction, 0.05).squared_force);
+  };
+  EXPECT_NEAR(force(4), 4, 1e-9);
+  EXPECT_NEAR(force(-4), 4 / 0.5, 1e-9) << "brakes count by what they do right after a command";
+}
+
+TEST(SingleTrack, BrakesWithItsShareOfTheGripThatIsLeft) {
+  SingleTrackOptions own;
+  own.braking_share = 0.7;
+  const SingleTrack car(car_options(), own);
+  const SingleTrackState<double> s{0, 0, 0, 5, 0, 0, 0};
+  const double most = own.usable_grip * own.friction * 9.81;
+  EXPECT_NEAR(car.limited(s, 10.0, -20.0), -0.7 * most, 1e-9);
+  EXPECT_NEAR(car.limited(s, 10.0, 20.0), most, 1e-9) << "the motor may use all of it";
+}
+
+TEST(SingleTrack, ForTheLapTimeDrivesAtItsShareOfThePathsSpeed) {
+  SingleTrackOptions own;
+  own.objective = Objective::lap_time;
+  own.speed_share = 1.1;
+  SingleTrack car(car_options(), own);
+  car.set_top_speed(6);
+  const SingleTrackState<double> s{0, 0, 0, 5, 0, 0, 0};
+  EXPECT_NEAR(car.limited(s, 4.6, 9.0), (1.1 * 4.6 - 5) / 0.05, 1e-9);
+  EXPECT_NEAR(car.limited({0, 0, 0, 5.9, 0, 0, 0}, 9.0, 9.0), (6 - 5.9) / 0.05, 1e-9)
+      << "the top speed is a limit too";
+}
+
+TEST(SingleTrack, ForTheLapTimeAPlanMustEndAtASpeedWithWhichTheCarCanDriveOn) {
+  SingleTrackOptions own;
+  own.objective = Objective::lap_time;
+  own.usable_grip = 0.8;
+  own.grip_weight = 100;
+  const SingleTrack car(car_options(), own);
+  const auto at = [](double speed) { return SingleTrackState<double>{0, 0, 0, speed, 0, 0, 0}; };
+  EXPECT_EQ(car.overspeed_cost(at(5), 5.0), 0);
+  EXPECT_NEAR(car.overspeed_cost(at(6), 5.0), 100 * std::pow(0.8 * (1.44 - 1), 2), 1e-9);
+  EXPECT_EQ(car.steps_behind(at(6), 5.0), 0);
+  // With a = 0.8 mu g the car has caught up after (5 - 4) / a, and is (5 - 4)^2 / (2 a) m behind then.
+  const double a = 0.8 * own.friction * 9.81;
+  EXPECT_NEAR(car.steps_behind(at(4), 5.0), 1 / (2 * a) / 5 / 0.05, 1e-9);
 }
 
 TEST(SingleTrack, HasNoHeldInput) {

@@ -18,7 +18,7 @@ namespace slalom::tools {
 
 /// Help of --config.
 inline constexpr const char* config_help =
-    "Configuration: default, default_kinematic, default_speed, published, hardware, or a file";
+    "Configuration: default, race, default_kinematic, default_speed, published, hardware, or a file";
 
 /// The folder of the running program.
 std::filesystem::path program_folder();

@@ -81,8 +81,15 @@ class ReferenceField {
   /// them has an effect.
   void set_speeds(std::span<const double> speeds) noexcept;
 
-  /// Replaces the path from the next update on. Returns false and changes nothing unless the new one has 3
-  /// points to as many as that of the construction. They must meet check_reference_path.
+  /// From the next update on, `outside` of a cell is minus the progress along the path of a position that
+  /// moves a metre parallel to it: -1 / (1 - k d) with the path's curvature k (1/m, positive to the left, one
+  /// for each point) at the nearest point and the distance d to the left of it; within [-4, -0.25]. No other
+  /// number of curvatures has an effect.
+  void set_curvatures(std::span<const double> curvatures);
+
+  /// Replaces the path, which has no curvatures then, from the next update on. Returns false and changes
+  /// nothing unless the new one has 3 points to as many as that of the construction. They must meet
+  /// check_reference_path.
   bool set_path(std::span<const ReferencePoint> path) noexcept;
 
   /// The cell at a position, m.
@@ -114,6 +121,7 @@ class ReferenceField {
     double x = 0, y = 0;
     double u = 0;  ///< its y as a column coordinate, 0 at the centre of column 0
     float yaw = 0, speed = 0;
+    double left_x = 0, left_y = 0;  ///< the normal to the left times the curvature, 1/m
   };
   struct Parabola {
     double u = 0;       ///< its site's
@@ -129,13 +137,15 @@ class ReferenceField {
   void make_sites() noexcept;
   int build_envelope(double x) noexcept;
   void write_row(int row, int begin, int end, int parabolas) noexcept;
+  void write_progress(int row, int begin, int end, const Site& site) noexcept;
 
   ReferenceFieldOptions options_;
   GridGeometry geometry_;
   CellGrid<4> cells_;
   std::vector<ReferencePoint> path_;
   std::vector<double> path_x_, path_y_;
-  std::vector<double> column_y_;  ///< m, of the columns' cells
+  std::vector<double> curvature_;  ///< 1/m; empty if unknown
+  std::vector<double> column_y_;   ///< m, of the columns' cells
   double reach_ = 0;
   int nearest_ = 0;
   std::vector<int> window_;

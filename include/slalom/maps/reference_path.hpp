@@ -19,7 +19,8 @@ struct ReferenceCell {
   float distance;  ///< m to the path
   float yaw;       ///< rad, yaw of the path's nearest point
   float speed;     ///< m/s there
-  float outside;   ///< 1 off the map (then `yaw` is the yaw ERROR to assume), else 0
+  float outside;   ///< 1 off the map (then `yaw` is the yaw ERROR to assume), else 0, or negative where the
+                   ///< map knows the path's curvatures (see ReferenceField::set_curvatures)
 };
 static_assert(sizeof(ReferenceCell) == 16);
 

@@ -91,6 +91,7 @@ Command VehicleModel::command(std::span<const float> inputs, double speed, doubl
 }
 void VehicleModel::set_friction(double) noexcept {}
 void VehicleModel::set_reverse(double) noexcept {}
+void VehicleModel::set_top_speed(double) noexcept {}
 void VehicleModel::set_urgency(Urgency) noexcept {}
 
 std::unique_ptr<VehicleModel> make_vehicle_model(const VehicleOptions& options, simd::Target target) {

@@ -35,6 +35,9 @@ SingleTrackDynamics::SingleTrackDynamics(const PathTrackingOptions& car, const S
       max_power_(car.max_acceleration * own.switch_speed),
       switch_speed_(own.switch_speed),
       usable_acceleration_(own.usable_grip * gravity),
+      least_squared_share_(own.objective == Objective::lap_time ? 1.0 / 9 : 0.01),
+      braking_share_(own.braking_share),
+      negative_inverse_braking_share_(-1 / own.braking_share),
       inverse_gravity_(1 / gravity) {}
 
 double slip_of(const SingleTrackState<double>& s) noexcept {
@@ -58,6 +61,8 @@ SingleTrack::SingleTrack(const PathTrackingOptions& options, const Options& own)
       friction_(own.friction),
       time_step_(options.time_step),
       inverse_time_step_(1 / options.time_step),
+      most_of_path_speed_(own.objective == Objective::lap_time ? own.speed_share : 1),
+      inverse_speeding_up_(1 / (2 * own.usable_grip * gravity * options.time_step)),
       squared_half_steer_speed_(own.half_steer_speed * own.half_steer_speed),
       max_deceleration_(options.max_deceleration),
       usable_grip_(own.usable_grip),
@@ -72,6 +77,8 @@ SingleTrack::SingleTrack(const PathTrackingOptions& options, const Options& own)
 void SingleTrack::complete(VehicleTraits& traits) const noexcept {
   traits.friction = own_.friction;
   traits.usable_grip = own_.usable_grip;
+  traits.braking_share = own_.braking_share;
+  traits.seeks_lap_time = seeks_lap_time();
   traits.half_steer_speed = own_.half_steer_speed;
   traits.switch_speed = own_.switch_speed;
   traits.stopping_deceleration = braking_share * own_.usable_grip * gravity * own_.friction;

@@ -22,6 +22,7 @@ class CarEstimator {
   CarEstimator(const PlannerOptions& options, const VehicleModel& model)
       : identify_(options.estimation.identify),
         latency_(options.latency),
+        steer_resolution_(options.steer_resolution),
         friction_(model.traits().friction),
         observer_(options.estimation.observer, options.control_period, options.latency,
                   model.traits().dead_time),
@@ -49,11 +50,16 @@ class CarEstimator {
     observer_.set_dead_time(std::max(0.0, parameters_->estimate().delay - latency_));
   }
 
-  /// Records what is sent for this command of the wheels' angle, and returns it.
+  /// Records what is sent for this command of the wheels' angle, and returns it: an angle at which the
+  /// steering settles.
   Command send(const Command& wheels, double steer_limit) noexcept {
     Command command = wheels;
     const double gain = identify_ && parameters_ ? parameters_->estimate().steering_gain : 1;
     command.steer = std::clamp(wheels.steer / gain, -steer_limit, steer_limit);
+    if (const double step = steer_resolution_; step > 0) {
+      const double most = std::floor(steer_limit / step);
+      command.steer = step * std::clamp(std::round(command.steer / step), -most, most);
+    }
     observer_.send({command.steer * gain, command.speed});
     if (parameters_) parameters_->send(command.steer);
     return command;
@@ -84,7 +90,7 @@ class CarEstimator {
 
  private:
   bool identify_;
-  double latency_, friction_;
+  double latency_, steer_resolution_, friction_;
   StateObserver observer_;
   std::unique_ptr<ParameterEstimator> parameters_;
 };

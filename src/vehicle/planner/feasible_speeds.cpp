@@ -8,6 +8,16 @@
 
 namespace slalom::vehicle::detail {
 
+DrivingLimits driving_limits(const VehicleTraits& traits, double friction) {
+  constexpr double gravity = 9.81;  // m/s^2
+  return {.grip = friction * gravity * traits.usable_grip,
+          .acceleration = traits.max_acceleration,
+          .braking = traits.max_deceleration,
+          .braking_share = traits.braking_share,
+          .delay = traits.time_step,
+          .switch_speed = traits.switch_speed};
+}
+
 FeasibleSpeeds::FeasibleSpeeds(std::span<const maps::ReferencePoint> path) {
   std::vector<maps::Point> points;
   for (const maps::ReferencePoint& point : path) {
@@ -16,7 +26,6 @@ FeasibleSpeeds::FeasibleSpeeds(std::span<const maps::ReferencePoint> path) {
   }
   PathGeometry geometry = path_geometry(points);
   curvature_ = std::move(geometry.curvature);
-  for (double& each : curvature_) each = std::abs(each);
   gap_ = std::move(geometry.step);
   if (!geometry.closed) gap_.back() = 0;
   for (double arc = 0; const double gap : gap_) {
@@ -29,14 +38,14 @@ FeasibleSpeeds::FeasibleSpeeds(std::span<const maps::ReferencePoint> path) {
 void FeasibleSpeeds::update(const DrivingLimits& limits) noexcept {
   const std::size_t n = speed_.size();
   for (std::size_t i = 0; i < n; ++i)
-    speed_[i] = std::min(own_[i], std::sqrt(limits.grip / std::max(curvature_[i], 1e-6)));
+    speed_[i] = std::min(own_[i], std::sqrt(limits.grip / std::max(std::abs(curvature_[i]), 1e-6)));
   // The tyres' force is shared between turning and accelerating.
   const auto left = [&](std::size_t i) {
     const double turning = speed_[i] * speed_[i] * curvature_[i];
     return std::sqrt(std::max(limits.grip * limits.grip - turning * turning, 0.0));
   };
-  const auto reach = [&](std::size_t from, std::size_t to, double gap, double strength) {
-    const double a = std::min(strength, left(from));
+  const auto reach = [&](std::size_t from, std::size_t to, double gap, double strength, double share) {
+    const double a = std::min(strength, share * left(from));
     speed_[to] = std::min(speed_[to], std::sqrt(speed_[from] * speed_[from] + 2 * a * gap));
   };
   // The slowest point keeps its speed, so one round from it is exact.
@@ -47,11 +56,11 @@ void FeasibleSpeeds::update(const DrivingLimits& limits) noexcept {
     if (!(gap_[from] > 0)) continue;
     const double power =
         limits.acceleration * std::min(1.0, limits.switch_speed / std::max(speed_[from], 0.1));
-    reach(from, to, gap_[from], power);
+    reach(from, to, gap_[from], power, 1);
   }
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t from = (slowest + n - k) % n, to = (from + n - 1) % n;
-    if (gap_[to] > 0) reach(from, to, gap_[to], limits.braking);
+    if (gap_[to] > 0) reach(from, to, gap_[to], limits.braking, limits.braking_share);
   }
   anticipate(limits.delay);
 }

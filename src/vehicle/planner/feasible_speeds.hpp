@@ -4,25 +4,30 @@
 #include <vector>
 
 #include "slalom/maps/reference_path.hpp"
+#include "slalom/vehicle/model/vehicle_problem.hpp"
 
 namespace slalom::vehicle::detail {
 
 /// What a car can do on a ground.
 struct DrivingLimits {
-  double grip = 9;          ///< m/s^2, of the tyres in any direction
-  double acceleration = 9;  ///< m/s^2, of the motor below `switch_speed`
-  double braking = 9;       ///< m/s^2
-  double delay = 0;         ///< s, by which the car follows the speeds late
-  double switch_speed = 7;  ///< m/s, above it the motor's power is the limit
+  double grip = 9;           ///< m/s^2, of the tyres in any direction
+  double acceleration = 9;   ///< m/s^2, of the motor below `switch_speed`
+  double braking = 9;        ///< m/s^2
+  double braking_share = 1;  ///< of the grip that turning leaves, for braking
+  double delay = 0;          ///< s, by which the car follows the speeds late
+  double switch_speed = 7;   ///< m/s, above it the motor's power is the limit
 };
+
+/// Those of a model with tyres that slip, on ground of this friction.
+DrivingLimits driving_limits(const VehicleTraits& traits, double friction);
 
 /// The highest speeds along a path that a car can drive, no higher than the path's own:
 ///
-///     v^2 |k| <= grip,   -braking <= dv/dt <= acceleration,   (v^2 k)^2 + (dv/dt)^2 <= grip^2
+///     v^2 |k| <= grip,   -braking <= dv/dt <= acceleration,   (v^2 k)^2 + (b dv/dt)^2 <= grip^2
 ///
-/// by a pass forward and one backward (Heilmeier et al. 2020, Sec. 4; see speed_profile). At every point they
-/// are slow enough for all that follows. Where feasible_speeds is computed once, this follows the
-/// friction while the car drives.
+/// with b = 1 / braking_share for dv/dt < 0, else 1, by a pass forward and one backward (Heilmeier et al.
+/// 2020, Sec. 4; see speed_profile). At every point they are slow enough for all that follows. Where
+/// feasible_speeds is computed once, this follows the friction while the car drives.
 class FeasibleSpeeds {
  public:
   explicit FeasibleSpeeds(std::span<const maps::ReferencePoint> path);
@@ -35,6 +40,8 @@ class FeasibleSpeeds {
   /// m, of a closed path; 0 of an open one.
   double length() const noexcept { return gap_.back() > 0 ? arc_.back() + gap_.back() : 0; }
 
+  /// 1/m, of the path, positive to the left, a point each.
+  std::span<const double> curvatures() const noexcept { return curvature_; }
   /// m/s, a point each; those of the path before the first update.
   std::span<const double> speeds() const noexcept { return speed_; }
 
@@ -43,7 +50,7 @@ class FeasibleSpeeds {
 
   std::vector<double> own_, speed_;  ///< m/s
   std::vector<double> arc_;          ///< m
-  std::vector<double> curvature_;    ///< 1/m
+  std::vector<double> curvature_;    ///< 1/m, positive to the left
   std::vector<double> gap_;          ///< m, from each point to the next; 0 where the path is not joined
 };
 

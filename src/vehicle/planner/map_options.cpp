@@ -8,7 +8,9 @@ namespace slalom::vehicle::detail {
 
 namespace {
 
-double fastest(std::span<const maps::ReferencePoint> path, const PlannerOptions& options) {
+double fastest(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
+               const VehicleTraits& traits) {
+  if (traits.seeks_lap_time) return options.max_speed;
   double speed = 0;
   for (const maps::ReferencePoint& point : path) speed = std::max(speed, point.speed);
   return std::min(speed, options.max_speed);
@@ -18,13 +20,14 @@ double fastest(std::span<const maps::ReferencePoint> path, const PlannerOptions&
 
 double stopping_time(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                      const VehicleTraits& traits) {
-  return traits.stopping_deceleration > 0 ? fastest(path, options) / (2 * traits.stopping_deceleration) : 0;
+  if (!(traits.stopping_deceleration > 0)) return 0;
+  return fastest(path, options, traits) / (2 * traits.stopping_deceleration);
 }
 
 double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
-                  double duration) {
+                  const VehicleTraits& traits, double duration) {
   constexpr double least = 6, most = 30;
-  return std::clamp(fastest(path, options) * duration + 1.5, least, most);
+  return std::clamp(fastest(path, options, traits) * duration + 1.5, least, most);
 }
 
 maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const VehicleTraits& traits) {
@@ -70,7 +73,8 @@ maps::ReferenceFieldOptions field_options(const PlannerOptions& options, const V
 std::vector<maps::ReferencePoint> limited_path(std::span<const maps::ReferencePoint> path,
                                                const PlannerOptions& options, const VehicleTraits& traits) {
   std::vector<maps::ReferencePoint> made(path.begin(), path.end());
-  for (auto& point : made) point.speed = std::min(point.speed, options.max_speed);
+  for (auto& point : made)
+    point.speed = traits.seeks_lap_time ? options.max_speed : std::min(point.speed, options.max_speed);
   if (options.profile_friction > 0)
     make_feasible(made, grip_limits(options.profile_friction, options.max_speed, traits.max_acceleration,
                                     traits.max_deceleration));

@@ -12,7 +12,7 @@
 /// The options of the planner's maps, and its path.
 namespace slalom::vehicle::detail {
 
-/// The path with the speeds that the options allow.
+/// The path with the speeds that the options allow: where plans seek the shortest time, `max_speed`.
 std::vector<maps::ReferencePoint> limited_path(std::span<const maps::ReferencePoint> path,
                                                const PlannerOptions& options, const VehicleTraits& traits);
 
@@ -22,7 +22,8 @@ double stopping_time(std::span<const maps::ReferencePoint> path, const PlannerOp
                      const VehicleTraits& traits);
 
 /// m, how far the car can get in this time (s).
-double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options, double duration);
+double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
+                  const VehicleTraits& traits, double duration);
 
 maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const VehicleTraits& traits);
 

@@ -23,7 +23,6 @@
 namespace slalom::vehicle {
 namespace {
 using namespace detail;
-constexpr double gravity = 9.81;  // m/s^2
 }  // namespace
 
 struct Planner::Implementation {
@@ -59,7 +58,7 @@ struct Planner::Implementation {
         traits(model->traits()),
         solver(std::move(s)),
         stopping_time(detail::stopping_time(path, o, traits)),
-        reach(plan_reach(path, o, traits.time_step * solver->horizon() + stopping_time)),
+        reach(plan_reach(path, o, traits, traits.time_step * solver->horizon() + stopping_time)),
         obstacles(o, traits, solver->horizon(), reach),
         field(limited_path(relative(path, origin), o, traits), field_options(o, traits, reach)),
         speeds(limited_path(relative(path, origin), o, traits)),
@@ -73,6 +72,8 @@ struct Planner::Implementation {
     detour = std::make_unique<Detour>(limited_path(relative(path, origin), o, traits), speeds.length() > 0,
                                       traits.body);
     set_friction(traits.friction);
+    model->set_top_speed(o.max_speed);
+    if (traits.seeks_lap_time) field.set_curvatures(speeds.curvatures());
   }
 
   /// Plans for ground of this friction. The path's speeds follow in steps of 2 %.
@@ -80,8 +81,7 @@ struct Planner::Implementation {
     model->set_friction(friction);
     if (std::abs(friction - path_friction) <= 0.02 * path_friction) return;
     path_friction = friction;
-    speeds.update({friction * gravity * traits.usable_grip, traits.max_acceleration, traits.max_deceleration,
-                   traits.time_step, traits.switch_speed});
+    speeds.update(driving_limits(traits, friction));
     field.set_speeds(speeds.speeds());
   }
 

@@ -150,6 +150,12 @@ TEST(FeasibleSpeeds, KeepToGripBrakesAndMotor) {
     }
   }
   const std::vector<double> fast(v.begin(), v.end());
+  speeds.update({.grip = 8, .acceleration = 9, .braking = 9, .braking_share = 0.6, .delay = 0});
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const std::size_t next = (i + 1) % v.size();
+    const double way = std::hypot(path[next].x - path[i].x, path[next].y - path[i].y);
+    EXPECT_GT((v[next] * v[next] - v[i] * v[i]) / (2 * way), -0.6 * 8.001) << "point " << i;
+  }
   speeds.update({.grip = 4, .acceleration = 9, .braking = 6, .delay = 0.05, .switch_speed = 7});
   for (std::size_t i = 0; i < v.size(); ++i) EXPECT_LE(speeds.speeds()[i], fast[i]);
 }

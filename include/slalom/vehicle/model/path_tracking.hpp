@@ -65,7 +65,11 @@ class PathTracking {
         motion_(options, own),
         cost_(options),
         obstacles_(options.body),
-        collision_weight_(options.cost.collision_weight) {}
+        collision_weight_(options.cost.collision_weight) {
+    if constexpr (requires { motion_.seeks_lap_time(); }) {
+      if (motion_.seeks_lap_time()) cost_.set_lap_time();
+    }
+  }
 
   /// The options given at construction.
   const PathTrackingOptions& options() const { return options_; }
@@ -99,6 +103,10 @@ class PathTracking {
     motion_.set_reverse(speed);
     cost_.set_reverse(speed);
   }
+
+  /// See VehicleModel.
+  void set_top_speed(double speed) noexcept requires requires(Motion& m) { m.set_top_speed(1.0); }
+  { motion_.set_top_speed(speed); }
 
   /// See VehicleModel.
   void set_urgency(Urgency urgency) noexcept { cost_.set_urgency(urgency); }
@@ -146,6 +154,9 @@ class PathTracking {
     Cost<T> cost = with_speed(cost_.terminal(s.yaw, seen), s, seen);
     if constexpr (requires { motion_.stopping_distance(s); }) {
       cost.value = cost.value + motion_.collision_ahead_cost() * speed_of_collision(s);
+      if (motion_.seeks_lap_time())
+        cost.value = cost.value + (cost_.time_cost(motion_.steps_behind(s, seen.speed)) +
+                                   motion_.overspeed_cost(s, seen.speed));
     }
     return with_others(cost, s, others_.last_step());
   }

@@ -94,6 +94,9 @@ class ProblemModel final : public VehicleModel {
   void set_reverse([[maybe_unused]] double speed) noexcept override {
     if constexpr (dynamic) evaluator_.problem().set_reverse(speed);
   }
+  void set_top_speed([[maybe_unused]] double speed) noexcept override {
+    if constexpr (dynamic) evaluator_.problem().set_top_speed(speed);
+  }
   void set_urgency([[maybe_unused]] Urgency urgency) noexcept override {
     if constexpr (dynamic) evaluator_.problem().set_urgency(urgency);
   }

@@ -11,7 +11,7 @@ namespace slalom::vehicle {
 
 /// The single-track model with slipping tyres as a motion model; steering and acceleration are the inputs.
 /// Of the acceleration no more takes effect than motor, brakes and the grip that turning leaves allow, and
-/// the path's speed is a limit.
+/// the path's speed is a limit unless plans seek the shortest time.
 class SingleTrack {
  public:
   template <class T>
@@ -53,8 +53,16 @@ class SingleTrack {
   /// See VehicleModel.
   void set_reverse(double speed) noexcept {
     slowest_ = -speed;
-    fastest_ = speed > 0 ? 0.0 : 1e3;
+    fastest_ = speed > 0 ? 0.0 : top_speed_;
   }
+  /// See VehicleModel.
+  void set_top_speed(double speed) noexcept {
+    top_speed_ = speed;
+    fastest_ = speed;
+  }
+
+  /// Whether plans seek the shortest time.
+  bool seeks_lap_time() const noexcept { return own_.objective == Objective::lap_time; }
 
   /// The dynamics.
   const SingleTrackDynamics& dynamics() const noexcept { return dynamics_; }
@@ -70,10 +78,10 @@ class SingleTrack {
   /// (m/s).
   template <class T>
   SLALOM_INLINE T limited(const State<T>& s, const T& reference_speed, const T& wanted) const {
-    const T friction = T(friction_), to_speed = T(inverse_time_step_);
-    const T braking = dynamics_.braking_limit(s, friction);
-    const T driving = min(dynamics_.driving_limit(s.speed), braking);
-    const T fastest = min(reference_speed, T(fastest_));
+    const T grip = dynamics_.grip_left(s, T(friction_)), braking = dynamics_.braking_limit(grip);
+    const T driving = min(dynamics_.driving_limit(s.speed), grip);
+    const T to_speed = T(inverse_time_step_);
+    const T fastest = min(reference_speed * T(most_of_path_speed_), T(fastest_));
     const T asked = clamp(min(wanted, (fastest - s.speed) * to_speed), -braking, driving);
     return max(asked, min((T(slowest_) - s.speed) * to_speed, braking));
   }
@@ -93,11 +101,28 @@ class SingleTrack {
   /// The cost of ending where the car cannot stop before an obstacle, times the share of its energy.
   double collision_ahead_cost() const noexcept { return own_.collision_ahead_cost; }
 
-  /// The cost of grip that a state needs beyond the usable share.
+  /// The cost of grip that a state needs beyond the usable share: for turning, or where plans seek the
+  /// shortest time, for all that the step before it did.
   template <class T>
   SLALOM_INLINE T grip_cost(const State<T>& s) const {
-    const T excess = max(dynamics_.lateral_grip(s, T(friction_)) - T(usable_grip_), T(0));
+    const T force = seeks_lap_time() ? sqrt(s.squared_force) : abs(s.speed * s.yaw_rate);
+    const T excess = max(dynamics_.grip_share(force, T(friction_)) - T(usable_grip_), T(0));
     return T(grip_weight_) * square(excess);
+  }
+
+  /// The time steps that a car loses until it has reached this speed (m/s) of the profile, from the speed of
+  /// a state below it: (p - v)^2 / (2 a p), with the usable grip a.
+  template <class T>
+  SLALOM_INLINE T steps_behind(const State<T>& s, const T& profile) const {
+    const T missing = max(profile - s.speed, T(0));
+    return square(missing) * T(inverse_speeding_up_) / (T(friction_) * max(profile, T(0.5)));
+  }
+  /// The cost of the share of grip that a car which drives on at a speed above that of the profile (m/s)
+  /// needs beyond the usable grip, which is all in use at the speed of the profile.
+  template <class T>
+  SLALOM_INLINE T overspeed_cost(const State<T>& s, const T& profile) const {
+    const T ratio = s.speed / max(profile, T(0.5));
+    return T(grip_weight_) * square(T(usable_grip_) * max(square(ratio) - T(1), T(0)));
   }
 
  private:
@@ -105,7 +130,10 @@ class SingleTrack {
   Options own_;
   Coefficient friction_;
   Coefficient time_step_, inverse_time_step_;
+  Coefficient most_of_path_speed_;   ///< times the path's speed: what plans do not exceed
+  Coefficient inverse_speeding_up_;  ///< s^2/m over time steps, times the friction
   Coefficient squared_half_steer_speed_;
+  double top_speed_ = 1e3;                 ///< m/s
   Coefficient slowest_{0}, fastest_{1e3};  ///< m/s
   Coefficient max_deceleration_;
   Coefficient usable_grip_, grip_weight_;

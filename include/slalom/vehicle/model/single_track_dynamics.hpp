@@ -15,6 +15,7 @@ struct SingleTrackState {
   T steer;      ///< delta, rad, of the front wheels
   T yaw_rate;   ///< r, rad/s
   T lateral;    ///< v_y, m/s, sideways velocity of the centre of gravity in the body's frame; v sin(slip)
+  T squared_force = T(0);  ///< m^2/s^4, of the last step's mean force over mass, braking over braking_share
 };
 
 /// The slip angle of a state, rad, from the body's axis to the direction of travel of the centre of gravity.
@@ -49,23 +50,28 @@ class SingleTrackDynamics {
   void scale_stiffness(double factor) noexcept;
 
   /// The acceleration (m/s^2, to either side) that tyres which turn the car leave for drive and brakes: with
-  /// lateral acceleration v r no more than `usable_grip` of friction times gravity is used, and a tenth is
-  /// always left to slow down. Never more than `max_deceleration`.
+  /// lateral acceleration v r no more than `usable_grip` of friction times gravity is used, and a part is
+  /// always left to slow down: a tenth, or where plans seek the shortest time, a third.
   template <class T>
-  SLALOM_INLINE T braking_limit(const SingleTrackState<T>& s, const T& friction) const {
+  SLALOM_INLINE T grip_left(const SingleTrackState<T>& s, const T& friction) const {
     const T most = friction * T(usable_acceleration_), turning = s.speed * s.yaw_rate;
-    const T left = max(square(most) - square(turning), T(0.01) * square(most));
-    return min(sqrt(left), T(max_deceleration_));
+    return sqrt(max(square(most) - square(turning), T(least_squared_share_) * square(most)));
+  }
+  /// The mean deceleration (m/s^2) of a step where tyres have `grip` left: `braking_share` of it, and never
+  /// more than `max_deceleration`.
+  template <class T>
+  SLALOM_INLINE T braking_limit(const T& grip) const {
+    return min(T(braking_share_) * grip, T(max_deceleration_));
   }
   /// The acceleration (m/s^2) of the motor at this speed: its power limits it above `switch_speed`.
   template <class T>
   SLALOM_INLINE T driving_limit(const T& speed) const {
     return T(max_power_) / max(abs(speed), T(switch_speed_));
   }
-  /// The share of friction times gravity that turning uses.
+  /// The share of friction times gravity that a force over the mass (m/s^2) uses.
   template <class T>
-  SLALOM_INLINE T lateral_grip(const SingleTrackState<T>& s, const T& friction) const {
-    return abs(s.speed * s.yaw_rate) * (T(inverse_gravity_) / friction);
+  SLALOM_INLINE T grip_share(const T& force, const T& friction) const {
+    return force * (T(inverse_gravity_) / friction);
   }
 
   /// The wheels' angle (rad) after a step of the prediction, as the steering's lag would have it.
@@ -119,6 +125,9 @@ class SingleTrackDynamics {
     next.yaw = s.yaw + half * (s.yaw_rate + next.yaw_rate);
     const T lateral = T(0.5) * (s.lateral + next.lateral);
     const T rate = T(0.5) * (s.yaw_rate + next.yaw_rate);
+    const T sideways = (next.lateral - s.lateral) * (T(1) / dt) + middle_speed * rate;
+    next.squared_force =
+        square(sideways) + square(max(acceleration, acceleration * T(negative_inverse_braking_share_)));
     // The speed along the body: sqrt(v^2 - v_y^2), to third order in the slip angle.
     const T along = middle_speed - way * T(0.5) * square(lateral) * inverse;
     const T across = lateral - T(rear_length_) * rate;
@@ -173,6 +182,8 @@ class SingleTrackDynamics {
   double steer_time_constant_;
   Coefficient max_deceleration_, max_power_, switch_speed_;
   Coefficient usable_acceleration_;  ///< over the friction
+  Coefficient least_squared_share_;  ///< of the usable grip, left to slow down
+  Coefficient braking_share_, negative_inverse_braking_share_;
   Coefficient inverse_gravity_;
 };
 

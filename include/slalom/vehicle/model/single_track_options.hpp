@@ -15,23 +15,38 @@ inline const char* const* enum_names(TyreModel) {
   return names;
 }
 
+/// What plans seek.
+enum class Objective {
+  path_speed,  ///< the speeds of the path, which plans do not exceed
+  lap_time,    ///< the shortest time within grip and `max_speed`, whatever the speeds of the path
+};
+/// The names of the enumerators, in order.
+inline const char* const* enum_names(Objective) {
+  static constexpr const char* const names[] = {"path_speed", "lap_time", nullptr};
+  return names;
+}
+
 /// Options of `vehicle.model: single_track`. The defaults are the 1/10-scale car of f1tenth_gym.
 struct SingleTrackOptions {
+  Objective objective = Objective::path_speed;
   TyreModel tyres = TyreModel::saturating;
-  double friction = 1.0489;           ///< mu, between tyre and road
-  double cornering_front = 4.718;     ///< C_Sf, 1/rad, cornering stiffness over friction and axle load
-  double cornering_rear = 5.4562;     ///< C_Sr, 1/rad
-  double gravity_height = 0.074;      ///< h, m, of the centre of gravity
-  double mass = 3.74;                 ///< m, kg
-  double inertia = 0.04712;           ///< I_z, kg m^2, about the vertical axis
-  double steer_rate = 3.2;            ///< rad/s, at which the wheels turn at most
-  double half_steer_speed = 5;        ///< m/s, at which the input steers half as much as at a standstill
-  double switch_speed = 7.319;        ///< m/s, above it the motor's power limits the acceleration
-  double speed_gain = 4.755;          ///< 1/s, acceleration per error of speed of the car's own speed control
-  double brake_gain = 19.02;          ///< 1/s, the same when braking
-  double usable_grip = 0.9;           ///< share of friction times gravity that a plan may use
-  double grip_weight = 300;           ///< cost of the square of the share above `usable_grip`
-  double friction_deviation = 0.1;    ///< of the logarithm of the friction in the variants of the world
+  double friction = 1.0489;         ///< mu, between tyre and road
+  double cornering_front = 4.718;   ///< C_Sf, 1/rad, cornering stiffness over friction and axle load
+  double cornering_rear = 5.4562;   ///< C_Sr, 1/rad
+  double gravity_height = 0.074;    ///< h, m, of the centre of gravity
+  double mass = 3.74;               ///< m, kg
+  double inertia = 0.04712;         ///< I_z, kg m^2, about the vertical axis
+  double steer_rate = 3.2;          ///< rad/s, at which the wheels turn at most
+  double half_steer_speed = 5;      ///< m/s, at which the input steers half as much as at a standstill
+  double switch_speed = 7.319;      ///< m/s, above it the motor's power limits the acceleration
+  double speed_gain = 4.755;        ///< 1/s, acceleration per error of speed of the car's own speed control
+  double brake_gain = 19.02;        ///< 1/s, the same when braking
+  double usable_grip = 0.9;         ///< share of friction times gravity that a plan may use
+  double speed_share = 1;           ///< with `lap_time`: plans drive at most at this share of the speeds that
+                                    ///< a point mass with the usable grip drives along the path
+  double braking_share = 1;         ///< share of the usable grip that the mean deceleration of a step may use
+  double grip_weight = 300;         ///< cost of the square of the share above `usable_grip`
+  double friction_deviation = 0.1;  ///< of the logarithm of the friction in the variants of the world
   double cornering_deviation = 0.1;   ///< the same of the cornering stiffness
   double collision_ahead_cost = 100;  ///< cost of a plan that ends where the car cannot stop before an
                                       ///< obstacle, times the share of its energy that is left there
@@ -49,6 +64,9 @@ void visit_options(Options& o, Visit&& visit) {
     visit(field,
           Declaration{.name = name, .symbol = symbol, .unit = unit, .help = help, .min = min, .max = max});
   };
+  visit(o.objective, Declaration{.name = "objective",
+                                 .help = "model `single_track`: what plans seek: the speeds of the path, or "
+                                         "the shortest time within grip and max_speed"});
   visit(o.tyres,
         Declaration{.name = "tyres", .help = "model `single_track`: sideways force over slip angle"});
   number(o.friction, "friction", "mu", "", "model `single_track`: between tyre and road", 0.05, 3);
@@ -71,6 +89,15 @@ void visit_options(Options& o, Visit&& visit) {
   number(o.brake_gain, "brake_gain", "", "1/s", "model `single_track`: the same when braking", 0.1, 1000);
   number(o.usable_grip, "usable_grip", "", "",
          "model `single_track`: share of friction times gravity that a plan may use", 0.05, 1);
+  number(
+      o.speed_share, "speed_share", "", "",
+      "model `single_track`: with objective lap_time, plans drive at most at this share of the speeds that "
+      "a point mass with the usable grip drives along the path; the rest of the grip is for corrections",
+      0.5, 1.5);
+  number(o.braking_share, "braking_share", "", "",
+         "model `single_track`: share of the usable grip that the mean deceleration of a step may use; below "
+         "1 where the car's speed control brakes hardest right after a command",
+         0.1, 1);
   number(o.grip_weight, "grip_weight", "", "",
          "model `single_track`: cost of the square of the share above usable_grip", 0, 1e6);
   number(o.friction_deviation, "friction_deviation", "", "",

@@ -14,7 +14,7 @@ struct Surroundings {
   T distance;  ///< m to the path
   T yaw;       ///< rad, of the path; off the reference map the yaw error to assume
   T speed;     ///< m/s, reference
-  T outside;   ///< 1 off the reference map, else 0
+  T outside;   ///< 1 off the reference map, else 0 or less (see maps::ReferenceField::set_curvatures)
   T obstacle;  ///< cost map value, 100 in collision; negative off the map
 };
 
@@ -35,6 +35,10 @@ class TrackingCost {
 
   /// See VehicleModel.
   void set_urgency(Urgency urgency) noexcept;
+
+  /// Progress beyond the path's speed counts as time won. The sum over a plan's steps is then, but for a
+  /// constant, the time from its end to the finish at the path's speeds.
+  void set_lap_time() noexcept { least_lost_ = -1e3; }
 
   /// What the maps hold at a position (m, map frame) with this cost map value.
   template <class T>
@@ -68,15 +72,23 @@ class TrackingCost {
     return {cost.value + T(speed_weight_) * square(max(seen.speed - speed, T(0))), cost.collided};
   }
   /// `cost` with the time that is lost in a step at this yaw (rad) and speed (m/s), as a share of the step's:
-  /// the share by which the progress along the path is below the path's speed.
+  /// the share by which the progress along the path is below the path's speed. With set_lap_time() it is
+  /// negative above the path's speed.
   template <class T>
   SLALOM_INLINE Cost<T> with_time_lost(const Cost<T>& cost, const T& yaw, const T& speed,
                                        const Surroundings<T>& seen) const {
     const T error = wrap_angle(yaw - seen.yaw);
     const T along = max(T(1) - T(0.45) * square(error), T(-1)) * T(way_);
     const T wanted = min(seen.speed, T(fastest_));
-    const T lost = (wanted - speed * along) / max(wanted, T(0.5));
-    return {cost.value + T(speed_weight_) * max(lost, T(0)), cost.collided};
+    const T progress = along * select(seen.outside < T(0), -seen.outside, T(1));
+    const T lost = (wanted - speed * progress) / max(wanted, T(0.5));
+    return {cost.value + T(speed_weight_) * max(lost, T(least_lost_)), cost.collided};
+  }
+
+  /// The cost of so many time steps that are lost.
+  template <class T>
+  SLALOM_INLINE T time_cost(const T& steps) const {
+    return T(speed_weight_) * steps;
   }
 
   /// The part of the cost of a state, the last one or another, that collisions make.
@@ -110,6 +122,7 @@ class TrackingCost {
   Coefficient distance_weight_, yaw_weight_, outside_cost_;
   Coefficient terminal_distance_weight_, terminal_yaw_weight_, outside_terminal_cost_;
   Coefficient speed_weight_;
+  Coefficient least_lost_{0};          ///< share of a step
   Coefficient way_{1}, fastest_{1e3};  ///< 1 forwards, -1 backwards; m/s
   Coefficient collision_weight_;
 };

@@ -52,6 +52,8 @@ class VehicleModel {
   /// Predictions from now on drive forwards, or backwards at most at this speed (m/s, > 0) and away from
   /// where the path leads.
   virtual void set_reverse(double speed) noexcept;
+  /// The highest speed (m/s) of predictions from now on.
+  virtual void set_top_speed(double speed) noexcept;
   /// The urgency of predictions from now on.
   virtual void set_urgency(Urgency urgency) noexcept;
 

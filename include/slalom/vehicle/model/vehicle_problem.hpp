@@ -80,7 +80,9 @@ struct VehicleTraits {
   /// Where the model has tyres that slip: the friction (> 0) that its options give. The planner then predicts
   /// the start with the model, and lowers the path's speeds to what the car can do.
   double friction = 0;
-  double usable_grip = 0;  ///< the share of the friction that plans may use
+  double usable_grip = 0;       ///< the share of the friction that plans may use
+  double braking_share = 1;     ///< the share of the usable grip that the mean deceleration may use
+  bool seeks_lap_time = false;  ///< plans seek the shortest time, whatever the path's speeds
   double half_steer_speed =
       0;  ///< m/s, with tyres that slip: an input steers half as much as at a standstill
   double stopping_deceleration = 0;  ///< m/s^2, with tyres that slip: by which a plan must be able to stop

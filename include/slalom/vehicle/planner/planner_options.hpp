@@ -15,6 +15,8 @@ struct PlannerOptions {
   double profile_friction = 0;    ///< the path's speeds are lowered until they ask for no more than this
                                   ///< coefficient of friction allows; 0: they stay
   double steer_limit = 0.4189;    ///< rad, bound of the steering commands, to either side
+  double steer_resolution = 0;    ///< rad, of a steering that settles at multiples of it only: commands are
+                                  ///< such angles, with models whose tyres slip; 0: any angle
   double laser_x = 0.275;         ///< m, of the laser ahead of the rear axle
   double laser_y = 0;             ///< m, to the left
   double laser_yaw = 0;           ///< rad
@@ -66,6 +68,13 @@ void visit_options(Options& o, Visit&& visit) {
                                    .help = "bound of the steering commands, to either side",
                                    .min = 0.01,
                                    .max = 1.5});
+  visit(o.steer_resolution,
+        Declaration{.name = "steer_resolution",
+                    .unit = "rad",
+                    .help = "with a model whose tyres slip: steering commands are multiples of this angle, "
+                            "for a steering that settles at no other; 0: any angle",
+                    .min = 0,
+                    .max = 0.5});
   visit(o.laser_x, Declaration{.name = "laser_x",
                                .unit = "m",
                                .help = "position of the laser ahead of the rear axle",
