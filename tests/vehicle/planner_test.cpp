@@ -178,6 +178,27 @@ TEST(Planner, WithTheAccelerationAsAnInputItIsFastWhereItCanAndSlowsDownInTime) 
   EXPECT_FALSE(blocked) << "a plan that slows down is free all the time";
 }
 
+TEST(Planner, CommandsAnglesAtWhichTheSteeringSettles) {
+  VehicleOptions car = small_car();
+  car.model = vehicle_model("single_track");
+  SvgMppiOptions method = few_samples();
+  method.variance = {0.03, 4};
+  method.input_min = {-0.4, -6};
+  method.input_max = {0.4, 6};
+  PlannerOptions options = careful();
+  options.steer_resolution = 0.05;
+  Planner planner(options, make_vehicle_model(car), lane(), make_solver(method, 2));
+  double largest = 0;
+  for (int i = 0; i < 10; ++i) {
+    Corridor corridor;
+    const double steer = planner.update({corridor.scan(0.5), {{5 + 0.05 * i, 0.5, 0}, 2}}).command.steer;
+    EXPECT_NEAR(steer / 0.05, std::round(steer / 0.05), 1e-9);
+    EXPECT_LE(std::abs(steer), options.steer_limit);
+    largest = std::max(largest, std::abs(steer));
+  }
+  EXPECT_GT(largest, 0.04) << "the car is beside the lane and steers";
+}
+
 TEST(Planner, ReversesFromAnObstacleInCollision) {
   for (const bool back_up : {true, false}) {
     PlannerOptions options = careful();
