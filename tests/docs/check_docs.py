@@ -64,7 +64,7 @@ def translation_unit(text, name):
     for line in text.split("\n"):
         if line.startswith("#"):
             includes.append(line)
-        elif end is not None or re.match(r"(struct|class|template|using|inline|enum|constexpr|int main) ?", line):
+        elif end is not None or re.match(r"(struct|class|template|using|inline|enum|constexpr|void|int main) ?", line):
             if end is None:
                 end = "};" if re.match(r"(struct|class|enum)", line) else "}"
                 end = None if re.search(r"[;}]$", line) and line.count("{") == line.count("}") else end

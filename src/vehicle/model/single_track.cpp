@@ -35,7 +35,7 @@ SingleTrackDynamics::SingleTrackDynamics(const PathTrackingOptions& car, const S
       max_power_(car.max_acceleration * own.switch_speed),
       switch_speed_(own.switch_speed),
       usable_acceleration_(own.usable_grip * gravity),
-      least_squared_share_(own.objective == Objective::lap_time ? 1.0 / 9 : 0.01),
+      min_squared_share_(own.objective == Objective::lap_time ? 1.0 / 9 : 0.01),
       braking_share_(own.braking_share),
       negative_inverse_braking_share_(-1 / own.braking_share),
       inverse_gravity_(1 / gravity) {}
@@ -61,7 +61,7 @@ SingleTrack::SingleTrack(const PathTrackingOptions& options, const Options& own)
       friction_(own.friction),
       time_step_(options.time_step),
       inverse_time_step_(1 / options.time_step),
-      most_of_path_speed_(own.objective == Objective::lap_time ? own.speed_share : 1),
+      max_path_speed_share_(own.objective == Objective::lap_time ? own.speed_share : 1),
       inverse_speeding_up_(1 / (2 * own.usable_grip * gravity * options.time_step)),
       squared_half_steer_speed_(own.half_steer_speed * own.half_steer_speed),
       max_deceleration_(options.max_deceleration),

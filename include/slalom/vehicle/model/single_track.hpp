@@ -81,7 +81,7 @@ class SingleTrack {
     const T grip = dynamics_.grip_left(s, T(friction_)), braking = dynamics_.braking_limit(grip);
     const T driving = min(dynamics_.driving_limit(s.speed), grip);
     const T to_speed = T(inverse_time_step_);
-    const T fastest = min(reference_speed * T(most_of_path_speed_), T(fastest_));
+    const T fastest = min(reference_speed * T(max_path_speed_share_), T(fastest_));
     const T asked = clamp(min(wanted, (fastest - s.speed) * to_speed), -braking, driving);
     return max(asked, min((T(slowest_) - s.speed) * to_speed, braking));
   }
@@ -130,8 +130,8 @@ class SingleTrack {
   Options own_;
   Coefficient friction_;
   Coefficient time_step_, inverse_time_step_;
-  Coefficient most_of_path_speed_;   ///< times the path's speed: what plans do not exceed
-  Coefficient inverse_speeding_up_;  ///< s^2/m over time steps, times the friction
+  Coefficient max_path_speed_share_;  ///< times the path's speed: what plans do not exceed
+  Coefficient inverse_speeding_up_;   ///< s^2/m over time steps, times the friction
   Coefficient squared_half_steer_speed_;
   double top_speed_ = 1e3;                 ///< m/s
   Coefficient slowest_{0}, fastest_{1e3};  ///< m/s

@@ -55,7 +55,7 @@ class SingleTrackDynamics {
   template <class T>
   SLALOM_INLINE T grip_left(const SingleTrackState<T>& s, const T& friction) const {
     const T most = friction * T(usable_acceleration_), turning = s.speed * s.yaw_rate;
-    return sqrt(max(square(most) - square(turning), T(least_squared_share_) * square(most)));
+    return sqrt(max(square(most) - square(turning), T(min_squared_share_) * square(most)));
   }
   /// The mean deceleration (m/s^2) of a step where tyres have `grip` left: `braking_share` of it, and never
   /// more than `max_deceleration`.
@@ -182,7 +182,7 @@ class SingleTrackDynamics {
   double steer_time_constant_;
   Coefficient max_deceleration_, max_power_, switch_speed_;
   Coefficient usable_acceleration_;  ///< over the friction
-  Coefficient least_squared_share_;  ///< of the usable grip, left to slow down
+  Coefficient min_squared_share_;    ///< of the usable grip, left to slow down
   Coefficient braking_share_, negative_inverse_braking_share_;
   Coefficient inverse_gravity_;
 };

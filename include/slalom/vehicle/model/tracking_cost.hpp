@@ -38,7 +38,7 @@ class TrackingCost {
 
   /// Progress beyond the path's speed counts as time won. The sum over a plan's steps is then, but for a
   /// constant, the time from its end to the finish at the path's speeds.
-  void set_lap_time() noexcept { least_lost_ = -1e3; }
+  void set_lap_time() noexcept { min_lost_ = -1e3; }
 
   /// What the maps hold at a position (m, map frame) with this cost map value.
   template <class T>
@@ -82,7 +82,7 @@ class TrackingCost {
     const T wanted = min(seen.speed, T(fastest_));
     const T progress = along * select(seen.outside < T(0), -seen.outside, T(1));
     const T lost = (wanted - speed * progress) / max(wanted, T(0.5));
-    return {cost.value + T(speed_weight_) * max(lost, T(least_lost_)), cost.collided};
+    return {cost.value + T(speed_weight_) * max(lost, T(min_lost_)), cost.collided};
   }
 
   /// The cost of so many time steps that are lost.
@@ -122,7 +122,7 @@ class TrackingCost {
   Coefficient distance_weight_, yaw_weight_, outside_cost_;
   Coefficient terminal_distance_weight_, terminal_yaw_weight_, outside_terminal_cost_;
   Coefficient speed_weight_;
-  Coefficient least_lost_{0};          ///< share of a step
+  Coefficient min_lost_{0};            ///< share of a step
   Coefficient way_{1}, fastest_{1e3};  ///< 1 forwards, -1 backwards; m/s
   Coefficient collision_weight_;
 };

@@ -47,7 +47,7 @@ export default async function (h) {
     await h.send({ do: "ghost", method: "mppi" });
     const generation = (await h.state()).generation;
     await page.click("#restart");
-    await h.until((g) => slalom.state.generation > g && slalom.frame.ghost && slalom.scalar("tick") > 30 && Math.hypot(slalom.frame.ghost.x - slalom.scalar("x"), slalom.frame.ghost.y - slalom.scalar("y")) > 0.005, generation);
+    await h.until((g) => slalom.state.generation > g && slalom.state.newest > 40 && slalom.frame.ghost && Math.hypot(slalom.frame.ghost.x - slalom.scalar("x"), slalom.frame.ghost.y - slalom.scalar("y")) > 0.005, generation);
     await h.pause();
     await h.send({ do: "seek", tick: 40 });
     await h.until(() => slalom.scalar("tick") === 40);
