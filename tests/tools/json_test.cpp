@@ -36,6 +36,8 @@ TEST(Json, KeepsTheOrderOfMembers) {
   json.update({{"a", 5}, {"m", 6}});
   EXPECT_EQ(json.dump(), R"({"z":3,"a":5,"m":6})");
   EXPECT_EQ(json.dump(1), "{\n \"z\": 3,\n \"a\": 5,\n \"m\": 6\n}");
+  EXPECT_EQ(Json::parse(R"({"z":1,"a":2,"z":[{},[],[3]]})").dump(1),
+            "{\n \"z\": [\n  {},\n  [],\n  [\n   3\n  ]\n ],\n \"a\": 2\n}");
 }
 
 TEST(Json, WritesNumbersThatAreNotFiniteAsNull) {
@@ -70,7 +72,7 @@ TEST(Json, RefusesDeepNesting) {
            std::string(static_cast<std::size_t>(depth), ']');
   };
   EXPECT_TRUE(Json::parse(nested(64)).is_array());
-  EXPECT_THROW(Json::parse(nested(66)), JsonError);
+  EXPECT_THROW(Json::parse(nested(65)), JsonError);
   EXPECT_THROW(Json::parse(nested(1000000)), JsonError);
   EXPECT_TRUE(Json::parse_or_null(nested(1000000)).is_null());
 }

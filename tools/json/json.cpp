@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace slalom {
@@ -17,71 +16,8 @@ std::vector<Json> elements_of(const std::vector<T>& values) {
 
 }  // namespace
 
-/// Conversion from and to nlohmann's values, which read and write the text.
-struct JsonText {
-  using Value = nlohmann::ordered_json;
-
-  static Value to(const Json& json) {
-    switch (json.type_) {
-      case Json::Type::null:
-        return nullptr;
-      case Json::Type::boolean:
-        return json.boolean_;
-      case Json::Type::integer:
-        return json.integer_;
-      case Json::Type::natural:
-        return json.natural_;
-      case Json::Type::real:
-        return json.real_;
-      case Json::Type::text:
-        return json.text_;
-      case Json::Type::array: {
-        Value made = Value::array();
-        for (const Json& each : json.values_) made.push_back(to(each));
-        return made;
-      }
-      case Json::Type::object: {
-        Value made = Value::object();
-        // Keys are unique here; a look-up for each would take quadratic time.
-        auto& members = made.get_ref<Value::object_t&>();
-        for (std::size_t i = 0; i < json.keys_.size(); ++i)
-          members.Container::emplace_back(json.keys_[i], to(json.values_[i]));
-        return made;
-      }
-    }
-    return nullptr;
-  }
-
-  static Json from(const Value& value) {
-    switch (value.type()) {
-      case Value::value_t::boolean:
-        return value.get<bool>();
-      case Value::value_t::number_integer:
-        return value.get<std::int64_t>();
-      case Value::value_t::number_unsigned:
-        return value.get<std::uint64_t>();
-      case Value::value_t::number_float:
-        return value.get<double>();
-      case Value::value_t::string:
-        return value.get<std::string>();
-      case Value::value_t::array: {
-        Json made = Json::array();
-        for (const Value& each : value) made.values_.push_back(from(each));
-        return made;
-      }
-      case Value::value_t::object: {
-        Json made = Json::object();
-        for (const auto& [key, each] : value.items()) {
-          made.keys_.push_back(key);
-          made.values_.push_back(from(each));
-        }
-        return made;
-      }
-      default:
-        return nullptr;
-    }
-  }
-
+/// Numbers of any type, and paths to values.
+struct JsonValues {
   static bool equal_numbers(const Json& a, const Json& b) {
     using Type = Json::Type;
     if (a.type_ == Type::real || b.type_ == Type::real) return a.get<double>() == b.get<double>();
@@ -89,16 +25,6 @@ struct JsonText {
       return b.type_ == Type::integer && a.integer_ == b.integer_;
     if (b.type_ == Type::integer && b.integer_ < 0) return false;
     return number<std::uint64_t>(a) == number<std::uint64_t>(b);
-  }
-
-  /// A text as nlohmann's value. Throws JsonError where it is nested too deep: the conversions recurse.
-  static Value parse(std::string_view text) {
-    const auto bounded = [](int depth, Value::parse_event_t, Value&) {
-      if (depth > Json::deepest)
-        throw JsonError("must not nest deeper than " + std::to_string(Json::deepest) + " levels");
-      return true;
-    };
-    return Value::parse(text, bounded);
   }
 
   /// A whole number that `Number` can hold.
@@ -186,29 +112,6 @@ Json Json::object() {
   return made;
 }
 
-Json Json::parse(std::string_view text) {
-  try {
-    return JsonText::from(JsonText::parse(text));
-  } catch (const nlohmann::json::exception& error) {
-    // The library's messages begin with its name in brackets, which says nothing to a user.
-    const std::string message = error.what();
-    const auto end = message.find("] ");
-    throw JsonError(end == std::string::npos ? message : message.substr(end + 2));
-  }
-}
-
-Json Json::parse_or_null(std::string_view text) {
-  try {
-    return parse(text);
-  } catch (const JsonError&) {
-    return {};
-  }
-}
-
-std::string Json::dump(int indent) const {
-  return JsonText::to(*this).dump(indent, ' ', false, JsonText::Value::error_handler_t::replace);
-}
-
 template <>
 bool Json::get<bool>() const {
   if (!is_boolean()) throw JsonError("must be true or false");
@@ -217,17 +120,17 @@ bool Json::get<bool>() const {
 
 template <>
 int Json::get<int>() const {
-  return JsonText::whole<int>(*this);
+  return JsonValues::whole<int>(*this);
 }
 
 template <>
 std::uint64_t Json::get<std::uint64_t>() const {
-  return JsonText::whole<std::uint64_t>(*this);
+  return JsonValues::whole<std::uint64_t>(*this);
 }
 
 template <>
 double Json::get<double>() const {
-  return JsonText::number<double>(*this);
+  return JsonValues::number<double>(*this);
 }
 
 template <>
@@ -257,6 +160,8 @@ Json& Json::operator[](const std::string& key) {
   if (!is_object()) throw JsonError("must be an object to have a key '" + key + "'");
   const auto found = std::find(keys_.begin(), keys_.end(), key);
   if (found != keys_.end()) return values_[static_cast<std::size_t>(found - keys_.begin())];
+  // If memory runs out, there is neither a key without a value nor a value without a key.
+  if (values_.size() == values_.capacity()) values_.reserve(2 * values_.size() + 1);
   keys_.push_back(key);
   return values_.emplace_back();
 }
@@ -286,12 +191,12 @@ void Json::update(const Json& other) {
 
 Json Json::flatten() const {
   Json all = object();
-  JsonText::flatten("", *this, all);
+  JsonValues::flatten("", *this, all);
   return all;
 }
 
 bool operator==(const Json& a, const Json& b) {
-  if (a.is_number() && b.is_number()) return JsonText::equal_numbers(a, b);
+  if (a.is_number() && b.is_number()) return JsonValues::equal_numbers(a, b);
   if (a.type_ != b.type_) return false;
   if (a.is_boolean()) return a.boolean_ == b.boolean_;
   return a.text_ == b.text_ && a.keys_ == b.keys_ && a.values_ == b.values_;

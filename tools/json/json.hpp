@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-/// JSON for results, settings and messages. The text is written and read by nlohmann/json, which is compiled
-/// once, in json.cpp.
+/// JSON for results, settings and messages. The text is written and read with nlohmann/json, which is
+/// compiled once, in json_text.cpp.
 namespace slalom {
 
 /// A text that is not JSON, a value of another type than asked for, or a missing key.
@@ -122,6 +122,7 @@ class Json {
   explicit Json(Signed number);
   explicit Json(Unsigned number);
   friend struct JsonText;
+  friend struct JsonValues;
 
   Type type_ = Type::null;
   union {

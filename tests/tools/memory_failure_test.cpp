@@ -1,14 +1,15 @@
-// Memory that runs out at any allocation of what `slalom drive` does before its first lap: an error,
-// and nothing is lost.
+// Memory that runs out at any allocation of what `slalom drive` does before its first lap, and of reading and
+// writing JSON: an error, and nothing is lost.
 #include <gtest/gtest.h>
 
 #include "support/allocation_failures.hpp"
+#include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 
 namespace slalom::tools {
 namespace {
 
-TEST(DriveStart, LoadsItsScenarioOrThrows) {
+TEST(MemoryFailure, OfADriveThatStarts) {
   ScenarioArguments arguments;
   arguments.course = SLALOM_COURSES "/wren";
   arguments.config = SLALOM_CONFIGS "/default.yaml";
@@ -20,6 +21,15 @@ TEST(DriveStart, LoadsItsScenarioOrThrows) {
                 },
                 100),
             1000);
+}
+
+TEST(MemoryFailure, OfReadingAndWritingJson) {
+  std::string text = R"({"nested":{"empty":[],"none":{}},"list":[1,-2,0.5,true,null)";
+  for (int i = 0; i < 40; ++i)
+    text += ",[\"a text that no short string holds\",{\"key " + std::to_string(i) + "\":0}]";
+  text += "]}";
+  EXPECT_EQ(Json::parse(text).dump(), text);
+  EXPECT_GT(testing::fail_every_allocation([&] { return Json::parse(text).dump(2); }), 200);
 }
 
 }  // namespace
