@@ -10,7 +10,7 @@ export default async function (h) {
     to.drawImage(scene, 0, 0);
     const all = to.getImageData(0, 0, canvas.width, canvas.height).data, colours = new Set();
     for (let i = 0; i < all.length; i += 4 * 97) colours.add(`${all[i] >> 3} ${all[i + 1] >> 3} ${all[i + 2] >> 3}`);
-    const ratio = scene.width / scene.clientWidth, [px, py] = slalom.scene.toScreen(mx, my), at = to.getImageData(px * ratio - 4, py * ratio - 4, 9, 9).data;
+    const ratio = scene.width / scene.clientWidth, [px, py] = slalom.scene.toScreen(mx, my), half = Math.round(15 * ratio), at = to.getImageData(px * ratio - half, py * ratio - half, 2 * half, 2 * half).data; // all of the car: its windows are dark
     let bright = 0;
     for (let i = 0; i < at.length; i += 4) bright = Math.max(bright, at[i] + at[i + 1] + at[i + 2]);
     return { colours: colours.size, bright };
