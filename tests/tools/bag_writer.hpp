@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <map>
@@ -26,7 +27,7 @@ class Wire {
   }
   Wire& header(double stamp, const std::string& frame) {
     const auto seconds = static_cast<std::uint32_t>(stamp);
-    put(std::uint32_t{0}).put(seconds).put(static_cast<std::uint32_t>(1e9 * (stamp - seconds) + 0.5));
+    put(std::uint32_t{0}).put(seconds).put(static_cast<std::uint32_t>(std::round(1e9 * (stamp - seconds))));
     return text(frame);
   }
   const std::string& bytes() const { return bytes_; }

@@ -67,7 +67,7 @@ SLALOM_INLINE Pack<Target> exp2(const Pack<Target>& x) {
   const F scaled = F(reinterpret_cast<V>(reinterpret_cast<I>(part.v) + exponent));
   const F low = select(x < F(-126.0f), F(0.0f), scaled);
   const F high = select(x >= F(128.0f), F(__builtin_inff()), low);
-  return select(x == x, high, x);
+  return select(x == x, high, x);  // NaN stays NaN  NOLINT(misc-redundant-expression)
 }
 /// log(1 + x), accurate near 0 as well; -infinity at -1, NaN below.
 template <class Target>

@@ -252,7 +252,7 @@ struct Planner::Implementation {
     if (options.speed_lookahead <= 0 && !planned) return here;
     const double last = static_cast<double>(states.size() - 1),
                  step = std::clamp(options.speed_lookahead / traits.time_step, planned ? 1.0 : 0.0, last);
-    const PredictedState& ahead = states[static_cast<std::size_t>(step + 0.5)];
+    const PredictedState& ahead = states[static_cast<std::size_t>(std::round(step))];
     if (planned) return ahead.speed;
     const maps::ReferenceCell cell = field.at(ahead.pose.x, ahead.pose.y);
     return cell.distance < field.options().outside.distance ? cell.speed : here;
