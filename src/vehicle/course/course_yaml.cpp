@@ -11,8 +11,8 @@ namespace {
 /// One value of a file, with its position for messages.
 class Value {
  public:
-  Value(const std::filesystem::path& file, std::string key, YAML::Node node)
-      : file_(file), key_(std::move(key)), node_(std::move(node)) {}
+  Value(const std::filesystem::path& file, std::string key, const YAML::Node& node)
+      : file_(file), key_(std::move(key)), node_(node) {}
 
   [[noreturn]] void reject(const std::string& rule) const { detail::throw_at(file_, node_, key_, rule); }
 

@@ -46,7 +46,8 @@ void WaysAround::draw(const VehicleStart& start, int nearest, std::span<const do
 }
 
 void WaysAround::draw_way(int way, Car car, std::span<const double> path_speeds, double grip) noexcept {
-  const double offset = (way / WaysAround::speeds - sides) * side_step * traits_.body.width;
+  const int side = way / WaysAround::speeds - sides;
+  const double offset = side * side_step * traits_.body.width;
   const double fastest = slow_speeds[way % WaysAround::speeds], dt = traits_.time_step;
   for (int k = 0; k < batch_.steps(); ++k) {
     for (std::size_t next = car.at;
