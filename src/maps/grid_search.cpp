@@ -28,8 +28,8 @@ GridSearch::GridSearch(int columns, int rows, double cell_size, std::size_t max_
 }
 
 Point GridSearch::centre_of(int cell) const noexcept {
-  return {corner_.x + (cell % columns_ + 0.5) * cell_size_,
-          corner_.y + (static_cast<double>(cell / columns_) + 0.5) * cell_size_};
+  const int column = cell % columns_, row = cell / columns_;
+  return {corner_.x + (column + 0.5) * cell_size_, corner_.y + (row + 0.5) * cell_size_};
 }
 
 int GridSearch::cell_at(const Point& point) const noexcept {

@@ -32,8 +32,9 @@ FreeSpace::FreeSpace(const maps::OccupancyGrid& map) : width_(map.width), resolu
 maps::Pose FreeSpace::random_pose(RandomStream& random) const noexcept {
   const std::size_t at = static_cast<std::size_t>(random.uniform() * static_cast<double>(cells_.size()));
   const int cell = static_cast<int>(cells_[at]);
-  const double x = (cell % width_ + random.uniform()) * resolution_;
-  const double y = (static_cast<double>(cell / width_) + random.uniform()) * resolution_;
+  const int column = cell % width_, row = cell / width_;
+  const double x = (column + random.uniform()) * resolution_;
+  const double y = (row + random.uniform()) * resolution_;
   return {x, y, random.uniform(-std::numbers::pi, std::numbers::pi)};
 }
 
