@@ -71,7 +71,8 @@ BenchmarkLine::BenchmarkLine(std::vector<maps::Point> rows) : rows_(std::move(ro
   }
   x = solve_cyclic(below, middle, above, std::move(x));
   y = solve_cyclic(below, middle, above, std::move(y));
-  for (std::size_t i = 0; i <= n; ++i) curvature_.push_back({x[i % n], y[i % n]});
+  for (std::size_t i = 0; i < n; ++i) curvature_.push_back({x[i], y[i]});
+  curvature_.push_back(curvature_.front());
 }
 
 maps::Point BenchmarkLine::at(double parameter, maps::Point* slope) const noexcept {

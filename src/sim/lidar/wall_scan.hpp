@@ -142,6 +142,7 @@ SLALOM_INLINE_CALLS void walk_beams(const ScanTask& task, int begin, int end, co
     if (next < end) start(pack);
   };
   (start(rays[k]), ...);
+  // NOLINTNEXTLINE(bugprone-infinite-loop): `walk` counts down.
   while (on_the_way > 0) (walk(rays[k]), ...);
 }
 
