@@ -17,6 +17,7 @@
 #include "slalom/core/version.hpp"
 #include "slalom/solvers/cem.hpp"
 #include "slalom/solvers/controller.hpp"
+#include "slalom/solvers/dial_mpc.hpp"
 #include "slalom/solvers/feedback.hpp"
 #include "slalom/solvers/icem.hpp"
 #include "slalom/solvers/mppi.hpp"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "slalom/solvers/cem_options.hpp"
+#include "slalom/solvers/dial_mpc_options.hpp"
 #include "slalom/solvers/icem_options.hpp"
 #include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/reverse_mppi_options.hpp"
@@ -24,6 +25,7 @@ struct Registry {
       SvMpcOptions{},        //
       CemOptions{},          //
       IcemOptions{},         //
+      DialMpcOptions{},      //
   };
   std::vector<const char*> names;
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "slalom/solvers/dial_mpc_options.hpp"
 #include "slalom/solvers/icem_options.hpp"
 #include "slalom/solvers/published/published_solvers.hpp"
 #include "slalom/solvers/registry.hpp"
@@ -70,6 +71,10 @@ inline std::vector<OptionSet> option_sets() {
                                             .weighting = {.tsallis_index = 0.8, .target_ess_fraction = 0.03},
                                             .smoothing = {.half_width = 2}}});
   sets.push_back({"icem_mean", IcemOptions{.send_best = false}});
+  sets.push_back(
+      {"dial_mpc_all_parts", DialMpcOptions{.noise = {.exponent = 1, .log_normal_spread = 0.3},
+                                            .weighting = {.tsallis_index = 0.8, .target_ess_fraction = 0.03},
+                                            .smoothing = {.half_width = 2}}});
   sets.push_back({"cem_coloured", CemOptions{.noise = {.exponent = 2, .log_normal_spread = 0.2}}});
   return sets;
 }

@@ -127,7 +127,7 @@ void declare_explain(Subcommand& command) {
   command
       .option("--method", arguments->methods,
               "Methods, separated by commas: mppi, svg_mppi, svg_mppi_nominal, svg_mppi_covariance, "
-              "reverse_mppi, sv_mpc, cem, icem; or all")
+              "reverse_mppi, sv_mpc, cem, icem, dial_mpc; or all")
       .comma_separated()
       .show_default();
   command

@@ -6,6 +6,8 @@
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/solvers/cem_options.hpp"
+#include "slalom/solvers/dial_mpc_options.hpp"
+#include "slalom/solvers/icem_options.hpp"
 #include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/reverse_mppi_options.hpp"
 #include "slalom/solvers/sv_mpc_options.hpp"
@@ -134,7 +136,9 @@ std::vector<ExplainedMethod> explained_methods() {
       {"svg_mppi_covariance", "the fitted covariance alone (AC)", SvgMppiOptions{.use_nominal = false}},
       {"reverse_mppi", "reverse KL, by mirror descent", ReverseMppiOptions{}},
       {"sv_mpc", "particles, moved by SVGD", SvMpcOptions{}},
-      {"cem", "refitted to the best samples", CemOptions{}}};
+      {"cem", "refitted to the best samples", CemOptions{}},
+      {"icem", "smooth noise, remembers the best samples", IcemOptions{}},
+      {"dial_mpc", "updates of MPPI with shrinking noise", DialMpcOptions{}}};
   for (const char* name : solver_names()) {  // methods that were registered beside those of the library
     const bool known =
         std::any_of(methods.begin(), methods.end(), [&](const ExplainedMethod& m) { return m.name == name; });

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 import slalom
 
-CLASSES = [slalom.Mppi, slalom.SvgMppi, slalom.ReverseMppi, slalom.SvMpc, slalom.Cem, slalom.Icem]
+CLASSES = [slalom.Mppi, slalom.SvgMppi, slalom.ReverseMppi, slalom.SvMpc, slalom.Cem, slalom.Icem,
+           slalom.DialMpc]
 
 
 def linear(**changes):

@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <cmath>
+
+#include "slalom/solvers/dial_mpc_options.hpp"
+#include "slalom/solvers/mppi_options.hpp"
+#include "solvers/methods/mppi_update.hpp"
+
+namespace slalom {
+
+namespace {
+
+/// The options of one update, which has no control term.
+MppiOptions update_options(const DialMpcOptions& o) {
+  return {.horizon = o.horizon,
+          .samples = o.samples,
+          .temperature = o.temperature,
+          .noise = o.noise,
+          .weighting = o.weighting,
+          .smoothing = o.smoothing,
+          .control_cost_discount = 1,
+          .zero_mean_share = o.zero_mean_share};
+}
+
+/// `dial_mpc` (Xue et al. 2024, algorithm 1): updates of MPPI whose noise is annealed.
+class DialMpcSolver final : public SolverBase {
+ public:
+  DialMpcSolver(const DialMpcOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
+      : SolverBase(options, inputs, std::move(pool)),
+        options_(options),
+        update_(update_options(options), inputs),
+        mean_(size()),
+        shifted_(size()),
+        zero_(size()),
+        first_variance_(spread(options.variance)),
+        variance_(size()) {
+    // The inputs at the start of the horizon were refined in the most solves, so they get the least noise.
+    for (std::size_t r = 0; r < size(); ++r) {
+      const auto step = static_cast<double>(r / static_cast<std::size_t>(inputs));
+      const double from_end = options.horizon > 1 ? 1 - step / (options.horizon - 1) : 0;
+      first_variance_[r] *= static_cast<float>(std::pow(options.horizon_decay, 2 * from_end));
+    }
+    reset(options.seed);
+  }
+
+  const char* name() const noexcept override { return DialMpcOptions::method; }
+
+  void reset(std::uint64_t seed) noexcept override {
+    restart(seed);
+    update_.reset();
+    has_solution_ = false;
+    std::fill(mean_.begin(), mean_.end(), 0.0f);
+    clamp(mean_.data());
+    std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
+    result_ = {};
+    result_.inputs = result_.mean = mean_;
+    result_.nominal = zero_;
+    result_.variances = variance_;
+  }
+
+  void prepare() noexcept override { update_.samples().prepare(key(0), pool()); }
+
+  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
+    const auto start = detail::Clock::now();
+    const Deadline deadline(start, request.deadline);
+    result_.times = {};
+    const double shift = options_.shift_warm_start ? warm_start_shift(evaluator, request) : 0;
+    if (shift > 0) {
+      shift_sequence(mean_.data(), horizon(), inputs(), shift, shifted_.data());
+      std::swap_ranges(mean_.begin(), mean_.end(), shifted_.begin());
+    }
+    make_updates(evaluator, deadline);
+    next_solve();
+    result_.times.total = detail::seconds(start, detail::Clock::now());
+    return result_;
+  }
+
+ private:
+  void make_updates(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
+    const int wanted = has_solution_ ? options_.iterations : options_.first_iterations;
+    const int few_samples_before = result_.few_samples_solves;
+    double scale = 1;
+    result_.iterations = 0;
+    for (int i = 0; i < wanted; ++i, scale *= options_.iteration_decay * options_.iteration_decay) {
+      for (std::size_t r = 0; r < size(); ++r) variance_[r] = static_cast<float>(scale * first_variance_[r]);
+      result_.few_samples_solves = few_samples_before;  // the last update counts for the solve
+      result_.status = update_.update(evaluator, key(i), zero_.data(), variance_.data(), low().data(),
+                                      high().data(), pool(), deadline, mean_.data(), result_);
+      if (result_.status == Status::deadline || result_.status == Status::degenerate) return;
+      has_solution_ = true;
+      result_.iterations = i + 1;
+    }
+  }
+
+  DialMpcOptions options_;
+  detail::MppiUpdate update_;
+  std::vector<float> mean_, shifted_, zero_;      ///< [row]
+  std::vector<float> first_variance_, variance_;  ///< [row]
+  bool has_solution_ = false;
+  SolveResult result_;
+};
+
+}  // namespace
+
+std::unique_ptr<Solver> make_solver(const DialMpcOptions& options, int inputs,
+                                    std::shared_ptr<ThreadPool> pool) {
+  validate_options(options, DialMpcOptions::method, inputs);
+  return std::make_unique<DialMpcSolver>(options, inputs, std::move(pool));
+}
+
+}  // namespace slalom
