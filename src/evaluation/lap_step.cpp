@@ -28,10 +28,10 @@ double sum_of_steering(const vehicle::PlannerOutput& output) {
 /// Mean over the steps of the variance of the first input, rad^2.
 double mean_variance(const SolveResult& solve, std::size_t inputs) {
   if (solve.variances.empty()) return 0;
+  const std::size_t steps = solve.variances.size() / inputs;
   double sum = 0;
-  for (std::size_t row = 0; row < solve.variances.size(); row += inputs)
-    sum += static_cast<double>(solve.variances[row]);
-  return sum / static_cast<double>(solve.variances.size() / inputs);
+  for (std::size_t k = 0; k < steps; ++k) sum += static_cast<double>(solve.variances[k * inputs]);
+  return sum / static_cast<double>(steps);
 }
 
 /// Compares the planner's observers with the truth.

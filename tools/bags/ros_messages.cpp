@@ -123,7 +123,7 @@ maps::OccupancyGrid map(std::string_view bytes) {
       static_cast<double>(grid.width) * grid.height != static_cast<double>(cells))
     throw std::invalid_argument("has " + std::to_string(cells) + " cells, not width x height");
   for (const char cell : f.take(cells)) {
-    const int known = static_cast<signed char>(cell);
+    const auto known = static_cast<std::int8_t>(cell);
     grid.cells.push_back(known < 0     ? maps::Occupancy::unknown
                          : known >= 50 ? maps::Occupancy::occupied
                                        : maps::Occupancy::free);

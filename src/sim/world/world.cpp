@@ -56,7 +56,7 @@ void WorldOptions::validate() const {
   detail::require_range("time_step", time_step, 1e-5, 0.1);
   car.validate();
   // The plant checks its options when it is made.
-  Plant(car, plant, time_step);
+  [[maybe_unused]] const Plant checked(car, plant, time_step);
   lidar.validate();
   detail::require_range("sectors", sectors, 1, 1000);
   if (gym.wall_collision && lidar.rate > 0 && std::lround(1 / (lidar.rate * time_step)) > 1)
