@@ -21,6 +21,7 @@
 #include "slalom/solvers/feedback.hpp"
 #include "slalom/solvers/icem.hpp"
 #include "slalom/solvers/mppi.hpp"
+#include "slalom/solvers/proposals.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/solvers/reverse_mppi.hpp"
 #include "slalom/solvers/solver.hpp"

@@ -73,10 +73,11 @@ TEST_P(SolverRuntimeContract, SolvingAllocatesNothing) {
     });
     const auto evaluator = simple(2, [](float a, float b, int k) { return k % 5 ? a + b : std::nan(""); });
     const auto broken = simple(2, [](float, float, int) { return std::nan(""); });
+    const std::vector<float> proposals(2 * 2 * 10, 0.5f);  // two sequences of two inputs
     const long before = testing::allocations();
     for (int i = 0; i < 3; ++i) {
       solver->prepare();
-      solver->solve(evaluator, {.elapsed = 0.03});
+      solver->solve(evaluator, {.elapsed = 0.03, .proposals = {proposals, 2}});
       solver->solve(broken, {.elapsed = 0.03, .deadline = 1});
       solver->reset(static_cast<std::uint64_t>(i));
     }

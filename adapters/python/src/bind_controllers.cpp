@@ -1,10 +1,32 @@
 #include <cctype>
+#include <cmath>
 #include <limits>
 
 #include "plan.hpp"
 
 namespace slalom::python {
 namespace {
+
+using Sequences = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Throws std::invalid_argument unless the solver takes proposals of this shape, or there are none.
+void check_proposals(const Solver& solver, const Sequences& proposals) {
+  if (proposals.size() == 0) return;
+  if (!solver.takes_proposals())
+    throw std::invalid_argument("proposals: the method " + std::string(solver.name()) + " takes none");
+  const py::ssize_t first = proposals.ndim() - 2;
+  if ((first != 0 && first != 1) || proposals.shape(first) != solver.horizon() ||
+      proposals.shape(first + 1) != solver.inputs()) {
+    std::string shape;
+    for (py::ssize_t i = 0; i < proposals.ndim(); ++i)
+      shape += (i > 0 ? ", " : "") + std::to_string(proposals.shape(i));
+    const std::string one = std::to_string(solver.horizon()) + ", " + std::to_string(solver.inputs());
+    throw std::invalid_argument("proposals: have the shape (" + shape + "), must have (sequences, " + one +
+                                ") or (" + one + ")");
+  }
+  for (py::ssize_t i = 0; i < proposals.size(); ++i)
+    if (!std::isfinite(proposals.data()[i])) throw std::invalid_argument("proposals: must be finite");
+}
 
 /// The class of a method: svg_mppi -> SvgMppi.
 std::string class_name(std::string_view method) {
@@ -55,16 +77,22 @@ void bind_controllers(py::module_& module) {
            py::arg("method"), py::arg("problem"))
       .def(
           "solve",
-          [](const py::object& self, std::vector<double> state, double elapsed, double deadline) {
+          [](const py::object& self, std::vector<double> state, double elapsed, double deadline,
+             const Sequences& proposals) {
             auto& controller = self.cast<Controller&>();
-            controller.solve(self, std::move(state), {elapsed, deadline});
+            check_proposals(controller.solver(), proposals);
+            const std::vector<float> values(proposals.data(), proposals.data() + proposals.size());
+            const auto count =
+                static_cast<int>(proposals.ndim() == 3 ? proposals.shape(0) : proposals.size() > 0);
+            controller.solve(self, std::move(state), {elapsed, deadline, {values, count}});
             return Plan{self, controller.solves()};
           },
           py::arg("state"), py::arg("elapsed") = 0.0,
-          py::arg("deadline") = std::numeric_limits<double>::infinity(),
+          py::arg("deadline") = std::numeric_limits<double>::infinity(), py::arg("proposals") = Sequences(),
           "Returns the plan from `state`. The warm start is shifted by `elapsed` (s), the time since the "
-          "last "
-          "solve. After `deadline` (s) the best plan so far is returned.")
+          "last solve. After `deadline` (s) the best plan so far is returned. `proposals` are control "
+          "sequences of other controllers that compete with the samples, an array (sequences, horizon, "
+          "inputs), or (horizon, inputs) for one.")
       .def("reset", &Controller::reset, py::arg("seed") = 0,
            "Discards all state and starts the random numbers from `seed`.")
       .def("set_previous_input", &Controller::set_previous_input, py::arg("input"),

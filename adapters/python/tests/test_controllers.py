@@ -268,3 +268,27 @@ def test_plans_that_follow_single_samples_are_reported_once():
         warnings.simplefilter("error")
         for _ in range(30):
             assert warm.solve([1.0, 0.0]).few_samples_solves == 0
+
+
+def test_proposals_compete_with_the_samples():
+    problem = linear(cost=lambda x, u: np.float32(100) * (u[:, 0] - 3) ** 2)
+    options = {"horizon": 10, "variance": 0.01, "control_cost_discount": 1}
+    right = np.full((10, 1), 3.0)
+    assert np.all(np.abs(slalom.Mppi(problem, **options).solve([0, 0]).inputs) < 1)
+    for proposals in (right, [right, 0 * right]):
+        plan = slalom.Mppi(problem, **options).solve([0, 0], proposals=proposals)
+        assert plan.inputs == pytest.approx(right)
+    assert np.all(plan.samples[-2] == 3) and plan.weights[-2] == pytest.approx(1)
+    assert np.all(np.abs(slalom.Mppi(problem, **options).solve([0, 0], proposals=[]).inputs) < 1)
+
+
+def test_proposals_that_do_not_fit_are_errors():
+    controller = slalom.Mppi(slalom.Pendulum(), horizon=10)
+    with pytest.raises(ValueError, match=r"proposals: have the shape \(9, 1\), must have \(sequences, 10, 1\) or "):
+        controller.solve([0, 0], proposals=np.zeros((9, 1)))
+    with pytest.raises(ValueError, match=r"proposals: have the shape \(10\), must have"):
+        controller.solve([0, 0], proposals=np.zeros(10))
+    with pytest.raises(ValueError, match="proposals: must be finite"):
+        controller.solve([0, 0], proposals=np.full((10, 1), np.nan))
+    with pytest.raises(ValueError, match="proposals: the method sv_mpc takes none"):
+        slalom.SvMpc(slalom.Pendulum(), horizon=10).solve([0, 0], proposals=np.zeros((10, 1)))

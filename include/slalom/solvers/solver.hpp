@@ -12,12 +12,22 @@ namespace slalom {
 
 class ThreadPool;
 
+/// One control sequence after another, [sequence][step][input].
+struct SequenceList {
+  std::span<const float> values;  ///< [sequence][step][input]
+  int sequences = 0;              ///< number
+};
+
 /// What changes from one solve to the next.
 struct SolveRequest {
   /// Time since the last solve, s; the warm start is shifted by it where the solver shifts.
   double elapsed = 0;
   /// Time the solve may take, s of wall clock from the call; what is best so far is returned by then.
   double deadline = std::numeric_limits<double>::infinity();
+  /// Control sequences of other controllers that compete with the samples of this solve (proposals.hpp), over
+  /// the solver's horizon. Values outside the bounds are moved into them. Only for a solver that
+  /// `takes_proposals`; others ignore them.
+  SequenceList proposals{};
 };
 
 /// Wall-clock times of the stages of one solve, s.
@@ -27,12 +37,6 @@ struct StageTimes {
   double guide = 0;     ///< moving guide particles or iterating on the distribution
   double update = 0;    ///< weights, means, covariances
   double total = 0;     ///< whole solve, s
-};
-
-/// One control sequence after another, [sequence][step][input].
-struct SequenceList {
-  std::span<const float> values;  ///< [sequence][step][input]
-  int sequences = 0;              ///< number
 };
 
 /// The outcome of a solve. Its spans point into the solver and stay valid until the next solve or reset.
@@ -84,6 +88,9 @@ class Solver {
   /// Whether the inputs of every result are within the bounds. False only for `sv_mpc` as published, whose
   /// program does not clamp what it sends (`PublishedSvMpc::clamp_solution`).
   virtual bool keeps_bounds() const noexcept { return true; }
+
+  /// Whether `solve` uses the proposals of a request.
+  virtual bool takes_proposals() const noexcept { return false; }
 
   /// Solves from the evaluator's current state. Whatever happens, the result's inputs are finite and, if the
   /// solver `keeps_bounds`, within the bounds.

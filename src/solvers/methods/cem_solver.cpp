@@ -65,6 +65,8 @@ class CemSolver final : public SolverBase {
 
   const char* name() const noexcept override { return name_; }
 
+  bool takes_proposals() const noexcept override { return true; }
+
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
     std::fill(mean_.begin(), mean_.end(), 0.0f);
@@ -93,6 +95,7 @@ class CemSolver final : public SolverBase {
     int iteration = 0;
     for (; iteration < options_.iterations && !deadline.passed(); ++iteration) {
       batch = &batches_[std::min(static_cast<std::size_t>(iteration), batches_.size() - 1)];
+      batch->propose(iteration == 0 ? request.proposals : SequenceList{});
       statistics = sample(*batch, evaluator, iteration, deadline);
       result_.times.draw += statistics.draw_time;
       result_.times.evaluate += statistics.evaluate_time;
@@ -131,7 +134,8 @@ class CemSolver final : public SolverBase {
     return std::span(kept_).subspan(static_cast<std::size_t>(index) * size(), size());
   }
 
-  /// Draws the samples of an iteration, replaces the last ones by what is remembered, and evaluates all.
+  /// Draws the samples of an iteration, replaces the last ones before the proposals by what is remembered,
+  /// and evaluates all.
   detail::BatchStatistics sample(detail::SampleSet& batch, const BatchEvaluator& evaluator, int iteration,
                                  const Deadline& deadline) noexcept {
     for (std::size_t r = 0; r < size(); ++r) deviation_[r] = std::sqrt(variance_[r]);
@@ -142,7 +146,7 @@ class CemSolver final : public SolverBase {
       return batch.draw_and_evaluate(evaluator, key(iteration), to, nullptr, pool(), deadline);
     const auto begin = detail::Clock::now();
     batch.draw(key(iteration), to, pool(), evaluator.sampler());
-    int at = batch.samples();
+    int at = batch.samples() - batch.proposed();
     for (int i = 0; i < kept_count_ && at > 0; ++i) batch.values().set_sample(--at, kept(i));
     if (with_mean && at > 0) batch.values().set_sample(--at, mean_);
     const double drawn = detail::seconds(begin, detail::Clock::now());

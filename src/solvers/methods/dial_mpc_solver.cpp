@@ -44,6 +44,8 @@ class DialMpcSolver final : public SolverBase {
 
   const char* name() const noexcept override { return DialMpcOptions::method; }
 
+  bool takes_proposals() const noexcept override { return true; }
+
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
     update_.reset();
@@ -68,6 +70,7 @@ class DialMpcSolver final : public SolverBase {
       shift_sequence(mean_.data(), horizon(), inputs(), shift, shifted_.data());
       std::swap_ranges(mean_.begin(), mean_.end(), shifted_.begin());
     }
+    update_.samples().propose(request.proposals);
     make_updates(evaluator, deadline);
     next_solve();
     result_.times.total = detail::seconds(start, detail::Clock::now());

@@ -24,6 +24,8 @@ class MppiSolver final : public SolverBase {
 
   const char* name() const noexcept override { return MppiOptions::method; }
 
+  bool takes_proposals() const noexcept override { return true; }
+
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
     update_.reset();
@@ -46,6 +48,7 @@ class MppiSolver final : public SolverBase {
       shift_sequence(mean_.data(), horizon(), inputs(), shift, shifted_.data());
       std::swap_ranges(mean_.begin(), mean_.end(), shifted_.begin());
     }
+    update_.samples().propose(request.proposals);
     result_.status = update_.update(evaluator, key(0), nominal_.data(), variance_.data(), low().data(),
                                     high().data(), pool(), deadline, mean_.data(), result_);
     result_.iterations = 1;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "solvers/methods/guides.hpp"
@@ -33,6 +34,8 @@ class SvgMppiSolver final : public SolverBase {
 
   const char* name() const noexcept override { return SvgMppiOptions::method; }
 
+  bool takes_proposals() const noexcept override { return true; }
+
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
     update_.reset();
@@ -56,6 +59,7 @@ class SvgMppiSolver final : public SolverBase {
     if (shift_) shift(warm_start_shift(evaluator, request));
 
     if (around_nominal_) guides_.take_in(evaluator, mean_.data());
+    take_in(evaluator, request.proposals);
     guides_.restart_others(key(restarts));
     move_guides(evaluator, deadline);
     if (use_nominal_ && guides_.best_cost() < std::numeric_limits<float>::infinity()) {
@@ -79,6 +83,19 @@ class SvgMppiSolver final : public SolverBase {
  private:
   /// The random streams of a solve.
   enum Stage { first_guides, samples, gradients, restarts = 65535 };
+
+  /// Offers proposals as guides; without a nominal sequence, as samples.
+  void take_in(const BatchEvaluator& evaluator, const SequenceList& proposals) noexcept {
+    update_.samples().propose(use_nominal_ ? SequenceList{} : proposals);
+    if (!use_nominal_) return;
+    for (int i = 0; i < proposals.sequences; ++i) {
+      const float* const proposal = proposals.values.data() + static_cast<std::size_t>(i) * size();
+      for (std::size_t r = 0; r < size(); ++r)
+        shifted_[r] = std::isfinite(proposal[r]) ? proposal[r] : mean_[r];
+      clamp(shifted_.data());
+      guides_.take_in(evaluator, shifted_.data());
+    }
+  }
 
   /// Moves the guides. With several threads, those that have no guide to move draw the noise of the samples.
   void move_guides(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {

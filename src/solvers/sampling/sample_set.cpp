@@ -109,6 +109,11 @@ BatchStatistics SampleSet::combine() const noexcept {
   return all;
 }
 
+void SampleSet::propose(const SequenceList& proposals) noexcept {
+  proposals_ = proposals.values.data();
+  proposed_ = std::min(proposals.sequences, samples());
+}
+
 BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
                                              const SamplingDistribution<float>& to, const float* linear,
                                              ThreadPool& pool, const Deadline& deadline) noexcept {
@@ -125,10 +130,7 @@ BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, Ra
       skip_tile(tile, statistics);
     } else {
       const auto start = Clock::now();
-      const Range r = range(tile);
-      if (!ready) fill_noise(sampler, values_, r, key);
-      SequenceBatch& from = ready ? noise_ : values_;
-      kernels().sample(rows_of(from), row_view(), to, r);
+      sample_range(sampler, key, to, ready, range(tile));
       const auto drawn = Clock::now();
       finish_tile(tile, &evaluator, linear, statistics);
       statistics.draw_time = seconds(start, drawn);
@@ -139,15 +141,27 @@ BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, Ra
   return combine();
 }
 
+/// Draws a range of the samples, from the prepared noise if `ready`. Proposals take the places of the last
+/// samples; a value of theirs that is not finite becomes that of the mean.
+void SampleSet::sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to,
+                             bool ready, Range r) noexcept {
+  if (!ready) fill_noise(sampler, values_, r, key);
+  SequenceBatch& from = ready ? noise_ : values_;
+  kernels().sample(rows_of(from), row_view(), to, r);
+  const int first = samples() - proposed_, end = std::min(samples(), r.first + r.count);
+  for (int k = std::max(first, r.first); k < end; ++k) {
+    const float* proposal = proposals_ + static_cast<std::ptrdiff_t>(k - first) * rows();
+    for (int row = 0; row < rows(); ++row) {
+      const float value = std::isfinite(proposal[row]) ? proposal[row] : to.mean[row];
+      values_[row][static_cast<std::size_t>(k)] = std::clamp(value, to.low[row], to.high[row]);
+    }
+  }
+}
+
 /// Draws the samples, from the prepared noise if `ready`.
 void SampleSet::draw_all(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to,
                          bool ready, ThreadPool& pool) noexcept {
-  pool.run(tiles(), [&](int tile) {
-    const Range r = range(tile);
-    if (!ready) fill_noise(sampler, values_, r, key);
-    SequenceBatch& from = ready ? noise_ : values_;
-    kernels().sample(rows_of(from), row_view(), to, r);
-  });
+  pool.run(tiles(), [&](int tile) { sample_range(sampler, key, to, ready, range(tile)); });
 }
 
 void SampleSet::draw(RandomKey key, const SamplingDistribution<float>& to, ThreadPool& pool,

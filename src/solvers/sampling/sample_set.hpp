@@ -67,6 +67,12 @@ class SampleSet {
   bool lacks_noise(const BatchEvaluator& evaluator, RandomKey key) const noexcept;
   int tiles() const noexcept { return (values_.stride() + tile_ - 1) / tile_; }
 
+  /// From now on, the last samples of every draw are these sequences, moved into the bounds. They must stay
+  /// valid until the next call. Of more sequences than samples, the first ones are used.
+  void propose(const SequenceList& proposals) noexcept;
+  /// The number of samples that are proposals.
+  int proposed() const noexcept { return proposed_; }
+
   /// Draws and evaluates the samples. Their totals are cost + sum of linear[row] v[row]; `linear` may be
   /// null. Omits tiles that have not started at the deadline.
   BatchStatistics draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
@@ -114,6 +120,8 @@ class SampleSet {
   }
   Range range(int tile) const noexcept;
   void fill_noise(const Sampler* sampler, SequenceBatch& to, Range range, RandomKey key) noexcept;
+  void sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to, bool ready,
+                    Range range) noexcept;
   void draw_all(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to, bool ready,
                 ThreadPool& pool) noexcept;
   BatchStatistics evaluate_whole(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
@@ -127,6 +135,8 @@ class SampleSet {
   SequenceBatch values_;
   SequenceBatch noise_;
   NoiseShape shape_;
+  const float* proposals_ = nullptr;  ///< [proposal][row]
+  int proposed_ = 0;
   bool prepared_ = false;
   RandomKey prepared_key_;
   AlignedBuffer costs_, totals_, weights_, terms_;

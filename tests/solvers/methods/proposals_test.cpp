@@ -1,0 +1,193 @@
+#include "slalom/solvers/proposals.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "slalom/solvers/mppi.hpp"
+#include "slalom/solvers/registry.hpp"
+#include "slalom/solvers/sv_mpc.hpp"
+#include "solvers/problems.hpp"
+#include "solvers/set_option.hpp"
+
+/// Control sequences of other controllers in a solve; solver_contract_test.cpp tests what holds without them.
+namespace slalom {
+namespace {
+
+constexpr int steps = 10;
+const char* const taking[] = {"mppi", "svg_mppi", "cem", "icem", "dial_mpc"};
+
+/// The cost is least, 0, where every input is 3: far from the samples of `make`.
+auto far_away() {
+  return testing::FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
+    double cost = 0;
+    for (int t = 0; t < batch.steps(); ++t) {
+      const double distance = static_cast<double>(batch.at(t, 0, k)) - 3;
+      cost += 100 * distance * distance;
+    }
+    return std::pair(cost, false);
+  });
+}
+
+std::unique_ptr<Solver> make(const char* method, int threads = 1) {
+  SolverOptions options = solver_options(method);
+  testing::set(options, "horizon", steps);
+  testing::set(options, "variance", 0.01);
+  testing::set(options, "input_min", -4);
+  testing::set(options, "input_max", 4);
+  testing::set(options, "threads", threads);
+  return make_solver(options, 1);
+}
+
+double mean_error(const SolveResult& result) {
+  double sum = 0;
+  for (const float u : result.inputs) sum += std::abs(static_cast<double>(u) - 3);
+  return sum / static_cast<double>(result.inputs.size());
+}
+
+TEST(Proposals, AGoodOneDecidesTheSolution) {
+  const auto evaluator = far_away();
+  const std::vector<float> values(2 * steps, 3.0f);
+  for (const char* method : taking) {
+    const auto without = make(method), with = make(method);
+    EXPECT_TRUE(with->takes_proposals()) << method;
+    const double alone = mean_error(without->solve(evaluator, {}));
+    const double helped = mean_error(with->solve(evaluator, {.proposals = {values, 2}}));
+    EXPECT_LT(helped, std::string(method) == "cem" ? alone : 0.1) << method;
+  }
+}
+
+TEST(Proposals, TheyAreTheLastSamplesInTheirOrder) {
+  const auto evaluator = far_away();
+  std::vector<float> values(2 * steps, 1.0f);
+  std::fill(values.begin() + steps, values.end(), 2.0f);
+  const auto solver = make("mppi");
+  const SolveResult& result = solver->solve(evaluator, {.proposals = {values, 2}});
+  const int count = result.samples->samples();
+  for (int t = 0; t < steps; ++t) {
+    EXPECT_EQ(result.samples->at(t, 0, count - 2), 1.0f);
+    EXPECT_EQ(result.samples->at(t, 0, count - 1), 2.0f);
+    EXPECT_NE(result.samples->at(t, 0, count - 3), result.samples->at(t, 0, count - 1));
+  }
+  EXPECT_GT(result.weights[static_cast<std::size_t>(count) - 1], 0.99f);
+  solver->solve(evaluator, {});
+  EXPECT_NE(result.samples->at(0, 0, count - 1), 2.0f) << "they count for one solve only";
+}
+
+TEST(Proposals, BadValuesDoNoHarm) {
+  const auto evaluator = far_away();
+  for (const char* method : taking) {
+    for (const float value :
+         {std::numeric_limits<float>::quiet_NaN(), 1e30f, -1e30f, std::numeric_limits<float>::infinity()}) {
+      const std::vector<float> values(steps, value);
+      const auto solver = make(method);
+      for (int i = 0; i < 2; ++i) {
+        for (const float u : solver->solve(evaluator, {.proposals = {values, 1}}).inputs) {
+          EXPECT_TRUE(std::isfinite(u)) << method << " " << value;
+          EXPECT_LE(std::abs(u), 4.0f) << method << " " << value;
+        }
+      }
+    }
+  }
+}
+
+TEST(Proposals, MoreThanSamples) {
+  const auto evaluator = far_away();
+  std::vector<float> values(40 * steps);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.05f * static_cast<float>(i / steps);
+  for (const char* method : taking) {
+    SolverOptions options = solver_options(method);
+    testing::set(options, "horizon", steps);
+    testing::set(options, "samples", 5);
+    const auto solver = make_solver(options, 1);
+    for (int i = 0; i < 2; ++i)
+      EXPECT_EQ(solver->solve(evaluator, {.proposals = {values, 40}}).status, Status::ok) << method;
+  }
+}
+
+TEST(Proposals, SameBitsForAnyNumberOfThreads) {
+  const auto evaluator = far_away();
+  const std::vector<float> values(steps, 2.5f);
+  for (const char* method : taking) {
+    const auto one = make(method), three = make(method, 3);
+    for (int i = 0; i < 3; ++i) {
+      const auto a = one->solve(evaluator, {.proposals = {values, 1}}).inputs;
+      const auto b = three->solve(evaluator, {.proposals = {values, 1}}).inputs;
+      EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin())) << method;
+    }
+  }
+}
+
+TEST(Proposals, OtherMethodsTakeNone) {
+  const auto evaluator = far_away();
+  const std::vector<float> values(steps, 3.0f);
+  for (const char* method : {"reverse_mppi", "sv_mpc"}) {
+    const auto without = make(method), with = make(method);
+    EXPECT_FALSE(with->takes_proposals());
+    const auto a = without->solve(evaluator, {}).inputs;
+    const auto b = with->solve(evaluator, {.proposals = {values, 1}}).inputs;
+    EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin())) << method;
+  }
+}
+
+using testing::DoubleIntegrator;
+
+Mppi<DoubleIntegrator> pushed() {
+  return Mppi{DoubleIntegrator{}, {.horizon = steps, .samples = 64, .input_min = -1, .input_max = 1}};
+}
+
+TEST(Proposals, FollowALawWithinTheBounds) {
+  const auto controller = pushed();
+  Proposals proposals{controller, 1};
+  const DoubleIntegrator::State<double> start{1, 0.5};
+  const auto law = [](const DoubleIntegrator::State<double>& x, int k) {
+    return Input<double, 1>{{-2 * x.position - x.speed + 0.01 * k}};
+  };
+  EXPECT_TRUE(proposals.follow(controller, start, law));
+  EXPECT_FALSE(proposals.follow(controller, start, law)) << "there is room for one";
+  EXPECT_EQ(proposals.size(), 1);
+  const SequenceList list = proposals;
+  auto x = start;
+  for (int k = 0; k < steps; ++k) {
+    const double u = std::clamp(law(x, k)[0], -1.0, 1.0);
+    EXPECT_EQ(list.values[static_cast<std::size_t>(k)], static_cast<float>(u)) << k;
+    x = controller.problem().step<double>(x, {{u}});
+  }
+}
+
+TEST(Proposals, ShortSequencesHoldTheirLastInputs) {
+  const auto controller = pushed();
+  Proposals proposals{controller, 2};
+  const std::vector<Input<double, 1>> inputs{{{0.5}}, {{-3}}};
+  EXPECT_TRUE(proposals.add(inputs));
+  EXPECT_FALSE(proposals.add({}));
+  const SequenceList list = proposals;
+  ASSERT_EQ(list.sequences, 1);
+  EXPECT_EQ(list.values[0], 0.5f);
+  for (std::size_t k = 1; k < steps; ++k) EXPECT_EQ(list.values[k], -1.0f);
+  proposals.clear();
+  EXPECT_EQ(proposals.size(), 0);
+}
+
+TEST(Proposals, MistakesNameTheRule) {
+  const auto message = [](auto make_proposals) {
+    try {
+      make_proposals();
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message([] { Proposals{pushed(), 0}; }), "proposals: capacity 0 must be at least 1");
+  EXPECT_EQ(message([] {
+              Proposals{SvMpc{DoubleIntegrator{}}, 1};
+            }),
+            "proposals: the method sv_mpc takes none");
+}
+
+}  // namespace
+}  // namespace slalom
