@@ -91,9 +91,12 @@ std::unique_ptr<vehicle::Planner> LapRunner::make_planner() const {
                                             vehicle::make_solver(configuration_, method_, settings_.threads));
 }
 
+double LapRunner::lap_length() const noexcept {
+  return open_length_ > 0 ? open_length_ : environment_->track->lap_path()->length();
+}
+
 double LapRunner::progress(const sim::World& world) const noexcept {
-  const double length = open_length_ > 0 ? open_length_ : environment_->track->lap_path()->length();
-  return std::clamp(world.laps(0)->progress() / length, 0.0, 1.0);
+  return std::clamp(world.laps(0)->progress() / lap_length(), 0.0, 1.0);
 }
 
 bool LapRunner::at_finish(const sim::World& world) const noexcept {

@@ -47,6 +47,7 @@ class CommandLine : public testing::EvaluationFolder {
         "hardware --drivers mppi@hardware --tracking-laps 1 --layouts 1 --laps 1 --json " + out,
         "manual " + out,
         "options",
+        "race --course wren --config default --method mppi --set samples=256 --laps 1 --json " + out,
         "replay lap.mcap --repair " + out,
         "track --length 30 --out " + out,
         "tune --method mppi --course wren --config default_kinematic --scenario pt --set temperature=0.5,1"

@@ -100,8 +100,8 @@ void check_options(const std::vector<GivenOption>& options) {
   for (const GivenOption& option : options) {
     for (const std::string& value : option.values) {
       if (option.type != GivenOption::Type::flag) check_value(option, value);
-      if ((option.positional || option.name == "--config") && fs::is_regular_file(value))
-        files.push_back({option.name, value});
+      const bool input = option.positional || option.name == "--config" || option.name == "--compare";
+      if (input && fs::is_regular_file(value)) files.push_back({option.name, value});
     }
   }
   for (const char* name : outputs) {

@@ -19,6 +19,7 @@ void declare_identify(Subcommand& command);
 void declare_manual(Subcommand& command);
 void declare_navigate(Subcommand& command);
 void declare_options(Subcommand& command);
+void declare_race(Subcommand& command);
 void declare_replay(Subcommand& command);
 void declare_reproduce(Subcommand& command);
 void declare_soak(Subcommand& command);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tools/drawing/linear_axis.hpp"
+
 namespace slalom::tools {
 namespace {
 
@@ -54,10 +56,7 @@ std::vector<double> all_values(const Panel& panel) {
 Axis linear_axis(const std::vector<double>& values) {
   Axis axis{.logarithmic = false, .ticks = {}};
   const double most = values.empty() ? 0 : *std::max_element(values.begin(), values.end());
-  const double rough = std::max(most, 1e-9) / 4, decade = std::pow(10, std::floor(std::log10(rough)));
-  double step = 10 * decade;
-  for (const double digit : {5.0, 2.0, 1.0})
-    if (digit * decade >= rough) step = digit * decade;
+  const double step = round_step(std::max(most, 1e-9) / 4);
   axis.high = std::max(step, step * std::ceil(most / step));
   for (int i = 0; i * step <= axis.high * (1 + 1e-9); ++i) axis.ticks.push_back(i * step);
   return axis;

@@ -118,6 +118,10 @@ class LapRunner {
   const std::string& method() const noexcept { return method_; }             ///< name of the method
   /// The options of planner, vehicle problem and methods.
   const vehicle::Configuration& configuration() const noexcept { return configuration_; }
+  /// The settings of each lap.
+  const LapSettings& settings() const noexcept { return settings_; }
+  /// m along the path of the course from the start of a lap to its finish.
+  double lap_length() const noexcept;
 
  private:
   friend class ClosedLoop;

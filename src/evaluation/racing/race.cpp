@@ -1,0 +1,146 @@
+#include "slalom/evaluation/race.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace slalom::evaluation {
+namespace {
+
+/// What the accelerations of a car are computed from.
+struct Motion {
+  double distance = 0, time = 0;    ///< m since the standing start, s
+  double speed = 0, direction = 0;  ///< m/s, rad, of the velocity
+};
+
+Motion motion_of(const sim::World& world) {
+  const sim::Observation seen = world.observe(0);
+  return {world.laps(0)->progress(), seen.time, seen.speed, seen.pose.yaw + seen.slip};
+}
+
+/// The mean acceleration between two moments, along and across the direction in the middle of them.
+RacingSample sample_between(const Motion& before, const Motion& now) {
+  const double half_turn = 0.5 * maps::wrap_angle(now.direction - before.direction);
+  const double duration = now.time - before.time;
+  return {.distance = now.distance,
+          .time = now.time,
+          .speed = now.speed,
+          .longitudinal = (now.speed - before.speed) * std::cos(half_turn) / duration,
+          .lateral = (now.speed + before.speed) * std::sin(half_turn) / duration};
+}
+
+/// The drive that follows a standing start.
+class Stint {
+ public:
+  Stint(const std::shared_ptr<const LapRunner>& runner, std::uint64_t seed, bool flying)
+      : loop_(runner, seed), seed_(seed), flying_(flying), before_(motion_of(loop_.world())) {
+    begin_lap({.distance = 0, .time = 0});
+  }
+
+  /// One control period.
+  void step(const std::function<void(const ControlStep&)>& on_step) {
+    loop_.step([&](const ControlStep& tick) {
+      if (!on_step) return;
+      ControlStep of_lap = tick;
+      of_lap.progress = std::clamp(lap_.samples.back().distance / length(), 0.0, 1.0);
+      of_lap.time = tick.time - begin_.time;
+      on_step(of_lap);
+    });
+    const Motion now = motion_of(loop_.world());
+    add(sample_between(before_, now));
+    before_ = now;
+  }
+
+  /// The lap that has ended since the last call, if one has.
+  std::optional<RacingLap> take_ended() { return std::exchange(ended_, std::nullopt); }
+  /// Whether another lap follows without a standing start.
+  bool goes_on() const { return goes_on_; }
+
+ private:
+  double length() const { return loop_.runner().lap_length(); }
+
+  /// Begins a lap at a sample whose distance and time are those since the standing start.
+  void begin_lap(RacingSample at) {
+    lap_ = {};
+    lap_.standing = at.distance == 0;
+    lap_.seed = seed_;
+    begin_ = at;
+    at.distance = at.time = 0;
+    lap_.samples.push_back(at);
+  }
+
+  void end_lap(RacingEnd end) {
+    lap_.end = end;
+    lap_.sector = sector_times(lap_.samples, length());
+    ended_ = std::move(lap_);
+  }
+
+  /// Adds a sample whose distance and time are those since the standing start.
+  void add(RacingSample sample) {
+    sample.distance -= begin_.distance;
+    sample.time -= begin_.time;
+    lap_.samples.push_back(sample);
+    if (loop_.collisions() > 0) return end_early(RacingEnd::collision);
+    if (sample.distance >= length()) return cross_line();
+    if (sample.time > loop_.runner().timeout()) end_early(RacingEnd::timeout);
+  }
+
+  void end_early(RacingEnd end) {
+    end_lap(end);
+    goes_on_ = false;
+  }
+
+  /// Ends the lap, whose last sample is beyond the line, and begins the next one with the rest of that step.
+  void cross_line() {
+    RacingSample beyond = lap_.samples.back();
+    RacingSample line = *at_distance(lap_.samples, length());
+    lap_.samples.back() = line;
+    end_lap(RacingEnd::completed);
+    goes_on_ = flying_;
+    beyond.distance -= line.distance;
+    beyond.time -= line.time;
+    line.distance += begin_.distance;
+    line.time += begin_.time;
+    begin_lap(line);
+    lap_.samples.push_back(beyond);
+  }
+
+  ClosedLoop loop_;
+  std::uint64_t seed_;
+  bool flying_;
+  Motion before_;
+  RacingSample begin_;  ///< of the lap, distance and time since the standing start
+  RacingLap lap_;       ///< that is being driven
+  std::optional<RacingLap> ended_;
+  bool goes_on_ = true;
+};
+
+}  // namespace
+
+std::vector<RacingLap> drive_race(const std::shared_ptr<const LapRunner>& runner, const RaceOptions& options,
+                                  const RaceCallbacks& callbacks, const std::atomic<bool>* cancel) {
+  if (options.laps < 1)
+    throw std::invalid_argument("laps: " + std::to_string(options.laps) + " must be at least 1");
+  const bool flying = !options.standing && runner->environment().course.closed;
+  std::vector<RacingLap> laps;
+  const auto driven = [&] { return static_cast<int>(laps.size()); };
+  while (driven() < options.laps) {
+    Stint stint(runner, lap_seed(options.seed, driven(), runner->settings().obstacles), flying);
+    while (driven() < options.laps && stint.goes_on()) {
+      if (cancel && cancel->load(std::memory_order_relaxed)) return laps;
+      stint.step([&](const ControlStep& step) {
+        if (callbacks.on_step) callbacks.on_step(driven(), step);
+      });
+      std::optional<RacingLap> lap = stint.take_ended();
+      if (!lap) continue;
+      laps.push_back(std::move(*lap));
+      if (callbacks.on_lap) callbacks.on_lap(laps.back());
+    }
+  }
+  return laps;
+}
+
+}  // namespace slalom::evaluation

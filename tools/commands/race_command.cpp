@@ -1,0 +1,205 @@
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "slalom/core/error.hpp"
+#include "slalom/core/version.hpp"
+#include "slalom/evaluation/race.hpp"
+#include "slalom/vehicle/racing/racing_car.hpp"
+#include "tools/commands/commands.hpp"
+#include "tools/drawing/race_picture.hpp"
+#include "tools/json/json.hpp"
+#include "tools/racing/race_result.hpp"
+#include "tools/racing/race_text.hpp"
+#include "tools/report/lap_json.hpp"
+#include "tools/scenario/scenario.hpp"
+#include "tools/terminal/interrupt.hpp"
+#include "tools/terminal/json_output.hpp"
+#include "tools/terminal/progress_line.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using evaluation::RacingLap;
+
+struct Arguments {
+  ScenarioArguments scenario;
+  std::string method = "svg_mppi", compare, json, plot;
+  std::uint64_t seed = 0;
+  int laps = 5;
+  bool standing = false;
+  double friction = 0.9;
+};
+
+/// The acceleration (m/s^2) of a friction coefficient.
+double acceleration_of(double friction) {
+  vehicle::RacingCar car;
+  vehicle::set_friction(car, friction);
+  return car.limits.lateral_acceleration;
+}
+
+/// Laps against the clock and their outputs.
+class RaceJob {
+ public:
+  explicit RaceJob(const Arguments& arguments)
+      : arguments_(arguments),
+        words_(arguments.json == "-" ? stderr : stdout),
+        scenario_(load_scenario(arguments.scenario, arguments.method)),
+        runner_(std::make_shared<evaluation::LapRunner>(scenario_.environment, scenario_.configuration,
+                                                        arguments.method, scenario_.lap)),
+        settings_(settings_json(arguments.scenario, scenario_, arguments.method)) {
+    settings_["seed"] = arguments.seed;
+    settings_["laps"] = arguments.laps;
+    settings_["standing"] = arguments.standing;
+    settings_["friction"] = arguments.friction;
+    settings_["timeout_s"] = runner_->timeout();
+    settings_["control_period_s"] = runner_->control_period();
+    race_.length = runner_->lap_length();
+    race_.grip = acceleration_of(arguments.friction);
+    race_.profile = evaluation::profile_lap(*runner_, false, race_.grip);
+    race_.profile_from_rest = evaluation::profile_lap(*runner_, true, race_.grip);
+    if (!arguments.compare.empty()) other_ = read_run(arguments.compare, settings_, race_.length);
+  }
+
+  /// The exit status.
+  int run() {
+    print_notes(words_, scenario_);
+    std::fprintf(words_, "%s on %s, configuration %s, %.1f m, %d obstacles, seed %llu\n",
+                 arguments_.method.c_str(), scenario_.environment->course.name.c_str(),
+                 arguments_.scenario.config.c_str(), race_.length, scenario_.lap.obstacles,
+                 static_cast<unsigned long long>(arguments_.seed));
+    print_lap_header(words_, race_.grip);
+    if (scenario_.environment->course.closed) print_lap(words_, "profile", race_.profile, race_.grip);
+    print_lap(words_, "profile from rest", race_.profile_from_rest, race_.grip);
+    drive();
+    if (race_.laps.empty()) return 1;
+    write_results();
+    const auto flying = race_statistics(race_, false), standing = race_statistics(race_, true);
+    return flying.completed + standing.completed == arguments_.laps ? 0 : 1;
+  }
+
+ private:
+  void drive() {
+    const InterruptFlag interrupt;
+    ProgressLine progress(words_);
+    const auto on_step = [&](int lap, const evaluation::ControlStep& step) {
+      progress.show(lap + 1, arguments_.laps, step);
+      if (step.output.solve) solve_ms_.push_back(static_cast<float>(1e3 * step.output.solve->times.total));
+    };
+    const auto on_lap = [&](const RacingLap& lap) {
+      progress.clear();
+      race_.laps.push_back(lap);
+      const std::string label = std::to_string(race_.laps.size()) + (lap.standing ? " standing" : " flying");
+      print_lap(words_, label, lap, race_.grip);
+    };
+    evaluation::drive_race(
+        runner_, {.laps = arguments_.laps, .seed = arguments_.seed, .standing = arguments_.standing},
+        {.on_step = on_step, .on_lap = on_lap}, &interrupt.raised());
+  }
+
+  /// The lap of the other run with which a lap is compared: one with the same kind of start.
+  const RacingLap* comparable(const RacingLap& lap) const {
+    if (!other_) return nullptr;
+    const auto& same = lap.standing ? other_->standing : other_->flying;
+    return same ? &*same : nullptr;
+  }
+
+  void write_results() {
+    print_statistics(words_, race_);
+    const RacingLap* best = best_lap(race_);
+    const RacingLap* theirs = best ? comparable(*best) : nullptr;
+    if (best && other_ && !theirs)
+      std::fprintf(words_, "note: %s has no completed %s to compare with\n", other_->file.c_str(),
+                   best->standing ? "standing start" : "flying lap");
+    if (best) print_along(words_, race_, *best, theirs, arguments_.compare);
+    if (!arguments_.json.empty()) write_json(results(best, theirs), arguments_.json);
+    if (arguments_.plot.empty()) return;
+    if (!best) {
+      std::fprintf(words_, "note: no picture, since no lap was completed\n");
+      return;
+    }
+    plot(*best, theirs);
+    std::fprintf(words_, "picture: %s\n", arguments_.plot.c_str());
+  }
+
+  Json results(const RacingLap* best, const RacingLap* theirs) const {
+    Json settings = settings_;
+    settings["threads"] = scenario_.lap.threads;
+    Json json{{"program", std::string("slalom ") + version()}, {"settings", settings}};
+    json.update(race_json(race_));
+    json["along"] = best ? along_json(race_, *best, theirs) : Json(nullptr);
+    if (theirs)
+      json["compared"] = {{"file", other_->file},
+                          {"other_lap_s", theirs->time()},
+                          {"difference_s", best->time() - theirs->time()}};
+    json["solve_ms"] = times_json(solve_ms_);
+    return json;
+  }
+
+  void plot(const RacingLap& best, const RacingLap* theirs) const {
+    const auto named = [](std::string name, const RacingLap& lap) {
+      char time[32];
+      std::snprintf(time, sizeof time, ", %.3f s", lap.time());
+      return NamedLap{std::move(name) + time, lap};
+    };
+    const auto use = evaluation::grip_use(best.samples, race_.grip);
+    char facts[160];
+    std::snprintf(facts, sizeof facts,
+                  "configuration %s \xC2\xB7 %.1f m \xC2\xB7 acceleration p50 %.2f, p99 %.2f m/s\xC2\xB2",
+                  arguments_.scenario.config.c_str(), race_.length, use.p50, use.p99);
+    const RacingLap& profile = profile_of(race_, best);
+    draw_race({.lap = {lap_words(race_, best), best},
+               .profile = named(profile.standing ? "profile from rest" : "profile", profile),
+               .other = theirs ? std::optional(named(other_->file, *theirs)) : std::nullopt,
+               .length = race_.length,
+               .grip = race_.grip,
+               .title = arguments_.method + " on " + scenario_.environment->course.name,
+               .facts = facts},
+              arguments_.plot);
+  }
+
+  const Arguments& arguments_;
+  std::FILE* words_;
+  Scenario scenario_;
+  std::shared_ptr<const evaluation::LapRunner> runner_;
+  Json settings_;
+  RaceResult race_;
+  std::optional<OtherRun> other_;
+  std::vector<float> solve_ms_;
+};
+
+}  // namespace
+
+void declare_race(Subcommand& command) {
+  command.summary("Drive laps against the clock: times, sectors, grip used, and where time is lost");
+  const auto arguments = std::make_shared<Arguments>();
+  arguments->scenario.config = "race";
+  add_scenario_options(command, arguments->scenario);
+  add_method_option(command, arguments->method);
+  command
+      .option("--seed", arguments->seed,
+              "Seed of the first standing start; one that begins lap k has seed + (k - 1) (obstacles + 5)")
+      .show_default();
+  command
+      .option("--laps", arguments->laps,
+              "Number of laps: a standing start, then flying laps; after a collision, a standing start again")
+      .range(1, 100000)
+      .show_default();
+  command.flag("--standing", arguments->standing, "Begin every lap with a standing start");
+  command
+      .option("--friction", arguments->friction,
+              "Friction coefficient of the circle with which accelerations are compared: its radius, in g")
+      .range(0.01, 10.0)
+      .show_default();
+  command.option("--compare", arguments->compare,
+                 "Result of slalom race --json on the same course: shows where the best lap gains and loses");
+  command.option("--json", arguments->json,
+                 "Write the results as JSON to this file, or to standard output: -");
+  command.option(
+      "--plot", arguments->plot,
+      "Write a picture of the best lap to this PNG: speed and profile, times behind, accelerations");
+  command.action([arguments] { return RaceJob(*arguments).run(); });
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,197 @@
+#include "tools/racing/race_result.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using evaluation::RacingEnd;
+using evaluation::RacingLap;
+using evaluation::RacingSample;
+
+constexpr int along_steps = 100;
+constexpr double length_tolerance = 1e-6;  // share of the length
+
+/// A number of a sample, as it is named and rounded in results.
+struct SampleField {
+  const char* key;
+  double RacingSample::*value;
+  double resolution;
+};
+constexpr SampleField sample_fields[] = {{"distance_m", &RacingSample::distance, 1e-5},
+                                         {"time_s", &RacingSample::time, 1e-6},
+                                         {"speed_mps", &RacingSample::speed, 1e-5},
+                                         {"longitudinal_mps2", &RacingSample::longitudinal, 1e-4},
+                                         {"lateral_mps2", &RacingSample::lateral, 1e-4}};
+
+void add_grip(Json& json, const evaluation::GripUse& grip) {
+  json["grip_p50_mps2"] = grip.p50;
+  json["grip_p99_mps2"] = grip.p99;
+  json["beyond_grip"] = grip.beyond;
+}
+
+Json sector_json(const std::array<double, evaluation::racing_sectors>& times) {
+  Json json = Json::array();
+  for (const double time : times) json.push_back(time);  // NaN is written as null
+  return json;
+}
+
+Json samples_json(const std::vector<RacingSample>& samples) {
+  Json json = Json::object();
+  for (const SampleField& field : sample_fields) {
+    std::vector<double> values;
+    for (const RacingSample& sample : samples)
+      values.push_back(std::round(sample.*field.value / field.resolution) * field.resolution);
+    json[field.key] = values;
+  }
+  return json;
+}
+
+Json timed_json(const RacingLap& lap, double grip) {
+  double fastest = 0;
+  for (const RacingSample& sample : lap.samples) fastest = std::max(fastest, sample.speed);
+  Json json{{"time_s", lap.end == RacingEnd::completed ? Json(lap.time()) : Json(nullptr)},
+            {"sectors_s", sector_json(lap.sector)},
+            {"top_speed_mps", fastest}};
+  add_grip(json, evaluation::grip_use(lap.samples, grip));
+  return json;
+}
+
+Json statistics_json(const RaceStatistics& statistics) {
+  const bool any = statistics.completed > 0;
+  const auto if_any = [&](const Json& value) { return any ? value : Json(nullptr); };
+  Json json{{"laps", statistics.laps},
+            {"completed", statistics.completed},
+            {"mean_s", if_any(statistics.mean)},
+            {"best_s", if_any(statistics.best)},
+            {"best_lap", if_any(statistics.best_lap + 1)},
+            {"best_sectors_s", if_any(sector_json(statistics.best_sector))},
+            {"ideal_s", if_any(statistics.ideal())}};
+  add_grip(json, statistics.grip);
+  return json;
+}
+
+/// The lap that `best_lap` of the statistics `key` names; none if the run has no such lap.
+std::optional<RacingLap> best_of(const Json& run, const char* key) {
+  const Json& number = run.at(key).at("best_lap");
+  if (number.is_null()) return std::nullopt;
+  const Json& lap = run.at("laps")[number.get<int>() - 1];
+  RacingLap read;
+  read.standing = std::string_view(key) == "standing";
+  read.samples.resize(lap.at("samples").at("distance_m").size());
+  for (const SampleField& field : sample_fields) {
+    const Json& values = lap.at("samples").at(field.key);
+    for (std::size_t i = 0; i < read.samples.size(); ++i)
+      read.samples[i].*field.value = values[i].get<double>();
+  }
+  if (read.samples.size() < 2) throw JsonError("samples: at least 2 are needed");
+  return read;
+}
+
+}  // namespace
+
+double RaceStatistics::ideal() const noexcept {
+  return std::accumulate(best_sector.begin(), best_sector.end(), 0.0);
+}
+
+RaceStatistics race_statistics(const RaceResult& race, bool standing) {
+  RaceStatistics statistics;
+  std::vector<RacingSample> samples;
+  for (std::size_t i = 0; i < race.laps.size(); ++i) {
+    const RacingLap& lap = race.laps[i];
+    if (lap.standing != standing) continue;
+    ++statistics.laps;
+    if (lap.end != RacingEnd::completed) continue;
+    const bool first = statistics.completed++ == 0;
+    statistics.mean += lap.time();
+    for (std::size_t k = 0; k < lap.sector.size(); ++k)
+      statistics.best_sector[k] = first ? lap.sector[k] : std::min(statistics.best_sector[k], lap.sector[k]);
+    samples.insert(samples.end(), lap.samples.begin(), lap.samples.end());
+    if (!first && lap.time() >= statistics.best) continue;
+    statistics.best = lap.time();
+    statistics.best_lap = static_cast<int>(i);
+  }
+  if (statistics.completed > 0) statistics.mean /= statistics.completed;
+  statistics.grip = evaluation::grip_use(samples, race.grip);
+  return statistics;
+}
+
+const RacingLap& profile_of(const RaceResult& race, const RacingLap& lap) {
+  return lap.standing ? race.profile_from_rest : race.profile;
+}
+
+const RacingLap* best_lap(const RaceResult& race) {
+  for (const bool standing : {false, true})
+    if (const int best = race_statistics(race, standing).best_lap; best >= 0)
+      return &race.laps[static_cast<std::size_t>(best)];
+  return nullptr;
+}
+
+Json race_json(const RaceResult& race) {
+  Json json{{"length_m", race.length},
+            {"friction_circle_mps2", race.grip},
+            {"profile", timed_json(race.profile, race.grip)},
+            {"profile_from_rest", timed_json(race.profile_from_rest, race.grip)},
+            {"flying", statistics_json(race_statistics(race, false))},
+            {"standing", statistics_json(race_statistics(race, true))},
+            {"laps", Json::array()}};
+  for (std::size_t i = 0; i < race.laps.size(); ++i) {
+    const RacingLap& lap = race.laps[i];
+    Json row{{"lap", static_cast<int>(i) + 1},
+             {"start", lap.standing ? "standing" : "flying"},
+             {"seed", lap.seed},
+             {"end", std::string(evaluation::name(lap.end))},
+             {"distance_m", lap.samples.back().distance}};
+    row.update(timed_json(lap, race.grip));
+    row["samples"] = samples_json(lap.samples);
+    json["laps"].push_back(row);
+  }
+  return json;
+}
+
+Json along_json(const RaceResult& race, const RacingLap& lap, const RacingLap* other) {
+  std::vector<double> distances, behind_profile, behind_other;
+  for (int i = 0; i <= along_steps; ++i) {
+    const double distance = race.length * i / along_steps;
+    distances.push_back(distance);
+    behind_profile.push_back(evaluation::time_behind(lap.samples, profile_of(race, lap).samples, distance));
+    if (other) behind_other.push_back(evaluation::time_behind(lap.samples, other->samples, distance));
+  }
+  Json json{{"lap", static_cast<int>(&lap - race.laps.data()) + 1},
+            {"distance_m", distances},
+            {"behind_profile_s", behind_profile}};
+  if (other) json["behind_other_s"] = behind_other;
+  return json;
+}
+
+OtherRun read_run(const std::string& file, const Json& settings, double length) {
+  OtherRun other{file, {}, {}};
+  try {
+    const Json run = Json::parse(read_file(file, Json::max_bytes));
+    for (const char* key : {"course", "start"}) {
+      const Json &theirs = run.at("settings").at(key), &ours = settings.at(key);
+      if (!(theirs == ours))
+        throw IoError(file, 0,
+                      std::string("settings.") + key + ": " + theirs.dump() + " must be " + ours.dump() +
+                          ", as in this run");
+    }
+    if (const double theirs = run.at("length_m").get<double>();
+        !(std::abs(theirs - length) <= length_tolerance * length))
+      throw IoError(
+          file, 0,
+          "length_m: " + std::to_string(theirs) + " must be " + std::to_string(length) + ", as in this run");
+    other.flying = best_of(run, "flying");
+    other.standing = best_of(run, "standing");
+  } catch (const JsonError& error) {
+    throw IoError(file, 0, std::string("must be a result of slalom race --json: ") + error.what());
+  }
+  if (!other.flying && !other.standing) throw IoError(file, 0, "has no completed lap");
+  return other;
+}
+
+}  // namespace slalom::tools

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slalom/evaluation/race.hpp"
+#include "tools/json/json.hpp"
+
+namespace slalom::tools {
+
+/// Laps of a race, and the laps that the speed profile of the course asks for.
+struct RaceResult {
+  double length = 0;  ///< m, of a lap
+  double grip = 0;    ///< m/s^2, radius of the circle with which accelerations are compared
+  evaluation::RacingLap profile, profile_from_rest;
+  std::vector<evaluation::RacingLap> laps;
+};
+
+/// The flying laps or the standing starts of a race. Times and grip are those of the completed laps.
+struct RaceStatistics {
+  int laps = 0, completed = 0;
+  double mean = 0, best = 0;  ///< s; 0 without completed laps
+  int best_lap = -1;          ///< index in RaceResult::laps; -1 without completed laps
+  std::array<double, evaluation::racing_sectors> best_sector{};  ///< s, each the best of all completed laps
+  evaluation::GripUse grip;
+
+  double ideal() const noexcept;  ///< s, sum of the best sectors
+};
+RaceStatistics race_statistics(const RaceResult& race, bool standing);
+
+/// The lap of the profile with the start of `lap`.
+const evaluation::RacingLap& profile_of(const RaceResult& race, const evaluation::RacingLap& lap);
+
+/// The lap that stands for a race: the best flying one, or else the best standing start. None without
+/// completed laps.
+const evaluation::RacingLap* best_lap(const RaceResult& race);
+
+/// `length_m`, `friction_circle_mps2`, `profile` and `profile_from_rest`, `flying` and `standing`
+/// (statistics), and `laps`, each with its samples.
+Json race_json(const RaceResult& race);
+
+/// The way of a lap in equal steps, with the time behind the profile and behind `other`, which may be null.
+Json along_json(const RaceResult& race, const evaluation::RacingLap& lap, const evaluation::RacingLap* other);
+
+/// The best laps of another run on the same course.
+struct OtherRun {
+  std::string file;
+  std::optional<evaluation::RacingLap> flying, standing;
+};
+
+/// Reads a result of `slalom race --json`. Throws IoError if it is none, if it has no completed lap, or if
+/// its course, start or length differs from that of `settings` and `length` (m).
+OtherRun read_run(const std::string& file, const Json& settings, double length);
+
+}  // namespace slalom::tools
