@@ -29,7 +29,7 @@ struct Linearization {
 template <int States, int Inputs>
 struct CostExpansion {
   /// Arrays of no elements are not C++: a terminal cost has one entry, which stays 0.
-  static constexpr int rows = Inputs > 0 ? Inputs : 1;
+  static constexpr int rows = Inputs + (Inputs == 0 ? 1 : 0);
 
   double value;                          ///< the cost
   double state_gradient[States];         ///< derivative by x
