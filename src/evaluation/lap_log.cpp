@@ -31,6 +31,7 @@ class NumberTable {
   explicit NumberTable(const std::filesystem::path& file) : file_(file.string()), stream_(file) {
     std::string line;
     if (!stream_ || !std::getline(stream_, line)) throw IoError(file_, 0, "cannot be read");
+    stream_.exceptions(std::ios::badbit);  // otherwise the table ends where memory runs out
     const auto names = split_line(line);
     for (std::size_t i = 0; i < names.size(); ++i) columns_[names[i]] = i;
     for (const char* needed : {"success", "collision", "state_cost", "collision_cost"}) {

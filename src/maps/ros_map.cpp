@@ -61,10 +61,9 @@ class Reader {
   }
   /// A number that is a part of the key's value, `whole`.
   double number(const char* key, const YAML::Node& node, const char* rule, const YAML::Node& whole) const {
-    double value = 0;
-    if (!node.IsScalar() || !YAML::convert<double>::decode(node, value) || !std::isfinite(value))
-      fail(key, whole, rule);
-    return value;
+    const auto value = node.IsScalar() ? finite_number(node.Scalar()) : std::nullopt;
+    if (!value) fail(key, whole, rule);
+    return *value;
   }
 
  private:

@@ -3,8 +3,9 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include <charconv>
+#include <cmath>
 #include <sstream>
-#include <string_view>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
@@ -89,6 +90,15 @@ std::string yaml_text(const std::filesystem::path& file) {
     throw IoError(name, line, "is not YAML: " + error.msg + tab_hint(text, line));
   }
   return text;
+}
+
+std::optional<double> finite_number(std::string_view text) noexcept {
+  if (text.size() > 1 && text.front() == '+') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  if (!whole || !std::isfinite(value)) return std::nullopt;
+  return value;
 }
 
 }  // namespace slalom::maps

@@ -5,10 +5,13 @@
 #include <zlib.h>
 
 #include <cstdlib>
+#include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "slalom/core/error.hpp"
 #include "slalom/maps/image.hpp"
+#include "slalom/maps/yaml_text.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace slalom::maps {
@@ -245,6 +248,15 @@ TEST(RosMapData, PublishedMapsLoad) {
     EXPECT_GT(counts[0], 10000u) << name;
     EXPECT_GT(counts[1], 1000u) << name;
   }
+}
+
+TEST(FiniteNumber, IsAWholeDecimalText) {
+  for (const auto& [text, value] : std::map<std::string, double>{
+           {"-2.9000000000000004", -2.9000000000000004}, {"+1", 1}, {".5", 0.5}, {"1.", 1}, {"-1e-3", -1e-3}})
+    EXPECT_EQ(finite_number(text), value) << text;
+  for (const char* text :
+       {"", "+", "-", "1 ", " 1", "1,5", "0x10", "inf", ".inf", ".nan", "nan", "1e999", "one"})
+    EXPECT_EQ(finite_number(text), std::nullopt) << text;
 }
 
 }  // namespace

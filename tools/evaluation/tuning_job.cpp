@@ -39,6 +39,7 @@ Json set_json(const Candidate& candidate) {
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
   std::istringstream stream(text);
+  stream.exceptions(std::ios::badbit);  // otherwise the list ends where memory runs out
   for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
   return parts;
 }

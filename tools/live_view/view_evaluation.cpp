@@ -14,6 +14,7 @@ namespace {
 Json points(const std::string& text) {
   Json all = Json::array();
   std::istringstream words(text);
+  words.exceptions(std::ios::badbit);  // otherwise the list ends where memory runs out
   for (std::string word; words >> word;) {
     const auto colon = word.find(':');
     if (colon != std::string::npos)

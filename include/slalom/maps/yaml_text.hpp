@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace slalom::maps {
 
@@ -16,5 +18,9 @@ struct YamlLimits {
 /// the file cannot be read, exceeds YamlLimits, is not YAML, or holds more than one document, an anchor or an
 /// alias.
 std::string yaml_text(const std::filesystem::path& file);
+
+/// The finite number that a text is, in decimal; nothing for any other text. Allocates nothing, unlike the
+/// conversions of yaml-cpp, which take a number for none where memory has run out.
+std::optional<double> finite_number(std::string_view text) noexcept;
 
 }  // namespace slalom::maps

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
-#include <sstream>
 #include <string>
 #include <string_view>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
+#include "slalom/maps/yaml_text.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
@@ -40,12 +39,15 @@ struct Line {
 };
 
 std::vector<Line> read_lines(const std::filesystem::path& file) {
-  std::istringstream stream(read_file(file, max_bytes));
+  const std::string text = read_file(file, max_bytes);
+  std::string_view rest = text;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   std::vector<Line> lines;
-  std::string text;
-  for (int number = 1; std::getline(stream, text); ++number) {
-    if (number == 1 && text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3);
-    if (const auto content = trimmed(text); !content.empty()) lines.push_back({number, std::string(content)});
+  for (int number = 1; !rest.empty(); ++number) {
+    const auto end = std::min(rest.find('\n'), rest.size());
+    if (const auto content = trimmed(rest.substr(0, end)); !content.empty())
+      lines.push_back({number, std::string(content)});
+    rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return lines;
 }
@@ -64,16 +66,12 @@ struct Row {
   const std::vector<std::string_view>& cells;
 
   double number(std::size_t column, std::string_view column_name) const {
-    std::string_view cell = cells[column];
-    if (cell.size() > 1 && cell.front() == '+') cell.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    const bool parsed = error == std::errc{} && end == cell.data() + cell.size() && !cell.empty();
-    if (!parsed || !std::isfinite(value))
+    const auto value = maps::finite_number(cells[column]);
+    if (!value)
       throw IoError(file.string(), line.number,
                     "column " + std::string(column_name) + ": '" + std::string(cells[column]) +
                         "' must be a finite number");
-    return value;
+    return *value;
   }
 };
 

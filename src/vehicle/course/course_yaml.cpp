@@ -1,8 +1,8 @@
 #include "vehicle/course/course_yaml.hpp"
 
-#include <cmath>
 
 #include "slalom/core/error.hpp"
+#include "slalom/maps/yaml_text.hpp"
 #include "vehicle/yaml_file.hpp"
 
 namespace slalom::vehicle::detail {
@@ -17,10 +17,9 @@ class Value {
   [[noreturn]] void reject(const std::string& rule) const { detail::throw_at(file_, node_, key_, rule); }
 
   double number() const {
-    double value = 0;
-    if (!node_.IsScalar() || !YAML::convert<double>::decode(node_, value) || !std::isfinite(value))
-      reject("must be a finite number");
-    return value;
+    const auto value = node_.IsScalar() ? maps::finite_number(node_.Scalar()) : std::nullopt;
+    if (!value) reject("must be a finite number");
+    return *value;
   }
 
   double positive() const {

@@ -1,8 +1,8 @@
 #include <yaml-cpp/yaml.h>
 
-#include <cmath>
 
 #include "slalom/core/error.hpp"
+#include "slalom/maps/yaml_text.hpp"
 #include "slalom/vehicle/racing/racing_car.hpp"
 #include "vehicle/yaml_file.hpp"
 
@@ -13,11 +13,10 @@ namespace fs = std::filesystem;
 
 /// The number of a key, which only means something where it is above 0, or at least 0 with `zero`.
 double number(const fs::path& file, const std::string& key, const YAML::Node& node, bool zero = false) {
-  double value = 0;
-  const bool read = node.IsScalar() && YAML::convert<double>::decode(node, value) && std::isfinite(value);
-  if (!read || value < 0 || (value == 0 && !zero))
+  const auto value = node.IsScalar() ? maps::finite_number(node.Scalar()) : std::nullopt;
+  if (!value || *value < 0 || (*value == 0 && !zero))
     detail::throw_at(file, node, key, zero ? "must be a number of at least 0" : "must be a number above 0");
-  return value;
+  return *value;
 }
 
 std::vector<GripAtSpeed> read_grip(const fs::path& file, const YAML::Node& rows) {

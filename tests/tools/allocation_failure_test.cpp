@@ -9,7 +9,7 @@
 namespace slalom::tools {
 namespace {
 
-TEST(MemoryFailure, OfADriveThatStarts) {
+TEST(AllocationFailure, ADriveStartsOrThrows) {
   ScenarioArguments arguments;
   arguments.course = SLALOM_COURSES "/wren";
   arguments.config = SLALOM_CONFIGS "/default.yaml";
@@ -23,7 +23,7 @@ TEST(MemoryFailure, OfADriveThatStarts) {
             1000);
 }
 
-TEST(MemoryFailure, OfReadingAndWritingJson) {
+TEST(AllocationFailure, JsonIsReadAndWrittenOrThrows) {
   std::string text = R"({"nested":{"empty":[],"none":{}},"list":[1,-2,0.5,true,null)";
   for (int i = 0; i < 40; ++i)
     text += ",[\"a text that no short string holds\",{\"key " + std::to_string(i) + "\":0}]";
