@@ -66,7 +66,7 @@ TEST(NoiseShape, SpectrumOfThePeriodicSequenceIsThePowerLaw) {
 
 TEST(NoiseShape, SamplesHaveTheCorrelationOfTheirInput) {
   const int steps = 12, samples = 40000;
-  NoiseShape shape({0.0, 2.0}, 0, steps, 2, samples);
+  NoiseShape shape({.exponent = {0.0, 2.0}}, steps, 2, samples);
   const SequenceBatch z = shaped(shape, steps, 2, samples);
   const std::vector<double> brown = coloured_correlation(2, steps);
   const double error = 4 / std::sqrt(samples);
@@ -82,7 +82,7 @@ TEST(NoiseShape, TheLargerTheExponentTheSmootherTheNoise) {
   const int steps = 40, samples = 2000;
   double before = 1e9;
   for (const double beta : {0.0, 0.5, 1.0, 2.0, 3.0, 4.0}) {
-    NoiseShape shape(beta, 0, steps, 1, samples);
+    NoiseShape shape({.exponent = beta}, steps, 1, samples);
     const SequenceBatch z = shaped(shape, steps, 1, samples);
     double roughness = 0;
     for (int t = 1; t < steps; ++t)
@@ -99,7 +99,7 @@ TEST(NoiseShape, TheLargerTheExponentTheSmootherTheNoise) {
 TEST(NoiseShape, LogNormalFactorKeepsTheVarianceAndRaisesTheFourthMoment) {
   const int steps = 4, samples = 400000;
   const double s = 0.4;
-  NoiseShape shape(0, {0.0, s}, steps, 2, samples);
+  NoiseShape shape({.log_normal_spread = {0.0, s}}, steps, 2, samples);
   const SequenceBatch z = shaped(shape, steps, 2, samples);
   for (const int input : {0, 1}) {
     double mean = 0, second = 0, fourth = 0;
@@ -120,7 +120,7 @@ TEST(NoiseShape, LogNormalFactorKeepsTheVarianceAndRaisesTheFourthMoment) {
 
 TEST(NoiseShape, WhiteningTwiceSolvesForTheCorrelation) {
   const int steps = 9;
-  NoiseShape shape({1.7, 0.0}, 0, steps, 2, 1);
+  NoiseShape shape({.exponent = {1.7, 0.0}}, steps, 2, 1);
   const std::vector<double> c = coloured_correlation(1.7, steps);
   std::vector<double> x(18), y(18);
   for (std::size_t r = 0; r < x.size(); ++r) x[r] = std::sin(1.3 * static_cast<double>(r));
@@ -130,6 +130,74 @@ TEST(NoiseShape, WhiteningTwiceSolvesForTheCorrelation) {
   }
   shape.whiten_twice(y.data());
   for (std::size_t r = 0; r < x.size(); ++r) EXPECT_NEAR(y[r], x[r], 1e-12) << r;
+}
+
+TEST(NoiseShape, InterpolationPassesThroughTheKnots) {
+  const int steps = 13, knots = 4;  // a knot at every fourth step
+  const std::vector<double> weights = knot_weights(steps, knots);
+  for (int t = 0; t < steps; ++t) {
+    double length = 0;
+    for (int k = 0; k < knots; ++k) {
+      const double w = weights[static_cast<std::size_t>(t * knots + k)];
+      length += w * w;
+      if (t % 4 == 0) {
+        EXPECT_NEAR(w, t == 4 * k ? 1 : 0, 1e-12) << t << " " << k;
+      }
+    }
+    EXPECT_NEAR(length, 1, 1e-12) << t;
+  }
+  for (const double w : knot_weights(5, 1)) EXPECT_EQ(w, 1) << "one knot: a constant";
+}
+
+TEST(NoiseShape, InterpolatedSamplesHaveTheCorrelationOfTheWeights) {
+  const int steps = 14, knots = 5, samples = 40000;
+  NoiseShape shape({.knots = knots}, steps, 2, samples);
+  const SequenceBatch z = shaped(shape, steps, 2, samples);
+  const std::vector<double> weights = knot_weights(steps, knots);
+  const double error = 6 / std::sqrt(samples);
+  for (int s = 0; s < steps; ++s) {
+    for (int t = 0; t <= s; ++t) {
+      double expected = 0;
+      for (int k = 0; k < knots; ++k)
+        expected += weights[static_cast<std::size_t>(s * knots + k)] *
+                    weights[static_cast<std::size_t>(t * knots + k)];
+      EXPECT_NEAR(moment(z, s, t, 0), expected, error) << s << " " << t;
+      EXPECT_NEAR(moment(z, s, t, 1), expected, error) << s << " " << t;
+    }
+  }
+}
+
+/// A sample is a combination of the columns of W, also where it is drawn with the triangular factor.
+TEST(NoiseShape, WhiteningTwiceIsThePseudoInverseBetweenKnots) {
+  const int steps = 11, knots = 4;
+  NoiseShape shape({.knots = knots}, steps, 1, 1);
+  const std::vector<double> weights = knot_weights(steps, knots);
+  const auto correlate = [&](const std::vector<double>& x) {
+    std::vector<double> y(steps);
+    for (std::size_t s = 0; s < steps; ++s)
+      for (std::size_t t = 0; t < steps; ++t)
+        for (std::size_t k = 0; k < knots; ++k)
+          y[s] += weights[s * knots + k] * weights[t * knots + k] * x[t];
+    return y;
+  };
+  const SequenceBatch z = shaped(shape, steps, 1, 1);
+  std::vector<double> x;
+  for (int t = 0; t < steps; ++t) x.push_back(static_cast<double>(z.at(t, 0, 0)));
+  std::vector<double> y = x;
+  shape.whiten_twice(y.data());
+  const std::vector<double> again = correlate(y);
+  for (std::size_t t = 0; t < steps; ++t) EXPECT_NEAR(again[t], x[t], 1e-5) << t;
+}
+
+TEST(NoiseShape, KnotsHaveTheirRules) {
+  EXPECT_THROW(NoiseShape({.exponent = 1, .knots = 4}, 5, 1, 1), std::invalid_argument);
+  // As many knots as steps, or more, are white noise.
+  for (const int knots : {5, 64}) {
+    NoiseShape shape({.knots = knots}, 5, 1, 1);
+    std::vector<double> x{1, -2, 3, 0.5, 4}, y = x;
+    shape.whiten_twice(y.data());
+    for (std::size_t t = 0; t < x.size(); ++t) EXPECT_NEAR(y[t], x[t], 1e-12);
+  }
 }
 
 TEST(NoiseShape, EveryInstructionSetAgrees) {
@@ -164,8 +232,9 @@ TEST(NoiseShape, EveryInstructionSetAgrees) {
 }
 
 TEST(NoiseShape, RejectsSequencesThatAreTooLong) {
-  EXPECT_THROW(NoiseShape(1, 0, 3000, 1, 1), std::invalid_argument);
-  EXPECT_NO_THROW(NoiseShape(0, 0, 3000, 1, 1));
+  EXPECT_THROW(NoiseShape({.exponent = 1}, 3000, 1, 1), std::invalid_argument);
+  EXPECT_THROW(NoiseShape({.knots = 5}, 3000, 1, 1), std::invalid_argument);
+  EXPECT_NO_THROW(NoiseShape({}, 3000, 1, 1));
 }
 
 }  // namespace

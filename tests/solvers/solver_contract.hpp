@@ -61,6 +61,7 @@ inline std::vector<OptionSet> option_sets() {
   sets.push_back({"sv_mpc_best_particle", SvMpcOptions{.best_particle = true}});
   sets.push_back({"cem_send_best", CemOptions{.send_best = true}});
   sets.push_back({"mppi_coloured", MppiOptions{.noise = {.exponent = 1.5}}});
+  sets.push_back({"mppi_knots", MppiOptions{.noise = {.knots = 5}}});
   sets.push_back({"mppi_log_normal", MppiOptions{.noise = {.log_normal_spread = 0.4}}});
   sets.push_back({"mppi_tsallis_elite", MppiOptions{.weighting = {.tsallis_index = 0.5}}});
   sets.push_back({"mppi_tsallis_heavy", MppiOptions{.weighting = {.tsallis_index = 1.3}}});
@@ -75,6 +76,7 @@ inline std::vector<OptionSet> option_sets() {
       {"dial_mpc_all_parts", DialMpcOptions{.noise = {.exponent = 1, .log_normal_spread = 0.3},
                                             .weighting = {.tsallis_index = 0.8, .target_ess_fraction = 0.03},
                                             .smoothing = {.half_width = 2}}});
+  sets.push_back({"svg_mppi_knots", SvgMppiOptions{.noise = {.knots = 5}}});
   sets.push_back({"cem_coloured", CemOptions{.noise = {.exponent = 2, .log_normal_spread = 0.2}}});
   return sets;
 }

@@ -10,6 +10,7 @@ namespace slalom {
 struct NoiseOptions {
   PerInput exponent = 0;           ///< beta of the noise's spectrum 1/f^beta, 0 ... 4; 0: white
   PerInput log_normal_spread = 0;  ///< sigma_ln of a log-normal factor of the noise, 0 ... 2; 0: none
+  int knots = 0;  ///< along the horizon, between which the noise is interpolated, 0 ... 64; 0: none
 };
 
 /// How costs become weights.
@@ -90,6 +91,12 @@ void visit_noise_options(Options& o, Visit&& visit) {
                             "larger, the more samples far away",
                     .min = 0,
                     .max = 2});
+  visit(o.knots, Declaration{.name = "noise_knots",
+                             .symbol = "n",
+                             .help = "knots along the horizon between which the noise is interpolated; 0: "
+                                     "every step has noise of its own",
+                             .min = 0,
+                             .max = 64});
 }
 
 template <class Options, class Visit>

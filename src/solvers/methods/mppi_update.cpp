@@ -17,13 +17,13 @@ MppiUpdate::MppiUpdate(const Settings& settings, SampleSet samples, const Weight
       zero_(deviation_.size()),
       sums_(deviation_.size()) {}
 
-/// Computes the coefficients of the control term. Coloured samples have the covariance D C D, where D holds
+/// Computes the coefficients of the control term. Correlated samples have the covariance D C D, where D holds
 /// their standard deviations and C their correlations.
 void MppiUpdate::set_control_term(double temperature, const float* mean, const float* nominal,
                                   const float* variance) noexcept {
   control_coefficients(temperature, settings_.discount, settings_.inverse_variance_offset, mean, nominal,
                        variance, samples_.rows(), linear_.data());
-  if (!samples_.shape().coloured()) return;
+  if (!samples_.shape().correlated()) return;
   const double factor = temperature * (1.0 - settings_.discount);
   const auto scaled = [&](std::size_t r, double value) {
     return deviation_[r] > 0 ? value / deviation_[r] : 0.0;

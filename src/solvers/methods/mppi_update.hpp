@@ -28,15 +28,13 @@ class MppiUpdate {
   /// Takes the options of `mppi` or `svg_mppi`.
   template <class Options>
   MppiUpdate(const Options& o, int inputs)
-      : MppiUpdate(
-            {o.control_cost_discount, o.published.inverse_variance_offset, o.published.normaliser_offset,
-             o.zero_mean_share},
-            SampleSet(o.horizon, inputs, o.samples,
-                      NoiseShape(o.noise.exponent, o.noise.log_normal_spread, o.horizon, inputs, o.samples)),
-            Weighting({o.temperature, o.weighting.tsallis_index, o.weighting.target_ess_fraction}),
-            o.smoothing.half_width > 0
-                ? Smoother(o.horizon, inputs, o.smoothing.half_width, o.smoothing.degree)
-                : Smoother()) {}
+      : MppiUpdate({o.control_cost_discount, o.published.inverse_variance_offset,
+                    o.published.normaliser_offset, o.zero_mean_share},
+                   SampleSet(o.horizon, inputs, o.samples, NoiseShape(o.noise, o.horizon, inputs, o.samples)),
+                   Weighting({o.temperature, o.weighting.tsallis_index, o.weighting.target_ess_fraction}),
+                   o.smoothing.half_width > 0
+                       ? Smoother(o.horizon, inputs, o.smoothing.half_width, o.smoothing.degree)
+                       : Smoother()) {}
 
   SampleSet& samples() noexcept { return samples_; }
   /// Returns to the configured temperature.

@@ -2,17 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "solvers/feedback/symmetric_matrix.hpp"
 #include "solvers/sampling/rows.hpp"
 
 namespace slalom::detail {
 
 namespace {
 
-/// Longest sequence that can be coloured: its float32 factor takes 8 MiB.
+/// Longest sequence that can be correlated: its float32 factor takes 8 MiB.
 constexpr int longest = 2048;
+
+/// Largest number of knots, as declared in option_groups.hpp.
+constexpr int max_knots = 64;
 
 /// The index of the first entry of row t in a lower triangular matrix.
 constexpr std::ptrdiff_t triangle(std::ptrdiff_t t) {
@@ -36,6 +42,29 @@ std::vector<double> correlation_factor(const std::vector<double>& correlation) {
   return factor;
 }
 
+/// L of a matrix [rows][columns] = L Q with orthonormal rows of Q (Gram-Schmidt, each step twice), lower
+/// triangular, row by row. Where a row is a combination of those before, it adds no row to Q.
+std::vector<double> orthogonal_factor(const std::vector<double>& matrix, int rows, int columns) {
+  std::vector<double> factor(triangle(rows));
+  std::vector<std::vector<double>> basis;
+  for (int t = 0; t < rows; ++t) {
+    std::vector<double> rest(matrix.begin() + t * columns, matrix.begin() + (t + 1) * columns);
+    for (int pass = 0; pass < 2; ++pass) {
+      for (std::size_t b = 0; b < basis.size(); ++b) {
+        const double part = std::inner_product(rest.begin(), rest.end(), basis[b].begin(), 0.0);
+        factor[triangle(t) + b] += part;
+        for (int k = 0; k < columns; ++k) rest[k] -= part * basis[b][k];
+      }
+    }
+    const double length = std::sqrt(std::inner_product(rest.begin(), rest.end(), rest.begin(), 0.0));
+    if (static_cast<int>(basis.size()) == columns || length < 1e-10) continue;
+    factor[triangle(t) + static_cast<std::ptrdiff_t>(basis.size())] = length;
+    for (double& value : rest) value /= length;
+    basis.push_back(std::move(rest));
+  }
+  return factor;
+}
+
 }  // namespace
 
 std::vector<double> coloured_correlation(double exponent, int steps) {
@@ -55,32 +84,74 @@ std::vector<double> coloured_correlation(double exponent, int steps) {
   return correlation;
 }
 
-NoiseShape::NoiseShape(const PerInput& exponent, const PerInput& log_normal_spread, int steps, int inputs,
-                       int samples)
-    : steps_(steps), inputs_(inputs) {
-  factor_.resize(inputs);
-  factor_float_.resize(factor_.size());
-  bool spread = false;
-  for (int i = 0; i < inputs; ++i) {
-    spread = spread || log_normal_spread[i] > 0;
-    if (!(exponent[i] > 0)) continue;
-    if (steps > longest) {
-      throw std::invalid_argument("noise_exponent: must be 0 for a horizon above " + std::to_string(longest) +
-                                  " steps; the horizon is " + std::to_string(steps));
-    }
-    factor_[i] = correlation_factor(coloured_correlation(exponent[i], steps));
-    factor_float_[i].assign(factor_[i].begin(), factor_[i].end());
-    coloured_ = true;
+std::vector<double> knot_weights(int steps, int knots) {
+  const double distance = knots > 1 ? (steps - 1.0) / (knots - 1) : 1;
+  const auto kernel = [](double a, double b) { return std::exp(-0.5 * (a - b) * (a - b)); };
+  std::vector<double> between(static_cast<std::size_t>(knots) * knots), weights;
+  for (int k = 0; k < knots; ++k)
+    for (int j = 0; j < knots; ++j) between[k * knots + j] = kernel(k, j);
+  const SquareMatrix factor{between, knots};
+  factorise(factor);
+  for (int t = 0; t < steps; ++t) {
+    std::vector<double> row;
+    for (int k = 0; k < knots; ++k) row.push_back(knots > 1 ? kernel(t / distance, k) : 1);
+    solve_factorised(factor, row.data(), 1);
+    const double length = std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0));
+    for (const double w : row) weights.push_back(w / length);
   }
+  return weights;
+}
+
+NoiseShape::NoiseShape(const NoiseOptions& options, int steps, int inputs, int samples)
+    : steps_(steps), inputs_(inputs), factor_(inputs), factor_float_(inputs) {
+  colour(options.exponent);
+  if (options.knots > 0) interpolate(std::min(options.knots, steps));
+  for (std::size_t i = 0; i < factor_.size(); ++i)
+    factor_float_[i].assign(factor_[i].begin(), factor_[i].end());
+  bool spread = false;
+  for (int i = 0; i < inputs; ++i) spread = spread || options.log_normal_spread[i] > 0;
   if (!spread) return;
   for (int r = 0; r < steps * inputs; ++r)
-    spread_.push_back(static_cast<float>(log_normal_spread[r % inputs]));
+    spread_.push_back(static_cast<float>(options.log_normal_spread[r % inputs]));
   exponents_ = SequenceBatch(steps, inputs, samples);
+}
+
+/// Throws std::invalid_argument if a sequence is too long for the factor of an option.
+void NoiseShape::check_length(const char* option) const {
+  if (steps_ <= longest) return;
+  throw std::invalid_argument(std::string(option) + ": must be 0 for a horizon above " +
+                              std::to_string(longest) + " steps; the horizon is " + std::to_string(steps_));
+}
+
+void NoiseShape::colour(const PerInput& exponent) {
+  for (int i = 0; i < inputs_; ++i) {
+    if (!(exponent[i] > 0)) continue;
+    check_length("noise_exponent");
+    factor_[i] = correlation_factor(coloured_correlation(exponent[i], steps_));
+    correlated_ = true;
+  }
+}
+
+void NoiseShape::interpolate(int knots) {
+  if (correlated_) throw std::invalid_argument("noise_knots: must be 0 where noise_exponent is above 0");
+  check_length("noise_knots");
+  correlated_ = true;
+  knots_ = knots;
+  const std::vector<double> weights = knot_weights(steps_, knots);
+  std::fill(factor_.begin(), factor_.end(), orthogonal_factor(weights, steps_, knots));
+  std::vector<double> gram(static_cast<std::size_t>(knots) * knots);
+  for (int t = 0; t < steps_; ++t)
+    for (int k = 0; k < knots; ++k)
+      for (int j = 0; j < knots; ++j) gram[k * knots + j] += weights[t * knots + k] * weights[t * knots + j];
+  const SquareMatrix factor{gram, knots};
+  factorise(factor);
+  projection_ = weights;
+  for (int t = 0; t < steps_; ++t) solve_factorised(factor, &projection_[t * knots], 1);
 }
 
 void NoiseShape::apply(SequenceBatch& z, Range range, RandomKey key) noexcept {
   const Rows<float> rows = rows_of(z);
-  if (coloured_) {
+  if (correlated_) {
     for (int i = 0; i < inputs_; ++i) {
       const std::vector<float>& factor = factor_float_[i];
       if (!factor.empty()) kernels().colour(rows, factor.data(), i, inputs_, range);
@@ -93,10 +164,27 @@ void NoiseShape::apply(SequenceBatch& z, Range range, RandomKey key) noexcept {
   }
 }
 
+/// Multiplies the entries of an input by W (W^T W)^-2 W^T, the pseudo-inverse of W W^T.
+void NoiseShape::project_twice(double* sequence, int input) const noexcept {
+  double at_knots[max_knots] = {};
+  for (int t = 0; t < steps_; ++t)
+    for (int k = 0; k < knots_; ++k)
+      at_knots[k] += projection_[t * knots_ + k] * sequence[t * inputs_ + input];
+  for (int t = 0; t < steps_; ++t) {
+    double sum = 0;
+    for (int k = 0; k < knots_; ++k) sum += projection_[t * knots_ + k] * at_knots[k];
+    sequence[t * inputs_ + input] = sum;
+  }
+}
+
 void NoiseShape::whiten_twice(double* sequence) const noexcept {
   for (int i = 0; i < inputs_; ++i) {
     const std::vector<double>& factor = factor_[i];
     if (factor.empty()) continue;
+    if (knots_ > 0) {
+      project_twice(sequence, i);
+      continue;
+    }
     const auto entry = [&](int t) -> double& { return sequence[t * inputs_ + i]; };
     for (int t = 0; t < steps_; ++t) {
       const double* row = &factor[triangle(t)];

@@ -5,6 +5,7 @@
 #include "slalom/core/options.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/core/sequence_batch.hpp"
+#include "slalom/solvers/option_groups.hpp"
 #include "solvers/kernels/kernels.hpp"
 
 namespace slalom::detail {
@@ -21,6 +22,13 @@ namespace slalom::detail {
 ///     c(d) ~ sum_k max(min(k, N - k), 1)^-beta cos(2 pi k d / N),   c(0) = 1,   C[s][t] = c(|s - t|)
 ///     z <- L z   with   L L^T = C, L lower triangular
 ///
+/// *Interpolated between knots* (KMPPI of pytorch_mppi, UM-ARM-Lab): n normal values y at knots t_k, evenly
+/// over the horizon, and a squared exponential kernel K with the distance of the knots as its length:
+///
+///     W ~ K(t, t_k) K(t_k, t_k)^-1,   each row of W has length 1,   z = W y,   C = W W^T
+///
+/// It is drawn as z <- L z too, where W = L Q, Q has orthonormal rows, and L is lower triangular.
+///
 /// *Normal log-normal* (Mohamed, Yin and Liu, "Autonomous Navigation of AGVs in Unknown Cluttered
 /// Environments: log-MPPI Control Strategy", RA-L 2022): z <- z exp(s y - s^2), y standard normal. Its fourth
 /// moment is 3 exp(4 s^2): more samples are in the tails at the same variance.
@@ -28,24 +36,33 @@ class NoiseShape {
  public:
   /// White normal noise.
   NoiseShape() = default;
-  /// Takes beta and s for each input. Throws std::invalid_argument if a coloured sequence is too long.
-  NoiseShape(const PerInput& exponent, const PerInput& log_normal_spread, int steps, int inputs, int samples);
+  /// More knots than steps are as many as steps. Throws std::invalid_argument if a correlated sequence is too
+  /// long, or if noise has both a colour and knots.
+  NoiseShape(const NoiseOptions& options, int steps, int inputs, int samples);
 
   /// Whether noise is not shaped at all.
-  bool plain() const noexcept { return !coloured_ && spread_.empty(); }
-  /// Whether the noise of any input is coloured.
-  bool coloured() const noexcept { return coloured_; }
+  bool plain() const noexcept { return !correlated_ && spread_.empty(); }
+  /// Whether the noise of any input is correlated along the steps: coloured or interpolated.
+  bool correlated() const noexcept { return correlated_; }
 
   /// Shapes the samples of a range of `z`, which holds white noise drawn with this key.
   void apply(SequenceBatch& z, Range range, RandomKey key) noexcept;
 
-  /// Multiplies a sequence [row] by C^-1, in place.
+  /// Multiplies a sequence [row] by C^-1, in place. Between knots, C has no inverse, and its pseudo-inverse
+  /// is taken: only the part of the sequence counts along which samples differ.
   void whiten_twice(double* sequence) const noexcept;
 
  private:
+  void check_length(const char* option) const;
+  void colour(const PerInput& exponent);
+  void interpolate(int knots);
+  void project_twice(double* sequence, int input) const noexcept;
+
   int steps_ = 0;
   int inputs_ = 0;
-  bool coloured_ = false;
+  bool correlated_ = false;
+  int knots_ = 0;
+  std::vector<double> projection_;                ///< W (W^T W)^-1, [step][knot]
   std::vector<std::vector<double>> factor_;       ///< L of each input, row by row; empty: white
   std::vector<std::vector<float>> factor_float_;  ///< the same in float32
   std::vector<float> spread_;                     ///< s [row]; empty: normal
@@ -54,5 +71,8 @@ class NoiseShape {
 
 /// The correlations c(0) ... c(steps - 1) of noise with power 1/f^exponent.
 std::vector<double> coloured_correlation(double exponent, int steps);
+
+/// W [step][knot] of noise that is interpolated between knots.
+std::vector<double> knot_weights(int steps, int knots);
 
 }  // namespace slalom::detail
