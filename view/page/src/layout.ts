@@ -59,6 +59,7 @@ export function layout(root: HTMLElement) {
     <span class="extra">clearance</span><b class="extra" id="clearance">–<small>m</small></b>
     <span class="extra" id="solve-label">planner</span><b class="extra" id="solve">–<small>ms</small></b>
     <span>collisions</span><b id="contacts">0</b>
+    <span id="best-label" title="Time behind the best lap at this place, without the laps of a ghost" hidden>to best lap</span><b id="best" hidden>–<small>s</small></b>
     <span id="gap-label" hidden>to ghost</span><b id="gap" hidden>–<small>m</small></b>
   </div>
   <canvas id="minimap" class="card" role="img" aria-label="The whole course, with the car and the part that is in view" hidden></canvas>

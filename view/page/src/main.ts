@@ -1,5 +1,6 @@
 import "./style.css";
 import { addressOf, applyAddress } from "./address";
+import { BestLap } from "./best_lap";
 import { Charts } from "./panes/charts";
 import { Connection } from "./connection";
 import { EvaluationPane } from "./panes/evaluation";
@@ -45,12 +46,13 @@ let isNew = wanted.size === 0; // whether nobody has told this page what to show
 const theme = new Themes();
 const scene = new SceneView(get<HTMLCanvasElement>("scene"), theme.now);
 const past = new Past(Infinity), ghostPast = new Past(Infinity);
+const best = new BestLap();
 const charts = new Charts(get("charts"), { past, hovered: hover, chosen: (time) => state && send({ do: "seek", tick: Math.round(time / state.control_period) }) });
 const scalar = (name: string) => (frame && hello ? frame.scalars[hello.scalars.indexOf(name)] : NaN);
 
 const handlers = {
   frame(next: Frame, at?: number) { frame = next; showFrame(at); },
-  scene(next: Scene) { scene.setScene(next); views.minimap.setScene(next); past.clear(); ghostPast.clear(); charts.clear(); dirty = true; },
+  scene(next: Scene) { scene.setScene(next); views.minimap.setScene(next); past.clear(); ghostPast.clear(); charts.clear(); best.forget(); dirty = true; },
   past(scalars: Float64Array, from?: number) {
     gaps.answered();
     const width = hello?.scalars.length ?? 0;
@@ -116,7 +118,7 @@ function showAddress() {
 }
 
 function showState(next: State) {
-  if (state && next.generation !== state.generation) { past.clear(); ghostPast.clear(); }
+  if (state && next.generation !== state.generation) { past.clear(); ghostPast.clear(); best.forget(); }
   if (isNew && next.introduction && !isReplay) views.introduce();
   isNew = false;
   if (!next.introduction) introduction.end();
@@ -154,7 +156,9 @@ function showFrame(at?: number) {
   if (frame.ghostFrame) ghostPast.set(position, frame.ghostFrame.scalars);
   scene.frame = frame;
   charts.show(frame, hello, position, state?.control_period ?? hello.control_period);
-  readout.show(frame, hello, state);
+  if (state) best.update(state, past, hello.scalars);
+  scene.best = best.at(scalar("lap_time"));
+  readout.show(frame, hello, state, best);
   get("split").hidden = !frame.ghostFrame;
   lanes.show(frame, hello, position * (state?.control_period ?? hello.control_period));
   introduction.show(frame, hello);
@@ -321,4 +325,4 @@ showPane("charts");
 requestAnimationFrame(draw);
 
 // The state of the page, for tests and for debugging in the console.
-Object.assign(window, { slalom: { get frame() { return frame; }, get state() { return state; }, get hello() { return hello; }, get received() { return link.received; }, get waiting() { return link.waiting; }, replay: isReplay, scalar, scene, past, send } });
+Object.assign(window, { slalom: { get frame() { return frame; }, get state() { return state; }, get hello() { return hello; }, get received() { return link.received; }, get waiting() { return link.waiting; }, replay: isReplay, scalar, scene, past, best, send } });

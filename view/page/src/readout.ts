@@ -1,13 +1,19 @@
+import type { BestLap } from "./best_lap";
 import type { Frame, Hello, State } from "./protocol";
 
 /** The limits of SolveResult::has_few_samples, and how many frames in a row are below the first before it is said. */
 const fewSamples = 3, fewFrames = 20;
 
+function signed(value: number, digits: number) {
+  const amount = Math.abs(value).toFixed(digits);
+  return (value >= 0 || Number(amount) === 0 ? "+" : "−") + amount;
+}
+
 /** The figures over the scene, and the label of the car. */
 export class Readout {
   private frames = 0; // with few samples, in a row
 
-  show(frame: Frame, hello: Hello, state: State | undefined) {
+  show(frame: Frame, hello: Hello, state: State | undefined, best: BestLap) {
     const get = (id: string) => document.getElementById(id)!, scalar = (name: string) => frame.scalars[hello.scalars.indexOf(name)];
     const n = (name: string, digits: number) => { const v = scalar(name); return Number.isFinite(v) ? v.toFixed(digits) : "–"; };
     get("speed").firstChild!.textContent = n("speed", 1);
@@ -18,11 +24,15 @@ export class Readout {
     get("solve").hidden = get("solve-label").hidden = !Number.isFinite(scalar("tick_ms"));
     get("contacts").textContent = n("contacts", 0);
     this.label(get("label"), hello, scalar);
+    const behind = best.behind(scalar("progress"), scalar("lap_time"));
+    get("best").hidden = get("best-label").hidden = behind === undefined;
+    get("best-label").textContent = `to best lap (${best.number})`;
+    if (behind !== undefined) get("best").firstChild!.textContent = signed(behind, 2);
     const ghost = frame.ghost;
     get("gap").hidden = get("gap-label").hidden = !ghost;
     if (!ghost || !state) return;
     const ahead = (scalar("lap") + scalar("progress") - ghost.laps) * state.length;
-    get("gap").firstChild!.textContent = (ahead >= 0 ? "+" : "−") + Math.abs(ahead).toFixed(1);
+    get("gap").firstChild!.textContent = signed(ahead, 1);
     get("ghost-label").textContent = "ghost · " + (state.ghost_label || state.ghost);
   }
 

@@ -2,6 +2,7 @@ import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { Past } from "../past";
 import type { Frame, Hello } from "../protocol";
+import { Accelerations } from "./accelerations";
 import { needsEstimates, strips, type Line, type Strip } from "./strips";
 
 const span = 20; // s that the strips show
@@ -26,6 +27,7 @@ export class Charts {
   private readonly plotted: Plotted[] = [];
   private readonly covariance: { holder: HTMLElement; plot?: uPlot };
   private readonly histogram: { holder: HTMLElement; plot?: uPlot; value: HTMLElement };
+  private readonly accelerations: Accelerations;
   private deadline = 25;
   private latest?: Frame;
   private hello?: Hello;
@@ -45,6 +47,8 @@ export class Charts {
     this.covariance = this.frame("Standard deviation of the steering along the plan, rad", []);
     const h = this.frame(`Planner time, last ${max_ticks} ticks, ms`, [{ name: "", label: "", colour: "" }]);
     this.histogram = { holder: h.holder, value: h.values[0] };
+    const a = this.frame("Acceleration, m/s²", [{ name: "", label: "", colour: "" }]);
+    this.accelerations = new Accelerations(a.holder, a.values[0]);
     new ResizeObserver(() => this.rebuild()).observe(root);
   }
 
@@ -178,6 +182,7 @@ export class Charts {
       this.covariance.plot?.setData([x, [...y, y[y.length - 1]]]);
     }
     this.drawHistogram();
+    this.accelerations.draw(this.positions.map((position) => this.setting.past.at(position)), this.positions.indexOf(this.shown), this.period, this.hello.scalars, css);
     this.took = performance.now() - time;
   }
 

@@ -12,7 +12,7 @@ export const layers = [
   ["obstacles", "Obstacles", "parked cars, boxes and poles"],
   ["opponents", "Opponents", "cars that follow the course line"],
   ["modes", "Caption", "which way around the next obstacle the samples and the plan take"],
-  ["ghost", "Ghost", "the second controller, in a world of its own"],
+  ["ghost", "Ghost", "the second controller, in a world of its own; as an outline, the best lap"],
   ["minimap", "Minimap", "the whole course, while only a part of it is in view"],
 ] as const;
 export type Layer = (typeof layers)[number][0];

@@ -2,7 +2,7 @@ import { Camera } from "./camera";
 import { lookOf, type CandidateLook } from "./candidates";
 import { layers, type Layer, type Term } from "./layers";
 import { Painter } from "./painter";
-import type { Theme } from "./palette";
+import type { Rgba, Theme } from "./palette";
 import type { Body, Frame, Hello, Scene } from "../protocol";
 import { freeSpace } from "./solid/contours";
 import { SpaceView } from "./solid/view";
@@ -39,6 +39,8 @@ export class SceneView {
   private costMapOf?: Frame;
   /** x and y (m) of the path that the car has driven, one after the other. */
   driven: number[] = [];
+  /** Where the best lap was, so long after its start as the car is after its own. */
+  best?: Pose;
   /** Where the car was at the time under the pointer. */
   probe?: Pose;
   private bounds: [number, number, number, number] = [-5, -5, 5, 5]; // of the course line, with room for the walls
@@ -214,7 +216,8 @@ export class SceneView {
     if (this.visible.has("plan") && frame.plan) this.drawPlan(frame);
     if (frame.ghost && this.visible.has("ghost") && !this.isSideBySide) this.drawGhost(frame);
     painter.flush();
-    if (this.probe) this.drawProbe(this.probe);
+    if (this.best && this.visible.has("ghost") && frame === this.frame) this.drawOutline(this.best, this.theme.driven);
+    if (this.probe) this.drawOutline(this.probe, this.theme.selected);
     if (car) drawCar(painter, theme, this.size, car, frame.scalars[this.index("steer")] ?? 0, theme.car, car.touched ? theme.collided : theme.carEdge);
     painter.flush();
   }
@@ -312,9 +315,9 @@ export class SceneView {
     this.painter.outline(points, this.theme.obstacle, 1.5);
   }
 
-  private drawProbe(at: { x: number; y: number; yaw: number }) {
-    this.painter.outline(corners({ ...at, length: this.size.length, width: this.size.width }), this.theme.selected, 2);
-    this.painter.dot(at.x, at.y, 5, this.theme.selected);
+  private drawOutline(at: Pose, colour: Rgba) {
+    this.painter.outline(corners({ ...at, length: this.size.length, width: this.size.width }), colour, 2);
+    this.painter.dot(at.x, at.y, 5, colour);
   }
 
   private drawMarks() {
