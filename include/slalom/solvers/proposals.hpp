@@ -23,8 +23,9 @@ namespace slalom {
 ///     proposals.add(inputs_of_a_network);
 ///     const auto plan = controller.solve(x, {.elapsed = 0.05, .proposals = proposals});
 ///
-/// With K samples and n proposals, proposal i is sample K - n + i in `plan.stats`, so its weight tells how
-/// much it counted. `svg_mppi` takes proposals as guides instead (docs/algorithms.md, "Proposals").
+/// With K samples and n proposals, proposal i is sample K - n + i of `mppi` and `dial_mpc`, so its weight in
+/// `plan.stats` tells how much it counted. `cem` and `icem` have it in their first iteration, and `svg_mppi`
+/// takes it as a guide (docs/algorithms.md, "Proposals").
 template <class P>
 class Proposals {
   using Controlled = detail::Controlled<P>;
