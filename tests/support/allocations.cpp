@@ -44,7 +44,19 @@ __attribute__((noinline)) void* operator new(std::size_t size, std::align_val_t 
   ++live;
   return memory;
 }
+// std::stable_sort asks this one for its buffer. The library's own calls the first one, that of
+// AddressSanitizer does not.
+__attribute__((noinline)) void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return operator new(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 __attribute__((noinline)) void operator delete(void* memory) noexcept {
+  release(memory);
+}
+__attribute__((noinline)) void operator delete(void* memory, const std::nothrow_t&) noexcept {
   release(memory);
 }
 __attribute__((noinline)) void operator delete(void* memory, std::size_t) noexcept {
