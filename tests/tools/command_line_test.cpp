@@ -144,6 +144,9 @@ TEST_F(CommandLine, AFileDoesNotTakeThePlaceOfAClosedStream) {
 
 /// Files that cannot be opened since the process has too many: an error, or all of the result.
 TEST_F(CommandLine, TooFewDescriptorsAreAnError) {
+#if !SLALOM_TESTS_LIMITS
+  GTEST_SKIP() << "sanitizers take descriptors of their own";
+#endif
   ASSERT_EQ(timed(evaluation("ev")).status, 0);
   int errors = 0;
   for (const std::string& command :
@@ -322,7 +325,7 @@ TEST_F(CommandLine, ATokenMustFitIntoAnAddress) {
 }
 
 TEST_F(CommandLine, ReportsThatMemoryRanOut) {
-#if !SLALOM_TESTS_MEMORY
+#if !SLALOM_TESTS_LIMITS
   GTEST_SKIP() << "sanitizers take more address space than the limit leaves";
 #endif
   const testing::Run run =
