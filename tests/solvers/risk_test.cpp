@@ -173,7 +173,7 @@ TEST(RiskEvaluator, OfOneVariantIsTheProblemItself) {
 
 TEST(RiskEvaluator, RejectsOptionsOutOfRange) {
   try {
-    RiskEvaluator(Glider{}, {.variants = 33});
+    const RiskEvaluator refused(Glider{}, {.variants = 33});
     FAIL();
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(), "risk.risk_variants: 33 must be in [1, 32]");

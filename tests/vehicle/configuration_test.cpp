@@ -9,8 +9,6 @@
 namespace slalom::vehicle {
 namespace {
 
-namespace fs = std::filesystem;
-
 class ConfigurationFile : public testing::TemporaryFolder {
  protected:
   /// The message, without the folder, with which a file of this text is refused.

@@ -133,10 +133,10 @@ TEST_P(EveryVehicleModel, HasVariantsOfTheWorldOrRejectsThem) {
     }
     return;
   }
-  constexpr int steps = 20, samples = 64;
+  constexpr int steps = 20, samples = 64, middle = 32;
   SequenceBatch batch(steps, 2, samples);
   for (int k = 0; k < samples; ++k)
-    for (int t = 0; t < steps; ++t) batch.at(t, 0, k) = static_cast<float>(0.01 * (k - samples / 2));
+    for (int t = 0; t < steps; ++t) batch.at(t, 0, k) = static_cast<float>(0.01 * (k - middle));
   const auto costs_of = [&](VehicleModel& model) {
     model.set_maps({field_.view(), clearance_.view(), {5, 0.2, 0.1}});
     model.set_start({{5, 0.2, 0.1}, 6, 0.05}, 6);

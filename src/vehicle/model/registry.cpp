@@ -36,8 +36,6 @@ std::unique_ptr<VehicleModel> make_indexed(const VehicleOptions& options, simd::
     return std::make_unique<ProblemModel<P>>(std::move(problem), target);
   };
   if constexpr (requires { Model::with_problem(options, std::get<i>(options.own), make); }) {
-    // The analyser loses the unique_ptr on its way through two functions.
-    // NOLINTNEXTLINE(clang-analyzer-cplusplus.NewDeleteLeaks)
     return Model::with_problem(options, std::get<i>(options.own), make);
   } else {
     return make(Model(options, std::get<i>(options.own)));
