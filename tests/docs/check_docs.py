@@ -58,8 +58,9 @@ def check_links(root):
     return errors
 
 
-def translation_unit(text, name):
-    """The includes of a code block, and the rest: definitions in a namespace, statements in a function."""
+def translation_unit(text, name, before):
+    """The includes of a code block, and the rest: definitions in a namespace, statements in a function. The block uses
+    the definitions of those before it."""
     includes, outside, inside, end = [], [], [], None
     for line in text.split("\n"):
         if line.startswith("#"):
@@ -74,7 +75,7 @@ def translation_unit(text, name):
         else:
             inside.append(line)
     return "\n".join(includes), "\n".join(
-        [f"namespace {name} {{", *outside, "void statements() {", *inside, "}", "}"])
+        [f"namespace {name} {{", *(f"using namespace {other};" for other in before), *outside, "void statements() {", *inside, "}", "}"])
 
 
 def check_cpp(root, compiler):
@@ -84,7 +85,8 @@ def check_cpp(root, compiler):
         found = blocks(page, "cpp")
         if not found:
             continue
-        parts = [translation_unit(text, f"block_{line}") for line, text in found]
+        names = [f"block_{line}" for line, _ in found]
+        parts = [translation_unit(text, names[i], names[:i]) for i, (_, text) in enumerate(found)]
         source = "\n".join([preamble, *(p[0] for p in parts), *(p[1] for p in parts)])
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / (page.stem + ".cpp")

@@ -22,7 +22,7 @@ TEST(ExplainCommand, ShowsEveryMethodInPictureAndFigures) {
       run_program("explain --method all --seed 3 --plot all.png --json all.json", folder.string());
   ASSERT_EQ(run.status, 0) << run.output;
   const json told = json::parse(std::ifstream(folder / "all.json"));
-  ASSERT_EQ(told["methods"].size(), 8u);
+  ASSERT_EQ(told["methods"].size(), 9u);
   for (const json& method : told["methods"]) {
     EXPECT_EQ(method["inputs"].size(), 20u) << method["method"];
     EXPECT_EQ(method["plan"].size(), 21u);
