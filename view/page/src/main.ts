@@ -60,6 +60,7 @@ const handlers = {
       const row = scalars.slice(i, i + width);
       past.set(from ?? row[hello!.scalars.indexOf("tick")], row);
     }
+    showBestLap();
     dirty = true;
   },
   text: got,
@@ -130,6 +131,7 @@ function showState(next: State) {
   if (wanted.size) applyAddress(wanted, next, changedOptions, send);
   showAddress();
   evaluation.showState(next);
+  showBestLap();
   dirty = true;
 }
 
@@ -148,6 +150,14 @@ function hover(time: number | undefined) {
   dirty = true;
 }
 
+/** The best lap, the car's time behind it, and the other figures: whenever a frame, a lap or late steps arrive. */
+function showBestLap() {
+  if (!frame || !hello) return;
+  if (state) best.update(state, past, hello.scalars);
+  scene.best = best.at(scalar("lap_time"));
+  readout.show(frame, hello, state, best);
+}
+
 function showFrame(at?: number) {
   if (!frame || !hello) return;
   position = at ?? scalar("tick");
@@ -156,9 +166,7 @@ function showFrame(at?: number) {
   if (frame.ghostFrame) ghostPast.set(position, frame.ghostFrame.scalars);
   scene.frame = frame;
   charts.show(frame, hello, position, state?.control_period ?? hello.control_period);
-  if (state) best.update(state, past, hello.scalars);
-  scene.best = best.at(scalar("lap_time"));
-  readout.show(frame, hello, state, best);
+  showBestLap();
   get("split").hidden = !frame.ghostFrame;
   lanes.show(frame, hello, position * (state?.control_period ?? hello.control_period));
   introduction.show(frame, hello);
