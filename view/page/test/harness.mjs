@@ -75,6 +75,7 @@ export class Harness {
 
   /** Starts the drive again and waits until the page has the state of the new one. */
   async restart() {
+    await this.until(() => window.slalom?.state);
     const generation = (await this.state()).generation;
     await this.send({ do: "restart" });
     await this.until((g) => slalom.state.generation > g, generation);
