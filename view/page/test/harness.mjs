@@ -86,6 +86,11 @@ export class Harness {
     await this.send({ do: "pause" });
     await this.until(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
   }
+  /** Goes on, and waits until the page knows: a pause that follows would otherwise take the state before for its own. */
+  async play() {
+    await this.send({ do: "play" });
+    await this.until(() => !slalom.state.paused);
+  }
   /** Hides what is slow to draw without a graphics card, for tests that do not look at it. */
   hideLayers() { return this.page.evaluate(() => { slalom.scene.visible.clear(); }); }
   showLayers() { return this.page.evaluate(() => { for (const box of document.querySelectorAll("[data-layer]")) if (box.checked) slalom.scene.visible.add(box.dataset.layer); }); }

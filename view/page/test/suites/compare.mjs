@@ -54,7 +54,7 @@ export default async function (h) {
     assert.ok(Math.abs(await page.evaluate(() => slalom.frame.ghost.laps - slalom.scalar("lap") - slalom.scalar("progress"))) < 0.1);
     await h.send({ do: "ghost", method: "" });
     await h.until(() => slalom.state.ghost === "");
-    await h.send({ do: "play" });
+    await h.play();
   });
 
   await h.test("the best lap drives along as an outline, and the readout has the time behind it", async () => {
@@ -91,7 +91,7 @@ export default async function (h) {
     await h.send({ do: "seek", tick: 100 });
     await h.until(() => slalom.scalar("tick") === 100);
     assert.equal(await page.evaluate(() => document.getElementById("best").firstChild.textContent), "+0.00");
-    await h.send({ do: "play" });
+    await h.play();
   });
 
   await h.test("the diagram of accelerations shows the grip of the step that is shown", async () => {
