@@ -1,6 +1,5 @@
 #include "vehicle/course/course_yaml.hpp"
 
-
 #include "slalom/core/error.hpp"
 #include "slalom/maps/yaml_text.hpp"
 #include "vehicle/yaml_file.hpp"

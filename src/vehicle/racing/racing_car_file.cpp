@@ -1,6 +1,5 @@
 #include <yaml-cpp/yaml.h>
 
-
 #include "slalom/core/error.hpp"
 #include "slalom/maps/yaml_text.hpp"
 #include "slalom/vehicle/racing/racing_car.hpp"
