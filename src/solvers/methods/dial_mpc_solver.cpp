@@ -35,8 +35,8 @@ class DialMpcSolver final : public SolverBase {
         variance_(size()) {
     // The inputs at the start of the horizon were refined in the most solves, so they get the least noise.
     for (std::size_t r = 0; r < size(); ++r) {
-      const auto step = static_cast<double>(r / static_cast<std::size_t>(inputs));
-      const double from_end = options.horizon > 1 ? 1 - step / (options.horizon - 1) : 0;
+      const std::size_t step = r / static_cast<std::size_t>(inputs);
+      const double from_end = options.horizon > 1 ? 1 - static_cast<double>(step) / (options.horizon - 1) : 0;
       first_variance_[r] *= static_cast<float>(std::pow(options.horizon_decay, 2 * from_end));
     }
     reset(options.seed);
