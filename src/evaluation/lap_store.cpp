@@ -5,12 +5,13 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <nlohmann/json.hpp>
+#include <map>
 
 #include "evaluation/folder_lock.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/evaluation.hpp"
+#include "slalom/evaluation/json.hpp"
 
 namespace slalom::evaluation {
 
@@ -61,21 +62,8 @@ void replace_file(const fs::path& file, const std::string& text) {
 
 constexpr const char* checksum_key = "checksum";
 
-/// JSON from a file; discarded if it is none. Throws std::invalid_argument where it is nested too deep:
-/// writing and comparing it recurse.
-template <class Value>
-Value parse_stored(const std::string& text) {
-  constexpr int deepest = 64;
-  const auto bounded = [](int depth, typename Value::parse_event_t, Value&) {
-    if (depth > deepest)
-      throw std::invalid_argument("must not nest deeper than " + std::to_string(deepest) + " levels");
-    return true;
-  };
-  return Value::parse(text, bounded, false);
-}
-
 /// The 64-bit FNV-1a hash of the settings, written with their keys in order.
-std::string checksum_of(const nlohmann::ordered_json& settings) {
+std::string checksum_of(const Json& settings) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (const char c : settings.dump()) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
   char digits[20];
@@ -90,21 +78,30 @@ std::string table_text(const std::vector<LapRow>& rows, const std::vector<Experi
   return text;
 }
 
+/// The values below `json` by their paths, in the order of the paths.
+std::map<std::string, Json> values_by_path(const Json& json) {
+  const Json flat = json.flatten();
+  std::map<std::string, Json> values;
+  for (const auto& [path, value] : flat.items()) values.emplace(path, value);
+  return values;
+}
+
 /// "key: 1 stored, 2 requested; ..." for every value that differs.
-std::string differences(const nlohmann::json& stored, const nlohmann::json& requested) {
+std::string differences(const Json& stored, const Json& requested) {
   std::string text;
-  const auto a = stored.flatten(), b = requested.flatten();
+  const auto a = values_by_path(stored), b = values_by_path(requested);
   const auto note = [&](const std::string& key, const std::string& x, const std::string& y) {
     text += (text.empty() ? "" : "; ") + key.substr(1) + ": " + x + " stored, " + y + " requested";
   };
-  for (const auto& [key, value] : a.items()) {
-    if (!b.contains(key)) {
+  for (const auto& [key, value] : a) {
+    const auto other = b.find(key);
+    if (other == b.end()) {
       note(key, value.dump(), "nothing");
-    } else if (b[key] != value) {
-      note(key, value.dump(), b[key].dump());
+    } else if (!(other->second == value)) {
+      note(key, value.dump(), other->second.dump());
     }
   }
-  for (const auto& [key, value] : b.items()) {
+  for (const auto& [key, value] : b) {
     if (!a.contains(key)) note(key, "nothing", value.dump());
   }
   return text;
@@ -118,27 +115,27 @@ struct StoredSettings {
 
 /// Throws IoError if the stored settings are damaged or others than those requested.
 StoredSettings check_settings(const fs::path& file, const std::string& requested) {
-  nlohmann::json stored;
   StoredSettings result;
+  Json stored;
   try {
-    const std::string text = read_file(file, std::uint64_t{1} << 24);
-    stored = parse_stored<nlohmann::json>(text);
-    if (stored.is_discarded()) throw std::invalid_argument("is not JSON");
+    const std::string text = read_file(file, Json::max_bytes);
     result.checked = verify_checksum(text);
+    stored = Json::parse(text);
   } catch (const std::invalid_argument& error) {
     throw IoError(file.string(), 0, error.what());
   }
-  if (stored.contains("build") && stored["build"].is_string()) result.build = stored["build"];
+  if (const Json* build = stored.find("build"); build != nullptr && build->is_string())
+    result.build = build->get<std::string>();
   stored.erase("build");
   stored.erase(checksum_key);
-  const std::string differing = differences(stored, nlohmann::json::parse(requested));
+  const std::string differing = differences(stored, Json::parse(requested));
   if (!differing.empty())
     throw IoError(file.string(), 0, "the folder contains an evaluation with other settings: " + differing);
   return result;
 }
 
 std::string with_build(const std::string& settings, const std::string& build) {
-  auto json = nlohmann::ordered_json::parse(settings);
+  Json json = Json::parse(settings);
   if (!build.empty()) json["build"] = build;
   return with_checksum(json.dump());
 }
@@ -172,20 +169,24 @@ bool all_checked(const fs::path& settings, bool settings_checked, bool laps_chec
 }  // namespace
 
 std::string with_checksum(const std::string& settings) {
-  auto json = nlohmann::ordered_json::parse(settings);
+  Json json = Json::parse(settings);
   json.erase(checksum_key);
   json[checksum_key] = checksum_of(json);
   return json.dump(2);
 }
 
 bool verify_checksum(const std::string& stored_settings) {
-  auto json = parse_stored<nlohmann::ordered_json>(stored_settings);
+  Json json;
+  try {
+    json = Json::parse(stored_settings);
+  } catch (const JsonError& error) {
+    throw std::invalid_argument(error.what());
+  }
   if (!json.is_object()) throw std::invalid_argument("is not a JSON object");
-  const auto found = json.find(checksum_key);
-  if (found == json.end()) return false;
-  const auto stored = *found;
+  if (!json.contains(checksum_key)) return false;
+  const Json stored = json.at(checksum_key);
   json.erase(checksum_key);
-  if (stored != checksum_of(json))
+  if (!(stored == Json(checksum_of(json))))
     throw std::invalid_argument(
         "key checksum: is not that of the settings: the file is damaged or was edited");
   return true;

@@ -3,7 +3,7 @@
 
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "tools/recording/driven_samples.hpp"
 
 namespace slalom::fuzz {

@@ -4,7 +4,7 @@
 #include <initializer_list>
 
 #include "fuzz/target.hpp"
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "view/web_client.hpp"
 
 namespace slalom::fuzz {

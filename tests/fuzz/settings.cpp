@@ -2,8 +2,8 @@
 // they are read, as a fuzzer does not find it.
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
-#include "tools/json/json.hpp"
 
 namespace slalom::fuzz {
 namespace {

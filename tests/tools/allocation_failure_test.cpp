@@ -2,8 +2,8 @@
 // writing JSON: an error, and nothing is lost.
 #include <gtest/gtest.h>
 
+#include "slalom/evaluation/json.hpp"
 #include "support/allocation_failures.hpp"
-#include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 
 namespace slalom::tools {

@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "slalom/core/error.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/sim/collision_log.hpp"
 #include "tools/bags/bag_drive.hpp"
-#include "tools/json/json.hpp"
 #include "tools/recording/recording.hpp"
 
 namespace slalom::tools {

@@ -7,9 +7,9 @@
 #include "bench/workload/measurements.hpp"
 #include "bench/workload/peak.hpp"
 #include "slalom/core/instruction_set.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/bench_plot.hpp"
-#include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"
 

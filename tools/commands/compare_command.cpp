@@ -6,10 +6,10 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/results.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
-#include "tools/json/json.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {

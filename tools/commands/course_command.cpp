@@ -9,12 +9,12 @@
 #include <string>
 
 #include "slalom/core/error.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
 #include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/course_picture.hpp"
-#include "tools/json/json.hpp"
 #include "tools/recording/driven_line.hpp"
 #include "tools/scenario/start_pose.hpp"
 #include "tools/terminal/json_output.hpp"

@@ -4,9 +4,9 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/lap_picture.hpp"
-#include "tools/json/json.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/report/lap_json.hpp"
 #include "tools/scenario/scenario.hpp"

@@ -1,10 +1,10 @@
 #include <memory>
 
+#include "slalom/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/evaluation_check.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/evaluation/ranks.hpp"
-#include "tools/json/json.hpp"
 #include "tools/report/report.hpp"
 #include "tools/terminal/json_output.hpp"
 

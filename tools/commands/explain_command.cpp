@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "slalom/core/option_access.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/explanation/explain_picture.hpp"
 #include "tools/explanation/explanation.hpp"
-#include "tools/json/json.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {

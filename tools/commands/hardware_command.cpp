@@ -5,10 +5,10 @@
 #include <mutex>
 
 #include "slalom/core/error.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/statistics.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"

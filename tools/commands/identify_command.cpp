@@ -1,9 +1,9 @@
 #include <memory>
 
 #include "slalom/core/error.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/model/identification.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/json/json.hpp"
 #include "tools/recording/driven_samples.hpp"
 #include "tools/terminal/json_output.hpp"
 

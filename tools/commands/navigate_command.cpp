@@ -4,11 +4,11 @@
 #include <iostream>
 #include <memory>
 
+#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/rooms/room_drive.hpp"
 #include "slalom/evaluation/statistics.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/map_picture.hpp"
-#include "tools/json/json.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {

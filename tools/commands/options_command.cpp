@@ -3,8 +3,8 @@
 #include <iostream>
 #include <memory>
 
+#include "slalom/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"
 

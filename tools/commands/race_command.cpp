@@ -5,11 +5,11 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/race.hpp"
 #include "slalom/vehicle/racing/racing_car.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/race_picture.hpp"
-#include "tools/json/json.hpp"
 #include "tools/racing/race_result.hpp"
 #include "tools/racing/race_text.hpp"
 #include "tools/report/lap_json.hpp"

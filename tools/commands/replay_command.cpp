@@ -5,13 +5,13 @@
 #include <random>
 
 #include "slalom/core/error.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "tools/bags/replay_bag.hpp"
 #include "tools/bags/ros_bag.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/lap_picture.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
-#include "tools/json/json.hpp"
 #include "tools/live_view/replay_recording.hpp"
 #include "tools/recording/recording.hpp"
 #include "tools/report/lap_json.hpp"

@@ -2,13 +2,13 @@
 #include <memory>
 
 #include "slalom/core/error.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/evaluation/racing_benchmark.hpp"
 #include "tools/evaluation/ranks.hpp"
-#include "tools/json/json.hpp"
 #include "tools/report/report.hpp"
 #include "tools/terminal/json_output.hpp"
 

@@ -7,11 +7,11 @@
 #include <optional>
 #include <string>
 
+#include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/course/track_generator.hpp"
 #include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/track_picture.hpp"
-#include "tools/json/json.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {

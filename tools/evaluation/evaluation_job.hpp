@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "slalom/evaluation/evaluation.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/results.hpp"
 #include "tools/command_line/command.hpp"
-#include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 
 /// Shared by `eval` and `reproduce`: an evaluation from its arguments to laps.csv and summary.json.

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "slalom/evaluation/json.hpp"
 #include "slalom/sim/racing_benchmark.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
-#include "tools/json/json.hpp"
 
 /// The racing benchmark of Evans et al. (see sim::RacingBenchmark): its maps, laps and results.
 namespace slalom::tools {

@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "slalom/core/error.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "tools/evaluation/paper_program.hpp"
-#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 

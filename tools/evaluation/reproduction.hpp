@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/lap_log.hpp"
-#include "tools/json/json.hpp"
 
 /// The simulations of Honda et al. (ICRA 2024, section V-B) as experiments, and what the authors
 /// logged.

@@ -5,8 +5,8 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
-#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 namespace {

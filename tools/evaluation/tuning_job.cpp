@@ -8,8 +8,8 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/results.hpp"
-#include "tools/json/json.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
@@ -145,7 +145,7 @@ void TuningJob::keep_plan() const {
   try {
     there = Json::parse(read_file(file, Json::max_bytes));
   } catch (const JsonError& failure) {
-    throw IoError(file.string(), 0, std::string("is not JSON: ") + failure.what());
+    throw IoError(file.string(), 0, failure.what());
   }
   const std::string differing = differences(there, plan());
   if (!differing.empty())

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/tuning.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
-#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 

@@ -3,8 +3,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "slalom/evaluation/json.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
-#include "tools/json/json.hpp"
 #include "tools/live_view/view_setup.hpp"
 
 namespace slalom::tools {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/race.hpp"
-#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "slalom/core/error.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "tools/bags/bag_drive.hpp"
 #include "tools/bags/ros_bag.hpp"
-#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 namespace {

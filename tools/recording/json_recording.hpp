@@ -3,7 +3,7 @@
 #include <fstream>
 #include <string>
 
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "tools/recording/recording.hpp"
 
 namespace slalom::tools {

@@ -2,7 +2,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "tools/live_view/view_setup.hpp"
 
 namespace slalom::tools {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
-#include "tools/json/json.hpp"
 #include "tools/scenario/scenario.hpp"
 
 namespace slalom::tools {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 
 namespace slalom::tools {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
-#include "tools/json/json.hpp"
 
 namespace slalom::tools {
 

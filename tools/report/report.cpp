@@ -8,7 +8,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "tools/report/report_text.hpp"
 #include "view/recording/encodings.hpp"
 

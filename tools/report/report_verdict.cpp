@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "tools/report/report_text.hpp"
 
 namespace slalom::tools {

@@ -5,9 +5,9 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/option_access.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/course/course_check.hpp"
 #include "tools/command_line/command.hpp"
-#include "tools/json/json.hpp"
 #include "tools/scenario/start_pose.hpp"
 
 namespace slalom::tools {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "slalom/evaluation/environment.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "tools/command_line/command.hpp"
-#include "tools/json/json.hpp"
 
 /// The options shared by all commands that drive: course, configuration, evaluation, method.
 namespace slalom::tools {

@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "slalom/core/error.hpp"
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 
 namespace slalom::tools {
 

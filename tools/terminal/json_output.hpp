@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 
 namespace slalom::tools {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "slalom/core/option_access.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
-#include "tools/json/json.hpp"
 #include "view/protocol/frame.hpp"
 
 namespace slalom::view {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "view/recording/encodings.hpp"
 
 namespace slalom::view::foxglove {

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 
 namespace slalom::view::foxglove {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/recording/foxglove_schemas.hpp"
 

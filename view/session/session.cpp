@@ -4,7 +4,7 @@
 #include <random>
 #include <utility>
 
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 
 namespace slalom::view {
 namespace {

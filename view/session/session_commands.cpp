@@ -5,7 +5,7 @@
 
 #include "view/session/session.hpp"
 
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 #include "view/session/work_limit.hpp"
 
 namespace slalom::view {

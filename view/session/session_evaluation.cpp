@@ -3,7 +3,7 @@
 
 #include "view/session/session.hpp"
 
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 
 namespace slalom::view {
 namespace {

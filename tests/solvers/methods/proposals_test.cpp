@@ -98,7 +98,7 @@ TEST(Proposals, BadValuesDoNoHarm) {
 TEST(Proposals, MoreThanSamples) {
   const auto evaluator = far_away();
   std::vector<float> values(40 * steps);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.05f * static_cast<float>(i / steps);
+  for (int p = 0; p < 40; ++p) std::fill_n(values.begin() + p * steps, steps, 0.05f * static_cast<float>(p));
   for (const char* method : taking) {
     SolverOptions options = solver_options(method);
     testing::set(options, "horizon", steps);

@@ -1,5 +1,5 @@
 // JSON values: types, text, order, comparison.
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,8 +36,36 @@ TEST(Json, KeepsTheOrderOfMembers) {
   json.update({{"a", 5}, {"m", 6}});
   EXPECT_EQ(json.dump(), R"({"z":3,"a":5,"m":6})");
   EXPECT_EQ(json.dump(1), "{\n \"z\": 3,\n \"a\": 5,\n \"m\": 6\n}");
-  EXPECT_EQ(Json::parse(R"({"z":1,"a":2,"z":[{},[],[3]]})").dump(1),
+  EXPECT_EQ(Json::parse(R"({"z":[{},[],[3]],"a":2})").dump(1),
             "{\n \"z\": [\n  {},\n  [],\n  [\n   3\n  ]\n ],\n \"a\": 2\n}");
+  json.erase("a");
+  json.erase("none");
+  EXPECT_EQ(json.dump(), R"({"z":3,"m":6})");
+}
+
+TEST(Json, AnObjectHasEachKeyOnce) {
+  try {
+    Json::parse(R"({"a":{"z":1,"y":2,"z":3}})");
+    ADD_FAILURE() << "a key that stands twice was read";
+  } catch (const JsonError& error) {
+    EXPECT_STREQ(error.what(), "duplicate key 'z'");
+  }
+  EXPECT_EQ(Json::parse(R"([{"z":1},{"z":2}])").size(), 2u);
+}
+
+TEST(Json, AnObjectOfAMillionMembersIsReadInSeconds) {
+  std::string text = "{";
+  for (int i = 0; i < 1000000; ++i) text += (i > 0 ? ",\"" : "\"") + std::to_string(i) + "\":0";
+  const Json json = Json::parse(text + "}");
+  EXPECT_EQ(json.size(), 1000000u);
+  EXPECT_EQ(json.flatten().size(), 1000000u);
+}
+
+TEST(Json, RefusesTooManyValues) {
+  std::string text = "[0";
+  for (std::size_t i = 2; i < Json::max_values; ++i) text += ",0";
+  EXPECT_EQ(Json::parse(text + "]").size(), Json::max_values - 1);
+  EXPECT_THROW(Json::parse(text + ",0]"), JsonError);
 }
 
 TEST(Json, WritesNumbersThatAreNotFiniteAsNull) {

@@ -1,4 +1,4 @@
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +60,7 @@ struct JsonValues {
 
   static void flatten(const std::string& path, const Json& json, Json& all) {
     if (json.empty()) {
-      all[path] = json;
+      all.append(path, json);
     } else if (json.is_array()) {
       for (std::size_t i = 0; i < json.size(); ++i) flatten(path + "/" + std::to_string(i), json[i], all);
     } else {
@@ -160,10 +160,14 @@ Json& Json::operator[](const std::string& key) {
   if (!is_object()) throw JsonError("must be an object to have a key '" + key + "'");
   const auto found = std::find(keys_.begin(), keys_.end(), key);
   if (found != keys_.end()) return values_[static_cast<std::size_t>(found - keys_.begin())];
+  return append(key, nullptr);
+}
+
+Json& Json::append(std::string key, Json value) {
   // If memory runs out, there is neither a key without a value nor a value without a key.
   if (values_.size() == values_.capacity()) values_.reserve(2 * values_.size() + 1);
-  keys_.push_back(key);
-  return values_.emplace_back();
+  keys_.push_back(std::move(key));
+  return values_.emplace_back(std::move(value));
 }
 
 const Json* Json::find(std::string_view key) const noexcept {
@@ -177,12 +181,19 @@ const Json& Json::at(std::string_view key) const {
   return *found;
 }
 
-std::vector<Json::Member> Json::items() const {
+std::vector<Json::Member> Json::items() const& {
   if (!is_object()) throw JsonError("must be an object");
   std::vector<Member> all;
   all.reserve(keys_.size());
   for (std::size_t i = 0; i < keys_.size(); ++i) all.push_back({keys_[i], values_[i]});
   return all;
+}
+
+void Json::erase(std::string_view key) {
+  const auto found = std::find(keys_.begin(), keys_.end(), key);
+  if (found == keys_.end()) return;
+  values_.erase(values_.begin() + (found - keys_.begin()));
+  keys_.erase(found);
 }
 
 void Json::update(const Json& other) {

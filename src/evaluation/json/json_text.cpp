@@ -1,9 +1,11 @@
 // JSON as text. Numbers and texts are written and read by nlohmann/json. Its containers are not used: their
 // destructors allocate, which ends the program where memory has run out.
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <utility>
 
-#include "tools/json/json.hpp"
+#include "slalom/evaluation/json.hpp"
 
 namespace slalom {
 
@@ -16,6 +18,20 @@ struct JsonText {
       write_elements(json, indent, level, text);
     else
       text += scalar(json).dump(-1, ' ', false, Value::error_handler_t::replace);
+  }
+
+  static Json& append(Json& object, std::string key) { return object.append(std::move(key), nullptr); }
+
+  /// Throws JsonError where two members of an object have the same key. To look for each key when it is read
+  /// would take time that grows with the square of their number.
+  static void check_keys(const Json& object) {
+    const std::vector<std::string>& keys = object.keys_;
+    std::vector<std::size_t> order(keys.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return keys[a] < keys[b]; });
+    const auto twice = std::adjacent_find(order.begin(), order.end(),
+                                          [&](std::size_t a, std::size_t b) { return keys[a] == keys[b]; });
+    if (twice != order.end()) throw JsonError("duplicate key '" + keys[*twice] + "'");
   }
 
  private:
@@ -86,7 +102,7 @@ class JsonReader {
     // The library's messages begin with its name in brackets, which says nothing to a user.
     const std::string message = error.what();
     const auto end = message.find("] ");
-    throw JsonError(end == std::string::npos ? message : message.substr(end + 2));
+    throw JsonError("is not JSON: " + (end == std::string::npos ? message : message.substr(end + 2)));
   }
 
  private:
@@ -105,15 +121,18 @@ class JsonReader {
   }
 
   bool close() {
+    JsonText::check_keys(*open_.back());
     open_.pop_back();
     return true;
   }
 
   /// Where the next value goes.
   Json& place() {
+    if (++values_ > Json::max_values)
+      throw JsonError("must not have more than " + std::to_string(Json::max_values) + " values");
     if (open_.empty()) return root_;
     Json& container = *open_.back();
-    if (container.is_object()) return container[key_];
+    if (container.is_object()) return JsonText::append(container, std::move(key_));
     container.push_back(nullptr);
     return container[container.size() - 1];
   }
@@ -121,6 +140,7 @@ class JsonReader {
   Json root_;
   std::vector<Json*> open_;  ///< containers that have not ended, from the outermost
   std::string key_;          ///< of the next member
+  std::size_t values_ = 0;   ///< that were read
 };
 
 }  // namespace

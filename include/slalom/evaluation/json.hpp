@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-/// JSON for results, settings and messages. The text is written and read with nlohmann/json, which is
-/// compiled once, in json_text.cpp.
+/// JSON for results, settings and messages. The text is written and read with nlohmann/json, which only
+/// json_text.cpp includes.
 namespace slalom {
 
 /// A text that is not JSON, a value of another type than asked for, or a missing key.
@@ -54,9 +54,11 @@ class Json {
   static Json object();
 
   static constexpr int deepest = 64;                      ///< levels of arrays and objects that are parsed
+  static constexpr std::size_t max_values = 1U << 20;     ///< that are parsed; each takes about 100 bytes
   static constexpr std::uint64_t max_bytes = 1ULL << 24;  ///< of a JSON file that is read
 
-  /// Throws JsonError if the text is not JSON or nests deeper than `deepest`.
+  /// Throws JsonError if the text is not JSON, nests deeper than `deepest`, has more than `max_values`
+  /// values, or has a key twice in one object.
   static Json parse(std::string_view text);
   /// Null where `parse` throws.
   static Json parse_or_null(std::string_view text);
@@ -102,10 +104,14 @@ class Json {
   const Json* find(std::string_view key) const noexcept;
   bool contains(std::string_view key) const noexcept { return find(key) != nullptr; }
   /// The members of an object, in order; the references live as long as the object.
-  std::vector<Member> items() const;
+  std::vector<Member> items() const&;
+  std::vector<Member> items() const&& = delete;
+  /// Removes the member of this key, where there is one.
+  void erase(std::string_view key);
   /// Inserts the members of another object; those of the same key are replaced.
   void update(const Json& other);
-  /// The object with a member for every value below this one; its key is the path, "/a/b/0".
+  /// The object with a member for every value below this one; its key is the path, "/a/b/0". Two values have
+  /// the same path only where a key contains a slash.
   Json flatten() const;
 
   /// Numbers are equal if their values are. Objects are equal if their members are, in the same order.
@@ -121,6 +127,8 @@ class Json {
   };
   explicit Json(Signed number);
   explicit Json(Unsigned number);
+  /// Appends a member to an object that has none of this key.
+  Json& append(std::string key, Json value);
   friend struct JsonText;
   friend struct JsonValues;
 
