@@ -17,6 +17,7 @@ option(SLALOM_BUILD_BENCHMARKS "Build the benchmarks" OFF)
 option(SLALOM_BUILD_EXAMPLES "Build the examples in the tree (they also build against an install)" ${SLALOM_BUILD_TESTS})
 option(SLALOM_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
 option(SLALOM_INSTALL "Generate the install and export targets" ${PROJECT_IS_TOP_LEVEL})
+option(SLALOM_GROUP_SOURCES "Compile the sources of program and live view in groups, which takes less time" ON)
 set(SLALOM_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize=, for example address,undefined")
 
 if(PROJECT_IS_TOP_LEVEL)

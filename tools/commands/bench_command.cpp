@@ -16,7 +16,7 @@
 namespace slalom::tools {
 namespace {
 
-struct Arguments {
+struct BenchArguments {
   std::string config, json, plot;
   std::vector<std::string> set, methods;
   double seconds = 0.5;
@@ -33,7 +33,7 @@ std::string processor() {
 
 /// The given configuration. Without one, the workload `reference`: the configuration `published` with one
 /// trajectory per rollout.
-vehicle::Configuration configuration_of(const Arguments& arguments) {
+vehicle::Configuration configuration_of(const BenchArguments& arguments) {
   ScenarioArguments scenario;
   scenario.config = arguments.config.empty() ? "published" : arguments.config;
   scenario.set = arguments.set;
@@ -62,7 +62,7 @@ SolverOptions with(SolverOptions options, int samples, int threads, int horizon 
 
 class Bench {
  public:
-  explicit Bench(const Arguments& arguments)
+  explicit Bench(const BenchArguments& arguments)
       : arguments_(arguments),
         words_(arguments.json == "-" ? stderr : stdout),
         configuration_(configuration_of(arguments)),
@@ -197,7 +197,7 @@ class Bench {
       plot_bench(curves, processor() + ", " + simd::name(target_) + ", one thread", arguments_.plot);
   }
 
-  const Arguments& arguments_;
+  const BenchArguments& arguments_;
   std::FILE* words_;
   vehicle::Configuration configuration_;
   simd::Target target_;
@@ -210,7 +210,7 @@ class Bench {
 void declare_bench(Subcommand& command) {
   command.summary(
       "Measure the speed of rollouts, methods and planner on this machine, relative to scalar code");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<BenchArguments>();
   command.option("--config", arguments->config,
                  "Configuration to measure [fixed workload: the methods and the vehicle problem of the "
                  "configuration published, with one trajectory per rollout]");

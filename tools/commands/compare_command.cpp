@@ -18,7 +18,7 @@ namespace {
 using namespace evaluation;
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct CompareArguments {
   std::string first, second, json;
 };
 
@@ -190,7 +190,7 @@ std::vector<Match> match_all(const std::string& place, const StoredEvaluation& a
 }
 
 /// The evaluations to be compared: the two folders, or those of the same name in both.
-std::vector<std::string> places_of(const Arguments& arguments) {
+std::vector<std::string> places_of(const CompareArguments& arguments) {
   const auto is_evaluation = [](const fs::path& folder) { return fs::exists(folder / "settings.json"); };
   const fs::path first = arguments.first, second = arguments.second;
   if (is_evaluation(first) || is_evaluation(second) || !fs::is_directory(first)) return {""};
@@ -225,7 +225,7 @@ Json json_of(const Match& m) {
   return entry;
 }
 
-int run(const Arguments& arguments) {
+int compare(const CompareArguments& arguments) {
   std::FILE* words = arguments.json == "-" ? stderr : stdout;
   std::vector<Match> matches;
   Json settings = Json::array();
@@ -270,7 +270,7 @@ int run(const Arguments& arguments) {
 
 void declare_compare(Subcommand& command) {
   command.summary("Compare two evaluations, with tests of significance");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<CompareArguments>();
   command.option("first", arguments->first, "Output folder of an evaluation, or a folder of several")
       .required();
   command
@@ -279,7 +279,7 @@ void declare_compare(Subcommand& command) {
               "compared")
       .required();
   command.option("--json", arguments->json, "Write the comparison to this file, or to standard output: -");
-  command.action([arguments] { return run(*arguments); });
+  command.action([arguments] { return compare(*arguments); });
 }
 
 }  // namespace slalom::tools

@@ -26,13 +26,13 @@ namespace fs = std::filesystem;
 using vehicle::RaceCourse;
 using vehicle::RacingCar;
 
-struct Arguments {
+struct CourseArguments {
   std::string input, line, car = RacingCar{}.name, start, out, name, description, json;
   std::optional<double> friction, top_speed, margin;
   bool reverse = false, no_picture = false;
 };
 
-RacingCar chosen_car(const Arguments& arguments) {
+RacingCar chosen_car(const CourseArguments& arguments) {
   RacingCar car = fs::is_regular_file(arguments.car) ? vehicle::load_racing_car(arguments.car)
                                                      : vehicle::racing_car(arguments.car);
   if (arguments.friction) vehicle::set_friction(car, *arguments.friction);
@@ -51,7 +51,7 @@ vehicle::GuideLine read_guide(const std::string& file) {
   return is_csv(file) ? vehicle::read_centre_line(file).line : driven_line(file);
 }
 
-RaceCourse make_course(const Arguments& arguments, const RacingCar& car) {
+RaceCourse make_course(const CourseArguments& arguments, const RacingCar& car) {
   vehicle::RaceCourseOptions options;
   options.reverse = arguments.reverse;
   if (!arguments.start.empty()) options.start = parse_start(arguments.start);
@@ -76,7 +76,7 @@ RaceCourse make_course(const Arguments& arguments, const RacingCar& car) {
 }
 
 /// The command that makes the same course again.
-std::string command_of(const Arguments& arguments) {
+std::string command_of(const CourseArguments& arguments) {
   std::string text = "slalom course " + shell_word(arguments.input);
   const auto add = [&](const char* flag, const std::string& value) {
     if (!value.empty()) text += std::string(" ") + flag + " " + shell_word(value);
@@ -95,7 +95,7 @@ std::string command_of(const Arguments& arguments) {
   return text;
 }
 
-Json summary_of(const RaceCourse& course, const RacingCar& car, const Arguments& arguments) {
+Json summary_of(const RaceCourse& course, const RacingCar& car, const CourseArguments& arguments) {
   const auto& points = course.raceline.points;
   const auto [slowest, fastest] = std::minmax_element(
       points.begin(), points.end(), [](const auto& a, const auto& b) { return a.speed < b.speed; });
@@ -125,7 +125,7 @@ Json summary_of(const RaceCourse& course, const RacingCar& car, const Arguments&
   return summary;
 }
 
-void run(Arguments arguments) {
+void course(CourseArguments arguments) {
   const RacingCar car = chosen_car(arguments);
   if (arguments.name.empty()) arguments.name = folder_name(arguments.out);
   const RaceCourse course = [&] {
@@ -159,7 +159,7 @@ void run(Arguments arguments) {
 
 void declare_course(Subcommand& command) {
   command.summary("Make a course from a map: corridor, centre line, minimum-time raceline, picture");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<CourseArguments>();
   command
       .option("input", arguments->input,
               "Map (ROS YAML file), or a centre line with widths (.csv), from which a map is drawn")
@@ -184,7 +184,7 @@ void declare_course(Subcommand& command) {
   command.option("--json", arguments->json, "Write a summary as JSON to this file, or to standard output: -");
   command.flag("--no-picture", arguments->no_picture, "Do not write picture.png");
   command.action([arguments] {
-    run(*arguments);
+    course(*arguments);
     return 0;
   });
 }

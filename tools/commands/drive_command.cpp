@@ -19,7 +19,7 @@ namespace {
 
 using evaluation::LapResult;
 
-struct Arguments {
+struct DriveArguments {
   ScenarioArguments scenario;
   std::string method = "svg_mppi";
   std::uint64_t seed = 0;
@@ -31,7 +31,7 @@ struct Arguments {
 /// A drive of several laps and its outputs.
 class DriveJob {
  public:
-  explicit DriveJob(const Arguments& arguments)
+  explicit DriveJob(const DriveArguments& arguments)
       : arguments_(arguments),
         words_(arguments.json == "-" ? stderr : stdout),
         scenario_(load_scenario(arguments.scenario, arguments.method)),
@@ -193,7 +193,7 @@ class DriveJob {
              arguments_.plot);
   }
 
-  const Arguments& arguments_;
+  const DriveArguments& arguments_;
   std::FILE* words_;
   Scenario scenario_;
   evaluation::LapRunner runner_;
@@ -203,7 +203,7 @@ class DriveJob {
   std::vector<LapResult> laps_;
 };
 
-int run(const Arguments& arguments) {
+int drive(const DriveArguments& arguments) {
   if (arguments.laps < 1 || arguments.laps > 100000)
     throw IoError("--laps", 0, std::to_string(arguments.laps) + " must be in [1, 100000]");
   return DriveJob(arguments).run();
@@ -213,7 +213,7 @@ int run(const Arguments& arguments) {
 
 void declare_drive(Subcommand& command) {
   command.summary("Drive laps; write results, recordings and pictures");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<DriveArguments>();
   add_scenario_options(command, arguments->scenario);
   add_method_option(command, arguments->method);
   command.option("--seed", arguments->seed, "Seed of the first lap; lap k has seed + k (obstacles + 5)")
@@ -229,7 +229,7 @@ void declare_drive(Subcommand& command) {
             "Also record wall-clock times, which differ from run to run; only in MCAP")
       .needs(record);
   command.option("--plot", arguments->plot, "Write a picture of the last lap to this PNG");
-  command.action([arguments] { return run(*arguments); });
+  command.action([arguments] { return drive(*arguments); });
 }
 
 }  // namespace slalom::tools

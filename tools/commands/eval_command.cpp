@@ -11,7 +11,7 @@
 namespace slalom::tools {
 namespace {
 
-struct Arguments {
+struct EvalArguments {
   EvaluationArguments evaluation;
   std::vector<std::string> methods{"svg_mppi"}, scenarios{"oa"}, sweeps;
   int laps = 20;
@@ -21,7 +21,7 @@ struct Arguments {
   int again = 3;
 };
 
-int run(const Arguments& arguments) {
+int eval(const EvalArguments& arguments) {
   if (!arguments.check.empty()) return check_evaluation(arguments.check, arguments.again);
   if (arguments.evaluation.out.empty()) throw CommandLineError("--out", "is required");
   const auto experiments = make_experiments(arguments.methods, arguments.scenarios, arguments.laps,
@@ -51,7 +51,7 @@ int run(const Arguments& arguments) {
 
 void declare_eval(Subcommand& command) {
   command.summary("Evaluate methods over many laps, with confidence intervals and paired tests");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<EvalArguments>();
   command.option("--methods", arguments->methods, "Methods, separated by commas")
       .comma_separated()
       .show_default();
@@ -79,7 +79,7 @@ void declare_eval(Subcommand& command) {
       .show_default()
       .needs(check);
   command.find("--out").required(false).excludes(check);
-  command.action([arguments] { return run(*arguments); });
+  command.action([arguments] { return eval(*arguments); });
 }
 
 }  // namespace slalom::tools

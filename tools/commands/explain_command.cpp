@@ -13,7 +13,7 @@
 namespace slalom::tools {
 namespace {
 
-struct Arguments {
+struct ExplainArguments {
   std::vector<std::string> methods{"svg_mppi"}, set;
   std::string plot, json;
   std::uint64_t seed = 0;
@@ -94,7 +94,7 @@ Json to_json(const Explanation& e) {
           {"optimal", {{"temperature", e.temperature}, {"place", e.places}, {"density", e.density}}}};
 }
 
-void run(const Arguments& arguments) {
+void explain(const ExplainArguments& arguments) {
   std::vector<ExplainedMethod> methods = chosen(arguments.methods);
   problems::PassingPoint point;
   for (const std::string& word : arguments.set) apply(word, methods, point);
@@ -123,7 +123,7 @@ void run(const Arguments& arguments) {
 void declare_explain(Subcommand& command) {
   command.summary(
       "Show how methods solve a problem with two equally good ways: samples, guides, plan, distribution");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ExplainArguments>();
   command
       .option("--method", arguments->methods,
               "Methods, separated by commas: mppi, svg_mppi, svg_mppi_nominal, svg_mppi_covariance, "
@@ -142,7 +142,7 @@ void declare_explain(Subcommand& command) {
   command.option("--json", arguments->json,
                  "Write everything as JSON to this file, or to standard output: -");
   command.action([arguments] {
-    run(*arguments);
+    explain(*arguments);
     return 0;
   });
 }

@@ -18,7 +18,7 @@ namespace {
 
 using namespace evaluation;
 
-struct Arguments {
+struct HardwareArguments {
   std::string course = "wren", json;
   std::vector<std::string> drivers{"mppi@hardware", "svg_mppi@hardware", "svg_mppi@default"}, set;
   int tracking_laps = 10, layouts = 6, laps = 3, obstacles = 5, jobs = 1;
@@ -39,7 +39,7 @@ struct Driver {
   vehicle::Configuration configuration;
 };
 
-Driver make_driver(const std::string& text, const Arguments& arguments) {
+Driver make_driver(const std::string& text, const HardwareArguments& arguments) {
   const auto at = text.find('@');
   Driver driver{text, text.substr(0, at), {}};
   ScenarioArguments scenario;
@@ -53,7 +53,7 @@ Driver make_driver(const std::string& text, const Arguments& arguments) {
 
 /// All laps, in parallel; the results do not depend on the number of threads. False if interrupted.
 bool drive(std::vector<Task>& tasks, const std::vector<Driver>& drivers,
-           const std::shared_ptr<const Environment>& environment, const Arguments& arguments) {
+           const std::shared_ptr<const Environment>& environment, const HardwareArguments& arguments) {
   std::mutex mutex;
   std::size_t next = 0;
   std::exception_ptr failed;
@@ -103,7 +103,7 @@ double mean_of(const std::vector<float>& values) {
 
 /// The laps of one driver in one scenario.
 Json summarise(const std::vector<Task>& tasks, std::size_t driver, bool among_obstacles,
-               const Arguments& arguments) {
+               const HardwareArguments& arguments) {
   std::vector<double> costs;
   std::vector<float> errors, yaw_errors, update_ms, solve_ms;
   int laps = 0, finished = 0, contacts = 0, touched = 0, blind = 0, steps = 0;
@@ -163,7 +163,7 @@ void print_row(std::FILE* out, const std::string& label, const char* scenario, c
                r["localisation_ms"]["p99"].get<double>());
 }
 
-int run(const Arguments& arguments) {
+int hardware(const HardwareArguments& arguments) {
   if (arguments.tracking_laps == 0 && arguments.layouts == 0)
     throw IoError("--tracking-laps, --layouts", 0, "one of them must be greater than 0");
   std::vector<Driver> drivers;
@@ -224,7 +224,7 @@ int run(const Arguments& arguments) {
 void declare_hardware(Subcommand& command) {
   command.summary(
       "Evaluate laps under the conditions of a real car: noise, slip, localisation, servo mismatch");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<HardwareArguments>();
   command.option("--course", arguments->course, "Course name or folder").show_default();
   command.option("--drivers", arguments->drivers, "Drivers, method@configuration, separated by commas")
       .comma_separated()
@@ -250,7 +250,7 @@ void declare_hardware(Subcommand& command) {
       .range(1, 1024)
       .show_default();
   command.option("--json", arguments->json, "Write the results to this file, or to standard output: -");
-  command.action([arguments] { return run(*arguments); });
+  command.action([arguments] { return hardware(*arguments); });
 }
 
 }  // namespace slalom::tools

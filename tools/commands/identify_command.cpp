@@ -13,7 +13,7 @@ namespace {
 using vehicle::Identification;
 using vehicle::Identified;
 
-struct Arguments {
+struct IdentifyArguments {
   std::string recording, json;
   vehicle::IdentificationOptions options;
 };
@@ -47,7 +47,7 @@ void advise(std::FILE* out, const Identification& found) {
   std::fprintf(out, "planner:\n  observer_time_constant: %.3f\n", found.time_constant.value);
 }
 
-int run(const Arguments& arguments) {
+int identify(const IdentifyArguments& arguments) {
   const auto samples = read_driven_samples(arguments.recording);
   const Identification found = [&] {
     try {
@@ -90,7 +90,7 @@ int run(const Arguments& arguments) {
 
 void declare_identify(Subcommand& command) {
   command.summary("Estimate steering gain, offset, delay, lag and wheelbase of a car from a recording");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<IdentifyArguments>();
   command
       .option("recording", arguments->recording,
               "Recording of slalom drive --record in JSON lines, or a ROS 1 bag")
@@ -102,7 +102,7 @@ void declare_identify(Subcommand& command) {
       .show_default();
   command.option("--json", arguments->json,
                  "Write the estimates as JSON to this file, or to standard output: -");
-  command.action([arguments] { return run(*arguments); });
+  command.action([arguments] { return identify(*arguments); });
 }
 
 }  // namespace slalom::tools

@@ -19,7 +19,7 @@ using evaluation::RoomDriver;
 using evaluation::RoomOutcome;
 using evaluation::RoomScenario;
 
-struct Arguments {
+struct NavigateArguments {
   std::string scenario = "all", methods = "svg_mppi,mppi", json, pictures;
   int seeds = 5;
   std::uint64_t first_seed = 1;
@@ -60,7 +60,7 @@ RoomDriver driver_of(const std::string& method, bool detours) {
   return driver;
 }
 
-std::vector<NamedDriver> drivers_of(const Arguments& arguments) {
+std::vector<NamedDriver> drivers_of(const NavigateArguments& arguments) {
   std::vector<NamedDriver> drivers;
   std::string rest = arguments.methods + ",";
   for (std::size_t comma; (comma = rest.find(',')) != std::string::npos; rest.erase(0, comma + 1)) {
@@ -167,7 +167,7 @@ void draw(const std::vector<Series>& all, const RoomScenario& scenario, const st
   picture.save(std::filesystem::path(folder) / (std::string(scenario.name) + ".png"));
 }
 
-int run(const Arguments& arguments) {
+int navigate(const NavigateArguments& arguments) {
   std::vector<const RoomScenario*> scenarios;
   if (arguments.scenario == "all") {
     for (const RoomScenario& each : evaluation::room_scenarios()) scenarios.push_back(&each);
@@ -205,7 +205,7 @@ int run(const Arguments& arguments) {
 
 void declare_navigate(Subcommand& command) {
   command.summary("Drive a mobile robot through rooms, with several methods on the same seeds");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<NavigateArguments>();
   command.option("--scenario", arguments->scenario, "Name of a scenario, or all").show_default();
   command.option("--methods", arguments->methods, "Methods that drive: svg_mppi, mppi, or both with a comma")
       .show_default();
@@ -222,7 +222,7 @@ void declare_navigate(Subcommand& command) {
   for (const RoomScenario& each : evaluation::room_scenarios())
     names += std::string("  ") + each.name + ": " + each.summary + "\n";
   command.footer(names + "The status is 1 if a drive ended in a collision.");
-  command.action([arguments] { return run(*arguments); });
+  command.action([arguments] { return navigate(*arguments); });
 }
 
 }  // namespace slalom::tools

@@ -11,7 +11,7 @@
 namespace slalom::tools {
 namespace {
 
-struct Arguments {
+struct OptionsArguments {
   ScenarioArguments scenario;
   std::string method, json;
   bool yaml = false;
@@ -57,7 +57,7 @@ void print_section(const vehicle::Section& section) {
   }
 }
 
-void run(const Arguments& arguments) {
+void options(const OptionsArguments& arguments) {
   const std::string method = arguments.method.empty() ? solver_names().front() : arguments.method;
   const auto configuration = load_configuration(arguments.scenario, method);
   if (arguments.yaml) {
@@ -88,7 +88,7 @@ void run(const Arguments& arguments) {
 
 void declare_options(Subcommand& command) {
   command.summary("List all options with values, units and ranges");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<OptionsArguments>();
   command.option("--config", arguments->scenario.config, config_help).show_default();
   command.option("--set", arguments->scenario.set, "section.option=value; may be repeated").repeatable();
   const Option method = command.option("--method", arguments->method,
@@ -99,7 +99,7 @@ void declare_options(Subcommand& command) {
       .excludes(method)
       .excludes(json);
   command.action([arguments] {
-    run(*arguments);
+    options(*arguments);
     return 0;
   });
 }

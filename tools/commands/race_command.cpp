@@ -23,7 +23,7 @@ namespace {
 
 using evaluation::RacingLap;
 
-struct Arguments {
+struct RaceArguments {
   ScenarioArguments scenario;
   std::string method = "svg_mppi", compare, json, plot;
   std::uint64_t seed = 0;
@@ -42,7 +42,7 @@ double acceleration_of(double friction) {
 /// Laps against the clock and their outputs.
 class RaceJob {
  public:
-  explicit RaceJob(const Arguments& arguments)
+  explicit RaceJob(const RaceArguments& arguments)
       : arguments_(arguments),
         words_(arguments.json == "-" ? stderr : stdout),
         scenario_(load_scenario(arguments.scenario, arguments.method)),
@@ -159,7 +159,7 @@ class RaceJob {
               arguments_.plot);
   }
 
-  const Arguments& arguments_;
+  const RaceArguments& arguments_;
   std::FILE* words_;
   Scenario scenario_;
   std::shared_ptr<const evaluation::LapRunner> runner_;
@@ -173,7 +173,7 @@ class RaceJob {
 
 void declare_race(Subcommand& command) {
   command.summary("Drive laps against the clock: times, sectors, grip used, and where time is lost");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RaceArguments>();
   arguments->scenario.config = "race";
   add_scenario_options(command, arguments->scenario);
   add_method_option(command, arguments->method);

@@ -21,7 +21,7 @@ namespace {
 
 using namespace evaluation;
 
-struct Arguments {
+struct ReplayCommandArguments {
   ReplayArguments recording;
   std::string folder, method, scenario, course, plot, record, config = "default";
   std::vector<std::string> set;
@@ -58,7 +58,7 @@ void reject_inapplicable(const Subcommand& command, Kind kind) {
       throw IoError(option, 0, std::string("has no effect when ") + kind_name(kind) + " is replayed");
 }
 
-void plot(const Arguments& arguments, const Scenario& scenario, const LapRunner& runner,
+void plot(const ReplayCommandArguments& arguments, const Scenario& scenario, const LapRunner& runner,
           const DrivenLine& driven, const LapResult& lap, const std::string& label) {
   char facts[200];
   std::snprintf(
@@ -79,7 +79,7 @@ void plot(const Arguments& arguments, const Scenario& scenario, const LapRunner&
 }
 
 /// Drives the lap again. The exit status: 1 if it differs from the lap of the evaluation.
-int replay_lap(const Arguments& arguments) {
+int replay_lap(const ReplayCommandArguments& arguments) {
   const StoredEvaluation stored = load_evaluation(arguments.folder);
   if (!arguments.lap_given) throw IoError("--lap", 0, "is required to replay a lap of an evaluation");
   const int index = stored.find(arguments.method, arguments.scenario);
@@ -149,7 +149,7 @@ struct TemporaryFile {
 };
 
 /// Converts a bag to a recording: to the file of --record, to a page with --html, or else to be shown.
-int replay_bag(Arguments& arguments) {
+int replay_bag(ReplayCommandArguments& arguments) {
   if (!arguments.record.empty() && !arguments.recording.html.empty() &&
       std::filesystem::path(arguments.record).extension() != ".mcap")
     throw IoError("--record", 0, arguments.record + " must end in .mcap with --html: the page shows MCAP");
@@ -167,7 +167,7 @@ int replay_bag(Arguments& arguments) {
   return replay_recording(arguments.recording);
 }
 
-int run(Arguments& arguments, const Subcommand& command) {
+int replay(ReplayCommandArguments& arguments, const Subcommand& command) {
   const Kind kind = std::filesystem::is_directory(arguments.folder) ? lap_of_evaluation
                     : is_bag(arguments.folder)                      ? bag
                                                                     : recording;
@@ -183,7 +183,7 @@ int run(Arguments& arguments, const Subcommand& command) {
 
 void declare_replay(Subcommand& command) {
   command.summary("Show a recording or bag in the browser, or repeat a lap of an evaluation");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ReplayCommandArguments>();
   command.option("what", arguments->folder, "MCAP recording, ROS 1 bag, or output folder of an evaluation")
       .required();
   const Option html = command.option("--html", arguments->recording.html,
@@ -211,7 +211,7 @@ void declare_replay(Subcommand& command) {
       "Recording that was cut: write what is whole of it to this file, as a finished recording");
   for (Option served : {host, port}) served.excludes(html).excludes(record).excludes(repair);
   command.find("--html").excludes(repair);
-  command.action([arguments, &command] { return run(*arguments, command); });
+  command.action([arguments, &command] { return replay(*arguments, command); });
 }
 
 }  // namespace slalom::tools

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr const char* fallback_course = "stag";
 constexpr const char* gap_driver = "follow_the_gap";
 
-struct Arguments {
+struct ReproduceArguments {
   EvaluationArguments evaluation;
   std::string published, benchmark, driver = "svg_mppi";
   std::vector<std::string> sections{"baseline", "ablation", "sweep"};
@@ -35,7 +35,7 @@ using UniqueFile = std::unique_ptr<std::FILE, CloseFile>;
 
 /// The course given. The default, Berlin, is not part of this repository; if it is not found, the command
 /// runs on another course.
-std::string course_or_fallback(const Arguments& arguments, std::FILE* words) {
+std::string course_or_fallback(const ReproduceArguments& arguments, std::FILE* words) {
   const std::string& course = arguments.evaluation.scenario.course;
   try {
     vehicle::find_course(course, vehicle::course_roots(program_folder()));
@@ -93,7 +93,7 @@ void add_report_rows(const std::string& section, Report& report) {
   }
 }
 
-void check(const Arguments& arguments) {
+void check(const ReproduceArguments& arguments) {
   for (const std::string& section : arguments.sections) {
     if (section != "baseline" && section != "ablation" && section != "sweep")
       throw IoError("--sections", 0, "'" + section + "' must be baseline, ablation or sweep");
@@ -105,7 +105,7 @@ void check(const Arguments& arguments) {
   }
 }
 
-int run(Arguments arguments) {
+int reproduce(ReproduceArguments arguments) {
   check(arguments);
   const UniqueFile nowhere(rank() > 0 ? std::fopen("/dev/null", "w") : nullptr);
   std::FILE* words = nowhere ? nowhere.get() : arguments.evaluation.json == "-" ? stderr : stdout;
@@ -138,7 +138,7 @@ int run(Arguments arguments) {
 }
 
 /// Drives the racing benchmark on its four maps.
-int run_racing(Arguments arguments) {
+int run_racing(ReproduceArguments arguments) {
   if (arguments.benchmark != "racing")
     throw CommandLineError("--benchmark", "'" + arguments.benchmark + "' must be racing");
   if (!arguments.course_given)
@@ -175,7 +175,7 @@ void declare_reproduce(Subcommand& command) {
   command.summary(
       "Reproduce the simulation section of the paper and compare it with the authors' logs, or drive another "
       "benchmark");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ReproduceArguments>();
   auto& scenario = arguments->evaluation.scenario;
   scenario.course = "berlin";
   scenario.config = scenario.evaluation = "published";
@@ -206,7 +206,7 @@ void declare_reproduce(Subcommand& command) {
     if (!arguments->benchmark.empty()) return run_racing(*arguments);
     if (command.given("--driver")) throw CommandLineError("--driver", "needs --benchmark");
     if (arguments->evaluation.out.empty()) throw CommandLineError("--out", "is required");
-    return run(*arguments);
+    return reproduce(*arguments);
   });
 }
 

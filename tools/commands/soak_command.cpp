@@ -36,7 +36,7 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-struct Arguments {
+struct SoakCommandArguments {
   SoakArguments soak;
   std::string json;
 };
@@ -65,7 +65,7 @@ Json trial_json(const TrialResult& trial) {
   return {{"runs", trial.runs}, {"failures", trial.failures}};
 }
 
-int run(const Arguments& arguments) {
+int soak(const SoakCommandArguments& arguments) {
   std::FILE* words = arguments.json == "-" ? stderr : stdout;
   const InterruptFlag interrupt;
   const TemporaryFolder folder;
@@ -94,7 +94,7 @@ int run(const Arguments& arguments) {
 
 void declare_soak(Subcommand& command) {
   command.summary("Drive for hours, disturb sensors, clock and processes, and report what breaks");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<SoakCommandArguments>();
   ScenarioArguments& scenario = arguments->soak.scenario;
   scenario.course = "wren";
   scenario.obstacles = 2;
@@ -114,7 +114,7 @@ void declare_soak(Subcommand& command) {
   command.option("--seed", arguments->soak.seed, "Seed of the laps and of the disturbances").show_default();
   command.option("--json", arguments->json,
                  "Write the result as JSON to this file, or to standard output: -");
-  command.action([arguments] { return run(*arguments); });
+  command.action([arguments] { return soak(*arguments); });
 }
 
 }  // namespace slalom::tools

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using vehicle::GeneratedTrack;
 using vehicle::TrackGeneratorOptions;
 
-struct Arguments {
+struct TrackArguments {
   TrackGeneratorOptions options;
   std::string character = vehicle::name(TrackGeneratorOptions{}.character);
   std::optional<double> width, top_speed;
@@ -30,7 +30,7 @@ struct Arguments {
 };
 
 /// The command that generates the same track again. --out has only the last part of the path of the folder.
-std::string command_of(const Arguments& arguments, const TrackGeneratorOptions& options) {
+std::string command_of(const TrackArguments& arguments, const TrackGeneratorOptions& options) {
   const TrackGeneratorOptions defaults;
   std::string text = "slalom track --seed " + std::to_string(options.seed) + " --length " +
                      short_number(options.length) + " --width " + short_number(options.width) +
@@ -49,7 +49,7 @@ std::string command_of(const Arguments& arguments, const TrackGeneratorOptions& 
   return text + " --out " + shell_word(folder);
 }
 
-Json summary_of(const GeneratedTrack& track, const Arguments& arguments, const std::string& command) {
+Json summary_of(const GeneratedTrack& track, const TrackArguments& arguments, const std::string& command) {
   double slowest = track.raceline.front().speed, fastest = slowest, sharpest = 0;
   for (const auto& point : track.raceline) {
     slowest = std::min(slowest, point.speed);
@@ -75,7 +75,7 @@ Json summary_of(const GeneratedTrack& track, const Arguments& arguments, const s
        {{"width", track.map.width}, {"height", track.map.height}, {"resolution_m", track.map.resolution}}}};
 }
 
-void run(Arguments arguments) {
+void track(TrackArguments arguments) {
   TrackGeneratorOptions options = arguments.options;
   options.character = vehicle::track_character(arguments.character);
   options.width = arguments.width.value_or(vehicle::usual_width(options.character));
@@ -101,7 +101,7 @@ void run(Arguments arguments) {
 
 void declare_track(Subcommand& command) {
   command.summary("Generate a course: map, raceline with speeds, obstacle path, picture");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<TrackArguments>();
   TrackGeneratorOptions& options = arguments->options;
   command.option("--out", arguments->out, "Output folder; created if it does not exist").required();
   command.option("--seed", options.seed, "Seed; the same options and seed give the same files")
@@ -125,7 +125,7 @@ void declare_track(Subcommand& command) {
   command.option("--json", arguments->json, "Write a summary as JSON to this file, or to standard output: -");
   command.flag("--no-picture", arguments->no_picture, "Do not write picture.png");
   command.action([arguments] {
-    run(*arguments);
+    track(*arguments);
     return 0;
   });
 }

@@ -10,7 +10,7 @@
 namespace slalom::tools {
 namespace {
 
-int run(const TuningArguments& arguments) {
+int tune(const TuningArguments& arguments) {
   if (rank_count() > 1)
     throw IoError("mpirun", 0, "slalom tune runs in one process; use --jobs instead of mpirun");
   make_experiments({arguments.method}, arguments.scenarios, 1, arguments.obstacles,
@@ -63,7 +63,7 @@ void declare_tune(Subcommand& command) {
       .show_default();
   add_evaluation_options(command, arguments->evaluation);
   command.find("--course").describe("Course names or folders, separated by commas");
-  command.action([arguments] { return run(*arguments); });
+  command.action([arguments] { return tune(*arguments); });
 }
 
 }  // namespace slalom::tools

@@ -15,7 +15,7 @@
 namespace slalom::tools {
 namespace {
 
-struct Arguments {
+struct ViewArguments {
   ScenarioArguments scenario;
   std::string method = "svg_mppi";
   std::uint64_t seed = 0;
@@ -28,7 +28,7 @@ struct Arguments {
 
 /// A scenario in which MPPI averages two ways around a parked car and SVG-MPPI commits to one: the program of
 /// the paper, and a car in the middle of a straight.
-void set_introduction(Arguments& arguments) {
+void set_introduction(ViewArguments& arguments) {
   arguments.introduction = true;
   arguments.scenario.course = "stag";
   arguments.scenario.config = "published";
@@ -37,7 +37,7 @@ void set_introduction(Arguments& arguments) {
   arguments.against = "mppi";
 }
 
-view::SessionOptions session_options(const Arguments& arguments) {
+view::SessionOptions session_options(const ViewArguments& arguments) {
   view::SessionOptions options;
   options.scenario = {.course = arguments.scenario.course,
                       .method = arguments.method,
@@ -63,7 +63,7 @@ view::SessionOptions session_options(const Arguments& arguments) {
   return options;
 }
 
-int run(const Arguments& arguments) {
+int view(const ViewArguments& arguments) {
   const view::ServerOptions options = server_options(arguments.host, arguments.port, arguments.token);
   const std::string page = view::page_gzip();
   view::Server server(options, {{"/", {"text/html; charset=utf-8", "gzip", page, view::gunzip(page)}}});
@@ -80,7 +80,7 @@ int run(const Arguments& arguments) {
 
 void declare_view(Subcommand& command) {
   command.summary("Drive and serve an interactive page in the browser");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ViewArguments>();
   arguments->scenario.obstacles = 8;
   add_scenario_options(command, arguments->scenario);
   add_method_option(command, arguments->method);
@@ -104,7 +104,7 @@ void declare_view(Subcommand& command) {
   command.action([arguments, &command] {
     if (command.given_only({"--host", "--port", "--token", "--record-times", "--threads"}))
       set_introduction(*arguments);
-    return run(*arguments);
+    return view(*arguments);
   });
 }
 

@@ -23,8 +23,6 @@ struct Axis {
   }
 };
 
-constexpr Colour ink{0, 0, 0}, rule{0.88, 0.88, 0.88};
-
 void draw_axes(Pen& pen, const Axis& x, const Axis& y) {
   for (double k = x.low; k <= x.high * 1.001; k *= 2) {
     pen.line(x(k), y.from, x(k), y.to, rule, 1);

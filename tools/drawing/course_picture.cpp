@@ -9,7 +9,6 @@
 namespace slalom::tools {
 namespace {
 
-constexpr Colour ink{0.13, 0.16, 0.22, 1};
 constexpr Colour faint{0.62, 0.66, 0.73, 0.8};
 constexpr Colour side{0.16, 0.52, 0.36, 0.7};
 constexpr Colour nearest{0.80, 0.13, 0.18, 1};

@@ -9,11 +9,9 @@
 namespace slalom::tools {
 namespace {
 
-constexpr Colour ink{0.13, 0.16, 0.22, 1};
 constexpr Colour path_colour{0.62, 0.66, 0.73, 0.9};
 constexpr Colour obstacle_fill{0.32, 0.36, 0.44, 1};
 constexpr Colour hit_fill{0.80, 0.13, 0.23, 1};
-constexpr Colour white{1, 1, 1, 1};
 
 void draw_cross(MapPicture& picture, const maps::Point& at, double size) {
   for (const auto& [colour, width] : {std::pair(white, 9.0), std::pair(hit_fill, 4.5)})

@@ -7,9 +7,6 @@
 namespace slalom::tools {
 namespace {
 
-constexpr Colour paper{1, 1, 1, 1};
-constexpr Colour ink{0.13, 0.16, 0.22, 1};
-constexpr Colour faint_ink{0.42, 0.46, 0.54, 1};
 constexpr int band = 150;  // pixels of the band below the map
 
 /// A round length for a scale bar that is at most `longest` m.
@@ -50,7 +47,7 @@ MapView view_of(const maps::OccupancyGrid& map, int long_side) {
 
 MapPicture::MapPicture(const maps::OccupancyGrid& map, int long_side)
     : view_(view_of(map, long_side)), surface_(view_.width, view_.height + band), pen_(surface_.pen()) {
-  pen_.fill_surface(paper);
+  pen_.fill_surface(white);
   std::vector<std::uint32_t> cells = map_pixels(map, view_);
   pen_.image(cells, view_.width);
 }
@@ -87,7 +84,7 @@ void MapPicture::polygon(const std::vector<maps::Point>& corners, Colour fill, C
 
 void MapPicture::disc(const maps::Point& centre, double radius, Colour fill) {
   const maps::Point at = view_.pixel(centre);
-  pen_.disc(at.x, at.y, radius, fill, paper, 2.5);
+  pen_.disc(at.x, at.y, radius, fill, white, 2.5);
 }
 
 void MapPicture::arrow(const maps::Pose& at, double size, Colour fill) {
@@ -97,7 +94,7 @@ void MapPicture::arrow(const maps::Pose& at, double size, Colour fill) {
   for (const auto& [x, y] :
        {std::pair{size, 0.0}, {-0.7 * size, 0.75 * size}, {-0.3 * size, 0.0}, {-0.7 * size, -0.75 * size}})
     corners.emplace_back(centre.x + along * x - across * y, centre.y + across * x + along * y);
-  pen_.area(corners, fill, paper, 2.5);
+  pen_.area(corners, fill, white, 2.5);
 }
 
 std::vector<std::string> MapPicture::wrapped(const std::string& words, double size, double width) {

@@ -15,9 +15,8 @@ namespace {
 using evaluation::RacingLap;
 using evaluation::RacingSample;
 
-constexpr Colour ink{0.13, 0.16, 0.22, 1}, faint_ink{0.42, 0.46, 0.54, 1}, rule{0.89, 0.91, 0.94, 1},
-    lap_colour{0.12, 0.42, 0.78, 1}, profile_colour{0.45, 0.48, 0.55, 1}, other_colour{0.85, 0.40, 0.08, 1},
-    beyond_colour{0.80, 0.13, 0.23, 1};
+constexpr Colour lap_colour{0.12, 0.42, 0.78, 1}, profile_colour{0.45, 0.48, 0.55, 1},
+    other_colour{0.85, 0.40, 0.08, 1}, beyond_colour{0.80, 0.13, 0.23, 1};
 constexpr double width = 1240, height = 720, left = 64, right = 800, speed_top = 112, speed_bottom = 400,
                  delta_top = 456, delta_bottom = 660, circle_left = 876, circle_right = 1212,
                  circle_top = 112, circle_bottom = circle_top + circle_right - circle_left;

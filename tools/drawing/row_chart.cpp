@@ -9,9 +9,9 @@
 namespace slalom::tools {
 namespace {
 
-constexpr Colour ink{0.13, 0.16, 0.22, 1}, faint_ink{0.42, 0.46, 0.54, 1}, rule{0.89, 0.91, 0.94, 1},
-    stripe{0.972, 0.976, 0.984, 1}, ours_fill{0.12, 0.42, 0.78, 1}, ours_light{0.12, 0.42, 0.78, 0.28},
-    theirs_fill{0.55, 0.58, 0.64, 1}, theirs_light{0.55, 0.58, 0.64, 0.25}, white{1, 1, 1, 1};
+constexpr Colour stripe{0.972, 0.976, 0.984, 1}, ours_fill{0.12, 0.42, 0.78, 1},
+    ours_light{0.12, 0.42, 0.78, 0.28}, theirs_fill{0.55, 0.58, 0.64, 1},
+    theirs_light{0.55, 0.58, 0.64, 0.25};
 constexpr double row_height = 42, names_width = 250, panel_gap = 48, top = 62, bottom = 46, margin = 18,
                  panel_width = 300, thick = 13;
 

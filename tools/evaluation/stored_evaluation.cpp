@@ -37,11 +37,11 @@ std::vector<std::pair<std::string, std::string>> parse_set(const std::string& te
   return set;
 }
 
-std::string option_text(const Json& value) {
+std::string value_text(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (!value.is_array()) return value.dump();
   std::string text = "[";
-  for (const auto& each : value) text += (text.size() > 1 ? ", " : "") + option_text(each);
+  for (const auto& each : value) text += (text.size() > 1 ? ", " : "") + value_text(each);
   return text + "]";
 }
 
@@ -144,7 +144,7 @@ ScenarioArguments evaluation_arguments(const StoredEvaluation& stored, const std
     // The file may say something else by now: every option is set as it was.
     for (const auto& [section, options] : settings.at("options").items())
       for (const auto& [key, value] : options.items())
-        arguments.set.push_back(section + "." + key + "=" + option_text(value));
+        arguments.set.push_back(section + "." + key + "=" + value_text(value));
   } catch (const JsonError& error) {
     throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());
   }

@@ -7,8 +7,7 @@
 namespace slalom::tools {
 namespace {
 
-constexpr Colour ink{0.13, 0.16, 0.22, 1}, faint_ink{0.42, 0.46, 0.54, 1}, rule{0.89, 0.91, 0.94, 1},
-    frame{0.78, 0.81, 0.86, 1}, white{1, 1, 1, 1}, disc_fill{0.36, 0.39, 0.45, 1},
+constexpr Colour frame{0.78, 0.81, 0.86, 1}, disc_fill{0.36, 0.39, 0.45, 1},
     disc_shade{0.36, 0.39, 0.45, 0.13}, bad{0.80, 0.24, 0.20, 0.09}, bad_key{0.80, 0.24, 0.20, 0.45},
     ours{0.12, 0.42, 0.78, 1}, ours_light{0.12, 0.42, 0.78, 0.16}, optimum{0.90, 0.58, 0.10, 1},
     optimum_light{0.96, 0.72, 0.26, 0.30}, guide{0.55, 0.16, 0.66, 1}, good_verdict{0.05, 0.48, 0.30, 1},

@@ -19,7 +19,7 @@ namespace {
 using namespace evaluation;
 
 constexpr Colour blue{0.12, 0.42, 0.78, 1}, orange{0.91, 0.45, 0.10, 1}, path_colour{0.62, 0.66, 0.73, 0.9},
-    obstacle_fill{0.32, 0.36, 0.44, 1}, white{1, 1, 1, 1};
+    obstacle_fill{0.32, 0.36, 0.44, 1};
 constexpr std::array<Colour, 6> palette = {{blue,
                                             orange,
                                             {0.20, 0.60, 0.36, 1},

@@ -14,52 +14,52 @@ namespace {
 using evaluation::ControlStep;
 using vehicle::PredictedState;
 
-constexpr const char* names[] = {"tick",
-                                 "time",
-                                 "x",
-                                 "y",
-                                 "yaw",
-                                 "speed",
-                                 "steer",
-                                 "yaw_rate",
-                                 "slip",
-                                 "command_steer",
-                                 "command_speed",
-                                 "steer_estimate",
-                                 "status",
-                                 "distance_cost",
-                                 "yaw_cost",
-                                 "collision_cost",
-                                 "minimum_cost",
-                                 "expected_cost",
-                                 "effective_samples",
-                                 "samples",
-                                 "collided_share",
-                                 "temperature",
-                                 "iterations",
-                                 "tick_ms",
-                                 "draw_ms",
-                                 "evaluate_ms",
-                                 "guide_ms",
-                                 "update_ms",
-                                 "solve_ms",
-                                 "deadline_ms",
-                                 "lap",
-                                 "lap_time",
-                                 "progress",
-                                 "path_distance",
-                                 "clearance",
-                                 "contact",
-                                 "contacts",
-                                 "sequence_cost",
-                                 "prediction_step",
-                                 "method",
-                                 "slip_estimate",
-                                 "grip_used",
-                                 "friction_estimate",
-                                 "friction_relied_on",
-                                 "steering_gain_estimate",
-                                 "delay_estimate"};
+constexpr const char* scalar_labels[] = {"tick",
+                                         "time",
+                                         "x",
+                                         "y",
+                                         "yaw",
+                                         "speed",
+                                         "steer",
+                                         "yaw_rate",
+                                         "slip",
+                                         "command_steer",
+                                         "command_speed",
+                                         "steer_estimate",
+                                         "status",
+                                         "distance_cost",
+                                         "yaw_cost",
+                                         "collision_cost",
+                                         "minimum_cost",
+                                         "expected_cost",
+                                         "effective_samples",
+                                         "samples",
+                                         "collided_share",
+                                         "temperature",
+                                         "iterations",
+                                         "tick_ms",
+                                         "draw_ms",
+                                         "evaluate_ms",
+                                         "guide_ms",
+                                         "update_ms",
+                                         "solve_ms",
+                                         "deadline_ms",
+                                         "lap",
+                                         "lap_time",
+                                         "progress",
+                                         "path_distance",
+                                         "clearance",
+                                         "contact",
+                                         "contacts",
+                                         "sequence_cost",
+                                         "prediction_step",
+                                         "method",
+                                         "slip_estimate",
+                                         "grip_used",
+                                         "friction_estimate",
+                                         "friction_relied_on",
+                                         "steering_gain_estimate",
+                                         "delay_estimate"};
 
 /// How many states a sequence of inputs leads through.
 std::size_t states_of(const vehicle::Planner& planner, std::span<const float> inputs) {
@@ -83,7 +83,7 @@ std::array<double, 6> estimates(const vehicle::PlannerOutput& out) {
 }  // namespace
 
 std::span<const char* const> scalar_names() noexcept {
-  return names;
+  return scalar_labels;
 }
 
 std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts) {
@@ -97,7 +97,7 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
   if (solve && !out.inputs.empty()) predict(tick.planner, out.inputs);
   const double none = std::numeric_limits<double>::quiet_NaN();
   const auto [slip, grip, friction, cautious, gain, delay] = estimates(out);
-  const std::array<double, std::size(names)> values = {
+  const std::array<double, std::size(scalar_labels)> values = {
       static_cast<double>(tick.step),
       tick.time,
       car.x,

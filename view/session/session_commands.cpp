@@ -6,6 +6,7 @@
 #include "view/session/session.hpp"
 
 #include "slalom/evaluation/json.hpp"
+#include "view/session/command_fields.hpp"
 #include "view/session/work_limit.hpp"
 
 namespace slalom::view {
@@ -15,53 +16,21 @@ constexpr int max_steps = 400;             // of one command "step"
 constexpr std::size_t max_deferred = 256;  // commands that wait for steps
 constexpr double slowest_rate = 0.001;
 
-/// A malformed command, in contrast to one that cannot be executed.
-struct Malformed : std::invalid_argument {
-  using std::invalid_argument::invalid_argument;
-};
-
-double number(const Json& command, const char* key) {
-  const auto found = command.find(key);
-  if (found == nullptr || !found->is_number() || !std::isfinite(found->get<double>()))
-    throw Malformed(std::string(key) + ": must be a finite number");
-  return found->get<double>();
-}
-double number(const Json& command, const char* key, double otherwise) {
-  return command.contains(key) ? number(command, key) : otherwise;
-}
-int integer(const Json& command, const char* key) {
-  const double value = number(command, key);
-  if (std::floor(value) != value || std::abs(value) > 1e9)
-    throw Malformed(std::string(key) + ": must be an integer");
-  return static_cast<int>(value);
-}
-std::string text(const Json& command, const char* key) {
-  const auto found = command.find(key);
-  if (found == nullptr || !found->is_string()) throw Malformed(std::string(key) + ": must be text");
-  return found->get<std::string>();
-}
-bool flag(const Json& command, const char* key) {
-  const auto found = command.find(key);
-  if (found == nullptr || !found->is_boolean()) throw Malformed(std::string(key) + ": must be true or false");
-  return found->get<bool>();
-}
-maps::Pose pose(const Json& command) {
-  return {number(command, "x"), number(command, "y"), number(command, "yaw", 0)};
-}
 std::uint64_t count(const std::string& digits) {
   if (digits.empty() || digits.size() > 19 || digits.find_first_not_of("0123456789") != std::string::npos)
-    throw Malformed("seed: must be a whole number from 0");
+    throw MalformedCommand("seed: must be a whole number from 0");
   return std::stoull(digits);
 }
 
 /// Applies the settings `set` of a command, a list of key=value. False if there are none.
 bool apply_settings(vehicle::Configuration& configuration, const Json& command, const std::string& method) {
   const Json set = command.contains("set") ? command.at("set") : Json::array();
-  if (!set.is_array() || set.size() > 200) throw Malformed("set: must be a list of at most 200 key=value");
+  if (!set.is_array() || set.size() > 200)
+    throw MalformedCommand("set: must be a list of at most 200 key=value");
   for (const Json& each : set) {
     const std::string assignment = each.is_string() ? each.get<std::string>() : "";
     const auto equals = assignment.find('=');
-    if (equals == std::string::npos) throw Malformed("set: must be a list of key=value");
+    if (equals == std::string::npos) throw MalformedCommand("set: must be a list of key=value");
     vehicle::set_option(configuration, assignment.substr(0, equals), assignment.substr(equals + 1), method);
   }
   return !set.empty();
@@ -112,7 +81,7 @@ void Session::handle(const Received& received) {
   try {
     handle(received.client, command);
     if (!id.is_null()) tell_done(received.client, id);
-  } catch (const Malformed& error) {
+  } catch (const MalformedCommand& error) {
     ++refused_;
     refuse(received.client, error.what(), id);
   } catch (const std::exception& error) {
@@ -121,7 +90,7 @@ void Session::handle(const Received& received) {
 }
 
 void Session::handle(std::uint64_t client, const Json& command) {
-  const std::string what = text(command, "do");
+  const std::string what = field::text(command, "do");
   state_changed_ = true;
   if (what == "step")
     handle_step(client, command);
@@ -130,17 +99,18 @@ void Session::handle(std::uint64_t client, const Json& command) {
   else if (what == "lap")
     handle_lap(command);
   else if (what == "save")
-    save(client, text(command, "what"));
+    save(client, field::text(command, "what"));
   else if (what == "past")
-    tell_past(client, integer(command, "from"), integer(command, "to"));
+    tell_past(client, field::integer(command, "from"), field::integer(command, "to"));
   else if (!handle_transport(what, command) && !handle_edit(what, command) && !handle_options(what, command))
-    throw Malformed("do: '" + what.substr(0, 40) + "' is not a command");
+    throw MalformedCommand("do: '" + what.substr(0, 40) + "' is not a command");
   end_introduction(what);
 }
 
 /// Asks for ticks, which `turn` then drives.
 void Session::handle_step(std::uint64_t client, const Json& command) {
-  const int ticks = command.contains("ticks") ? std::clamp(integer(command, "ticks"), 1, max_steps) : 1;
+  const int ticks =
+      command.contains("ticks") ? std::clamp(field::integer(command, "ticks"), 1, max_steps) : 1;
   go_to_viewed();
   waiting_ = false;
   paused_ = true;
@@ -154,7 +124,7 @@ void Session::pause(const Json& command) {
   steps_left_ = 0;
   publish_newest();
   if (!command.contains("tick") || history_.empty()) return;
-  const int tick = integer(command, "tick");
+  const int tick = field::integer(command, "tick");
   if ((history_.back().tick - tick) * simulation_->loop().runner().control_period() > 0.25) show(tick);
 }
 
@@ -169,15 +139,15 @@ bool Session::handle_transport(const std::string& what, const Json& command) {
     due_ = Clock::now();
   } else if (what == "seek") {
     steps_left_ = 0;
-    show(integer(command, "tick"));
+    show(field::integer(command, "tick"));
   } else if (what == "rate") {
-    const double rate = number(command, "rate");
+    const double rate = field::number(command, "rate");
     if (rate != 0 && !(rate >= slowest_rate && rate <= 100))
-      throw Malformed("rate: must be 0 for the maximum speed, or in [0.001, 100]");
+      throw MalformedCommand("rate: must be 0 for the maximum speed, or in [0.001, 100]");
     rate_ = rate;
     due_ = Clock::now();
   } else if (what == "real_time") {
-    real_time_ = flag(command, "on");
+    real_time_ = field::flag(command, "on");
     if (real_time_) rate_ = 1;
   } else if (what == "restart") {
     restart();
@@ -194,33 +164,33 @@ bool Session::handle_edit(const std::string& what, const Json& command) {
   go_to_viewed();
   const SetBodies before{bodies_of(simulation_->loop().world())};
   if (what == "add") {
-    const std::string kind = text(command, "kind");
-    AddBody body{.pose = pose(command)};
+    const std::string kind = field::text(command, "kind");
+    AddBody body{.pose = field::pose(command)};
     if (kind == "car")
       body.kind = BodyKind::parked_car;
     else if (kind == "box")
       body.kind = BodyKind::box;
     else if (kind != "disc")
-      throw Malformed("kind: must be car, box or disc");
-    body.length = number(command, "length", body.length);
-    body.width = number(command, "width", body.length);
+      throw MalformedCommand("kind: must be car, box or disc");
+    body.length = field::number(command, "length", body.length);
+    body.width = field::number(command, "width", body.length);
     if (!(body.length >= 0.02 && body.length <= 10 && body.width >= 0.02 && body.width <= 10))
-      throw Malformed("length and width: must be in [0.02, 10] m");
+      throw MalformedCommand("length and width: must be in [0.02, 10] m");
     edit(body);
     undo_.remember(before);
   } else if (what == "move") {
-    edit(MoveBody{integer(command, "body"), pose(command)});
-    undo_.remember_drag(before, command.contains("drag") ? integer(command, "drag") : 0);
+    edit(MoveBody{field::integer(command, "body"), field::pose(command)});
+    undo_.remember_drag(before, command.contains("drag") ? field::integer(command, "drag") : 0);
   } else if (what == "remove") {
-    edit(RemoveBody{integer(command, "body")});
+    edit(RemoveBody{field::integer(command, "body")});
     undo_.remember(before);
   } else if (what == "place_car") {
-    edit(MoveCar{pose(command)});
+    edit(MoveCar{field::pose(command)});
   } else {
     const sim::CarState& car = simulation_->loop().world().state(0);
-    const double aside = number(command, "left", 0), turn = number(command, "turn", 0);
+    const double aside = field::number(command, "left", 0), turn = field::number(command, "turn", 0);
     if (std::abs(aside) > 2 || std::abs(turn) > 3.2)
-      throw Malformed("nudge: must be at most 2 m and 3.2 rad");
+      throw MalformedCommand("nudge: must be at most 2 m and 3.2 rad");
     edit(MoveCar{{car.x - aside * std::sin(car.yaw), car.y + aside * std::cos(car.yaw), car.yaw + turn}});
   }
   tell_options();  // has the number of changes that can be undone
@@ -282,7 +252,7 @@ void Session::start_ghost(const std::string& method, const vehicle::Configuratio
 
 /// Continues with another method or other options; the previous driver continues as a ghost.
 void Session::fork(const Json& command) {
-  const std::string method = text(command, "method"), before = names_.method;
+  const std::string method = field::text(command, "method"), before = names_.method;
   vehicle::Configuration changed = configuration_;
   const bool has_settings = apply_settings(changed, command, method);
   check_work(changed, method);
@@ -298,7 +268,7 @@ void Session::fork(const Json& command) {
 bool Session::handle_options(const std::string& what, const Json& command) {
   if (what == "set") {
     vehicle::Configuration changed = configuration_;
-    vehicle::set_option(changed, text(command, "key"), text(command, "value"), names_.method);
+    vehicle::set_option(changed, field::text(command, "key"), field::text(command, "value"), names_.method);
     go_to_viewed();
     change(changed, names_.method, true);
   } else if (what == "undo" || what == "redo") {
@@ -313,12 +283,12 @@ bool Session::handle_options(const std::string& what, const Json& command) {
     change(changed, names_.method, true);
   } else if (what == "method") {
     go_to_viewed();
-    change(configuration_, text(command, "method"), false);
+    change(configuration_, field::text(command, "method"), false);
   } else if (what == "fork") {
     fork(command);
   } else if (what == "ghost") {
     go_to_viewed();
-    start_ghost(text(command, "method"), configuration_);
+    start_ghost(field::text(command, "method"), configuration_);
   } else {
     return false;
   }
@@ -327,14 +297,14 @@ bool Session::handle_options(const std::string& what, const Json& command) {
 
 void Session::handle_scenario(const Json& command) {
   ScenarioNames names = names_;
-  if (command.contains("course")) names.course = text(command, "course");
-  if (command.contains("method")) names.method = text(command, "method");
-  if (command.contains("config")) names.config = text(command, "config");
-  if (command.contains("seed")) names.seed = count(text(command, "seed"));
-  if (command.contains("obstacles")) names.obstacles = integer(command, "obstacles");
-  if (command.contains("opponents")) names.opponents = integer(command, "opponents");
-  if (names.opponents < 0 || names.opponents > 16) throw Malformed("opponents: must be in [0, 16]");
-  if (names.obstacles < 0 || names.obstacles > 60) throw Malformed("obstacles: must be in [0, 60]");
+  if (command.contains("course")) names.course = field::text(command, "course");
+  if (command.contains("method")) names.method = field::text(command, "method");
+  if (command.contains("config")) names.config = field::text(command, "config");
+  if (command.contains("seed")) names.seed = count(field::text(command, "seed"));
+  if (command.contains("obstacles")) names.obstacles = field::integer(command, "obstacles");
+  if (command.contains("opponents")) names.opponents = field::integer(command, "opponents");
+  if (names.opponents < 0 || names.opponents > 16) throw MalformedCommand("opponents: must be in [0, 16]");
+  if (names.obstacles < 0 || names.obstacles > 60) throw MalformedCommand("obstacles: must be in [0, 60]");
   // A page may only choose from the listed courses; it must not make the server read other folders.
   const auto known = [](const std::vector<std::string>& all, const std::string& name) {
     return std::find(all.begin(), all.end(), name) != all.end();

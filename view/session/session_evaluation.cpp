@@ -4,19 +4,13 @@
 #include "view/session/session.hpp"
 
 #include "slalom/evaluation/json.hpp"
+#include "view/session/command_fields.hpp"
 
 namespace slalom::view {
 namespace {
 
 constexpr double before_contact = 2.0, after_contact = 0.25;  // s shown
 constexpr double slow = 0.25;                                 // of simulated to real time
-
-int integer(const Json& command, const char* key) {
-  const auto found = command.find(key);
-  if (found == nullptr || !found->is_integer())
-    throw std::invalid_argument(std::string(key) + ": must be an integer");
-  return found->get<int>();
-}
 
 }  // namespace
 
@@ -35,8 +29,8 @@ int Session::tick_of_contact(int contact) {
 /// A lap of the evaluation: from its start, or the seconds before one of its collisions.
 void Session::handle_lap(const Json& command) {
   if (!options_.load_lap) throw std::invalid_argument("lap: no evaluation is open");
-  const int experiment = integer(command, "experiment"), lap = integer(command, "lap"),
-            contact = command.contains("contact") ? integer(command, "contact") : -1;
+  const int experiment = field::integer(command, "experiment"), lap = field::integer(command, "lap"),
+            contact = command.contains("contact") ? field::integer(command, "contact") : -1;
   note("Driving lap " + std::to_string(lap) + " again \xE2\x80\xA6");
   LoadedLap loaded = options_.load_lap(experiment, lap);
   install(std::move(loaded.scenario), loaded.names);
