@@ -327,7 +327,7 @@ TEST(LapRunner, RejectsInvalidSettings) {
   lost.localiser.beams = 0;
   says(error_of("mppi", {.hardware = lost}, usual), "beams");
   try {
-    LapRunner(wren(Protocol::published), usual, "mppi", {.hardware = HardwareConditions{}});
+    const LapRunner runner(wren(Protocol::published), usual, "mppi", {.hardware = HardwareConditions{}});
     ADD_FAILURE() << "the published evaluation knows no hardware";
   } catch (const std::invalid_argument& error) {
     says(error.what(), "hardware");

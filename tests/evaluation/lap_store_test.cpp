@@ -129,7 +129,7 @@ TEST_F(StoredLaps, SettingsOfAnyDepthAreRefused) {
     const std::size_t brackets = static_cast<std::size_t>(depth);
     write("settings.json", "{\"a\": " + std::string(brackets, '[') + std::string(brackets, ']') + "}");
     try {
-      LapStore(folder_, evaluation_, true);
+      const LapStore store(folder_, evaluation_, true);
       ADD_FAILURE() << "settings of depth " << depth << " were taken";
     } catch (const IoError& error) {
       EXPECT_NE(std::string(error.what()).find("settings.json: must not nest deeper than 64 levels"),
@@ -144,7 +144,7 @@ TEST_F(StoredLaps, AFolderHasOneStoreAtATime) {
     LapStore first(folder_, evaluation_, false);
     first.add(row(0));
     try {
-      LapStore(folder_, evaluation_, true);
+      const LapStore store(folder_, evaluation_, true);
       ADD_FAILURE() << "the second store got in";
     } catch (const IoError& error) {
       EXPECT_NE(std::string(error.what()).find("is in use by process " + std::to_string(::getpid())),

@@ -243,7 +243,7 @@ TEST_F(CommandLine, ReproduceRequiresTheCourseAndTheLogsThatAreNamed) {
   refuses(command, {"--published", "logs is not a directory"});
   fs::create_directories(folder_ / "logs/path_tracking");
   refuses(command, {"--published", "logs contains none of the authors' logs"});
-  std::ofstream(folder_ / "logs/path_tracking/svg_mppi.csv");
+  std::ofstream(folder_ / "logs/path_tracking/svg_mppi.csv") << "";
   refuses(command, {"slalom: /proc/none"});
 }
 
@@ -256,7 +256,7 @@ TEST_F(CommandLine, ReplayIgnoresNoOption) {
   for (const std::string option : {"--html x.html", "--set mppi.samples=3", "--config default", "--port 0"})
     refuses("replay ev --lap 0 " + option,
             {option.substr(0, option.find(' ')), "has no effect when a lap of an evaluation is replayed"});
-  std::ofstream(folder_ / "a.mcap");
+  std::ofstream(folder_ / "a.mcap") << "";
   for (const std::string option : {"--plot a.png", "--record q.mcap", "--method foo", "--config nosuch",
                                    "--course nosuch", "--lap 0", "--scenario pt", "--set a=1"})
     refuses("replay a.mcap --html q.html " + option,

@@ -18,8 +18,6 @@
 namespace slalom::view {
 namespace {
 
-namespace fs = std::filesystem;
-
 std::shared_ptr<const evaluation::Environment> environment() {
   return evaluation::load_environment(SLALOM_COURSES "/wren", evaluation::Protocol::true_physics, {});
 }
