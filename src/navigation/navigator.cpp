@@ -16,16 +16,15 @@ namespace slalom::navigation {
 
 namespace {
 
-constexpr double largest = 1e6;          // m from the origin, of positions
-constexpr double search_period = 0.1;    // s between searches while there is no way
-constexpr double min_rejoin = 0.5;       // m of path with room that a detour needs where it ends
-constexpr double progress_step = 0.1;    // m of progress after which the robot is not stuck
-constexpr double settling = 1;           // m before the goal, where a robot that turns makes no progress
-constexpr double dead_end_ahead = 0.2;   // m from the robot's front to the middle of what counts as closed
-constexpr double dead_end_radius = 0.5;  // m
-constexpr double retry_after = 10;       // s without a way after which ways that were closed are tried again
-constexpr int steps_to_react = 2;        // steps of a plan, beside those of braking, that must be free
-constexpr double max_period = 0.2;       // s for which the robot brakes in one command
+constexpr double largest = 1e6;         // m from the origin, of positions
+constexpr double search_period = 0.1;   // s between searches while there is no way
+constexpr double min_rejoin = 0.5;      // m of path with room that a detour needs where it ends
+constexpr double progress_step = 0.1;   // m of progress after which the robot is not stuck
+constexpr double settling = 1;          // m before the goal, where a robot that turns makes no progress
+constexpr double dead_end_ahead = 0.2;  // m from the robot's front to the middle of what counts as closed
+constexpr double retry_after = 10;      // s without a way after which ways that were closed are tried again
+constexpr int steps_to_react = 2;       // steps of a plan, beside those of braking, that must be free
+constexpr double max_period = 0.2;      // s for which the robot brakes in one command
 constexpr std::size_t max_dead_ends = 4;
 
 bool finite(const maps::Pose& pose) {
@@ -143,8 +142,9 @@ bool Navigator::Implementation::is_at_goal(const maps::Pose& pose) const noexcep
 /// Whether the body is known to have no room at a point of the path, or was stuck there.
 bool Navigator::Implementation::is_closed(const Costmap& costmap, const maps::Point& point) const noexcept {
   if (planner_.knows(costmap, point) && !planner_.has_room(costmap, point)) return true;
-  return std::any_of(dead_ends_.begin(), dead_ends_.begin() + static_cast<std::ptrdiff_t>(dead_end_count_),
-                     [&](const maps::Point& end) { return distance(point, end) < dead_end_radius; });
+  return std::any_of(
+      dead_ends_.begin(), dead_ends_.begin() + static_cast<std::ptrdiff_t>(dead_end_count_),
+      [&](const maps::Point& end) { return distance(point, end) < PathPlanner::dead_end_radius; });
 }
 
 /// The first closed point of the path within the look-ahead; the number of points if there is none.

@@ -8,13 +8,12 @@ namespace slalom::navigation {
 
 namespace {
 
-constexpr double cautious = 0.3;         // m beyond what the body needs, in which driving costs more
-constexpr float nearness_price = 4;      // times as much at the inner end of it
-constexpr float unknown_price = 1;       // times as much on top
-constexpr double start_reach = 0.3;      // m around the start that counts as free
-constexpr double kept_reach = 0.4;       // m
-constexpr float other_price = 1.3F;      // times as much away from the path that was kept
-constexpr double dead_end_radius = 0.5;  // m
+constexpr double cautious = 0.3;     // m beyond what the body needs, in which driving costs more
+constexpr float nearness_price = 4;  // times as much at the inner end of it
+constexpr float unknown_price = 1;   // times as much on top
+constexpr double start_reach = 0.3;  // m around the start that counts as free
+constexpr double kept_reach = 0.4;   // m
+constexpr float other_price = 1.3F;  // times as much away from the path that was kept
 
 maps::Point corner_of(const maps::GridGeometry& geometry) {
   return {geometry.center_x - 0.5 * geometry.length_x(), geometry.center_y - 0.5 * geometry.length_y()};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "slalom/core/square.hpp"
 #include "tracking/manoeuvres.hpp"
 
 namespace slalom::tracking {
@@ -12,14 +13,6 @@ namespace {
 constexpr double arc_error = 0.15, offset_error = 0.06, speed_error = 0.5;  // m, m, m/s: of comparisons
 
 using Weights = std::array<double, manoeuvres>;
-
-/// What is remembered of an object.
-struct Remembered {
-  int id = 0;
-  double since = 0;  ///< s, when `motion` was
-  Motion motion;
-  Weights weights{};
-};
 
 int possible(const Motion& motion) noexcept {
   return motion.on_course ? manoeuvres : manoeuvres_without_course;
@@ -37,13 +30,17 @@ Weights first_weights(const Motion& motion) noexcept {
   return weights;
 }
 
-double square(double value) {
-  return value * value;
-}
-
 }  // namespace
 
 struct Predictor::Implementation {
+  /// What is remembered of an object.
+  struct Remembered {
+    int id = 0;
+    double since = 0;  ///< s, when `motion` was
+    Motion motion;
+    Weights weights{};
+  };
+
   PredictorOptions options;
   CourseLine course;
   std::size_t times;
@@ -182,7 +179,7 @@ std::span<const maps::PredictedObstacle> Predictor::update(std::span<const Track
                                                            double stamp) noexcept {
   Implementation& p = *implementation_;
   p.predicted.clear();
-  const auto gone = [&](const Remembered& each) {
+  const auto gone = [&](const Implementation::Remembered& each) {
     return std::none_of(objects.begin(), objects.end(),
                         [&](const TrackedObject& object) { return object.id == each.id; });
   };

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "slalom/core/square.hpp"
+
 namespace slalom::tracking {
 namespace {
 
@@ -17,10 +19,6 @@ constexpr double known_rest = 0.6;               // m/s, deviation of the speed 
 constexpr double unknown_yaw_deviation = 0.4;    // rad
 constexpr double unknown_turn_deviation = 2;     // rad/s
 constexpr double reversing = -0.5;               // m/s, below which an object is turned around
-
-double square(double value) {
-  return value * value;
-}
 
 /// The yaw of a new box: the longer side of the fit, or the line of sight if that side is no longer than an
 /// object is wide.

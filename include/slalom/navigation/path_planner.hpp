@@ -15,6 +15,7 @@ class PathPlanner {
  public:
   static constexpr std::size_t max_points = 4000;  ///< of a path
   static constexpr double spacing = 0.05;          ///< m, between the points of a path
+  static constexpr double dead_end_radius = 0.5;   ///< m, round a dead end, where no way leads
 
   /// For costmaps of this size, and a body with this half width (m).
   PathPlanner(const maps::GridGeometry& geometry, double half_width);
@@ -26,7 +27,7 @@ class PathPlanner {
 
   /// Makes the cells of a costmap, which must have the size given, those of the next search. `kept` is a path
   /// that was followed before: cells further than 0.4 m from it cost 1.3 times as much, so that the search
-  /// prefers the way that was chosen. No way leads within 0.5 m of the `dead_ends`.
+  /// prefers the way that was chosen. No way leads within `dead_end_radius` of the `dead_ends`.
   void read(const Costmap& costmap, std::span<const maps::Pose> kept,
             std::span<const maps::Point> dead_ends) noexcept;
   /// Searches from a position. Returns false if it is off the costmap. Cells within 0.3 m count as free.

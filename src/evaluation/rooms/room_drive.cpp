@@ -21,9 +21,9 @@ constexpr double resolution = 0.05;                      // m
 constexpr double half_length = 0.35, half_width = 0.25;  // m, of the robot
 constexpr double max_range = 8;                          // m
 constexpr int beams = 240;
-constexpr double side_margin = 0.1;  // m from the line to the obstacle; less is no side
-constexpr double min_speed = 0.03;   // m/s that counts as driving
-constexpr double standing = 1e-3;    // m/s
+constexpr double side_margin = 0.1;         // m from the line to the obstacle; less is no side
+constexpr double min_driving_speed = 0.03;  // m/s that counts as driving
+constexpr double standing = 1e-3;           // m/s
 
 /// Counts how often plans change the side on which they pass an obstacle, until the robot is past it.
 class SideCounter {
@@ -157,7 +157,9 @@ RoomDrive drive_room(const RoomScenario& scenario, const RoomDriver& driver, std
     if (result.status == NavigationStatus::blocked && drive.answer_time < 0 && shown_closed >= 0)
       drive.answer_time = drive.time - shown_closed;
     drive.length += robot.move(result.command, conditions.period);
-    const int now = robot.velocity.forward > min_speed ? 1 : robot.velocity.forward < -min_speed ? -1 : 0;
+    const int now = robot.velocity.forward > min_driving_speed    ? 1
+                    : robot.velocity.forward < -min_driving_speed ? -1
+                                                                  : 0;
     drive.reversals += now == -direction;
     if (now != 0) direction = now;
     if (result.status == NavigationStatus::goal_reached && stands(robot.velocity)) {

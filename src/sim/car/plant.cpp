@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "sim/validation.hpp"
 
 namespace slalom::sim {
 namespace {
 
-constexpr double pi = 3.141592653589793;
+using std::numbers::pi;
 
 double wrap(double yaw, bool gym) {
   if (!gym) return yaw > pi || yaw < -pi ? std::remainder(yaw, 2 * pi) : yaw;

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace slalom::sim {
 namespace {
 
-constexpr double pi = 3.141592653589793;
+using std::numbers::pi;
 
 /// The mean over a window of `width` values; beyond the ends they are 0. As numpy.convolve in the mode `same`
 /// with `width` ones: as many values as the longer of both, the window of an even width begins half of it

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace slalom::sim::detail {
 namespace {
 
-constexpr double pi = 3.141592653589793;
+using std::numbers::pi;
 constexpr int table_size = 2000;
 
 /// Cosines and sines of 2000 angles from 0 to 2 pi, both ends included.

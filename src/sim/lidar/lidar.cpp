@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "sim/gym/gym_scan.hpp"
 #include "sim/lidar/scan.hpp"
@@ -12,7 +13,7 @@
 namespace slalom::sim {
 namespace {
 
-constexpr double pi = 3.141592653589793;
+using std::numbers::pi;
 
 std::size_t padded(int count) {
   return static_cast<std::size_t>((count + detail::scan_padding - 1) / detail::scan_padding *

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "sim/lidar/scan.hpp"
 #include "slalom/sim/lidar.hpp"
@@ -7,7 +8,7 @@
 namespace slalom::sim {
 namespace {
 
-constexpr double pi = 3.141592653589793;
+using std::numbers::pi;
 
 }  // namespace
 

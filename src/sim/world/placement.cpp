@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -12,7 +13,7 @@
 namespace slalom::sim {
 namespace {
 
-constexpr double pi = 3.141592653589793;
+using std::numbers::pi;
 
 void check(std::span<const maps::Point> path, int cars, double radius) {
   if (path.empty()) throw std::invalid_argument("path: must have at least one point to place cars at");

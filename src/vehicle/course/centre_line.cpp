@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
 namespace slalom::vehicle::detail {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 constexpr double turning_radius = 0.9;  // m, more than the 0.74 m of a 1/10 car at full lock
 constexpr double step = 0.1;            // m, of the finished centre line
 constexpr int max_draws = 6000;

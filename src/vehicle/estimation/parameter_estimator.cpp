@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slalom/core/square.hpp"
 #include "vehicle/estimation/hypothesis_bank.hpp"
 
 namespace slalom::vehicle {
@@ -25,10 +26,6 @@ double gain_at(int i) noexcept {
 double delay_at(int i) noexcept {
   return max_delay * i / (ParameterEstimator::delays - 1);
 }
-double square_of(double value) noexcept {
-  return value * value;
-}
-
 /// Mean and deviation of a value over a marginal distribution on a grid of steps `step`, where a grid point
 /// stands for a step about it.
 template <std::size_t n, class At>
@@ -36,7 +33,7 @@ detail::Moments moments(const std::array<double, n>& share, double step, At&& at
   detail::Moments made;
   for (std::size_t i = 0; i < n; ++i) made.mean += share[i] * at(static_cast<int>(i));
   double variance = step * step / 12;
-  for (std::size_t i = 0; i < n; ++i) variance += share[i] * square_of(at(static_cast<int>(i)) - made.mean);
+  for (std::size_t i = 0; i < n; ++i) variance += share[i] * square(at(static_cast<int>(i)) - made.mean);
   made.deviation = std::sqrt(variance);
   return made;
 }
@@ -63,10 +60,9 @@ ParameterEstimator::ParameterEstimator(const SingleTrackDynamics& dynamics, cons
   for (int d = 0; d < delays; ++d)
     for (int g = 0; g < gains; ++g)
       for (int f = 0; f < frictions; ++f)
-        log_prior_[at++] =
-            -0.5 * (square_of((delay_at(d) - delay_) / options_.delay_spread) +
-                    square_of((gain_at(g) - 1) / options_.gain_spread) +
-                    square_of(std::log(friction_at(f) / friction_) / options_.friction_spread));
+        log_prior_[at++] = -0.5 * (square((delay_at(d) - delay_) / options_.delay_spread) +
+                                   square((gain_at(g) - 1) / options_.gain_spread) +
+                                   square(std::log(friction_at(f) / friction_) / options_.friction_spread));
   reset();
 }
 
@@ -140,7 +136,7 @@ void ParameterEstimator::weigh() noexcept {
       angles[static_cast<std::size_t>(k * delays + d)] =
           static_cast<float>(moment.angle[static_cast<std::size_t>(d)]);
     speed[static_cast<std::size_t>(k)] = static_cast<float>(moment.motion.speed);
-    used += square_of(moment.motion.speed * moment.motion.yaw_rate) / (window_ + 1);
+    used += square(moment.motion.speed * moment.motion.yaw_rate) / (window_ + 1);
     if (k == window_) break;
     const int before = window_ - k + 1, after = std::max(window_ - k - 2, 0);
     acceleration[static_cast<std::size_t>(k)] = static_cast<float>(std::clamp(
@@ -169,12 +165,12 @@ void ParameterEstimator::weigh() noexcept {
                        .yaw = static_cast<float>(maps::wrap_angle(end.pose.yaw - begin.pose.yaw)),
                        .lateral_error = lateral_error_.data(),
                        .yaw_error = yaw_error_.data()});
-  const double share = 0.5 / window_, most = square_of(largest_error);
-  const double remembered = std::exp(-period_ / options_.memory * std::min(1.0, used / square_of(turning)));
+  const double share = 0.5 / window_, most = square(largest_error);
+  const double remembered = std::exp(-period_ / options_.memory * std::min(1.0, used / square(turning)));
   double best = -INFINITY;
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
-    const double aside = square_of(lateral_error_[i] / options_.lateral_noise);
-    const double turned = square_of(yaw_error_[i] / options_.yaw_noise);
+    const double aside = square(lateral_error_[i] / options_.lateral_noise);
+    const double turned = square(yaw_error_[i] / options_.yaw_noise);
     // An error that is not a number, of a prediction that diverges, counts as the largest.
     const double error = (aside < most ? aside : most) + (turned < most ? turned : most);
     evidence_[i] = remembered * evidence_[i] - share * error;
@@ -223,7 +219,7 @@ void ParameterEstimator::summarise() noexcept {
   // A grid cuts the prior, whose mean is then not the given value. What has been learned replaces the given
   // value, not the mean of the cut prior.
   const auto learned = [](const Moments& now, const Moments& before) {
-    return std::clamp(1 - square_of(now.deviation / before.deviation), 0.0, 1.0);
+    return std::clamp(1 - square(now.deviation / before.deviation), 0.0, 1.0);
   };
   const auto shifted = [](const Moments& now, const Moments& before, double share, double given) {
     return now.mean + (1 - share) * (given - before.mean);

@@ -4,20 +4,18 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/core/square.hpp"
+
 namespace slalom::vehicle {
 namespace {
 
 enum Index { x, y, yaw, speed, yaw_rate, lateral, bias };
 
-constexpr double piece = 0.005;   // s, of a prediction
-constexpr double farthest = 0.5;  // m or rad; a pose further from the predicted one was reset
-constexpr double slow = 0.5;      // m/s, below it tyres do not slip
-constexpr double max_slip = 1.2;  // rad
+constexpr double piece = 0.005;         // s, of a prediction
+constexpr double reset_distance = 0.5;  // m or rad; a pose further from the predicted one was reset
+constexpr double slow = 0.5;            // m/s, below it tyres do not slip
+constexpr double max_slip = 1.2;        // rad
 constexpr double bias_spread = 0.02, bias_drift = 1e-4;  // rad/s, at the start and in a period
-
-double square_of(double value) noexcept {
-  return value * value;
-}
 
 double slip_from(double sideways, double along) noexcept {
   const double safe = std::copysign(std::max(std::abs(along), 0.1), along);
@@ -92,14 +90,13 @@ void StateObserver::begin(const VehicleModel& model, const ObserverInput& input)
   state_ = {now_.pose.x, now_.pose.y,   now_.pose.yaw,
             now_.speed,  now_.yaw_rate, now_.speed * std::sin(now_.slip),
             gyro};
-  const double bias_variance = known_ ? covariance_[bias][bias] : square_of(bias_spread);
+  const double bias_variance = known_ ? covariance_[bias][bias] : square(bias_spread);
   covariance_ = {};
-  covariance_[x][x] = covariance_[y][y] =
-      square_of(std::max(options_.position_noise, input.position_deviation));
-  covariance_[yaw][yaw] = square_of(std::max(options_.heading_noise, input.yaw_deviation));
-  covariance_[speed][speed] = square_of(options_.speed_noise);
-  covariance_[yaw_rate][yaw_rate] = square_of(0.3 * std::abs(input.speed) * std::abs(slope) + 0.05);
-  covariance_[lateral][lateral] = square_of(0.05 * std::abs(input.speed) + 0.01);
+  covariance_[x][x] = covariance_[y][y] = square(std::max(options_.position_noise, input.position_deviation));
+  covariance_[yaw][yaw] = square(std::max(options_.heading_noise, input.yaw_deviation));
+  covariance_[speed][speed] = square(options_.speed_noise);
+  covariance_[yaw_rate][yaw_rate] = square(0.3 * std::abs(input.speed) * std::abs(slope) + 0.05);
+  covariance_[lateral][lateral] = square(0.05 * std::abs(input.speed) + 0.01);
   covariance_[bias][bias] = bias_variance;
 }
 
@@ -124,12 +121,12 @@ void StateObserver::predict(const VehicleModel& model, const std::optional<ImuRe
   Vector noise{1e-6,
                1e-6,
                1e-8,
-               square_of(options_.acceleration_noise * dt),
-               square_of(options_.yaw_acceleration_noise * dt),
-               square_of(options_.sideways_noise * dt),
-               square_of(bias_drift)};
+               square(options_.acceleration_noise * dt),
+               square(options_.yaw_acceleration_noise * dt),
+               square(options_.sideways_noise * dt),
+               square(bias_drift)};
   if (imu) {
-    const double measured = square_of(options_.accelerometer_noise * dt);
+    const double measured = square(options_.accelerometer_noise * dt);
     const double slip = slip_from(before[lateral], before[speed]), s = std::sin(slip), c = std::cos(slip);
     const auto share_in = [&](std::size_t row, double predicted, const Vector& derivative) {
       const double share = noise[row] / (noise[row] + measured);
@@ -182,18 +179,18 @@ void StateObserver::update(const VehicleModel& model, const ObserverInput& input
   }
   predict(model, input.imu);
   const double turned = maps::wrap_angle(input.pose.yaw - state_[yaw]);
-  if (!(std::hypot(input.pose.x - state_[x], input.pose.y - state_[y]) < farthest &&
-        std::abs(turned) < farthest))
+  if (!(std::hypot(input.pose.x - state_[x], input.pose.y - state_[y]) < reset_distance &&
+        std::abs(turned) < reset_distance))
     return begin(model, input);
-  const double position = square_of(std::max(options_.position_noise, input.position_deviation));
+  const double position = square(std::max(options_.position_noise, input.position_deviation));
   correct({1}, input.pose.x - state_[x], position);
   correct({0, 1}, input.pose.y - state_[y], position);
   correct({0, 0, 1}, maps::wrap_angle(input.pose.yaw - state_[yaw]),
-          square_of(std::max(options_.heading_noise, input.yaw_deviation)));
-  correct({0, 0, 0, 1}, input.speed - state_[speed], square_of(options_.speed_noise));
+          square(std::max(options_.heading_noise, input.yaw_deviation)));
+  correct({0, 0, 0, 1}, input.speed - state_[speed], square(options_.speed_noise));
   if (input.imu)
     correct({0, 0, 0, 0, 1, 0, 1}, input.imu->yaw_rate - state_[yaw_rate] - state_[bias],
-            square_of(options_.gyro_noise));
+            square(options_.gyro_noise));
   now_ = {{state_[x], state_[y], maps::wrap_angle(state_[yaw])},
           state_[speed],
           now_.steer,
