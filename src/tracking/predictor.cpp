@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "slalom/core/square.hpp"
+#include "slalom/core/math.hpp"
 #include "tracking/manoeuvres.hpp"
 
 namespace slalom::tracking {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "slalom/core/square.hpp"
+#include "slalom/core/math.hpp"
 
 namespace slalom::tracking {
 namespace {

@@ -80,7 +80,8 @@ TEST_F(RaceCommand, ComparesTwoRunsAlongTheLap) {
   EXPECT_NEAR(behind.back().get<double>(), difference, 1e-5);
   // A run compared with itself is nowhere behind.
   ASSERT_EQ(race("--laps 2 --json again.json --compare fast.json").status, 0);
-  for (const json& time : result("again.json")["along"]["behind_other_s"])
+  const json again = result("again.json");
+  for (const json& time : again["along"]["behind_other_s"])
     EXPECT_NEAR(time.get<double>(), 0, 1e-4);
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slalom/core/square.hpp"
+#include "slalom/core/math.hpp"
 #include "vehicle/estimation/hypothesis_bank.hpp"
 
 namespace slalom::vehicle {

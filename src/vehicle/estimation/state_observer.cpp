@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "slalom/core/square.hpp"
+#include "slalom/core/math.hpp"
 
 namespace slalom::vehicle {
 namespace {
