@@ -199,12 +199,26 @@ void ReferenceField::make_sites() noexcept {
     const ReferencePoint& point = path_[i];
     sites_[k] = {point.x, point.y, (first - point.y) / geometry_.resolution, static_cast<float>(point.yaw),
                  static_cast<float>(point.speed)};
-    if (curvature_.empty()) continue;
-    sites_[k].left_x = -curvature_[i] * std::sin(point.yaw);
-    sites_[k].left_y = curvature_[i] * std::cos(point.yaw);
+    if (!curvature_.empty()) sites_[k].piece = piece_at(i);
   }
   std::sort(sites_.begin(), sites_.begin() + static_cast<std::ptrdiff_t>(window_size_),
             [](const Site& a, const Site& b) { return a.u < b.u; });
+}
+
+ReferenceField::Piece ReferenceField::piece_at(std::size_t point) const noexcept {
+  const std::size_t n = path_.size();
+  const ReferencePoint &before = path_[(point + n - 1) % n], &here = path_[point],
+                       &after = path_[(point + 1) % n];
+  const double way_before = std::sqrt(squared_distance(before, here)),
+               way_after = std::sqrt(squared_distance(here, after));
+  Piece piece{.ahead_x = std::cos(here.yaw),
+              .ahead_y = std::sin(here.yaw),
+              .curvature = curvature_[point],
+              .begin = -0.5 * way_before,
+              .end = 0.5 * way_after};
+  if (way_before > 0) piece.slope_before = (here.speed - before.speed) / way_before;
+  if (way_after > 0) piece.slope_after = (after.speed - here.speed) / way_after;
+  return piece;
 }
 
 /// The lower envelope, along the row of cells at x, of the squared distances to the sites.
@@ -260,17 +274,24 @@ void ReferenceField::write_row(int row, int begin, int end, int parabolas) noexc
       }
       column += here;
     }
-    if (!curvature_.empty()) write_progress(row, first, last, site);
+    if (!curvature_.empty()) interpolate(row, first, last, site);
   }
 }
 
-void ReferenceField::write_progress(int row, int begin, int end, const Site& site) noexcept {
+void ReferenceField::interpolate(int row, int begin, int end, const Site& site) noexcept {
   constexpr double least = 0.25;  // of 1 - k d, which is 0 at the centre of the path's curve
-  const double beside = 1 - (geometry_.cell_x(row) - site.x) * site.left_x;
+  const Piece& piece = site.piece;
+  const double x = geometry_.cell_x(row) - site.x;
   float* cell = cells_.at(row, begin);
   for (int column = begin; column < end; ++column, cell += 4) {
     const double y = column_y_[static_cast<std::size_t>(column)] - site.y;
-    cell[3] = static_cast<float>(-1 / std::clamp(beside - y * site.left_y, least, 1 / least));
+    const double ahead = piece.ahead_x * x + piece.ahead_y * y, left = piece.ahead_x * y - piece.ahead_y * x;
+    const double beside = std::clamp(1 - piece.curvature * left, least, 1 / least);
+    const double arc = std::clamp(ahead / beside, piece.begin, piece.end), beyond = ahead - arc * beside;
+    cell[0] = static_cast<float>(std::sqrt(left * left + beyond * beyond));
+    cell[1] = site.yaw + static_cast<float>(piece.curvature * arc);
+    cell[2] = site.speed + static_cast<float>(arc * (arc < 0 ? piece.slope_before : piece.slope_after));
+    cell[3] = static_cast<float>(-1 / beside);
   }
 }
 

@@ -160,6 +160,31 @@ TEST(ReferenceField, KnowsTheProgressBesideACurve) {
   EXPECT_EQ(field.at(4, 0.5).outside, 0) << "a new path has no curvatures";
 }
 
+TEST(ReferenceField, WithCurvaturesCellsBetweenPointsAreThoseOfTheLine) {
+  constexpr double radius = 5;
+  constexpr int count = 60;  // 0.52 m apart
+  const auto path = circle(count, radius);
+  ReferenceField field(path);
+  field.set_curvatures(std::vector<double>(count, 1 / radius));
+  ASSERT_TRUE(field.update({radius, 0}));
+  const GridGeometry& geometry = field.geometry();
+  const double turn = M_PI / count, sagitta = radius * (1 - std::cos(turn));
+  int cells = 0;
+  for (int row = 0; row < geometry.rows; ++row) {
+    for (int column = 0; column < geometry.columns; ++column) {
+      const double x = geometry.cell_x(row), y = geometry.cell_y(column);
+      const double from_centre = std::hypot(x, y), angle = std::atan2(y, x);
+      if (std::abs(from_centre - radius) > 1 || std::abs(angle) > 1) continue;  // away from the window's ends
+      const float* cell = field.cells().at(row, column);
+      ASSERT_NEAR(cell[0], std::abs(from_centre - radius), 3 * sagitta) << x << ' ' << y;
+      ASSERT_NEAR(wrap_angle(cell[1] - angle - M_PI / 2), 0, 1e-3) << x << ' ' << y;
+      ASSERT_NEAR(cell[2], 2 + std::cos(angle), turn * turn) << x << ' ' << y;
+      ++cells;
+    }
+  }
+  EXPECT_GT(cells, 1500);
+}
+
 TEST(ReferenceField, OutsideAndBadPositions) {
   const auto path = circle(600, 5);
   ReferenceField field(path, {.outside = {.distance = 20, .yaw = 2, .speed = 0}});

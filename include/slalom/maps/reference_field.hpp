@@ -81,10 +81,12 @@ class ReferenceField {
   /// them has an effect.
   void set_speeds(std::span<const double> speeds) noexcept;
 
-  /// From the next update on, `outside` of a cell is minus the progress along the path of a position that
-  /// moves a metre parallel to it: -1 / (1 - k d) with the path's curvature k (1/m, positive to the left, one
-  /// for each point) at the nearest point and the distance d to the left of it; within [-4, -0.25]. No other
-  /// number of curvatures has an effect.
+  /// The path's curvatures, 1/m, positive to the left, one for each point; no other number of them has an
+  /// effect. From the next update on, distance, yaw and speed of a cell are those of the nearest place of the
+  /// line, between points too: the speed is linear in the arc length, the yaw follows the curvature. And
+  /// `outside` is minus the progress along the path of a position that moves a metre parallel to it:
+  /// -1 / (1 - k d) with the curvature k at the nearest point and the distance d to the left of it; within
+  /// [-4, -0.25].
   void set_curvatures(std::span<const double> curvatures);
 
   /// Replaces the path, which has no curvatures then, from the next update on. Returns false and changes
@@ -116,12 +118,19 @@ class ReferenceField {
   std::span<const int> window() const noexcept { return {window_.data(), window_size_}; }
 
  private:
+  /// The line around a point, for what lies beside it.
+  struct Piece {
+    double ahead_x = 1, ahead_y = 0;           ///< unit vector along the line
+    double curvature = 0;                      ///< 1/m
+    double begin = 0, end = 0;                 ///< m along the line, half-way to the neighbours
+    double slope_before = 0, slope_after = 0;  ///< 1/s, of the speed over the arc length
+  };
   /// A point of the window, with what the rows need of it.
   struct Site {
     double x = 0, y = 0;
     double u = 0;  ///< its y as a column coordinate, 0 at the centre of column 0
     float yaw = 0, speed = 0;
-    double left_x = 0, left_y = 0;  ///< the normal to the left times the curvature, 1/m
+    Piece piece{};  ///< where curvatures are known
   };
   struct Parabola {
     double u = 0;       ///< its site's
@@ -137,7 +146,8 @@ class ReferenceField {
   void make_sites() noexcept;
   int build_envelope(double x) noexcept;
   void write_row(int row, int begin, int end, int parabolas) noexcept;
-  void write_progress(int row, int begin, int end, const Site& site) noexcept;
+  void interpolate(int row, int begin, int end, const Site& site) noexcept;
+  Piece piece_at(std::size_t point) const noexcept;
 
   ReferenceFieldOptions options_;
   GridGeometry geometry_;
