@@ -14,7 +14,8 @@ DrivingLimits driving_limits(const VehicleTraits& traits, double friction) {
           .acceleration = traits.max_acceleration,
           .braking = traits.max_deceleration,
           .braking_share = traits.braking_share,
-          .delay = traits.time_step,
+          .delay = traits.seeks_lap_time ? 0 : traits.time_step,
+          .lead = traits.seeks_lap_time ? traits.time_step : 0,
           .switch_speed = traits.switch_speed};
 }
 
@@ -32,7 +33,7 @@ FeasibleSpeeds::FeasibleSpeeds(std::span<const maps::ReferencePoint> path) {
     arc_.push_back(arc);
     arc += gap;
   }
-  speed_ = own_;
+  speed_ = profile_ = own_;
 }
 
 void FeasibleSpeeds::update(const DrivingLimits& limits) noexcept {
@@ -63,6 +64,7 @@ void FeasibleSpeeds::update(const DrivingLimits& limits) noexcept {
     if (gap_[to] > 0) reach(from, to, gap_[to], limits.braking, limits.braking_share);
   }
   anticipate(limits.delay);
+  look_ahead(limits.lead);
 }
 
 /// A car that follows late must find what it needs a little earlier: the least speed of the way that it
@@ -73,6 +75,22 @@ void FeasibleSpeeds::anticipate(double delay) noexcept {
     double way = speed_[i] * delay;
     for (std::size_t k = i; way > 0 && gap_[k] > 0; way -= gap_[k], k = (k + 1) % n)
       speed_[i] = std::min(speed_[i], speed_[(k + 1) % n]);
+  }
+}
+
+/// The speed at the place that a car reaches in this time. A step of a plan looks its limit up where it
+/// begins, and the limit must hold where it ends: with that of its begin, a car that leaves a curve would be
+/// a step late all the way.
+void FeasibleSpeeds::look_ahead(double lead) noexcept {
+  if (!(lead > 0)) return;
+  const std::size_t n = speed_.size();
+  profile_ = speed_;
+  for (std::size_t i = 0; i < n; ++i) {
+    double way = profile_[i] * lead;
+    std::size_t k = i;
+    for (; gap_[k] > 0 && way >= gap_[k]; k = (k + 1) % n) way -= gap_[k];
+    const double share = gap_[k] > 0 ? way / gap_[k] : 0;
+    speed_[i] = profile_[k] + share * (profile_[(k + 1) % n] - profile_[k]);
   }
 }
 

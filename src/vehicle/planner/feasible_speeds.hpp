@@ -15,6 +15,7 @@ struct DrivingLimits {
   double braking = 9;        ///< m/s^2
   double braking_share = 1;  ///< of the grip that turning leaves, for braking
   double delay = 0;          ///< s, by which the car follows the speeds late
+  double lead = 0;           ///< s, from where a speed is looked up to where the car has it
   double switch_speed = 7;   ///< m/s, above it the motor's power is the limit
 };
 
@@ -47,8 +48,10 @@ class FeasibleSpeeds {
 
  private:
   void anticipate(double delay) noexcept;
+  void look_ahead(double lead) noexcept;
 
   std::vector<double> own_, speed_;  ///< m/s
+  std::vector<double> profile_;      ///< m/s, before they are looked up ahead
   std::vector<double> arc_;          ///< m
   std::vector<double> curvature_;    ///< 1/m, positive to the left
   std::vector<double> gap_;          ///< m, from each point to the next; 0 where the path is not joined

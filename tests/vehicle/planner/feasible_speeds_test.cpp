@@ -1,0 +1,78 @@
+// Where plans look up the speeds that a car can drive along a path.
+#include "vehicle/planner/feasible_speeds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace slalom::vehicle::detail {
+namespace {
+
+constexpr double grip = 8, radius = 1, straight = 10, spacing = 0.1;
+
+/// Two straights joined by half circles, with a top speed.
+std::vector<maps::ReferencePoint> oval(double top_speed) {
+  std::vector<maps::ReferencePoint> path;
+  for (const double side : {1.0, -1.0}) {
+    for (double x = 0; x < straight; x += spacing)
+      path.push_back({side * (x - 0.5 * straight), -side * radius, side > 0 ? 0 : M_PI, top_speed});
+    const int pieces = static_cast<int>(M_PI * radius / spacing);
+    for (int i = 0; i < pieces; ++i) {
+      const double turned = M_PI * i / pieces;
+      path.push_back({side * (0.5 * straight + radius * std::sin(turned)), -side * radius * std::cos(turned),
+                      turned + (side > 0 ? 0 : M_PI), top_speed});
+    }
+  }
+  return path;
+}
+
+/// The speed at a distance along the path, between its points.
+double at(const FeasibleSpeeds& speeds, double arc) {
+  const int count = static_cast<int>(speeds.speeds().size());
+  arc = std::fmod(arc, speeds.length());
+  int i = 0;
+  while (i + 1 < count && speeds.arc(i + 1) <= arc) ++i;
+  const double end = i + 1 < count ? speeds.arc(i + 1) : speeds.length();
+  const double share = (arc - speeds.arc(i)) / (end - speeds.arc(i));
+  const auto value = [&](int k) { return speeds.speeds()[static_cast<std::size_t>(k % count)]; };
+  return value(i) + share * (value(i + 1) - value(i));
+}
+
+TEST(FeasibleSpeeds, WithALeadACarThatLooksThemUpAtTheBeginOfAStepHasThemAtItsEnd) {
+  constexpr double step = 0.05;  // s
+  const DrivingLimits limits{.grip = grip, .acceleration = grip, .braking = grip, .switch_speed = 100};
+  FeasibleSpeeds profile(oval(7)), late(oval(7)), led(oval(7));
+  profile.update(limits);
+  DrivingLimits changed = limits;
+  changed.delay = step;
+  late.update(changed);
+  changed = limits;
+  changed.lead = step;
+  led.update(changed);
+  const auto worst_error = [&](const FeasibleSpeeds& looked_up) {
+    double worst = 0, arc = straight + 0.5 * M_PI * radius, speed = at(profile, arc);
+    for (int k = 0; k < 200; ++k) {
+      const double next = at(looked_up, arc);
+      arc += 0.5 * step * (speed + next);
+      speed = next;
+      worst = std::max(worst, std::abs(speed - at(profile, arc)));
+    }
+    return worst;
+  };
+  EXPECT_LT(worst_error(led), 0.15);
+  EXPECT_GT(worst_error(late), 0.3) << "a car that leaves the curve is a step late";
+}
+
+TEST(FeasibleSpeeds, AnOpenPathKeepsItsLastSpeed) {
+  auto path = oval(7);
+  path.resize(80);  // the first straight, not joined
+  FeasibleSpeeds speeds(path);
+  speeds.update({.grip = grip, .acceleration = grip, .braking = grip, .lead = 0.2, .switch_speed = 100});
+  EXPECT_EQ(speeds.length(), 0);
+  for (const double speed : speeds.speeds()) EXPECT_NEAR(speed, 7, 1e-12);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle::detail
