@@ -150,7 +150,9 @@ struct Planner::Implementation {
     std::span<const float> sent = result.inputs;
     if (options.verify_plan && model->has_dynamics() && !recovery.reversing()) {
       ways.draw(start, field.nearest(), speeds.speeds(), path_friction);
-      const auto slower = choice.slower(*model, {sent, cost}, states);
+      SequenceChoice::Choice best{sent, cost};
+      if (traits.seeks_lap_time) best = choice.kept(*model, best, options.control_period, states);
+      const auto slower = choice.slower(*model, best, states);
       const auto chosen = choice.better(*model, slower, ways.cheapest(model->evaluator()), states);
       if (cost.collided && !chosen.cost.collided) output.status = PlannerStatus::fallback_plan;
       cost = chosen.cost;

@@ -43,6 +43,7 @@ SequenceChoice::SequenceChoice(int horizon, int inputs, const VehicleTraits& tra
       candidate_(static_cast<std::size_t>(horizon) * inputs_),
       braking_(candidate_.size()),
       previous_(candidate_.size()),
+      kept_(candidate_.size()),
       slower_(candidate_.size()),
       candidate_states_(static_cast<std::size_t>(horizon) + 1),
       path_(candidate_states_.size()) {}
@@ -73,6 +74,21 @@ SequenceChoice::Choice SequenceChoice::choose(const VehicleModel& model, const S
   }
   if (best.cost.collided && model.has_dynamics()) brake(model, result, reversing, best, states);
   return best;
+}
+
+SequenceChoice::Choice SequenceChoice::kept(const VehicleModel& model, const Choice& solution, double elapsed,
+                                            std::vector<PredictedState>& states) noexcept {
+  if (!has_previous_) return solution;
+  const std::size_t last = previous_.size() - inputs_;
+  const double moved = elapsed / traits_.time_step, whole = std::floor(moved);
+  const auto share = static_cast<float>(moved - whole);
+  const std::size_t shift = static_cast<std::size_t>(whole) * inputs_;
+  for (std::size_t row = 0; row < previous_.size(); ++row) {
+    const std::size_t before = std::min(row + shift, last + row % inputs_),
+                      after = std::min(before + inputs_, last + row % inputs_);
+    kept_[row] = previous_[before] + share * (previous_[after] - previous_[before]);
+  }
+  return better(model, solution, kept_, states);
 }
 
 SequenceChoice::Choice SequenceChoice::better(const VehicleModel& model, const Choice& solution,

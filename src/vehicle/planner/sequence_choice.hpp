@@ -27,6 +27,12 @@ class SequenceChoice {
   Choice slower(const VehicleModel& model, const Choice& solution,
                 std::vector<PredictedState>& states) noexcept;
 
+  /// The cheaper of the solution and the sequence sent last, from `elapsed` s after its begin on, with its
+  /// last inputs held. A solution is a mean over few samples that count; where it is worse than to go on as
+  /// planned, collisions first, nothing has changed that calls for it. `states` as in `choose`.
+  Choice kept(const VehicleModel& model, const Choice& solution, double elapsed,
+              std::vector<PredictedState>& states) noexcept;
+
   /// The cheaper of the solution and another sequence, collisions first; `states` as in `choose`.
   Choice better(const VehicleModel& model, const Choice& solution, std::span<const float> other,
                 std::vector<PredictedState>& states) noexcept;
@@ -51,7 +57,7 @@ class SequenceChoice {
   std::size_t inputs_;
   VehicleTraits traits_;
   float max_deceleration_;
-  std::vector<float> candidate_, braking_, previous_, slower_;
+  std::vector<float> candidate_, braking_, previous_, kept_, slower_;
   std::vector<PredictedState> candidate_states_, path_;
   bool has_previous_ = false;
 };
