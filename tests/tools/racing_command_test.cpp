@@ -48,6 +48,7 @@ TEST_F(RacingCommand, AnyDriverDrivesEveryMap) {
   // The limit of the planner's speed bounds the lap time from below: 2 pi r / v.
   const auto planned = drive("--driver mppi --set mppi.samples=400 --set planner.max_speed=4");
   EXPECT_EQ(planned["config"], "default");
+  EXPECT_EQ(planned["margin_m"], 0.06);
   const auto gap = drive("--driver follow_the_gap");
   for (const char* map : {"aut", "esp", "gbr", "mco"}) {
     for (const auto& results : {planned["maps"][map], gap["maps"][map]}) {
@@ -70,7 +71,9 @@ TEST_F(RacingCommand, SaysWhatIsWrong) {
   expect_refused("reproduce --benchmark racing", {"--course", "folder"});
   expect_refused("reproduce --benchmark racing --course nowhere", {"nowhere", "aut.yaml"});
   expect_refused("reproduce --benchmark racing --course maps --driver tortoise", {"tortoise", "svg_mppi"});
+  expect_refused("reproduce --benchmark racing --course maps --margin 0.9", {"no closed way", "1.055"});
   expect_refused("reproduce --driver mppi --out x", {"--driver", "--benchmark"});
+  expect_refused("reproduce --margin 0.1 --out x", {"--margin", "--benchmark"});
   expect_refused("reproduce --course wren", {"--out", "is required"});
 }
 

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/json.hpp"
@@ -24,6 +25,7 @@ struct ReproduceArguments {
   EvaluationArguments evaluation;
   std::string published, benchmark, driver = "svg_mppi";
   std::vector<std::string> sections{"baseline", "ablation", "sweep"};
+  std::optional<double> margin;
   int laps_pt = 30, laps_oa = 100, obstacles = 5;
   bool quick = false, course_given = false, config_given = false;
 };
@@ -149,13 +151,17 @@ int run_racing(ReproduceArguments arguments) {
   std::FILE* words = json == "-" ? stderr : stdout;
   const bool gap = arguments.driver == gap_driver;
   Json summary{{"benchmark", arguments.benchmark}, {"driver", arguments.driver}};
-  if (!gap) summary["config"] = scenario.config;
+  const double margin = arguments.margin.value_or(vehicle::RacingCar{}.margin);
+  if (!gap) {
+    summary["config"] = scenario.config;
+    summary["margin_m"] = margin;
+  }
   std::fprintf(words, "%-4s %10s %10s %12s\n", "map", "mean, s", "completed", "beyond grip");
   for (const char* name : racing_maps) {
     const RacingMap map = load_racing_map(scenario.course, name);
-    const auto driver =
-        gap ? make_gap_driver()
-            : make_planner_driver(map, load_configuration(scenario, arguments.driver), arguments.driver);
+    const auto driver = gap ? make_gap_driver()
+                            : make_planner_driver(map, load_configuration(scenario, arguments.driver),
+                                                  arguments.driver, margin);
     const auto laps = drive_racing_laps(map, *driver, arguments.quick ? 1 : racing_laps);
     const Json results = racing_results(laps);
     summary["maps"][name] = results;
@@ -190,6 +196,8 @@ void declare_reproduce(Subcommand& command) {
           "--driver", arguments->driver,
           "With --benchmark: a method, whose planner follows the minimum-time raceline, or follow_the_gap")
       .show_default();
+  command.option("--margin", arguments->margin,
+                 "With --benchmark: m, that the raceline keeps between the car and walls [0.06]");
   command.option("--published", arguments->published, "Folder of the authors' logs");
   command
       .option("--sections", arguments->sections, "Sections, separated by commas: baseline, ablation, sweep")
@@ -204,7 +212,8 @@ void declare_reproduce(Subcommand& command) {
     arguments->course_given = command.given("--course");
     arguments->config_given = command.given("--config");
     if (!arguments->benchmark.empty()) return run_racing(*arguments);
-    if (command.given("--driver")) throw CommandLineError("--driver", "needs --benchmark");
+    for (const char* flag : {"--driver", "--margin"})
+      if (command.given(flag)) throw CommandLineError(flag, "needs --benchmark");
     if (arguments->evaluation.out.empty()) throw CommandLineError("--out", "is required");
     return reproduce(*arguments);
   });
