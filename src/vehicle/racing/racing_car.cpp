@@ -154,7 +154,7 @@ std::vector<double> racing_speeds(std::span<const double> curvature, std::span<c
     const double strongest = car.grip.empty() ? car.limits.braking : interpolated(car.grip, v).braking;
     return strongest * detail::share_left(v, k, lateral(v));
   };
-  detail::lower_to_reachable(speed, curvature, step, closed, forwards, braking);
+  detail::lower_to_reachable_throughout(speed, curvature, step, closed, forwards, braking);
   return speed;
 }
 

@@ -73,10 +73,10 @@ double max_curvature(const RacingCar& car);
 /// The limits at a speed, with the power limit.
 GripAtSpeed grip_at(const RacingCar& car, double speed);
 
-/// The highest speeds (m/s) with which a car drives along a path: as feasible_speeds(), with limits that may
-/// depend on the speed, and with steering no faster than the car's. `curvature` (1/m) has one entry a point;
-/// `step[i]` is the way (m) from point i to the next, from the last to the first; that of an open path is not
-/// used. Throws std::invalid_argument for an invalid car and for sizes that differ.
+/// The highest speeds (m/s) of a car along a path: as feasible_speeds(), with limits that may depend on the
+/// speed and hold at both ends and in the middle of a piece, and with steering no faster than the car's.
+/// `curvature` (1/m) has one entry a point; `step[i]` is the way (m) from point i to the next, from the last
+/// to the first; not used if open. Throws std::invalid_argument for an invalid car and sizes that differ.
 std::vector<double> racing_speeds(std::span<const double> curvature, std::span<const double> step,
                                   bool closed, const RacingCar& car);
 
