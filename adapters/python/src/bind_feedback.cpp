@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "plan.hpp"
-#include "slalom/solvers/feedback_gains.hpp"
+#include "slalom/solvers/ilqr.hpp"
 
 namespace slalom::python {
 namespace {
@@ -126,6 +126,37 @@ void bind_linearization(py::module_& module) {
       py::arg("problem"), py::arg("state"), "The TerminalExpansion of a problem's terminal cost at a state.");
 }
 
+/// The derivatives of a problem in Python, for feedback and iterative LQR.
+class PythonDerivatives final : public DifferentiableProblem {
+ public:
+  explicit PythonDerivatives(AnyProblem& problem) : problem_(problem) {}
+
+  void step(int, std::span<const double> x, std::span<const double> u, std::span<double> next) override {
+    const std::vector<double> following = problem_.step(x, u);
+    std::copy(following.begin(), following.end(), next.begin());
+  }
+  double cost(std::span<const double> x, std::span<const double> inputs) override {
+    return problem_.predict(x, inputs).cost;
+  }
+  bool expand_step(int, const FeedbackGains::Step& at) override {
+    const Derivatives d = problem_.derivatives(at.state, at.inputs);
+    std::copy(d.state_jacobian.begin(), d.state_jacobian.end(), at.state_jacobian.begin());
+    std::copy(d.input_jacobian.begin(), d.input_jacobian.end(), at.input_jacobian.begin());
+    std::copy(d.gradient.begin(), d.gradient.end(), at.gradient.begin());
+    std::copy(d.hessian.begin(), d.hessian.end(), at.hessian.begin());
+    return d.kink;
+  }
+  bool expand_end(const FeedbackGains::Terminal& at) override {
+    const Derivatives d = problem_.terminal_derivatives(at.state);
+    std::copy(d.gradient.begin(), d.gradient.end(), at.gradient.begin());
+    std::copy(d.hessian.begin(), d.hessian.end(), at.hessian.begin());
+    return d.kink;
+  }
+
+ private:
+  AnyProblem& problem_;
+};
+
 /// Feedback gains along the plans of a controller.
 class Feedback {
  public:
@@ -140,27 +171,17 @@ class Feedback {
         c.solver().horizon() != gains_.steps())
       throw std::invalid_argument("plan: is not one of the controller that this feedback was made for");
     const std::span<const double> states = c.prediction().states, inputs = c.inputs();
-    kink_ = false;
     for (int k = 0; k < gains_.steps(); ++k) {
       const auto at = static_cast<std::size_t>(k);
       const auto x = states.subspan(at * nx, nx), u = inputs.subspan(at * nu, nu);
-      const Derivatives d = c.problem().derivatives(x, u);
       const FeedbackGains::Step to = gains_.step(k);
       std::copy(x.begin(), x.end(), to.state.begin());
       std::copy(u.begin(), u.end(), to.inputs.begin());
-      std::copy(d.state_jacobian.begin(), d.state_jacobian.end(), to.state_jacobian.begin());
-      std::copy(d.input_jacobian.begin(), d.input_jacobian.end(), to.input_jacobian.begin());
-      std::copy(d.gradient.begin(), d.gradient.end(), to.gradient.begin());
-      std::copy(d.hessian.begin(), d.hessian.end(), to.hessian.begin());
-      kink_ = kink_ || d.kink;
     }
-    const auto x = states.last(nx);
-    const Derivatives d = c.problem().terminal_derivatives(x);
-    const FeedbackGains::Terminal to = gains_.terminal();
-    std::copy(x.begin(), x.end(), to.state.begin());
-    std::copy(d.gradient.begin(), d.gradient.end(), to.gradient.begin());
-    std::copy(d.hessian.begin(), d.hessian.end(), to.hessian.begin());
-    kink_ = kink_ || d.kink;
+    const auto end = states.last(nx);
+    std::copy(end.begin(), end.end(), gains_.terminal().state.begin());
+    PythonDerivatives derivatives(c.problem());
+    kink_ = gains_.expand(derivatives);
     const double step = c.problem().evaluator().time_step();
     return gains_.solve(step > 0 ? step : 1);
   }
@@ -184,10 +205,83 @@ class Feedback {
   bool kink_ = false;
 };
 
+/// Iterative LQR for the problem of a controller.
+class Ilqr {
+ public:
+  using Inputs = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+  /// `owner` is the Python object of the controller.
+  Ilqr(py::object owner, int iterations)
+      : owner_(std::move(owner)),
+        inputs_(controller().problem().inputs()),
+        lqr_(controller().problem().states(), inputs_, controller().solver().horizon(), controller().bounds(),
+             {iterations}) {}
+
+  py::array_t<double> improve(std::vector<double> state, double elapsed) {
+    AnyProblem& problem = controller().problem();
+    state = checked(std::move(state), problem.states(), "state");
+    const double step = problem.evaluator().time_step();
+    if (step > 0 && elapsed > 0) lqr_.shift(elapsed / step);
+    PythonDerivatives derivatives(problem);
+    const std::span<const double> inputs = lqr_.improve(derivatives, state);
+    return py::array_t<double>({py::ssize_t{lqr_.steps()}, py::ssize_t{inputs_}}, inputs.data());
+  }
+
+  void start_from(const Inputs& inputs) {
+    if (inputs.ndim() != 2 || inputs.shape(0) > lqr_.steps() || inputs.shape(1) != inputs_)
+      throw std::invalid_argument("inputs: must have the shape (steps, " + std::to_string(inputs_) +
+                                  ") with at most " + std::to_string(lqr_.steps()) + " steps");
+    lqr_.start_from({inputs.data(), static_cast<std::size_t>(inputs.size())});
+  }
+
+  const IterativeLqr& result() const { return lqr_; }
+
+ private:
+  Controller& controller() const { return owner_.cast<Controller&>(); }
+
+  py::object owner_;
+  int inputs_;
+  IterativeLqr lqr_;
+};
+
+void bind_ilqr(py::module_& module) {
+  py::class_<Ilqr>(
+      module, "Ilqr",
+      "Improves control sequences by iterative LQR, with the derivatives of a controller's problem: for "
+      "proposals, or as a controller of smooth problems by itself.\n\n"
+      "controller: whose problem, horizon and bounds hold\n"
+      "iterations: most steps of an improvement")
+      .def(py::init([](const py::object& controller, int iterations) {
+             if (!py::isinstance<Controller>(controller))
+               throw py::type_error("Ilqr: controller must be a slalom.Controller");
+             return std::make_unique<Ilqr>(controller, iterations);
+           }),
+           py::arg("controller"), py::arg("iterations") = IlqrOptions{}.iterations)
+      .def("improve", &Ilqr::improve, py::arg("state"), py::arg("elapsed") = 0.0,
+           "The best sequence from `state` that the steps find, float64 [horizon, inputs]. They start from "
+           "the "
+           "last sequence, moved forward by `elapsed` (s).")
+      .def("start_from", &Ilqr::start_from, py::arg("inputs"),
+           "Sets the sequence that is improved next, an array (steps, inputs); the last inputs are held. "
+           "Without rows, the inputs are those nearest to 0.")
+      .def_property_readonly(
+          "cost", [](const Ilqr& i) { return i.result().cost(); }, "cost of the sequence")
+      .def_property_readonly(
+          "first_cost", [](const Ilqr& i) { return i.result().first_cost(); },
+          "cost before the last improvement")
+      .def_property_readonly(
+          "iterations", [](const Ilqr& i) { return i.result().iterations(); },
+          "steps of the last improvement")
+      .def_property_readonly(
+          "has_kink", [](const Ilqr& i) { return i.result().has_kink(); },
+          "whether the last improvement met a function without derivative");
+}
+
 }  // namespace
 
 void bind_feedback(py::module_& module) {
   bind_linearization(module);
+  bind_ilqr(module);
   py::class_<Feedback>(module, "Feedback",
                        "Feedback around the plans of a controller, for the time between two plans: gains of "
                        "a linear-quadratic "

@@ -90,3 +90,43 @@ def test_what_cannot_be_differentiated_is_rejected():
     controller.solve([0, 0])
     with pytest.raises(RuntimeError, match="solved again"):
         feedback.update(plan)
+
+
+def optimum(start, steps):
+    """The best inputs of the linear-quadratic problem, by the Riccati recursion."""
+    value, gains = P, []
+    for _ in range(steps):
+        gains.insert(0, -np.linalg.solve(R + B.T @ value @ B, B.T @ value @ A))
+        value = Q + A.T @ value @ (A + B @ gains[0])
+    x, inputs = np.array(start, float), []
+    for gain in gains:
+        inputs.append(gain @ x)
+        x = A @ x + B @ inputs[-1]
+    return np.array(inputs)
+
+
+def test_a_step_of_ilqr_solves_a_linear_quadratic_problem():
+    controller = slalom.Mppi(linear(), horizon=15, samples=64, control_cost_discount=1)
+    ilqr = slalom.Ilqr(controller, iterations=1)
+    inputs = ilqr.improve([1, 0.5])
+    np.testing.assert_allclose(inputs, optimum([1, 0.5], 15), rtol=1e-4, atol=1e-6)
+    assert inputs.shape == (15, 1) and ilqr.iterations == 1 and ilqr.cost < ilqr.first_cost and not ilqr.has_kink
+    assert controller.solve([1, 0.5], proposals=inputs).stats.weights[-1] > 0.01
+    np.testing.assert_allclose(ilqr.improve([1, 0.5], elapsed=0.1)[0], optimum([1, 0.5], 15)[0], rtol=1e-4)
+
+
+def test_ilqr_of_a_built_in_problem_keeps_bounds():
+    controller = slalom.SvgMppi(slalom.CartPole(), horizon=40, input_min=-3, input_max=3)
+    ilqr = slalom.Ilqr(controller, iterations=20)
+    inputs = ilqr.improve([0, 0, 3.0, 0])
+    assert np.abs(inputs).max() == 3 and ilqr.cost < ilqr.first_cost
+    ilqr.start_from(np.zeros((0, 1)))
+    assert ilqr.improve([0, 0, 3.0, 0]).shape == (40, 1)
+    with pytest.raises(ValueError, match=r"inputs: must have the shape \(steps, 1\) with at most 40 steps"):
+        ilqr.start_from(np.zeros((40, 2)))
+    with pytest.raises(ValueError, match="state: has 1 values, must have 4"):
+        ilqr.improve([0])
+    with pytest.raises(ValueError, match="ilqr.iterations: 0 must be in"):
+        slalom.Ilqr(controller, iterations=0)
+    with pytest.raises(TypeError, match="controller must be a slalom.Controller"):
+        slalom.Ilqr(slalom.CartPole())

@@ -72,7 +72,7 @@ def test_everything_public_prints_its_name():
     controller = slalom.Mppi(slalom.Pendulum(), horizon=5, samples=10)
     controller.solve([1, 0])
     shown = [slalom.linearize(slalom.Pendulum(), [1, 0], [0]), slalom.expand_terminal_cost(slalom.Pendulum(), [1, 0]),
-             slalom.Feedback(controller), slalom.OccupancyGrid(np.zeros((2, 3), bool), 0.1)]
+             slalom.Feedback(controller), slalom.Ilqr(controller), slalom.OccupancyGrid(np.zeros((2, 3), bool), 0.1)]
     if course:
         shown += [course, slalom.World(course), slalom.RacingCar()]
     for each in shown:

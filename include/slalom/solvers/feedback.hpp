@@ -5,9 +5,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "slalom/core/derivatives/linearize.hpp"
 #include "slalom/solvers/controller.hpp"
-#include "slalom/solvers/feedback_gains.hpp"
+#include "slalom/solvers/differentiable_problem.hpp"
 
 namespace slalom {
 
@@ -34,6 +33,7 @@ class Feedback {
   static_assert(detail::Controlled<P>::has_problem && detail::Controlled<P>::predicts,
                 "slalom: feedback needs the problem and the predicted states of the controller's evaluator");
   using Problem = std::remove_cvref_t<decltype(std::declval<const Controller<P>&>().problem())>;
+  using Derivatives = ProblemDerivatives<Problem>;
   static constexpr int nx = detail::state_size<Problem>, nu = Problem::inputs;
 
  public:
@@ -48,16 +48,14 @@ class Feedback {
   /// false, and makes all gains 0, if a derivative is not finite. Does not allocate.
   bool update(const Controller<P>& controller, const Plan<P>& plan) noexcept {
     const Problem& problem = controller.problem();
-    kink_ = false;
-    for (int k = 0; k < steps(); ++k)
-      fill_step(problem, plan.states[static_cast<std::size_t>(k)], plan.inputs[static_cast<std::size_t>(k)],
-                k);
-    const auto end = expand_terminal_cost(problem, plan.states.back());
-    const auto to = gains_.terminal();
-    kink_ = kink_ || end.kink;
-    copy_state(plan.states.back(), to.state);
-    std::copy_n(end.state_gradient, nx, to.gradient.begin());
-    std::copy_n(end.state_hessian[0], nx * nx, to.hessian.begin());
+    for (int k = 0; k < steps(); ++k) {
+      const auto to = gains_.step(k);
+      Derivatives::copy_state(plan.states[static_cast<std::size_t>(k)], to.state);
+      std::copy_n(plan.inputs[static_cast<std::size_t>(k)].value, nu, to.inputs.begin());
+    }
+    Derivatives::copy_state(plan.states.back(), gains_.terminal().state);
+    Derivatives derivatives(problem);
+    kink_ = gains_.expand(derivatives);
     const double step = detail::time_step_of(problem);
     return gains_.solve(step > 0 ? step : 1);
   }
@@ -82,26 +80,6 @@ class Feedback {
   bool has_kink() const noexcept { return kink_; }
 
  private:
-  static void copy_state(const State& x, std::span<double> to) noexcept {
-    double values[nx];
-    detail::scalars_of<Problem, double>(x, values);
-    std::copy_n(values, nx, to.begin());
-  }
-
-  void fill_step(const Problem& problem, const State& x, const Inputs& u, int k) noexcept {
-    const auto l = linearize(problem, x, u, k);
-    const auto cost = expand_stage_cost(problem, x, u, k);
-    const auto to = gains_.step(k);
-    copy_state(x, to.state);
-    std::copy_n(u.value, nu, to.inputs.begin());
-    std::copy_n(l.state_jacobian[0], nx * nx, to.state_jacobian.begin());
-    std::copy_n(l.input_jacobian[0], nx * nu, to.input_jacobian.begin());
-    std::copy_n(cost.state_gradient, nx, to.gradient.begin());
-    std::copy_n(cost.input_gradient, nu, to.gradient.begin() + nx);
-    detail::copy_hessian(cost, to.hessian.data());
-    kink_ = kink_ || l.kink || cost.kink;
-  }
-
   FeedbackGains gains_;
   bool kink_ = false;
 };

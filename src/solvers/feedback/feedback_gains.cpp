@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/solvers/differentiable_problem.hpp"
 #include "solvers/feedback/symmetric_matrix.hpp"
 
 namespace slalom {
@@ -51,6 +52,7 @@ FeedbackGains::FeedbackGains(int states, int inputs, int steps, const InputBound
   gradients_.resize(count(steps, all) + count(states));
   hessians_.resize(count(steps, all, all) + count(states, states));
   gains_.resize(count(steps, inputs, states));
+  changes_.resize(count(steps, inputs));
   value_.resize(count(states, states));
   value_gradient_.resize(count(states));
   hessian_.resize(count(all, all));
@@ -76,6 +78,17 @@ FeedbackGains::Terminal FeedbackGains::terminal() noexcept {
 
 std::span<const double> FeedbackGains::gain(int k) const noexcept {
   return std::span(gains_).subspan(count(k, inputs_, states_), count(inputs_, states_));
+}
+
+std::span<const double> FeedbackGains::change(int k) const noexcept {
+  return std::span(changes_).subspan(count(k, inputs_), count(inputs_));
+}
+
+bool FeedbackGains::expand(DifferentiableProblem& problem) {
+  bool kink = false;
+  for (int k = 0; k < steps_; ++k) kink |= problem.expand_step(k, step(k));
+  kink |= problem.expand_end(terminal());
+  return kink;
 }
 
 /// The nearest positive semidefinite matrix: negative eigenvalues become 0.
@@ -146,20 +159,59 @@ int FeedbackGains::choose_free_inputs(int k) noexcept {
   return free;
 }
 
-/// K = -Quu^-1 Qux for the free inputs, 0 for the others.
-bool FeedbackGains::solve_gain(int k, int free) noexcept {
-  const int n = states_, all = states_ + inputs_;
-  const std::span<double> gain = part(gains_, k, count(inputs_, n));
-  std::fill(gain.begin(), gain.end(), 0.0);
-  const SquareMatrix h{hessian_, all}, quu{std::span(matrix_).first(count(free, free)), free};
+/// The Cholesky factor of Quu for the free inputs, in `matrix_`. Returns false if there is none. If the cost
+/// does not depend on them, no input is free.
+bool FeedbackGains::factorise_free(int& free, double damping) noexcept {
+  const SquareMatrix h{hessian_, states_ + inputs_}, quu{std::span(matrix_).first(count(free, free)), free};
   double largest = 0;
   for (int i = 0; i < free; ++i) {
-    largest = std::max(largest, h(n + free_[count(i)], n + free_[count(i)]));
-    for (int j = 0; j < free; ++j) quu(i, j) = h(n + free_[count(i)], n + free_[count(j)]);
+    for (int j = 0; j < free; ++j) quu(i, j) = h(states_ + free_[count(i)], states_ + free_[count(j)]);
+    largest = std::max(largest, quu(i, i));
   }
-  if (!(largest > 0)) return largest == 0;  // the cost does not depend on the inputs
-  for (int i = 0; i < free; ++i) quu(i, i) += ridge * largest;
-  if (!factorise(quu)) return false;
+  if (largest == 0) free = 0;
+  for (int i = 0; i < free; ++i) quu(i, i) += damping * quu(i, i) + ridge * largest;
+  return free == 0 || factorise(quu);
+}
+
+/// The change of the inputs -Quu^-1 Qu. Inputs that it would move out of their bounds end at them and are no
+/// longer free; then the others are solved for again.
+bool FeedbackGains::solve_change(int k, int& free, double damping) noexcept {
+  const SquareMatrix h{hessian_, states_ + inputs_};
+  const std::span<double> change = part(changes_, k, count(inputs_));
+  const std::span<const double> u = part(plan_inputs_, k, count(inputs_));
+  double* const solution = vectors_.data();
+  while (free > 0) {
+    if (!factorise_free(free, damping)) return false;
+    for (int i = 0; i < free; ++i) {
+      const int row = states_ + free_[count(i)];
+      solution[i] = -gradient_[count(row)];
+      for (int j = 0; j < inputs_; ++j) solution[i] -= h(row, states_ + j) * change[count(j)];
+    }
+    const SquareMatrix quu{std::span(matrix_).first(count(free, free)), free};
+    solve_factorised(quu, solution, 1);
+    int inside = 0;
+    for (int i = 0; i < free; ++i) {
+      const int input = free_[count(i)];
+      const double wanted = u[count(input)] + solution[i], nearest = bounds_.nearest(count(input), wanted);
+      if (!std::isfinite(wanted)) return false;
+      if (nearest == wanted) {
+        free_[count(inside++)] = input;
+      } else {
+        change[count(input)] = nearest - u[count(input)];
+      }
+    }
+    if (inside == free) break;
+    free = inside;
+  }
+  for (int i = 0; i < free; ++i) change[count(free_[count(i)])] = solution[i];
+  return true;
+}
+
+/// K = -Quu^-1 Qux for the free inputs, whose Quu is factorised in `matrix_`, and 0 for the others.
+bool FeedbackGains::solve_gain(int k, int free) noexcept {
+  const int n = states_;
+  const SquareMatrix h{hessian_, n + inputs_}, quu{std::span(matrix_).first(count(free, free)), free};
+  const std::span<double> gain = part(gains_, k, count(inputs_, n));
   for (int column = 0; column < n; ++column) {
     double* const rhs = vectors_.data();
     for (int i = 0; i < free; ++i) rhs[i] = -h(n + free_[count(i)], column);
@@ -169,11 +221,11 @@ bool FeedbackGains::solve_gain(int k, int free) noexcept {
   return all_finite(gain);
 }
 
-/// The cost to go from the states of step `k`, if the inputs follow the gain.
+/// The cost to go from the states of step `k`, if the inputs change and follow the gain.
 void FeedbackGains::end_step(int k) noexcept {
   const int n = states_, m = inputs_;
   const SquareMatrix h{hessian_, n + m};
-  const std::span<const double> gain = this->gain(k);
+  const std::span<const double> gain = this->gain(k), change = this->change(k);
   const auto at = [&](int input, int state) { return gain[count(input, n) + count(state)]; };
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j <= i; ++j) {
@@ -185,13 +237,24 @@ void FeedbackGains::end_step(int k) noexcept {
       value_[count(i, n) + count(j)] = value_[count(j, n) + count(i)] = sum;
     }
     double sum = gradient_[count(i)];
-    for (int a = 0; a < m; ++a) sum += at(a, i) * gradient_[count(n + a)];
+    for (int a = 0; a < m; ++a) {
+      double slope = h(n + a, i);
+      for (int b = 0; b < m; ++b) slope += at(b, i) * h(n + b, n + a);
+      sum += at(a, i) * gradient_[count(n + a)] + slope * change[count(a)];
+    }
     value_gradient_[count(i)] = sum;
+  }
+  for (int a = 0; a < m; ++a) {
+    linear_ += change[count(a)] * gradient_[count(n + a)];
+    for (int b = 0; b < m; ++b) quadratic_ += change[count(a)] * h(n + a, n + b) * change[count(b)];
   }
 }
 
-bool FeedbackGains::solve(double time_step) noexcept {
-  time_step_ = time_step;
+/// The recursion from the end of the plan to its start, with or without changes of the inputs.
+bool FeedbackGains::recurse(bool change_inputs, double damping) noexcept {
+  linear_ = quadratic_ = 0;
+  std::fill(gains_.begin(), gains_.end(), 0.0);
+  std::fill(changes_.begin(), changes_.end(), 0.0);
   bool valid = all_finite(jacobians_) && all_finite(gradients_) && all_finite(hessians_);
   if (valid) {
     const Terminal end = terminal();
@@ -201,11 +264,27 @@ bool FeedbackGains::solve(double time_step) noexcept {
   }
   for (int k = steps_ - 1; valid && k >= 0; --k) {
     begin_step(k);
-    valid = all_finite(hessian_) && all_finite(gradient_) && solve_gain(k, choose_free_inputs(k));
+    int free = choose_free_inputs(k);
+    valid = all_finite(hessian_) && all_finite(gradient_);
+    if (valid && free > 0) {
+      valid = (change_inputs ? solve_change(k, free, damping) : factorise_free(free, damping)) &&
+              solve_gain(k, free);
+    }
     if (valid) end_step(k);
   }
-  if (!valid) std::fill(gains_.begin(), gains_.end(), 0.0);
-  return valid;
+  if (valid) return true;
+  std::fill(gains_.begin(), gains_.end(), 0.0);
+  std::fill(changes_.begin(), changes_.end(), 0.0);
+  return false;
+}
+
+bool FeedbackGains::solve(double time_step) noexcept {
+  time_step_ = time_step;
+  return recurse(false, 0);
+}
+
+bool FeedbackGains::solve_step(double damping) noexcept {
+  return recurse(true, damping);
 }
 
 void FeedbackGains::input_at(double t, std::span<const double> x, std::span<double> u) const noexcept {
