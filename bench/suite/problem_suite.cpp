@@ -3,7 +3,9 @@
 //
 //   slalom_problem_suite [--seeds 40] [--first-seed 0] [--tasks NAME,...] [--methods
 //   METHOD[:OPTION=VALUE]...,...]
-//                        [--temperatures NUMBER,...]
+//                        [--temperatures NUMBER,...] [--ilqr ITERATIONS]
+//
+// --ilqr adds a proposal by iterative LQR to every solve.
 
 #include <cmath>
 #include <cstdio>
@@ -101,6 +103,7 @@ struct Arguments {
   std::vector<std::string> tasks;  ///< empty: all
   std::vector<std::string> methods{"mppi", "svg_mppi"};
   std::vector<std::string> temperatures{"0.01", "0.1", "1", "10", "100"};
+  int ilqr_iterations = 0;
 };
 
 Arguments parse(int argc, char** argv) {
@@ -119,6 +122,8 @@ Arguments parse(int argc, char** argv) {
       a.methods = split(value, ',');
     } else if (name == "--temperatures") {
       a.temperatures = split(value, ',');
+    } else if (name == "--ilqr") {
+      a.ilqr_iterations = std::stoi(value);
     } else {
       throw std::invalid_argument("unknown argument '" + name + "'");
     }
@@ -151,8 +156,9 @@ void run(const Arguments& a) {
         const std::vector<std::string> parts = split(method, ':');
         SolverOptions options = method_options(parts[0], task, std::stod(temperature));
         set_options(options, parts);
-        const Outcome outcome =
-            of_any_temperature ? *of_any_temperature : task.run(options, a.first_seed, a.seeds);
+        const Outcome outcome = of_any_temperature
+                                    ? *of_any_temperature
+                                    : task.run({options, a.first_seed, a.seeds, a.ilqr_iterations});
         if (!options.find<double>("temperature")) of_any_temperature = outcome;
         std::printf("%s,%d,%s,%s,%d,%d,%.4g\n", task.name.c_str(), task.several_ways, method.c_str(),
                     temperature.c_str(), a.seeds, outcome.solved, median(outcome.effective_sample_sizes));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,14 @@ struct Outcome {
   std::vector<double> effective_sample_sizes;  ///< of every solve
 };
 
+/// Closed-loop runs of a task.
+struct Runs {
+  SolverOptions options;    ///< method
+  std::uint64_t first = 0;  ///< seed of the first run; the others follow
+  int count = 0;            ///< number
+  int ilqr_iterations = 0;  ///< of a proposal by iterative LQR in every solve; 0: none
+};
+
 /// A task: a problem, what is known of its inputs, and closed-loop runs.
 struct Task {
   std::string name;
@@ -27,8 +36,7 @@ struct Task {
   int horizon = 0;                ///< steps
   std::vector<double> deviation;  ///< standard deviation that samples should have, one for each input
   std::vector<double> low, high;  ///< bounds of the inputs
-  /// Runs the closed loop for the seeds `first` ... `first + count - 1`.
-  std::function<Outcome(const SolverOptions& options, std::uint64_t first, int count)> run;
+  std::function<Outcome(const Runs&)> run;  ///< drives the closed loop
 };
 
 /// Closed-loop runs of a controller of problem P from `start`. `judge(problem, x, k)` gives the verdict on
@@ -37,17 +45,28 @@ struct Task {
 template <class P, class Judge, class Change = std::nullptr_t>
 auto closed_loop(const P& problem, const typename P::template State<double>& start, int steps, Judge judge,
                  Change change = nullptr) {
-  return [=](const SolverOptions& options, std::uint64_t first, int count) {
+  return [=](const Runs& runs) {
     Outcome outcome;
-    Controller<P> controller(problem, options);
-    for (int run = 0; run < count; ++run) {
-      controller.reset(first + static_cast<std::uint64_t>(run));
+    Controller<GradientEvaluator<P>> controller(GradientEvaluator<P>(problem), runs.options);
+    std::optional<Proposals<GradientEvaluator<P>>> proposals;
+    Ilqr ilqr(controller, {std::max(runs.ilqr_iterations, 1)});
+    if (runs.ilqr_iterations > 0) proposals.emplace(controller, 1);
+    for (int run = 0; run < runs.count; ++run) {
+      controller.reset(runs.first + static_cast<std::uint64_t>(run));
+      ilqr.start_from({});
       controller.problem() = problem;
       auto x = start;
       Verdict verdict = Verdict::running;
       for (int k = 0; k < steps && verdict == Verdict::running; ++k) {
         if constexpr (!std::is_same_v<Change, std::nullptr_t>) change(controller.problem(), x, k);
-        const auto plan = controller.solve(x, {.elapsed = problem.dt});
+        SolveRequest request{.elapsed = problem.dt};
+        if (proposals) {
+          proposals->clear();
+          proposals->add(ilqr.improve(controller.problem(), x, problem.dt));
+          request.proposals = *proposals;
+        }
+        const auto plan = controller.solve(x, request);
+        if (proposals) ilqr.start_from(plan.inputs);
         outcome.effective_sample_sizes.push_back(plan.stats.effective_sample_size);
         x = slalom::detail::step<P, double>(controller.problem(), x, NoLookUp{}, plan.inputs[0], 0);
         verdict = judge(controller.problem(), x, k);

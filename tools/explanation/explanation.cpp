@@ -165,6 +165,7 @@ Explanation explain(const ExplainedMethod& method, const PassingPoint& point, in
   e.beside = std::clamp(static_cast<int>(std::lround(point.disc_x / (point.speed * point.dt))), 0, steps);
   ProblemEvaluator<PassingPoint> evaluator(point);
   evaluator.set_state({0, 0});
+  solver->connect(evaluator);
   const SolveResult* result = nullptr;
   for (int i = 0; i < solves; ++i) {
     result = &solver->solve(evaluator, {});

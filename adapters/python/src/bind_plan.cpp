@@ -96,6 +96,9 @@ void bind_statistics(py::class_<Base>& bound) {
           "effective_sample_size", [](const Base& p) { return p.result().effective_sample_size; },
           "1 / sum of squared weights")
       .def_property_readonly(
+          "gradient_kinks", [](const Base& p) { return p.result().gradient_kinks; },
+          "exact gradients of guides in this solve that were taken at a kink, or were not finite")
+      .def_property_readonly(
           "few_samples_solves", [](const Base& p) { return p.result().few_samples_solves; },
           "solves in a row, with this one, whose effective sample size was below 3")
       .def_property_readonly(

@@ -76,6 +76,7 @@ Controller::Controller(const AnyProblem& problem, const SolverOptions& options)
       state_(static_cast<std::size_t>(problem.states())),
       inputs_(static_cast<std::size_t>(solver_->horizon() * solver_->inputs())),
       previous_(static_cast<std::size_t>(problem.inputs())) {
+  solver_->connect(problem_->evaluator());
   rest();
 }
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "slalom/core/derivatives/linearize.hpp"
+#include "slalom/core/derivatives/gradient_evaluator.hpp"
 #include "slalom/core/problem_evaluator.hpp"
 
 namespace slalom::python {
@@ -161,7 +161,9 @@ class BuiltIn final : public AnyProblem {
       return AnyProblem::hold_rates(previous, u);
     }
   }
-  void set_previous_input(std::span<const double> u) override { evaluator_.set_previous_input(to_input(u)); }
+  void set_previous_input([[maybe_unused]] std::span<const double> u) override {
+    if constexpr (slalom::detail::limits_rates<P>) evaluator_.set_previous_input(to_input(u));
+  }
 
  private:
   static Input<double, P::inputs> to_input(std::span<const double> values) {
@@ -175,7 +177,7 @@ class BuiltIn final : public AnyProblem {
     return state;
   }
 
-  ProblemEvaluator<P> evaluator_;
+  GradientEvaluator<P> evaluator_;
   std::string name_;
 };
 

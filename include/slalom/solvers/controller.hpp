@@ -115,8 +115,9 @@ class Controller {
   using Inputs = Input<double, input_count>;         ///< inputs of a step
 
   /// With the options of any method, within the bounds that the problem states for its inputs. Throws
-  /// std::invalid_argument that names the option, its value and the rule, or what the problem says of its
-  /// inputs. The threads are the controller's own unless a pool is given to share.
+  /// std::invalid_argument that names the option, its value and the rule, what the problem says of its
+  /// inputs, or what an option needs and the evaluator does not have. The threads are the controller's own
+  /// unless a pool is given to share.
   Controller(P problem, const SolverOptions& options, std::shared_ptr<ThreadPool> pool = nullptr)
       : evaluator_(std::move(problem)),
         bounds_(bounds_of(evaluator_, &options)),
@@ -221,6 +222,7 @@ class Controller {
   }
 
   void allocate() {
+    solver_->connect(evaluator_);
     const auto steps = static_cast<std::size_t>(solver_->horizon());
     inputs_.resize(steps);
     rest();

@@ -67,6 +67,7 @@ struct SolveResult {
   double temperature = 0;            ///< lambda in use
   int iterations = 0;                ///< guide or distribution updates made
   StageTimes times;                  ///< times of the stages
+  int gradient_kinks = 0;            ///< exact gradients of guides that were taken at a kink, or not finite
 
   /// Whether the effective sample size stays below `few_samples`: the plans then follow single samples. A
   /// larger temperature, smaller variances or `target_ess_fraction` raise it.
@@ -102,6 +103,11 @@ class Solver {
   /// Draws the noise of the next solve ahead, so that it costs nothing inside the deadline; the results do
   /// not change.
   virtual void prepare() noexcept {}
+
+  /// Asks an evaluator for what the options need besides costs. To be called before the first solve with it;
+  /// a controller does so when it is made. Allocates. Throws std::invalid_argument that names the option if
+  /// the evaluator does not have it.
+  virtual void connect(const BatchEvaluator& /*evaluator*/) {}
 };
 
 }  // namespace slalom

@@ -21,6 +21,16 @@ inline const char* const* enum_names(GuideWeight) {
   return names;
 }
 
+/// The gradient that the guides of `svg_mppi` follow.
+enum class GuideGradient {
+  surrogate,  ///< the surrogate gradient of samples, equation (11)
+  exact,      ///< the derivative of the cost, of an evaluator that has it (`GradientEvaluator`)
+};
+inline const char* const* enum_names(GuideGradient) {
+  static constexpr const char* const names[] = {"surrogate", "exact", nullptr};
+  return names;
+}
+
 /// The sequence around which `svg_mppi` draws its samples. docs/algorithms.md derives both forms.
 enum class SampleCentre {
   /// The nominal sequence: the weights need no control term. The last solution joins the guides.
@@ -33,7 +43,7 @@ inline const char* const* enum_names(SampleCentre) {
   return names;
 }
 
-/// The guide particles of `svg_mppi`, which follow the surrogate gradient, equation (11), to a mode.
+/// The guide particles of `svg_mppi`, which follow a gradient to a mode.
 struct GuideOptions {
   int count = 4;                      ///< K_g
   int iterations = 10;                ///< L, number of steps by which the guides move in a solve
@@ -49,6 +59,9 @@ struct GuideOptions {
   PerInput restart_variance = 1;  ///< input^2, of those deviations
   /// Mean of the samples. Without the nominal sequence (`use_nominal`) it is the last solution.
   SampleCentre sample_around = SampleCentre::nominal;
+  /// With `exact`, the weights of the gradient (`weight`) must be those of the costs alone, and a step is
+  /// limited by `gradient_variance`.
+  GuideGradient gradient = GuideGradient::surrogate;
 };
 
 /// Options of `svg_mppi`: Stein variational guided MPPI (Honda et al., ICRA 2024), whose equations are cited
@@ -137,6 +150,9 @@ void visit_guide_options(Options& o, Visit&& visit) {
       o.sample_around,
       Declaration{.name = "sample_around",
                   .help = "mean of the samples: the nominal sequence, or the last solution as in the paper"});
+  visit(o.gradient, Declaration{.name = "guide_gradient",
+                                .help = "gradient that the guides follow: the surrogate of samples, or the "
+                                        "exact derivative of a problem that has it"});
 }
 
 template <class Options, class Visit>

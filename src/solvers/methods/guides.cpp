@@ -27,7 +27,9 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
     : options_(options),
       inputs_(inputs),
       count_(options.guides.count),
-      block_(padded(options.guides.gradient_samples + 1)),
+      gradient_samples_(options.guides.gradient == GuideGradient::exact ? 0
+                                                                        : options.guides.gradient_samples),
+      block_(padded(gradient_samples_ + 1)),
       rows_(options.horizon * inputs),
       low_(low),
       high_(high),
@@ -53,6 +55,10 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       path_(point(options.guides.iterations, 0), rows_),
       path_float_(point(options.guides.iterations, 0), rows_),
       path_costs_(point(options.guides.iterations, 0)),
+      kinks_(count_),
+      part_(count_),
+      taken_costs_(count_),
+      taken_collided_(count_),
       made_(count_),
       fit_points_(path_costs_.size()),
       density_(path_costs_.size()),
@@ -145,24 +151,25 @@ std::span<const float> Guides::path_costs() const noexcept {
 
 /// Fills the block of each guide with its gradient samples and the guide itself.
 void Guides::fill_blocks(RandomKey key, int first, int last) noexcept {
-  fill_normal(batch_, first * block_, (last - first) * block_, key);
+  if (gradient_samples_ > 0) fill_normal(batch_, first * block_, (last - first) * block_, key);
   const Rows<float> rows = rows_of(batch_);
-  const int biased = static_cast<int>((1.0 - options_.zero_mean_share) * options_.guides.gradient_samples);
+  const int biased = static_cast<int>((1.0 - options_.zero_mean_share) * gradient_samples_);
   for (int g = first; g < last; ++g) {
     const Range block{g * block_, block_};
-    kernels().sample(rows, rows,
-                     {guides_[g], deviation_.data(), low_.data(), high_.data(), block.first + biased}, block);
-    const int own = block.first + options_.guides.gradient_samples;
+    if (gradient_samples_ > 0) {
+      kernels().sample(rows, rows,
+                       {guides_[g], deviation_.data(), low_.data(), high_.data(), block.first + biased},
+                       block);
+    }
+    const int own = block.first + gradient_samples_;
     batch_.set_sample(own, std::span<const float>(guides_[g], rows_));
   }
 }
 
-/// Moves a guide one step along its gradient (equation (9)), given the costs of its block.
-void Guides::step(int g, int iteration) noexcept {
+/// The surrogate gradient at a guide (equation (11)), given the costs of its block.
+void Guides::estimate_gradient(int g) noexcept {
   const Rows<float> rows = rows_of(batch_);
   const Range block{g * block_, block_};
-  const int own = block.first + options_.guides.gradient_samples;
-  if (iteration > 0) path_costs_[point(iteration - 1, g)] = costs_[own];
   std::copy_n(costs_.data() + block.first, block_, totals_.data() + block.first);
   SurrogateGradient<float> gradient;
   gradient.temperature = static_cast<float>(options_.guides.gradient_temperature);
@@ -175,12 +182,22 @@ void Guides::step(int g, int iteration) noexcept {
     gradient.distance_centre = solution_.data();
     gradient.distance_weight = distance_weight_.data();
   }
-  surrogate_gradient(gradient, rows, block, options_.guides.gradient_samples, totals_.data(), weights_.data(),
-                     gradient_[g]);
+  surrogate_gradient(gradient, rows, block, gradient_samples_, totals_.data(), weights_.data(), gradient_[g]);
+}
+
+/// Moves a guide one step along its gradient (equation (9)), given the costs of its block.
+void Guides::step(int g, int iteration, const CostGradient* exact) noexcept {
+  if (iteration > 0) path_costs_[point(iteration - 1, g)] = costs_[g * block_ + gradient_samples_];
   double* theta = theta_[g];
+  double part = 1;
+  if (exact) {
+    part = take_gradient(*exact, g, iteration);
+  } else {
+    estimate_gradient(g);
+  }
   for (int r = 0; r < rows_; ++r) {
     const double slope = gradient_[g][r];
-    theta[r] += step_[r] * slope;
+    theta[r] += part * step_[r] * slope;
     if (options_.published.clamp_guides) theta[r] = std::clamp<double>(theta[r], low_[r], high_[r]);
     if (!(std::abs(theta[r]) < 1e30)) theta[r] = solution_[r];
   }
@@ -201,6 +218,8 @@ void Guides::begin_move(const float* solution, const float* nominal, int shares)
   }
   std::fill(path_costs_.begin(), path_costs_.end(), infinite);
   std::fill(made_.begin(), made_.end(), 0);
+  std::fill(kinks_.begin(), kinks_.end(), 0);
+  std::fill(taken_costs_.begin(), taken_costs_.end(), infinite);
   shares_ = shares;
 }
 
@@ -208,6 +227,7 @@ void Guides::move_share(int share, const BatchEvaluator& evaluator, RandomKey ke
                         const Deadline& deadline) noexcept {
   // Guides are independent, so each share makes all iterations of its guides.
   const int first = count_ * share / shares_, last = count_ * (share + 1) / shares_;
+  const CostGradient* const exact = exact_gradient(evaluator);
   for (int l = 0; l < options_.guides.iterations && !deadline.passed(); ++l) {
     fill_blocks({key.seed, key.stream + l}, first, last);
     // One guide at a time: the borders of what is evaluated together must not depend on the threads, since a
@@ -215,7 +235,7 @@ void Guides::move_share(int share, const BatchEvaluator& evaluator, RandomKey ke
     for (int g = first; g < last; ++g)
       evaluator.evaluate(batch_, g * block_, block_, costs_.data(), collided_.data());
     kernels().make_finite({first * block_, (last - first) * block_}, costs_.data());
-    for (int g = first; g < last; ++g) step(g, l);
+    for (int g = first; g < last; ++g) step(g, l, exact);
     made_[share] = l + 1;
   }
 }
@@ -227,6 +247,7 @@ int Guides::end_move(const BatchEvaluator& evaluator) noexcept {
   kernels().make_finite({0, padded(count_)}, end_costs_.data());
   best_ = 0;
   for (int g = 0; g < count_; ++g) {
+    if (exact_gradient(evaluator)) return_if_worse(g);
     if (iterations_ > 0) path_costs_[point(iterations_ - 1, g)] = end_costs_[g];
     if (end_costs_[g] < end_costs_[best_]) best_ = g;
   }

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "slalom/core/derivatives/cost_gradient.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "solvers/sampling/rows.hpp"
 #include "solvers/sampling/sample_report.hpp"
@@ -11,11 +12,16 @@ namespace slalom::detail {
 
 /// The guide particles of SVG-MPPI (Honda et al., ICRA 2024): a few control sequences that follow the
 /// surrogate gradient to a mode of the optimal distribution, theta <- theta + epsilon g (equations (9) to
-/// (11)), and the Gaussian that is fitted to the path of the best guide (equations (12) and (13)).
+/// (11)), or the exact gradient of the cost, and the Gaussian that is fitted to the path of the best guide
+/// (equations (12) and (13)).
 class Guides {
  public:
   /// `low` and `high` are the bounds [row]. They must outlive this object.
   Guides(const SvgMppiOptions& options, int inputs, std::span<const float> low, std::span<const float> high);
+
+  /// Gets the working memory for exact gradients of this evaluator, if guides follow them. Throws
+  /// std::invalid_argument if it has none.
+  void connect(const BatchEvaluator& evaluator);
 
   /// Draws new guides from N(0, guide_variance).
   void restart(RandomKey key) noexcept;
@@ -41,6 +47,8 @@ class Guides {
 
   /// The index of the guide with the lowest cost after the last move.
   int best() const noexcept { return best_; }
+  /// The number of exact gradients in the last move that were taken at a kink, or were not finite.
+  int gradient_kinks() const noexcept;
   /// Whether it collides.
   bool best_collides() const noexcept { return best_collides_; }
   /// Its cost; infinite if no guide has a finite cost.
@@ -61,7 +69,12 @@ class Guides {
 
  private:
   void fill_blocks(RandomKey key, int first, int last) noexcept;
-  void step(int guide, int iteration) noexcept;
+  const CostGradient* exact_gradient(const BatchEvaluator& evaluator) const noexcept;
+  void estimate_gradient(int guide) noexcept;
+  double take_gradient(const CostGradient& cost, int guide, int iteration) noexcept;
+  void differentiate(const CostGradient& cost, int guide) noexcept;
+  void return_if_worse(int guide) noexcept;
+  void step(int guide, int iteration, const CostGradient* exact) noexcept;
   void densities(std::span<const int> points) noexcept;
 
   /// The index of a point of the paths: a guide after an iteration.
@@ -73,9 +86,10 @@ class Guides {
 
   SvgMppiOptions options_;
   int inputs_;
-  int count_;  ///< guides
-  int block_;  ///< samples of a guide's block: its gradient samples, the guide itself, padding
-  int rows_;   ///< values of a control sequence
+  int count_;             ///< guides
+  int gradient_samples_;  ///< of a guide; 0 with exact gradients
+  int block_;             ///< samples of a guide's block: its gradient samples, the guide itself, padding
+  int rows_;              ///< values of a control sequence
   std::span<const float> low_, high_;
 
   Matrix<double> theta_, shifted_;  ///< [guide][row]
@@ -91,7 +105,13 @@ class Guides {
   Matrix<double> path_;                                                       ///< [point][row]
   Matrix<float> path_float_;                                                  ///< `path_` as float32
   std::vector<float> path_costs_;                                             ///< [point]
-  std::vector<int> made_;                                                     ///< iterations made [share]
+  std::vector<double> workspace_;   ///< of exact gradients, for each guide
+  std::vector<int> kinks_;          ///< exact gradients at a kink or not finite [guide]
+  Matrix<double> taken_;            ///< with exact gradients: the best point of a guide [guide][row]
+  std::vector<double> part_;        ///< of a step that a guide makes from there [guide]
+  std::vector<float> taken_costs_;  ///< [guide]
+  std::vector<std::uint8_t> taken_collided_;                     ///< [guide]
+  std::vector<int> made_;                                        ///< iterations made [share]
   std::vector<int> fit_points_;                                  ///< indices of the fitted points
   std::vector<double> density_, square_, logarithm_, abscissa_;  ///< [fitted point]
   int shares_ = 1;

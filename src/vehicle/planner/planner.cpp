@@ -68,6 +68,7 @@ struct Planner::Implementation {
         ways(relative(path, origin), speeds.length() > 0, solver->horizon(), solver->inputs(), traits,
              o.steer_limit),
         states(static_cast<std::size_t>(solver->horizon()) + 1) {
+    solver->connect(model->evaluator());
     if (!model->has_dynamics()) return;
     detour = std::make_unique<Detour>(limited_path(relative(path, origin), o, traits), speeds.length() > 0,
                                       traits.body);
