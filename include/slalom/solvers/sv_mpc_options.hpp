@@ -25,6 +25,9 @@ struct SvMpcOptions {
   /// Keep the step below 1 / (Sigma^-1 + Sigma_g^-1), the inverse curvature of the log posterior as far as it
   /// is known, so that particles cannot overshoot further and further.
   bool limit_step = true;
+  /// Control points of a cubic B-spline, which the particles then are: all variances are theirs. 0: a
+  /// particle has inputs of its own for each step.
+  int knots = 0;
   int gradient_samples = 16;          ///< N, for the gradient of a particle
   PerInput gradient_variance = 0.25;  ///< Sigma_g, input^2
   bool best_particle = false;         ///< send the particle of largest weight instead of the weighted mean
@@ -51,6 +54,12 @@ void visit_options(Options& o, Visit&& visit) {
                             .min = 0,
                             .max = detail::finite});
   visit(o.limit_step, Declaration{.name = "limit_step", .help = "keep the step below the inverse curvature"});
+  visit(o.knots, Declaration{.name = "knots",
+                             .symbol = "n",
+                             .help = "control points of a cubic B-spline along the horizon, which the "
+                                     "particles then are; 0: a particle has inputs for each step",
+                             .min = 0,
+                             .max = 64});
   visit(o.gradient_samples, Declaration{.name = "gradient_samples",
                                         .symbol = "N",
                                         .help = "samples for the gradient of a particle",

@@ -7,24 +7,34 @@
 #include "solvers/published/published_stein.hpp"
 #include "solvers/sampling/rows.hpp"
 #include "solvers/sampling/sample_report.hpp"
+#include "solvers/sampling/spline.hpp"
 
 namespace slalom {
 
 namespace {
 
+/// The options of the particles: with splines, they have as many steps as control points.
+SvMpcOptions particle_options(SvMpcOptions options) {
+  if (options.knots > 0) options.horizon = std::min(options.knots, options.horizon);
+  return options;
+}
+
 /// `sv_mpc` (Lambert et al., "Stein Variational Model Predictive Control", CoRL 2020): all samples are
-/// particles. SVGD moves them towards the posterior of optimal control sequences for a Gaussian prior.
+/// particles. SVGD moves them towards the posterior of optimal control sequences for a Gaussian prior. The
+/// particles may be control points of splines (Miura et al., "Spline-Interpolated Model Predictive Path
+/// Integral Control with Stein Variational Inference for Reactive Navigation", ICRA 2024).
 class SvMpcSolver final : public SolverBase {
  public:
   SvMpcSolver(const SvMpcOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
-      : SolverBase(options, inputs, std::move(pool)),
+      : SolverBase(particle_options(options), inputs, std::move(pool)),
         options_(options),
-        particles_(options.horizon, inputs, options.samples),
-        gradient_batch_(options.horizon, inputs, particles_.stride() * options.gradient_samples),
+        steps_(particle_options(options).horizon),
+        particles_(steps_, inputs, options.samples),
+        gradient_batch_(steps_, inputs, particles_.stride() * options.gradient_samples),
         exponents_(gradient_batch_.stride()),
         collided_(exponents_.size()),
-        gradient_(options.horizon, inputs, options.samples),
-        phi_(options.horizon, inputs, options.samples),
+        gradient_(steps_, inputs, options.samples),
+        phi_(steps_, inputs, options.samples),
         distances_(std::max(options.samples, 2016)),
         solution_(size()),
         mean_(size()),
@@ -46,9 +56,11 @@ class SvMpcSolver final : public SolverBase {
       inverse_[r] = detail::inverse_variance<float>(deviation_[r], options.published.inverse_variance_offset);
       deviation_[r] = std::sqrt(deviation_[r]);
     }
+    if (options.knots > 0) use_splines();
     reset(options.seed);
   }
 
+  int horizon() const noexcept override { return options_.horizon; }
   const char* name() const noexcept override { return SvMpcOptions::method; }
   bool keeps_bounds() const noexcept override { return options_.published.clamp_solution; }
 
@@ -57,15 +69,20 @@ class SvMpcSolver final : public SolverBase {
     draw_particles();
     std::fill(solution_.begin(), solution_.end(), 0.0f);
     clamp(solution_.data());
+    expand_solution();
     result_ = {};
     result_.inputs = solution_;
     result_.mean = mean_;
     result_.nominal = zero_;
     result_.variances = variance_;
+    expand_result();
   }
 
-  const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
+  const SolveResult& solve(const BatchEvaluator& problem, const SolveRequest& request) noexcept override {
     const auto begin = detail::Clock::now();
+    const detail::SplineEvaluator of_splines(problem, spline_, sequences_);
+    const BatchEvaluator& evaluator =
+        spline_.active() ? static_cast<const BatchEvaluator&>(of_splines) : problem;
     const Deadline deadline(begin, request.deadline);
     result_.times = {};
     next_solve();
@@ -99,6 +116,7 @@ class SvMpcSolver final : public SolverBase {
                      : late                              ? Status::deadline
                      : all_collided                      ? Status::all_collided
                                                          : Status::ok;
+    expand_result();
     result_.times.update = detail::seconds(evaluated, detail::Clock::now());
     result_.times.total = detail::seconds(begin, detail::Clock::now());
     return result_;
@@ -121,16 +139,65 @@ class SvMpcSolver final : public SolverBase {
                     pool());
   }
 
+  /// Makes the particles control points of splines.
+  void use_splines() {
+    spline_ = detail::Spline(options_.horizon, steps_, inputs());
+    sequences_ = SequenceBatch(options_.horizon, inputs(), gradient_batch_.samples());
+    expanded_ = SequenceBatch(options_.horizon, inputs(), options_.samples);
+    const std::size_t rows = static_cast<std::size_t>(options_.horizon) * static_cast<std::size_t>(inputs());
+    for (std::vector<float>* of_steps :
+         {&step_solution_, &step_shifted_, &step_mean_, &step_zero_, &step_variance_})
+      of_steps->resize(rows);
+  }
+
+  /// With splines, the solution is a sequence from here on.
+  void expand_solution() noexcept {
+    if (!spline_.active()) return;
+    spline_.expand(solution_.data(), step_solution_.data());
+    if (!options_.published.clamp_solution) return;
+    for (std::size_t r = 0; r < step_solution_.size(); ++r) {  // a mean may be rounded past a bound
+      const std::size_t input = r % static_cast<std::size_t>(inputs());
+      step_solution_[r] = std::clamp(step_solution_[r], low()[input], high()[input]);
+    }
+  }
+
+  /// With splines, the result has the sequences, not their control points.
+  void expand_result() noexcept {
+    if (!spline_.active()) return;
+    spline_.expand(mean_.data(), step_mean_.data());
+    spline_.expand_variances(variance_.data(), step_variance_.data());
+    spline_.expand(particles_.values(), expanded_, {0, particles_.stride()});
+    result_.inputs = step_solution_;
+    result_.mean = step_mean_;
+    result_.nominal = step_zero_;
+    result_.variances = step_variance_;
+    if (result_.samples) result_.samples = &expanded_;
+  }
+
+  /// Moves the values of a particle forward in time.
+  void shift_particle(float* particle, double steps) noexcept {
+    if (spline_.active()) return spline_.shift(particle, steps);
+    shift_sequence(particle, steps_, inputs(), steps, shifted_.data());
+    std::copy(shifted_.begin(), shifted_.end(), particle);
+  }
+
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
-    for (std::vector<float>* sequence : {&mean_, &variance_, &solution_}) {
-      shift_sequence(sequence->data(), horizon(), inputs(), steps, shifted_.data());
-      std::copy(shifted_.begin(), shifted_.end(), sequence->begin());
+    shift_particle(mean_.data(), steps);
+    if (spline_.active()) {
+      shift_sequence(step_solution_.data(), options_.horizon, inputs(), steps, step_shifted_.data());
+      step_solution_.swap(step_shifted_);
+    } else {
+      shift_particle(solution_.data(), steps);
     }
+    // Variances must not fall below 0, so those of control points are shifted as if these were steps.
+    const double per_step = options_.horizon > 1 ? (steps_ - 1.0) / (options_.horizon - 1) : 1;
+    shift_sequence(variance_.data(), steps_, inputs(), steps * per_step, shifted_.data());
+    std::copy(shifted_.begin(), shifted_.end(), variance_.begin());
     for (int k = 0; k < particles_.samples(); ++k) {
       particles_.values().get_sample(k, particle_);
-      shift_sequence(particle_.data(), horizon(), inputs(), steps, shifted_.data());
-      particles_.values().set_sample(k, shifted_);
+      shift_particle(particle_.data(), steps);
+      particles_.values().set_sample(k, particle_);
     }
   }
 
@@ -233,9 +300,15 @@ class SvMpcSolver final : public SolverBase {
       std::copy(mean_.begin(), mean_.end(), solution_.begin());
     }
     if (options_.published.clamp_solution) clamp(solution_.data());
+    expand_solution();
   }
 
   SvMpcOptions options_;
+  int steps_;  ///< of a particle: the horizon, or the control points of its spline
+  detail::Spline spline_;
+  SequenceBatch sequences_, expanded_;  ///< with splines: of what is evaluated, and of the particles
+  std::vector<float> step_solution_, step_shifted_, step_mean_, step_zero_,
+      step_variance_;  ///< with splines [step][input]
   detail::SampleSet particles_;
   SequenceBatch gradient_batch_;  ///< sample s of particle p at s * stride + p
   AlignedBuffer exponents_;
