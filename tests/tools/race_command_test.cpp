@@ -81,8 +81,7 @@ TEST_F(RaceCommand, ComparesTwoRunsAlongTheLap) {
   // A run compared with itself is nowhere behind.
   ASSERT_EQ(race("--laps 2 --json again.json --compare fast.json").status, 0);
   const json again = result("again.json");
-  for (const json& time : again["along"]["behind_other_s"])
-    EXPECT_NEAR(time.get<double>(), 0, 1e-4);
+  for (const json& time : again["along"]["behind_other_s"]) EXPECT_NEAR(time.get<double>(), 0, 1e-4);
 }
 
 TEST_F(RaceCommand, SaysWhichRunsCannotBeCompared) {
