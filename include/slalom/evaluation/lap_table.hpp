@@ -32,7 +32,11 @@ struct Experiment {
 
 /// What a lap with `world.tracking` says about its tracker: the figures of TrackingRecord.
 struct TrackingFigures {
-  int in_view = 0, detected = 0, long_in_view = 0, long_detected = 0, false_objects = 0;
+  int in_view = 0;        ///< bodies in view, summed over control steps
+  int detected = 0;       ///< those of them that were detected
+  int long_in_view = 0;   ///< bodies that have been in view for 0.2 s without a break
+  int long_detected = 0;  ///< those of them that were detected
+  int false_objects = 0;  ///< objects that were reported as seen where no body is
   double position_error = 0, speed_error = 0, yaw_error = 0;  ///< m, m/s, rad
   double update_p99 = 0;                                      ///< ms, wall-clock; column `wall_tracking_p99`
 };

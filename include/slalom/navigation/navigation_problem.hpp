@@ -104,10 +104,10 @@ struct NavigationMaps {
   /// For every cell what is known of the nearest point of the path: x, y relative to `origin` (m), yaw (rad),
   /// and length of the path (m) from the beginning of the window.
   GridView<4> path;
-  maps::Point origin;        ///< m, near the robot: states are relative to it
-  double window_length = 0;  ///< m, of the path in the window
-  bool goal_in_window = false;
-  maps::Pose goal;  ///< map frame
+  maps::Point origin;           ///< m, near the robot: states are relative to it
+  double window_length = 0;     ///< m, of the path in the window
+  bool goal_in_window = false;  ///< whether the path in the window ends at the goal
+  maps::Pose goal;              ///< map frame
 };
 
 /// A robot with a base that follows a path between obstacles to a goal.

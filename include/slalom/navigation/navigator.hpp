@@ -103,9 +103,9 @@ constexpr const char* name(NavigationStatus status) noexcept {
 
 /// The answer of a navigator.
 struct NavigationResult {
-  NavigationStatus status = NavigationStatus::no_path;
-  Velocity command;                  ///< finite, within the limits
-  double remaining = 0;              ///< m of path to the goal
+  NavigationStatus status = NavigationStatus::no_path;  ///< whether it drives, and if not, why
+  Velocity command;                                     ///< finite, within the limits
+  double remaining = 0;                                 ///< m of path to the goal
   std::span<const maps::Pose> plan;  ///< predicted poses, map frame; the first is now. Empty unless it drives
   std::span<const maps::Pose> path;  ///< what is followed, with the present detour
 };
@@ -129,8 +129,8 @@ class Navigator {
   /// The same with `svg_mppi`.
   Navigator(const Footprint& footprint, const NavigatorOptions& options, const Costmap& costmap);
   ~Navigator();
-  Navigator(Navigator&&) noexcept;
-  Navigator& operator=(Navigator&&) noexcept;
+  Navigator(Navigator&&) noexcept;  ///< the navigator moved from may only be destroyed or assigned to
+  Navigator& operator=(Navigator&&) noexcept;  ///< the same
 
   /// The path to follow, in the map frame: positions from near the robot to the goal. The yaw of the last
   /// pose is the heading at the goal; that of the others is not used. Throws std::invalid_argument unless

@@ -26,6 +26,7 @@ struct FollowTheGapOptions {
 /// it: it takes a beam for 2 pi over the number of beams, and steers by half the angle.
 class FollowTheGap {
  public:
+  /// With these options; they are not checked.
   explicit FollowTheGap(const FollowTheGapOptions& options = {}) : options_(options) {}
 
   /// The command for a scan, m; {0, 0} for one without a gap.

@@ -13,6 +13,15 @@
 
 namespace slalom {
 
+namespace detail {
+
+/// Gives the inputs for a state and a step of the horizon.
+template <class Law, class C>
+concept ControlLaw = C::has_problem &&
+    std::convertible_to<std::invoke_result_t<Law&, const typename C::State&, int>, Input<double, C::inputs>>;
+
+}  // namespace detail
+
 /// Control sequences of other controllers that compete with the samples of a solve: a brake, a regulator, the
 /// output of a network (Biased-MPPI: Trevisan and Alonso-Mora, IEEE RA-L 9(6), 2024). A sample that is right
 /// at once is worth having where the method's own samples rarely are.
@@ -63,10 +72,8 @@ class Proposals {
   /// Adds what a control law does from state `x`: inputs `law(state, step)` at each step of the horizon,
   /// moved into the bounds, with the states that the controller's problem predicts for them. Limits on rates
   /// are not applied. Returns false, and adds nothing, if there is no room.
-  template <class Law>
-  bool follow(const Controller<P>& controller, const State& x,
-              Law&& law) noexcept requires Controlled::has_problem
-      && std::convertible_to<std::invoke_result_t<Law&, const State&, int>, Inputs> {
+  template <detail::ControlLaw<Controlled> Law>
+  bool follow(const Controller<P>& controller, const State& x, Law&& law) noexcept {
     if (count_ == capacity_) return false;
     const auto& problem = controller.problem();
     using Problem = std::remove_cvref_t<decltype(problem)>;

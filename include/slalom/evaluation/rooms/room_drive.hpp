@@ -38,7 +38,7 @@ struct RoomConditions {
 
 /// A drive.
 struct RoomDrive {
-  RoomOutcome outcome = RoomOutcome::timeout;
+  RoomOutcome outcome = RoomOutcome::timeout;  ///< how the drive ended
   bool success = false;  ///< what the scenario asks for: the goal, or that it was said that there is no way
   double time = 0;       ///< s, of the drive
   double length = 0;     ///< m driven

@@ -59,7 +59,7 @@ maps::OccupancyGrid draw_corridor(const Corridor& corridor, double resolution, d
 
 /// The points and widths of a centre line file, and whether its ends meet.
 struct CentreLineFile {
-  GuideLine line;
+  GuideLine line;                   ///< the points, and whether the line is closed
   std::vector<double> left, right;  ///< m to the walls, a point each; empty if the file has only points
 };
 

@@ -23,13 +23,13 @@ struct GripAtSpeed {
 /// What a raceline depends on of a car. Lateral and longitudinal acceleration are inside an ellipse with
 /// these limits as half axes.
 struct RacingCar {
-  std::string name = "f1tenth";
-  double width = 0.31;             ///< m, of the body
-  double margin = 0.06;            ///< m, that the body keeps from walls
-  double wheelbase = 0.3302;       ///< m
-  double max_steering = 0.4;       ///< rad, of the front wheels
-  double max_steering_rate = 3.2;  ///< rad/s
-  SpeedLimits limits{8, 8.829, 8.829, 8.829};
+  std::string name = "f1tenth";                ///< of the car, for messages
+  double width = 0.31;                         ///< m, of the body
+  double margin = 0.06;                        ///< m, that the body keeps from walls
+  double wheelbase = 0.3302;                   ///< m
+  double max_steering = 0.4;                   ///< rad, of the front wheels
+  double max_steering_rate = 3.2;              ///< rad/s
+  SpeedLimits limits{8, 8.829, 8.829, 8.829};  ///< top speed and accelerations, where `grip` is empty
   double power = std::numeric_limits<double>::infinity();  ///< W/kg: v dv/dt is at most this
   /// By rising speed; replaces the accelerations of `limits`. Linear between rows, constant beyond them.
   std::vector<GripAtSpeed> grip;
