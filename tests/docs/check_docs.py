@@ -1,6 +1,7 @@
-"""Checks the documentation: its links resolve, its code compiles and runs, its commands and their options exist.
+"""Checks the documentation: its links resolve, its code compiles and runs, its patches
+apply, its commands and their options exist.
 
-usage: check_docs.py links ROOT | cpp ROOT COMPILER... | python ROOT | shell ROOT PROGRAM | site FOLDER
+usage: check_docs.py links ROOT | cpp ROOT COMPILER... | python ROOT | patches ROOT | shell ROOT PROGRAM | site FOLDER
 """
 
 import os
@@ -121,6 +122,18 @@ def check_python(root):
     return errors
 
 
+def check_patches(root):
+    errors = []
+    for page in pages(root):
+        for line, text in blocks(page, "diff"):
+            tried = subprocess.run(["git", "apply", "--check", "-"], cwd=root, input=text + "\n", text=True,
+                                   capture_output=True)
+            print(f"{page.relative_to(root)}:{line}: a patch")
+            if tried.returncode:
+                errors.append(f"{page}:{line}: the patch does not apply\n{tried.stderr}")
+    return errors
+
+
 def check_shell(root, program):
     """Commands of the program exist and have the options that the page gives them; scripts exist in the tree."""
     errors, help_of = [], {}
@@ -180,6 +193,8 @@ def main(what, root, *rest):
         errors = check_cpp(root, rest)
     elif what == "python":
         errors = check_python(root)
+    elif what == "patches":
+        errors = check_patches(root)
     elif what == "shell":
         errors = check_shell(root, rest[0] if rest and os.path.exists(rest[0]) else None)
     else:

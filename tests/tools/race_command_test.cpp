@@ -65,6 +65,16 @@ TEST_F(RaceCommand, TheGripCircleIsThatOfTheFriction) {
   EXPECT_EQ(beyond("9"), 0);
 }
 
+TEST_F(RaceCommand, TyresSaturateUnlessTheirOptionSaysOtherwise) {
+  const auto saturate = [&](const std::string& arguments) {
+    const auto run = race("--laps 1 --json r.json " + arguments);
+    EXPECT_EQ(run.status, 0) << run.output;
+    return result("r.json")["settings"]["options"]["world"]["saturating_tyres"];
+  };
+  EXPECT_EQ(saturate(""), true);
+  EXPECT_EQ(saturate("--set world.saturating_tyres=false"), false);
+}
+
 TEST_F(RaceCommand, ComparesTwoRunsAlongTheLap) {
   ASSERT_EQ(race("--laps 2 --json slow.json --set planner.max_speed=2").status, 0);
   const auto run = race("--laps 2 --json fast.json --compare slow.json --plot both.png");

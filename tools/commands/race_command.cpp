@@ -172,9 +172,11 @@ class RaceJob {
 }  // namespace
 
 void declare_race(Subcommand& command) {
-  command.summary("Drive laps against the clock: times, sectors, grip used, and where time is lost");
+  command.summary(
+      "Drive laps against the clock: times, sectors, grip used, and where time is lost. Tyres saturate");
   const auto arguments = std::make_shared<RaceArguments>();
   arguments->scenario.config = "race";
+  arguments->scenario.saturating_tyres = true;
   add_scenario_options(command, arguments->scenario);
   add_method_option(command, arguments->method);
   command

@@ -159,6 +159,7 @@ Scenario load_scenario(const ScenarioArguments& arguments, const std::string& me
   scenario.lap.latency = 1e-3 * arguments.latency_ms;
   if (arguments.hardware) scenario.lap.hardware.emplace();
   scenario.lap.threads = arguments.threads;
+  scenario.lap.saturating_tyres = arguments.saturating_tyres;
   apply_settings(arguments.set, method, scenario.configuration, scenario.lap);
   const maps::Point& origin = scenario.environment->course.origin;
   if (!arguments.start.empty()) {

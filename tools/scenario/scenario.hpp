@@ -32,7 +32,8 @@ struct ScenarioArguments {
   int obstacles = 0;
   int opponents = 0;
   double latency_ms = 0;
-  bool hardware = false;  ///< the conditions of a real car
+  bool hardware = false;          ///< the conditions of a real car
+  bool saturating_tyres = false;  ///< of the world, unless `set` has world.saturating_tyres
   int threads = 1;
 };
 
