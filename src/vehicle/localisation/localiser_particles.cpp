@@ -24,12 +24,12 @@ double radical_inverse(std::uint32_t i) {
 
 }  // namespace
 
-FreeSpace::FreeSpace(const maps::OccupancyGrid& map) : width_(map.width), resolution_(map.resolution) {
+FreeCells::FreeCells(const maps::OccupancyGrid& map) : width_(map.width), resolution_(map.resolution) {
   for (std::size_t i = 0; i < map.cells.size(); ++i)
     if (map.cells[i] == maps::Occupancy::free) cells_.push_back(static_cast<std::uint32_t>(i));
 }
 
-maps::Pose FreeSpace::random_pose(RandomStream& random) const noexcept {
+maps::Pose FreeCells::random_pose(RandomStream& random) const noexcept {
   const std::size_t at = static_cast<std::size_t>(random.uniform() * static_cast<double>(cells_.size()));
   const int cell = static_cast<int>(cells_[at]);
   const int column = cell % width_, row = cell / width_;
@@ -40,7 +40,7 @@ maps::Pose FreeSpace::random_pose(RandomStream& random) const noexcept {
 
 Particles::Particles(const maps::OccupancyGrid& map, const LocaliserOptions& options)
     : options_(options),
-      free_space_(map),
+      free_cells_(map),
       now_(1, 3, options.particles.max_particles),
       next_(1, 3, options.particles.max_particles),
       noise_(1, 3, options.particles.max_particles),
@@ -75,7 +75,7 @@ void Particles::spread_about(const maps::Pose& pose, double deviation, double ya
 
 void Particles::spread_everywhere(RandomKey key) noexcept {
   RandomStream random(key);
-  for (int i = 0; i < options_.particles.max_particles; ++i) put(now_, i, free_space_.random_pose(random));
+  for (int i = 0; i < options_.particles.max_particles; ++i) put(now_, i, free_cells_.random_pose(random));
   make_uniform(options_.particles.max_particles);
 }
 

@@ -14,10 +14,10 @@
 namespace slalom::vehicle::detail {
 
 /// The free cells of a map, to draw poses from.
-class FreeSpace {
+class FreeCells {
  public:
   /// `map` has been checked and has a free cell.
-  explicit FreeSpace(const maps::OccupancyGrid& map);
+  explicit FreeCells(const maps::OccupancyGrid& map);
   /// Uniform over the free space and all yaws; in the frame of the grid.
   maps::Pose random_pose(RandomStream& random) const noexcept;
 
@@ -76,7 +76,7 @@ class Particles {
   int draw(double uniform) const noexcept;
 
   LocaliserOptions options_;
-  FreeSpace free_space_;
+  FreeCells free_cells_;
   SequenceBatch now_, next_, noise_;  ///< [1][x, y, yaw][particle]
   AlignedBuffer log_fit_;
   std::vector<double> weights_, cumulative_;

@@ -22,7 +22,7 @@ bool same(const maps::Pose& a, const maps::Pose& b) {
 
 Search::Search(const maps::OccupancyGrid& map, const LocaliserOptions& options)
     : options_(options),
-      free_space_(map),
+      free_cells_(map),
       poses_(1, 3, options.recovery.max_hypotheses * (copies + options.recovery.search_factor)),
       noise_(1, 3, options.recovery.max_hypotheses * copies),
       log_fit_(static_cast<std::size_t>(poses_.stride())),
@@ -56,7 +56,7 @@ void Search::place_copies(RandomKey key) noexcept {
 
 void Search::place_random(RandomKey key) noexcept {
   RandomStream random(key);
-  for (int i = count_ * copies; i < poses_.samples(); ++i) put(i, free_space_.random_pose(random));
+  for (int i = count_ * copies; i < poses_.samples(); ++i) put(i, free_cells_.random_pose(random));
 }
 
 void Search::take_best_copies(double memory) noexcept {

@@ -43,7 +43,7 @@ class Search {
   void put(int i, const maps::Pose& pose) noexcept;
 
   LocaliserOptions options_;
-  FreeSpace free_space_;
+  FreeCells free_cells_;
   SequenceBatch poses_, noise_;  ///< [1][x, y, yaw][pose]
   AlignedBuffer log_fit_;
   std::vector<Hypothesis> hypotheses_;
