@@ -20,6 +20,26 @@ vehicle::LocaliserOptions seeded(vehicle::LocaliserOptions options, std::uint64_
 
 }  // namespace
 
+HardwareConditions HardwareConditions::sensors(double range_noise, double dropout) {
+  HardwareConditions conditions;
+  conditions.range_noise = range_noise;
+  conditions.dropout = dropout;
+  conditions.steering_dead_time = sim::PlantOptions{}.steering_dead_time;
+  conditions.steering_time_constant = 0;
+  conditions.steering_gain = 1;
+  conditions.steering_offset = 0;
+  conditions.speed_gain = sim::ActuationOptions{}.speed_gain;
+  conditions.acceleration_max = sim::CarParameters{}.acceleration_max;
+  // Near the limit of grip a car turns less than its steering says, so the odometry takes the yaw rate of a
+  // gyro, and the localiser trusts it. With all ranges it sees the next corner from far down a straight.
+  conditions.wheels.yaw_from_gyro = true;
+  conditions.localiser.range_cap = 30;
+  conditions.localiser.motion.drift_noise = 0.01;
+  conditions.localiser.motion.yaw_noise = 0.002;
+  conditions.localiser.motion.turn_noise = 0.03;
+  return conditions;
+}
+
 HardwareModel::HardwareModel(const HardwareConditions& conditions, const maps::OccupancyGrid& map,
                              const sim::CarParameters& car, const sim::CarState& state, std::uint64_t seed)
     : conditions_(conditions),

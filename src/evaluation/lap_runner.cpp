@@ -53,6 +53,8 @@ LapRunner::LapRunner(std::shared_ptr<const Environment> environment,
       method_(std::move(method)),
       settings_(settings) {
   require(environment_ != nullptr, "environment: must not be null");
+  if (settings.localised && !settings_.hardware)
+    settings_.hardware = HardwareConditions::sensors(settings.range_noise, settings.dropout);
   const vehicle::Course& course = environment_->course;
   const LapRules& rules = rules_of(environment_->protocol);
   check(settings, rules, course.closed);

@@ -47,8 +47,8 @@ class RacingCommand : public testing::ProgramTest {
 TEST_F(RacingCommand, AnyDriverDrivesEveryMap) {
   // The limit of the planner's speed bounds the lap time from below: 2 pi r / v.
   const auto planned = drive("--driver mppi --set mppi.samples=400 --set planner.max_speed=4");
-  EXPECT_EQ(planned["config"], "default");
-  EXPECT_EQ(planned["margin_m"], 0.06);
+  EXPECT_EQ(planned["config"], "racing_benchmark");
+  EXPECT_EQ(planned["margin_m"], 0.12);
   const auto gap = drive("--driver follow_the_gap");
   for (const char* map : {"aut", "esp", "gbr", "mco"}) {
     for (const auto& results : {planned["maps"][map], gap["maps"][map]}) {

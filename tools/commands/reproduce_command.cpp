@@ -20,6 +20,9 @@ namespace fs = std::filesystem;
 
 constexpr const char* fallback_course = "stag";
 constexpr const char* gap_driver = "follow_the_gap";
+/// Of a planner in the racing benchmark, unless given.
+constexpr const char* racing_configuration = "racing_benchmark";
+constexpr double racing_margin = 0.12;  // m
 
 struct ReproduceArguments {
   EvaluationArguments evaluation;
@@ -146,12 +149,12 @@ int run_racing(ReproduceArguments arguments) {
   if (!arguments.course_given)
     throw CommandLineError("--course", "must name the folder of the benchmark's maps and centre lines");
   ScenarioArguments& scenario = arguments.evaluation.scenario;
-  if (!arguments.config_given) scenario.config = "default";
+  if (!arguments.config_given) scenario.config = racing_configuration;
   const std::string& json = arguments.evaluation.json;
   std::FILE* words = json == "-" ? stderr : stdout;
   const bool gap = arguments.driver == gap_driver;
   Json summary{{"benchmark", arguments.benchmark}, {"driver", arguments.driver}};
-  const double margin = arguments.margin.value_or(vehicle::RacingCar{}.margin);
+  const double margin = arguments.margin.value_or(racing_margin);
   if (!gap) {
     summary["config"] = scenario.config;
     summary["margin_m"] = margin;
@@ -192,12 +195,12 @@ void declare_reproduce(Subcommand& command) {
       "racing: the benchmark of Evans et al. (arXiv 2402.18558) instead; --course is the folder of its "
       "maps aut, esp, gbr and mco, and no --out is needed");
   command
-      .option(
-          "--driver", arguments->driver,
-          "With --benchmark: a method, whose planner follows the minimum-time raceline, or follow_the_gap")
+      .option("--driver", arguments->driver,
+              "With --benchmark: a method, whose planner drives on the minimum-time raceline with --config "
+              "[racing_benchmark], or follow_the_gap")
       .show_default();
   command.option("--margin", arguments->margin,
-                 "With --benchmark: m, that the raceline keeps between the car and walls [0.06]");
+                 "With --benchmark: m, that the raceline keeps between the car and walls [0.12]");
   command.option("--published", arguments->published, "Folder of the authors' logs");
   command
       .option("--sections", arguments->sections, "Sections, separated by commas: baseline, ablation, sweep")

@@ -56,8 +56,7 @@ std::optional<std::vector<maps::ReferencePoint>> path_through_finish(
 /// map leaves no such line.
 std::unique_ptr<RacingDriver> make_planner_driver(const RacingMap& map,
                                                   const vehicle::Configuration& configuration,
-                                                  const std::string& method,
-                                                  double margin = vehicle::RacingCar{}.margin);
+                                                  const std::string& method, double margin);
 
 /// A lap as it ended.
 struct RacingLap {

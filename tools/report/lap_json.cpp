@@ -16,6 +16,21 @@ Json finite_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+/// Mean and 99th percentile; of no values, null.
+Json error_json(std::vector<float> errors) {
+  if (errors.empty()) return nullptr;
+  std::sort(errors.begin(), errors.end());
+  double sum = 0;
+  for (const float error : errors) sum += static_cast<double>(error);
+  return {{"mean", sum / static_cast<double>(errors.size())}, {"p99", percentile(errors, 0.99)}};
+}
+
+Json localisation_json(const evaluation::LocalisationRecord& record) {
+  return {{"error_m", error_json(record.error)},
+          {"error_rad", error_json(record.yaw_error)},
+          {"steps_without_pose", record.blind}};
+}
+
 }  // namespace
 
 Json estimation_json(const evaluation::EstimationRecord& record) {
@@ -77,6 +92,7 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
             {"touches", collisions},
             {"obstacles", obstacles}};
   if (!lap.estimation.slip_error.empty()) json["estimation"] = estimation_json(lap.estimation);
+  if (!lap.localisation.update_ms.empty()) json["localisation"] = localisation_json(lap.localisation);
   return json;
 }
 

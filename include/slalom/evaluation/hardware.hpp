@@ -30,6 +30,10 @@ struct HardwareConditions {
   sim::WheelOdometryOptions wheels;  ///< errors of the wheel odometry; its seed is that of the lap
   sim::ImuOptions inertial;          ///< errors of the inertial measurement unit; its seed is that of the lap
   vehicle::LocaliserOptions localiser;  ///< its seed is that of the lap
+
+  /// Only the sensors and the localisation of a real car, with this LiDAR: its servo and its motor are those
+  /// of the simulated car. The odometry takes its yaw from a gyro, and the localiser is set for it.
+  static HardwareConditions sensors(double range_noise, double dropout);
 };
 
 /// Declares the options above; those of `wheels`, `inertial` and `localiser` are declared with their structs.

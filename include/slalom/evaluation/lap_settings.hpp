@@ -31,6 +31,7 @@ struct LapSettings {
   double steering_gain = 1;                   ///< angle of the wheels / commanded angle
   double range_noise = 0.01;                  ///< m, standard deviation of each range
   double dropout = 0;                         ///< fraction of beams without a return
+  bool localised = false;                     ///< HardwareConditions::sensors, unless `hardware` is given
   TrackingMode tracking = TrackingMode::off;  ///< tracks other cars for planner and figures
 };
 
@@ -53,6 +54,8 @@ void visit_options(Options& o, Visit&& visit) {
   number(o.steering_gain, "steering_gain", "", "angle of the wheels / commanded angle", 0.1, 10);
   number(o.range_noise, "range_noise", "m", "standard deviation of each range", 0, 1);
   number(o.dropout, "dropout", "", "fraction of beams without a return", 0, 1);
+  visit(o.localised, Declaration{.name = "localised",
+                                 .help = "the planner's pose is estimated from LiDAR and wheel odometry"});
   visit(o.tracking,
         Declaration{
             .name = "tracking",

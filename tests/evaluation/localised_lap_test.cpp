@@ -1,0 +1,58 @@
+// world.localised: the planner's pose is an estimate, and nothing else of the world differs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+
+#include "slalom/evaluation/lap_runner.hpp"
+
+namespace slalom::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+vehicle::Configuration configuration(const char* name) {
+  auto made =
+      vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / (std::string(name) + ".yaml"), {SLALOM_CONFIGS});
+  vehicle::set_option(made, "svg_mppi.samples", "256");
+  return made;
+}
+
+LapResult lap(const char* name, LapSettings settings) {
+  static const auto environment =
+      load_environment(fs::path(SLALOM_COURSES) / "fox", Protocol::true_physics, {SLALOM_COURSES});
+  return LapRunner(environment, configuration(name), "svg_mppi", settings).run(3);
+}
+
+TEST(LocalisedLap, ThePlannerGetsAnEstimateOfThePose) {
+  const LapResult with = lap("default", {.localised = true}), without = lap("default", {});
+  EXPECT_TRUE(with.finished);
+  EXPECT_EQ(with.collisions, 0);
+  EXPECT_TRUE(without.localisation.error.empty());
+  ASSERT_EQ(with.localisation.error.size(), static_cast<std::size_t>(with.steps));
+  EXPECT_GT(*std::min_element(with.localisation.error.begin(), with.localisation.error.end()), 0);
+  // The servo and the motor are those of the simulated car, so the lap takes as long.
+  EXPECT_NEAR(with.time, without.time, 0.02 * without.time);
+}
+
+TEST(LocalisedLap, TheEstimateHoldsNearTheLimitOfGrip) {
+  const LapResult racing = lap("race", {.saturating_tyres = true, .localised = true});
+  EXPECT_TRUE(racing.finished);
+  EXPECT_EQ(racing.collisions, 0);
+  const auto& errors = racing.localisation.error;
+  EXPECT_LT(std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size()), 0.12);
+  EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.6F);
+}
+
+TEST(LocalisedLap, ItsSensorsAreThoseOfTheWorld) {
+  const LapResult usual = lap("default", {.localised = true});
+  const LapResult noisy = lap("default", {.range_noise = 0.05, .localised = true});
+  EXPECT_NE(noisy.localisation.error, usual.localisation.error);
+  const HardwareConditions real;
+  LapSettings both{.hardware = real, .localised = true};
+  EXPECT_EQ(lap("default", both).time, lap("default", {.hardware = real}).time);
+}
+
+}  // namespace
+}  // namespace slalom::evaluation
