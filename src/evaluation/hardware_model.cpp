@@ -31,12 +31,14 @@ HardwareConditions HardwareConditions::sensors(double range_noise, double dropou
   conditions.speed_gain = sim::ActuationOptions{}.speed_gain;
   conditions.acceleration_max = sim::CarParameters{}.acceleration_max;
   // Near the limit of grip a car turns less than its steering says, so the odometry takes the yaw rate of a
-  // gyro, and the localiser trusts it. With all ranges it sees the next corner from far down a straight.
+  // gyro, and the localiser trusts it. The rear axle slips outwards, which the odometry does not know. With
+  // all ranges the localiser sees the next corner from far down a straight.
   conditions.wheels.yaw_from_gyro = true;
   conditions.localiser.range_cap = 30;
   conditions.localiser.motion.drift_noise = 0.01;
   conditions.localiser.motion.yaw_noise = 0.002;
   conditions.localiser.motion.turn_noise = 0.03;
+  conditions.localiser.motion.across_noise = 0.15;
   return conditions;
 }
 
