@@ -8,20 +8,21 @@
 
 namespace slalom::sim {
 
-/// A rectangular floor from (0, 0) to (length, width) with walls, which its map shows, and obstacles, which
-/// the map does not show: pallets and other things that stand about.
+/// A rectangular floor from (0, 0) to (length, width) with walls, which its map shows, and what the map does
+/// not show: obstacles, such as pallets, and people, whom a Crowd moves.
 struct Room {
   double length = 0;           ///< m, along x
   double width = 0;            ///< m, along y
   std::vector<Box> walls;      ///< besides those around the floor
   std::vector<Box> obstacles;  ///< not on the map
+  std::vector<Disc> people{};  ///< where they are now; not on the map
 };
 
 /// The map of a room: its walls, and one cell of wall around the floor. Throws std::invalid_argument unless
 /// the room has 1 to 1000 m along each side and the resolution (m) is in [0.01, 1].
 maps::OccupancyGrid map_of(const Room& room, double resolution);
 
-/// Whether a body overlaps a wall or an obstacle, or leaves the floor. Exact.
+/// Whether a body overlaps a wall, an obstacle or a person, or leaves the floor. Exact.
 bool collides(const Room& room, const Box& body) noexcept;
 
 /// The distances (m) from a scanner to what it sees, one for each of `ranges`, evenly spread around it from

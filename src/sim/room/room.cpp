@@ -57,9 +57,10 @@ maps::OccupancyGrid map_of(const Room& room, double resolution) {
 bool collides(const Room& room, const Box& body) noexcept {
   for (const maps::Point& corner : corners(body))
     if (!(corner.x >= 0 && corner.x <= room.length && corner.y >= 0 && corner.y <= room.width)) return true;
-  const auto hits = [&](const Box& other) { return signed_gap(body, other) <= 0; };
+  const auto hits = [&](const auto& other) { return signed_gap(body, other) <= 0; };
   return std::any_of(room.walls.begin(), room.walls.end(), hits) ||
-         std::any_of(room.obstacles.begin(), room.obstacles.end(), hits);
+         std::any_of(room.obstacles.begin(), room.obstacles.end(), hits) ||
+         std::any_of(room.people.begin(), room.people.end(), hits);
 }
 
 void scan(const Room& room, const maps::Pose& scanner, double max_range, std::span<double> ranges) noexcept {
@@ -73,6 +74,7 @@ void scan(const Room& room, const maps::Pose& scanner, double max_range, std::sp
     for (const Box& wall : room.walls) range = std::min(range, ray_distance(from, cosine, sine, wall));
     for (const Box& obstacle : room.obstacles)
       range = std::min(range, ray_distance(from, cosine, sine, obstacle));
+    for (const Disc& person : room.people) range = std::min(range, ray_distance(from, cosine, sine, person));
     ranges[i] = range;
   }
 }

@@ -1,0 +1,104 @@
+// People: they keep to their way, avoid each other, walls and the robot, or nothing at all.
+#include "slalom/sim/crowd.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace slalom::sim {
+namespace {
+
+constexpr double tick = 0.01;            // s
+const Box far_robot{{50, 50, 0}, 1, 1};  // beyond all rooms
+const Room hall{10, 4, {}, {}};
+
+double distance(const maps::Point& a, const maps::Point& b) {
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
+
+void walk(Crowd& crowd, double duration, const Box& robot = far_robot) {
+  for (int i = 0; i < static_cast<int>(std::lround(duration / tick)); ++i) crowd.step(tick, robot, {});
+}
+
+TEST(Crowd, AWalkerReachesItsSpeedAndStopsAtItsLastPoint) {
+  Crowd crowd(hall, {{{{1, 2}, {5, 2}, {5, 3}}, 1.2, 0.25, 0.5}});
+  walk(crowd, 0.49);
+  EXPECT_EQ(crowd.bodies()[0].middle.x, 1) << "it waits";
+  walk(crowd, 2);
+  EXPECT_NEAR(std::hypot(crowd.velocities()[0].x, crowd.velocities()[0].y), 1.2, 0.05);
+  walk(crowd, 8);
+  EXPECT_NEAR(crowd.bodies()[0].middle.x, 5, 0.25);
+  EXPECT_NEAR(crowd.bodies()[0].middle.y, 3, 0.25);
+  EXPECT_LT(std::hypot(crowd.velocities()[0].x, crowd.velocities()[0].y), 0.05);
+}
+
+TEST(Crowd, TwoWhoMeetPassWithoutTouching) {
+  Crowd crowd(hall, {{{{1, 2}, {9, 2}}, 1.2}, {{{9, 2.1}, {1, 2.1}}, 1.2}});
+  double nearest = 100;
+  for (int i = 0; i < 1200; ++i) {
+    walk(crowd, tick);
+    nearest = std::min(nearest, distance(crowd.bodies()[0].middle, crowd.bodies()[1].middle));
+  }
+  EXPECT_GT(nearest, 0.5) << "twice the radius";
+  EXPECT_GT(crowd.bodies()[0].middle.x, 8.7);
+  EXPECT_LT(crowd.bodies()[1].middle.x, 1.3);
+}
+
+TEST(Crowd, WalksRoundAWallThatItsWayTouches) {
+  const Room room{10, 4, {{{5, 1, 0}, 0.4, 2}}, {}};
+  Crowd crowd(room, {{{{1, 2.2}, {9, 2.2}}, 1}});
+  double nearest = 100;
+  for (int i = 0; i < 1500; ++i) {
+    walk(crowd, tick);
+    nearest = std::min(nearest, signed_gap(room.walls[0], crowd.bodies()[0]));
+  }
+  EXPECT_GT(nearest, 0);
+  EXPECT_GT(crowd.bodies()[0].middle.x, 8.7);
+}
+
+TEST(Crowd, OnlyTheInattentiveWalkIntoARobotThatStands) {
+  for (const bool attentive : {true, false})
+    for (const double offset : {0.0, 0.1, -0.3}) {
+      const Box robot{{5, 2 + offset, 0.3}, 0.7, 0.5};
+      Crowd crowd(hall, {{{{1, 2}, {9, 2}}, 1.3, 0.25, 0, attentive}});
+      double nearest = 100;
+      for (int i = 0; i < 1000; ++i) {
+        walk(crowd, tick, robot);
+        nearest = std::min(nearest, signed_gap(robot, crowd.bodies()[0]));
+      }
+      EXPECT_EQ(nearest > 0, attentive) << offset;
+    }
+}
+
+TEST(Crowd, TheSameStepsGiveTheSameBits) {
+  const auto end = [] {
+    Crowd crowd(hall, {{{{1, 2}, {9, 2}}, 1.2}, {{{9, 2.1}, {1, 2.1}}, 1}, {{{5, 0.5}, {5, 3.5}}, 0.8}});
+    walk(crowd, 5, {{4, 2, 0.4}, 0.7, 0.5});
+    return crowd.bodies()[0].middle.x + 10 * crowd.bodies()[2].middle.y;
+  };
+  EXPECT_EQ(end(), end());
+}
+
+TEST(Crowd, RefusesWalkersWithoutAWayOrRoom) {
+  EXPECT_THROW(Crowd(hall, {{{}}}), std::invalid_argument);
+  EXPECT_THROW(Crowd(hall, {{{{0.1, 2}}}}), std::invalid_argument);
+  EXPECT_THROW(Crowd(hall, {{{{1, 2}}, 4}}), std::invalid_argument);
+  EXPECT_THROW(Crowd(hall, {{{{1, 2}, {NAN, 2}}}}), std::invalid_argument);
+  EXPECT_THROW(Crowd({10, 4, {}, {{{1, 2, 0}, 1, 1}}}, {{{{1.7, 2}}}}), std::invalid_argument);
+}
+
+TEST(Room, PeopleAreSeenAndHit) {
+  Room room = hall;
+  room.people = {{{5, 2}, 0.25}};
+  double range = 0;
+  scan(room, {1, 2, 0}, 8, {&range, 1});
+  EXPECT_NEAR(range, 3.75, 1e-12);
+  EXPECT_TRUE(collides(room, {{4.41, 2, 0}, 0.7, 0.5}));
+  EXPECT_FALSE(collides(room, {{4.39, 2, 0}, 0.7, 0.5}));
+  EXPECT_FALSE(collides(room, {{4.46, 1.56, 0}, 0.7, 0.5})) << "a disc has no corners";
+}
+
+}  // namespace
+}  // namespace slalom::sim
