@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "navigation/base_model.hpp"
+#include "navigation/closed_places.hpp"
+#include "navigation/others.hpp"
 #include "navigation/path_guide.hpp"
 #include "slalom/navigation/path_planner.hpp"
 
@@ -25,7 +27,7 @@ constexpr double dead_end_ahead = 0.2;  // m from the robot's front to the middl
 constexpr double retry_after = 10;      // s without a way after which ways that were closed are tried again
 constexpr int steps_to_react = 2;       // steps of a plan, beside those of braking, that must be free
 constexpr double max_period = 0.2;      // s for which the robot brakes in one command
-constexpr std::size_t max_dead_ends = 4;
+constexpr double longest_way_past = 5;  // m, of cost, that a way past somebody who moves may be longer
 
 bool finite(const maps::Pose& pose) {
   return std::abs(pose.x) <= largest && std::abs(pose.y) <= largest && std::abs(pose.yaw) <= largest;
@@ -55,11 +57,12 @@ class Navigator::Implementation {
         model_(detail::make_base_model(options, footprint, geometry_.resolution, solver)),
         guide_(static_cast<double>(model_->plan().size()) * options.time_step *
                std::max({options.base.max_forward, options.base.max_reverse, options.base.max_sideways})),
-        planner_(geometry_, footprint.half_width()) {}
+        planner_(geometry_, footprint.half_width()),
+        others_(footprint, options, model_->plan().size() - 1) {}
 
   void set_path(std::span<const maps::Pose> path);
   NavigationResult update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
-                          double elapsed) noexcept;
+                          double elapsed, std::span<const maps::PredictedObstacle> others) noexcept;
   void reset(std::uint64_t seed) noexcept;
 
  private:
@@ -68,9 +71,10 @@ class Navigator::Implementation {
   bool is_closed(const Costmap& costmap, const maps::Point& point) const noexcept;
   std::size_t first_closed(const Costmap& costmap) const noexcept;
   bool can_rejoin(const Costmap& costmap, std::size_t point) const noexcept;
-  bool find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed) noexcept;
+  bool find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept;
+  void avoid_meeting(const maps::Pose& pose, const Costmap& costmap, double elapsed) noexcept;
   bool keep_way(const maps::Pose& pose, const Costmap& costmap, double elapsed) noexcept;
-  void watch_progress(double elapsed) noexcept;
+  void watch_progress(const maps::Point& robot, double elapsed) noexcept;
   bool plan_collides(const Costmap& costmap, const Velocity& velocity) const noexcept;
   NavigationResult stand(NavigationStatus status, const Velocity& velocity, double elapsed) const noexcept;
 
@@ -80,15 +84,16 @@ class Navigator::Implementation {
   std::unique_ptr<detail::BaseModel> model_;
   detail::PathGuide guide_;
   PathPlanner planner_;
+  detail::Others others_;
   NavigationMaps maps_;
   std::vector<maps::Point> points_;  ///< of a path that is being made
   std::vector<maps::Pose> chosen_;   ///< the last detour, which later searches prefer
-  std::array<maps::Point, max_dead_ends> dead_ends_{};
-  std::size_t dead_end_count_ = 0;
+  detail::ClosedPlaces closed_;
   double detour_left_ = std::numeric_limits<double>::infinity();  ///< m of path left where the detour ends
-  double without_way_ = 0;   ///< s since the path is blocked and no way round was found
-  double since_search_ = 0;  ///< s
-  double since_solve_ = 0;   ///< s
+  double without_way_ = 0;    ///< s since the path is blocked and no way round was found
+  double since_search_ = 0;   ///< s
+  double since_meeting_ = 0;  ///< s
+  double since_solve_ = 0;    ///< s
   double min_remaining_ = std::numeric_limits<double>::infinity();  ///< m
   double without_progress_ = 0;                                     ///< s
 };
@@ -104,7 +109,7 @@ void Navigator::Implementation::set_path(std::span<const maps::Pose> path) {
   }
   if (guide_.empty() || distance(position(guide_.goal()), position(path.back())) > min_rejoin) {
     chosen_.clear();
-    dead_end_count_ = 0;
+    closed_.forget_dead_ends();
   }
   // A detour is at most as long as a path of the search, and goes on along the path.
   const double longest = length + 2 * static_cast<double>(PathPlanner::max_points) * PathPlanner::spacing;
@@ -122,9 +127,10 @@ void Navigator::Implementation::set_path(std::span<const maps::Pose> path) {
 void Navigator::Implementation::reset(std::uint64_t seed) noexcept {
   guide_.clear();
   chosen_.clear();
-  dead_end_count_ = 0;
+  closed_.forget_dead_ends();
+  others_.clear();
   detour_left_ = min_remaining_ = std::numeric_limits<double>::infinity();
-  without_way_ = since_search_ = since_solve_ = without_progress_ = 0;
+  without_way_ = since_search_ = since_meeting_ = since_solve_ = without_progress_ = 0;
   model_->reset(seed);
 }
 
@@ -139,12 +145,9 @@ bool Navigator::Implementation::is_at_goal(const maps::Pose& pose) const noexcep
          std::abs(maps::wrap_angle(pose.yaw - goal.yaw)) <= options_.goal_angle;
 }
 
-/// Whether the body is known to have no room at a point of the path, or was stuck there.
+/// Whether the body is known to have no room at a point of the path, or that is closed for another reason.
 bool Navigator::Implementation::is_closed(const Costmap& costmap, const maps::Point& point) const noexcept {
-  if (planner_.knows(costmap, point) && !planner_.has_room(costmap, point)) return true;
-  return std::any_of(
-      dead_ends_.begin(), dead_ends_.begin() + static_cast<std::ptrdiff_t>(dead_end_count_),
-      [&](const maps::Point& end) { return distance(point, end) < PathPlanner::dead_end_radius; });
+  return (planner_.knows(costmap, point) && !planner_.has_room(costmap, point)) || closed_.contain(point);
 }
 
 /// The first closed point of the path within the look-ahead; the number of points if there is none.
@@ -167,13 +170,13 @@ bool Navigator::Implementation::can_rejoin(const Costmap& costmap, std::size_t p
 }
 
 /// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
-/// of the path. Returns false and keeps the path if there is none.
-bool Navigator::Implementation::find_way(const maps::Pose& pose, const Costmap& costmap,
-                                         std::size_t closed) noexcept {
-  planner_.read(costmap, chosen_, std::span(dead_ends_).first(dead_end_count_));
+/// of the path. Returns false and keeps the path if there is none that costs less than `most` (m).
+bool Navigator::Implementation::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed,
+                                         double most) noexcept {
+  planner_.read(costmap, chosen_, closed_.all());
   if (!planner_.search_from(position(pose))) return false;
   const std::span<const maps::Pose> path = guide_.points();
-  double least = std::numeric_limits<double>::infinity();
+  double least = most;
   std::size_t best = path.size();
   for (std::size_t i = closed + 1; i < path.size(); ++i) {
     const double left = guide_.step() * static_cast<double>(path.size() - 1 - i);
@@ -194,35 +197,50 @@ bool Navigator::Implementation::find_way(const maps::Pose& pose, const Costmap& 
   return true;
 }
 
+/// Takes a way past somebody who comes along the path or goes ahead, as round an obstacle at the place where
+/// they are met. If there is none, the plans alone avoid them.
+void Navigator::Implementation::avoid_meeting(const maps::Pose& pose, const Costmap& costmap,
+                                              double elapsed) noexcept {
+  since_meeting_ += elapsed;
+  if (since_meeting_ < search_period) return;
+  const auto place = others_.meeting(guide_.points().subspan(guide_.nearest()), guide_.step());
+  if (!place) return;
+  since_meeting_ = 0;
+  const detail::ClosedPlaces::Meeting meeting(closed_, *place);
+  const std::size_t closed = first_closed(costmap);
+  if (closed < guide_.points().size()) find_way(pose, costmap, closed, guide_.remaining() + longest_way_past);
+}
+
 /// Sees to it that the path ahead is open. Returns false if there has been no way for longer than patience.
 bool Navigator::Implementation::keep_way(const maps::Pose& pose, const Costmap& costmap,
                                          double elapsed) noexcept {
-  watch_progress(elapsed);
+  watch_progress(position(pose), elapsed);
   const std::size_t closed = first_closed(costmap);
   if (closed == guide_.points().size()) {
     without_way_ = 0;
+    avoid_meeting(pose, costmap, elapsed);
     return true;
   }
   since_search_ += elapsed;
   if (without_way_ == 0 || since_search_ >= search_period) {
     since_search_ = 0;
-    if (find_way(pose, costmap, closed)) {
+    if (find_way(pose, costmap, closed, std::numeric_limits<double>::infinity())) {
       without_way_ = 0;
       return true;
     }
   }
   without_way_ += std::max(elapsed, 1e-3);
-  if (without_way_ > retry_after && dead_end_count_ > 0) {
-    dead_end_count_ = 0;
+  if (without_way_ > retry_after && closed_.has_dead_ends()) {
+    closed_.forget_dead_ends();
     without_way_ = 0;
   }
   return without_way_ < options_.patience;
 }
 
 /// Notes a dead end ahead where the robot makes no progress.
-void Navigator::Implementation::watch_progress(double elapsed) noexcept {
+void Navigator::Implementation::watch_progress(const maps::Point& robot, double elapsed) noexcept {
   const double remaining = guide_.remaining();
-  const bool waits = without_way_ > 0 || remaining < settling;
+  const bool waits = without_way_ > 0 || remaining < settling || others_.are_near(robot);
   if (waits || remaining < min_remaining_ - progress_step) {
     min_remaining_ = std::min(min_remaining_, remaining);
     without_progress_ = 0;
@@ -233,8 +251,7 @@ void Navigator::Implementation::watch_progress(double elapsed) noexcept {
   without_progress_ = 0;
   const std::size_t ahead = guide_.points_for(footprint_.circumscribed_radius() + dead_end_ahead);
   const std::span<const maps::Pose> path = guide_.points();
-  if (dead_end_count_ == dead_ends_.size()) dead_end_count_ = 0;
-  dead_ends_[dead_end_count_++] = position(path[std::min(guide_.nearest() + ahead, path.size() - 1)]);
+  closed_.add_dead_end(position(path[std::min(guide_.nearest() + ahead, path.size() - 1)]));
 }
 
 /// Whether the plan leads into an obstacle before the robot could brake. A body that overlaps an obstacle
@@ -242,11 +259,12 @@ void Navigator::Implementation::watch_progress(double elapsed) noexcept {
 bool Navigator::Implementation::plan_collides(const Costmap& costmap,
                                               const Velocity& velocity) const noexcept {
   const std::span<const maps::Pose> plan = model_->plan();
-  if (costmap.collides(footprint_, plan.front())) return false;
   const double speed = std::hypot(velocity.forward, velocity.left);
   const double braking = speed / (options_.base.max_acceleration * options_.time_step);
   const std::size_t last =
       std::min(plan.size() - 1, static_cast<std::size_t>(std::min(std::ceil(braking), 1e6)) + steps_to_react);
+  if (others_.meet(plan, last)) return true;
+  if (costmap.collides(footprint_, plan.front())) return false;
   for (std::size_t i = 1; i <= last; ++i)
     if (costmap.collides(footprint_, plan[i])) return true;
   return false;
@@ -270,18 +288,21 @@ NavigationResult Navigator::Implementation::stand(NavigationStatus status, const
 }
 
 NavigationResult Navigator::Implementation::update(const maps::Pose& pose, const Velocity& velocity,
-                                                   const Costmap& costmap, double elapsed) noexcept {
+                                                   const Costmap& costmap, double elapsed,
+                                                   std::span<const maps::PredictedObstacle> others) noexcept {
   if (!finite(pose) || !finite(velocity) || !(elapsed >= 0) || !std::isfinite(elapsed) || !fits(costmap))
     return stand(NavigationStatus::bad_input, velocity, std::isfinite(elapsed) ? elapsed : 0);
   since_solve_ += elapsed;
   if (guide_.empty() || costmap.geometry().row(pose.x) < 0 || costmap.geometry().column(pose.y) < 0)
     return stand(NavigationStatus::no_path, velocity, elapsed);
   guide_.advance(position(pose));
+  others_.update(others, position(pose));
   if (is_at_goal(pose)) return stand(NavigationStatus::goal_reached, velocity, elapsed);
   if (options_.find_detours && !keep_way(pose, costmap, elapsed))
     return stand(NavigationStatus::blocked, velocity, elapsed);
   maps_.distances = costmap.distances();
   maps_.prices = costmap.prices();
+  maps_.others = others_.view();
   guide_.write(position(pose), maps_);
   model_->solve(maps_, pose, velocity, since_solve_);
   since_solve_ = 0;
@@ -313,8 +334,8 @@ void Navigator::set_path(std::span<const maps::Pose> path) {
 }
 
 NavigationResult Navigator::update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
-                                   double elapsed) noexcept {
-  return implementation_->update(pose, velocity, costmap, elapsed);
+                                   double elapsed, std::span<const maps::PredictedObstacle> others) noexcept {
+  return implementation_->update(pose, velocity, costmap, elapsed, others);
 }
 
 void Navigator::reset(std::uint64_t seed) noexcept {

@@ -61,7 +61,7 @@ bool PathPlanner::has_room(const Costmap& costmap, const maps::Point& point) con
 }
 
 void PathPlanner::read(const Costmap& costmap, std::span<const maps::Pose> kept,
-                       std::span<const maps::Point> dead_ends) noexcept {
+                       std::span<const ClosedPlace> closed) noexcept {
   geometry_ = costmap.geometry();
   grid_.set_corner(corner_of(geometry_));
   std::fill(is_kept_.begin(), is_kept_.end(), std::uint8_t{0});
@@ -79,8 +79,8 @@ void PathPlanner::read(const Costmap& costmap, std::span<const maps::Pose> kept,
     if (!kept.empty() && !is_kept_[cell]) price *= other_price;
     prices[cell] = clearance < 0 ? 0 : price;
   }
-  for (const maps::Point& dead_end : dead_ends)
-    visit_around(geometry_, dead_end, dead_end_radius, [&](std::size_t cell) { prices[cell] = 0; });
+  for (const ClosedPlace& place : closed)
+    visit_around(geometry_, place.middle, place.radius, [&](std::size_t cell) { prices[cell] = 0; });
 }
 
 bool PathPlanner::search_from(const maps::Point& start) noexcept {

@@ -19,6 +19,8 @@ constexpr double known_rest = 0.6;               // m/s, deviation of the speed 
 constexpr double unknown_yaw_deviation = 0.4;    // rad
 constexpr double unknown_turn_deviation = 2;     // rad/s
 constexpr double reversing = -0.5;               // m/s, below which an object is turned around
+constexpr double round_deviation = 0.03;         // m, of the middle of a round object, for its limbs
+constexpr double min_walk = 0.1;  // m/s, from which the velocity of a round object gives its yaw
 
 /// The yaw of a new box: the longer side of the fit, or the line of sight if that side is no longer than an
 /// object is wide.
@@ -36,6 +38,7 @@ double yaw_of(const BoxFit& fit, const TrackerOptions& options, double bearing) 
 Tracked::Tracked(int id, const TrackerOptions& options, const Readings& scan,
                  std::span<const Reading> readings) noexcept
     : id_(id),
+      round_(options.length == options.width),
       size_{options.length, options.width},
       size_variance_{square(options.size_deviation), square(options.size_deviation)} {
   const maps::Point& middle = readings[readings.size() / 2].point;
@@ -79,14 +82,14 @@ void Tracked::predict(double elapsed, const TrackerOptions& options) noexcept {
   state_.add_noise({-s, c, 0, 0, 0}, square(slip * way));
 }
 
-/// A box whose yaw is not known: the fit gives it, and the position counts less.
+/// A box whose yaw is not known: the fit gives it, and the position counts less. A round object looks the
+/// same from all sides, so that its box may lie along the line of sight.
 void Tracked::correct_new(const TrackerOptions& options, const Readings& scan,
                           std::span<const Reading> readings) noexcept {
-  const BoxFit fit = fit_box(readings, options.range_deviation);
   const double bearing = std::atan2(point_.mean[1] - scan.sensor().y, point_.mean[0] - scan.sensor().x);
-  yaw_ = yaw_of(fit, options, bearing);
+  yaw_ = round_ ? bearing : yaw_of(fit_box(readings, options.range_deviation), options, bearing);
   const double speed = std::hypot(point_.mean[2], point_.mean[3]);
-  if (scans_ > 1 && speed > min_travel) {
+  if (!round_ && scans_ > 1 && speed > min_travel) {
     const double travel = std::atan2(point_.mean[3], point_.mean[2]);
     yaw_ += right_angle * std::round(maps::wrap_angle(travel - yaw_) / right_angle);
   }
@@ -94,7 +97,7 @@ void Tracked::correct_new(const TrackerOptions& options, const Readings& scan,
   measure_box({{point_.mean[0], point_.mean[1], yaw_}, {size_[0], size_[1]}, options.size_deviation}, scan,
               readings, options.min_incidence, options.range_deviation, axes);
   const double c = std::cos(yaw_), s = std::sin(yaw_);
-  const double floor = square(new_position_deviation);
+  const double floor = square(round_ ? round_deviation : new_position_deviation);
   // Both are measured from the same prediction.
   const double before[2] = {point_.mean[0], point_.mean[1]};
   point_.correct({c, s, 0, 0}, axes[0].offset, axes[0].variance + floor);
@@ -175,7 +178,8 @@ Gaussian<5> Tracked::turning() const noexcept {
   if (turns_) return state_;
   const double vx = point_.mean[2], vy = point_.mean[3], speed = std::hypot(vx, vy);
   const double c = speed > 0 ? vx / speed : 1, s = speed > 0 ? vy / speed : 0;
-  const bool travels = speed > min_travel && square(speed) > 4 * point_.variance_along({0, 0, c, s});
+  const bool travels = round_ ? speed > min_walk
+                              : speed > min_travel && square(speed) > 4 * point_.variance_along({0, 0, c, s});
   const double yaw = travels ? std::atan2(vy, vx) : yaw_;
   const double cosine = std::cos(yaw), sine = std::sin(yaw);
   Gaussian<5> state{{point_.mean[0], point_.mean[1], yaw, cosine * vx + sine * vy, 0}, {}};
@@ -188,8 +192,10 @@ Gaussian<5> Tracked::turning() const noexcept {
   return state;
 }
 
-/// Continues with constant turn rate and speed once the velocity is known, so that the yaw is.
+/// Continues with constant turn rate and speed once the velocity is known, so that the yaw is. A round object
+/// keeps its velocity: nothing shows where it is heading.
 void Tracked::take_over() noexcept {
+  if (round_) return;
   const double speed_variance = 0.5 * (point_.covariance[2][2] + point_.covariance[3][3]);
   const bool travels = square(point_.mean[2]) + square(point_.mean[3]) >
                        std::max(square(min_travel), square(known_speed) * speed_variance);

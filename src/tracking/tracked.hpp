@@ -49,6 +49,7 @@ class Tracked {
   void correct_size(const AxisMeasurement (&axes)[2], double deviation) noexcept;
 
   int id_ = 0;
+  bool round_ = false;  ///< its outline gives no yaw
   bool confirmed_ = false;
   bool turns_ = false;   ///< `state_` has taken over from `point_`
   Gaussian<5> state_;    ///< x, y, yaw, speed, yaw rate; once its motion is known

@@ -60,8 +60,8 @@ TEST(PathPlanner, KeepsToTheWayThatWasChosen) {
   const std::vector<maps::Pose> chosen = plan_path(costmap, body, {1, 3.2, 0}, {7, 3.2, 0});
   ASSERT_GT(crossing(chosen), 4) << "a little nearer";
   PathPlanner planner(costmap.geometry(), body.half_width());
-  const auto crossed = [&](std::span<const maps::Pose> kept, std::span<const maps::Point> dead_ends) {
-    planner.read(costmap, kept, dead_ends);
+  const auto crossed = [&](std::span<const maps::Pose> kept, std::span<const ClosedPlace> closed) {
+    planner.read(costmap, kept, closed);
     EXPECT_TRUE(planner.search_from({1, 2.8}));
     for (const maps::Point& point : planner.path_to({7, 2.8}))
       if (point.x > 4) return point.y;
@@ -69,7 +69,7 @@ TEST(PathPlanner, KeepsToTheWayThatWasChosen) {
   };
   EXPECT_LT(crossed({}, {}), 2) << "the other one is nearer now";
   EXPECT_GT(crossed(chosen, {}), 4);
-  const maps::Point dead_end[] = {{4, 4.5}};
+  const ClosedPlace dead_end[] = {{{4, 4.5}, PathPlanner::dead_end_radius}};
   EXPECT_LT(crossed(chosen, dead_end), 2);
 }
 

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The options that name a file to be written.
-constexpr const char* outputs[] = {"--json", "--record", "--plot", "--html"};
+constexpr const char* outputs[] = {"--json", "--record", "--plot", "--html", "--table"};
 
 void check_value(const GivenOption& option, const std::string& value) {
   // An empty value usually comes from an unset shell variable.

@@ -1,42 +1,31 @@
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <memory>
 
-#include "slalom/evaluation/json.hpp"
-#include "slalom/evaluation/rooms/room_drive.hpp"
-#include "slalom/evaluation/statistics.hpp"
+#include "slalom/core/error.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/drawing/map_picture.hpp"
+#include "tools/commands/navigate_report.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
 namespace {
 
-using evaluation::RoomDrive;
 using evaluation::RoomDriver;
-using evaluation::RoomOutcome;
 using evaluation::RoomScenario;
 
 struct NavigateArguments {
-  std::string scenario = "all", methods = "svg_mppi,mppi", json, pictures;
+  std::string scenario = "all", methods = "svg_mppi,mppi", json, table, pictures;
   int seeds = 5;
   std::uint64_t first_seed = 1;
   bool without_detours = false;
 };
 
-/// A driver, and what the tables call it.
+/// A driver by its method, and what the tables call it.
 struct NamedDriver {
-  std::string name;
-  RoomDriver driver;
-};
-
-/// The drives of a driver in a scenario.
-struct Series {
-  const RoomScenario* scenario;
-  const NamedDriver* driver;
-  std::vector<RoomDrive> drives;
+  std::string name, method;
+  bool detours;
 };
 
 /// The rollouts of a solve of svg_mppi with these options: its samples and those of the guides' steps.
@@ -44,18 +33,16 @@ int rollouts(const SvgMppiOptions& o) {
   return o.samples + o.guides.count * o.guides.iterations * o.guides.gradient_samples;
 }
 
-RoomDriver driver_of(const std::string& method, bool detours) {
+RoomDriver driver_of(const NamedDriver& named, const RoomScenario& scenario) {
   RoomDriver driver;
-  driver.navigator.find_detours = detours;
-  const SvgMppiOptions svg = navigation::svg_mppi_options({});
-  if (method == "svg_mppi") {
+  driver.navigator.find_detours = named.detours;
+  const SvgMppiOptions svg = navigation::svg_mppi_options(scenario.base);
+  if (named.method == "svg_mppi") {
     driver.solver = svg;
-  } else if (method == "mppi") {
-    MppiOptions mppi = navigation::mppi_options({});
+  } else {
+    MppiOptions mppi = navigation::mppi_options(scenario.base);
     mppi.samples = rollouts(svg);
     driver.solver = mppi;
-  } else {
-    throw CommandLineError("--methods", method + ": must be svg_mppi or mppi");
   }
   return driver;
 }
@@ -65,106 +52,25 @@ std::vector<NamedDriver> drivers_of(const NavigateArguments& arguments) {
   std::string rest = arguments.methods + ",";
   for (std::size_t comma; (comma = rest.find(',')) != std::string::npos; rest.erase(0, comma + 1)) {
     const std::string method = rest.substr(0, comma);
-    drivers.push_back({method, driver_of(method, true)});
-    if (arguments.without_detours) drivers.push_back({method + " alone", driver_of(method, false)});
+    if (method != "svg_mppi" && method != "mppi")
+      throw CommandLineError("--methods", method + ": must be svg_mppi or mppi");
+    drivers.push_back({method, method, true});
+    if (arguments.without_detours) drivers.push_back({method + " alone", method, false});
   }
   return drivers;
 }
 
-template <class Value>
-std::vector<double> values_of(const Series& series, Value&& value) {
-  std::vector<double> values;
-  for (const RoomDrive& drive : series.drives) values.push_back(static_cast<double>(value(drive)));
-  return values;
-}
-
-Json mean_of(const std::vector<double>& values) {
-  const evaluation::Interval interval = evaluation::bootstrap_mean(values);
-  return {{"mean", evaluation::mean(values)}, {"low", interval.low}, {"high", interval.high}};
-}
-
-Json summary_of(const Series& series) {
-  int successes = 0, collisions = 0;
-  double slowest = 0;
-  Json drives = Json::array();
-  for (const RoomDrive& d : series.drives) {
-    successes += d.success;
-    collisions += d.outcome == RoomOutcome::collision;
-    slowest = std::max(slowest, d.update_max);
-    drives.push_back({{"outcome", evaluation::name(d.outcome)},
-                      {"success", d.success},
-                      {"time_s", d.time},
-                      {"length_m", d.length},
-                      {"side_changes", d.side_changes},
-                      {"reversals", d.reversals},
-                      {"answer_time_s", d.answer_time},
-                      {"update_p50_ms", 1e3 * d.update_p50},
-                      {"update_max_ms", 1e3 * d.update_max}});
+/// Writes the results so far to the files, and at the end to standard output where that is wanted.
+void write_results(const NavigateArguments& arguments, const std::vector<RoomSeries>& all, bool is_last) {
+  if (!arguments.table.empty()) {
+    std::ofstream file(arguments.table);
+    if (!(file << markdown_table(all) << std::flush)) throw IoError(arguments.table, 0, "cannot be written");
   }
-  const auto count = static_cast<std::int64_t>(series.drives.size());
-  const evaluation::Interval interval = evaluation::wilson_interval(successes, count);
-  return {{"scenario", series.scenario->name},
-          {"driver", series.driver->name},
-          {"drives", count},
-          {"successes", successes},
-          {"success_rate", {{"low", interval.low}, {"high", interval.high}}},
-          {"collisions", collisions},
-          {"time_s", mean_of(values_of(series, [](const RoomDrive& d) { return d.time; }))},
-          {"length_m", mean_of(values_of(series, [](const RoomDrive& d) { return d.length; }))},
-          {"side_changes", mean_of(values_of(series, [](const RoomDrive& d) { return d.side_changes; }))},
-          {"reversals", mean_of(values_of(series, [](const RoomDrive& d) { return d.reversals; }))},
-          {"update_max_ms", 1e3 * slowest},
-          {"by_seed", drives}};
-}
-
-bool collided(const RoomDrive& drive) {
-  return drive.outcome == RoomOutcome::collision;
-}
-
-void print_row(const Series& series, std::ostream& out) {
-  const auto mean = [&](auto&& value) { return evaluation::mean(values_of(series, value)); };
-  const auto count = [&](auto&& holds) {
-    return static_cast<int>(std::count_if(series.drives.begin(), series.drives.end(), holds));
-  };
-  char text[256];
-  std::snprintf(text, sizeof text, "%-15s %-15s %3d/%-3d %10d %8.1f %8.1f %12.1f %10.1f\n",
-                series.scenario->name, series.driver->name.c_str(),
-                count([](const RoomDrive& d) { return d.success; }), static_cast<int>(series.drives.size()),
-                count(collided), mean([](const RoomDrive& d) { return d.time; }),
-                mean([](const RoomDrive& d) { return d.length; }),
-                mean([](const RoomDrive& d) { return d.side_changes; }),
-                mean([](const RoomDrive& d) { return d.reversals; }));
-  out << text << std::flush;
-}
-
-constexpr Colour colours[] = {
-    {0.10, 0.42, 0.75, 0.75}, {0.85, 0.36, 0.13, 0.75}, {0.16, 0.60, 0.38, 0.75}, {0.55, 0.33, 0.65, 0.75}};
-
-/// The ways that all drivers took in a scenario.
-void draw(const std::vector<Series>& all, const RoomScenario& scenario, const std::string& folder) {
-  MapPicture picture(sim::map_of(scenario.room, 0.05));
-  for (const sim::Box& box : scenario.room.obstacles) {
-    const auto corners = sim::corners(box);
-    picture.polygon({corners.begin(), corners.end()}, {0.55, 0.58, 0.63, 1}, {0.3, 0.33, 0.38, 1});
-  }
-  std::vector<std::pair<std::string, Colour>> key;
-  std::size_t index = 0;
-  for (const Series& series : all) {
-    if (series.scenario != &scenario) continue;
-    const Colour colour = colours[index++ % std::size(colours)];
-    key.emplace_back(series.driver->name, colour);
-    for (const RoomDrive& drive : series.drives) {
-      std::vector<maps::Point> points;
-      for (const maps::Pose& pose : drive.trace) points.push_back({pose.x, pose.y});
-      picture.line(points, colour, 3, false);
-      const auto end = sim::corners({drive.trace.back(), 0.7, 0.5});
-      picture.line({end.begin(), end.end()}, colour, 2, true);
-    }
-  }
-  picture.arrow(scenario.start, 20, {0.13, 0.16, 0.22, 1});
-  picture.arrow(scenario.goal, 20, {0.13, 0.16, 0.22, 1});
-  picture.key(scenario.name, scenario.summary, key);
-  picture.save(std::filesystem::path(folder) / (std::string(scenario.name) + ".png"));
+  if (arguments.json.empty() || (arguments.json == "-" && !is_last)) return;
+  Json rows = Json::array();
+  for (const RoomSeries& series : all) rows.push_back(summary_of(series));
+  write_json({{"seeds", all.front().drives.size()}, {"first_seed", arguments.first_seed}, {"results", rows}},
+             arguments.json);
 }
 
 int navigate(const NavigateArguments& arguments) {
@@ -175,29 +81,27 @@ int navigate(const NavigateArguments& arguments) {
     scenarios.push_back(&evaluation::room_scenario(arguments.scenario));
   }
   const std::vector<NamedDriver> drivers = drivers_of(arguments);
-  std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
-  words << "scenario        driver          success collisions   time s length m side changes  reversals\n";
-  std::vector<Series> all;
-  Json rows = Json::array();
-  bool collision_free = true;
+  std::vector<RoomSeries> all;
   for (const RoomScenario* scenario : scenarios)
-    for (const NamedDriver& driver : drivers) {
-      Series series{scenario, &driver, {}};
-      for (int i = 0; i < arguments.seeds; ++i)
-        series.drives.push_back(
-            drive_room(*scenario, driver.driver, arguments.first_seed + static_cast<std::uint64_t>(i)));
-      rows.push_back(summary_of(series));
-      print_row(series, words);
-      collision_free = collision_free && std::none_of(series.drives.begin(), series.drives.end(), collided);
-      all.push_back(std::move(series));
-    }
+    for (const NamedDriver& driver : drivers) all.push_back({scenario, driver.name, {}});
+  // Seed by seed, so that what is written when a long run is stopped is complete up to a seed.
+  for (int i = 0; i < arguments.seeds; ++i) {
+    for (std::size_t k = 0; k < all.size(); ++k)
+      all[k].drives.push_back(drive_room(*all[k].scenario,
+                                         driver_of(drivers[k % drivers.size()], *all[k].scenario),
+                                         arguments.first_seed + static_cast<std::uint64_t>(i)));
+    write_results(arguments, all, i + 1 == arguments.seeds);
+  }
+  std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
+  print_heading(words);
+  for (const RoomSeries& series : all) print_row(series, words);
   if (!arguments.pictures.empty()) {
     std::filesystem::create_directories(arguments.pictures);
     for (const RoomScenario* scenario : scenarios) draw(all, *scenario, arguments.pictures);
   }
-  if (!arguments.json.empty())
-    write_json({{"seeds", arguments.seeds}, {"first_seed", arguments.first_seed}, {"results", rows}},
-               arguments.json);
+  const bool collision_free = std::all_of(all.begin(), all.end(), [](const RoomSeries& series) {
+    return std::none_of(series.drives.begin(), series.drives.end(), collided);
+  });
   return collision_free ? 0 : 1;
 }
 
@@ -216,6 +120,8 @@ void declare_navigate(Subcommand& command) {
       .show_default();
   command.option("--first-seed", arguments->first_seed, "Seed of the first drive").show_default();
   command.option("--pictures", arguments->pictures, "Write a picture of each scenario to this folder");
+  command.option("--table", arguments->table,
+                 "Write a table in Markdown with 95 % intervals to this file, after each seed");
   command.option("--json", arguments->json,
                  "Write the results as JSON to this file, or to standard output: -");
   std::string names = "Scenarios:\n";

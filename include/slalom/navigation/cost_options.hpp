@@ -20,7 +20,11 @@ struct CostOptions {
   double unknown = 1;            ///< where the robot's origin is in a cell that is unknown and priced
   double goal_heading = 3;       ///< per unit of 1 - cos(yaw error) to the goal, near it
   double goal_reach = 0.5;       ///< m, from the goal, where that begins and clearance begins to count less
-  double collision = 500;        ///< while the body overlaps an obstacle
+  double collision = 500;        ///< while the body overlaps an obstacle, or what moves
+  double others_margin = 0.1;    ///< m from what moves, as it is predicted, that count as a collision
+  double others_reach = 0.4;     ///< m beyond that in which nearness has a cost
+  double others = 10;            ///< at that margin; falls off as the square of the distance
+  double others_probability = 0.2;  ///< of a collision with something that moves, above which a plan collides
 };
 
 template <class Options, class Visit>
@@ -56,6 +60,22 @@ void visit_options(Options& o, Visit&& visit) {
                                   .min = 0.01,
                                   .max = 100});
   weight(o.collision, "collision", "1/s", "cost of a body that overlaps an obstacle");
+  visit(o.others_margin, Declaration{.name = "others_margin",
+                                     .unit = "m",
+                                     .help = "distance from what moves that counts as a collision",
+                                     .min = 0,
+                                     .max = 10});
+  visit(o.others_reach, Declaration{.name = "others_reach",
+                                    .unit = "m",
+                                    .help = "distance beyond others_margin in which nearness has a cost",
+                                    .min = 0,
+                                    .max = 10});
+  weight(o.others, "others", "1/s", "cost of a body that is others_margin from what moves");
+  visit(o.others_probability,
+        Declaration{.name = "others_probability",
+                    .help = "probability of a collision with what moves above which a plan collides",
+                    .min = 0,
+                    .max = 1});
 }
 
 }  // namespace slalom::navigation

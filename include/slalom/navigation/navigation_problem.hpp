@@ -8,6 +8,7 @@
 
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/problem.hpp"
+#include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/navigation/base.hpp"
 #include "slalom/navigation/cost_options.hpp"
 #include "slalom/navigation/costmap.hpp"
@@ -104,10 +105,11 @@ struct NavigationMaps {
   /// For every cell what is known of the nearest point of the path: x, y relative to `origin` (m), yaw (rad),
   /// and length of the path (m) from the beginning of the window.
   GridView<4> path;
-  maps::Point origin;           ///< m, near the robot: states are relative to it
-  double window_length = 0;     ///< m, of the path in the window
-  bool goal_in_window = false;  ///< whether the path in the window ends at the goal
-  maps::Pose goal;              ///< map frame
+  maps::Point origin;                  ///< m, near the robot: states are relative to it
+  double window_length = 0;            ///< m, of the path in the window
+  bool goal_in_window = false;         ///< whether the path in the window ends at the goal
+  maps::Pose goal;                     ///< map frame
+  maps::MovingObstaclesView others{};  ///< what moves, map frame
 };
 
 /// A robot with a base that follows a path between obstacles to a goal.
@@ -121,8 +123,8 @@ class NavigationProblem {
   };
   static constexpr int inputs = Base::inputs;  ///< of a step
   /// Names of the terms of the cost of a step.
-  static constexpr std::array cost_names{"progress", "path",         "heading",  "clearance",
-                                         "motion",   "goal_heading", "collision"};
+  static constexpr std::array cost_names{"progress", "path",         "heading",   "clearance",
+                                         "motion",   "goal_heading", "collision", "others"};
 
   double dt;                                  ///< s
   std::array<double, inputs> input_min;       ///< m/s, rad/s
@@ -152,6 +154,7 @@ class NavigationProblem {
     goal_y_ = maps.goal.y - maps.origin.y;
     goal_sine_ = std::sin(maps.goal.yaw);
     goal_cosine_ = std::cos(maps.goal.yaw);
+    others_ = maps.others.relative_to(maps.origin);
     goal_weight_ = maps.goal_in_window ? costs_.goal_heading : Coefficient(0);
   }
 
@@ -183,10 +186,10 @@ class NavigationProblem {
             x.yaw + motion.turn * T(step_)};
   }
 
-  /// Cost of a step.
+  /// Cost of step `k`.
   template <class T>
-  SLALOM_INLINE_CALLS CostTerms<T, 7> stage_cost(const State<T>& x, const Seen<T>& seen,
-                                                 const Input<T, inputs>& u) const {
+  SLALOM_INLINE_CALLS CostTerms<T, 8> stage_cost(const State<T>& x, const Seen<T>& seen,
+                                                 const Input<T, inputs>& u, int k) const {
     const OnPath<T> on_path = along_path(x, seen);
     const T to_goal = sqrt(square(x.x - T(goal_x_)) + square(x.y - T(goal_y_)));
     const T near = max(T(1) - to_goal * T(costs_.per_goal_reach), T(0));
@@ -195,13 +198,14 @@ class NavigationProblem {
     const T moving = T(costs_.reverse) * max(T(0) - motion.forward, T(0)) +
                      T(costs_.sideways) * abs(motion.left) + T(costs_.turning) * square(motion.turn) +
                      T(costs_.unknown) * seen.price;
+    const Cost<T> met = others_.cost(x.x, x.y, seen.sine, seen.cosine, k);
     return {{T(costs_.progress) * on_path.left, T(costs_.path) * min(on_path.squared, T(costs_.max_squared)),
              T(costs_.heading) * (T(1) - near) * on_path.heading_error,
              T(costs_.clearance) * (T(1) - near) *
                  exp(T(costs_.falloff) * min(seen.obstacle.clearance, T(farthest))),
              moving, T(goal_weight_) * near * goal_error,
-             select(seen.obstacle.collided, T(costs_.collision), T(0))},
-            seen.obstacle.collided};
+             select(seen.obstacle.collided, T(costs_.collision), T(0)), met.value},
+            mask_t<T>(seen.obstacle.collided | met.collided)};
   }
 
   /// Cost of the last state.
@@ -256,6 +260,7 @@ class NavigationProblem {
   Coefficient step_;
   GridView<1> distances_, prices_;
   GridView<4> path_;
+  maps::MovingObstaclesView others_;
   Coefficient window_length_, goal_x_, goal_y_, goal_sine_, goal_cosine_, goal_weight_;
 };
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 
+#include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/navigation/base.hpp"
 #include "slalom/navigation/cost_options.hpp"
 #include "slalom/navigation/costmap.hpp"
@@ -74,7 +75,7 @@ void visit_options(Options& o, Visit&& visit) {
 enum class NavigationStatus {
   following,     ///< follows the path
   detour,        ///< follows a way round what blocks the path
-  braking,       ///< the plan leads into an obstacle too soon: the robot brakes
+  braking,       ///< the plan leads into an obstacle, or what moves, too soon: the robot brakes
   blocked,       ///< the path is blocked and there is no way round: the robot stands
   goal_reached,  ///< the robot stands at the goal
   no_path,       ///< no path was set, or the robot is off the costmap: the robot stands
@@ -138,9 +139,10 @@ class Navigator {
   void set_path(std::span<const maps::Pose> path);
 
   /// The command for the next control period. `velocity` is that of the robot now, and `elapsed` (s) the time
-  /// since the last update.
+  /// since the last update. `others` is what moves, as it is predicted from now on in the map frame: plans
+  /// meet it where it will be at each of their steps, and the costmap should not show it where it is.
   NavigationResult update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
-                          double elapsed) noexcept;
+                          double elapsed, std::span<const maps::PredictedObstacle> others = {}) noexcept;
 
   /// Forgets the path and all that was learned on it, and restarts the random numbers from `seed`.
   void reset(std::uint64_t seed) noexcept;

@@ -9,6 +9,12 @@
 
 namespace slalom::navigation {
 
+/// A disc through which no way leads.
+struct ClosedPlace {
+  maps::Point middle;  ///< m
+  double radius = 0;   ///< m
+};
+
 /// Cheapest paths over a costmap for a body that needs a corridor of a given width. Cells within 0.3 m of
 /// what it needs cost up to five times as much. After construction nothing allocates.
 class PathPlanner {
@@ -27,9 +33,9 @@ class PathPlanner {
 
   /// Makes the cells of a costmap, which must have the size given, those of the next search. `kept` is a path
   /// that was followed before: cells further than 0.4 m from it cost 1.3 times as much, so that the search
-  /// prefers the way that was chosen. No way leads within `dead_end_radius` of the `dead_ends`.
+  /// prefers the way that was chosen. No way leads through the `closed` places.
   void read(const Costmap& costmap, std::span<const maps::Pose> kept,
-            std::span<const maps::Point> dead_ends) noexcept;
+            std::span<const ClosedPlace> closed) noexcept;
   /// Searches from a position. Returns false if it is off the costmap. Cells within 0.3 m count as free.
   bool search_from(const maps::Point& start) noexcept;
   /// The cost of a way to a position, m of free space; infinite if there is none.

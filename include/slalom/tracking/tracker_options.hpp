@@ -4,7 +4,9 @@
 
 namespace slalom::tracking {
 
-/// Options of ObjectTracker. The sizes are those of a 1/10-scale racing car.
+/// Options of ObjectTracker. The sizes are those of a 1/10-scale racing car. Where `length` and `width` are
+/// the same, objects are round: their outline gives no yaw, and they keep their velocity instead of speed and
+/// turn rate.
 struct TrackerOptions {
   int max_beams = 4000;           ///< of a scan; longer scans are rejected
   int max_objects = 32;           ///< that are followed at a time, with those not yet confirmed

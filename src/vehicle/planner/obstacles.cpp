@@ -1,10 +1,8 @@
 #include "vehicle/planner/obstacles.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
 
+#include "slalom/maps/moving_readings.hpp"
 #include "vehicle/planner/car_estimator.hpp"
 #include "vehicle/planner/map_options.hpp"
 
@@ -78,33 +76,10 @@ maps::LaserScanView Obstacles::without_others(const PlannerInput& input) noexcep
   std::copy(scan.ranges.begin(), scan.ranges.end(), ranges_.begin());
   const maps::Point at = maps::transform(input.odometry.pose, {laser_.x, laser_.y});
   const maps::Pose sensor{at.x, at.y, input.odometry.pose.yaw + laser_.yaw};
-  for (const maps::PredictedObstacle* const other : others_.taken()) {
-    const maps::Pose box = other->poses.front().pose;
-    const double half_length = 0.5 * other->length + tracking_error,
-                 half_width = 0.5 * other->width + tracking_error;
-    const double distance = std::hypot(box.x - at.x, box.y - at.y),
-                 radius = std::hypot(half_length, half_width);
-    const double bearing = std::atan2(box.y - at.y, box.x - at.x) - sensor.yaw;
-    const double reach = distance > radius ? std::asin(radius / distance) : std::numbers::pi;
-    const double first = (maps::wrap_angle(bearing - scan.angle_min - reach)) / scan.angle_increment;
-    if (!std::isfinite(first)) continue;
-    const double turn = 2 * std::numbers::pi / scan.angle_increment;
-    // Beams may cover more than a turn, and angles are known up to whole turns.
-    for (double begin = first - turn; begin < static_cast<double>(scan.ranges.size()); begin += turn) {
-      const double end =
-          std::min(begin + 2 * reach / scan.angle_increment + 1, static_cast<double>(scan.ranges.size()));
-      for (double beam = std::max(std::floor(begin), 0.0); beam < end; ++beam) {
-        float& range = ranges_[static_cast<std::size_t>(beam)];
-        const double angle = sensor.yaw + scan.angle_min + beam * scan.angle_increment;
-        const maps::Point point =
-            maps::inverse_transform(box, {at.x + static_cast<double>(range) * std::cos(angle),
-                                          at.y + static_cast<double>(range) * std::sin(angle)});
-        if (std::abs(point.x) <= half_length && std::abs(point.y) <= half_width)
-          range = std::numeric_limits<float>::quiet_NaN();
-      }
-    }
-  }
-  scan.ranges = {ranges_.data(), scan.ranges.size()};
+  const std::span<float> ranges(ranges_.data(), scan.ranges.size());
+  for (const maps::PredictedObstacle* const other : others_.taken())
+    maps::drop_readings_of(*other, tracking_error, sensor, scan, ranges);
+  scan.ranges = ranges;
   return scan;
 }
 

@@ -12,19 +12,21 @@ namespace slalom::evaluation {
 enum class RoomOutcome {
   reached,    ///< the robot stands at the goal
   blocked,    ///< it said that there is no way, and stands
-  collision,  ///< its body overlapped a wall or an obstacle
+  collision,  ///< its body overlapped a wall, an obstacle or a person
+  struck,     ///< the same, while it stood: somebody walked into it
   timeout,    ///< neither within the time
 };
 /// The name of an outcome, as it is written in results.
 constexpr const char* name(RoomOutcome outcome) noexcept {
-  constexpr const char* names[] = {"reached", "blocked", "collision", "timeout"};
+  constexpr const char* names[] = {"reached", "blocked", "collision", "struck", "timeout"};
   return names[static_cast<int>(outcome)];
 }
 
 /// Who drives.
 struct RoomDriver {
-  navigation::NavigatorOptions navigator{};                 ///< its base is that of the robot
-  SolverOptions solver = navigation::svg_mppi_options({});  ///< its seed is replaced
+  navigation::NavigatorOptions navigator{};                 ///< its base is replaced by the scenario's
+  SolverOptions solver = navigation::svg_mppi_options({});  ///< for that base; its seed is replaced
+  bool predict_movers = true;  ///< follow and predict what moves; otherwise it is an obstacle of the scans
 };
 
 /// The conditions of a drive.
@@ -34,6 +36,8 @@ struct RoomConditions {
   double range_noise = 0.01;   ///< m, standard deviation of the scanner's ranges
   double start_spread = 0.03;  ///< m, of the start's position along each axis, uniform, to either side
   double start_turn = 0.1;     ///< rad, of its yaw, the same
+  double walker_spread = 0.1;  ///< of the speeds of walkers, as a share, uniform, to either side
+  double walker_pause = 1;     ///< s, by which their pauses are longer, at most, uniform
 };
 
 /// A drive.
@@ -42,17 +46,19 @@ struct RoomDrive {
   bool success = false;  ///< what the scenario asks for: the goal, or that it was said that there is no way
   double time = 0;       ///< s, of the drive
   double length = 0;     ///< m driven
-  int side_changes = 0;  ///< how often plans changed the side on which they pass the scenario's obstacle
+  int side_changes = 0;  ///< how often plans changed the side on which they pass what the scenario counts
   int reversals = 0;     ///< changes between driving forward and back
   /// s between the first scan in which a scenario without a way shows it, and the robot saying so; -1 if it
   /// did not. The way is shown to be closed once the search of the map of scans finds none.
   double answer_time = -1;
-  double update_p50 = 0, update_max = 0;  ///< s of wall clock, of the navigator's updates
-  std::vector<maps::Pose> trace;          ///< one pose for each period
+  double update_p50 = 0, update_max = 0;         ///< s of wall clock, of the navigator's updates
+  std::vector<maps::Pose> trace;                 ///< one pose for each period
+  std::vector<std::vector<maps::Point>> people;  ///< the same for each person: where they were, m
 };
 
-/// Drives a scenario with a path planned on the map without the obstacles. The same seed gives the same
-/// drive, but for the times of the updates. Throws std::invalid_argument as Navigator does.
+/// Drives a scenario with a path planned on the map, which shows neither obstacles nor people; what moves is
+/// known from the scans alone. The same seed gives the same drive, but for the times of the updates. Throws
+/// std::invalid_argument as Navigator does.
 RoomDrive drive_room(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed,
                      const RoomConditions& conditions = {});
 

@@ -6,6 +6,7 @@
 
 #include "slalom/maps/pose.hpp"
 #include "slalom/navigation/base.hpp"
+#include "slalom/sim/crowd.hpp"
 #include "slalom/sim/room.hpp"
 
 namespace slalom::evaluation {
@@ -14,9 +15,12 @@ namespace slalom::evaluation {
 struct RoomScenario {
   const char* name = "";     ///< as the command line writes it
   const char* summary = "";  ///< one line
-  sim::Room room;            ///< its first obstacle is the one whose sides are counted
-  maps::Pose start, goal;    ///< m, m, rad
-  bool has_way = true;       ///< whether the goal can be reached; otherwise the robot must say that it cannot
+  /// Its first obstacle is the one whose sides are counted, and if there is none the first walker.
+  sim::Room room;
+  maps::Pose start, goal;  ///< m, m, rad
+  bool has_way = true;     ///< whether the goal can be reached; otherwise the robot must say that it cannot
+  std::vector<sim::Walker> walkers{};  ///< people; a drive varies their speeds and pauses
+  navigation::BaseOptions base{};      ///< of the robot
 };
 
 /// The scenarios. Their robot is 0.7 m long and 0.5 m wide, its origin in its middle.

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "slalom/navigation/scan_map.hpp"
+#include "slalom/tracking/object_tracker.hpp"
+#include "slalom/tracking/predictor.hpp"
+
+namespace slalom::evaluation {
+
+/// What moves around a robot, known from its scans alone: followed and predicted, and left out of the map.
+class MoverWatch {
+ public:
+  /// For a scanner with so many beams.
+  explicit MoverWatch(std::size_t beams);
+
+  /// Takes a scan of `stamp` (s). The predictions are valid until the next one.
+  std::span<const maps::PredictedObstacle> update(const navigation::RangeScan& scan, double stamp) noexcept;
+  /// The scan of the last update without the readings of what is predicted. Valid until the next one.
+  navigation::RangeScan without_movers(const navigation::RangeScan& scan) const noexcept {
+    return {scan.pose, ranges_, scan.max_range};
+  }
+
+ private:
+  tracking::ObjectTracker tracker_;
+  tracking::Predictor predictor_;
+  std::vector<float> turned_;  ///< the ranges from behind the robot on
+  std::vector<double> ranges_;
+};
+
+}  // namespace slalom::evaluation

@@ -1,0 +1,92 @@
+#include "navigation/others.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slalom::navigation::detail {
+
+namespace {
+
+constexpr double waits_for = 2;       // m from the robot, within which it may wait for what moves
+constexpr double foresight = 5;       // s, in which meetings are found
+constexpr double along_path = 0.7;    // cosine of the angle to the path, of those who go along it
+constexpr double passing_room = 0.1;  // m, more than the margin, so that a way past somebody is kept
+
+/// The box around the footprint, and what plans pay beside others.
+maps::MovingObstacleOptions options_of(const Footprint& footprint, const NavigatorOptions& options) {
+  maps::MovingObstacleOptions made;
+  made.front = made.rear = made.width = 0;
+  for (const maps::Point& vertex : footprint.vertices()) {
+    made.front = std::max(made.front, vertex.x);
+    made.rear = std::max(made.rear, -vertex.x);
+    made.width = std::max(made.width, 2 * std::abs(vertex.y));
+  }
+  made.margin = options.costs.others_margin;
+  made.soft_margin = options.costs.others_reach;
+  made.collision_cost = options.costs.collision * options.time_step;
+  made.soft_cost = options.costs.others * options.time_step;
+  made.max_probability = options.costs.others_probability;
+  return made;
+}
+
+}  // namespace
+
+Others::Others(const Footprint& footprint, const NavigatorOptions& options, std::size_t steps)
+    : time_step_(options.time_step),
+      speed_(options.base.max_forward),
+      half_width_(footprint.half_width() + options.costs.others_margin),
+      obstacles_(options_of(footprint, options), static_cast<int>(steps)) {}
+
+bool Others::are_near(const maps::Point& robot) const noexcept {
+  const auto taken = obstacles_.taken();
+  return std::any_of(taken.begin(), taken.end(), [&](const maps::PredictedObstacle* each) {
+    const maps::Pose& now = each->poses.front().pose;
+    return std::hypot(now.x - robot.x, now.y - robot.y) < waits_for;
+  });
+}
+
+std::optional<ClosedPlace> Others::meeting(std::span<const maps::Pose> path, double step) const noexcept {
+  std::optional<ClosedPlace> first;
+  std::size_t last =
+      std::min(path.size(), static_cast<std::size_t>(foresight * speed_ / std::max(step, 1e-3)));
+  for (const maps::PredictedObstacle* const other : obstacles_.taken()) {
+    const auto end = other->weights.begin() + other->hypotheses;
+    const int likeliest =
+        static_cast<int>(std::max_element(other->weights.begin(), end) - other->weights.begin());
+    const auto pose_at = [&](std::size_t i) {
+      return other->at(likeliest, static_cast<double>(i) * step / speed_).pose;
+    };
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < last; ++i) {
+      const maps::Pose at = pose_at(i);
+      const double distance = std::hypot(at.x - path[i].x, at.y - path[i].y);
+      if (distance >= least) continue;
+      least = distance;
+      nearest = i;
+    }
+    const double room = half_width_ + 0.5 * std::max(other->length, other->width);
+    // At the first point they are beside each other, and at the last one they have not met yet.
+    if (nearest == 0 || nearest + 1 >= last || least >= room) continue;
+    const maps::Pose at = pose_at(nearest);
+    if (std::abs(std::cos(at.yaw - path[nearest].yaw)) < along_path) continue;
+    first = ClosedPlace{{at.x, at.y}, room + passing_room};
+    last = nearest;
+  }
+  return first;
+}
+
+bool Others::meet(std::span<const maps::Pose> plan, std::size_t last) const noexcept {
+  const maps::MovingObstaclesView seen = view();
+  const auto meets = [&](std::size_t i) {
+    const maps::Pose& at = plan[i];
+    return seen.cost<double>(at.x, at.y, std::sin(at.yaw), std::cos(at.yaw), static_cast<int>(i)).collided;
+  };
+  if (seen.empty() || meets(0)) return false;
+  for (std::size_t i = 1; i <= last; ++i)
+    if (meets(i)) return true;
+  return false;
+}
+
+}  // namespace slalom::navigation::detail

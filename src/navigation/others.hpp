@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "slalom/maps/moving_obstacles.hpp"
+#include "slalom/navigation/footprint.hpp"
+#include "slalom/navigation/navigator.hpp"
+#include "slalom/navigation/path_planner.hpp"
+
+namespace slalom::navigation::detail {
+
+/// What moves around the robot, over the steps of a plan.
+class Others {
+ public:
+  /// For plans of so many steps.
+  Others(const Footprint& footprint, const NavigatorOptions& options, std::size_t steps);
+
+  /// Takes predictions from now on, map frame; they must live until the next update.
+  void update(std::span<const maps::PredictedObstacle> predicted, const maps::Point& robot) noexcept {
+    obstacles_.update(predicted, robot, 0, time_step_);
+  }
+  void clear() noexcept { obstacles_.clear(); }
+
+  /// What rollouts see of them, map frame.
+  maps::MovingObstaclesView view() const noexcept { return obstacles_.view(); }
+  /// Whether one of them is so near that the robot may have to wait for it.
+  bool are_near(const maps::Point& robot) const noexcept;
+  /// Where a robot that follows a path, with its points `step` (m) apart, meets one of them who comes towards
+  /// it or goes ahead of it, and the room that passing there takes. Those who cross the path are left to the
+  /// plans: they are gone soon.
+  std::optional<ClosedPlace> meeting(std::span<const maps::Pose> path, double step) const noexcept;
+  /// Whether a pose of the plan meets one of them, up to the one with this index. A body that does so now may
+  /// leave it.
+  bool meet(std::span<const maps::Pose> plan, std::size_t last) const noexcept;
+
+ private:
+  double time_step_;   ///< s
+  double speed_;       ///< m/s, at which the robot follows paths
+  double half_width_;  ///< m, of the robot, with the margin
+  maps::MovingObstacles obstacles_;
+};
+
+}  // namespace slalom::navigation::detail

@@ -1,0 +1,41 @@
+// Readings that end on something that moves are dropped, whatever the turn of the scanner, and no others.
+#include "slalom/maps/moving_readings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace slalom::maps {
+namespace {
+
+TEST(MovingReadings, AreDroppedAtTheObstacleAlone) {
+  const PredictedPose now{{3, 0, 0}, 0, 0};
+  PredictedObstacle obstacle;
+  obstacle.length = obstacle.width = 0.4;
+  obstacle.interval = 0.1;
+  obstacle.hypotheses = 1;
+  obstacle.weights[0] = 1;
+  obstacle.poses = {&now, 1};
+  constexpr int beams = 360;
+  const double increment = 2 * std::numbers::pi / beams;
+  for (const double yaw : {0.0, 1.0, 3.1, -2.0}) {
+    const Pose sensor{0, 0, yaw};
+    std::vector<float> ranges(beams, 2.9f);  // on the obstacle ahead, elsewhere beside it
+    ranges[0] = 5;
+    const LaserScanView scan{ranges, -std::numbers::pi, increment, 0, 10};
+    std::vector<float> kept = ranges;
+    drop_readings_of(obstacle, 0.1, sensor, scan, kept);
+    for (int i = 0; i < beams; ++i) {
+      const auto beam = static_cast<std::size_t>(i);
+      const double angle = yaw - std::numbers::pi + i * increment, range = static_cast<double>(ranges[beam]);
+      const bool on =
+          std::abs(range * std::cos(angle) - 3) <= 0.3 && std::abs(range * std::sin(angle)) <= 0.3;
+      EXPECT_EQ(std::isnan(kept[beam]), on) << yaw << ", beam " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace slalom::maps

@@ -1,0 +1,138 @@
+// What moves: plans meet it where it will be, the robot brakes before it, and waiting for it is no dead end.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "navigation/grids.hpp"
+#include "slalom/navigation/navigator.hpp"
+#include "support/allocations.hpp"
+
+namespace slalom::navigation {
+namespace {
+
+constexpr double period = 0.05, size = 0.5;  // s; m, of the other
+const Footprint body = Footprint::rectangle(0.35, 0.35, 0.5);
+const maps::Pose straight[] = {{1, 0, 0}, {7, 0, 0}};
+
+/// Somebody who keeps a velocity.
+struct Other {
+  maps::Point at, velocity;  // m, m/s
+  std::array<maps::PredictedPose, 2> poses{};
+
+  maps::PredictedObstacle predicted() {
+    const double yaw = std::atan2(velocity.y, velocity.x);
+    for (int i = 0; i < 2; ++i)
+      poses[static_cast<std::size_t>(i)] = {
+          {at.x + 0.1 * i * velocity.x, at.y + 0.1 * i * velocity.y, yaw}, 0.02, 0.02};
+    maps::PredictedObstacle made;
+    made.length = made.width = size;
+    made.interval = 0.1;
+    made.hypotheses = 1;
+    made.weights[0] = 1;
+    made.poses = poses;
+    return made;
+  }
+  void move() { at = {at.x + period * velocity.x, at.y + period * velocity.y}; }
+};
+
+/// A robot on an empty floor of 10 x 6 m around (5, 0), and somebody else.
+struct Meeting {
+  explicit Meeting(const Other& given, NavigatorOptions options = {})
+      : other(given),
+        grid(free_grid(0, -3, 10, 6)),
+        costmap(grid.width, grid.height, grid.resolution),
+        navigator(body, options, solver(), costmap) {
+    costmap.update(grid);
+    navigator.set_path(straight);
+  }
+  static SvgMppiOptions solver() {
+    SvgMppiOptions made = svg_mppi_options({});
+    made.samples = 512;
+    made.guides.iterations = 3;
+    return made;
+  }
+  /// Returns the least distance of the two middles until the goal or for `duration` (s), and drives on.
+  double drive(double duration, bool predicts) {
+    double nearest = 100;
+    for (double time = 0; time < duration && status != NavigationStatus::goal_reached; time += period) {
+      const maps::PredictedObstacle predicted = other.predicted();
+      const auto others = predicts ? std::span(&predicted, 1) : std::span<const maps::PredictedObstacle>{};
+      const NavigationResult result = navigator.update(pose, velocity, costmap, period, others);
+      status = result.status;
+      detours += status == NavigationStatus::detour;
+      velocity = result.command;
+      pose = {pose.x + period * velocity.forward * std::cos(pose.yaw),
+              pose.y + period * velocity.forward * std::sin(pose.yaw), pose.yaw + period * velocity.turn};
+      other.move();
+      nearest = std::min(nearest, std::hypot(pose.x - other.at.x, pose.y - other.at.y));
+    }
+    return nearest;
+  }
+
+  Other other;
+  maps::OccupancyGrid grid;
+  Costmap costmap;
+  Navigator navigator;
+  maps::Pose pose{1, 0, 0};
+  Velocity velocity;
+  NavigationStatus status = NavigationStatus::following;
+  int detours = 0;
+};
+
+TEST(NavigatorOthers, AreMetWhereTheyWillBe) {
+  // Somebody who crosses the path so that both are at (4, 0) at the same time.
+  const Other crossing{{4, -2.6}, {0, 0.42}};
+  EXPECT_LT(Meeting(crossing).drive(30, false), 0.5) << "the test would not show anything";
+  Meeting meeting(crossing);
+  EXPECT_GT(meeting.drive(30, true), 0.6);
+  EXPECT_EQ(meeting.status, NavigationStatus::goal_reached);
+}
+
+TEST(NavigatorOthers, SomebodyWhoWalksTowardsTheRobotIsPassed) {
+  Meeting meeting({{8, 0.05}, {-0.6, 0}});
+  EXPECT_GT(meeting.drive(30, true), 0.55);
+  EXPECT_EQ(meeting.status, NavigationStatus::goal_reached);
+}
+
+TEST(NavigatorOthers, TheRobotBrakesBeforeWhatIsTooNear) {
+  Meeting meeting({{30, 0}, {0, 0}});
+  meeting.drive(2, true);
+  EXPECT_GT(meeting.velocity.forward, 0.4);
+  // Ahead of its front, and coming fast: no plan avoids it.
+  meeting.other = {{meeting.pose.x + 1.0, meeting.pose.y}, {-2, 0}};
+  const maps::PredictedObstacle predicted = meeting.other.predicted();
+  const NavigationResult result =
+      meeting.navigator.update(meeting.pose, meeting.velocity, meeting.costmap, period, {&predicted, 1});
+  EXPECT_EQ(result.status, NavigationStatus::braking);
+  EXPECT_LT(result.command.forward, meeting.velocity.forward);
+}
+
+TEST(NavigatorOthers, WaitingForThemIsNoDeadEnd) {
+  // Somebody who walks up and down where the way is narrow would hold the robot for longer than this.
+  NavigatorOptions options;
+  options.stuck_after = 0.5;
+  Meeting meeting({{2.3, 0}, {0.01, 0}}, options);
+  meeting.grid = free_grid(0, -3, 10, 6);
+  fill(meeting.grid, 0, 0.5, 10, 3);
+  fill(meeting.grid, 0, -3, 10, -0.5);
+  meeting.costmap.update(meeting.grid);
+  meeting.drive(4, true);
+  EXPECT_EQ(meeting.detours, 0);
+  EXPECT_NE(meeting.status, NavigationStatus::blocked);
+  EXPECT_LT(meeting.pose.x, 1.8);
+}
+
+TEST(NavigatorOthers, AllocateNothingInAnUpdate) {
+  Meeting meeting({{4, 0}, {-0.5, 0}});
+  meeting.drive(0.5, true);
+  const maps::PredictedObstacle predicted = meeting.other.predicted();
+  const long before = testing::allocations();
+  meeting.navigator.update(meeting.pose, meeting.velocity, meeting.costmap, period, {&predicted, 1});
+  EXPECT_EQ(testing::allocations(), before);
+}
+
+}  // namespace
+}  // namespace slalom::navigation

@@ -1,0 +1,238 @@
+#include "tools/commands/navigate_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+
+#include "slalom/evaluation/statistics.hpp"
+#include "tools/drawing/map_picture.hpp"
+
+namespace slalom::tools {
+namespace {
+
+using evaluation::Interval;
+using evaluation::RoomDrive;
+using evaluation::RoomOutcome;
+using evaluation::RoomScenario;
+using Drives = std::vector<const RoomDrive*>;
+
+Drives drives_of(const RoomSeries& series) {
+  Drives drives;
+  for (const RoomDrive& drive : series.drives) drives.push_back(&drive);
+  return drives;
+}
+
+double time_of(const RoomDrive& d) {
+  return d.time;
+}
+double length_of(const RoomDrive& d) {
+  return d.length;
+}
+double sides_of(const RoomDrive& d) {
+  return d.side_changes;
+}
+double reversals_of(const RoomDrive& d) {
+  return d.reversals;
+}
+double collisions_of(const RoomDrive& d) {
+  return collided(d);
+}
+double successes_of(const RoomDrive& d) {
+  return d.success;
+}
+
+std::vector<double> values_of(const Drives& drives, double (*value)(const RoomDrive&)) {
+  std::vector<double> values;
+  for (const RoomDrive* drive : drives) values.push_back(value(*drive));
+  return values;
+}
+
+int count_of(const Drives& drives, double (*value)(const RoomDrive&)) {
+  return static_cast<int>(
+      std::count_if(drives.begin(), drives.end(), [&](const RoomDrive* each) { return value(*each) > 0; }));
+}
+
+Json mean_of(const std::vector<double>& values) {
+  const Interval interval = evaluation::bootstrap_mean(values);
+  return {{"mean", evaluation::mean(values)}, {"low", interval.low}, {"high", interval.high}};
+}
+
+std::string text_of(double value, int digits) {
+  char text[32];
+  // Without the sign of a zero.
+  std::snprintf(text, sizeof text, "%.*f", digits, std::abs(value) < 0.5 * std::pow(10, -digits) ? 0 : value);
+  return text;
+}
+
+/// "mean [low, high]", with the 95 % bootstrap interval.
+std::string mean_text(const std::vector<double>& values, int digits = 1) {
+  const Interval interval = evaluation::bootstrap_mean(values);
+  return text_of(evaluation::mean(values), digits) + " [" + text_of(interval.low, digits) + ", " +
+         text_of(interval.high, digits) + "]";
+}
+
+/// "n of m (low to high %)", with the 95 % Wilson interval.
+std::string rate_text(int count, std::size_t drives) {
+  const Interval interval = evaluation::wilson_interval(count, static_cast<std::int64_t>(drives));
+  return std::to_string(count) + " of " + std::to_string(drives) + " (" + text_of(100 * interval.low, 0) +
+         " to " + text_of(100 * interval.high, 0) + " %)";
+}
+
+std::string markdown_row(const std::string& scenario, const std::string& driver, const Drives& drives) {
+  return "| " + scenario + " | " + driver + " | " + rate_text(count_of(drives, successes_of), drives.size()) +
+         " | " + std::to_string(count_of(drives, collisions_of)) + " | " +
+         mean_text(values_of(drives, time_of)) + " | " + mean_text(values_of(drives, length_of)) + " | " +
+         mean_text(values_of(drives, sides_of)) + " | " + mean_text(values_of(drives, reversals_of)) + " |\n";
+}
+
+/// The means of the first driver minus those of another, drive by drive.
+std::string difference_row(const std::string& driver, const Drives& first, const Drives& other) {
+  const auto difference = [&](double (*value)(const RoomDrive&), int digits = 1) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < std::min(first.size(), other.size()); ++i)
+      values.push_back(value(*first[i]) - value(*other[i]));
+    return mean_text(values, digits);
+  };
+  return "| all | " + driver + " | " + difference(successes_of, 3) + " | " + difference(collisions_of, 3) +
+         " | " + difference(time_of) + " | " + difference(length_of) + " | " + difference(sides_of, 2) +
+         " | " + difference(reversals_of, 2) + " |\n";
+}
+
+constexpr Colour colours[] = {
+    {0.10, 0.42, 0.75, 0.75}, {0.85, 0.36, 0.13, 0.75}, {0.16, 0.60, 0.38, 0.75}, {0.55, 0.33, 0.65, 0.75}};
+constexpr Colour person_fill = {0.93, 0.75, 0.25, 0.55}, person_rim = {0.55, 0.40, 0.05, 1};
+
+std::vector<maps::Point> outline(const maps::Pose& pose) {
+  const auto corners = sim::corners({pose, 0.7, 0.5});
+  return {corners.begin(), corners.end()};
+}
+
+std::vector<maps::Point> circle(const maps::Point& middle, double radius) {
+  std::vector<maps::Point> points;
+  for (int i = 0; i < 24; ++i)
+    points.push_back({middle.x + radius * std::cos(i * 0.2617993877991494),
+                      middle.y + radius * std::sin(i * 0.2617993877991494)});
+  return points;
+}
+
+/// Where robot and people were in a drive, every 3 s.
+void draw_moments(MapPicture& picture, const RoomDrive& drive, const RoomScenario& scenario,
+                  const Colour& colour) {
+  constexpr std::size_t periods = 60;
+  for (std::size_t k = 0; k < drive.people.size(); ++k)
+    picture.line(drive.people[k], person_rim, 2, false, true);
+  if (drive.people.empty()) return;
+  for (std::size_t i = 0; i < drive.trace.size(); i += periods) {
+    picture.line(outline(drive.trace[i]), colour, 1.5, true);
+    for (std::size_t k = 0; k < drive.people.size(); ++k)
+      picture.polygon(circle(drive.people[k][i], scenario.walkers[k].radius), person_fill, person_rim);
+  }
+}
+
+}  // namespace
+
+bool collided(const RoomDrive& drive) {
+  return drive.outcome == RoomOutcome::collision || drive.outcome == RoomOutcome::struck;
+}
+
+Json summary_of(const RoomSeries& series) {
+  double slowest = 0;
+  Json by_seed = Json::array();
+  for (const RoomDrive& d : series.drives) {
+    slowest = std::max(slowest, d.update_max);
+    by_seed.push_back({{"outcome", evaluation::name(d.outcome)},
+                       {"success", d.success},
+                       {"time_s", d.time},
+                       {"length_m", d.length},
+                       {"side_changes", d.side_changes},
+                       {"reversals", d.reversals},
+                       {"answer_time_s", d.answer_time},
+                       {"update_p50_ms", 1e3 * d.update_p50},
+                       {"update_max_ms", 1e3 * d.update_max}});
+  }
+  const Drives drives = drives_of(series);
+  const int successes = count_of(drives, successes_of);
+  const auto count = static_cast<std::int64_t>(drives.size());
+  const Interval interval = evaluation::wilson_interval(successes, count);
+  return {{"scenario", series.scenario->name},
+          {"driver", series.driver},
+          {"drives", count},
+          {"successes", successes},
+          {"success_rate", {{"low", interval.low}, {"high", interval.high}}},
+          {"collisions", count_of(drives, collisions_of)},
+          {"time_s", mean_of(values_of(drives, time_of))},
+          {"length_m", mean_of(values_of(drives, length_of))},
+          {"side_changes", mean_of(values_of(drives, sides_of))},
+          {"reversals", mean_of(values_of(drives, reversals_of))},
+          {"update_max_ms", 1e3 * slowest},
+          {"by_seed", by_seed}};
+}
+
+void print_heading(std::ostream& out) {
+  out << "scenario             driver          success collisions   time s length m side changes  "
+         "reversals\n";
+}
+
+void print_row(const RoomSeries& series, std::ostream& out) {
+  const Drives drives = drives_of(series);
+  const auto mean = [&](double (*value)(const RoomDrive&)) {
+    return evaluation::mean(values_of(drives, value));
+  };
+  char text[256];
+  std::snprintf(text, sizeof text, "%-20s %-15s %3d/%-3d %10d %8.1f %8.1f %12.1f %10.1f\n",
+                series.scenario->name, series.driver.c_str(), count_of(drives, successes_of),
+                static_cast<int>(drives.size()), count_of(drives, collisions_of), mean(time_of),
+                mean(length_of), mean(sides_of), mean(reversals_of));
+  out << text << std::flush;
+}
+
+std::string markdown_table(const std::vector<RoomSeries>& all) {
+  std::string text =
+      "| scenario | driver | success | collisions | time, s | length, m | changes of side | reversals |\n"
+      "|---|---|---|---|---|---|---|---|\n";
+  std::vector<std::pair<std::string, Drives>> drivers;
+  for (const RoomSeries& series : all) {
+    const Drives drives = drives_of(series);
+    text += markdown_row("`" + std::string(series.scenario->name) + "`", "`" + series.driver + "`", drives);
+    auto found = std::find_if(drivers.begin(), drivers.end(),
+                              [&](const auto& each) { return each.first == series.driver; });
+    if (found == drivers.end()) found = drivers.insert(drivers.end(), {series.driver, {}});
+    found->second.insert(found->second.end(), drives.begin(), drives.end());
+  }
+  for (const auto& [name, drives] : drivers) text += markdown_row("all", "`" + name + "`", drives);
+  for (std::size_t i = 1; i < drivers.size(); ++i)
+    text += difference_row("`" + drivers[0].first + "` minus `" + drivers[i].first + "`", drivers[0].second,
+                           drivers[i].second);
+  return text;
+}
+
+void draw(const std::vector<RoomSeries>& all, const RoomScenario& scenario, const std::string& folder) {
+  MapPicture picture(sim::map_of(scenario.room, 0.05));
+  for (const sim::Box& box : scenario.room.obstacles) {
+    const auto corners = sim::corners(box);
+    picture.polygon({corners.begin(), corners.end()}, {0.55, 0.58, 0.63, 1}, {0.3, 0.33, 0.38, 1});
+  }
+  std::vector<std::pair<std::string, Colour>> key;
+  std::size_t index = 0;
+  for (const RoomSeries& series : all) {
+    if (series.scenario != &scenario) continue;
+    const Colour colour = colours[index++ % std::size(colours)];
+    key.emplace_back(series.driver, colour);
+    for (const RoomDrive& drive : series.drives) {
+      if (index == 1 && &drive == &series.drives.front()) draw_moments(picture, drive, scenario, colour);
+      std::vector<maps::Point> points;
+      for (const maps::Pose& pose : drive.trace) points.push_back({pose.x, pose.y});
+      picture.line(points, colour, 3, false);
+      picture.line(outline(drive.trace.back()), colour, 2, true);
+    }
+  }
+  if (!scenario.walkers.empty()) key.emplace_back("people, every 3 s", person_rim);
+  picture.arrow(scenario.start, 20, {0.13, 0.16, 0.22, 1});
+  picture.arrow(scenario.goal, 20, {0.13, 0.16, 0.22, 1});
+  picture.key(scenario.name, scenario.summary, key);
+  picture.save(std::filesystem::path(folder) / (std::string(scenario.name) + ".png"));
+}
+
+}  // namespace slalom::tools
