@@ -1,10 +1,13 @@
 #include <algorithm>
+#include <atomic>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
 
 #include "slalom/core/error.hpp"
+#include "slalom/evaluation/worker_threads.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/commands/navigate_report.hpp"
 #include "tools/terminal/json_output.hpp"
@@ -17,7 +20,7 @@ using evaluation::RoomScenario;
 
 struct NavigateArguments {
   std::string scenario = "all", methods = "svg_mppi,mppi", json, table, pictures;
-  int seeds = 5;
+  int seeds = 5, threads = 1;
   std::uint64_t first_seed = 1;
   bool without_detours = false;
 };
@@ -73,6 +76,28 @@ void write_results(const NavigateArguments& arguments, const std::vector<RoomSer
              arguments.json);
 }
 
+/// Adds the drive of a seed to each series. Drives do not depend on each other, so threads change no result.
+void drive_all(const NavigateArguments& arguments, const std::vector<NamedDriver>& drivers,
+               std::uint64_t seed, std::vector<RoomSeries>& all) {
+  std::vector<evaluation::RoomDrive> drives(all.size());
+  std::vector<std::exception_ptr> errors(all.size());
+  std::atomic<std::size_t> next{0};
+  evaluation::run_in_threads(arguments.threads, [&] {
+    for (std::size_t k; (k = next++) < all.size();) {
+      try {
+        const RoomScenario& scenario = *all[k].scenario;
+        drives[k] = drive_room(scenario, driver_of(drivers[k % drivers.size()], scenario), seed);
+      } catch (...) {
+        errors[k] = std::current_exception();
+      }
+    }
+  });
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (errors[k]) std::rethrow_exception(errors[k]);
+    all[k].drives.push_back(std::move(drives[k]));
+  }
+}
+
 int navigate(const NavigateArguments& arguments) {
   std::vector<const RoomScenario*> scenarios;
   if (arguments.scenario == "all") {
@@ -86,10 +111,7 @@ int navigate(const NavigateArguments& arguments) {
     for (const NamedDriver& driver : drivers) all.push_back({scenario, driver.name, {}});
   // Seed by seed, so that what is written when a long run is stopped is complete up to a seed.
   for (int i = 0; i < arguments.seeds; ++i) {
-    for (std::size_t k = 0; k < all.size(); ++k)
-      all[k].drives.push_back(drive_room(*all[k].scenario,
-                                         driver_of(drivers[k % drivers.size()], *all[k].scenario),
-                                         arguments.first_seed + static_cast<std::uint64_t>(i)));
+    drive_all(arguments, drivers, arguments.first_seed + static_cast<std::uint64_t>(i), all);
     write_results(arguments, all, i + 1 == arguments.seeds);
   }
   std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
@@ -119,6 +141,7 @@ void declare_navigate(Subcommand& command) {
       .range(1, 100000)
       .show_default();
   command.option("--first-seed", arguments->first_seed, "Seed of the first drive").show_default();
+  command.option("--threads", arguments->threads, "Drives at the same time").range(1, 1024).show_default();
   command.option("--pictures", arguments->pictures, "Write a picture of each scenario to this folder");
   command.option("--table", arguments->table,
                  "Write a table in Markdown with 95 % intervals to this file, after each seed");
