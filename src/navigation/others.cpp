@@ -30,13 +30,32 @@ maps::MovingObstacleOptions options_of(const Footprint& footprint, const Navigat
   return made;
 }
 
+/// The same for the bodies alone.
+maps::MovingObstacleOptions without_margins(maps::MovingObstacleOptions options) {
+  options.margin = options.soft_margin = options.deviations = 0;
+  return options;
+}
+
+/// Whether a pose of the plan collides, up to the one with this index, if that of now does not.
+bool collides(const maps::MovingObstaclesView& seen, std::span<const maps::Pose> plan, std::size_t last) {
+  const auto meets = [&](std::size_t i) {
+    const maps::Pose& at = plan[i];
+    return seen.cost<double>(at.x, at.y, std::sin(at.yaw), std::cos(at.yaw), static_cast<int>(i)).collided;
+  };
+  if (seen.empty() || meets(0)) return false;
+  for (std::size_t i = 1; i <= last; ++i)
+    if (meets(i)) return true;
+  return false;
+}
+
 }  // namespace
 
 Others::Others(const Footprint& footprint, const NavigatorOptions& options, std::size_t steps)
     : time_step_(options.time_step),
       speed_(options.base.max_forward),
       half_width_(footprint.half_width() + options.costs.others_margin),
-      obstacles_(options_of(footprint, options), static_cast<int>(steps)) {}
+      obstacles_(options_of(footprint, options), static_cast<int>(steps)),
+      bodies_(without_margins(options_of(footprint, options)), static_cast<int>(steps)) {}
 
 bool Others::are_near(const maps::Point& robot) const noexcept {
   const auto taken = obstacles_.taken();
@@ -78,15 +97,7 @@ std::optional<ClosedPlace> Others::meeting(std::span<const maps::Pose> path, dou
 }
 
 bool Others::meet(std::span<const maps::Pose> plan, std::size_t last) const noexcept {
-  const maps::MovingObstaclesView seen = view();
-  const auto meets = [&](std::size_t i) {
-    const maps::Pose& at = plan[i];
-    return seen.cost<double>(at.x, at.y, std::sin(at.yaw), std::cos(at.yaw), static_cast<int>(i)).collided;
-  };
-  if (seen.empty() || meets(0)) return false;
-  for (std::size_t i = 1; i <= last; ++i)
-    if (meets(i)) return true;
-  return false;
+  return collides(obstacles_.view(), plan, last) || collides(bodies_.view(), plan, last);
 }
 
 }  // namespace slalom::navigation::detail

@@ -19,8 +19,12 @@ class Others {
   /// Takes predictions from now on, map frame; they must live until the next update.
   void update(std::span<const maps::PredictedObstacle> predicted, const maps::Point& robot) noexcept {
     obstacles_.update(predicted, robot, 0, time_step_);
+    bodies_.update(predicted, robot, 0, time_step_);
   }
-  void clear() noexcept { obstacles_.clear(); }
+  void clear() noexcept {
+    obstacles_.clear();
+    bodies_.clear();
+  }
 
   /// What rollouts see of them, map frame.
   maps::MovingObstaclesView view() const noexcept { return obstacles_.view(); }
@@ -30,15 +34,16 @@ class Others {
   /// it or goes ahead of it, and the room that passing there takes. Those who cross the path are left to the
   /// plans: they are gone soon.
   std::optional<ClosedPlace> meeting(std::span<const maps::Pose> path, double step) const noexcept;
-  /// Whether a pose of the plan meets one of them, up to the one with this index. A body that does so now may
-  /// leave it.
+  /// Whether a pose of the plan meets one of them, up to the one with this index: comes into their margins,
+  /// or touches them. A body that does so now may leave them, but one in the margins must not touch.
   bool meet(std::span<const maps::Pose> plan, std::size_t last) const noexcept;
 
  private:
-  double time_step_;   ///< s
-  double speed_;       ///< m/s, at which the robot follows paths
-  double half_width_;  ///< m, of the robot, with the margin
-  maps::MovingObstacles obstacles_;
+  double time_step_;                 ///< s
+  double speed_;                     ///< m/s, at which the robot follows paths
+  double half_width_;                ///< m, of the robot, with the margin
+  maps::MovingObstacles obstacles_;  ///< with margins and deviations
+  maps::MovingObstacles bodies_;     ///< the same without
 };
 
 }  // namespace slalom::navigation::detail

@@ -110,6 +110,27 @@ TEST(NavigatorOthers, TheRobotBrakesBeforeWhatIsTooNear) {
   EXPECT_LT(result.command.forward, meeting.velocity.forward);
 }
 
+TEST(NavigatorOthers, TheRobotDoesNotTouchSomebodyWhoStopsBesideIt) {
+  // They are expected to walk on, through the robot, and the robot may not turn into them to get away.
+  for (const double x : {0.8, 1.1, 1.3}) {
+    Meeting meeting({{x, 0.58}, {0, -0.75}});
+    for (int i = 0; i < 20; ++i) {
+      const maps::PredictedObstacle predicted = meeting.other.predicted();
+      const Velocity v =
+          meeting.navigator.update(meeting.pose, meeting.velocity, meeting.costmap, period, {&predicted, 1})
+              .command;
+      meeting.velocity = v;
+      maps::Pose& at = meeting.pose;
+      at = {at.x + period * v.forward * std::cos(at.yaw), at.y + period * v.forward * std::sin(at.yaw),
+            at.yaw + period * v.turn};
+      const maps::Point seen = maps::inverse_transform(at, meeting.other.at);
+      const double gap =
+          std::hypot(std::max(std::abs(seen.x) - 0.35, 0.0), std::max(std::abs(seen.y) - 0.25, 0.0));
+      ASSERT_GT(gap, 0.25) << x << ", update " << i;
+    }
+  }
+}
+
 TEST(NavigatorOthers, WaitingForThemIsNoDeadEnd) {
   // Somebody who walks up and down where the way is narrow would hold the robot for longer than this.
   NavigatorOptions options;
