@@ -1,12 +1,13 @@
 // Processor times of a navigator, which has one thread: an update with mppi, whose rollouts are 2000 samples
 // of 56 steps with all terms of the cost, and with svg_mppi; an update of the costmap; a search for a detour.
-// At three places of a costmap of 12 x 8 m with cells of 0.05 m: on open floor, 0.1 m beside a wall, and in a
-// door 0.2 m wider than the robot.
+// At three places, and among people, of a costmap of 12 x 8 m with cells of 0.05 m: on open floor, 0.1 m
+// beside a wall, and in a door 0.2 m wider than the robot.
 //   slalom_navigator_bench [updates]
 
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <span>
 #include <vector>
 
 #include "bench/workload/statistics.hpp"
@@ -36,6 +37,35 @@ maps::OccupancyGrid hall() {
   return grid;
 }
 
+/// People who walk across the path ahead of (x, y), 1 m apart.
+class People {
+ public:
+  People(int count, double x, double y) {
+    for (int i = 0; i < count; ++i) {
+      maps::PredictedPose* const poses = poses_[static_cast<std::size_t>(i)];
+      for (int h = 0; h < 2; ++h)
+        for (int t = 0; t < times; ++t)
+          poses[h * times + t] = {{x + 1.2 + i, y - 1.5 + 0.1 * t * (h == 0 ? 0.8 : 0.4), 1.5707963267948966},
+                                  0.05 + 0.01 * t,
+                                  0.05};
+      maps::PredictedObstacle one;
+      one.id = i;
+      one.length = one.width = 0.5;
+      one.interval = 0.1;
+      one.hypotheses = 2;
+      one.weights = {0.8, 0.2};
+      one.poses = {poses, 2 * times};
+      all_.push_back(one);
+    }
+  }
+  std::span<const maps::PredictedObstacle> all() const { return all_; }
+
+ private:
+  static constexpr int times = 29;
+  maps::PredictedPose poses_[8][2 * times];
+  std::vector<maps::PredictedObstacle> all_;
+};
+
 template <class Work>
 void report(const char* what, int count, Work&& work) {
   std::vector<double> times;
@@ -60,11 +90,13 @@ void run(int updates) {
   struct Place {
     const char* name;
     maps::Pose pose, goal;
+    int people = 0;
   };
   for (const Place& place :
-       {Place{"open floor", {3, 5, 0}, {7, 5, 0}}, Place{"beside a wall", {3, 2.35, 0}, {7, 2.35, 0}},
-        Place{"in a door", {7.8, 5, 0}, {11, 5, 0}}}) {
+       {Place{"open floor", {3, 5, 0}, {7, 5, 0}}, Place{"among 4 people", {3, 5, 0}, {7, 5, 0}, 4},
+        Place{"beside a wall", {3, 2.35, 0}, {7, 2.35, 0}}, Place{"in a door", {7.8, 5, 0}, {11, 5, 0}}}) {
     const maps::Pose path[] = {place.pose, place.goal};
+    const People people(place.people, place.pose.x, place.pose.y);
     for (const bool svg : {false, true}) {
       const SolverOptions solver =
           svg ? SolverOptions(svg_mppi_options({})) : SolverOptions(mppi_options({}));
@@ -73,7 +105,7 @@ void run(int updates) {
       navigator.set_path(path);
       char what[64];
       std::snprintf(what, sizeof what, "%s, %s", solver.method(), place.name);
-      report(what, updates, [&] { navigator.update(place.pose, {0.4, 0, 0}, costmap, 0.05); });
+      report(what, updates, [&] { navigator.update(place.pose, {0.4, 0, 0}, costmap, 0.05, people.all()); });
     }
   }
 }
