@@ -19,6 +19,7 @@ RoomDriver quick_driver() {
 
 TEST(RoomScenarios, StartsAndGoalsAreFreeAndThereIsAWayWhereTheySay) {
   const navigation::Footprint body = navigation::Footprint::rectangle(0.35, 0.35, 0.5);
+  EXPECT_EQ(room_scenarios().size(), 20u);
   for (const RoomScenario& scenario : room_scenarios()) {
     EXPECT_FALSE(sim::collides(scenario.room, {scenario.start, 0.7, 0.5})) << scenario.name;
     EXPECT_FALSE(sim::collides(scenario.room, {scenario.goal, 0.7, 0.5})) << scenario.name;
@@ -32,6 +33,7 @@ TEST(RoomScenarios, StartsAndGoalsAreFreeAndThereIsAWayWhereTheySay) {
       EXPECT_EQ(found, scenario.has_way || !with_obstacles) << scenario.name;
     }
     EXPECT_EQ(&room_scenario(scenario.name), &scenario);
+    EXPECT_NO_THROW(sim::Crowd(scenario.room, scenario.walkers)) << scenario.name;
   }
   EXPECT_THROW(room_scenario("no such room"), std::invalid_argument);
 }
