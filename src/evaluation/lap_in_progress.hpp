@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "evaluation/hardware_model.hpp"
+#include "evaluation/overtaking/overtaking_meter.hpp"
 #include "evaluation/tracking/tracking_meter.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
 #include "slalom/sim/collision_log.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
+#include "slalom/sim/racing_opponent.hpp"
 #include "slalom/tracking/predictor.hpp"
 
 namespace slalom::evaluation {
@@ -36,13 +38,16 @@ struct LapRunner::LapInProgress {
   SequenceCostMeter meter;
   std::unique_ptr<HardwareModel> hardware;       ///< null where the planner gets exact measurements
   std::unique_ptr<TrackingMeter> tracking;       ///< null with TrackingMode::off
+  std::unique_ptr<OvertakingMeter> overtaking;   ///< null without opponents
   std::optional<tracking::Predictor> predictor;  ///< with `tracking`
   sim::CollisionLog log;
   LapResult result;
   Sums sums;
-  Command applied;                            ///< the command that the car executes now
-  std::optional<sim::PurePursuit> opponents;  ///< drives all opponents
-  std::vector<Command> commands{1};           ///< of all cars
+  Command applied;                          ///< the command that the car executes now
+  std::vector<sim::PurePursuit> pursuits;   ///< of opponents, by speed
+  std::vector<sim::RacingOpponent> racers;  ///< opponents that look where they drive
+  std::vector<int> drivers;                 ///< per opponent: index in `racers`, or -1 - index in `pursuits`
+  std::vector<Command> commands{1};         ///< of all cars
   /// Commands that were sent but not yet applied, each with the simulation step in which it takes effect.
   std::vector<std::pair<std::int64_t, Command>> pending;
 };

@@ -32,6 +32,14 @@ void check(const LapSettings& settings, const LapRules& rules, bool closed) {
     settings.hardware->localiser.validate();
   }
   require(settings.opponents == 0 || closed, "opponents: must be 0 on courses that are not closed");
+  require(settings.rounds == 1 || closed, "world.rounds: must be 1 on courses that are not closed");
+  const int others = std::max(settings.opponents, 1),
+            special = settings.blocking_opponents + settings.erratic_opponents;
+  require(settings.opponent_speed.fits(others), "world.opponent_speed: has " +
+                                                    std::to_string(settings.opponent_speed.values().size()) +
+                                                    " numbers, must have one, or one for each opponent");
+  require(special <= settings.opponents, "world.blocking_opponents and world.erratic_opponents: together " +
+                                             std::to_string(special) + ", must be at most world.opponents");
 }
 
 }  // namespace
@@ -74,6 +82,7 @@ LapRunner::LapRunner(std::shared_ptr<const Environment> environment,
                                                         configuration_.vehicle.max_acceleration,
                                                         configuration_.vehicle.max_deceleration));
   timeout_ = environment_->timeout > 0 ? environment_->timeout : timeout_laps * vehicle::profile_time(capped);
+  timeout_ *= settings.rounds;
   if (!course.closed && rules.finishes_open_courses())
     open_length_ =
         course.length - environment_->track->lap_path()->project({start_.x, start_.y}).arc - finish_tolerance;
@@ -94,7 +103,7 @@ std::unique_ptr<vehicle::Planner> LapRunner::make_planner() const {
 }
 
 double LapRunner::lap_length() const noexcept {
-  return open_length_ > 0 ? open_length_ : environment_->track->lap_path()->length();
+  return open_length_ > 0 ? open_length_ : settings_.rounds * environment_->track->lap_path()->length();
 }
 
 double LapRunner::progress(const sim::World& world) const noexcept {
@@ -103,6 +112,7 @@ double LapRunner::progress(const sim::World& world) const noexcept {
 
 bool LapRunner::at_finish(const sim::World& world) const noexcept {
   if (open_length_ > 0) return world.laps(0)->progress() >= open_length_;
+  if (settings_.rounds > 1) return world.laps(0)->laps() >= settings_.rounds;
   return rules_of(environment_->protocol).lap_complete(world, progress(world));
 }
 
@@ -131,8 +141,10 @@ void LapRunner::finish(LapInProgress& lap) const {
   result.wall = lap.log.hit_wall();
   if (lap.hardware) result.localisation = lap.hardware->record();
   if (lap.tracking) result.tracking = lap.tracking->record();
+  if (lap.overtaking) result.overtaking = lap.overtaking->record(result.timeout);
   result.time = lap.world.time();
-  if (result.finished && open_length_ <= 0) result.time = rules.lap_time(lap.world);
+  if (result.finished && open_length_ <= 0)
+    result.time = settings_.rounds > 1 ? lap.world.laps(0)->lap_start_time() : rules.lap_time(lap.world);
   if (result.steps == 0) return;
   const double n = result.steps;
   const LapInProgress::Sums& sums = lap.sums;

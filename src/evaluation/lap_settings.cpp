@@ -7,6 +7,12 @@
 
 namespace slalom::evaluation {
 
+sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept {
+  if (index < settings.blocking_opponents) return sim::OpponentDriver::blocking;
+  if (index < settings.blocking_opponents + settings.erratic_opponents) return sim::OpponentDriver::erratic;
+  return settings.opponent_driver;
+}
+
 bool set_world_option(LapSettings& settings, std::string_view key, std::string_view text) {
   constexpr std::string_view section = "world.";
   if (key.substr(0, section.size()) != section) return false;

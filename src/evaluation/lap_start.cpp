@@ -10,7 +10,6 @@
 #include "slalom/sim/shapes.hpp"
 
 namespace slalom::evaluation {
-
 std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t lap_seed) const try {
   const auto placed = rules_of(environment_->protocol)
                           .place_obstacles(*environment_, settings_.obstacles,
@@ -23,14 +22,16 @@ std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t lap_seed) const
                            "; the course may be too narrow to pass a parked car");
 }
 
-/// At equal distances along the course. A position less than 1 m from another car is moved forward.
+/// At equal distances along the course, or one after the other ahead of the start. A position less than 1 m
+/// from another car is moved forward.
 std::vector<maps::Pose> LapRunner::place_opponents(const std::vector<maps::Pose>& obstacles) const {
   const sim::LapPath& path = *environment_->track->lap_path();
   const double begin = path.project({start_.x, start_.y}).arc;
   const double min_distance = 1.0, step = 0.25;  // m
   std::vector<maps::Pose> poses;
   for (int i = 1; i <= settings_.opponents; ++i) {
-    double arc = begin + path.length() * i / (settings_.opponents + 1);
+    double arc = begin + (settings_.opponent_gap > 0 ? settings_.opponent_gap * i
+                                                     : path.length() * i / (settings_.opponents + 1));
     for (double tried = 0; tried < path.length(); tried += step, arc += step) {
       const maps::Pose pose = path.at(arc);
       const auto is_near = [&](const maps::Pose& other) {
@@ -49,6 +50,34 @@ std::vector<maps::Pose> LapRunner::place_opponents(const std::vector<maps::Pose>
   return poses;
 }
 
+/// The drivers of the opponents; those that look share one line.
+void LapRunner::make_opponents(LapInProgress& lap) const {
+  const sim::CarParameters& car = lap.world.options().car;
+  std::vector<sim::PathPoint> path;
+  for (const maps::ReferencePoint& point : path_)
+    path.push_back({{point.x, point.y}, std::min(point.speed, configuration_.planner.max_speed)});
+  std::vector<sim::Box> parked;
+  for (const maps::Pose& pose : lap.result.obstacles) parked.push_back({pose, car.length, car.width});
+  std::shared_ptr<const sim::RacingLine> line;
+  for (int i = 0; i < settings_.opponents; ++i) {
+    const double share = settings_.opponent_speed[i];
+    const sim::OpponentDriver driver = driver_of(settings_, i);
+    if (driver == sim::OpponentDriver::pursuit) {
+      std::vector<sim::PathPoint> slower = path;
+      for (sim::PathPoint& point : slower) point.speed *= share;
+      lap.drivers.push_back(-1 - static_cast<int>(lap.pursuits.size()));
+      lap.pursuits.emplace_back(std::move(slower));
+      continue;
+    }
+    if (!line) line = std::make_shared<const sim::RacingLine>(path, *environment_->track, car, parked);
+    lap.drivers.push_back(static_cast<int>(lap.racers.size()));
+    lap.racers.emplace_back(
+        line, static_cast<std::size_t>(i) + 1,
+        sim::RacingOpponentOptions{.driver = driver, .speed_share = share},
+        RandomKey{solver_seed(lap.result.seed, "opponents"), static_cast<std::uint64_t>(i)});
+  }
+}
+
 std::unique_ptr<LapRunner::LapInProgress> LapRunner::begin(std::uint64_t seed) const {
   sim::WorldOptions options = environment_->world_options();
   rules_of(environment_->protocol).configure(options, settings_, configuration_);
@@ -60,16 +89,13 @@ std::unique_ptr<LapRunner::LapInProgress> LapRunner::begin(std::uint64_t seed) c
   lap->result.min_clearance = std::numeric_limits<double>::infinity();
   std::vector<maps::Pose> cars{start_};
   if (settings_.opponents > 0) {
-    std::vector<sim::PathPoint> line;
-    for (const maps::ReferencePoint& point : path_)
-      line.push_back({{point.x, point.y},
-                      settings_.opponent_speed * std::min(point.speed, configuration_.planner.max_speed)});
-    lap->opponents.emplace(std::move(line));
+    make_opponents(*lap);
     const auto opponents = place_opponents(lap->result.obstacles);
     cars.insert(cars.end(), opponents.begin(), opponents.end());
     lap->commands.resize(cars.size());
   }
   lap->world.reset(seed, cars, lap->result.obstacles);
+  if (settings_.opponents > 0) lap->overtaking = std::make_unique<OvertakingMeter>(lap->world);
   std::vector<sim::Box> parked;
   for (std::size_t i = cars.size(); i < lap->world.bodies(); ++i) parked.push_back(lap->world.outline(i));
   lap->result.impassable = static_cast<int>(

@@ -116,13 +116,11 @@ void LapRunner::advance(LapInProgress& lap, bool past_finish) const {
     }
     lap.commands[0] = lap.hardware ? lap.hardware->servo(lap.applied, time_step) : lap.applied;
     lap.commands[0].steer *= settings_.steering_gain;
-    for (std::size_t i = 1; i < lap.commands.size(); ++i) {
-      const sim::CarState& opponent = lap.world.state(i);
-      lap.commands[i] = lap.opponents->command({opponent.x, opponent.y, opponent.yaw});
-    }
+    command_opponents(lap, k == 0);
     lap.world.step(lap.commands);
     if (lap.hardware) lap.hardware->moved(lap.world.state(0), time_step);
     if (lap.tracking) lap.tracking->moved(lap.world.state(0), time_step);
+    if (lap.overtaking) lap.overtaking->update(lap.world);
     record_collisions(lap);
   }
   LapResult& result = lap.result;
@@ -131,6 +129,20 @@ void LapRunner::advance(LapInProgress& lap, bool past_finish) const {
     result.min_clearance = std::min(result.min_clearance, environment_->track->distance_to_wall(corner));
   for (std::size_t i = 1; i < lap.world.bodies(); ++i)
     result.min_clearance = std::min(result.min_clearance, sim::signed_gap(body, lap.world.outline(i)));
+}
+
+/// Sets the commands of all opponents. Those that look decide once in every control period.
+void LapRunner::command_opponents(LapInProgress& lap, bool decide) const {
+  for (std::size_t i = 1; i < lap.commands.size(); ++i) {
+    const int driver = lap.drivers[i - 1];
+    if (driver < 0) {
+      const sim::CarState& opponent = lap.world.state(i);
+      lap.commands[i] =
+          lap.pursuits[static_cast<std::size_t>(-1 - driver)].command({opponent.x, opponent.y, opponent.yaw});
+    } else if (decide) {
+      lap.commands[i] = lap.racers[static_cast<std::size_t>(driver)].command(lap.world);
+    }
+  }
 }
 
 void LapRunner::record_collisions(LapInProgress& lap) const {

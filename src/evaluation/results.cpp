@@ -45,6 +45,21 @@ TrackingFigures summarise_tracking(const std::vector<const LapRow*>& rows) {
   return total;
 }
 
+OvertakingFigures summarise_overtaking(const std::vector<const LapRow*>& rows) {
+  OvertakingFigures total;
+  for (const LapRow* row : rows) {
+    const OvertakingFigures& lap = row->overtaking;
+    total.met += lap.met;
+    total.overtaken += lap.overtaken;
+    total.not_overtaken += lap.not_overtaken;
+    total.duration += lap.overtaken * lap.duration;
+    total.contacts += lap.contacts;
+    total.caused += lap.caused;
+  }
+  total.duration /= std::max(total.overtaken, 1);
+  return total;
+}
+
 ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index,
                                const Experiment& experiment) {
   ExperimentResult r;
@@ -82,6 +97,7 @@ ExperimentResult summarise_one(const std::vector<const LapRow*>& rows, int index
     r.collision_rate_bootstrap_ci = bootstrap_ratio(contacts, obstacles);
   }
   if (experiment.tracks()) r.tracking = summarise_tracking(rows);
+  if (experiment.has_opponents()) r.overtaking = summarise_overtaking(rows);
   return r;
 }
 

@@ -76,6 +76,19 @@ Json tracking_json(const TrackingFigures& t, int laps) {
           {"yaw_error_rad", t.yaw_error},
           {"update_p99_ms", t.update_p99}};
 }
+/// What an evaluation says of its opponents.
+Json overtaking_json(const OvertakingFigures& o) {
+  const int decided = o.overtaken + o.not_overtaken;
+  return {{"met", o.met},
+          {"overtaken", o.overtaken},
+          {"not_overtaken", o.not_overtaken},
+          {"rate", decided > 0 ? Json(static_cast<double>(o.overtaken) / decided) : Json(nullptr)},
+          {"rate_ci",
+           decided > 0 ? interval_json(evaluation::wilson_interval(o.overtaken, decided)) : Json(nullptr)},
+          {"overtaking_time_s", o.overtaken > 0 ? Json(o.duration) : Json(nullptr)},
+          {"contacts", o.contacts},
+          {"contacts_caused", o.caused}};
+}
 template <class Value, class Make>
 Json optional_json(const std::optional<Value>& value, Make&& make) {
   return value ? Json(make(*value)) : Json(nullptr);
@@ -167,6 +180,7 @@ Json Evaluated::summary() const {
                    {"p99", r.solve_ms_p99},
                    {"max", r.solve_ms_max}}}});
     if (r.tracking) result["tracking"] = tracking_json(*r.tracking, r.laps);
+    if (r.overtaking) result["overtaking"] = overtaking_json(*r.overtaking);
     list.push_back(std::move(result));
   }
   Json pairs = Json::array();
@@ -281,6 +295,13 @@ void print_results(const Evaluated& evaluated, std::FILE* out) {
         percent(t.detected, t.in_view), percent(t.long_detected, t.long_in_view),
         static_cast<double>(t.false_objects) / std::max(r.laps, 1), t.position_error, t.speed_error,
         t.yaw_error, t.update_p99);
+  }
+  for (const ExperimentResult& r : evaluated.results) {
+    if (!r.overtaking) continue;
+    const OvertakingFigures& o = *r.overtaking;
+    std::fprintf(out, "%s: opponents: %d met, %d overtaken (in %.1f s), %d not; %d contacts, %d caused\n",
+                 evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)].label().c_str(),
+                 o.met, o.overtaken, o.duration, o.not_overtaken, o.contacts, o.caused);
   }
   // Laps of the same number have the same obstacles: those of the first experiment speak for all.
   std::string laps;

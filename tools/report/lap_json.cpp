@@ -31,6 +31,18 @@ Json localisation_json(const evaluation::LocalisationRecord& record) {
           {"steps_without_pose", record.blind}};
 }
 
+Json overtaking_json(const evaluation::OvertakingRecord& record) {
+  Json encounters = Json::array();
+  for (const evaluation::Encounter& each : record.encounters)
+    encounters.push_back({{"opponent", each.opponent},
+                          {"time_s", each.time},
+                          {"duration_s", each.duration},
+                          {"end", evaluation::name(each.end)},
+                          {"contacts", each.contacts},
+                          {"contacts_caused", each.caused}});
+  return {{"contacts", record.contacts}, {"contacts_caused", record.caused}, {"encounters", encounters}};
+}
+
 }  // namespace
 
 Json estimation_json(const evaluation::EstimationRecord& record) {
@@ -91,6 +103,8 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
             {"corrections", lap.corrections},
             {"touches", collisions},
             {"obstacles", obstacles}};
+  if (!lap.overtaking.encounters.empty() || lap.overtaking.contacts > 0)
+    json["overtaking"] = overtaking_json(lap.overtaking);
   if (!lap.estimation.slip_error.empty()) json["estimation"] = estimation_json(lap.estimation);
   if (!lap.localisation.update_ms.empty()) json["localisation"] = localisation_json(lap.localisation);
   return json;

@@ -13,6 +13,7 @@
 #include "slalom/evaluation/environment.hpp"
 #include "slalom/evaluation/estimation_record.hpp"
 #include "slalom/evaluation/lap_settings.hpp"
+#include "slalom/evaluation/overtaking_record.hpp"
 #include "slalom/evaluation/sequence_cost.hpp"
 #include "slalom/sim/world.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
@@ -92,6 +93,7 @@ struct LapResult {
   LocalisationRecord localisation;          ///< with LapSettings::hardware
   EstimationRecord estimation;              ///< with vehicle models whose tyres slip
   TrackingRecord tracking;                  ///< with LapSettings::tracking
+  OvertakingRecord overtaking;              ///< with LapSettings::opponents
 };
 
 /// Drives laps of one configuration and method. Each lap is independent of the others: world, planner and
@@ -120,7 +122,8 @@ class LapRunner {
   const vehicle::Configuration& configuration() const noexcept { return configuration_; }
   /// The settings of each lap.
   const LapSettings& settings() const noexcept { return settings_; }
-  /// m along the path of the course from the start of a lap to its finish.
+  /// m along the path of the course from the start of a lap to its finish, which is after `rounds` times
+  /// around the course.
   double lap_length() const noexcept;
 
  private:
@@ -129,6 +132,8 @@ class LapRunner {
   std::unique_ptr<LapInProgress> begin(std::uint64_t seed) const;
   std::vector<maps::Pose> place_obstacles(std::uint64_t seed) const;
   std::vector<maps::Pose> place_opponents(const std::vector<maps::Pose>& obstacles) const;
+  void make_opponents(LapInProgress& lap) const;
+  void command_opponents(LapInProgress& lap, bool decide) const;
   std::unique_ptr<vehicle::Planner> make_planner() const;
   bool at_finish(const sim::World& world) const noexcept;
   double progress(const sim::World& world) const noexcept;

@@ -8,6 +8,7 @@
 #include "slalom/evaluation/hardware.hpp"
 #include "slalom/evaluation/tracking_record.hpp"
 #include "slalom/maps/pose.hpp"
+#include "slalom/sim/racing_opponent.hpp"
 
 namespace slalom::evaluation {
 
@@ -22,16 +23,21 @@ struct LapSettings {
 
   // Changes of the world, for Protocol::true_physics only. visit_options declares them, so that evaluations
   // can vary them by name.
-  double latency = 0;                         ///< s from a scan until its command takes effect
-  int opponents = 0;                          ///< cars that drive along the path; closed courses only
-  double opponent_speed = 0.5;                ///< fraction of the path's speed
-  double speed_scale = 1;                     ///< factor of the course's speed profile
-  double friction = 1.0489;                   ///< coefficient between tyre and road
-  bool saturating_tyres = false;              ///< limited tyre forces: sim::Model::saturating
-  double steering_gain = 1;                   ///< angle of the wheels / commanded angle
-  double range_noise = 0.01;                  ///< m, standard deviation of each range
-  double dropout = 0;                         ///< fraction of beams without a return
-  bool localised = false;                     ///< HardwareConditions::sensors, unless `hardware` is given
+  double latency = 0;             ///< s from a scan until its command takes effect
+  int opponents = 0;              ///< cars that drive along the path; closed courses only
+  PerInput opponent_speed = 0.5;  ///< fraction of the path's speed, one or one for each opponent
+  sim::OpponentDriver opponent_driver = sim::OpponentDriver::pursuit;  ///< of all but the next two
+  int blocking_opponents = 0;     ///< of the opponents, the nearest ahead of the start block
+  int erratic_opponents = 0;      ///< those after the blocking ones are erratic
+  double opponent_gap = 0;        ///< m from one car to the next at the start; 0: around the course
+  int rounds = 1;                 ///< times around the course until a lap is finished
+  double speed_scale = 1;         ///< factor of the course's speed profile
+  double friction = 1.0489;       ///< coefficient between tyre and road
+  bool saturating_tyres = false;  ///< limited tyre forces: sim::Model::saturating
+  double steering_gain = 1;       ///< angle of the wheels / commanded angle
+  double range_noise = 0.01;      ///< m, standard deviation of each range
+  double dropout = 0;             ///< fraction of beams without a return
+  bool localised = false;         ///< HardwareConditions::sensors, unless `hardware` is given
   TrackingMode tracking = TrackingMode::off;  ///< tracks other cars for planner and figures
 };
 
@@ -45,7 +51,13 @@ void visit_options(Options& o, Visit&& visit) {
   };
   number(o.latency, "latency", "s", "from a scan until its command takes effect", 0, 1);
   number(o.opponents, "opponents", "", "cars that drive along the path", 0, 16);
-  number(o.opponent_speed, "opponent_speed", "", "fraction of the path's speed", 0.01, 1);
+  number(o.opponent_speed, "opponent_speed", "", "fraction of the path's speed, one or one for each", 0.01,
+         1);
+  visit(o.opponent_driver, Declaration{.name = "opponent_driver", .help = "how opponents drive"});
+  number(o.blocking_opponents, "blocking_opponents", "", "of the opponents, the first ahead block", 0, 16);
+  number(o.erratic_opponents, "erratic_opponents", "", "those after the blocking ones are erratic", 0, 16);
+  number(o.opponent_gap, "opponent_gap", "m", "from car to car at the start; 0: around the course", 0, 100);
+  number(o.rounds, "rounds", "", "times around the course until a lap is finished", 1, 100);
   number(o.speed_scale, "speed_scale", "", "factor of the course's speed profile", 0.1, 3);
   number(o.friction, "friction", "", "coefficient between tyre and road", 0.1, 3);
   visit(
@@ -62,6 +74,9 @@ void visit_options(Options& o, Visit&& visit) {
             .help =
                 "track other cars with this pose: measures the tracker, and planner.predict_others uses it"});
 }
+
+/// How opponent `index` (from 0, in the order in which they start ahead of the car) drives.
+sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept;
 
 /// Sets the option that `key` names, for instance "world.friction", from text. Returns false if `key` does
 /// not begin with "world.". Throws std::invalid_argument naming the key, the value and the rule it breaks.

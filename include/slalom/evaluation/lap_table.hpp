@@ -28,6 +28,8 @@ struct Experiment {
   std::string label() const;
   /// Whether it measures a tracker: sets world.tracking to another value than off.
   bool tracks() const;
+  /// Whether there are opponents: sets world.opponents to another value than 0.
+  bool has_opponents() const;
 };
 
 /// What a lap with `world.tracking` says about its tracker: the figures of TrackingRecord.
@@ -39,6 +41,16 @@ struct TrackingFigures {
   int false_objects = 0;  ///< objects that were reported as seen where no body is
   double position_error = 0, speed_error = 0, yaw_error = 0;  ///< m, m/s, rad
   double update_p99 = 0;                                      ///< ms, wall-clock; column `wall_tracking_p99`
+};
+
+/// What a lap with `world.opponents` says about them: the figures of OvertakingRecord.
+struct OvertakingFigures {
+  int met = 0;            ///< encounters; column `opponents_met`
+  int overtaken = 0;      ///< those that ended with the opponent behind; column `overtaken`
+  int not_overtaken = 0;  ///< those in which two times around the course were not enough; `not_overtaken`
+  double duration = 0;    ///< s, mean until opponents were overtaken, 0 without any; `overtaking_time`
+  int contacts = 0;       ///< with opponents; column `opponent_contacts`
+  int caused = 0;         ///< those of them at which the car is at fault; column `contacts_caused`
 };
 
 /// A row of `laps.csv`: one lap of one experiment. Columns whose names contain `calculation_time`, or begin
@@ -69,6 +81,7 @@ struct LapRow {
   double solve_p50 = 0, solve_p99 = 0;  ///< ms
   double wall_time = 0;                 ///< s, to compute the lap
   TrackingFigures tracking;             ///< in tables of evaluations with `world.tracking` only
+  OvertakingFigures overtaking;         ///< in tables of evaluations with `world.opponents` only
 
   /// MS = state_cost + collision_cost
   double mean_sequence_cost() const { return state_cost + collision_cost; }
@@ -78,7 +91,8 @@ struct LapRow {
 LapRow make_row(int experiment, int lap, const LapResult& result, double wall_time);
 
 /// The header of laps.csv: `method,scenario,set,lap`, the columns of the logs of Honda et al. (ICRA 2024),
-/// then further ones, and if one of the experiments tracks, those of TrackingFigures.
+/// then further ones, if one of the experiments tracks, those of TrackingFigures, and if one has opponents,
+/// those of OvertakingFigures.
 std::string csv_header(const std::vector<Experiment>& experiments = {});
 /// A row of laps.csv without line end. Numbers read back to the same bits.
 std::string csv_line(const LapRow& row, const std::vector<Experiment>& experiments);

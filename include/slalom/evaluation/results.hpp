@@ -32,6 +32,8 @@ struct ExperimentResult {
   /// Sums over laps; errors are root mean squares over all detections, `update_p99` (ms) the mean over the
   /// laps. None without `world.tracking`.
   std::optional<TrackingFigures> tracking;
+  /// Sums over laps; `duration` (s) is the mean over all opponents overtaken. None without `world.opponents`.
+  std::optional<OvertakingFigures> overtaking;
 };
 
 /// Two experiments over the same seeds.

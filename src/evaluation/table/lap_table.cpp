@@ -9,6 +9,7 @@
 #include <sstream>
 #include <type_traits>
 
+#include "evaluation/table/lap_figures.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 
@@ -18,7 +19,7 @@ namespace {
 
 /// Visits every column after `lap` with its name and field, in order, for the header, writing and reading.
 template <class Row, class Visit>
-void visit_columns(Row& r, bool tracks, Visit&& visit) {
+void visit_columns(Row& r, const std::vector<Experiment>& experiments, Visit&& visit) {
   visit("seed", r.seed);
   visit("success", r.success);
   visit("collision", r.collisions);
@@ -49,30 +50,26 @@ void visit_columns(Row& r, bool tracks, Visit&& visit) {
   visit("solve_p50", r.solve_p50);
   visit("solve_p99", r.solve_p99);
   visit("wall_time", r.wall_time);
-  if (!tracks) return;
-  visit("tracking_in_view", r.tracking.in_view);
-  visit("tracking_detected", r.tracking.detected);
-  visit("tracking_long_in_view", r.tracking.long_in_view);
-  visit("tracking_long_detected", r.tracking.long_detected);
-  visit("tracking_false", r.tracking.false_objects);
-  visit("tracking_position_error", r.tracking.position_error);
-  visit("tracking_speed_error", r.tracking.speed_error);
-  visit("tracking_yaw_error", r.tracking.yaw_error);
-  visit("wall_tracking_p99", r.tracking.update_p99);
-}
-
-bool any_tracks(const std::vector<Experiment>& experiments) {
-  return std::any_of(experiments.begin(), experiments.end(), [](const Experiment& e) { return e.tracks(); });
-}
-
-TrackingFigures figures_of(const TrackingRecord& record) {
-  TrackingFigures figures{record.in_view,       record.detected,      record.long_in_view,
-                          record.long_detected, record.false_objects, record.position_error,
-                          record.speed_error,   record.yaw_error};
-  auto times = record.update_ms;
-  std::sort(times.begin(), times.end());
-  if (!times.empty()) figures.update_p99 = static_cast<double>(times[(times.size() - 1) * 99 / 100]);
-  return figures;
+  if (std::any_of(experiments.begin(), experiments.end(), [](const Experiment& e) { return e.tracks(); })) {
+    visit("tracking_in_view", r.tracking.in_view);
+    visit("tracking_detected", r.tracking.detected);
+    visit("tracking_long_in_view", r.tracking.long_in_view);
+    visit("tracking_long_detected", r.tracking.long_detected);
+    visit("tracking_false", r.tracking.false_objects);
+    visit("tracking_position_error", r.tracking.position_error);
+    visit("tracking_speed_error", r.tracking.speed_error);
+    visit("tracking_yaw_error", r.tracking.yaw_error);
+    visit("wall_tracking_p99", r.tracking.update_p99);
+  }
+  if (std::none_of(experiments.begin(), experiments.end(),
+                   [](const Experiment& e) { return e.has_opponents(); }))
+    return;
+  visit("opponents_met", r.overtaking.met);
+  visit("overtaken", r.overtaking.overtaken);
+  visit("not_overtaken", r.overtaking.not_overtaken);
+  visit("overtaking_time", r.overtaking.duration);
+  visit("opponent_contacts", r.overtaking.contacts);
+  visit("contacts_caused", r.overtaking.caused);
 }
 
 constexpr const char* checksum_column = "checksum";
@@ -158,6 +155,11 @@ bool Experiment::tracks() const {
                      [](const auto& each) { return each.first == "world.tracking" && each.second != "off"; });
 }
 
+bool Experiment::has_opponents() const {
+  return std::any_of(set.begin(), set.end(),
+                     [](const auto& each) { return each.first == "world.opponents" && each.second != "0"; });
+}
+
 LapRow make_row(int experiment, int lap, const LapResult& result, double wall_time) {
   LapRow r;
   r.experiment = experiment;
@@ -208,21 +210,21 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
   }
   r.wall_time = wall_time;
   r.tracking = figures_of(result.tracking);
+  r.overtaking = figures_of(result.overtaking);
   return r;
 }
 
 std::string csv_header(const std::vector<Experiment>& experiments) {
   std::string header = "method,scenario,set,lap";
   const LapRow row;
-  visit_columns(row, any_tracks(experiments),
-                [&](const char* name, const auto&) { header.append(",").append(name); });
+  visit_columns(row, experiments, [&](const char* name, const auto&) { header.append(",").append(name); });
   return header;
 }
 
 std::string csv_line(const LapRow& row, const std::vector<Experiment>& experiments) {
   const Experiment& e = experiments.at(static_cast<std::size_t>(row.experiment));
   std::string line = e.method + "," + e.scenario + "," + e.set_text() + "," + std::to_string(row.lap);
-  visit_columns(row, any_tracks(experiments), [&](const char*, const auto& field) {
+  visit_columns(row, experiments, [&](const char*, const auto& field) {
     using Field = std::remove_cvref_t<decltype(field)>;
     line += ',';
     if constexpr (std::is_same_v<Field, std::string>) {
@@ -250,7 +252,7 @@ LapRow parse_line(const std::string& line, const std::vector<Experiment>& experi
   const auto cells = split(line);
   LapRow row;
   std::size_t columns = identity_columns;
-  visit_columns(row, any_tracks(experiments), [&](const char*, auto&) { ++columns; });
+  visit_columns(row, experiments, [&](const char*, auto&) { ++columns; });
   if (cells.size() != columns) {
     throw std::invalid_argument("has " + std::to_string(cells.size()) + " columns, must have " +
                                 std::to_string(columns));
@@ -265,7 +267,7 @@ LapRow parse_line(const std::string& line, const std::vector<Experiment>& experi
     throw std::invalid_argument("lap: " + cells[3] + " must be in [0, " + std::to_string(found->laps - 1) +
                                 "]");
   std::size_t i = identity_columns;
-  visit_columns(row, any_tracks(experiments),
+  visit_columns(row, experiments,
                 [&](const char* name, auto& field) { parse_cell(cells[i++], name, field); });
   return row;
 }

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+namespace slalom::evaluation {
+
+/// How an encounter with an opponent ended.
+enum class EncounterEnd {
+  open,          ///< the lap ended before
+  overtaken,     ///< the car is ahead of the opponent, by 1 m from middle to middle
+  not_overtaken  ///< after two times around the course, or at the timeout of the lap, it was not
+};
+/// The name of an end in results.
+constexpr const char* name(EncounterEnd end) noexcept {
+  return end == EncounterEnd::overtaken ? "overtaken" : end == EncounterEnd::open ? "open" : "not_overtaken";
+}
+
+/// An opponent met: from when the car is 1 to 4 m behind it along the course, from middle to middle.
+struct Encounter {
+  int opponent = 0;                       ///< from 0, in the order in which opponents start ahead of the car
+  double time = 0;                        ///< s, when it was met
+  double duration = 0;                    ///< s, until it ended
+  EncounterEnd end = EncounterEnd::open;  ///< how
+  int contacts = 0;                       ///< with this opponent while it lasted
+  int caused = 0;                         ///< those of them at which the car is at fault
+};
+
+/// The opponents of a lap. A contact begins where the cars touch and have not touched for 0.5 s.
+///
+/// At fault is the car behind, unless it is alongside: its front axle is past the rear axle of the other.
+/// Then it is the car that moves towards the other faster, across the course. Both is judged 0.05 to 0.1 s
+/// before the contact.
+struct OvertakingRecord {
+  std::vector<Encounter> encounters;  ///< in order of time
+  int contacts = 0;                   ///< with opponents, in encounters or not
+  int caused = 0;                     ///< those of them at which the car is at fault
+};
+
+}  // namespace slalom::evaluation

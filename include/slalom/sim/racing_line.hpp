@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slalom/sim/car.hpp"
+#include "slalom/sim/laps.hpp"
+#include "slalom/sim/pure_pursuit.hpp"
+#include "slalom/sim/shapes.hpp"
+#include "slalom/sim/track.hpp"
+
+namespace slalom::sim {
+
+/// Options of RacingLine. Lengths are for 1/10-scale cars.
+struct RacingLineOptions {
+  double wall_margin = 0.1;     ///< m, from walls to the body
+  double parked_margin = 0.12;  ///< m, from parked bodies to the body
+  double lateral = 6;           ///< m/s^2, the largest acceleration across the line
+  double longitudinal = 5;      ///< m/s^2, along it, either way
+
+  /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
+  void validate() const;
+};
+
+/// A closed line with speeds that leads around what is parked on it, and the room beside it: what opponents
+/// drive by.
+///
+/// The given path is resampled at about 0.2 m. Of the offsets from it at which a car has its margins, dynamic
+/// programming takes the way round that stays nearest to the path and moves least from side to side, by at
+/// most 0.25 m for each metre. If there is none, it is searched with smaller margins. Speeds are those of the
+/// path, lowered to what the accelerations allow on the way that was found.
+class RacingLine {
+ public:
+  /// What is known of the line at an arc length of the path.
+  struct Point {
+    maps::Point point;  ///< m, of the path, map frame
+    double yaw = 0;     ///< rad, direction of the path
+    double speed = 0;   ///< m/s
+    double offset = 0;  ///< m left of the path, of the line
+    double least = 0;   ///< m left of the path, between which
+    double most = 0;    ///< and this a car has its margins
+  };
+
+  /// Along a closed path with the speeds to drive, for cars of this size, among bodies that do not move.
+  /// Throws std::invalid_argument on fewer than 3 points, points or speeds that are not finite, a path
+  /// without length, and options out of range.
+  RacingLine(std::span<const PathPoint> path, const Track& track, const CarParameters& car,
+             std::span<const Box> parked = {}, const RacingLineOptions& options = {});
+
+  double length() const noexcept { return path_.length(); }  ///< m, once round the path
+  /// The line at an arc length (m, any number of turns), linear between samples.
+  Point at(double arc) const noexcept;
+  /// The nearest place of the whole path.
+  LapPath::Place project(const maps::Point& point) const noexcept { return path_.project(point); }
+  /// The nearest place of the path within `reach` (m) along it of the place `near`.
+  LapPath::Place project_near(const maps::Point& point, const LapPath::Place& near,
+                              double reach) const noexcept {
+    return path_.project_near(point, near.segment, reach);
+  }
+  /// m from arc length `from` to `to` along the path, in [-length / 2, length / 2).
+  double between(double from, double to) const noexcept;
+  /// Whether the way found keeps less than the margins of the options.
+  bool narrow() const noexcept { return narrow_; }
+
+ private:
+  std::vector<std::uint8_t> free_cells(const Track& track, const CarParameters& car,
+                                       std::span<const Box> parked, double wall_margin,
+                                       double parked_margin) const;
+  bool find_way(std::span<const std::uint8_t> free);
+  void find_room(std::span<const std::uint8_t> free);
+  void smooth();
+  void limit_speeds(const RacingLineOptions& options);
+
+  LapPath path_;
+  std::vector<Point> points_;
+  double spacing_ = 0;  ///< m
+  bool narrow_ = false;
+};
+
+}  // namespace slalom::sim

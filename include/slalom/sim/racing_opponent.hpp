@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "slalom/core/random.hpp"
+#include "slalom/sim/racing_line.hpp"
+#include "slalom/sim/world.hpp"
+
+namespace slalom::sim {
+
+/// How an opponent drives.
+enum class OpponentDriver {
+  pursuit,  ///< pure pursuit of the path; it looks at nothing: PurePursuit
+  racing,   ///< the racing line round what is parked; it follows a car ahead and leaves room to one alongside
+  blocking,  ///< the same, but it moves in front of the car that comes from behind
+  erratic,   ///< the same, but it changes lane and speed at random times
+};
+/// The names of the enumerators, in order.
+inline const char* const* enum_names(OpponentDriver) {
+  static constexpr const char* names[] = {"pursuit", "racing", "blocking", "erratic", nullptr};
+  return names;
+}
+
+/// Options of RacingOpponent. Lengths are for 1/10-scale cars.
+struct RacingOpponentOptions {
+  OpponentDriver driver = OpponentDriver::racing;  ///< not `pursuit`
+  double speed_share = 0.8;                        ///< of the speeds of the line, (0, 1]
+  double room = 0.1;                               ///< m, sideways from cars alongside
+  double side_acceleration = 4;                    ///< m/s^2, about the largest of a change of lane
+  double blocking_reach = 4;                       ///< m, within which a car behind is blocked
+  double lane_offset = 0.6;  ///< m from the line at most, of blocking and of random lanes
+  double shortest_stay = 1;  ///< s, of an erratic driver in a lane, at least
+  double longest_stay = 3;   ///< s, at most
+  double slowest = 0.6;      ///< of its speed share, the least that an erratic driver chooses
+
+  /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
+  void validate() const;
+};
+
+/// An opponent that drives a racing line among other cars, whose states it knows exactly. It steers by pure
+/// pursuit (Coulter, CMU-RI-TR-92-01, 1992) from its rear axle and moves into another lane on a cubic curve,
+/// within the room of the line. It keeps a distance behind a car in its lane, also behind one that stands.
+/// From when a car and it overlap along the line until they do not, it does not move nearer to it than
+/// `room`.
+///
+/// A blocking opponent moves to where the car is that is behind it within `blocking_reach`, at most
+/// `lane_offset` from its line. It does not move to either side while a car is alongside. An erratic one
+/// draws a lane, a speed and a time to keep both, again and again.
+class RacingOpponent {
+ public:
+  /// Drives car `car` of a world. Random numbers follow from `key`. Throws std::invalid_argument on a null
+  /// line or options out of range.
+  RacingOpponent(std::shared_ptr<const RacingLine> line, std::size_t car,
+                 const RacingOpponentOptions& options, RandomKey key);
+
+  /// Steering and speed for now. To be called a few tens of times a second; between calls the command holds.
+  Command command(const World& world);
+
+  /// m left of the racing line, where the car wants to be since the last command.
+  double lane() const noexcept { return lane_; }
+
+ private:
+  /// Another car as seen along the line.
+  struct Neighbour {
+    double gap = 0;                          ///< m along the line from the own middle to its middle
+    double offset = 0;                       ///< m left of the path
+    double half_length = 0, half_width = 0;  ///< m, along the line and across it
+    double speed = 0;                        ///< m/s along the line
+  };
+
+  void look(const World& world);
+  bool alongside(const Neighbour& other) const noexcept;
+  double wanted_lane(double time);
+  double offset_at(double ahead) const noexcept;
+  double wanted_speed() const noexcept;
+
+  std::shared_ptr<const RacingLine> line_;
+  std::size_t car_;
+  RacingOpponentOptions options_;
+  RandomStream random_;
+
+  bool placed_ = false;
+  LapPath::Place place_;                     ///< of the own car along the path
+  double speed_ = 0;                         ///< m/s, own
+  double half_length_ = 0, half_width_ = 0;  ///< m, own
+  std::vector<Neighbour> neighbours_;
+  double lane_ = 0;                                               ///< m left of the line
+  double change_ = 0;                                             ///< m, length of the way into the lane
+  double random_lane_ = 0, random_share_ = 1, random_until_ = 0;  ///< of erratic drivers
+};
+
+}  // namespace slalom::sim

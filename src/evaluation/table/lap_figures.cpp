@@ -1,0 +1,31 @@
+#include "evaluation/table/lap_figures.hpp"
+
+#include <algorithm>
+
+namespace slalom::evaluation {
+
+TrackingFigures figures_of(const TrackingRecord& record) {
+  TrackingFigures figures{record.in_view,       record.detected,      record.long_in_view,
+                          record.long_detected, record.false_objects, record.position_error,
+                          record.speed_error,   record.yaw_error};
+  auto times = record.update_ms;
+  std::sort(times.begin(), times.end());
+  if (!times.empty()) figures.update_p99 = static_cast<double>(times[(times.size() - 1) * 99 / 100]);
+  return figures;
+}
+
+OvertakingFigures figures_of(const OvertakingRecord& record) {
+  OvertakingFigures figures{.met = static_cast<int>(record.encounters.size()),
+                            .contacts = record.contacts,
+                            .caused = record.caused};
+  for (const Encounter& each : record.encounters) {
+    figures.not_overtaken += each.end == EncounterEnd::not_overtaken;
+    if (each.end != EncounterEnd::overtaken) continue;
+    ++figures.overtaken;
+    figures.duration += each.duration;
+  }
+  figures.duration /= std::max(figures.overtaken, 1);
+  return figures;
+}
+
+}  // namespace slalom::evaluation

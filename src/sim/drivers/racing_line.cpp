@@ -1,0 +1,235 @@
+#include "slalom/sim/racing_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/validation.hpp"
+
+namespace slalom::sim {
+namespace {
+
+constexpr double usual_spacing = 0.2;  // m, of samples
+constexpr int lanes_aside = 40, lanes = 2 * lanes_aside + 1;
+constexpr double lane_step = 0.05;                    // m, from one lane to the next: 0.25 of the spacing
+constexpr double offset_cost = 0.1, change_cost = 1;  // of 1 m^2 for a sample, and of a change of lane
+constexpr double inflation = 0.05;                    // m, of a body that is turned while it moves aside
+constexpr double curvature_reach = 0.4;               // m to either side, over which it is measured
+constexpr double near_body = 2;                       // m, of middles: farther bodies are apart
+constexpr int smoothing = 3;                          // samples to either side
+
+std::vector<maps::Point> points_of(std::span<const PathPoint> path) {
+  std::vector<maps::Point> points;
+  for (const PathPoint& each : path) {
+    detail::require_finite("line point speed", each.speed);
+    points.push_back(each.point);
+  }
+  return points;
+}
+
+/// Samples of the path at equal distances.
+std::vector<maps::Point> resampled(const LapPath& path) {
+  const auto count = std::max<std::size_t>(8, static_cast<std::size_t>(path.length() / usual_spacing));
+  std::vector<maps::Point> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const maps::Pose pose = path.at(path.length() * static_cast<double>(i) / static_cast<double>(count));
+    points.push_back({pose.x, pose.y});
+  }
+  return points;
+}
+
+/// The profile of the path where a point is.
+double speed_at(std::span<const PathPoint> path, const LapPath& measured, const maps::Point& point) {
+  const LapPath::Place place = measured.project(point);
+  const PathPoint &a = path[place.segment], &b = path[(place.segment + 1) % path.size()];
+  const double length = std::hypot(b.point.x - a.point.x, b.point.y - a.point.y);
+  const double begin = std::hypot(point.x - a.point.x, point.y - a.point.y);
+  const double share = length > 0 ? std::clamp(begin / length, 0.0, 1.0) : 0;
+  return a.speed + share * (b.speed - a.speed);
+}
+
+maps::Point beside(const RacingLine::Point& at, double offset) {
+  return {at.point.x - offset * std::sin(at.yaw), at.point.y + offset * std::cos(at.yaw)};
+}
+
+}  // namespace
+
+void RacingLineOptions::validate() const {
+  detail::require_range("wall_margin", wall_margin, 0, 10);
+  detail::require_range("parked_margin", parked_margin, 0, 10);
+  detail::require_positive("lateral", lateral);
+  detail::require_positive("longitudinal", longitudinal);
+}
+
+RacingLine::RacingLine(std::span<const PathPoint> path, const Track& track, const CarParameters& car,
+                       std::span<const Box> parked, const RacingLineOptions& options)
+    : path_(resampled(LapPath(points_of(path)))) {
+  options.validate();
+  const LapPath given(points_of(path));
+  const std::size_t count = path_.size();
+  spacing_ = path_.length() / static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double arc = spacing_ * static_cast<double>(i);
+    const maps::Pose before = path_.at(arc - spacing_), after = path_.at(arc + spacing_);
+    const maps::Point here = path_.points()[i];
+    points_.push_back({.point = here,
+                       .yaw = std::atan2(after.y - before.y, after.x - before.x),
+                       .speed = speed_at(path, given, here)});
+  }
+  for (const double share : {1.0, 0.6, 0.3, 0.0}) {
+    const auto free =
+        free_cells(track, car, parked, share * options.wall_margin, share * options.parked_margin);
+    narrow_ = share < 1;
+    if (!find_way(free)) continue;
+    find_room(free);
+    break;
+  }
+  smooth();
+  limit_speeds(options);
+}
+
+/// Whether a car may be there, [sample][lane].
+std::vector<std::uint8_t> RacingLine::free_cells(const Track& track, const CarParameters& car,
+                                                 std::span<const Box> parked, double wall_margin,
+                                                 double parked_margin) const {
+  std::vector<std::uint8_t> free(points_.size() * lanes);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point& at = points_[i];
+    const auto is_free = [&](const maps::Point& middle) {
+      if (track.distance_to_wall(middle) < 0.5 * car.width + wall_margin) return false;
+      const Box body{{middle.x, middle.y, at.yaw}, car.length, car.width + 2 * inflation};
+      return std::none_of(parked.begin(), parked.end(), [&](const Box& other) {
+        return std::hypot(other.pose.x - middle.x, other.pose.y - middle.y) < near_body &&
+               signed_gap(body, other) < parked_margin;
+      });
+    };
+    // Beyond a wall there may be another road.
+    for (const int side : {-1, 1})
+      for (int lane = lanes_aside; lane >= 0 && lane < lanes; lane += side) {
+        const maps::Point middle = beside(at, lane_step * (lane - lanes_aside));
+        if (track.in_wall(middle)) break;
+        free[i * lanes + static_cast<std::size_t>(lane)] = is_free(middle);
+      }
+  }
+  return free;
+}
+
+/// Sets the offsets of the cheapest way (Viterbi). It goes round twice, so that the second round begins as
+/// the first one ends. False if there is none.
+bool RacingLine::find_way(std::span<const std::uint8_t> free) {
+  constexpr double closed = std::numeric_limits<double>::infinity();
+  const std::size_t count = points_.size(), rows = 3 * count;
+  std::vector<double> costs(lanes, 0), next(lanes);
+  std::vector<std::int8_t> moves(rows * lanes);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (int lane = 0; lane < lanes; ++lane) {
+      double best = closed;
+      int move = 0;
+      for (const int from : {0, -1, 1}) {
+        if (lane + from < 0 || lane + from >= lanes) continue;
+        const double cost =
+            costs[static_cast<std::size_t>(lane + from)] + change_cost * std::abs(from) * lane_step;
+        if (cost < best) best = cost, move = from;
+      }
+      const double offset = lane_step * (lane - lanes_aside);
+      const auto cell = (row % count) * lanes + static_cast<std::size_t>(lane);
+      next[static_cast<std::size_t>(lane)] = free[cell] ? best + offset_cost * offset * offset : closed;
+      moves[row * lanes + static_cast<std::size_t>(lane)] = static_cast<std::int8_t>(move);
+    }
+    costs.swap(next);
+  }
+  const auto end = std::min_element(costs.begin(), costs.end());
+  if (*end == closed) return false;
+  int lane = static_cast<int>(end - costs.begin());
+  for (std::size_t row = rows; row-- > count;) {
+    if (row < 2 * count) points_[row % count].offset = lane_step * (lane - lanes_aside);
+    lane += moves[row * lanes + static_cast<std::size_t>(lane)];
+  }
+  return true;
+}
+
+/// Sets the offsets around the line that are free, and that a car reaches in time by the same slope.
+void RacingLine::find_room(std::span<const std::uint8_t> free) {
+  const std::size_t count = points_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const int lane = static_cast<int>(std::lround(points_[i].offset / lane_step)) + lanes_aside;
+    int first = lane, last = lane;
+    while (first > 0 && free[i * lanes + static_cast<std::size_t>(first - 1)]) --first;
+    while (last + 1 < lanes && free[i * lanes + static_cast<std::size_t>(last + 1)]) ++last;
+    points_[i].least = lane_step * (first - lanes_aside);
+    points_[i].most = lane_step * (last - lanes_aside);
+  }
+  const auto limit = [&](std::size_t at, std::size_t by) {
+    Point &point = points_[at % count], &other = points_[by % count];
+    point.least = std::max(point.least, other.least - lane_step);
+    point.most = std::min(point.most, other.most + lane_step);
+  };
+  for (std::size_t i = 0; i < 2 * count; ++i) limit(i + 1, i);
+  for (std::size_t i = 2 * count; i > 0; --i) limit(i - 1, i);
+}
+
+/// The line without the corners of lanes, within its room.
+void RacingLine::smooth() {
+  const std::vector<Point> before = points_;
+  const std::size_t count = points_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    double sum = 0;
+    for (int k = -smoothing; k <= smoothing; ++k)
+      sum += before[(i + count + static_cast<std::size_t>(k + smoothing) - smoothing) % count].offset;
+    points_[i].offset = std::clamp(sum / (2 * smoothing + 1), points_[i].least, points_[i].most);
+  }
+}
+
+/// Lowers the speeds to what the accelerations allow.
+void RacingLine::limit_speeds(const RacingLineOptions& options) {
+  std::vector<maps::Point> line;
+  for (const Point& each : points_) line.push_back(beside(each, each.offset));
+  const LapPath measured(line);
+  const std::size_t count = points_.size();
+  double arc = 0;
+  std::vector<double> way;
+  for (std::size_t i = 0; i < count; ++i) {
+    const maps::Point &a = line[i], &b = line[(i + 1) % count];
+    const maps::Pose before = measured.at(arc - curvature_reach), here = measured.at(arc),
+                     after = measured.at(arc + curvature_reach);
+    const double turned = maps::wrap_angle(std::atan2(after.y - here.y, after.x - here.x) -
+                                           std::atan2(here.y - before.y, here.x - before.x));
+    const double curvature = std::abs(turned) / curvature_reach;
+    points_[i].speed = std::min(points_[i].speed, std::sqrt(options.lateral / std::max(curvature, 1e-6)));
+    way.push_back(std::hypot(b.x - a.x, b.y - a.y));
+    arc += way.back();
+  }
+  const auto reached = [&](double from, double length) {
+    return std::sqrt(from * from + 2 * options.longitudinal * length);
+  };
+  for (std::size_t i = 2 * count; i > 0; --i) {
+    Point& here = points_[(i - 1) % count];
+    here.speed = std::min(here.speed, reached(points_[i % count].speed, way[(i - 1) % count]));
+  }
+  for (std::size_t i = 0; i < 2 * count; ++i) {
+    Point& there = points_[(i + 1) % count];
+    there.speed = std::min(there.speed, reached(points_[i % count].speed, way[i % count]));
+  }
+}
+
+RacingLine::Point RacingLine::at(double arc) const noexcept {
+  const double turns = arc / path_.length();
+  const double place = (turns - std::floor(turns)) * static_cast<double>(points_.size());
+  const auto first = std::min(static_cast<std::size_t>(place), points_.size() - 1);
+  const double share = std::clamp(place - static_cast<double>(first), 0.0, 1.0);
+  const Point &a = points_[first], &b = points_[(first + 1) % points_.size()];
+  const auto mix = [share](double from, double to) { return from + share * (to - from); };
+  return {.point = {mix(a.point.x, b.point.x), mix(a.point.y, b.point.y)},
+          .yaw = a.yaw + share * maps::wrap_angle(b.yaw - a.yaw),
+          .speed = mix(a.speed, b.speed),
+          .offset = mix(a.offset, b.offset),
+          .least = mix(a.least, b.least),
+          .most = mix(a.most, b.most)};
+}
+
+double RacingLine::between(double from, double to) const noexcept {
+  const double turns = (to - from) / path_.length() + 0.5;
+  return path_.length() * (turns - std::floor(turns) - 0.5);
+}
+
+}  // namespace slalom::sim

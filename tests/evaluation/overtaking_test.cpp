@@ -1,0 +1,181 @@
+// Opponents in laps: who is met, overtaken and hit, and whose fault it was.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <filesystem>
+
+#include "evaluation/overtaking/overtaking_meter.hpp"
+#include "sim/rooms.hpp"
+#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap_table.hpp"
+
+namespace slalom::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double half_turn = 3.141592653589793;
+
+/// A car `progress` (m) along a ring of 5.5 m, `left` (m) of it, at a speed along it and one to its left.
+sim::CarState on_ring(double progress, double left, double speed, double sideways = 0) {
+  const double angle = progress / 5.5, radius = 5.5 - left;
+  sim::CarState state;
+  state.x = 10 + radius * std::cos(angle);
+  state.y = 10 + radius * std::sin(angle);
+  state.yaw = angle + 0.5 * half_turn;
+  state.speed = std::hypot(speed, sideways);
+  state.slip = std::atan2(sideways, speed);
+  return state;
+}
+
+/// How a car drives.
+struct Drive {
+  double from = 0;      ///< m along the ring
+  double left = 0;      ///< m
+  double speed = 0;     ///< m/s
+  double sideways = 0;  ///< m/s, to the left
+};
+
+/// What is recorded of two cars that drive like this for so long (s).
+OvertakingRecord record_of(const Drive& own, const Drive& other, double time) {
+  sim::World world({}, testing::ring_track());
+  const auto at = [](const Drive& drive, double t) {
+    return on_ring(drive.from + drive.speed * t, drive.left + drive.sideways * t, drive.speed,
+                   drive.sideways);
+  };
+  const auto start = [&](const Drive& drive) {
+    const sim::CarState state = at(drive, 0);
+    return maps::Pose{state.x, state.y, state.yaw};
+  };
+  world.reset(1, std::array{start(own), start(other)});
+  OvertakingMeter meter(world);
+  for (int k = 1; k * 0.01 <= time; ++k) {
+    world.follow(std::array{at(own, 0.01 * k), at(other, 0.01 * k)});
+    meter.update(world);
+  }
+  return meter.record(false);
+}
+
+TEST(Overtaking, IsOverWhenTheOpponentIsBehind) {
+  const OvertakingRecord record =
+      record_of({.left = 0.5, .speed = 4}, {.from = 6, .left = -0.5, .speed = 2}, 6);
+  ASSERT_EQ(record.encounters.size(), 1U);
+  const Encounter& met = record.encounters[0];
+  EXPECT_EQ(met.opponent, 0);
+  EXPECT_NEAR(met.time, 1.0, 0.1) << "from 6 m to 4 m";
+  EXPECT_NEAR(met.duration, 2.5, 0.1) << "from 4 m to -1 m";
+  EXPECT_EQ(met.end, EncounterEnd::overtaken);
+  EXPECT_EQ(record.contacts, 0);
+}
+
+TEST(Overtaking, ACarThatStaysBehindForTwoRoundsHasNotOvertaken) {
+  const Drive other{.from = 3, .speed = 6};
+  EXPECT_EQ(record_of({.speed = 6}, other, 10).encounters.at(0).end, EncounterEnd::open);
+  EXPECT_EQ(record_of({.speed = 6}, other, 11.6).encounters.at(0).end, EncounterEnd::not_overtaken);
+}
+
+TEST(Overtaking, AnOpponentThatIsLappedIsMetAgain) {
+  const OvertakingRecord record =
+      record_of({.left = 0.5, .speed = 8}, {.from = 6, .left = -0.5, .speed = 2}, 8);
+  ASSERT_EQ(record.encounters.size(), 2U);
+  EXPECT_EQ(record.encounters[1].end, EncounterEnd::overtaken);
+}
+
+TEST(Overtaking, TheCarBehindIsAtFault) {
+  const OvertakingRecord into = record_of({.speed = 4}, {.from = 3, .speed = 2}, 2);
+  EXPECT_EQ(into.contacts, 1);
+  EXPECT_EQ(into.caused, 1);
+  EXPECT_EQ(into.encounters.at(0).caused, 1);
+  const OvertakingRecord hit = record_of({.from = 3, .speed = 2}, {.speed = 4}, 2);
+  EXPECT_EQ(hit.contacts, 1);
+  EXPECT_EQ(hit.caused, 0);
+}
+
+TEST(Overtaking, AlongsideTheCarThatMovesAcrossIsAtFault) {
+  const Drive steady{.left = 0.3, .speed = 3};
+  const auto caused = [](const OvertakingRecord& record) {
+    EXPECT_EQ(record.contacts, 1);
+    return record.caused;
+  };
+  for (const double ahead : {-0.2, 0.0, 0.2}) {
+    const Drive right_of{.from = ahead, .left = -0.3, .speed = 3, .sideways = 0.5};
+    EXPECT_EQ(caused(record_of(steady, right_of, 0.8)), 0) << ahead;
+    EXPECT_EQ(caused(record_of(right_of, steady, 0.8)), 1) << ahead;
+  }
+}
+
+std::shared_ptr<const Environment> wren() {
+  return load_environment(fs::path(SLALOM_COURSES) / "wren", Protocol::true_physics, {SLALOM_COURSES});
+}
+
+LapResult lap_with(const LapSettings& settings, std::uint64_t seed = 1) {
+  auto driver =
+      vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / "default_kinematic.yaml", {SLALOM_CONFIGS});
+  vehicle::set_option(driver, "mppi.samples", "64");
+  static const auto environment = wren();
+  return LapRunner(environment, driver, "mppi", settings).run(seed);
+}
+
+TEST(Overtaking, OpponentsOfEveryKindAreInALapAndItRepeats) {
+  const LapSettings settings{.obstacles = 2,
+                             .opponents = 3,
+                             .opponent_speed = PerInput{0.5, 0.6, 0.7},
+                             .opponent_driver = sim::OpponentDriver::racing,
+                             .blocking_opponents = 1,
+                             .erratic_opponents = 1,
+                             .opponent_gap = 3,
+                             .tracking = TrackingMode::exact};
+  EXPECT_EQ(driver_of(settings, 0), sim::OpponentDriver::blocking);
+  EXPECT_EQ(driver_of(settings, 1), sim::OpponentDriver::erratic);
+  EXPECT_EQ(driver_of(settings, 2), sim::OpponentDriver::racing);
+  const LapResult first = lap_with(settings), again = lap_with(settings), other = lap_with(settings, 2);
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(first.state_cost), std::bit_cast<std::uint64_t>(again.state_cost));
+  EXPECT_EQ(first.time, again.time);
+  EXPECT_NE(first.state_cost, other.state_cost);
+  ASSERT_FALSE(first.overtaking.encounters.empty());
+  EXPECT_LT(first.overtaking.encounters[0].time, 0.1) << "the first opponent starts 3 m ahead";
+  EXPECT_EQ(first.overtaking.encounters.size(), again.overtaking.encounters.size());
+  const LapRow row = make_row(0, 0, first, 1);
+  EXPECT_EQ(row.overtaking.met, static_cast<int>(first.overtaking.encounters.size()));
+  EXPECT_GE(row.overtaking.contacts, row.overtaking.caused);
+}
+
+TEST(Overtaking, ALapCanHaveSeveralRounds) {
+  const LapResult one = lap_with({}), two = lap_with({.rounds = 2});
+  ASSERT_TRUE(one.finished && two.finished);
+  EXPECT_GT(two.time, 1.8 * one.time);
+  EXPECT_LT(two.time, 2.1 * one.time);
+  EXPECT_TRUE(one.overtaking.encounters.empty());
+}
+
+TEST(Overtaking, SettingsThatDoNotFitAreRefused) {
+  EXPECT_THROW(lap_with({.opponents = 2, .opponent_speed = PerInput{0.5, 0.6, 0.7}}), std::invalid_argument);
+  EXPECT_THROW(lap_with({.opponents = 1, .blocking_opponents = 1, .erratic_opponents = 1}),
+               std::invalid_argument);
+  EXPECT_THROW(lap_with({.rounds = 0}), std::invalid_argument);
+}
+
+TEST(OvertakingColumns, AreThereIfAnExperimentHasOpponents) {
+  std::vector<Experiment> experiments{{.method = "mppi", .scenario = "pt", .laps = 2}};
+  EXPECT_EQ(csv_header(experiments), csv_header());
+  experiments[0].set.emplace_back("world.opponents", "2");
+  EXPECT_TRUE(experiments[0].has_opponents());
+  EXPECT_EQ(csv_header(experiments), csv_header() +
+                                         ",opponents_met,overtaken,not_overtaken,overtaking_time,"
+                                         "opponent_contacts,contacts_caused");
+  LapRow row;
+  row.minimum_clearance = 0.1;
+  row.overtaking = {5, 3, 1, 4.25, 2, 1};
+  const LapRow back = parse_line(csv_line(row, experiments), experiments);
+  EXPECT_EQ(back.overtaking.met, 5);
+  EXPECT_EQ(back.overtaking.overtaken, 3);
+  EXPECT_EQ(back.overtaking.not_overtaken, 1);
+  EXPECT_EQ(back.overtaking.duration, 4.25);
+  EXPECT_EQ(back.overtaking.contacts, 2);
+  EXPECT_EQ(back.overtaking.caused, 1);
+}
+
+}  // namespace
+}  // namespace slalom::evaluation

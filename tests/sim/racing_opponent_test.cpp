@@ -1,0 +1,175 @@
+// Opponents that look where they drive, on a ring road of 3 m.
+#include "slalom/sim/racing_opponent.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "sim/rooms.hpp"
+#include "slalom/sim/pure_pursuit.hpp"
+
+namespace slalom::sim {
+namespace {
+
+constexpr double radius = 5.5;
+
+std::vector<PathPoint> path(double speed) {
+  std::vector<PathPoint> points;
+  for (const maps::Point& p : testing::circle(radius)) points.push_back({p, speed});
+  return points;
+}
+
+/// A car that drives to the left round the ring.
+maps::Pose on_ring(double angle, double outward = 0) {
+  return {10 + (radius + outward) * std::cos(angle), 10 + (radius + outward) * std::sin(angle),
+          angle + std::acos(0.0)};
+}
+
+std::vector<Box> boxes(const std::vector<maps::Pose>& poses) {
+  const CarParameters car;
+  std::vector<Box> made;
+  for (const maps::Pose& pose : poses) made.push_back({pose, car.length, car.width});
+  return made;
+}
+
+/// The line for cars that drive at this speed among what is parked.
+std::shared_ptr<const RacingLine> line(double speed, const std::vector<maps::Pose>& parked = {}) {
+  return std::make_shared<const RacingLine>(path(speed), *testing::ring_track(), CarParameters{},
+                                            boxes(parked));
+}
+
+/// Drives for a time (s) with a decision every 0.02 s; steps with a collision of any car.
+int drive(World& world, std::vector<RacingOpponent>& drivers, double time) {
+  int collisions = 0;
+  std::vector<Command> commands(drivers.size());
+  const double end = world.time() + time;
+  for (int k = 0; world.time() < end; ++k) {
+    for (std::size_t i = 0; i < drivers.size() && k % 2 == 0; ++i) commands[i] = drivers[i].command(world);
+    world.step(commands);
+    for (std::size_t i = 0; i < drivers.size(); ++i) collisions += world.observe(i).collides();
+  }
+  return collisions;
+}
+
+World world_of(const std::vector<maps::Pose>& cars, const std::vector<maps::Pose>& parked = {}) {
+  World world({}, testing::ring_track());
+  world.reset(1, cars, parked);
+  return world;
+}
+
+TEST(RacingLine, LeadsRoundWhatIsParkedWithItsMargins) {
+  const std::vector<maps::Pose> parked = {on_ring(1), on_ring(2.5, 0.4), on_ring(4, -0.3)};
+  const auto alone = line(3), among = line(3, parked);
+  EXPECT_FALSE(among->narrow());
+  const CarParameters car;
+  double widest = 0;
+  for (double arc = 0; arc < among->length(); arc += 0.1) {
+    const RacingLine::Point at = among->at(arc);
+    EXPECT_NEAR(alone->at(arc).offset, 0, 1e-9);
+    EXPECT_GE(at.offset, at.least);
+    EXPECT_LE(at.offset, at.most);
+    EXPECT_LE(at.speed, 3);
+    const Box body{{at.point.x - at.offset * std::sin(at.yaw), at.point.y + at.offset * std::cos(at.yaw),
+                    at.yaw + std::atan((among->at(arc + 0.1).offset - at.offset) / 0.1)},
+                   car.length,
+                   car.width};
+    for (const Box& box : boxes(parked)) EXPECT_GT(signed_gap(body, box), 0.05) << arc;
+    widest = std::max(widest, std::abs(at.offset));
+  }
+  EXPECT_GT(widest, 0.3);
+  EXPECT_LT(widest, 1);
+}
+
+TEST(RacingLine, WhereNothingIsFreeItStaysOnThePath) {
+  std::vector<maps::Pose> wall;
+  for (double outward = -1.6; outward <= 1.6; outward += 0.25) wall.push_back(on_ring(2, outward));
+  const auto closed = line(3, wall);
+  EXPECT_TRUE(closed->narrow());
+  EXPECT_EQ(closed->at(0).offset, 0);
+}
+
+TEST(RacingOpponent, AvoidsWhatPurePursuitDrivesInto) {
+  const std::vector<maps::Pose> cars = {on_ring(0), on_ring(3.1)};
+  const std::vector<maps::Pose> parked = {on_ring(1), on_ring(2.5, 0.3), on_ring(4.5, -0.3)};
+  World world = world_of(cars, parked);
+  std::vector<RacingOpponent> drivers;
+  for (std::size_t i = 0; i < 2; ++i)
+    drivers.emplace_back(line(4, parked), i, RacingOpponentOptions{.speed_share = 0.9}, RandomKey{1, i});
+  EXPECT_EQ(drive(world, drivers, 25), 0);
+  EXPECT_GE(world.laps(0)->laps(), 2);
+  EXPECT_GE(world.laps(1)->laps(), 2);
+
+  World blind = world_of(cars, parked);
+  const PurePursuit pursuit(path(3.6));
+  bool collided = false;
+  while (blind.time() < 5) {
+    blind.step(std::array{pursuit.command(blind.observe(0).pose), pursuit.command(blind.observe(1).pose)});
+    collided = collided || blind.observe(0).collides();
+  }
+  EXPECT_TRUE(collided);
+}
+
+TEST(RacingOpponent, FollowsASlowerCarWithoutTouchingIt) {
+  World world = world_of({on_ring(0), on_ring(0.6)});
+  std::vector<RacingOpponent> drivers;
+  drivers.emplace_back(line(4), 0, RacingOpponentOptions{.speed_share = 0.9}, RandomKey{1, 0});
+  drivers.emplace_back(line(4), 1, RacingOpponentOptions{.speed_share = 0.4}, RandomKey{1, 1});
+  EXPECT_EQ(drive(world, drivers, 15), 0);
+  EXPECT_LT(world.laps(0)->progress(), world.laps(1)->progress() + 0.6 * radius);
+  EXPECT_GT(world.laps(0)->progress(), world.laps(1)->progress() + 0.6 * radius - 2.5);
+}
+
+TEST(RacingOpponent, BlocksTheCarBehindWithinItsLimitsAndNotOneAlongside) {
+  const RacingOpponentOptions options{.driver = OpponentDriver::blocking};
+  const auto lane_with = [&](double behind, double outward) {
+    RacingOpponent driver(line(4), 1, options, RandomKey{1, 1});
+    World world = world_of({on_ring(1 - behind / radius, outward), on_ring(1)});
+    CarState moving = world.state(0);
+    moving.speed = 3;
+    world.set_state(0, moving);
+    driver.command(world);
+    return driver.lane();
+  };
+  EXPECT_NEAR(lane_with(2, 0.4), -0.4, 0.1) << "outward is to the right";
+  EXPECT_NEAR(lane_with(2, -0.4), 0.4, 0.1);
+  EXPECT_EQ(lane_with(2, 1.2), -options.lane_offset);
+  EXPECT_EQ(lane_with(6, 0.4), 0) << "out of reach";
+  EXPECT_EQ(lane_with(0.3, 0.6), 0) << "alongside";
+}
+
+TEST(RacingOpponent, DrawsLanesAndSpeedsFromItsKeyAlone) {
+  const auto driven = [](std::uint64_t seed) {
+    World world = world_of({on_ring(0)});
+    std::vector<RacingOpponent> drivers;
+    drivers.emplace_back(line(4), 0, RacingOpponentOptions{.driver = OpponentDriver::erratic},
+                         RandomKey{seed, 0});
+    double least = 0, most = 0;
+    for (int i = 0; i < 100; ++i) {
+      EXPECT_EQ(drive(world, drivers, 0.2), 0);
+      least = std::min(least, world.laps(0)->lateral());
+      most = std::max(most, world.laps(0)->lateral());
+    }
+    EXPECT_LT(least, -0.1);
+    EXPECT_GT(most, 0.1);
+    return world.state(0);
+  };
+  EXPECT_EQ(driven(3), driven(3));
+  EXPECT_FALSE(driven(3) == driven(4));
+}
+
+TEST(RacingOpponent, RejectsInvalidInput) {
+  const auto with = [](RacingOpponentOptions options) { RacingOpponent(line(4), 0, options, RandomKey{}); };
+  EXPECT_NO_THROW(with({}));
+  EXPECT_THROW(with({.driver = OpponentDriver::pursuit}), std::invalid_argument);
+  EXPECT_THROW(with({.speed_share = 1.1}), std::invalid_argument);
+  EXPECT_THROW(with({.longest_stay = 0.5}), std::invalid_argument);
+  EXPECT_THROW(RacingOpponent(nullptr, 0, {}, RandomKey{}), std::invalid_argument);
+  EXPECT_THROW(RacingLine(path(std::numeric_limits<double>::quiet_NaN()), *testing::ring_track(), {}),
+               std::invalid_argument);
+  EXPECT_THROW(RacingLine(path(4), *testing::ring_track(), {}, {}, {.lateral = 0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slalom::sim
