@@ -124,6 +124,9 @@ std::vector<RacingLap> drive_race(const std::shared_ptr<const LapRunner>& runner
                                   const RaceCallbacks& callbacks, const std::atomic<bool>* cancel) {
   if (options.laps < 1)
     throw std::invalid_argument("laps: " + std::to_string(options.laps) + " must be at least 1");
+  if (runner->settings().rounds != 1)
+    throw std::invalid_argument("world.rounds: " + std::to_string(runner->settings().rounds) +
+                                " must be 1 in a race");
   const bool flying = !options.standing && runner->environment().course.closed;
   std::vector<RacingLap> laps;
   const auto driven = [&] { return static_cast<int>(laps.size()); };
