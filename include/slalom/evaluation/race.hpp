@@ -31,7 +31,8 @@ struct RaceCallbacks {
 /// the runner; the next one begins with a new standing start. So does every lap of an open course. The times
 /// at which the car crosses lines are interpolated linearly within a control period. Ends when `cancel`
 /// becomes true, without the lap that was being driven. `runner` must not be null. Throws
-/// std::invalid_argument for less than one lap and for laps of several rounds, and what LapRunner::run throws.
+/// std::invalid_argument for less than one lap and for laps of several rounds, and what LapRunner::run
+/// throws.
 std::vector<RacingLap> drive_race(const std::shared_ptr<const LapRunner>& runner, const RaceOptions& options,
                                   const RaceCallbacks& callbacks = {},
                                   const std::atomic<bool>* cancel = nullptr);
