@@ -158,7 +158,7 @@ TEST(Overtaking, SettingsThatDoNotFitAreRefused) {
 }
 
 TEST(OvertakingColumns, AreThereIfAnExperimentHasOpponents) {
-  std::vector<Experiment> experiments{{.method = "mppi", .scenario = "pt", .laps = 2}};
+  std::vector<Experiment> experiments{{"mppi", {}, "pt", 0, 2}};
   EXPECT_EQ(csv_header(experiments), csv_header());
   experiments[0].set.emplace_back("world.opponents", "2");
   EXPECT_TRUE(experiments[0].has_opponents());
