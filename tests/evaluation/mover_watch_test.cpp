@@ -9,7 +9,7 @@
 
 #include "slalom/core/random.hpp"
 #include "slalom/evaluation/rooms/room_drive.hpp"
-#include "slalom/sim/crowd.hpp"
+#include "slalom/sim/room/crowd.hpp"
 
 namespace slalom::evaluation {
 namespace {

@@ -1,5 +1,5 @@
 // People: they keep to their way, avoid each other, walls and the robot, or nothing at all.
-#include "slalom/sim/crowd.hpp"
+#include "slalom/sim/room/crowd.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "slalom/sim/crowd.hpp"
+#include "slalom/sim/room/crowd.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "slalom/sim/room.hpp"
+#include "slalom/sim/room/room.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 
 #include "slalom/maps/pose.hpp"
 #include "slalom/navigation/base.hpp"
-#include "slalom/sim/crowd.hpp"
-#include "slalom/sim/room.hpp"
+#include "slalom/sim/room/crowd.hpp"
+#include "slalom/sim/room/room.hpp"
 
 namespace slalom::evaluation {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "slalom/sim/room.hpp"
+#include "slalom/sim/room/room.hpp"
 
 namespace slalom::sim {
 
