@@ -1,6 +1,5 @@
 #include <cstdio>
 #include <memory>
-#include <optional>
 
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/json.hpp"
@@ -22,13 +21,12 @@ constexpr const char* fallback_course = "stag";
 constexpr const char* gap_driver = "follow_the_gap";
 /// Of a planner in the racing benchmark, unless given.
 constexpr const char* racing_configuration = "racing_benchmark";
-constexpr double racing_margin = 0.12;  // m
 
 struct ReproduceArguments {
   EvaluationArguments evaluation;
   std::string published, benchmark, driver = "svg_mppi";
   std::vector<std::string> sections{"baseline", "ablation", "sweep"};
-  std::optional<double> margin;
+  double margin = 0.12;  ///< m, in the racing benchmark
   int laps_pt = 30, laps_oa = 100, obstacles = 5;
   bool quick = false, course_given = false, config_given = false;
 };
@@ -154,17 +152,16 @@ int run_racing(ReproduceArguments arguments) {
   std::FILE* words = json == "-" ? stderr : stdout;
   const bool gap = arguments.driver == gap_driver;
   Json summary{{"benchmark", arguments.benchmark}, {"driver", arguments.driver}};
-  const double margin = arguments.margin.value_or(racing_margin);
   if (!gap) {
     summary["config"] = scenario.config;
-    summary["margin_m"] = margin;
+    summary["margin_m"] = arguments.margin;
   }
   std::fprintf(words, "%-4s %10s %10s %12s\n", "map", "mean, s", "completed", "beyond grip");
   for (const char* name : racing_maps) {
     const RacingMap map = load_racing_map(scenario.course, name);
     const auto driver = gap ? make_gap_driver()
                             : make_planner_driver(map, load_configuration(scenario, arguments.driver),
-                                                  arguments.driver, margin);
+                                                  arguments.driver, arguments.margin);
     const auto laps = drive_racing_laps(map, *driver, arguments.quick ? 1 : racing_laps);
     const Json results = racing_results(laps);
     summary["maps"][name] = results;
@@ -199,8 +196,10 @@ void declare_reproduce(Subcommand& command) {
               "With --benchmark: a method, whose planner drives on the minimum-time raceline with --config "
               "[racing_benchmark], or follow_the_gap")
       .show_default();
-  command.option("--margin", arguments->margin,
-                 "With --benchmark: m, that the raceline keeps between the car and walls [0.12]");
+  command
+      .option("--margin", arguments->margin,
+              "With --benchmark: m, that the raceline keeps between the car and walls")
+      .show_default();
   command.option("--published", arguments->published, "Folder of the authors' logs");
   command
       .option("--sections", arguments->sections, "Sections, separated by commas: baseline, ablation, sweep")
