@@ -59,7 +59,7 @@ inline std::vector<OptionSet> option_sets() {
                                                              .sample_around = SampleCentre::solution}}});
   sets.push_back({"reverse_mppi_without_rejection", ReverseMppiOptions{.reject_samples = false}});
   sets.push_back({"sv_mpc_best_particle", SvMpcOptions{.best_particle = true}});
-  sets.push_back({"sv_mpc_knots", SvMpcOptions{.knots = 5}});
+  sets.push_back({"sv_mpc_splines", SvMpcOptions{.control_points = 5}});
   sets.push_back({"cem_send_best", CemOptions{.send_best = true}});
   sets.push_back({"mppi_coloured", MppiOptions{.noise = {.exponent = 1.5}}});
   sets.push_back({"mppi_knots", MppiOptions{.noise = {.knots = 5}}});

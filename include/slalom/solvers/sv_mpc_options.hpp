@@ -25,9 +25,10 @@ struct SvMpcOptions {
   /// Keep the step below 1 / (Sigma^-1 + Sigma_g^-1), the inverse curvature of the log posterior as far as it
   /// is known, so that particles cannot overshoot further and further.
   bool limit_step = true;
-  /// Control points of a cubic B-spline, which the particles then are: all variances are theirs. 0: a
+  /// Control points for each input: a particle is then a cubic B-spline along the horizon (of a lower degree
+  /// with fewer than four), and all variances are those of control points. At most the horizon counts. 0: a
   /// particle has inputs of its own for each step.
-  int knots = 0;
+  int control_points = 0;
   int gradient_samples = 16;          ///< N, for the gradient of a particle
   PerInput gradient_variance = 0.25;  ///< Sigma_g, input^2
   bool best_particle = false;         ///< send the particle of largest weight instead of the weighted mean
@@ -41,6 +42,7 @@ struct SvMpcOptions {
   PublishedSvMpc published{};  ///< only to reproduce the program of proj-svg_mppi
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, SvMpcOptions>
 void visit_options(Options& o, Visit&& visit) {
@@ -54,12 +56,12 @@ void visit_options(Options& o, Visit&& visit) {
                             .min = 0,
                             .max = detail::finite});
   visit(o.limit_step, Declaration{.name = "limit_step", .help = "keep the step below the inverse curvature"});
-  visit(o.knots, Declaration{.name = "knots",
-                             .symbol = "n",
-                             .help = "control points of a cubic B-spline along the horizon, which the "
-                                     "particles then are; 0: a particle has inputs for each step",
-                             .min = 0,
-                             .max = 64});
+  visit(o.control_points, Declaration{.name = "control_points",
+                                      .symbol = "n",
+                                      .help = "control points for each input: a particle is then a cubic "
+                                              "B-spline along the horizon; 0: inputs for each step",
+                                      .min = 0,
+                                      .max = 64});
   visit(o.gradient_samples, Declaration{.name = "gradient_samples",
                                         .symbol = "N",
                                         .help = "samples for the gradient of a particle",

@@ -15,7 +15,7 @@ namespace {
 
 /// The options of the particles: with splines, they have as many steps as control points.
 SvMpcOptions particle_options(SvMpcOptions options) {
-  if (options.knots > 0) options.horizon = std::min(options.knots, options.horizon);
+  if (options.control_points > 0) options.horizon = std::min(options.control_points, options.horizon);
   return options;
 }
 
@@ -56,7 +56,7 @@ class SvMpcSolver final : public SolverBase {
       inverse_[r] = detail::inverse_variance<float>(deviation_[r], options.published.inverse_variance_offset);
       deviation_[r] = std::sqrt(deviation_[r]);
     }
-    if (options.knots > 0) use_splines();
+    if (options.control_points > 0) use_splines();
     reset(options.seed);
   }
 
@@ -176,7 +176,11 @@ class SvMpcSolver final : public SolverBase {
 
   /// Moves the values of a particle forward in time.
   void shift_particle(float* particle, double steps) noexcept {
-    if (spline_.active()) return spline_.shift(particle, steps);
+    if (spline_.active()) {
+      spline_.shift(particle, steps);
+      if (options_.published.clamp_particles) clamp(particle);  // least squares may leave the bounds
+      return;
+    }
     shift_sequence(particle, steps_, inputs(), steps, shifted_.data());
     std::copy(shifted_.begin(), shifted_.end(), particle);
   }

@@ -15,7 +15,7 @@ class Spline {
  public:
   /// None: `active` is false.
   Spline() = default;
-  /// More control points than steps are as many as steps.
+  /// At most as many control points as steps are used.
   Spline(int steps, int points, int inputs);
 
   bool active() const noexcept { return points_ > 0; }
@@ -28,8 +28,8 @@ class Spline {
   /// The sequences of a range of a batch of control points; `range.count` is a multiple of the padding.
   void expand(const SequenceBatch& points, SequenceBatch& sequences, Range range) const noexcept;
 
-  /// Moves control points forward in time by `shift` >= 0 steps: those whose sequence is the next to the
-  /// moved one in the least squares sense. The last input is held.
+  /// Moves control points forward in time by `shift` >= 0 steps, to those whose sequence is nearest to the
+  /// shifted one in the least squares sense; they may leave the bounds. The last input is held.
   void shift(float* points, double shift) noexcept;
 
  private:

@@ -88,10 +88,11 @@ TEST(Spline, ABatchHasTheSameSequences) {
   }
 }
 
-TEST(SvMpcWithKnots, PlansAreSplinesThatSolveTheProblem) {
+TEST(SvMpcWithSplines, PlansAreSplinesThatSolveTheProblem) {
   const testing::DoubleIntegrator problem;
-  SvMpc controller{problem,
-                   {.horizon = 40, .variance = 4, .input_min = -2, .input_max = 2, .step = 4, .knots = 6}};
+  SvMpc controller{
+      problem,
+      {.horizon = 40, .variance = 4, .input_min = -2, .input_max = 2, .step = 4, .control_points = 6}};
   testing::DoubleIntegrator::State<double> x{1, 0};
   for (int k = 0; k < 60; ++k) {
     const auto plan = controller.solve(x, {.elapsed = problem.dt});
@@ -108,6 +109,23 @@ TEST(SvMpcWithKnots, PlansAreSplinesThatSolveTheProblem) {
     x = problem.step<double>(x, plan.inputs[0]);
   }
   EXPECT_LT(std::abs(x.position), 0.15);
+}
+
+TEST(SvMpcWithSplines, ParticlesStayWithinTheBoundsWhenTheyMoveForward) {
+  const testing::DoubleIntegrator problem;
+  SvMpc controller{problem,
+                   {.horizon = 40, .variance = 100, .input_min = -2, .input_max = 2, .control_points = 10}};
+  // No time to move the particles: they are evaluated as they were drawn, and then as they were shifted.
+  controller.solve({1, 0}, {.deadline = 1e-9});
+  const auto plan = controller.solve({1, 0}, {.elapsed = 2.5 * problem.dt, .deadline = 1e-9});
+  std::vector<float> sequence(40);
+  float largest = 0;
+  for (int k = 0; k < plan.stats.samples->samples(); ++k) {
+    plan.stats.samples->get_sample(k, sequence);
+    for (const float value : sequence) largest = std::max(largest, std::abs(value));
+  }
+  EXPECT_LE(largest, 2.0001f);
+  EXPECT_GT(largest, 1.9f) << "none is near a bound";
 }
 
 }  // namespace
