@@ -122,8 +122,10 @@ void ReferenceField::set_speeds(std::span<const double> speeds) noexcept {
   for (std::size_t i = 0; i < speeds.size(); ++i) path_[i].speed = speeds[i];
 }
 
-void ReferenceField::set_curvatures(std::span<const double> curvatures) {
-  if (curvatures.size() == path_.size()) curvature_.assign(curvatures.begin(), curvatures.end());
+void ReferenceField::set_curvatures(std::span<const double> curvatures, bool closed) {
+  if (curvatures.size() != path_.size()) return;
+  curvature_.assign(curvatures.begin(), curvatures.end());
+  closed_ = closed;
 }
 
 bool ReferenceField::set_path(std::span<const ReferencePoint> path) noexcept {
@@ -199,18 +201,23 @@ void ReferenceField::make_sites() noexcept {
     const ReferencePoint& point = path_[i];
     sites_[k] = {point.x, point.y, (first - point.y) / geometry_.resolution, static_cast<float>(point.yaw),
                  static_cast<float>(point.speed)};
-    if (!curvature_.empty()) sites_[k].piece = piece_at(i);
+    if (curvature_.empty()) continue;
+    // The window may skip points; where it ends, the line goes on to the next one of the path.
+    const std::size_t n = path_.size();
+    const std::size_t before = k > 0 ? static_cast<std::size_t>(window_[k - 1]) : (i + n - 1) % n;
+    const std::size_t after = k + 1 < window_size_ ? static_cast<std::size_t>(window_[k + 1]) : (i + 1) % n;
+    sites_[k].piece = piece_at(before, i, after);
   }
   std::sort(sites_.begin(), sites_.begin() + static_cast<std::ptrdiff_t>(window_size_),
             [](const Site& a, const Site& b) { return a.u < b.u; });
 }
 
-ReferenceField::Piece ReferenceField::piece_at(std::size_t point) const noexcept {
-  const std::size_t n = path_.size();
-  const ReferencePoint &before = path_[(point + n - 1) % n], &here = path_[point],
-                       &after = path_[(point + 1) % n];
-  const double way_before = std::sqrt(squared_distance(before, here)),
-               way_after = std::sqrt(squared_distance(here, after));
+ReferenceField::Piece ReferenceField::piece_at(std::size_t before_point, std::size_t point,
+                                               std::size_t after_point) const noexcept {
+  const ReferencePoint &before = path_[before_point], &here = path_[point], &after = path_[after_point];
+  // An open path has no line before its first point and none after its last one.
+  const double way_before = closed_ || point > 0 ? std::sqrt(squared_distance(before, here)) : 0;
+  const double way_after = closed_ || point + 1 < path_.size() ? std::sqrt(squared_distance(here, after)) : 0;
   Piece piece{.ahead_x = std::cos(here.yaw),
               .ahead_y = std::sin(here.yaw),
               .curvature = curvature_[point],

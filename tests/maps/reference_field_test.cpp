@@ -49,6 +49,26 @@ void expect_nearest(const ReferenceField& field, const std::vector<ReferencePoin
   }
 }
 
+/// The cells beside a circle, of whose points `count` are in the window, are those of the line itself.
+void expect_line(const ReferenceField& field, int count, double radius) {
+  const GridGeometry& geometry = field.geometry();
+  const double turn = M_PI / count, sagitta = radius * (1 - std::cos(turn));
+  int cells = 0;
+  for (int row = 0; row < geometry.rows; ++row) {
+    for (int column = 0; column < geometry.columns; ++column) {
+      const double x = geometry.cell_x(row), y = geometry.cell_y(column);
+      const double from_centre = std::hypot(x, y), angle = std::atan2(y, x);
+      if (std::abs(from_centre - radius) > 1 || std::abs(angle) > 1) continue;  // away from the window's ends
+      const float* cell = field.cells().at(row, column);
+      ASSERT_NEAR(cell[0], std::abs(from_centre - radius), 3 * sagitta) << x << ' ' << y;
+      ASSERT_NEAR(wrap_angle(cell[1] - angle - M_PI / 2), 0, 1e-3) << x << ' ' << y;
+      ASSERT_NEAR(cell[2], 2 + std::cos(angle), turn * turn) << x << ' ' << y;
+      ++cells;
+    }
+  }
+  EXPECT_GT(cells, 1500);
+}
+
 TEST(ReferenceField, EqualsBruteForceOnRandomPaths) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-6, 6);
@@ -142,10 +162,10 @@ TEST(ReferenceField, KnowsTheProgressBesideACurve) {
   ReferenceField field(path);
   ASSERT_TRUE(field.update({5, 0}));
   EXPECT_EQ(field.at(4, 0.5).outside, 0);
-  field.set_curvatures(std::vector<double>(599, 1 / radius));  // has no effect: one is missing
+  field.set_curvatures(std::vector<double>(599, 1 / radius), true);  // has no effect: one is missing
   ASSERT_TRUE(field.update({5, 0}));
   EXPECT_EQ(field.at(4, 0.5).outside, 0);
-  field.set_curvatures(std::vector<double>(600, 1 / radius));
+  field.set_curvatures(std::vector<double>(600, 1 / radius), true);
   ASSERT_TRUE(field.update({5, 0}));
   const GridGeometry& geometry = field.geometry();
   for (const double x : {2.0, 4.0, 5.0, 6.5, 9.0}) {
@@ -165,24 +185,37 @@ TEST(ReferenceField, WithCurvaturesCellsBetweenPointsAreThoseOfTheLine) {
   constexpr int count = 60;  // 0.52 m apart
   const auto path = circle(count, radius);
   ReferenceField field(path);
-  field.set_curvatures(std::vector<double>(count, 1 / radius));
+  field.set_curvatures(std::vector<double>(count, 1 / radius), true);
   ASSERT_TRUE(field.update({radius, 0}));
+  expect_line(field, count, radius);
+}
+
+TEST(ReferenceField, WithCurvaturesNoPlaceOfTheLineIsLeftOutWhereTheWindowSkipsPoints) {
+  constexpr double radius = 5;
+  constexpr int count = 600;  // 0.052 m apart, in the window 0.157 m
+  ReferenceField field(circle(count, radius), {.spacing = 0.15});
+  field.set_curvatures(std::vector<double>(count, 1 / radius), true);
+  ASSERT_TRUE(field.update({radius, 0}));
+  ASSERT_EQ(field.window()[1], field.window()[0] + 3);
+  expect_line(field, count / 3, radius);
+}
+
+TEST(ReferenceField, WithCurvaturesAnOpenPathHasEnds) {
+  std::vector<ReferencePoint> path;
+  for (int i = 0; i <= 20; ++i) path.push_back({0.25 * i, 0, 0, 3 + 0.1 * i});
+  ReferenceField field(path);
+  field.set_curvatures(std::vector<double>(path.size(), 0), false);
+  ASSERT_TRUE(field.update({3, 0}));
   const GridGeometry& geometry = field.geometry();
-  const double turn = M_PI / count, sagitta = radius * (1 - std::cos(turn));
-  int cells = 0;
-  for (int row = 0; row < geometry.rows; ++row) {
-    for (int column = 0; column < geometry.columns; ++column) {
-      const double x = geometry.cell_x(row), y = geometry.cell_y(column);
-      const double from_centre = std::hypot(x, y), angle = std::atan2(y, x);
-      if (std::abs(from_centre - radius) > 1 || std::abs(angle) > 1) continue;  // away from the window's ends
-      const float* cell = field.cells().at(row, column);
-      ASSERT_NEAR(cell[0], std::abs(from_centre - radius), 3 * sagitta) << x << ' ' << y;
-      ASSERT_NEAR(wrap_angle(cell[1] - angle - M_PI / 2), 0, 1e-3) << x << ' ' << y;
-      ASSERT_NEAR(cell[2], 2 + std::cos(angle), turn * turn) << x << ' ' << y;
-      ++cells;
-    }
-  }
-  EXPECT_GT(cells, 1500);
+  const auto expect_cell = [&](double x, double y, double arc) {
+    const int row = geometry.row(x), column = geometry.column(y);
+    const float* cell = field.cells().at(row, column);
+    EXPECT_NEAR(cell[0], std::hypot(geometry.cell_x(row) - arc, geometry.cell_y(column)), 1e-5) << x;
+    EXPECT_NEAR(cell[2], 3 + 0.4 * arc, 1e-5) << x;
+  };
+  expect_cell(-1, 0.5, 0);
+  expect_cell(6, 0.5, 5);
+  expect_cell(2.13, -0.5, geometry.cell_x(geometry.row(2.13)));
 }
 
 TEST(ReferenceField, OutsideAndBadPositions) {

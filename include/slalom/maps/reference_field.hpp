@@ -29,6 +29,7 @@ struct ReferenceFieldOptions {
   void validate() const;
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, ReferenceFieldOptions>
 void visit_options(Options& options, Visit&& visit) {
@@ -54,8 +55,9 @@ void visit_options(Options& options, Visit&& visit) {
 }
 
 /// A map centred on the robot, parallel to the map frame, that holds for every cell the distance to the
-/// nearest of a window of the path's points, with that point's yaw and speed. The window begins at the point
-/// nearest to the robot (of the whole path) and wraps at the path's end. Each update computes the map again,
+/// nearest of a window of the path's points, with that point's yaw and speed; with set_curvatures, to the
+/// nearest place of the line. The window begins at the point nearest to the robot (of the whole path) and
+/// wraps at the path's end. Each update computes the map again,
 /// because its cells move with the robot. CourseField does not move; it is cheaper and more exact if one map
 /// can hold the whole course.
 ///
@@ -82,12 +84,12 @@ class ReferenceField {
   void set_speeds(std::span<const double> speeds) noexcept;
 
   /// The path's curvatures, 1/m, positive to the left, one for each point; no other number of them has an
-  /// effect. From the next update on, distance, yaw and speed of a cell are those of the nearest place of the
-  /// line, between points too: the speed is linear in the arc length, the yaw follows the curvature. And
-  /// `outside` is minus the progress along the path of a position that moves a metre parallel to it:
-  /// -1 / (1 - k d) with the curvature k at the nearest point and the distance d to the left of it; within
-  /// [-4, -0.25].
-  void set_curvatures(std::span<const double> curvatures);
+  /// effect. `closed`: the last point is joined to the first one. From the next update on, distance, yaw and
+  /// speed of a cell are those of the nearest place of the line, between points too: the speed is linear in
+  /// the arc length, the yaw follows the curvature. And `outside` is minus the progress along the path of a
+  /// position that moves a metre parallel to it: -1 / (1 - k d) with the curvature k at the nearest point and
+  /// the distance d to the left of it; within [-4, -0.25]. Allocates.
+  void set_curvatures(std::span<const double> curvatures, bool closed);
 
   /// Replaces the path, which has no curvatures then, from the next update on. Returns false and changes
   /// nothing unless the new one has 3 points to as many as that of the construction. They must meet
@@ -104,8 +106,8 @@ class ReferenceField {
   /// The cells.
   const CellGrid<4>& cells() const noexcept { return cells_; }
 
-  /// The cells {distance, yaw, speed, 0}, in the map frame, for the look-ups of rollouts; until the next
-  /// update.
+  /// The cells {distance, yaw, speed, outside} (see ReferenceCell and set_curvatures), in the map frame, for
+  /// the look-ups of rollouts; until the next update.
   GridView<4> view() const noexcept { return cells_.view(geometry_); }
 
   /// Index of the path's point nearest to the robot at the last update.
@@ -122,7 +124,7 @@ class ReferenceField {
   struct Piece {
     double ahead_x = 1, ahead_y = 0;           ///< unit vector along the line
     double curvature = 0;                      ///< 1/m
-    double begin = 0, end = 0;                 ///< m along the line, half-way to the neighbours
+    double begin = 0, end = 0;                 ///< m along the line, half-way to the window's next points
     double slope_before = 0, slope_after = 0;  ///< 1/s, of the speed over the arc length
   };
   /// A point of the window, with what the rows need of it.
@@ -147,7 +149,7 @@ class ReferenceField {
   int build_envelope(double x) noexcept;
   void write_row(int row, int begin, int end, int parabolas) noexcept;
   void interpolate(int row, int begin, int end, const Site& site) noexcept;
-  Piece piece_at(std::size_t point) const noexcept;
+  Piece piece_at(std::size_t before_point, std::size_t point, std::size_t after_point) const noexcept;
 
   ReferenceFieldOptions options_;
   GridGeometry geometry_;
@@ -155,6 +157,7 @@ class ReferenceField {
   std::vector<ReferencePoint> path_;
   std::vector<double> path_x_, path_y_;
   std::vector<double> curvature_;  ///< 1/m; empty if unknown
+  bool closed_ = true;             ///< where curvatures are known
   std::vector<double> column_y_;   ///< m, of the columns' cells
   double reach_ = 0;
   int nearest_ = 0;

@@ -17,7 +17,7 @@ struct ReferencePoint {
 /// What a look-up in a reference map returns: one 16-byte cell, so that one load fetches it.
 struct ReferenceCell {
   float distance;  ///< m to the path
-  float yaw;       ///< rad, yaw of the path's nearest point
+  float yaw;       ///< rad, yaw of the path at its nearest place
   float speed;     ///< m/s there
   float outside;   ///< 1 off the map (then `yaw` is the yaw ERROR to assume), else 0, or negative where the
                    ///< map knows the path's curvatures (see ReferenceField::set_curvatures)

@@ -74,7 +74,7 @@ struct Planner::Implementation {
                                       traits.body);
     set_friction(traits.friction);
     model->set_top_speed(o.max_speed);
-    if (traits.seeks_lap_time) field.set_curvatures(speeds.curvatures());
+    if (traits.seeks_lap_time) field.set_curvatures(speeds.curvatures(), speeds.length() > 0);
   }
 
   /// Plans for ground of this friction. The path's speeds follow in steps of 2 %.
