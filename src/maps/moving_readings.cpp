@@ -9,6 +9,7 @@ namespace slalom::maps {
 
 void drop_readings_of(const PredictedObstacle& obstacle, double margin, const Pose& sensor,
                       const LaserScanView& scan, std::span<float> ranges) noexcept {
+  if (obstacle.poses.empty() || !(scan.angle_increment > 0)) return;
   const Pose& box = obstacle.poses.front().pose;
   const double half_length = 0.5 * obstacle.length + margin, half_width = 0.5 * obstacle.width + margin;
   const double distance = std::hypot(box.x - sensor.x, box.y - sensor.y),

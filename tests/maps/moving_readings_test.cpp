@@ -10,14 +10,20 @@
 namespace slalom::maps {
 namespace {
 
-TEST(MovingReadings, AreDroppedAtTheObstacleAlone) {
-  const PredictedPose now{{3, 0, 0}, 0, 0};
+/// A square of 0.4 m that has this one pose.
+PredictedObstacle square_at(const PredictedPose& now) {
   PredictedObstacle obstacle;
   obstacle.length = obstacle.width = 0.4;
   obstacle.interval = 0.1;
   obstacle.hypotheses = 1;
   obstacle.weights[0] = 1;
   obstacle.poses = {&now, 1};
+  return obstacle;
+}
+
+TEST(MovingReadings, AreDroppedAtTheObstacleAlone) {
+  const PredictedPose now{{3, 0, 0}, 0, 0};
+  const PredictedObstacle obstacle = square_at(now);
   constexpr int beams = 360;
   const double increment = 2 * std::numbers::pi / beams;
   for (const double yaw : {0.0, 1.0, 3.1, -2.0}) {
@@ -35,6 +41,16 @@ TEST(MovingReadings, AreDroppedAtTheObstacleAlone) {
       EXPECT_EQ(std::isnan(kept[beam]), on) << yaw << ", beam " << i;
     }
   }
+}
+
+TEST(MovingReadings, StayWhereBeamsRunClockwiseOrTheObstacleHasNoPoses) {
+  const PredictedPose now{{3, 0, 0}, 0, 0};
+  const std::vector<float> ranges(360, 2.9f);
+  std::vector<float> kept = ranges;
+  drop_readings_of(square_at(now), 0.1, {}, {ranges, std::numbers::pi, -std::numbers::pi / 180, 0, 10}, kept);
+  EXPECT_EQ(kept, ranges);
+  drop_readings_of({}, 0.1, {}, {ranges, -std::numbers::pi, std::numbers::pi / 180, 0, 10}, kept);
+  EXPECT_EQ(kept, ranges);
 }
 
 }  // namespace
