@@ -46,6 +46,18 @@ TEST(Crowd, TwoWhoMeetPassWithoutTouching) {
   EXPECT_LT(crowd.bodies()[1].middle.x, 1.3);
 }
 
+TEST(Crowd, TheFieldOfViewIsTheSameAtTheEndOfAWay) {
+  const double behind = 1.919862177193763;  // rad: 110 degrees from the way, out of view
+  const maps::Point other{5 + 0.7 * std::cos(behind), 2 + 0.7 * std::sin(behind)};
+  const auto pushed_aside = [&](double way) {
+    Crowd crowd(hall, {{{{5, 2}, {5 + way, 2}}, 1.3}, {{other}}});
+    walk(crowd, tick);
+    return crowd.velocities()[0].y;
+  };
+  EXPECT_LT(pushed_aside(3), -0.001);
+  EXPECT_DOUBLE_EQ(pushed_aside(0.3), pushed_aside(3));
+}
+
 TEST(Crowd, WalksRoundAWallThatItsWayTouches) {
   const Room room{10, 4, {{{5, 1, 0}, 0.4, 2}}, {}};
   Crowd crowd(room, {{{{1, 2.2}, {9, 2.2}}, 1}});

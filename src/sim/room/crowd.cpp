@@ -45,15 +45,16 @@ double length_of(const Point& a) {
   return std::hypot(a.x, a.y);
 }
 
-/// The point of a box that is nearest to another, which is itself where that is inside.
+/// The point of a box that is nearest to `to`: `to` itself where that is inside.
 Point nearest_of(const Box& box, const Point& to) {
   const Point in = maps::inverse_transform(box.pose, to);
   return maps::transform(box.pose, {std::clamp(in.x, -box.length / 2, box.length / 2),
                                     std::clamp(in.y, -box.width / 2, box.width / 2)});
 }
 
-/// Repulsion from someone at `apart` (m) from whom one is, who walks with `velocity` (eqs. 3 and 4): minus
-/// the gradient of V0 exp(-b / sigma), 2 b = sqrt((|r| + |r - y|)^2 - |y|^2), y = velocity Delta t.
+/// Repulsion (m/s^2) from another who walks with `velocity` (m/s), where `apart` (m) leads from the other to
+/// the walker (eqs. 3 and 4): minus the gradient of V0 exp(-b / sigma), 2 b = sqrt((|r| + |r - y|)^2 -
+/// |y|^2), y = velocity Delta t.
 Point from_other(const Point& apart, const Point& velocity) {
   const Point ahead{velocity.x * step_time, velocity.y * step_time}, from_ahead = minus(apart, ahead);
   const double near = std::max(length_of(apart), least_distance),
@@ -64,7 +65,7 @@ Point from_other(const Point& apart, const Point& velocity) {
   return {strength * (apart.x / near + from_ahead.x / far), strength * (apart.y / near + from_ahead.y / far)};
 }
 
-/// Repulsion from a wall whose nearest point is at `apart` from where one is (eq. 5).
+/// Repulsion (m/s^2) from a wall, where `apart` (m) leads from its nearest point to the walker (eq. 5).
 Point from_wall(const Point& apart) {
   const double distance = std::max(length_of(apart), 1e-3);
   const double strength = walls_potential / walls_range * std::exp(-distance / walls_range) / distance;
@@ -101,8 +102,8 @@ Crowd::Crowd(const Room& room, std::vector<Walker> walkers)
   next_.assign(walkers_.size(), 1);
 }
 
-/// Where a walker wants to go, of length 1 but at the end of its way, or 0 if nowhere; moves on to its next
-/// point.
+/// The direction in which a walker wants to go: of length 1, shorter near the end of its way, 0 while it
+/// stands. Moves on to its next point.
 Point Crowd::direction_of(std::size_t i) noexcept {
   const Walker& walker = walkers_[i];
   if (time_ < walker.pause) return {};
@@ -110,7 +111,7 @@ Point Crowd::direction_of(std::size_t i) noexcept {
     const Point left = minus(walker.way[next_[i]], bodies_[i].middle);
     const double distance = length_of(left);
     const bool is_last = next_[i] + 1 == walker.way.size();
-    // At the end of its way one slows down as one relaxes.
+    // A walker slows down near the end of its way, with the time constant of relaxation.
     const double share = is_last && walker.attentive
                              ? std::min(1.0, distance / std::max(walker.speed * relaxation, at_end))
                              : 1;
@@ -126,11 +127,11 @@ Point Crowd::force_on(std::size_t i, const Box& robot, const Point& robot_veloci
   const Point& here = bodies_[i].middle;
   const Point &wanted = directions_[i], &now = velocities_[i];
   Point sum{(walker.speed * wanted.x - now.x) / relaxation, (walker.speed * wanted.y - now.y) / relaxation};
-  if (wanted.x == 0 && wanted.y == 0) return sum;  // who waits or has arrived stands
+  if (wanted.x == 0 && wanted.y == 0) return sum;  // it waits or has arrived
   const auto add = [&](const Point& force) { sum = {sum.x + force.x, sum.y + force.y}; };
   // Eq. 8: what pushes from behind counts less.
   const auto add_seen = [&](const Point& force) {
-    const double ahead = -(wanted.x * force.x + wanted.y * force.y);
+    const double ahead = -(wanted.x * force.x + wanted.y * force.y) / length_of(wanted);
     const double weight = ahead >= length_of(force) * view ? 1 : out_of_view;
     add({weight * force.x, weight * force.y});
   };

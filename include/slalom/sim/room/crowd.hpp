@@ -7,14 +7,14 @@
 
 namespace slalom::sim {
 
-/// Somebody who walks through a room: a disc that goes from point to point and stops at the last one.
+/// Somebody who walks through a room: a disc that goes from point to point and stops within 0.1 m of the last
+/// one.
 struct Walker {
   std::vector<maps::Point> way;  ///< m; it begins at the first of at least one point
   double speed = 1;              ///< m/s, at which it wants to walk
   double radius = 0.25;          ///< m
   double pause = 0;              ///< s, before it begins to walk
-  /// Whether it takes care of others. One that does not walks straight from point to point, through whatever
-  /// stands there.
+  /// Whether it avoids others. If not, it walks straight from point to point, through whatever stands there.
   bool attentive = true;
 };
 
@@ -28,14 +28,15 @@ struct Walker {
 /// potential has ellipses as level lines (eqs. 3 and 4), that from walls and obstacles (eq. 5), and the
 /// weight w for what is out of view (eq. 8).
 ///
-/// Here the robot is one of the others, at the point of its body that is nearest. The model has no contact,
-/// so one rule is added: nobody who is attentive steps nearer to a robot that is within 0.05 m. A robot that
-/// stands is then only met by people who are not attentive.
+/// The robot counts as one of the others, at the point of its body that is nearest. The model has no contact,
+/// so one rule is added: an attentive walker does not step nearer to a robot that is within 0.05 m. So only
+/// walkers who are not attentive walk into a robot that stands. A walker who waits or has arrived stands,
+/// whoever comes near.
 class Crowd {
  public:
-  /// In this room, whose walls and obstacles push. Throws std::invalid_argument unless each walker has a way
-  /// of finite points, a speed in [0, 3], a radius in [0.05, 1] and a pause in [0, 1000], and has room at its
-  /// beginning.
+  /// In this room, whose walls and obstacles push. Walkers may begin on one another. Throws
+  /// std::invalid_argument unless each walker has a way of finite points, a speed in [0, 3], a radius in
+  /// [0.05, 1] and a pause in [0, 1000], and begins clear of walls and obstacles.
   Crowd(const Room& room, std::vector<Walker> walkers);
 
   /// Moves all by `duration` (s), at most 0.05 for the forces to be followed. `robot` is the robot's body,

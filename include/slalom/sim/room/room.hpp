@@ -26,7 +26,7 @@ maps::OccupancyGrid map_of(const Room& room, double resolution);
 bool collides(const Room& room, const Box& body) noexcept;
 
 /// The distances (m) from a scanner to what it sees, one for each of `ranges`, evenly spread around it from
-/// its x axis on; at most `max_range`.
+/// its x axis on; at most `max_range`. The scanner must be on the floor.
 void scan(const Room& room, const maps::Pose& scanner, double max_range, std::span<double> ranges) noexcept;
 
 }  // namespace slalom::sim
