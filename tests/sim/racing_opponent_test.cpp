@@ -90,6 +90,18 @@ TEST(RacingLine, WhereNothingIsFreeItStaysOnThePath) {
   EXPECT_EQ(closed->at(0).offset, 0);
 }
 
+TEST(RacingLine, LeadsRoundWhatIsLongerThanACar) {
+  const std::vector<Box> wall{{on_ring(2, 0.6), 6, 0.3}};  // its middle is 0.6 m outside of the path
+  const RacingLine among(path(3), *testing::ring_track(), CarParameters{}, wall);
+  EXPECT_FALSE(among.narrow());
+  const CarParameters car;
+  for (double arc = 0; arc < among.length(); arc += 0.1) {
+    const RacingLine::Point at = among.at(arc);
+    const maps::Point middle = at.beside(at.offset);
+    EXPECT_GT(signed_gap({{middle.x, middle.y, at.yaw}, car.length, car.width}, wall[0]), 0.05) << arc;
+  }
+}
+
 TEST(RacingOpponent, AvoidsWhatPurePursuitDrivesInto) {
   const std::vector<maps::Pose> cars = {on_ring(0), on_ring(3.1)};
   const std::vector<maps::Pose> parked = {on_ring(1), on_ring(2.5, 0.3), on_ring(4.5, -0.3)};
@@ -119,6 +131,35 @@ TEST(RacingOpponent, FollowsASlowerCarWithoutTouchingIt) {
   EXPECT_EQ(drive(world, drivers, 15), 0);
   EXPECT_LT(world.laps(0)->progress(), world.laps(1)->progress() + 0.6 * radius);
   EXPECT_GT(world.laps(0)->progress(), world.laps(1)->progress() + 0.6 * radius - 2.5);
+}
+
+TEST(RacingOpponent, StopsBehindACarThatStandsInItsLane) {
+  // With 0.6 m, and with 0.1 m between the cars; the sum of their half lengths is 0.58 m.
+  for (const double apart : {1.2, 0.68}) {
+    World world = world_of({on_ring(0), on_ring(apart / radius)});
+    RacingOpponent driver(line(4), 0, {}, RandomKey{1, 0});
+    while (world.time() < 4) {
+      world.step(std::array{driver.command(world), Command{}});
+      ASSERT_FALSE(world.observe(0).collides()) << apart << " m, after " << world.time() << " s";
+    }
+    EXPECT_NEAR(world.state(0).speed, 0, 0.01);
+  }
+}
+
+TEST(RacingOpponent, LeavesRoomToACarAlongside) {
+  const auto line_here = line(4);
+  const double path_yaw = on_ring(0).yaw;
+  World world = world_of({on_ring(0, 0.5), on_ring(0)});
+  RacingOpponentOptions options;
+  RacingOpponent outer(line_here, 0, options, RandomKey{1, 0}), inner(line_here, 1, options, RandomKey{1, 1});
+  double nearest = 10;
+  for (int k = 0; world.time() < 3; ++k) {
+    world.step(std::array{outer.command(world), inner.command(world)});
+    ASSERT_FALSE(world.observe(0).collides());
+    const double turned = std::abs(maps::wrap_angle(world.state(0).yaw - path_yaw));
+    if (turned < 0.5) nearest = std::min(nearest, signed_gap(world.outline(0), world.outline(1)));
+  }
+  EXPECT_GT(nearest, options.room - 0.02);
 }
 
 TEST(RacingOpponent, BlocksTheCarBehindWithinItsLimitsAndNotOneAlongside) {

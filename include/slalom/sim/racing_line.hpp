@@ -15,7 +15,7 @@ namespace slalom::sim {
 
 /// Options of RacingLine. Lengths are for 1/10-scale cars.
 struct RacingLineOptions {
-  double wall_margin = 0.1;     ///< m, from walls to the body
+  double wall_margin = 0.1;     ///< m, from walls to a circle around the body's middle, as wide as the body
   double parked_margin = 0.12;  ///< m, from parked bodies to the body
   double lateral = 6;           ///< m/s^2, the largest acceleration across the line
   double longitudinal = 5;      ///< m/s^2, along it, either way
@@ -29,8 +29,9 @@ struct RacingLineOptions {
 ///
 /// The given path is resampled at about 0.2 m. Of the offsets from it at which a car has its margins, dynamic
 /// programming takes the way round that stays nearest to the path and moves least from side to side, by at
-/// most 0.25 m for each metre. If there is none, it is searched with smaller margins. Speeds are those of the
-/// path, lowered to what the accelerations allow on the way that was found.
+/// most 0.25 m for each metre. If there is none, it is searched with smaller margins. If there is none
+/// without margins either, the line is the path. Speeds are those of the path, lowered to what the
+/// accelerations allow on the way that was found.
 class RacingLine {
  public:
   /// What is known of the line at an arc length of the path.
@@ -39,8 +40,11 @@ class RacingLine {
     double yaw = 0;     ///< rad, direction of the path
     double speed = 0;   ///< m/s
     double offset = 0;  ///< m left of the path, of the line
-    double least = 0;   ///< m left of the path, between which
-    double most = 0;    ///< and this a car has its margins
+    double least = 0;   ///< m left of the path, the least offset at which a car has its margins
+    double most = 0;    ///< m left of the path, the largest
+
+    /// The place beside `point`, `left` (m) to the left of the path.
+    maps::Point beside(double left) const noexcept;
   };
 
   /// Along a closed path with the speeds to drive, for cars of this size, among bodies that do not move.
@@ -61,7 +65,7 @@ class RacingLine {
   }
   /// m from arc length `from` to `to` along the path, in [-length / 2, length / 2).
   double between(double from, double to) const noexcept;
-  /// Whether the way found keeps less than the margins of the options.
+  /// Whether the line keeps less than the margins of the options, or leads through what is parked.
   bool narrow() const noexcept { return narrow_; }
 
  private:

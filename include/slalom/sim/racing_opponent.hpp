@@ -26,7 +26,7 @@ inline const char* const* enum_names(OpponentDriver) {
 /// Options of RacingOpponent. Lengths are for 1/10-scale cars.
 struct RacingOpponentOptions {
   OpponentDriver driver = OpponentDriver::racing;  ///< not `pursuit`
-  double speed_share = 0.8;                        ///< of the speeds of the line, (0, 1]
+  double speed_share = 0.8;                        ///< of the speeds of the line, [0.01, 1]
   double room = 0.1;                               ///< m, sideways from cars alongside
   double side_acceleration = 4;                    ///< m/s^2, about the largest of a change of lane
   double blocking_reach = 4;                       ///< m, within which a car behind is blocked
@@ -42,16 +42,16 @@ struct RacingOpponentOptions {
 /// An opponent that drives a racing line among other cars, whose states it knows exactly. It steers by pure
 /// pursuit (Coulter, CMU-RI-TR-92-01, 1992) from its rear axle and moves into another lane on a cubic curve,
 /// within the room of the line. It keeps a distance behind a car in its lane, also behind one that stands.
-/// From when a car and it overlap along the line until they do not, it does not move nearer to it than
-/// `room`.
+/// While a car is alongside, from 0.15 m before they overlap along the line until 0.15 m after, it does not
+/// move nearer to it than `room`, as far as the line has room.
 ///
 /// A blocking opponent moves to where the car is that is behind it within `blocking_reach`, at most
-/// `lane_offset` from its line. It does not move to either side while a car is alongside. An erratic one
-/// draws a lane, a speed and a time to keep both, again and again.
+/// `lane_offset` from its line. While a car is alongside it chooses no other lane. An erratic one draws a
+/// lane, a speed and a time to keep both, again and again.
 class RacingOpponent {
  public:
-  /// Drives car `car` of a world. Random numbers follow from `key`. Throws std::invalid_argument on a null
-  /// line or options out of range.
+  /// Drives car `car` of the worlds that it is given, which must have this car. Random numbers follow from
+  /// `key`. Throws std::invalid_argument on a null line or options out of range.
   RacingOpponent(std::shared_ptr<const RacingLine> line, std::size_t car,
                  const RacingOpponentOptions& options, RandomKey key);
 

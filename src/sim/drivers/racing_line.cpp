@@ -15,7 +15,6 @@ constexpr double lane_step = 0.05;                    // m, from one lane to the
 constexpr double offset_cost = 0.1, change_cost = 1;  // of 1 m^2 for a sample, and of a change of lane
 constexpr double inflation = 0.05;                    // m, of a body that is turned while it moves aside
 constexpr double curvature_reach = 0.4;               // m to either side, over which it is measured
-constexpr double near_body = 2;                       // m, of middles: farther bodies are apart
 constexpr int smoothing = 3;                          // samples to either side
 
 std::vector<maps::Point> points_of(std::span<const PathPoint> path) {
@@ -48,8 +47,8 @@ double speed_at(std::span<const PathPoint> path, const LapPath& measured, const 
   return a.speed + share * (b.speed - a.speed);
 }
 
-maps::Point beside(const RacingLine::Point& at, double offset) {
-  return {at.point.x - offset * std::sin(at.yaw), at.point.y + offset * std::cos(at.yaw)};
+double half_diagonal(const Box& box) {
+  return 0.5 * std::hypot(box.length, box.width);
 }
 
 }  // namespace
@@ -99,14 +98,15 @@ std::vector<std::uint8_t> RacingLine::free_cells(const Track& track, const CarPa
       if (track.distance_to_wall(middle) < 0.5 * car.width + wall_margin) return false;
       const Box body{{middle.x, middle.y, at.yaw}, car.length, car.width + 2 * inflation};
       return std::none_of(parked.begin(), parked.end(), [&](const Box& other) {
-        return std::hypot(other.pose.x - middle.x, other.pose.y - middle.y) < near_body &&
+        const double reach = half_diagonal(body) + half_diagonal(other) + parked_margin;
+        return std::hypot(other.pose.x - middle.x, other.pose.y - middle.y) < reach &&
                signed_gap(body, other) < parked_margin;
       });
     };
     // Beyond a wall there may be another road.
     for (const int side : {-1, 1})
       for (int lane = lanes_aside; lane >= 0 && lane < lanes; lane += side) {
-        const maps::Point middle = beside(at, lane_step * (lane - lanes_aside));
+        const maps::Point middle = at.beside(lane_step * (lane - lanes_aside));
         if (track.in_wall(middle)) break;
         free[i * lanes + static_cast<std::size_t>(lane)] = is_free(middle);
       }
@@ -114,8 +114,8 @@ std::vector<std::uint8_t> RacingLine::free_cells(const Track& track, const CarPa
   return free;
 }
 
-/// Sets the offsets of the cheapest way (Viterbi). It goes round twice, so that the second round begins as
-/// the first one ends. False if there is none.
+/// Sets the offsets of the cheapest way (Viterbi). It goes round three times and keeps the second, which
+/// begins and ends as the others do. False if there is none.
 bool RacingLine::find_way(std::span<const std::uint8_t> free) {
   constexpr double closed = std::numeric_limits<double>::infinity();
   const std::size_t count = points_.size(), rows = 3 * count;
@@ -166,6 +166,8 @@ void RacingLine::find_room(std::span<const std::uint8_t> free) {
   };
   for (std::size_t i = 0; i < 2 * count; ++i) limit(i + 1, i);
   for (std::size_t i = 2 * count; i > 0; --i) limit(i - 1, i);
+  for (Point& point : points_)
+    if (point.least > point.most) point.least = point.most = point.offset;
 }
 
 /// The line without the corners of lanes, within its room.
@@ -183,7 +185,7 @@ void RacingLine::smooth() {
 /// Lowers the speeds to what the accelerations allow.
 void RacingLine::limit_speeds(const RacingLineOptions& options) {
   std::vector<maps::Point> line;
-  for (const Point& each : points_) line.push_back(beside(each, each.offset));
+  for (const Point& each : points_) line.push_back(each.beside(each.offset));
   const LapPath measured(line);
   const std::size_t count = points_.size();
   double arc = 0;
@@ -210,6 +212,10 @@ void RacingLine::limit_speeds(const RacingLineOptions& options) {
     Point& there = points_[(i + 1) % count];
     there.speed = std::min(there.speed, reached(points_[i % count].speed, way[i % count]));
   }
+}
+
+maps::Point RacingLine::Point::beside(double left) const noexcept {
+  return {point.x - left * std::sin(yaw), point.y + left * std::cos(yaw)};
 }
 
 RacingLine::Point RacingLine::at(double arc) const noexcept {

@@ -121,9 +121,10 @@ double RacingOpponent::wanted_speed() const noexcept {
   const double rise = line_->at(place_.arc + accelerating_lag * speed_).speed - line_->at(place_.arc).speed;
   speed += share * std::max(rise, 0.0);
   for (const Neighbour& other : neighbours_) {
-    if (other.gap <= 0 || alongside(other)) continue;
-    if (std::abs(offset_at(other.gap) - other.offset) > other.half_width + half_width_ + options_.room)
-      continue;
+    if (other.gap <= 0) continue;
+    const double touching = other.half_width + half_width_;
+    if (alongside(other) && std::abs(place_.lateral - other.offset) >= touching) continue;
+    if (std::abs(offset_at(other.gap) - other.offset) > touching + options_.room) continue;
     const double gap = other.gap - other.half_length - half_length_ - follow_gap;
     speed = std::min(speed, std::max(other.speed + gap / headway, 0.0));
   }
@@ -139,11 +140,10 @@ Command RacingOpponent::command(const World& world) {
   const CarParameters& car = world.options().car;
   const double ahead = least_aim + aim_time * speed_;
   const RacingLine::Point at = line_->at(place_.arc + ahead);
-  const double offset = offset_at(ahead);
+  const maps::Point aim = at.beside(offset_at(ahead));
   const CarState& own = world.state(car_);
   const double c = std::cos(own.yaw), s = std::sin(own.yaw);
-  const double dx = at.point.x - offset * std::sin(at.yaw) - (own.x - car.rear_length * c);
-  const double dy = at.point.y + offset * std::cos(at.yaw) - (own.y - car.rear_length * s);
+  const double dx = aim.x - (own.x - car.rear_length * c), dy = aim.y - (own.y - car.rear_length * s);
   const double sideways = c * dy - s * dx, squared = std::max(dx * dx + dy * dy, 1e-6);
   const double steer = std::atan(2 * car.wheelbase() * sideways / squared);
   return {std::clamp(steer, car.steer_min, car.steer_max), wanted_speed()};
