@@ -50,8 +50,8 @@ class IterativeLqr {
   IterativeLqr(int states, int inputs, int steps, const InputBounds& bounds, const IlqrOptions& options = {});
 
   /// Sets the sequence [steps][inputs] that is improved next, moved into the bounds. If it is shorter than
-  /// the horizon, its last inputs are held. An empty one sets the values within the bounds that are nearest
-  /// to 0, with which this object starts.
+  /// the horizon, its last inputs are held; values beyond its last whole step are not used. An empty one sets
+  /// the values within the bounds that are nearest to 0, with which this object starts.
   void start_from(std::span<const double> inputs) noexcept;
   /// Moves the sequence forward by `steps` >= 0 steps, which may be fractional.
   void shift(double steps) noexcept;
@@ -60,8 +60,8 @@ class IterativeLqr {
   /// call. If its cost or a derivative is not finite, it stays as it is.
   std::span<const double> improve(DifferentiableProblem& problem, std::span<const double> x);
 
-  int steps() const noexcept { return gains_.steps(); }       ///< of the horizon
-  double cost() const noexcept { return cost_; }              ///< of the sequence
+  int steps() const noexcept { return gains_.steps(); }  ///< of the horizon
+  double cost() const noexcept { return cost_; }  ///< of the sequence that the last improvement returned
   double first_cost() const noexcept { return first_cost_; }  ///< before the last improvement
   int iterations() const noexcept { return iterations_; }     ///< steps of the last improvement
   /// Whether the last improvement met a function without derivative (see Dual).

@@ -36,6 +36,7 @@ IterativeLqr::IterativeLqr(int states, int inputs, int steps, const InputBounds&
 
 void IterativeLqr::start_from(std::span<const double> inputs) noexcept {
   const auto nu = static_cast<std::size_t>(gains_.inputs());
+  inputs = inputs.first(inputs.size() / nu * nu);
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const std::size_t held = inputs.empty() ? 0 : std::min(i, inputs.size() - nu + i % nu);
     inputs_[i] = bounds_.nearest(i % nu, inputs.empty() ? 0 : inputs[held]);

@@ -1,3 +1,4 @@
+// Guides that follow the exact gradient of the cost.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -5,7 +6,6 @@
 
 #include "solvers/methods/guides.hpp"
 
-/// Guides that follow the exact gradient of the cost.
 namespace slalom::detail {
 
 void Guides::connect(const BatchEvaluator& evaluator) {
@@ -47,8 +47,8 @@ double Guides::take_gradient(const CostGradient& cost, int g, int iteration) noe
   return part_[g] = iteration > 0 ? std::min(2 * part_[g], 1.0) : 1;
 }
 
-/// The gradient of -S / lambda at a guide. It is limited to a length, in units of Sigma_g^-1, of one for each
-/// entry in the root mean square: that of the surrogate gradient if a single sample decides it.
+/// The gradient of -S / lambda at a guide. It is limited to a length, in units of Sigma_g^-1/2, of one for
+/// each entry in the root mean square: that of the surrogate gradient if a single sample decides it.
 void Guides::differentiate(const CostGradient& cost, int g) noexcept {
   const std::size_t size = workspace_.size() / static_cast<std::size_t>(count_);
   const std::span<double> workspace = std::span(workspace_).subspan(static_cast<std::size_t>(g) * size, size);

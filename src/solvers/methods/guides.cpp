@@ -226,7 +226,7 @@ void Guides::begin_move(const float* solution, const float* nominal, int shares)
 void Guides::move_share(int share, const BatchEvaluator& evaluator, RandomKey key,
                         const Deadline& deadline) noexcept {
   // Guides are independent, so each share makes all iterations of its guides.
-  const int first = count_ * share / shares_, last = count_ * (share + 1) / shares_;
+  const int first = first_guide(share), last = first_guide(share + 1);
   const CostGradient* const exact = exact_gradient(evaluator);
   for (int l = 0; l < options_.guides.iterations && !deadline.passed(); ++l) {
     fill_blocks({key.seed, key.stream + l}, first, last);
@@ -246,10 +246,14 @@ int Guides::end_move(const BatchEvaluator& evaluator) noexcept {
   evaluator.evaluate(ends_, 0, count_, end_costs_.data(), end_collided_.data());
   kernels().make_finite({0, padded(count_)}, end_costs_.data());
   best_ = 0;
-  for (int g = 0; g < count_; ++g) {
-    if (exact_gradient(evaluator)) return_if_worse(g);
-    if (iterations_ > 0) path_costs_[point(iterations_ - 1, g)] = end_costs_[g];
-    if (end_costs_[g] < end_costs_[best_]) best_ = g;
+  for (int share = 0; share < shares_; ++share) {
+    // A share that made more iterations than the others has the cost of that point of the path already.
+    const bool ends_there = iterations_ > 0 && made_[share] == iterations_;
+    for (int g = first_guide(share); g < first_guide(share + 1); ++g) {
+      if (ends_there) path_costs_[point(iterations_ - 1, g)] = end_costs_[g];
+      if (exact_gradient(evaluator)) return_if_worse(g);
+      if (end_costs_[g] < end_costs_[best_]) best_ = g;
+    }
   }
   best_cost_ = end_costs_[best_];
   best_collides_ = end_collided_[best_] != 0;

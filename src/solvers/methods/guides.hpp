@@ -47,14 +47,14 @@ class Guides {
 
   /// The index of the guide with the lowest cost after the last move.
   int best() const noexcept { return best_; }
-  /// The number of exact gradients in the last move that were taken at a kink, or were not finite.
-  int gradient_kinks() const noexcept;
   /// Whether it collides.
   bool best_collides() const noexcept { return best_collides_; }
   /// Its cost; infinite if no guide has a finite cost.
   float best_cost() const noexcept { return best_cost_; }
   /// Its control sequence [row].
   std::span<const float> best_sequence() const noexcept;
+  /// The number of exact gradients in the last move that were taken at a kink, or were not finite.
+  int gradient_kinks() const noexcept;
 
   /// Fits the variances [row] to the paths of the last move (equation (13)), within `variance_min` and
   /// `variance_max`.
@@ -81,6 +81,9 @@ class Guides {
   int point(int iteration, int guide) const noexcept { return iteration * count_ + guide; }
   /// Copies `theta_` to `guides_`.
   void round_to_float() noexcept;
+
+  /// The first guide of a share; those of a share follow each other.
+  int first_guide(int share) const noexcept { return count_ * share / shares_; }
 
   static constexpr int restart_intervals_ = 3;  ///< between the knots of a deviation
 

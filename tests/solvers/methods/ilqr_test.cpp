@@ -117,6 +117,31 @@ TEST(Ilqr, ContinuesFromItsSequenceMovedForward) {
               1e-9);
 }
 
+/// A state and two inputs, whose cost is never finite: `improve` returns the sequence it starts from.
+struct WithoutCost final : DifferentiableProblem {
+  void step(int, std::span<const double> x, std::span<const double>, std::span<double> next) override {
+    next[0] = x[0];
+  }
+  double cost(std::span<const double>, std::span<const double>) override {
+    return std::numeric_limits<double>::infinity();
+  }
+  bool expand_step(int, const FeedbackGains::Step&) override { return false; }
+  bool expand_end(const FeedbackGains::Terminal&) override { return false; }
+};
+
+TEST(IterativeLqr, ValuesBeyondTheLastWholeStepAreNotUsed) {
+  IterativeLqr lqr(1, 2, 3, InputBounds(2));
+  WithoutCost problem;
+  const auto started_from = [&](const std::vector<double>& values) {
+    lqr.start_from(values);
+    const auto inputs = lqr.improve(problem, std::vector<double>{0});
+    return std::vector<double>(inputs.begin(), inputs.end());
+  };
+  EXPECT_EQ(started_from({1, 2, 3, 4, 5}), (std::vector<double>{1, 2, 3, 4, 3, 4}));
+  EXPECT_EQ(started_from({1, 2, 3}), (std::vector<double>{1, 2, 1, 2, 1, 2}));
+  EXPECT_EQ(started_from({1}), (std::vector<double>(6)));
+}
+
 TEST(Ilqr, ByItselfItSwingsThePendulumUp) {
   Limited<problems::Pendulum> problem;
   problem.input_min = -5;
