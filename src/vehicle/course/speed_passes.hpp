@@ -33,7 +33,7 @@ void for_each_piece(const std::vector<double>& speed, std::span<const double> st
 
 /// Lowers speeds (m/s) to what a car reaches from point to point, by one pass forward and one backward.
 /// `forwards` and `braking` return the strongest acceleration (m/s^2) at a speed (m/s) and a curvature (1/m);
-/// that at the begin of a piece holds for all of it.
+/// that at the start of a piece holds for all of it.
 template <class Forwards, class Braking>
 void lower_to_reachable(std::vector<double>& speed, std::span<const double> curvature,
                         std::span<const double> step, bool closed, const Forwards& forwards,
@@ -48,7 +48,7 @@ void lower_to_reachable(std::vector<double>& speed, std::span<const double> curv
 }
 
 /// The same, with the strongest acceleration of both ends of a piece and of its middle: on a line on which
-/// turning takes all grip almost everywhere, that of the begin alone is too much for a fifth of the pieces.
+/// turning takes all grip almost everywhere, that of the start alone is too much for a fifth of the pieces.
 template <class Forwards, class Braking>
 void lower_to_reachable_throughout(std::vector<double>& speed, std::span<const double> curvature,
                                    std::span<const double> step, bool closed, const Forwards& forwards,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "slalom/vehicle/course/speed_profile.hpp"
+#include "vehicle/course/speed_passes.hpp"
 
 namespace slalom::vehicle::detail {
 
@@ -49,20 +50,15 @@ void FeasibleSpeeds::update(const DrivingLimits& limits) noexcept {
     const double a = std::min(strength, share * left(from));
     speed_[to] = std::min(speed_[to], std::sqrt(speed_[from] * speed_[from] + 2 * a * gap));
   };
-  // The slowest point keeps its speed, so one round from it is exact.
-  const auto slowest =
-      static_cast<std::size_t>(std::min_element(speed_.begin(), speed_.end()) - speed_.begin());
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t from = (slowest + k) % n, to = (from + 1) % n;
-    if (!(gap_[from] > 0)) continue;
+  const auto speed_up = [&](std::size_t from, std::size_t to, double gap) {
     const double power =
         limits.acceleration * std::min(1.0, limits.switch_speed / std::max(speed_[from], 0.1));
-    reach(from, to, gap_[from], power, 1);
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t from = (slowest + n - k) % n, to = (from + n - 1) % n;
-    if (gap_[to] > 0) reach(from, to, gap_[to], limits.braking, limits.braking_share);
-  }
+    reach(from, to, gap, power, 1);
+  };
+  const auto brake = [&](std::size_t from, std::size_t to, double gap) {
+    reach(from, to, gap, limits.braking, limits.braking_share);
+  };
+  for_each_piece(speed_, gap_, length() > 0, speed_up, brake);
   anticipate(limits.delay);
   look_ahead(limits.lead);
 }
@@ -79,7 +75,7 @@ void FeasibleSpeeds::anticipate(double delay) noexcept {
 }
 
 /// The speed at the place that a car reaches in this time. A step of a plan looks its limit up where it
-/// begins, and the limit must hold where it ends: with that of its begin, a car that leaves a curve would be
+/// begins, and the limit must hold where it ends: with that of its start, a car that leaves a curve would be
 /// a step late all the way.
 void FeasibleSpeeds::look_ahead(double lead) noexcept {
   if (!(lead > 0)) return;

@@ -27,8 +27,10 @@ DrivingLimits driving_limits(const VehicleTraits& traits, double friction);
 ///     v^2 |k| <= grip,   -braking <= dv/dt <= acceleration,   (v^2 k)^2 + (b dv/dt)^2 <= grip^2
 ///
 /// with b = 1 / braking_share for dv/dt < 0, else 1, by a pass forward and one backward (Heilmeier et al.
-/// 2020, Sec. 4; see speed_profile). At every point they are slow enough for all that follows. Where
-/// feasible_speeds is computed once, this follows the friction while the car drives.
+/// 2020, Sec. 4; see speed_profile). At every point they are slow enough for all that follows; with `lead`
+/// they are those of the place that a car reaches in this time, so higher than the car can drive at the point
+/// itself where they rise. Where feasible_speeds is computed once, this follows the friction while the car
+/// drives.
 class FeasibleSpeeds {
  public:
   explicit FeasibleSpeeds(std::span<const maps::ReferencePoint> path);
@@ -43,7 +45,7 @@ class FeasibleSpeeds {
 
   /// 1/m, of the path, positive to the left, a point each.
   std::span<const double> curvatures() const noexcept { return curvature_; }
-  /// m/s, a point each; those of the path before the first update.
+  /// m/s, a point each, looked up ahead with `lead`; those of the path before the first update.
   std::span<const double> speeds() const noexcept { return speed_; }
 
  private:

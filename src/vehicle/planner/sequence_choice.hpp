@@ -27,8 +27,8 @@ class SequenceChoice {
   Choice slower(const VehicleModel& model, const Choice& solution,
                 std::vector<PredictedState>& states) noexcept;
 
-  /// The cheaper of the solution and the sequence sent last, from `elapsed` s after its begin on, with its
-  /// last inputs held. A solution is a mean over few samples that count; where it is worse than to go on as
+  /// The cheaper of the solution and the sequence sent last, moved forward by `elapsed` (s), with its last
+  /// inputs held. A solution is a mean over few samples that count; where it is worse than to go on as
   /// planned, collisions first, nothing has changed that calls for it. `states` as in `choose`.
   Choice kept(const VehicleModel& model, const Choice& solution, double elapsed,
               std::vector<PredictedState>& states) noexcept;

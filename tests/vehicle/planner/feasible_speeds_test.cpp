@@ -67,11 +67,15 @@ TEST(FeasibleSpeeds, WithALeadACarThatLooksThemUpAtTheBeginOfAStepHasThemAtItsEn
 
 TEST(FeasibleSpeeds, AnOpenPathKeepsItsLastSpeed) {
   auto path = oval(7);
-  path.resize(80);  // the first straight, not joined
+  path.resize(90);  // the first straight, not joined
+  for (std::size_t i = 0; i < 30; ++i) path[i].speed = 3;
   FeasibleSpeeds speeds(path);
   speeds.update({.grip = grip, .acceleration = grip, .braking = grip, .lead = 0.2, .switch_speed = 100});
   EXPECT_EQ(speeds.length(), 0);
-  for (const double speed : speeds.speeds()) EXPECT_NEAR(speed, 7, 1e-12);
+  EXPECT_NEAR(speeds.speeds().front(), 3, 1e-12);
+  EXPECT_NEAR(speeds.speeds().back(), 7, 1e-12) << "the path does not go on at its start";
+  EXPECT_NEAR(speeds.speeds()[20], 3, 1e-12) << "0.6 m ahead";
+  EXPECT_GT(speeds.speeds()[26], 3.1) << "0.6 m ahead, on the fast part";
 }
 
 }  // namespace
