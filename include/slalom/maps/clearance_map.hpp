@@ -20,6 +20,7 @@ struct ClearanceMapOptions {
   double reach = 0.5;        ///< m, distances are known up to here
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, ClearanceMapOptions>
 void visit_options(Options& o, Visit&& visit) {

@@ -20,6 +20,7 @@ struct CourseFieldOptions {
   void validate() const;
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, CourseFieldOptions>
 void visit_options(Options& options, Visit&& visit) {

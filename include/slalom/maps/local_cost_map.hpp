@@ -48,6 +48,7 @@ struct LocalCostMapOptions {
   void validate() const;
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, LocalCostMapOptions>
 void visit_options(Options& options, Visit&& visit) {

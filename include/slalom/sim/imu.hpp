@@ -21,6 +21,7 @@ struct ImuOptions {
   void validate() const;
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, ImuOptions>
 void visit_options(Options& o, Visit&& visit) {

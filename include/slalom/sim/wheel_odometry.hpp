@@ -27,6 +27,7 @@ struct WheelOdometryOptions {
   void validate() const;
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, WheelOdometryOptions>
 void visit_options(Options& o, Visit&& visit) {

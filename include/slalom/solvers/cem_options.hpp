@@ -33,6 +33,7 @@ struct CemOptions {
   int threads = 1;
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, CemOptions>
 void visit_options(Options& o, Visit&& visit) {

@@ -36,6 +36,7 @@ struct IcemOptions {
   int threads = 1;
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, IcemOptions>
 void visit_options(Options& o, Visit&& visit) {

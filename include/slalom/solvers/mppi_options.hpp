@@ -31,6 +31,7 @@ struct MppiOptions {
   PublishedMppi published{};  ///< only to reproduce the program of proj-svg_mppi
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, MppiOptions>
 void visit_options(Options& o, Visit&& visit) {

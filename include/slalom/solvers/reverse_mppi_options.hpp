@@ -14,6 +14,7 @@ enum class Resampling {
   systematic,  ///< at equal distances along the cumulated probabilities: as often as expected, up to rounding
   multinomial,  ///< independently, with replacement
 };
+/// The names of the enumerators, in order.
 inline const char* const* enum_names(Resampling) {
   static constexpr const char* const names[] = {"systematic", "multinomial", nullptr};
   return names;
@@ -47,6 +48,7 @@ struct ReverseMppiOptions {
   PublishedReverseMppi published{};  ///< only to reproduce the program of proj-svg_mppi
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, ReverseMppiOptions>
 void visit_options(Options& o, Visit&& visit) {

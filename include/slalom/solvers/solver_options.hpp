@@ -130,6 +130,7 @@ class SolverOptions {
   std::unique_ptr<Base> held_;
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, SolverOptions>
 void visit_options(Options& options, Visit&& visit) {

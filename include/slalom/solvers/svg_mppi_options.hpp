@@ -16,6 +16,7 @@ enum class GuideWeight {
   importance,  ///< S and (u - n)^T Sigma^-1 v, the control term of the paper's equation (8)
   proximity,   ///< S and (u - v)^T Sigma^-1 (u - v), the distance to the last solution
 };
+/// The names of the enumerators, in order.
 inline const char* const* enum_names(GuideWeight) {
   static constexpr const char* const names[] = {"state_cost", "importance", "proximity", nullptr};
   return names;
@@ -26,6 +27,7 @@ enum class GuideGradient {
   surrogate,  ///< the surrogate gradient of samples, equation (11)
   exact,      ///< the derivative of the cost, of an evaluator that has it (`GradientEvaluator`)
 };
+/// The names of the enumerators, in order.
 inline const char* const* enum_names(GuideGradient) {
   static constexpr const char* const names[] = {"surrogate", "exact", nullptr};
   return names;
@@ -38,6 +40,7 @@ enum class SampleCentre {
   /// The last solution, as in the paper: the weights correct for the distance to the nominal sequence.
   solution,
 };
+/// The names of the enumerators, in order.
 inline const char* const* enum_names(SampleCentre) {
   static constexpr const char* const names[] = {"nominal", "solution", nullptr};
   return names;
@@ -59,8 +62,8 @@ struct GuideOptions {
   PerInput restart_variance = 1;  ///< input^2, of those deviations
   /// Mean of the samples. Without the nominal sequence (`use_nominal`) it is the last solution.
   SampleCentre sample_around = SampleCentre::nominal;
-  /// With `exact`, the weights of the gradient (`weight`) must be those of the costs alone, and a step is
-  /// limited by `gradient_variance`.
+  /// With `exact`, the weights of the gradient (`weight`) must be those of the costs alone, a step is limited
+  /// by `gradient_variance`, and `gradient_samples` and `zero_mean_share` do not count for guides.
   GuideGradient gradient = GuideGradient::surrogate;
 };
 
@@ -175,6 +178,7 @@ void visit_variance_options(Options& o, Visit&& visit) {
 
 }  // namespace detail
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, SvgMppiOptions>
 void visit_options(Options& o, Visit&& visit) {

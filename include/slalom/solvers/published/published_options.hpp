@@ -19,6 +19,7 @@ enum class FitTarget {
   optimal_density,  ///< q* of the paper's equation (5): exp(-S / temperature) q(V | nominal, Sigma)
   state_cost,       ///< softmax of S with `fit_temperature` (program)
 };
+/// The names of the enumerators, in order.
 inline const char* const* enum_names(FitTarget) {
   static constexpr const char* const names[] = {"optimal_density", "state_cost", nullptr};
   return names;
@@ -50,6 +51,7 @@ enum class RejectionModel {
   published,  ///< product over steps of 1 / (p + p_rejected) where a "density" grows with the distance, and p
               ///< is taken at the rejected mean (program)
 };
+/// The names of the enumerators, in order.
 inline const char* const* enum_names(RejectionModel) {
   static constexpr const char* const names[] = {"normal", "published", nullptr};
   return names;
@@ -70,6 +72,7 @@ enum class BandwidthModel {
   pair_distances,  ///< median squared distance between particles / log n (Liu and Wang 2016)
   squared_norms,   ///< median squared norm of the particles / log n (program)
 };
+/// The names of the enumerators, in order.
 inline const char* const* enum_names(BandwidthModel) {
   static constexpr const char* const names[] = {"pair_distances", "squared_norms", nullptr};
   return names;
@@ -135,12 +138,14 @@ void visit_published_variance(Published& p, Visit&& visit) {
 
 }  // namespace detail
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, PublishedMppi>
 void visit_options(Options& p, Visit&& visit) {
   detail::visit_published_offsets(p, visit);
 }
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, PublishedSvgMppi>
 void visit_options(Options& p, Visit&& visit) {
@@ -168,6 +173,7 @@ void visit_options(Options& p, Visit&& visit) {
                   .help = "treat convex fits as concave ones of the same curvature; paper's program: true"});
 }
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, PublishedReverseMppi>
 void visit_options(Options& p, Visit&& visit) {
@@ -177,6 +183,7 @@ void visit_options(Options& p, Visit&& visit) {
   detail::visit_published_variance(p, visit);
 }
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, PublishedSvMpc>
 void visit_options(Options& p, Visit&& visit) {

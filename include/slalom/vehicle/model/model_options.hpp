@@ -10,6 +10,7 @@ struct NoOptions {
   bool operator==(const NoOptions&) const = default;
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, NoOptions>
 void visit_options(Options&, Visit&&) {}

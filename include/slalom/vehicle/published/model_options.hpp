@@ -41,6 +41,7 @@ struct ModelOptions {
   }
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, ModelOptions>
 void visit_options(Options& o, Visit&& visit) {
