@@ -32,14 +32,16 @@ void check(const LapSettings& settings, const LapRules& rules, bool closed) {
     settings.hardware->localiser.validate();
   }
   require(settings.opponents == 0 || closed, "opponents: must be 0 on courses that are not closed");
-  require(settings.rounds == 1 || closed, "world.rounds: must be 1 on courses that are not closed");
+  require(settings.rounds == 1 || closed,
+          "world.rounds: " + std::to_string(settings.rounds) + " must be 1 on an open course");
   const int others = std::max(settings.opponents, 1),
             special = settings.blocking_opponents + settings.erratic_opponents;
   require(settings.opponent_speed.fits(others), "world.opponent_speed: has " +
                                                     std::to_string(settings.opponent_speed.values().size()) +
-                                                    " numbers, must have one, or one for each opponent");
+                                                    " values, must have one, or one for each opponent");
   require(special <= settings.opponents, "world.blocking_opponents and world.erratic_opponents: together " +
-                                             std::to_string(special) + ", must be at most world.opponents");
+                                             std::to_string(special) + ", must be at most world.opponents, " +
+                                             std::to_string(settings.opponents));
 }
 
 }  // namespace

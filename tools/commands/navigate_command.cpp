@@ -133,15 +133,17 @@ void declare_navigate(Subcommand& command) {
   command.summary("Drive a mobile robot through rooms, with several methods on the same seeds");
   const auto arguments = std::make_shared<NavigateArguments>();
   command.option("--scenario", arguments->scenario, "Name of a scenario, or all").show_default();
-  command.option("--methods", arguments->methods, "Methods that drive: svg_mppi, mppi, or both with a comma")
+  command.option("--methods", arguments->methods, "Methods, separated by commas: svg_mppi, mppi")
       .show_default();
   command.flag("--without-detours", arguments->without_detours,
-               "Let each method drive a second time without the search for detours");
-  command.option("--seeds", arguments->seeds, "Drives of each method in each scenario")
+               "Also drive with each method without the search for detours");
+  command.option("--seeds", arguments->seeds, "Number of drives of each method in each scenario")
       .range(1, 100000)
       .show_default();
   command.option("--first-seed", arguments->first_seed, "Seed of the first drive").show_default();
-  command.option("--threads", arguments->threads, "Drives at the same time").range(1, 1024).show_default();
+  command.option("--threads", arguments->threads, "Number of drives that run in parallel")
+      .range(1, 1024)
+      .show_default();
   command.option("--pictures", arguments->pictures, "Write a picture of each scenario to this folder");
   command.option("--table", arguments->table,
                  "Write a table in Markdown with 95 % intervals to this file, after each seed");
@@ -150,7 +152,7 @@ void declare_navigate(Subcommand& command) {
   std::string names = "Scenarios:\n";
   for (const RoomScenario& each : evaluation::room_scenarios())
     names += std::string("  ") + each.name + ": " + each.summary + "\n";
-  command.footer(names + "The status is 1 if a drive ended in a collision.");
+  command.footer(names + "The exit status is 1 if a drive ended in a collision.");
   command.action([arguments] { return navigate(*arguments); });
 }
 

@@ -173,7 +173,7 @@ class RaceJob {
 
 void declare_race(Subcommand& command) {
   command.summary(
-      "Drive laps against the clock: times, sectors, grip used, and where time is lost. Tyres saturate");
+      "Drive timed laps on tyres that saturate: lap times, sectors, grip used, and where time is lost");
   const auto arguments = std::make_shared<RaceArguments>();
   arguments->scenario.config = "race";
   arguments->scenario.saturating_tyres = true;
@@ -181,7 +181,7 @@ void declare_race(Subcommand& command) {
   add_method_option(command, arguments->method);
   command
       .option("--seed", arguments->seed,
-              "Seed of the first standing start; one that begins lap k has seed + (k - 1) (obstacles + 5)")
+              "Seed of lap 1; a standing start in lap k has the seed SEED + (k - 1) (obstacles + 5)")
       .show_default();
   command
       .option("--laps", arguments->laps,
@@ -191,16 +191,17 @@ void declare_race(Subcommand& command) {
   command.flag("--standing", arguments->standing, "Begin every lap with a standing start");
   command
       .option("--friction", arguments->friction,
-              "Friction coefficient of the circle with which accelerations are compared: its radius, in g")
+              "Radius of the friction circle with which accelerations are compared, in g")
       .range(0.01, 10.0)
       .show_default();
-  command.option("--compare", arguments->compare,
-                 "Result of slalom race --json on the same course: shows where the best lap gains and loses");
+  command.option(
+      "--compare", arguments->compare,
+      "JSON file of another slalom race on the same course: shows where the best lap gains or loses time");
   command.option("--json", arguments->json,
                  "Write the results as JSON to this file, or to standard output: -");
   command.option(
       "--plot", arguments->plot,
-      "Write a picture of the best lap to this PNG: speed and profile, times behind, accelerations");
+      "Write a picture of the best lap to this PNG: speed and profile, time behind, accelerations");
   command.action([arguments] { return RaceJob(*arguments).run(); });
 }
 

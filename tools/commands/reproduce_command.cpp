@@ -192,13 +192,14 @@ void declare_reproduce(Subcommand& command) {
       "racing: the benchmark of Evans et al. (arXiv 2402.18558) instead; --course is the folder of its "
       "maps aut, esp, gbr and mco, and no --out is needed");
   command
-      .option("--driver", arguments->driver,
-              "With --benchmark: a method, whose planner drives on the minimum-time raceline with --config "
-              "[racing_benchmark], or follow_the_gap")
+      .option(
+          "--driver", arguments->driver,
+          "With --benchmark: follow_the_gap, or a method: the planner of --config [racing_benchmark] then "
+          "drives along the minimum-time raceline")
       .show_default();
   command
       .option("--margin", arguments->margin,
-              "With --benchmark: m, that the raceline keeps between the car and walls")
+              "With --benchmark: distance that the raceline keeps between the car and walls, m")
       .show_default();
   command.option("--published", arguments->published, "Folder of the authors' logs");
   command

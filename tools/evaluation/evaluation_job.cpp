@@ -299,7 +299,9 @@ void print_results(const Evaluated& evaluated, std::FILE* out) {
   for (const ExperimentResult& r : evaluated.results) {
     if (!r.overtaking) continue;
     const OvertakingFigures& o = *r.overtaking;
-    std::fprintf(out, "%s: opponents: %d met, %d overtaken (in %.1f s), %d not; %d contacts, %d caused\n",
+    std::fprintf(out,
+                 "%s: opponents: %d met, %d overtaken (mean time %.1f s), %d not overtaken; %d contacts, %d "
+                 "caused by the car\n",
                  evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)].label().c_str(),
                  o.met, o.overtaken, o.duration, o.not_overtaken, o.contacts, o.caused);
   }

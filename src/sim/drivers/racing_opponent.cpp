@@ -25,7 +25,7 @@ constexpr double least_aim = 0.4, aim_time = 0.14;  // m, s: how far ahead is wh
 
 void RacingOpponentOptions::validate() const {
   if (driver == OpponentDriver::pursuit)
-    detail::fail("driver", "pursuit", "racing, blocking or erratic; PurePursuit is the other one");
+    detail::fail("driver", "pursuit", "racing, blocking or erratic; the class PurePursuit drives as pursuit");
   detail::require_range("speed_share", speed_share, 0.01, 1);
   detail::require_range("room", room, 0, 10);
   detail::require_positive("side_acceleration", side_acceleration);

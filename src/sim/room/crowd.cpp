@@ -89,11 +89,12 @@ Crowd::Crowd(const Room& room, std::vector<Walker> walkers)
       require(i, point.y, -1e6, 1e6, "y of a point");
     }
     const Disc body{each.way.front(), each.radius};
-    require(i, body.middle.x, each.radius, length_ - each.radius, "x of its beginning");
-    require(i, body.middle.y, each.radius, width_ - each.radius, "y of its beginning");
+    require(i, body.middle.x, each.radius, length_ - each.radius, "x of its first point");
+    require(i, body.middle.y, each.radius, width_ - each.radius, "y of its first point");
     for (const Box& box : solid_)
       if (signed_gap(box, body) <= 0)
-        throw std::invalid_argument("walker " + std::to_string(i) + ": begins in a wall or an obstacle");
+        throw std::invalid_argument("walker " + std::to_string(i) +
+                                    ": first point: must not be within its radius of a wall or an obstacle");
     bodies_.push_back(body);
   }
   velocities_.resize(walkers_.size());
