@@ -31,7 +31,8 @@ void check(const LapSettings& settings, const LapRules& rules, bool closed) {
     settings.hardware->inertial.validate();
     settings.hardware->localiser.validate();
   }
-  require(settings.opponents == 0 || closed, "opponents: must be 0 on courses that are not closed");
+  require(settings.opponents == 0 || closed,
+          "world.opponents: " + std::to_string(settings.opponents) + " must be 0 on an open course");
   require(settings.rounds == 1 || closed,
           "world.rounds: " + std::to_string(settings.rounds) + " must be 1 on an open course");
   const int others = std::max(settings.opponents, 1),

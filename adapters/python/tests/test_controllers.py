@@ -299,5 +299,5 @@ def test_guides_follow_exact_gradients_of_built_in_problems():
     plan = slalom.SvgMppi(slalom.CartPole(), **options).solve([0.1, 0, 3.0, 0])  # |position| has a kink at 0
     assert plan.ok and plan.stats.gradient_kinks == 0
     callables = slalom.Problem(lambda x, u: x + u, lambda x, u: x[:, 0] ** 2, states=1, inputs=1)
-    with pytest.raises(ValueError, match="guide_gradient: exact needs the derivatives of the problem"):
+    with pytest.raises(ValueError, match="guide_gradient: exact needs a problem with derivatives"):
         slalom.SvgMppi(callables, **options)

@@ -51,13 +51,18 @@ void visit_options(Options& o, Visit&& visit) {
   };
   number(o.latency, "latency", "s", "from a scan until its command takes effect", 0, 1);
   number(o.opponents, "opponents", "", "cars that drive along the path", 0, 16);
-  number(o.opponent_speed, "opponent_speed", "", "fraction of the path's speed, one or one for each", 0.01,
-         1);
-  visit(o.opponent_driver, Declaration{.name = "opponent_driver", .help = "how opponents drive"});
-  number(o.blocking_opponents, "blocking_opponents", "", "of the opponents, the first ahead block", 0, 16);
-  number(o.erratic_opponents, "erratic_opponents", "", "those after the blocking ones are erratic", 0, 16);
-  number(o.opponent_gap, "opponent_gap", "m", "from car to car at the start; 0: around the course", 0, 100);
-  number(o.rounds, "rounds", "", "times around the course until a lap is finished", 1, 100);
+  number(o.opponent_speed, "opponent_speed", "",
+         "fraction of the path's speed: one value, or one for each opponent", 0.01, 1);
+  visit(o.opponent_driver,
+        Declaration{.name = "opponent_driver",
+                    .help = "driver of the opponents that are neither blocking nor erratic"});
+  number(o.blocking_opponents, "blocking_opponents", "",
+         "number of opponents that block, from the first ahead of the car on", 0, 16);
+  number(o.erratic_opponents, "erratic_opponents", "", "number of erratic opponents, after the blocking ones",
+         0, 16);
+  number(o.opponent_gap, "opponent_gap", "m",
+         "distance between cars at the start; 0: equal distances around the course", 0, 100);
+  number(o.rounds, "rounds", "", "number of times around the course in a lap", 1, 100);
   number(o.speed_scale, "speed_scale", "", "factor of the course's speed profile", 0.1, 3);
   number(o.friction, "friction", "", "coefficient between tyre and road", 0.1, 3);
   visit(

@@ -62,7 +62,7 @@ void visit_options(Options& o, Visit&& visit) {
   weight(o.collision, "collision", "1/s", "cost of a body that overlaps an obstacle");
   visit(o.others_margin, Declaration{.name = "others_margin",
                                      .unit = "m",
-                                     .help = "distance from what moves that counts as a collision",
+                                     .help = "distance from a moving object that counts as a collision",
                                      .min = 0,
                                      .max = 10});
   visit(o.others_reach, Declaration{.name = "others_reach",
@@ -70,10 +70,10 @@ void visit_options(Options& o, Visit&& visit) {
                                     .help = "distance beyond others_margin in which nearness has a cost",
                                     .min = 0,
                                     .max = 10});
-  weight(o.others, "others", "1/s", "cost of a body that is others_margin from what moves");
+  weight(o.others, "others", "1/s", "cost at a distance of others_margin from a moving object");
   visit(o.others_probability,
         Declaration{.name = "others_probability",
-                    .help = "probability of a collision with what moves above which a plan collides",
+                    .help = "probability of a collision with a moving object above which a state collides",
                     .min = 0,
                     .max = 1});
 }

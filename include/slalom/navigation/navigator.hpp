@@ -66,7 +66,7 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.stuck_after,
         Declaration{.name = "stuck_after",
                     .unit = "s",
-                    .help = "time without progress after which the chosen way counts as closed",
+                    .help = "time without progress after which the place ahead counts as closed",
                     .min = 0.1,
                     .max = 3600});
 }

@@ -87,14 +87,14 @@ void visit_noise_options(Options& o, Visit&& visit) {
   visit(o.log_normal_spread,
         Declaration{.name = "log_normal_spread",
                     .symbol = "sigma_ln",
-                    .help = "log-normal factor of the noise at the same variance, per input: 0 is none; the "
-                            "larger, the more samples far away",
+                    .help = "log-normal factor of the noise at the same variance, per input: 0 is none; "
+                            "larger values give more distant samples",
                     .min = 0,
                     .max = 2});
   visit(o.knots, Declaration{.name = "noise_knots",
                              .symbol = "n",
                              .help = "knots along the horizon between which the noise is interpolated; 0: "
-                                     "every step has noise of its own",
+                                     "independent noise in every step",
                              .min = 0,
                              .max = 64});
 }
@@ -109,8 +109,8 @@ void visit_weighting_options(Options& o, Visit&& visit) {
                     .min = -20,
                     .max = 3});
   visit(o.target_ess_fraction, Declaration{.name = "target_ess_fraction",
-                                           .help = "effective sample size, as a fraction of the samples, for "
-                                                   "which every solve searches the temperature; 0: off",
+                                           .help = "effective sample size, as a fraction of the samples, to "
+                                                   "which every solve adapts the temperature; 0: off",
                                            .min = 0,
                                            .max = 1,
                                            .formerly = "effective_share"});

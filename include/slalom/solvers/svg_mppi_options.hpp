@@ -154,8 +154,8 @@ void visit_guide_options(Options& o, Visit&& visit) {
       Declaration{.name = "sample_around",
                   .help = "mean of the samples: the nominal sequence, or the last solution as in the paper"});
   visit(o.gradient, Declaration{.name = "guide_gradient",
-                                .help = "gradient that the guides follow: the surrogate of samples, or the "
-                                        "exact derivative of a problem that has it"});
+                                .help = "gradient for the guides: estimated from samples, or exact if the "
+                                        "problem has derivatives"});
 }
 
 template <class Options, class Visit>

@@ -30,16 +30,20 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.max_objects, Declaration{"max_objects", "", "", "objects that are predicted", 1, 256});
   visit(o.horizon, Declaration{"horizon", "", "s", "duration of a prediction", 0.1, 20});
   visit(o.interval, Declaration{"interval", "", "s", "from one pose of a prediction to the next", 0.01, 1});
-  visit(o.min_speed, Declaration{"min_speed", "", "m/s", "speed of objects below which they stand", 0, 100});
+  visit(o.min_speed,
+        Declaration{"min_speed", "", "m/s", "speed below which objects are not predicted", 0, 100});
   visit(o.braking, Declaration{"braking", "", "m/s^2", "deceleration of an object that brakes", 0.1, 100});
-  visit(o.side_step, Declaration{"side_step", "", "m", "way that an object moves aside", 0, 100});
+  visit(o.side_step,
+        Declaration{"side_step", "", "m", "lateral distance of an object's sideways move", 0, 100});
   visit(o.reaction, Declaration{"reaction", "", "s", "time constant of ways across the course", 0.01, 10});
   visit(o.max_offset,
-        Declaration{"max_offset", "", "m", "distance from the course from which it does not count", 0, 1000});
+        Declaration{"max_offset", "", "m",
+                    "distance from the course beyond which objects are predicted without it", 0, 1000});
   visit(o.acceleration_deviation,
-        Declaration{"acceleration_deviation", "", "m/s^2", "error of hypotheses along their way", 0, 100});
+        Declaration{"acceleration_deviation", "", "m/s^2",
+                    "standard deviation of the acceleration along the motion", 0, 100});
   visit(o.drift_deviation,
-        Declaration{"drift_deviation", "", "m/s", "error of hypotheses across their way", 0, 100});
+        Declaration{"drift_deviation", "", "m/s", "standard deviation of the sideways drift", 0, 100});
   visit(o.memory,
         Declaration{"memory", "", "s", "time after which hypotheses are compared with the object", 0.05, 10});
   visit(o.forgetting, Declaration{"forgetting", "", "",

@@ -50,10 +50,12 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.range_deviation,
         Declaration{"range_deviation", "sigma_r", "m", "standard deviation of a reading", 1e-3, 1});
   visit(o.wall_distance,
-        Declaration{"wall_distance", "", "m",
-                    "readings this far and 3 range deviations from an obstacle of the map belong to it", 0,
-                    10});
-  visit(o.wall_angle, Declaration{"wall_angle", "", "rad", "times the range: added to wall_distance", 0, 1});
+        Declaration{
+            "wall_distance", "", "m",
+            "readings within this distance plus 3 range deviations of an obstacle of the map belong to it", 0,
+            10});
+  visit(o.wall_angle, Declaration{"wall_angle", "", "rad",
+                                  "error of the yaw; times the range, it is added to wall_distance", 0, 1});
   visit(o.min_incidence, Declaration{"min_incidence", "lambda", "rad",
                                      "least angle of a beam to a surface that is one cluster", 0.01, 1.5});
   visit(o.min_points, Declaration{"min_points", "", "", "readings of a new object", 2, 1000});

@@ -13,8 +13,9 @@ void Guides::connect(const BatchEvaluator& evaluator) {
   const CostGradient* const gradient = evaluator.gradient();
   if (!gradient)
     throw std::invalid_argument(
-        "guide_gradient: exact needs the derivatives of the problem: in C++ a GradientEvaluator, in Python a "
-        "built-in problem, and no limits on the rates of inputs");
+        "guide_gradient: exact needs a problem with derivatives (in C++ a GradientEvaluator, in Python a "
+        "built-in "
+        "problem) and without limits on the rates of inputs");
   workspace_.resize(static_cast<std::size_t>(count_) * gradient->workspace(options_.horizon));
   taken_ = Matrix<double>(count_, rows_);
 }

@@ -143,7 +143,7 @@ std::unique_ptr<Solver> make_solver(const SvgMppiOptions& options, int inputs,
                                     std::shared_ptr<ThreadPool> pool) {
   validate_options(options, SvgMppiOptions::method, inputs);
   if (options.guides.gradient == GuideGradient::exact && options.guides.weight != GuideWeight::state_cost)
-    throw std::invalid_argument("svg_mppi: guide_weight must be state_cost where guide_gradient is exact");
+    throw std::invalid_argument("svg_mppi: guide_weight must be state_cost if guide_gradient is exact");
   return std::make_unique<SvgMppiSolver>(options, inputs, std::move(pool));
 }
 

@@ -264,7 +264,7 @@ TEST(GuideGradient, WhatAProblemLacksIsSaidWhenTheControllerIsMade) {
     }
     return std::string();
   };
-  const std::string needs = "guide_gradient: exact needs the derivatives of the problem";
+  const std::string needs = "guide_gradient: exact needs a problem with derivatives";
   EXPECT_EQ(message([] { SvgMppi(DoubleIntegrator{}, exact_options()); }).substr(0, needs.size()), needs);
   EXPECT_EQ(message([] { exact_controller(Slow{}, exact_options()); }).substr(0, needs.size()), needs);
   EXPECT_EQ(message([] {
@@ -272,7 +272,7 @@ TEST(GuideGradient, WhatAProblemLacksIsSaidWhenTheControllerIsMade) {
               options.guides.weight = GuideWeight::importance;
               make_solver(options, 1);
             }),
-            "svg_mppi: guide_weight must be state_cost where guide_gradient is exact");
+            "svg_mppi: guide_weight must be state_cost if guide_gradient is exact");
 }
 
 }  // namespace
