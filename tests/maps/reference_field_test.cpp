@@ -193,7 +193,7 @@ TEST(ReferenceField, WithCurvaturesCellsBetweenPointsAreThoseOfTheLine) {
 TEST(ReferenceField, WithCurvaturesNoPlaceOfTheLineIsLeftOutWhereTheWindowSkipsPoints) {
   constexpr double radius = 5;
   constexpr int count = 600;  // 0.052 m apart, in the window 0.157 m
-  ReferenceField field(circle(count, radius), {.spacing = 0.15});
+  ReferenceField field(circle(count, radius), {.spacing = 0.15, .points_behind = 40});
   field.set_curvatures(std::vector<double>(count, 1 / radius), true);
   ASSERT_TRUE(field.update({radius, 0}));
   ASSERT_EQ(field.window()[1], field.window()[0] + 3);
