@@ -16,7 +16,10 @@ class ClosedPlaces {
   void forget_dead_ends() noexcept { dead_ends_ = 0; }
   /// Of many dead ends the last four count.
   void add_dead_end(const maps::Point& middle) noexcept {
-    if (dead_ends_ == max_dead_ends) dead_ends_ = 0;
+    if (dead_ends_ == max_dead_ends) {
+      std::copy(places_.begin() + 1, places_.begin() + max_dead_ends, places_.begin());
+      --dead_ends_;
+    }
     places_[dead_ends_++] = {middle, PathPlanner::dead_end_radius};
   }
   /// Closes a place for as long as this lives.
