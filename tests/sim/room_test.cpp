@@ -30,6 +30,15 @@ TEST(Room, TheMapShowsTheWallsAlone) {
   EXPECT_THROW(map_of(room, 0), std::invalid_argument);
 }
 
+TEST(Room, TheMapEndsWhereTheFloorEnds) {
+  const maps::OccupancyGrid even = map_of({2.22, 4.44, {}, {}}, 0.02);
+  EXPECT_EQ(even.width, 113) << "111 cells and the rim: 2.22 / 0.02 is above 111 in doubles";
+  EXPECT_EQ(even.height, 224);
+  const maps::OccupancyGrid uneven = map_of({2.221, 4.459, {}, {}}, 0.02);
+  EXPECT_EQ(uneven.width, 114);
+  EXPECT_EQ(uneven.height, 225);
+}
+
 TEST(Room, BodiesCollideWithWallsObstaclesAndTheEdge) {
   const auto hits = [](double x, double y, double yaw) { return collides(room, {{x, y, yaw}, 0.7, 0.5}); };
   EXPECT_FALSE(hits(1, 1, 0));

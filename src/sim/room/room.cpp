@@ -19,6 +19,11 @@ void require(double value, double least, double most, const char* what) {
   throw std::invalid_argument(text.str());
 }
 
+/// The cells that cover a length. One that is a multiple of the resolution but for rounding takes no more.
+int cells_of(double length, double resolution) {
+  return static_cast<int>(std::ceil(length / resolution - 1e-9));
+}
+
 /// The way (m) along a ray from inside to the edge of the floor.
 double way_out(double position, double direction, double length) {
   if (direction > 0) return (length - position) / direction;
@@ -34,8 +39,8 @@ maps::OccupancyGrid map_of(const Room& room, double resolution) {
   require(resolution, 0.01, 1, "resolution");
   maps::OccupancyGrid grid;
   grid.resolution = resolution;
-  grid.width = static_cast<int>(std::ceil(room.length / resolution)) + 2;
-  grid.height = static_cast<int>(std::ceil(room.width / resolution)) + 2;
+  grid.width = cells_of(room.length, resolution) + 2;
+  grid.height = cells_of(room.width, resolution) + 2;
   grid.origin = {-resolution, -resolution, 0};
   grid.cells.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height),
                     maps::Occupancy::free);
