@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <span>
 
 #include "slalom/navigation/path_planner.hpp"
@@ -40,9 +39,8 @@ class ClosedPlaces {
   std::span<const ClosedPlace> all() const noexcept { return {places_.data(), dead_ends_ + meetings_}; }
   bool contain(const maps::Point& point) const noexcept {
     const auto places = all();
-    return std::any_of(places.begin(), places.end(), [&](const ClosedPlace& each) {
-      return std::hypot(point.x - each.middle.x, point.y - each.middle.y) < each.radius;
-    });
+    return std::any_of(places.begin(), places.end(),
+                       [&](const ClosedPlace& each) { return distance(point, each.middle) < each.radius; });
   }
 
  private:

@@ -41,10 +41,6 @@ maps::Point position(const maps::Pose& pose) {
   return {pose.x, pose.y};
 }
 
-double distance(const maps::Point& a, const maps::Point& b) {
-  return std::hypot(a.x - b.x, a.y - b.y);
-}
-
 }  // namespace
 
 class Navigator::Implementation {

@@ -27,10 +27,6 @@ maps::ReferenceField make_field(double reach) {
   return maps::ReferenceField(path, options);
 }
 
-double distance(const maps::Point& a, const maps::Point& b) {
-  return std::hypot(a.x - b.x, a.y - b.y);
-}
-
 }  // namespace
 
 PathGuide::PathGuide(double reach)

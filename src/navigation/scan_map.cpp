@@ -4,11 +4,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "slalom/maps/laser_scan.hpp"
+
 namespace slalom::navigation {
 
 namespace {
-
-constexpr double full_turn = 6.283185307179586;
 
 /// Calls `visit` with column and row of the cell at a position, if there is one.
 template <class Visit>
@@ -33,7 +33,7 @@ void ScanMap::add(const RangeScan& scan) noexcept {
   for (std::size_t i = 0; i < count; ++i) {
     const double range = scan.ranges[i];
     if (!(range >= 0 && std::isfinite(range))) continue;
-    const double angle = scan.pose.yaw + full_turn * static_cast<double>(i) / static_cast<double>(count);
+    const double angle = scan.pose.yaw + maps::beam_angle(i, count);
     const double cosine = std::cos(angle), sine = std::sin(angle);
     const bool hit = range < scan.max_range;
     // The last cell but one is left as it is: noise moves the end of a beam from cell to cell.

@@ -14,10 +14,6 @@ constexpr double tick = 0.01;            // s
 const Box far_robot{{50, 50, 0}, 1, 1};  // beyond all rooms
 const Room hall{10, 4, {}, {}};
 
-double distance(const maps::Point& a, const maps::Point& b) {
-  return std::hypot(a.x - b.x, a.y - b.y);
-}
-
 void walk(Crowd& crowd, double duration, const Box& robot = far_robot) {
   for (int i = 0; i < static_cast<int>(std::lround(duration / tick)); ++i) crowd.step(tick, robot, {});
 }

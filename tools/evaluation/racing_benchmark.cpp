@@ -73,10 +73,6 @@ class PlannerDriver : public RacingDriver {
   std::uint64_t laps_ = 0;
 };
 
-double distance(const maps::Point& a, const maps::Point& b) {
-  return std::hypot(b.x - a.x, b.y - a.y);
-}
-
 maps::Point place(const maps::ReferencePoint& point) {
   return {point.x, point.y};
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <numbers>
 #include <span>
 
 namespace slalom::maps {
@@ -13,5 +15,11 @@ struct LaserScanView {
   double range_min = 0;             ///< m; readings below it are no readings
   double range_max = 0;             ///< m; readings of it or more mean that nothing was hit
 };
+
+/// The angle (rad) of a beam of a scan whose `count` beams are evenly spread around the scanner, from its x
+/// axis on, counter-clockwise.
+inline double beam_angle(std::size_t beam, std::size_t count) {
+  return 2 * std::numbers::pi * static_cast<double>(beam) / static_cast<double>(count);
+}
 
 }  // namespace slalom::maps

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 
 namespace slalom::maps {
 
@@ -17,6 +18,11 @@ struct Pose {
   double yaw = 0;  ///< rad
 };
 
+/// The distance between two points, m.
+inline double distance(const Point& a, const Point& b) {
+  return std::hypot(b.x - a.x, b.y - a.y);
+}
+
 /// A point given in the frame of `frame`, in the frame in which `frame` is given.
 inline Point transform(const Pose& frame, const Point& point) {
   const double c = std::cos(frame.yaw), s = std::sin(frame.yaw);
@@ -32,7 +38,7 @@ inline Point inverse_transform(const Pose& frame, const Point& point) {
 
 /// The angle shifted by whole turns into [-pi, pi].
 inline double wrap_angle(double angle) {
-  return std::remainder(angle, 6.283185307179586);
+  return std::remainder(angle, 2 * std::numbers::pi);
 }
 
 }  // namespace slalom::maps

@@ -10,10 +10,6 @@ namespace {
 
 constexpr double table_rate = 100;  // rows per m of the program's table of points
 
-double distance(const maps::Point& a, const maps::Point& b) {
-  return std::hypot(b.x - a.x, b.y - a.y);
-}
-
 /// Solves the cyclic tridiagonal system  below_i x_{i-1} + middle_i x_i + above_i x_{i+1} = right_i  by the
 /// formula of Sherman and Morrison (Press et al., "Numerical Recipes", 2007, Sec. 2.7).
 std::vector<double> solve_cyclic(const std::vector<double>& below, std::vector<double> middle,

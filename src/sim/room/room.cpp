@@ -6,11 +6,11 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "slalom/maps/laser_scan.hpp"
+
 namespace slalom::sim {
 
 namespace {
-
-constexpr double full_turn = 6.283185307179586;
 
 void require(double value, double least, double most, const char* what) {
   if (value >= least && value <= most) return;
@@ -71,8 +71,7 @@ bool collides(const Room& room, const Box& body) noexcept {
 void scan(const Room& room, const maps::Pose& scanner, double max_range, std::span<double> ranges) noexcept {
   const maps::Point from{scanner.x, scanner.y};
   for (std::size_t i = 0; i < ranges.size(); ++i) {
-    const double angle =
-        scanner.yaw + full_turn * static_cast<double>(i) / static_cast<double>(ranges.size());
+    const double angle = scanner.yaw + maps::beam_angle(i, ranges.size());
     const double cosine = std::cos(angle), sine = std::sin(angle);
     double range =
         std::min({max_range, way_out(from.x, cosine, room.length), way_out(from.y, sine, room.width)});

@@ -29,10 +29,6 @@ double yaw_of(const maps::Point& from, const maps::Point& to) {
   return std::atan2(to.y - from.y, to.x - from.x);
 }
 
-double distance(const maps::Point& a, const maps::Point& b) {
-  return std::hypot(b.x - a.x, b.y - a.y);
-}
-
 }  // namespace
 
 SpeedLimits grip_limits(double friction, double top_speed, double acceleration, double braking) {

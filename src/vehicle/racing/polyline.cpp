@@ -14,10 +14,6 @@ std::size_t within(std::ptrdiff_t i, std::size_t count, bool closed) {
   return static_cast<std::size_t>(closed ? (i % n + n) % n : std::clamp<std::ptrdiff_t>(i, 0, n - 1));
 }
 
-double distance(maps::Point a, maps::Point b) {
-  return std::hypot(b.x - a.x, b.y - a.y);
-}
-
 std::vector<double> gaussian(double deviation) {
   std::vector<double> weights;
   const int reach = static_cast<int>(std::ceil(4 * deviation));

@@ -23,10 +23,6 @@ constexpr double min_room = 1e-3;    // m, between the bounds of a line
 constexpr double max_yaw = 0.6;      // rad, of the way from the x axis at a start that is found
 constexpr double half_turn = 3.14159265358979323846;  // rad
 
-double distance(const maps::Point& a, const maps::Point& b) {
-  return std::hypot(b.x - a.x, b.y - a.y);
-}
-
 std::string text_of(const maps::Point& point) {
   char text[64];
   std::snprintf(text, sizeof text, "(%.2f, %.2f)", point.x, point.y);
