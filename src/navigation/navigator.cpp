@@ -250,8 +250,8 @@ void Navigator::Implementation::watch_progress(const maps::Point& robot, double 
   closed_.add_dead_end(position(path[std::min(guide_.nearest() + ahead, path.size() - 1)]));
 }
 
-/// Whether the plan leads into an obstacle before the robot could brake. A body that overlaps an obstacle
-/// already may leave it.
+/// Whether the plan leads into an obstacle, or meets what moves, before the robot could brake. A body that
+/// overlaps an obstacle already may leave it.
 bool Navigator::Implementation::plan_collides(const Costmap& costmap,
                                               const Velocity& velocity) const noexcept {
   const std::span<const maps::Pose> plan = model_->plan();

@@ -14,6 +14,7 @@ enum class BaseKind {
   omnidirectional,  ///< the same, and sideways
   ackermann,        ///< steered wheels: turning only while driving
 };
+/// The names of the enumerators, in order.
 inline const char* const* enum_names(BaseKind) {
   static constexpr const char* const names[] = {"differential", "omnidirectional", "ackermann", nullptr};
   return names;

@@ -21,12 +21,13 @@ struct CostOptions {
   double goal_heading = 3;       ///< per unit of 1 - cos(yaw error) to the goal, near it
   double goal_reach = 0.5;       ///< m, from the goal, where that begins and clearance begins to count less
   double collision = 500;        ///< while the body overlaps an obstacle, or what moves
-  double others_margin = 0.1;    ///< m from what moves, as it is predicted, that count as a collision
+  double others_margin = 0.1;    ///< m, distance from predicted bodies below which a plan collides
   double others_reach = 0.4;     ///< m beyond that in which nearness has a cost
   double others = 10;            ///< at that margin; falls off as the square of the distance
   double others_probability = 0.2;  ///< of a collision with something that moves, above which a plan collides
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, CostOptions>
 void visit_options(Options& o, Visit&& visit) {

@@ -15,6 +15,7 @@ enum class UnknownCells {
   obstacle,  ///< they are obstacles
   priced,    ///< it may enter them, and its problem has a price for that
 };
+/// The names of the enumerators, in order.
 inline const char* const* enum_names(UnknownCells) {
   static constexpr const char* const names[] = {"obstacle", "priced", nullptr};
   return names;

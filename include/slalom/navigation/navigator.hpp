@@ -32,6 +32,7 @@ struct NavigatorOptions {
   double stuck_after = 4;      ///< s without progress after which the way that was chosen counts as closed
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, NavigatorOptions>
 void visit_options(Options& o, Visit&& visit) {
