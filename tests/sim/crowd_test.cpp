@@ -80,15 +80,6 @@ TEST(Crowd, OnlyTheInattentiveWalkIntoARobotThatStands) {
     }
 }
 
-TEST(Crowd, TheSameStepsGiveTheSameBits) {
-  const auto end = [] {
-    Crowd crowd(hall, {{{{1, 2}, {9, 2}}, 1.2}, {{{9, 2.1}, {1, 2.1}}, 1}, {{{5, 0.5}, {5, 3.5}}, 0.8}});
-    walk(crowd, 5, {{4, 2, 0.4}, 0.7, 0.5});
-    return crowd.bodies()[0].middle.x + 10 * crowd.bodies()[2].middle.y;
-  };
-  EXPECT_EQ(end(), end());
-}
-
 TEST(Crowd, RefusesWalkersWithoutAWayOrRoom) {
   EXPECT_THROW(Crowd(hall, {{{}}}), std::invalid_argument);
   EXPECT_THROW(Crowd(hall, {{{{0.1, 2}}}}), std::invalid_argument);
