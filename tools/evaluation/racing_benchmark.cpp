@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -15,8 +16,6 @@ namespace slalom::tools {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double pi = 3.14159265358979323846;
 
 class GapDriver : public RacingDriver {
  public:
@@ -143,13 +142,13 @@ std::optional<std::vector<maps::ReferencePoint>> path_through_finish(
     to = nearest(path, row);
     if (k == 0) from = to;
     const double share =
-        0.5 - 0.5 * std::cos(2 * pi * static_cast<double>(k) / static_cast<double>(count - 1));
+        0.5 - 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(count - 1));
     led.push_back({path[to].x + share * (row.x - path[to].x), path[to].y + share * (row.y - path[to].y),
                    path[to].yaw, path[to].speed});
   }
   for (std::size_t i = (to + 1) % path.size(); i != from; i = (i + 1) % path.size()) led.push_back(path[i]);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto &before = led[(i + led.size() - 1) % led.size()], &after = led[i + 1];
+    const auto &before = led[(i + led.size() - 1) % led.size()], &after = led[(i + 1) % led.size()];
     led[i].yaw = std::atan2(after.y - before.y, after.x - before.x);
   }
   return led;

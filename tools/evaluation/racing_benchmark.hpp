@@ -42,18 +42,17 @@ class RacingDriver {
 /// The driver by which the world is compared with the published one (sim::FollowTheGap).
 std::unique_ptr<RacingDriver> make_gap_driver();
 
-/// The path (closed) for a lap that starts and ends at `start`: `path`, led to the centre line
-/// there so that the benchmark sees the end of the lap; empty if `path` itself will do. The benchmark looks
-/// for the car between 99.5 and 99.9 % of a round, by the nearest row of the centre line. On the inside of a
-/// tight corner no place is nearest to these rows, and a car that passes there drives another round.
+/// The path (closed) for a lap that starts and ends at `start`: `path`, led to the centre line there so that
+/// the benchmark sees the end of the lap; empty if `path` itself will do. The benchmark looks for the car
+/// between 99.5 and 99.9 % of a round, by the nearest row of the centre line. On the inside of a tight corner
+/// no place is nearest to these rows, and a car that passes there drives another round.
 std::optional<std::vector<maps::ReferencePoint>> path_through_finish(
     const std::vector<maps::ReferencePoint>& path, const std::vector<maps::Point>& centre_line,
     const maps::Point& start);
 
-/// A planner of this library along the minimum-time line of a map, for a car with the grip of the
-/// benchmark whose line keeps `margin` (m) between the body and walls, and leads through the end of each lap
-/// (path_through_finish). Throws std::invalid_argument where the
-/// map leaves no such line.
+/// A planner of this library along the minimum-time line of a map, for a car with the grip of the benchmark
+/// whose line keeps `margin` (m) between the body and walls, and leads through the end of each lap
+/// (path_through_finish). Throws std::invalid_argument where the map leaves no such line.
 std::unique_ptr<RacingDriver> make_planner_driver(const RacingMap& map,
                                                   const vehicle::Configuration& configuration,
                                                   const std::string& method, double margin);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "tools/evaluation/racing_benchmark.hpp"
@@ -10,7 +11,7 @@
 namespace slalom::tools {
 namespace {
 
-constexpr double pi = 3.14159265358979323846, side = 18, corner = 0.6, inside = 0.5;
+constexpr double pi = std::numbers::pi, side = 18, corner = 0.6, inside = 0.5;
 
 /// A square with round corners, driven to the left, with its first corner centred on (0, 0); points this far
 /// apart, moved to the left by `offset` (all m).
@@ -80,6 +81,15 @@ TEST(RacingFinish, OnTheInsideOfATightCornerThePathIsLedToWhereTheLapEnds) {
     const auto &a = (*led)[i], &b = (*led)[(i + 1) % led->size()];
     EXPECT_LT(std::hypot(b.x - a.x, b.y - a.y), 0.5) << i << ": closed, without a gap";
   }
+}
+
+TEST(RacingFinish, APathOfWhichNoPointIsKeptIsClosed) {
+  const auto centre_line = places(square(0.2, 0));
+  const maps::Point start{corner * std::sin(pi / 4), -corner * std::cos(pi / 4)};
+  const auto led = path_through_finish({{0, 0, 0, 3}}, centre_line, start);
+  ASSERT_TRUE(led);
+  const auto &first = led->front(), &last = led->back(), &before = (*led)[led->size() - 2];
+  EXPECT_DOUBLE_EQ(last.yaw, std::atan2(first.y - before.y, first.x - before.x));
 }
 
 TEST(RacingFinish, OnAStraightThePathWillDo) {
