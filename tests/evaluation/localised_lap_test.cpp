@@ -1,4 +1,4 @@
-// world.localised: the planner's pose is an estimate, and nothing else of the world differs.
+// world.localised: the planner's pose and speed are estimates and it gets the IMU; servo and motor stay.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -31,8 +31,9 @@ struct HardwareConditions {
   sim::ImuOptions inertial;          ///< errors of the inertial measurement unit; its seed is that of the lap
   vehicle::LocaliserOptions localiser;  ///< its seed is that of the lap
 
-  /// Only the sensors and the localisation of a real car, with this LiDAR: its servo and its motor are those
-  /// of the simulated car. The odometry takes its yaw from a gyro, and the localiser is set for it.
+  /// The sensors and the localisation of a real car, whose LiDAR has this noise (m, standard deviation) and
+  /// dropout (fraction of beams without a return): pose and speed are estimates, the planner gets the IMU,
+  /// and the odometry takes its yaw from the gyro. Servo and motor are those of the simulated car.
   static HardwareConditions sensors(double range_noise, double dropout);
 };
 

@@ -72,7 +72,8 @@ void visit_options(Options& o, Visit&& visit) {
   number(o.range_noise, "range_noise", "m", "standard deviation of each range", 0, 1);
   number(o.dropout, "dropout", "", "fraction of beams without a return", 0, 1);
   visit(o.localised, Declaration{.name = "localised",
-                                 .help = "the planner's pose is estimated from LiDAR and wheel odometry"});
+                                 .help = "the planner's pose and speed are estimated from LiDAR, wheels and "
+                                         "gyro, and it gets the IMU"});
   visit(o.tracking,
         Declaration{
             .name = "tracking",
