@@ -49,9 +49,9 @@ class Json {
   /// An object if all elements are pairs whose first element is a string; otherwise an array.
   Json(std::initializer_list<Json> elements);
   Json(const Json& other);                 ///< a copy
-  Json(Json&& other) noexcept;             ///< leaves null behind
+  Json(Json&& other) noexcept;             ///< the other may then only be destroyed or assigned to
   Json& operator=(const Json& other);      ///< a copy
-  Json& operator=(Json&& other) noexcept;  ///< leaves null behind
+  Json& operator=(Json&& other) noexcept;  ///< the other may then only be destroyed or assigned to
   ~Json();
 
   static Json array();                                      ///< an array without elements

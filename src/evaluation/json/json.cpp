@@ -135,7 +135,7 @@ double Json::get<double>() const {
 
 template <>
 std::string Json::get<std::string>() const {
-  if (!is_string()) throw JsonError("must be a text");
+  if (!is_string()) throw JsonError("must be a string");
   return text_;
 }
 
