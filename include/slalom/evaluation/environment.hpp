@@ -37,7 +37,7 @@ struct Environment {
   std::vector<double> obstacle_room;
   maps::Pose start;        ///< of the centre of gravity, relative to the course's origin
   double start_moved = 0;  ///< m along the waypoints from the first, where the body is in a wall
-  double timeout = 0;      ///< s; 0: three times the lap time of the speed profile
+  double timeout = 0;      ///< s, for one time around the course; 0: three laps of the speed profile
   std::optional<sim::LidarOptions> lidar;  ///< replaces the LiDAR of the protocol
 
   /// The world of the protocol, with `lidar` where it is given. Settings of a lap (noise, friction, control

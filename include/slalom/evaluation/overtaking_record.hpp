@@ -17,10 +17,10 @@ constexpr const char* name(EncounterEnd end) noexcept {
 
 /// An opponent met: from when the car is 1 to 4 m behind it along the course, from middle to middle.
 struct Encounter {
-  int opponent = 0;                       ///< from 0, in the order in which opponents start ahead of the car
+  int opponent = 0;                       ///< from 0, in the order of LapSettings::opponent_speed
   double time = 0;                        ///< s, when it was met
   double duration = 0;                    ///< s, until it ended
-  EncounterEnd end = EncounterEnd::open;  ///< how
+  EncounterEnd end = EncounterEnd::open;  ///< how it ended
   int contacts = 0;                       ///< with this opponent while it lasted
   int caused = 0;                         ///< those of them at which the car is at fault
 };
@@ -28,7 +28,7 @@ struct Encounter {
 /// The opponents of a lap. A contact begins where the cars touch and have not touched for 0.5 s.
 ///
 /// At fault is the car behind, unless it is alongside: its front axle is past the rear axle of the other.
-/// Then it is the car that moves towards the other faster, across the course. Both is judged 0.05 to 0.1 s
+/// Then it is the car that moves towards the other faster, across the course. Both are judged 0.05 to 0.1 s
 /// before the contact.
 struct OvertakingRecord {
   std::vector<Encounter> encounters;  ///< in order of time
