@@ -30,6 +30,14 @@ Interval percentile_interval(std::vector<double>& values) {
   return {at(0.025), at(0.975)};
 }
 
+template <class Number>
+double nearest_rank(std::span<const Number> sorted, double share) {
+  if (sorted.empty()) return not_a_number;
+  // A product that is whole but for rounding is that rank.
+  const double count = static_cast<double>(sorted.size()), rank = std::ceil(share * count - 1e-9);
+  return static_cast<double>(sorted[static_cast<std::size_t>(std::clamp(rank, 1.0, count)) - 1]);
+}
+
 struct Moments {
   double mean = 0;
   double variance = 0;  ///< of the mean
@@ -66,6 +74,14 @@ Interval wilson_interval(std::int64_t successes, std::int64_t trials, double z) 
 double mean(std::span<const double> values) {
   if (values.empty()) return not_a_number;
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double percentile(std::span<const double> sorted, double share) {
+  return nearest_rank(sorted, share);
+}
+
+double percentile(std::span<const float> sorted, double share) {
+  return nearest_rank(sorted, share);
 }
 
 Interval bootstrap_mean(std::span<const double> values, std::uint64_t seed, int resamples) {

@@ -93,6 +93,21 @@ TEST(Bootstrap, IntervalOfADifferenceContainsIt) {
   EXPECT_DOUBLE_EQ(interval.high, 4);
 }
 
+TEST(Percentile, IsTheNearestRank) {
+  std::vector<double> values;
+  for (int i = 1; i <= 100; ++i) values.push_back(i);
+  EXPECT_EQ(percentile(values, 0), 1);
+  EXPECT_EQ(percentile(values, 0.07), 7) << "0.07 * 100 is above 7 in doubles";
+  EXPECT_EQ(percentile(values, 0.5), 50);
+  EXPECT_EQ(percentile(values, 0.501), 51);
+  EXPECT_EQ(percentile(values, 0.99), 99);
+  EXPECT_EQ(percentile(values, 1), 100);
+  EXPECT_EQ(percentile(std::vector<float>{1, 2, 4}, 0.5), 2);
+  EXPECT_EQ(percentile(std::vector<float>{1, 2}, 0.5), 1);
+  EXPECT_EQ(percentile(std::vector<float>{3}, 0.99), 3);
+  EXPECT_TRUE(std::isnan(percentile(std::vector<double>{}, 0.5)));
+}
+
 TEST(RateDifferenceInterval, MatchesTheExampleOfNewcombe) {
   // Table II, column (a): 56/70 - 48/80, method 10.
   const Interval interval = rate_difference_interval(56, 70, 48, 80);

@@ -5,6 +5,7 @@
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
 #include "slalom/evaluation/json.hpp"
+#include "slalom/evaluation/statistics.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/lap_picture.hpp"
 #include "tools/recording/recording.hpp"
@@ -110,7 +111,8 @@ class DriveJob {
         "%.2f m/s, solve %.2f ms (p99 %.2f)\n",
         laps_.size(), outcome(lap), lap.time, lap.steps, lap.collisions, lap.collisions == 1 ? "" : "s",
         lap.mean_sequence_cost, lap.state_cost, lap.collision_cost, lap.mean_speed,
-        times.empty() ? 0.0 : percentile(times, 0.5), times.empty() ? 0.0 : percentile(times, 0.99));
+        times.empty() ? 0.0 : evaluation::percentile(times, 0.5),
+        times.empty() ? 0.0 : evaluation::percentile(times, 0.99));
     if (!lap.estimation.slip_error.empty()) say_estimates(lap.estimation);
     std::fflush(words_);
   }

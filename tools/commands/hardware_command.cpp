@@ -88,12 +88,9 @@ bool drive(std::vector<Task>& tasks, const std::vector<Driver>& drivers,
   return !interrupt.raised();
 }
 
-double percentile(std::vector<float> values, double share) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return static_cast<double>(*at);
+double percentile_of(std::vector<float> values, double share) {
+  std::sort(values.begin(), values.end());
+  return evaluation::percentile(values, share);
 }
 double mean_of(const std::vector<float>& values) {
   double sum = 0;
@@ -128,18 +125,19 @@ Json summarise(const std::vector<Task>& tasks, std::size_t driver, bool among_ob
     append(solve_ms, r.solve_ms);
   }
   const Interval ms = bootstrap_mean(costs);
-  Json row{{"laps", laps},
-           {"finished", finished},
-           {"ms_mean", mean(costs)},
-           {"ms_ci", {ms.low, ms.high}},
-           {"contacts", contacts},
-           {"laps_with_contact", touched},
-           {"lap_time_mean", finished > 0 ? Json(time / finished) : Json(nullptr)},
-           {"blind_steps_share", steps > 0 ? static_cast<double>(blind) / steps : 0},
-           {"localisation_error_m", {{"mean", mean_of(errors)}, {"p99", percentile(errors, 0.99)}}},
-           {"localisation_error_rad", {{"mean", mean_of(yaw_errors)}, {"p99", percentile(yaw_errors, 0.99)}}},
-           {"localisation_ms", {{"p50", percentile(update_ms, 0.5)}, {"p99", percentile(update_ms, 0.99)}}},
-           {"solve_ms", {{"p50", percentile(solve_ms, 0.5)}, {"p99", percentile(solve_ms, 0.99)}}}};
+  Json row{
+      {"laps", laps},
+      {"finished", finished},
+      {"ms_mean", mean(costs)},
+      {"ms_ci", {ms.low, ms.high}},
+      {"contacts", contacts},
+      {"laps_with_contact", touched},
+      {"lap_time_mean", finished > 0 ? Json(time / finished) : Json(nullptr)},
+      {"blind_steps_share", steps > 0 ? static_cast<double>(blind) / steps : 0},
+      {"localisation_error_m", {{"mean", mean_of(errors)}, {"p99", percentile_of(errors, 0.99)}}},
+      {"localisation_error_rad", {{"mean", mean_of(yaw_errors)}, {"p99", percentile_of(yaw_errors, 0.99)}}},
+      {"localisation_ms", {{"p50", percentile_of(update_ms, 0.5)}, {"p99", percentile_of(update_ms, 0.99)}}},
+      {"solve_ms", {{"p50", percentile_of(solve_ms, 0.5)}, {"p99", percentile_of(solve_ms, 0.99)}}}};
   if (among_obstacles) {
     const int chances = laps * arguments.obstacles;
     const Interval rate = wilson_interval(contacts, chances);

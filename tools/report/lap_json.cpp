@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "slalom/evaluation/json.hpp"
+#include "slalom/evaluation/statistics.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -22,7 +23,7 @@ Json error_json(std::vector<float> errors) {
   std::sort(errors.begin(), errors.end());
   double sum = 0;
   for (const float error : errors) sum += static_cast<double>(error);
-  return {{"mean", sum / static_cast<double>(errors.size())}, {"p99", percentile(errors, 0.99)}};
+  return {{"mean", sum / static_cast<double>(errors.size())}, {"p99", evaluation::percentile(errors, 0.99)}};
 }
 
 Json localisation_json(const evaluation::LocalisationRecord& record) {
@@ -110,16 +111,11 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
   return json;
 }
 
-double percentile(const std::vector<float>& sorted, double share) {
-  const double rank = std::ceil(share * static_cast<double>(sorted.size()));
-  return static_cast<double>(sorted[static_cast<std::size_t>(std::max(rank, 1.0)) - 1]);
-}
-
 Json times_json(std::vector<float> milliseconds) {
   if (milliseconds.empty()) return {{"p50", nullptr}, {"p99", nullptr}, {"max", nullptr}};
   std::sort(milliseconds.begin(), milliseconds.end());
-  return {{"p50", percentile(milliseconds, 0.5)},
-          {"p99", percentile(milliseconds, 0.99)},
+  return {{"p50", evaluation::percentile(milliseconds, 0.5)},
+          {"p99", evaluation::percentile(milliseconds, 0.99)},
           {"max", static_cast<double>(milliseconds.back())}};
 }
 

@@ -19,7 +19,4 @@ Json times_json(std::vector<float> milliseconds);
 /// All solve times of laps, ms.
 std::vector<float> solve_times(const std::vector<evaluation::LapResult>& laps);
 
-/// The smallest of the values that at least `share` of them do not exceed; `sorted` is not empty.
-double percentile(const std::vector<float>& sorted, double share);
-
 }  // namespace slalom::tools

@@ -18,6 +18,12 @@ Interval wilson_interval(std::int64_t successes, std::int64_t trials, double z =
 
 double mean(std::span<const double> values);  ///< NaN without values
 
+/// A percentile of ascending values by the nearest rank: the smallest of them that at least a share (0 to 1)
+/// of all do not exceed. NaN without values.
+double percentile(std::span<const double> sorted, double share);
+/// The same.
+double percentile(std::span<const float> sorted, double share);
+
 /// Percentile bootstrap of the mean (Efron & Tibshirani 1993, chapter 13). NaN without values.
 Interval bootstrap_mean(std::span<const double> values, std::uint64_t seed = 1, int resamples = 10000);
 

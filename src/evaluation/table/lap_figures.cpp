@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "slalom/evaluation/statistics.hpp"
+
 namespace slalom::evaluation {
 
 TrackingFigures figures_of(const TrackingRecord& record) {
@@ -10,7 +12,7 @@ TrackingFigures figures_of(const TrackingRecord& record) {
                           record.speed_error,   record.yaw_error};
   auto times = record.update_ms;
   std::sort(times.begin(), times.end());
-  if (!times.empty()) figures.update_p99 = static_cast<double>(times[(times.size() - 1) * 99 / 100]);
+  if (!times.empty()) figures.update_p99 = percentile(times, 0.99);
   return figures;
 }
 

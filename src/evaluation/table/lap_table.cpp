@@ -12,6 +12,7 @@
 #include "evaluation/table/lap_figures.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
+#include "slalom/evaluation/statistics.hpp"
 
 namespace slalom::evaluation {
 
@@ -175,16 +176,12 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
   auto times = result.solve_ms;
   std::sort(times.begin(), times.end());
   if (!times.empty()) {
-    const auto at = [&](double share) {
-      return times[std::min(times.size() - 1,
-                            static_cast<std::size_t>(share * static_cast<double>(times.size())))];
-    };
     r.mean_calculation_time =
         std::accumulate(times.begin(), times.end(), 0.0) / static_cast<double>(times.size());
     r.min_calculation_time = times.front();
     r.max_calculation_time = times.back();
-    r.solve_p50 = at(0.5);
-    r.solve_p99 = at(0.99);
+    r.solve_p50 = percentile(times, 0.5);
+    r.solve_p99 = percentile(times, 0.99);
   }
   r.lap_time = result.time;
   r.steps = result.steps;
