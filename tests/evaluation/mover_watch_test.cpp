@@ -54,7 +54,7 @@ TEST(MoverWatch, PredictsSomebodyWhoWalks) {
         if (std::hypot(then.x - body.middle.x - v.x, then.y - body.middle.y - v.y) < 0.5) ++predicted;
       }
       if (others.empty()) continue;
-      const navigation::RangeScan left = scanner.watch.without_movers({{2, 3, 0}, scanner.ranges, max_range});
+      const navigation::RangeScan left = scanner.watch.without_movers();
       for (std::size_t b = 0; b < left.ranges.size(); ++b) {
         const double angle = 2 * 3.141592653589793 * static_cast<double>(b) / beams;
         const double x = 2 + scanner.ranges[b] * std::cos(angle), y = 3 + scanner.ranges[b] * std::sin(angle);

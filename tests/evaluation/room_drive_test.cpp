@@ -2,12 +2,28 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "slalom/navigation/path_planner.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom::evaluation {
 namespace {
+
+/// The options of a method that nobody registered: it has no option `seed`.
+struct SeedlessOptions {
+  static constexpr const char* method = "seedless";
+  int horizon = 20;
+};
+template <class Options, class Visit>
+requires is_options_of<Options, SeedlessOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.horizon, Declaration{.name = "horizon"});
+}
+std::unique_ptr<Solver> make_solver(const SeedlessOptions&, int, std::shared_ptr<ThreadPool>) {
+  return nullptr;
+}
 
 RoomDriver quick_driver() {
   RoomDriver driver;
@@ -18,11 +34,12 @@ RoomDriver quick_driver() {
 }
 
 TEST(RoomScenarios, StartsAndGoalsAreFreeAndThereIsAWayWhereTheySay) {
-  const navigation::Footprint body = navigation::Footprint::rectangle(0.35, 0.35, 0.5);
+  constexpr double length = RoomScenario::robot_length, width = RoomScenario::robot_width;
+  const navigation::Footprint body = navigation::Footprint::rectangle(0.5 * length, 0.5 * length, width);
   EXPECT_EQ(room_scenarios().size(), 20u);
   for (const RoomScenario& scenario : room_scenarios()) {
-    EXPECT_FALSE(sim::collides(scenario.room, {scenario.start, 0.7, 0.5})) << scenario.name;
-    EXPECT_FALSE(sim::collides(scenario.room, {scenario.goal, 0.7, 0.5})) << scenario.name;
+    EXPECT_FALSE(sim::collides(scenario.room, {scenario.start, length, width})) << scenario.name;
+    EXPECT_FALSE(sim::collides(scenario.room, {scenario.goal, length, width})) << scenario.name;
     sim::Room all = scenario.room;
     all.walls.insert(all.walls.end(), all.obstacles.begin(), all.obstacles.end());
     for (const bool with_obstacles : {false, true}) {
@@ -66,6 +83,23 @@ TEST(RoomDrive, EndsAtTheTimeout) {
   EXPECT_EQ(drive.outcome, RoomOutcome::timeout);
   EXPECT_FALSE(drive.success);
   EXPECT_EQ(drive.trace.size(), 40u);
+}
+
+TEST(RoomDrive, RefusesConditionsOutOfRangeAndASolverWithoutASeed) {
+  const auto refused = [](const RoomConditions& conditions, const char* name) {
+    expect_error_with<std::invalid_argument>({"conditions", name}, [&] {
+      drive_room(room_scenario("pallet-on-path"), quick_driver(), 1, conditions);
+    });
+  };
+  refused({.period = 0}, "period");
+  refused({.period = NAN}, "period");
+  refused({.timeout = INFINITY}, "timeout");
+  refused({.range_noise = -0.01}, "range_noise");
+  refused({.walker_spread = 1.5}, "walker_spread");
+  RoomDriver driver;
+  driver.solver = SeedlessOptions{};
+  expect_error_with<std::invalid_argument>({"seedless", "seed"},
+                                           [&] { drive_room(room_scenario("pallet-on-path"), driver, 1); });
 }
 
 }  // namespace

@@ -23,6 +23,8 @@ MoverWatch::MoverWatch(std::size_t beams)
 
 std::span<const maps::PredictedObstacle> MoverWatch::update(const navigation::RangeScan& scan,
                                                             double stamp) noexcept {
+  pose_ = scan.pose;
+  max_range_ = scan.max_range;
   // The tracker sees no objects across the ends of a scan, so these are behind the robot.
   const std::size_t count = turned_.size(), half = count / 2;
   for (std::size_t i = 0; i < count; ++i)

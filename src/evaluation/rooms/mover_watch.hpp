@@ -18,15 +18,15 @@ class MoverWatch {
   /// Takes a scan of `stamp` (s). The predictions are valid until the next one.
   std::span<const maps::PredictedObstacle> update(const navigation::RangeScan& scan, double stamp) noexcept;
   /// The scan of the last update without the readings of what is predicted. Valid until the next one.
-  navigation::RangeScan without_movers(const navigation::RangeScan& scan) const noexcept {
-    return {scan.pose, ranges_, scan.max_range};
-  }
+  navigation::RangeScan without_movers() const noexcept { return {pose_, ranges_, max_range_}; }
 
  private:
   tracking::ObjectTracker tracker_;
   tracking::Predictor predictor_;
   std::vector<float> turned_;  ///< the ranges from behind the robot on
   std::vector<double> ranges_;
+  maps::Pose pose_;       ///< of the last scan
+  double max_range_ = 0;  ///< m, of the last scan
 };
 
 }  // namespace slalom::evaluation

@@ -1,10 +1,11 @@
 #include "slalom/evaluation/rooms/room_drive.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
+#include "evaluation/rooms/drive_counters.hpp"
 #include "evaluation/rooms/mover_watch.hpp"
 #include "slalom/core/random.hpp"
 #include "slalom/navigation/path_planner.hpp"
@@ -18,37 +19,10 @@ using maps::Pose;
 using navigation::NavigationStatus;
 using navigation::Velocity;
 
-constexpr double resolution = 0.05;                      // m
-constexpr double half_length = 0.35, half_width = 0.25;  // m, of the robot
-constexpr double max_range = 16;                         // m
+constexpr double resolution = 0.05;  // m
+constexpr double max_range = 16;     // m
 constexpr int beams = 240;
-constexpr double side_margin = 0.1;         // m from the line to the obstacle; less is no side
-constexpr double min_driving_speed = 0.03;  // m/s that counts as driving
-constexpr double standing = 1e-3;           // m/s
-
-/// Counts how often plans change the side on which they pass something, until the robot is past it.
-class SideCounter {
- public:
-  explicit SideCounter(const RoomScenario& scenario)
-      : ahead_x_(scenario.goal.x - scenario.start.x), ahead_y_(scenario.goal.y - scenario.start.y) {}
-
-  void add(const Pose& robot, const maps::Point& counted, std::span<const Pose> plan) {
-    const double dx = counted.x - robot.x, dy = counted.y - robot.y;
-    if (plan.empty() || dx * ahead_x_ + dy * ahead_y_ <= 0) return;
-    const Pose& end = plan.back();
-    const double left =
-        (dx * (end.y - robot.y) - dy * (end.x - robot.x)) / std::max(std::hypot(dx, dy), 1e-9);
-    if (std::abs(left) < side_margin) return;
-    const int side = left > 0 ? 1 : -1;
-    changes_ += last_ != 0 && side != last_;
-    last_ = side;
-  }
-  int changes() const { return changes_; }
-
- private:
-  double ahead_x_, ahead_y_;
-  int last_ = 0, changes_ = 0;
-};
+constexpr double standing = 1e-3;  // m/s and rad/s
 
 /// The walkers of a scenario as a seed has them.
 std::vector<sim::Walker> varied(std::vector<sim::Walker> walkers, const RoomConditions& conditions,
@@ -97,7 +71,7 @@ class Robot {
       const double yaw = pose.yaw + 0.5 * dt * command.turn, c = std::cos(yaw), s = std::sin(yaw);
       pose = {pose.x + dt * (c * command.forward - s * command.left),
               pose.y + dt * (s * command.forward + c * command.left), pose.yaw + dt * command.turn};
-      const sim::Box body{pose, 2 * half_length, 2 * half_width};
+      const sim::Box body{pose, RoomScenario::robot_length, RoomScenario::robot_width};
       if (!room_.people.empty()) {
         crowd_.step(dt, body,
                     {c * command.forward - s * command.left, s * command.forward + c * command.left});
@@ -133,7 +107,7 @@ class Knowledge {
   }
   void add(const navigation::RangeScan& scan, double time) {
     if (predicts_) others = watch_.update(scan, time);
-    map_.add(predicts_ ? watch_.without_movers(scan) : scan);
+    map_.add(predicts_ ? watch_.without_movers() : scan);
     costmap.update(map_.grid());
   }
 
@@ -147,41 +121,6 @@ class Knowledge {
   std::span<const maps::PredictedObstacle> others;  ///< what moves
 };
 
-/// Counts changes between driving forward and back.
-class ReversalCounter {
- public:
-  void add(double forward) {
-    const int now = forward > min_driving_speed ? 1 : forward < -min_driving_speed ? -1 : 0;
-    changes_ += now == -direction_;
-    if (now != 0) direction_ = now;
-  }
-  int changes() const { return changes_; }
-
- private:
-  int direction_ = 1, changes_ = 0;
-};
-
-/// Wall-clock times of updates.
-class Stopwatch {
- public:
-  template <class Work>
-  auto measure(Work&& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    auto result = work();
-    times_.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    return result;
-  }
-  void report(RoomDrive& drive) {
-    if (times_.empty()) return;
-    std::sort(times_.begin(), times_.end());
-    drive.update_p50 = times_[times_.size() / 2];
-    drive.update_max = times_.back();
-  }
-
- private:
-  std::vector<double> times_;
-};
-
 bool stands(const Velocity& v, double below = standing) {
   return std::abs(v.forward) < below && std::abs(v.left) < below && std::abs(v.turn) < below;
 }
@@ -190,8 +129,16 @@ bool stands(const Velocity& v, double below = standing) {
 
 RoomDrive drive_room(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed,
                      const RoomConditions& conditions) {
+  validate_options(conditions, "conditions");
+  SolverOptions solver = driver.solver;
+  std::uint64_t* const solver_seed = solver.find<std::uint64_t>("seed");
+  if (!solver_seed)
+    throw std::invalid_argument("method " + std::string(solver.method()) +
+                                ": must have the option seed of type std::uint64_t");
+  *solver_seed = seed;
+  constexpr double half_length = 0.5 * RoomScenario::robot_length;
   const navigation::Footprint footprint =
-      navigation::Footprint::rectangle(half_length, half_length, 2 * half_width);
+      navigation::Footprint::rectangle(half_length, half_length, RoomScenario::robot_width);
   Knowledge known(scenario, driver.predict_movers);
   Robot robot(scenario, conditions, seed);
   const auto path_from = [&](const Pose& pose) {
@@ -202,14 +149,12 @@ RoomDrive drive_room(const RoomScenario& scenario, const RoomDriver& driver, std
 
   navigation::NavigatorOptions options = driver.navigator;
   options.base = scenario.base;
-  SolverOptions solver = driver.solver;
-  *solver.find<std::uint64_t>("seed") = seed;
   navigation::Navigator navigator(footprint, options, solver, known.costmap);
   navigator.set_path(path);
 
   RoomDrive drive;
   drive.people.resize(robot.people().size());
-  SideCounter sides(scenario);
+  SideCounter sides(scenario.start, scenario.goal);
   ReversalCounter reversals;
   Stopwatch stopwatch;
   double shown_closed = -1;  // s
@@ -238,7 +183,8 @@ RoomDrive drive_room(const RoomScenario& scenario, const RoomDriver& driver, std
   drive.success = drive.outcome == (scenario.has_way ? RoomOutcome::reached : RoomOutcome::blocked);
   drive.side_changes = sides.changes();
   drive.reversals = reversals.changes();
-  stopwatch.report(drive);
+  drive.update_p50 = stopwatch.percentile(0.5);
+  drive.update_max = stopwatch.percentile(1);
   return drive;
 }
 

@@ -1,5 +1,6 @@
 #include "slalom/evaluation/rooms/room_scenario.hpp"
 
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -16,7 +17,7 @@ Box box(double x0, double y0, double x1, double y1) {
 
 using Scenarios = std::vector<RoomScenario>;
 
-constexpr double right_angle = 1.5707963267948966;
+constexpr double right_angle = 0.5 * std::numbers::pi;
 
 /// Something stands on the path, which the map does not show.
 void add_obstacles(Scenarios& all) {

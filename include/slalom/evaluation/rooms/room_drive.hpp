@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "slalom/core/options.hpp"
 #include "slalom/evaluation/rooms/room_scenario.hpp"
 #include "slalom/navigation/navigator.hpp"
 
@@ -13,7 +14,7 @@ enum class RoomOutcome {
   reached,    ///< the robot stands at the goal
   blocked,    ///< it said that there is no way, and stands
   collision,  ///< its body overlapped a wall, an obstacle or a person
-  struck,     ///< the same, while it stood: somebody walked into it
+  struck,     ///< the same, while it drove and turned slower than 0.03 m/s and rad/s: somebody walked into it
   timeout,    ///< neither within the time
 };
 /// The name of an outcome, as it is written in results.
@@ -24,8 +25,9 @@ constexpr const char* name(RoomOutcome outcome) noexcept {
 
 /// Who drives.
 struct RoomDriver {
-  navigation::NavigatorOptions navigator{};                 ///< its base is replaced by the scenario's
-  SolverOptions solver = navigation::svg_mppi_options({});  ///< for that base; its seed is replaced
+  navigation::NavigatorOptions navigator{};  ///< its base is replaced by the scenario's
+  /// For that base. It has an option `seed`, as every registered method does, which is replaced.
+  SolverOptions solver = navigation::svg_mppi_options({});
   bool predict_movers = true;  ///< follow and predict what moves; otherwise it is an obstacle of the scans
 };
 
@@ -39,6 +41,23 @@ struct RoomConditions {
   double walker_spread = 0.1;  ///< of the speeds of walkers, as a share, uniform, to either side
   double walker_pause = 1;     ///< s, by which their pauses are longer, at most, uniform
 };
+
+/// Declares the conditions above.
+template <class Options, class Visit>
+requires is_options_of<Options, RoomConditions>
+void visit_options(Options& o, Visit&& visit) {
+  const auto number = [&](auto& field, const char* name, const char* unit, const char* help, double min,
+                          double max) {
+    visit(field, Declaration{.name = name, .unit = unit, .help = help, .min = min, .max = max});
+  };
+  number(o.timeout, "timeout", "s", "time after which a drive ends", 0.001, 86400);
+  number(o.period, "period", "s", "time between two commands, and between two scans", 0.001, 1);
+  number(o.range_noise, "range_noise", "m", "standard deviation of the scanner's ranges", 0, 1);
+  number(o.start_spread, "start_spread", "m", "largest change of the start along each axis", 0, 10);
+  number(o.start_turn, "start_turn", "rad", "largest change of the start's yaw", 0, 4);
+  number(o.walker_spread, "walker_spread", "", "largest change of the walkers' speeds, as a share", 0, 0.9);
+  number(o.walker_pause, "walker_pause", "s", "longest addition to the walkers' pauses", 0, 3600);
+}
 
 /// A drive.
 struct RoomDrive {
@@ -58,7 +77,8 @@ struct RoomDrive {
 
 /// Drives a scenario with a path planned on the map, which shows neither obstacles nor people; what moves is
 /// known from the scans alone. The same seed gives the same drive, but for the times of the updates. Throws
-/// std::invalid_argument as Navigator does.
+/// std::invalid_argument where a condition is out of range or the solver has no option `seed`, and as
+/// Navigator does.
 RoomDrive drive_room(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed,
                      const RoomConditions& conditions = {});
 

@@ -13,9 +13,13 @@ namespace slalom::evaluation {
 
 /// A task for a mobile robot in a room.
 struct RoomScenario {
+  static constexpr double robot_length = 0.7;  ///< m; the robot's origin is in its middle
+  static constexpr double robot_width = 0.5;   ///< m
+
   const char* name = "";     ///< as the command line writes it
   const char* summary = "";  ///< one line
-  /// Its first obstacle is the one whose sides are counted, and if there is none the first walker.
+  /// Its first obstacle is the one whose sides are counted, and if there is none the first walker. In a drive
+  /// its `people` are those of `walkers`.
   sim::Room room;
   maps::Pose start, goal;  ///< m, m, rad
   bool has_way = true;     ///< whether the goal can be reached; otherwise the robot must say that it cannot
@@ -23,7 +27,7 @@ struct RoomScenario {
   navigation::BaseOptions base{};      ///< of the robot
 };
 
-/// The scenarios. Their robot is 0.7 m long and 0.5 m wide, its origin in its middle.
+/// The scenarios.
 std::span<const RoomScenario> room_scenarios();
 
 /// The one of this name. Throws std::invalid_argument that lists the names if there is none.
