@@ -38,8 +38,8 @@ struct Drive {
   double sideways = 0;  ///< m/s, to the left
 };
 
-/// What is recorded of two cars that drive like this for so long (s).
-OvertakingRecord record_of(const Drive& own, const Drive& other, double time) {
+/// What is recorded of two cars that drive like this for so long (s), or until the lap times out then.
+OvertakingRecord record_of(const Drive& own, const Drive& other, double time, bool timed_out = false) {
   sim::World world({}, testing::ring_track());
   const auto at = [](const Drive& drive, double t) {
     return on_ring(drive.from + drive.speed * t, drive.left + drive.sideways * t, drive.speed,
@@ -55,7 +55,7 @@ OvertakingRecord record_of(const Drive& own, const Drive& other, double time) {
     world.follow(std::array{at(own, 0.01 * k), at(other, 0.01 * k)});
     meter.update(world);
   }
-  return meter.record(false);
+  return meter.record(timed_out);
 }
 
 TEST(Overtaking, IsOverWhenTheOpponentIsBehind) {
@@ -74,6 +74,13 @@ TEST(Overtaking, ACarThatStaysBehindForTwoRoundsHasNotOvertaken) {
   const Drive other{.from = 3, .speed = 6};
   EXPECT_EQ(record_of({.speed = 6}, other, 10).encounters.at(0).end, EncounterEnd::open);
   EXPECT_EQ(record_of({.speed = 6}, other, 11.6).encounters.at(0).end, EncounterEnd::not_overtaken);
+}
+
+TEST(Overtaking, ALapThatTimesOutEndsTheEncountersThatAreOpen) {
+  const Drive own{.left = 0.5, .speed = 4}, other{.from = 6, .left = -0.5, .speed = 2};
+  EXPECT_EQ(record_of(own, other, 2).encounters.at(0).end, EncounterEnd::open);
+  EXPECT_EQ(record_of(own, other, 2, true).encounters.at(0).end, EncounterEnd::not_overtaken);
+  EXPECT_EQ(record_of(own, other, 6, true).encounters.at(0).end, EncounterEnd::overtaken) << "before that";
 }
 
 TEST(Overtaking, AnOpponentThatIsLappedIsMetAgain) {
@@ -139,7 +146,8 @@ TEST(Overtaking, OpponentsOfEveryKindAreInALapAndItRepeats) {
   EXPECT_EQ(first.overtaking.encounters.size(), again.overtaking.encounters.size());
   const LapRow row = make_row(0, 0, first, 1);
   EXPECT_EQ(row.overtaking.met, static_cast<int>(first.overtaking.encounters.size()));
-  EXPECT_GE(row.overtaking.contacts, row.overtaking.caused);
+  EXPECT_EQ(row.overtaking.contacts, first.overtaking.contacts);
+  EXPECT_EQ(row.overtaking.caused, first.overtaking.caused);
 }
 
 TEST(Overtaking, ALapCanHaveSeveralRounds) {
@@ -155,6 +163,23 @@ TEST(Overtaking, SettingsThatDoNotFitAreRefused) {
   EXPECT_THROW(lap_with({.opponents = 1, .blocking_opponents = 1, .erratic_opponents = 1}),
                std::invalid_argument);
   EXPECT_THROW(lap_with({.rounds = 0}), std::invalid_argument);
+}
+
+TEST(OvertakingColumns, CountTheEncountersOfALap) {
+  LapResult lap;
+  lap.overtaking.encounters = {{.duration = 3, .end = EncounterEnd::overtaken},
+                               {.duration = 8, .end = EncounterEnd::not_overtaken},
+                               {.duration = 6, .end = EncounterEnd::overtaken},
+                               {.duration = 1, .end = EncounterEnd::open}};
+  lap.overtaking.contacts = 5;
+  lap.overtaking.caused = 2;
+  const OvertakingFigures figures = make_row(0, 0, lap, 1).overtaking;
+  EXPECT_EQ(figures.met, 4);
+  EXPECT_EQ(figures.overtaken, 2);
+  EXPECT_EQ(figures.not_overtaken, 1);
+  EXPECT_DOUBLE_EQ(figures.duration, 4.5);
+  EXPECT_EQ(figures.contacts, 5);
+  EXPECT_EQ(figures.caused, 2);
 }
 
 TEST(OvertakingColumns, AreThereIfAnExperimentHasOpponents) {

@@ -56,6 +56,23 @@ TEST(Results, EveryLapCountsWhetherItFinishedOrNot) {
   EXPECT_DOUBLE_EQ(r.solve_ms_max, 8);
 }
 
+TEST(Results, TheTimeToOvertakeIsTheMeanOverAllOpponentsOvertaken) {
+  const std::vector<Experiment> with{{"mppi", {{"world.opponents", "3"}}, "pt", 0, 3}};
+  std::vector<LapRow> rows{row(0, 0, 1, 0, 0, true), row(0, 1, 1, 0, 0, true), row(0, 2, 1, 0, 0, true)};
+  rows[0].overtaking = {4, 3, 1, 2, 2, 1};
+  rows[1].overtaking = {2, 1, 0, 10, 3, 2};
+  rows[2].overtaking = {1, 0, 1, 0, 0, 0};
+  const auto results = summarise(rows, with);
+  ASSERT_TRUE(results[0].overtaking);
+  EXPECT_EQ(results[0].overtaking->met, 7);
+  EXPECT_EQ(results[0].overtaking->overtaken, 4);
+  EXPECT_EQ(results[0].overtaking->not_overtaken, 2);
+  EXPECT_DOUBLE_EQ(results[0].overtaking->duration, (3 * 2.0 + 10) / 4);
+  EXPECT_EQ(results[0].overtaking->contacts, 5);
+  EXPECT_EQ(results[0].overtaking->caused, 3);
+  EXPECT_FALSE(summarise(laps(), experiments)[0].overtaking) << "without opponents";
+}
+
 TEST(Results, WithoutObstaclesThereIsNoCollisionRate) {
   const auto results = summarise(laps(), experiments);
   EXPECT_FALSE(results[2].collision_rate);
