@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 namespace slalom::tools {
 namespace {
@@ -112,7 +113,7 @@ void draw_space(Pen& pen, const Cell& cell) {
   draw_distribution(pen, cell);
   Pen::Points rim;
   for (int i = 0; i < 90; ++i) {
-    const double angle = 6.283185307179586 * i / 90;
+    const double angle = 2 * std::numbers::pi * i / 90;
     rim.emplace_back(cell.x(point.disc_x + point.disc_radius * std::cos(angle)),
                      cell.y(point.disc_y + point.disc_radius * std::sin(angle)));
   }
