@@ -60,6 +60,8 @@ class Controller {
 
 void bind_controllers(py::module_& module);
 void bind_feedback(py::module_& module);
+void bind_ilqr(py::module_& module);
+void bind_linearization(py::module_& module);
 void bind_maps(py::module_& module);
 void bind_problems(py::module_& module);
 void bind_risk(py::module_& module);
