@@ -33,16 +33,24 @@ TEST_F(NavigateCommand, DrivesAScenarioWithBothMethodsOnTheSameSeeds) {
       << table;
 }
 
-TEST_F(NavigateCommand, DrawsPeople) {
+TEST_F(NavigateCommand, DrivesEachMethodWithAndWithoutDetours) {
   const auto run = program(
-      "navigate --scenario crossing-walker --methods mppi --seeds 1 --first-seed 101 --pictures pictures");
+      "navigate --scenario close-obstacle --methods mppi --without-detours --seeds 1 --json out.json --table "
+      "out.md");
   EXPECT_EQ(run.status, 0) << run.output;
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures/crossing-walker.png"));
+  const auto results = nlohmann::json::parse(content(folder_ / "out.json"))["results"];
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_EQ(results[0]["driver"], "mppi");
+  EXPECT_EQ(results[1]["driver"], "mppi alone");
+  EXPECT_NE(results[0]["by_seed"][0]["length_m"], results[1]["by_seed"][0]["length_m"]);
+  EXPECT_NE(content(folder_ / "out.md").find("`mppi` minus `mppi alone`"), std::string::npos);
 }
 
 TEST_F(NavigateCommand, RefusesWhatItDoesNotKnow) {
   expect_refused("navigate --scenario kitchen", {"kitchen", "pallet-on-path"});
   expect_refused("navigate --scenario no-way --methods cem", {"--methods", "cem", "svg_mppi or mppi"});
+  expect_refused("navigate --scenario no-way --methods mppi,svg_mppi,mppi",
+                 {"--methods", "mppi", "must be named only once"});
   expect_refused("navigate --seeds 0", {"--seeds"});
   expect_refused("navigate --scenario no-way --table /no/such/folder/out.md",
                  {"out.md", "cannot be written"});

@@ -9,6 +9,7 @@
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
 #include "tools/commands/commands.hpp"
+#include "tools/commands/navigate_picture.hpp"
 #include "tools/commands/navigate_report.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -57,6 +58,8 @@ std::vector<NamedDriver> drivers_of(const NavigateArguments& arguments) {
     const std::string method = rest.substr(0, comma);
     if (method != "svg_mppi" && method != "mppi")
       throw CommandLineError("--methods", method + ": must be svg_mppi or mppi");
+    if (std::any_of(drivers.begin(), drivers.end(), [&](const auto& each) { return each.method == method; }))
+      throw CommandLineError("--methods", method + ": must be named only once");
     drivers.push_back({method, method, true});
     if (arguments.without_detours) drivers.push_back({method + " alone", method, false});
   }

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <sstream>
 
 #include "slalom/evaluation/statistics.hpp"
-#include "tools/drawing/map_picture.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -100,37 +98,6 @@ std::string difference_row(const std::string& driver, const Drives& first, const
          " | " + difference(reversals_of, 2) + " |\n";
 }
 
-constexpr Colour colours[] = {
-    {0.10, 0.42, 0.75, 0.75}, {0.85, 0.36, 0.13, 0.75}, {0.16, 0.60, 0.38, 0.75}, {0.55, 0.33, 0.65, 0.75}};
-constexpr Colour person_fill = {0.93, 0.75, 0.25, 0.55}, person_rim = {0.55, 0.40, 0.05, 1};
-
-std::vector<maps::Point> outline(const maps::Pose& pose) {
-  const auto corners = sim::corners({pose, 0.7, 0.5});
-  return {corners.begin(), corners.end()};
-}
-
-std::vector<maps::Point> circle(const maps::Point& middle, double radius) {
-  std::vector<maps::Point> points;
-  for (int i = 0; i < 24; ++i)
-    points.push_back({middle.x + radius * std::cos(i * 0.2617993877991494),
-                      middle.y + radius * std::sin(i * 0.2617993877991494)});
-  return points;
-}
-
-/// Where robot and people were in a drive, every 3 s.
-void draw_moments(MapPicture& picture, const RoomDrive& drive, const RoomScenario& scenario,
-                  const Colour& colour) {
-  constexpr std::size_t periods = 60;
-  for (std::size_t k = 0; k < drive.people.size(); ++k)
-    picture.line(drive.people[k], person_rim, 2, false, true);
-  if (drive.people.empty()) return;
-  for (std::size_t i = 0; i < drive.trace.size(); i += periods) {
-    picture.line(outline(drive.trace[i]), colour, 1.5, true);
-    for (std::size_t k = 0; k < drive.people.size(); ++k)
-      picture.polygon(circle(drive.people[k][i], scenario.walkers[k].radius), person_fill, person_rim);
-  }
-}
-
 }  // namespace
 
 bool collided(const RoomDrive& drive) {
@@ -206,33 +173,6 @@ std::string markdown_table(const std::vector<RoomSeries>& all) {
     text += difference_row("`" + drivers[0].first + "` minus `" + drivers[i].first + "`", drivers[0].second,
                            drivers[i].second);
   return text;
-}
-
-void draw(const std::vector<RoomSeries>& all, const RoomScenario& scenario, const std::string& folder) {
-  MapPicture picture(sim::map_of(scenario.room, 0.05));
-  for (const sim::Box& box : scenario.room.obstacles) {
-    const auto corners = sim::corners(box);
-    picture.polygon({corners.begin(), corners.end()}, {0.55, 0.58, 0.63, 1}, {0.3, 0.33, 0.38, 1});
-  }
-  std::vector<std::pair<std::string, Colour>> key;
-  std::size_t index = 0;
-  for (const RoomSeries& series : all) {
-    if (series.scenario != &scenario) continue;
-    const Colour colour = colours[index++ % std::size(colours)];
-    key.emplace_back(series.driver, colour);
-    for (const RoomDrive& drive : series.drives) {
-      if (index == 1 && &drive == &series.drives.front()) draw_moments(picture, drive, scenario, colour);
-      std::vector<maps::Point> points;
-      for (const maps::Pose& pose : drive.trace) points.push_back({pose.x, pose.y});
-      picture.line(points, colour, 3, false);
-      picture.line(outline(drive.trace.back()), colour, 2, true);
-    }
-  }
-  if (!scenario.walkers.empty()) key.emplace_back("people, every 3 s", person_rim);
-  picture.arrow(scenario.start, 20, {0.13, 0.16, 0.22, 1});
-  picture.arrow(scenario.goal, 20, {0.13, 0.16, 0.22, 1});
-  picture.key(scenario.name, scenario.summary, key);
-  picture.save(std::filesystem::path(folder) / (std::string(scenario.name) + ".png"));
 }
 
 }  // namespace slalom::tools

@@ -11,9 +11,9 @@ namespace slalom::tools {
 
 /// The drives of a driver in a scenario, one for each seed.
 struct RoomSeries {
-  const evaluation::RoomScenario* scenario;
-  std::string driver;  ///< as the tables call it
-  std::vector<evaluation::RoomDrive> drives;
+  const evaluation::RoomScenario* scenario;   ///< not null
+  std::string driver;                         ///< as the tables call it
+  std::vector<evaluation::RoomDrive> drives;  ///< under the default conditions, in the order of the seeds
 };
 
 /// Whether a drive ended with an overlap, be it that somebody walked into the robot.
@@ -21,17 +21,13 @@ bool collided(const evaluation::RoomDrive& drive);
 
 /// Means, intervals and every drive.
 Json summary_of(const RoomSeries& series);
-/// One line of words for the terminal, and the line above them.
+/// The names of the columns of print_row, in one line.
 void print_heading(std::ostream& out);
+/// The means of a series in one line, for the terminal.
 void print_row(const RoomSeries& series, std::ostream& out);
 
 /// A table in Markdown: each series, the sums of each driver over all scenarios, and how the others differ
 /// from the first one on the same scenarios and seeds.
 std::string markdown_table(const std::vector<RoomSeries>& all);
-
-/// A picture of a scenario for this folder: the ways that all drivers took, and of the first drive where
-/// robot and people were every 3 s.
-void draw(const std::vector<RoomSeries>& all, const evaluation::RoomScenario& scenario,
-          const std::string& folder);
 
 }  // namespace slalom::tools
