@@ -28,7 +28,7 @@ class Value {
   }
 
   std::string text() const {
-    if (!node_.IsScalar()) reject("must be a text");
+    if (!node_.IsScalar()) reject("must be a string");
     return node_.Scalar();
   }
 
