@@ -49,8 +49,8 @@ void bind_ilqr(py::module_& module) {
       module, "Ilqr",
       "Improves control sequences by iterative LQR, with the derivatives of a controller's problem: for "
       "proposals, or as a controller of smooth problems by itself.\n\n"
-      "controller: whose problem, horizon and bounds hold\n"
-      "iterations: most steps of an improvement")
+      "controller: its problem, horizon and bounds are used\n"
+      "iterations: maximum number of steps of an improvement")
       .def(py::init([](const py::object& controller, int iterations) {
              if (!py::isinstance<Controller>(controller))
                throw py::type_error("Ilqr: controller must be a slalom.Controller");
@@ -64,7 +64,8 @@ void bind_ilqr(py::module_& module) {
            "Sets the sequence that is improved next, an array (steps, inputs); the last inputs are held. "
            "Without rows, the inputs are those nearest to 0.")
       .def_property_readonly(
-          "cost", [](const Ilqr& i) { return i.result().cost(); }, "cost of the sequence")
+          "cost", [](const Ilqr& i) { return i.result().cost(); },
+          "cost of the sequence that the last improvement returned")
       .def_property_readonly(
           "first_cost", [](const Ilqr& i) { return i.result().first_cost(); },
           "cost before the last improvement")
@@ -73,7 +74,7 @@ void bind_ilqr(py::module_& module) {
           "steps of the last improvement")
       .def_property_readonly(
           "has_kink", [](const Ilqr& i) { return i.result().has_kink(); },
-          "whether the last improvement met a function without derivative");
+          "whether a function had no derivative at a point of the last improvement");
 }
 
 }  // namespace slalom::python
