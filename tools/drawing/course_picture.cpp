@@ -10,7 +10,7 @@ namespace slalom::tools {
 namespace {
 
 constexpr Colour faint{0.62, 0.66, 0.73, 0.8};
-constexpr Colour edge{0.16, 0.52, 0.36, 0.7};
+constexpr Colour corridor_side{0.16, 0.52, 0.36, 0.7};
 constexpr Colour nearest{0.80, 0.13, 0.18, 1};
 constexpr Colour tightest{0.42, 0.20, 0.62, 1};
 constexpr double margin = 2;  // m, of the map around the course
@@ -41,8 +41,8 @@ void draw_course(const vehicle::RaceCourse& course, const vehicle::RacingCar& ca
   std::vector<maps::Point> shown = left;
   shown.insert(shown.end(), right.begin(), right.end());
   MapPicture picture(cropped(course.map, shown, margin), 1400);
-  picture.line(left, edge, 2, corridor.closed);
-  picture.line(right, edge, 2, corridor.closed);
+  picture.line(left, corridor_side, 2, corridor.closed);
+  picture.line(right, corridor_side, 2, corridor.closed);
   picture.line(corridor.centre_line, faint, 1.5, corridor.closed, true);
   const auto [slow, fast] = std::minmax_element(speeds.begin(), speeds.end());
   const double slowest = std::floor(2 * *slow) / 2, fastest = std::ceil(2 * *fast) / 2;

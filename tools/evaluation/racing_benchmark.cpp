@@ -177,13 +177,13 @@ std::unique_ptr<RacingDriver> make_planner_driver(const RacingMap& map,
   return std::make_unique<PlannerDriver>(std::move(path), map.centre_line, make, simulated, lidar);
 }
 
-std::vector<RacingLap> drive_racing_laps(const RacingMap& map, RacingDriver& driver, int laps) {
+std::vector<BenchmarkLap> drive_benchmark_laps(const RacingMap& map, RacingDriver& driver, int laps) {
   sim::RacingBenchmark world(std::make_shared<const sim::Track>(map.grid), map.centre_line);
-  std::vector<RacingLap> driven;
+  std::vector<BenchmarkLap> driven;
   for (int k = 0; k < laps; ++k) {
     world.reset();
     while (!world.collided() && !world.complete()) world.step(driver.command(world.observation()));
-    RacingLap lap{world.time(), !world.collided(), world.observation().progress, 0, 0};
+    BenchmarkLap lap{world.time(), !world.collided(), world.observation().progress, 0, 0};
     for (const double acceleration : world.accelerations()) {
       ++lap.steps;
       lap.beyond += acceleration > racing_grip;
@@ -193,12 +193,12 @@ std::vector<RacingLap> drive_racing_laps(const RacingMap& map, RacingDriver& dri
   return driven;
 }
 
-Json racing_results(const std::vector<RacingLap>& laps) {
+Json racing_results(const std::vector<BenchmarkLap>& laps) {
   double sum = 0;
   int completed = 0, at_limit = 0;
   long long steps = 0, beyond = 0;
   Json times = Json::array();
-  for (const RacingLap& lap : laps) {
+  for (const BenchmarkLap& lap : laps) {
     steps += lap.steps;
     beyond += lap.beyond;
     times.push_back(lap.completed ? Json(lap.time) : Json(nullptr));

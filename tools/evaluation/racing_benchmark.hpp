@@ -58,7 +58,7 @@ std::unique_ptr<RacingDriver> make_planner_driver(const RacingMap& map,
                                                   const std::string& method, double margin);
 
 /// A lap as it ended.
-struct RacingLap {
+struct BenchmarkLap {
   double time = 0;         ///< s
   bool completed = false;  ///< without a collision
   double progress = 0;     ///< share of the lap
@@ -67,10 +67,10 @@ struct RacingLap {
 };
 
 /// Drives the laps of a map.
-std::vector<RacingLap> drive_racing_laps(const RacingMap& map, RacingDriver& driver, int laps);
+std::vector<BenchmarkLap> drive_benchmark_laps(const RacingMap& map, RacingDriver& driver, int laps);
 
 /// `mean_s` (of completed laps, null without any), `completed`, `at_time_limit` (of the completed), `laps`,
 /// `beyond_grip` (share of all steps), `lap_times_s` (null for a collision).
-Json racing_results(const std::vector<RacingLap>& laps);
+Json racing_results(const std::vector<BenchmarkLap>& laps);
 
 }  // namespace slalom::tools
