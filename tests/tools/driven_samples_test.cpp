@@ -40,7 +40,7 @@ TEST_F(DrivenSamples, AreTheTicksOfARecording) {
 }
 
 TEST_F(DrivenSamples, ALineOfMoreThanFourMebibytesIsRefused) {
-  const std::string longest = "{\"type\": \"note\", \"text\": \"" + std::string((1 << 22) - 27, 'x') + "\"}";
+  const std::string longest = "{\"type\": \"note\", \"text\": \"" + std::string((1 << 22) - 28, 'x') + "\"}";
   ASSERT_EQ(longest.size(), std::size_t{1} << 22);
   EXPECT_EQ(read_driven_samples(written(header + longest + "\n" + tick)).size(), 1u);
   EXPECT_NE(refusal(header + longest + " \n" + tick).find("lap.jsonl:2: is longer than 4194304 bytes"),
