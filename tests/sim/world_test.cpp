@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -140,6 +141,58 @@ TEST(World, ReportsWhichBodiesCollide) {
   EXPECT_EQ(contacts.collisions(), 6);
   // Bodies 2 and 3 overlap and are flagged for ever, with and without the others: {2,3}, +1, +disc, +box.
   EXPECT_EQ(contacts.flag_patterns(), 4);
+}
+
+/// Two cars in a room, the first of which drives into the second from behind, or the other way round.
+World bump(CollisionResponse response, bool first_is_behind) {
+  WorldOptions options;
+  options.body_response = response;
+  World world(options, std::make_shared<const Track>(testing::room(600, 100)));
+  const maps::Pose behind{2, 2.5, 0}, ahead{3, 2.5, 0};
+  world.reset(1, first_is_behind ? std::array{behind, ahead} : std::array{ahead, behind});
+  const Command fast{0, 4}, slow{0, 2};
+  while (world.time() < 5) {
+    world.step(first_is_behind ? std::array{fast, slow} : std::array{slow, fast});
+    if (!world.observe(0).colliding.empty()) break;
+  }
+  EXPECT_EQ(world.observe(0).colliding.size(), 1U);
+  return world;
+}
+
+TEST(World, ACarThatIsStruckKeepsItsMotionWhicheverItIs) {
+  for (const bool first_is_behind : {true, false}) {
+    const World world = bump(CollisionResponse::slide_unless_struck, first_is_behind);
+    const std::size_t behind = first_is_behind ? 0 : 1, ahead = 1 - behind;
+    EXPECT_GT(world.state(ahead).speed, 1.5);
+    EXPECT_LT(world.state(behind).speed, 0.5);
+    EXPECT_GT(signed_gap(world.outline(0), world.outline(1)), 0) << "they are apart after the step";
+  }
+  EXPECT_EQ(bump(CollisionResponse::slide, false).state(0).speed, 0) << "with slide the first car stops";
+}
+
+TEST(World, ACarThatIsTakenAwayIsNoLongerThere) {
+  WorldOptions options;
+  options.lidar.noise = 0;
+  World world(options, std::make_shared<const Track>(testing::room(400, 100)));
+  const std::array cars{maps::Pose{2, 2.5, 0}, maps::Pose{5, 2.5, 0}};
+  world.reset(1, cars);
+  const std::size_t ahead = 540;
+  EXPECT_LT(world.observe(0).scan.ranges[ahead], 3);
+  world.take_away(1);
+  EXPECT_TRUE(world.on_track(0));
+  EXPECT_FALSE(world.on_track(1));
+  const std::vector<float> last(world.observe(1).scan.ranges.begin(), world.observe(1).scan.ranges.end());
+  while (world.time() < 3) {
+    world.step(std::array{Command{0, 3}, Command{0, 3}});
+    EXPECT_FALSE(world.observe(0).collides() || world.observe(1).collides());
+  }
+  EXPECT_GT(world.state(0).x, 8) << "through the place of the other one";
+  EXPECT_EQ(world.state(1).x, 5) << "it takes no commands";
+  EXPECT_TRUE(std::equal(last.begin(), last.end(), world.observe(1).scan.ranges.begin()))
+      << "nor does it scan";
+  EXPECT_THROW(world.take_away(2), std::out_of_range);
+  world.reset(1, cars);
+  EXPECT_TRUE(world.on_track(1));
 }
 
 TEST(World, SeesBodiesWhereTheyAre) {

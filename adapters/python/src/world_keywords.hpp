@@ -7,7 +7,7 @@
 namespace slalom::sim {
 
 inline const char* const* enum_names(CollisionResponse) {
-  static constexpr const char* names[] = {"stop", "slide", "count_only", nullptr};
+  static constexpr const char* names[] = {"stop", "slide", "count_only", "slide_unless_struck", nullptr};
   return names;
 }
 inline const char* const* enum_names(Model) {

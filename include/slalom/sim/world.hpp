@@ -36,6 +36,9 @@ enum class CollisionResponse {
   stop,        ///< it returns to where it was before the step, at rest
   slide,       ///< it loses the speed into the obstacle and keeps the speed along it
   count_only,  ///< nothing: it drives through, and the collision is counted
+  /// As `slide`; but where a driven car drives into another, the other one keeps its motion. With `slide`
+  /// both lose speed, so that a car that is hit from behind may stop.
+  slide_unless_struck,
 };
 
 /// Options of cars, scanners and collisions.
@@ -122,6 +125,13 @@ class World {
   /// that are not finite or not as many as driven cars.
   void follow(std::span<const CarState> states);
 
+  /// Takes a driven car off the track, until the next reset: it stands still, collides with nothing, does not
+  /// scan, and is in no scan of the others. Its number, state and laps stay. Throws std::out_of_range on a
+  /// car that does not exist.
+  void take_away(std::size_t car);
+  /// Whether a driven car has not been taken away.
+  bool on_track(std::size_t car) const noexcept { return !cars_[car].away; }
+
   /// Whether a car scans: a new car does, and a car keeps the setting over a reset. Throws std::out_of_range
   /// on a car that does not exist.
   void set_scanning(std::size_t car, bool scans);
@@ -177,6 +187,8 @@ class World {
     double scan_time = 0;
     bool wall = false;
     bool scans = true;
+    bool away = false;
+    bool struck = false;  ///< in this step, with CollisionResponse::slide_unless_struck
   };
   /// A parked car, box or disc.
   struct Fixed {
@@ -191,6 +203,7 @@ class World {
   void find_fixed_partners() noexcept;
   void find_collisions() noexcept;
   void respond(std::size_t car) noexcept;
+  bool was_struck(std::size_t car) const noexcept;
   bool is_free(std::size_t car, const maps::Pose& pose) const noexcept;
   void slide(std::size_t car, const CarState& tried, CarState& state) const noexcept;
   void scan_walls(Car& car) noexcept;

@@ -55,7 +55,8 @@ void RacingOpponent::look(const World& world) {
   neighbours_.clear();
   for (std::size_t car = 0; car < world.cars(); ++car) {
     const Box box = world.outline(car);
-    if (car == car_ || std::hypot(box.pose.x - own.x, box.pose.y - own.y) > sight) continue;
+    if (car == car_ || !world.on_track(car) || std::hypot(box.pose.x - own.x, box.pose.y - own.y) > sight)
+      continue;
     const LapPath::Place place = line_->project_near({box.pose.x, box.pose.y}, place_, sight);
     if (std::abs(place.lateral) > widest) continue;
     const double turned = box.pose.yaw - line_->at(place.arc).yaw;

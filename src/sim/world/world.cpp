@@ -102,7 +102,7 @@ void World::reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::spa
     car.ranges.assign(lidar_.padded_beams(), static_cast<float>(options_.lidar.range_max));
     if (options_.lidar.gym.ranges) car.gym_ranges.assign(beams, options_.lidar.range_max);
     car.colliding.clear();
-    car.wall = false;
+    car.wall = car.away = false;
     boxes_[i].pose = cars[i];
   }
   flags_.assign(bodies(), 0);
@@ -186,6 +186,20 @@ void World::set_state(std::size_t car, const CarState& state) {
   if (cars_[car].timer) cars_[car].timer->relocate(*track_->lap_path(), {state.x, state.y});
 }
 
+void World::take_away(std::size_t car) {
+  Car& taken = cars_.at(car);
+  taken.away = true;
+  CarState state = taken.plant.state();
+  state.speed = state.yaw_rate = state.slip = 0;
+  taken.plant.set_state(state);
+  taken.before = state;
+  taken.wall = false;
+  taken.colliding.clear();
+  for (Car& other : cars_) std::erase(other.colliding, static_cast<int>(car));
+  flags_[car] = 0;
+  partners_[car] = -1;
+}
+
 void World::set_scanning(std::size_t car, bool scans) {
   cars_.at(car).scans = scans;
 }
@@ -226,6 +240,7 @@ StepStatus World::step(std::span<const Command> commands) noexcept {
   StepStatus status = commands.size() < cars_.size() ? StepStatus::missing_command : StepStatus::ok;
   for (std::size_t i = 0; i < cars_.size(); ++i) {
     Car& car = cars_[i];
+    if (car.away) continue;
     car.before = car.plant.state();
     if (i >= commands.size()) {
       car.plant.coast();
@@ -243,6 +258,8 @@ StepStatus World::step(std::span<const Command> commands) noexcept {
     gym_scan_and_collisions();
   else {
     find_collisions();
+    if (options_.body_response == CollisionResponse::slide_unless_struck)
+      for (std::size_t i = 0; i < cars_.size(); ++i) cars_[i].struck = was_struck(i);
     for (std::size_t i = 0; i < cars_.size(); ++i)
       if (cars_[i].wall || !cars_[i].colliding.empty()) respond(i);
     if (scan_is_due()) scan_all();
@@ -253,6 +270,7 @@ StepStatus World::step(std::span<const Command> commands) noexcept {
 
 void World::count_laps() noexcept {
   for (Car& car : cars_) {
+    if (car.away) continue;
     const maps::Point at{car.plant.state().x, car.plant.state().y};
     car.zone.update(at, time_);
     if (car.timer) car.timer->update(*track_->lap_path(), at, time_);

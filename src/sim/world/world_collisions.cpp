@@ -45,8 +45,9 @@ void World::find_collisions() noexcept {
   const std::size_t driven = cars_.size();
   for (std::size_t i = 0; i < fixed_.size(); ++i) partners_[driven + i] = fixed_[i].last_partner;
   for (std::size_t i = 0; i < driven; ++i) {
+    if (cars_[i].away) continue;
     for (std::size_t j = i + 1; j < driven; ++j)
-      if (!far_apart(boxes_[i], boxes_[j]) && signed_gap(boxes_[i], boxes_[j]) <= 0) {
+      if (!cars_[j].away && !far_apart(boxes_[i], boxes_[j]) && signed_gap(boxes_[i], boxes_[j]) <= 0) {
         cars_[i].colliding.push_back(static_cast<int>(j));
         cars_[j].colliding.push_back(static_cast<int>(i));
       }
@@ -59,7 +60,10 @@ void World::find_collisions() noexcept {
   }
   for (std::size_t i = 0; i < driven; ++i) {
     if (!cars_[i].colliding.empty()) partners_[i] = cars_[i].colliding.back();
-    if (!options_.gym.wall_collision) cars_[i].wall = track_->collides_with_wall(boxes_[i]);
+    if (cars_[i].away)
+      cars_[i].wall = false;
+    else if (!options_.gym.wall_collision)
+      cars_[i].wall = track_->collides_with_wall(boxes_[i]);
   }
   for (std::size_t i = 0; i < bodies(); ++i) flags_[i] = partners_[i] >= 0 || (i < driven && cars_[i].wall);
 }
@@ -69,16 +73,32 @@ void World::respond(std::size_t index) noexcept {
   const bool at_bodies = !car.colliding.empty() && options_.body_response != CollisionResponse::count_only;
   const bool zeroes = car.wall && options_.gym.wall_stop;
   const bool at_wall = zeroes || (car.wall && options_.wall_response != CollisionResponse::count_only);
-  if (!at_bodies && !at_wall) return;
+  if ((!at_bodies && !at_wall) || car.struck) return;
   const CarState tried = car.plant.state();
   const CollisionResponse response = at_wall ? options_.wall_response : options_.body_response;
   CarState state = zeroes ? tried : car.before;
   state.steer = tried.steer;
   state.speed = state.yaw_rate = state.slip = 0;
   if (zeroes) state.yaw = 0;
-  if (!zeroes && response == CollisionResponse::slide) slide(index, tried, state);
+  if (!zeroes && response != CollisionResponse::stop) slide(index, tried, state);
   car.plant.set_state(state);
   boxes_[index].pose = {state.x, state.y, state.yaw};
+}
+
+/// Whether this car touches driven cars alone, and only since those moved. Each of them would have touched it
+/// had it stayed where it was, and would not have done so itself: they respond, and away from it. To be
+/// called before any car responds.
+bool World::was_struck(std::size_t index) const noexcept {
+  const auto before = [&](std::size_t car) {
+    const CarState& state = cars_[car].before;
+    return Box{{state.x, state.y, state.yaw}, boxes_[car].length, boxes_[car].width};
+  };
+  const std::vector<int>& touched = cars_[index].colliding;
+  return !cars_[index].wall && std::all_of(touched.begin(), touched.end(), [&](int body) {
+    const auto other = static_cast<std::size_t>(body);
+    return other < cars_.size() && signed_gap(boxes_[index], before(other)) > 0 &&
+           signed_gap(before(index), boxes_[other]) <= 0;
+  });
 }
 
 bool World::is_free(std::size_t car, const maps::Pose& pose) const noexcept {
@@ -87,7 +107,8 @@ bool World::is_free(std::size_t car, const maps::Pose& pose) const noexcept {
     return false;
   if (options_.body_response == CollisionResponse::count_only) return true;
   for (std::size_t i = 0; i < cars_.size(); ++i)
-    if (i != car && !far_apart(box, boxes_[i]) && signed_gap(box, boxes_[i]) <= 0) return false;
+    if (i != car && !cars_[i].away && !far_apart(box, boxes_[i]) && signed_gap(box, boxes_[i]) <= 0)
+      return false;
   return std::none_of(fixed_.begin(), fixed_.end(), [&](const Fixed& body) { return collides(box, body); });
 }
 

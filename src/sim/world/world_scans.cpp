@@ -23,7 +23,7 @@ void World::cast_bodies(std::size_t index) noexcept {
       lidar_.cast(car.sensor, body, car.ranges);
   };
   for (std::size_t i = 0; i < cars_.size(); ++i)
-    if (i != index) cast(boxes_[i]);
+    if (i != index && !cars_[i].away) cast(boxes_[i]);
   for (const Fixed& body : fixed_) {
     if (body.disc_radius > 0)
       cast(Disc{{body.box.pose.x, body.box.pose.y}, body.disc_radius});
@@ -51,7 +51,7 @@ void World::publish(Car& car) noexcept {
 
 void World::scan_all() noexcept {
   for (std::size_t i = 0; i < cars_.size(); ++i) {
-    if (!cars_[i].scans) continue;
+    if (!cars_[i].scans || cars_[i].away) continue;
     scan_walls(cars_[i]);
     if (options_.lidar.gym.noise) add_noise(cars_[i]);
     cast_bodies(i);
@@ -63,14 +63,14 @@ void World::scan_all() noexcept {
 void World::gym_scan_and_collisions() noexcept {
   for (Car& car : cars_) {
     car.wall = false;
-    if (!car.scans) continue;
+    if (!car.scans || car.away) continue;
     scan_walls(car);
     add_noise(car);
   }
   find_collisions();
   for (std::size_t i = 0; i < cars_.size(); ++i) {
     Car& car = cars_[i];
-    if (!car.scans) continue;
+    if (!car.scans || car.away) continue;
     const double speed = car.plant.state().speed;
     car.wall = (options_.lidar.gym.ranges ? time_to_collision_.first_hit(car.gym_ranges, speed)
                                           : time_to_collision_.first_hit(car.ranges, speed)) >= 0;
