@@ -26,7 +26,7 @@ void ClosedLoop::change_controller(std::shared_ptr<const LapRunner> runner) {
   auto planner = runner->make_planner();
   SequenceCostMeter meter(runner->environment_->path, runner->configuration_.vehicle);
   planner->reset(solver_seed(seed_, runner->method_));
-  lap_->planner = std::move(planner);
+  lap_->driver->change(*runner, std::move(planner));
   lap_->meter = std::move(meter);
   runner_ = std::move(runner);
 }

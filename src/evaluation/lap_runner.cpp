@@ -142,8 +142,8 @@ void LapRunner::finish(LapInProgress& lap) const {
   result.collisions = rules.collisions(lap.log);
   result.collided_bodies = lap.log.collisions();
   result.wall = lap.log.hit_wall();
-  if (lap.hardware) result.localisation = lap.hardware->record();
-  if (lap.tracking) result.tracking = lap.tracking->record();
+  if (lap.driver->hardware()) result.localisation = lap.driver->hardware()->record();
+  if (lap.driver->tracking()) result.tracking = lap.driver->tracking()->record();
   if (lap.overtaking) result.overtaking = lap.overtaking->record(result.timeout);
   result.time = lap.world.time();
   if (result.finished && open_length_ <= 0)

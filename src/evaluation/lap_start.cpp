@@ -79,11 +79,8 @@ void LapRunner::make_opponents(LapInProgress& lap) const {
 }
 
 std::unique_ptr<LapRunner::LapInProgress> LapRunner::begin(std::uint64_t seed) const {
-  sim::WorldOptions options = environment_->world_options();
-  rules_of(environment_->protocol).configure(options, settings_, configuration_);
-  if (settings_.hardware) HardwareModel::apply(*settings_.hardware, options);
-  auto lap = std::make_unique<LapInProgress>(options, *environment_, path_, configuration_, make_planner());
-  lap->planner->reset(solver_seed(seed, method_));
+  const sim::WorldOptions options = DriverStack::world_options(*this);
+  auto lap = std::make_unique<LapInProgress>(options, *environment_, path_, configuration_);
   lap->result.seed = seed;
   lap->result.obstacles = place_obstacles(seed);
   lap->result.min_clearance = std::numeric_limits<double>::infinity();
@@ -101,15 +98,7 @@ std::unique_ptr<LapRunner::LapInProgress> LapRunner::begin(std::uint64_t seed) c
   lap->result.impassable = static_cast<int>(
       impassable_obstacles(*environment_->track, parked, {.radius = 0.5 * options.car.width}).size());
   for (std::size_t i = 1; i < cars.size(); ++i) lap->world.set_scanning(i, false);
-  if (settings_.hardware)
-    lap->hardware =
-        std::make_unique<HardwareModel>(*settings_.hardware, environment_->course.map, options.car,
-                                        lap->world.state(0), solver_seed(seed, "hardware"));
-  if (settings_.tracking != TrackingMode::off) {
-    lap->tracking = std::make_unique<TrackingMeter>(settings_.tracking, environment_->course.map, lap->world,
-                                                    solver_seed(seed, "tracking"));
-    lap->predictor.emplace(path_);
-  }
+  lap->driver.emplace(*this, lap->world, 0, seed);
   return lap;
 }
 

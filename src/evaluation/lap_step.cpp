@@ -10,12 +10,6 @@
 namespace slalom::evaluation {
 namespace {
 
-/// Pose and speed of the rear axle of the simulated car.
-vehicle::Odometry odometry_of(const sim::Observation& seen, double rear_length) {
-  const double c = std::cos(seen.pose.yaw), s = std::sin(seen.pose.yaw);
-  return {{seen.pose.x - rear_length * c, seen.pose.y - rear_length * s, seen.pose.yaw}, seen.speed};
-}
-
 /// sum of |u| over the first input (the steering) of every step, rad
 double sum_of_steering(const vehicle::PlannerOutput& output) {
   double sum = 0;
@@ -48,30 +42,15 @@ void record_estimate(EstimationRecord& record, const vehicle::PlannerOutput& out
 }  // namespace
 
 void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, double extra_latency) const {
-  const LapRules& rules = rules_of(environment_->protocol);
-  const sim::Observation seen = lap.world.observe(0);
-  const maps::LaserScanView scan = rules.scan(seen, lap.world);
-  std::span<const maps::PredictedObstacle> others;
-  if (lap.tracking) others = lap.predictor->update(lap.tracking->observe(lap.world, scan), seen.time);
-  vehicle::Odometry odometry = odometry_of(seen, lap.world.options().car.rear_length);
-  bool localised = true;
-  if (lap.hardware) {
-    const auto sensed = lap.hardware->sense(seen, lap.world.state(0));
-    localised = sensed.has_value();
-    if (localised) odometry = *sensed;
-  }
-  // Without a pose the planner gets NaN and stops; the cost is still measured at the true pose.
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  const vehicle::PlannerOutput& output = lap.planner->update(
-      {.scan = scan,
-       .odometry = localised ? odometry : vehicle::Odometry{{unknown, unknown, unknown}, odometry.speed},
-       .imu = lap.hardware ? lap.hardware->read_imu() : std::nullopt,
-       .others = others});
-  if (localised) record_estimate(lap.result.estimation, output, seen);
+  const DriverStack::Update update = lap.driver->update(lap.world);
+  const sim::Observation& seen = update.seen;
+  const vehicle::PlannerOutput& output = update.output;
+  const vehicle::Planner& planner = lap.driver->planner();
+  if (update.localised) record_estimate(lap.result.estimation, output, seen);
 
   // If the planner's cost map has the options of the meter's, it is not computed twice.
-  lap.meter.observe(scan, odometry.pose,
-                    configuration_.planner.published.maps ? &lap.planner->cost_map() : nullptr);
+  lap.meter.observe(update.scan, update.odometry.pose,
+                    configuration_.planner.published.maps ? &planner.cost_map() : nullptr);
   const SequenceCostMeter::Cost cost = lap.meter.planned(output);
   lap.sums.state_cost += cost.state;
   lap.sums.collision_cost += cost.collision;
@@ -96,30 +75,20 @@ void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, 
     result.solve_ms.push_back(static_cast<float>(1e3 * solve.times.total));
   }
   if (on_step)
-    on_step({result.steps, seen.time, progress(lap.world), rules.collisions(lap.log), seen, scan, odometry,
-             output, *lap.planner, lap.world, cost});
+    on_step({result.steps, seen.time, progress(lap.world),
+             rules_of(environment_->protocol).collisions(lap.log), seen, update.scan, update.odometry, output,
+             planner, lap.world, cost});
   ++result.steps;
-
-  const double time_step = lap.world.options().time_step;
-  const auto delay = std::llround(settings_.latency / time_step) +
-                     static_cast<long long>(std::ceil(extra_latency / time_step - 1e-9));
-  lap.pending.emplace_back(lap.world.steps() + delay, rules.command(output.command));
+  lap.driver->send(output.command, lap.world, extra_latency);
 }
 
 void LapRunner::advance(LapInProgress& lap, bool past_finish) const {
-  const double time_step = lap.world.options().time_step;
-  const auto steps = std::max<long long>(1, std::llround(control_period() / time_step));
+  const auto steps = DriverStack::steps_per_command(*this, lap.world);
   for (long long k = 0; k < steps && (past_finish || !at_finish(lap.world)); ++k) {
-    while (!lap.pending.empty() && lap.pending.front().first <= lap.world.steps()) {
-      lap.applied = lap.pending.front().second;
-      lap.pending.erase(lap.pending.begin());
-    }
-    lap.commands[0] = lap.hardware ? lap.hardware->servo(lap.applied, time_step) : lap.applied;
-    lap.commands[0].steer *= settings_.steering_gain;
+    lap.commands[0] = lap.driver->command(lap.world);
     command_opponents(lap, k == 0);
     lap.world.step(lap.commands);
-    if (lap.hardware) lap.hardware->moved(lap.world.state(0), time_step);
-    if (lap.tracking) lap.tracking->moved(lap.world.state(0), time_step);
+    lap.driver->moved(lap.world);
     if (lap.overtaking) lap.overtaking->update(lap.world);
     record_collisions(lap);
   }

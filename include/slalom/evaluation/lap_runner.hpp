@@ -128,6 +128,7 @@ class LapRunner {
 
  private:
   friend class ClosedLoop;
+  friend class DriverStack;
   struct LapInProgress;
   std::unique_ptr<LapInProgress> begin(std::uint64_t seed) const;
   std::vector<maps::Pose> place_obstacles(std::uint64_t seed) const;

@@ -8,19 +8,15 @@ namespace {
 
 constexpr double meeting_gap = 4, ahead_gap = 1;  // m
 constexpr double rounds_to_overtake = 2;          // times around the course
-constexpr double apart_time = 0.5;                // s, after which another touch is another contact
-constexpr double snapshot_interval = 0.05;        // s
 
 }  // namespace
 
-OvertakingMeter::OvertakingMeter(const sim::World& world) : opponents_(world.cars() - 1) {
+OvertakingMeter::OvertakingMeter(const sim::World& world) : judge_(world), opponents_(world.cars() - 1) {
   const double length = world.track().lap_path()->length();
   for (std::size_t i = 0; i < opponents_.size(); ++i) {
     const double ahead = world.laps(i + 1)->arc() - world.laps(0)->arc();
     opponents_[i].start_gap = ahead < 0 ? ahead + length : ahead;
-    opponents_[i].before = opponents_[i].long_before = place(world, i + 1);
   }
-  own_before_ = own_long_before_ = place(world, 0);
 }
 
 /// m along the course from the first car to another. It counts whole turns: a car that is lapped is a course
@@ -29,26 +25,10 @@ double OvertakingMeter::gap(const sim::World& world, std::size_t car) const {
   return opponents_[car - 1].start_gap + world.laps(car)->progress() - world.laps(0)->progress();
 }
 
-OvertakingMeter::Place OvertakingMeter::place(const sim::World& world, std::size_t car) const {
-  const sim::CarState& state = world.state(car);
-  const double turned = state.yaw + state.slip - world.track().lap_path()->at(world.laps(car)->arc()).yaw;
-  const double apart = car == 0 ? 0 : std::remainder(gap(world, car), world.track().lap_path()->length());
-  return {apart, world.laps(car)->lateral(), state.speed * std::sin(turned)};
-}
-
 void OvertakingMeter::update(const sim::World& world) {
-  const sim::Observation seen = world.observe(0);
-  if (seen.time - snapshot_ >= snapshot_interval) {
-    snapshot_ = seen.time;
-    own_long_before_ = own_before_;
-    own_before_ = place(world, 0);
-    for (std::size_t i = 0; i < opponents_.size(); ++i) {
-      opponents_[i].long_before = opponents_[i].before;
-      opponents_[i].before = place(world, i + 1);
-    }
-  }
+  judge_.update(world);
   for (std::size_t car = 1; car <= opponents_.size(); ++car) meet(world, car);
-  for (const int body : seen.colliding)
+  for (const int body : world.observe(0).colliding)
     if (body > 0 && static_cast<std::size_t>(body) < world.cars())
       touch(world, static_cast<std::size_t>(body));
 }
@@ -76,23 +56,16 @@ void OvertakingMeter::meet(const sim::World& world, std::size_t car) {
 
 void OvertakingMeter::touch(const sim::World& world, std::size_t car) {
   Opponent& opponent = opponents_[car - 1];
-  const bool goes_on = world.time() - opponent.touched < apart_time;
+  const bool goes_on = world.time() - opponent.touched < contact_pause;
   opponent.touched = world.time();
   if (goes_on) return;
-  const bool caused = causes(own_long_before_, opponent.long_before, world.options().car.wheelbase());
+  const bool caused = judge_.at_fault(0, car);
   ++record_.contacts;
   record_.caused += caused;
   if (opponent.encounter < 0) return;
   Encounter& encounter = record_.encounters[static_cast<std::size_t>(opponent.encounter)];
   ++encounter.contacts;
   encounter.caused += caused;
-}
-
-/// Whether the first car is at fault where it touches the other.
-bool OvertakingMeter::causes(const Place& own, const Place& other, double wheelbase) noexcept {
-  if (std::abs(other.gap) > wheelbase) return other.gap > 0;
-  const double side = other.offset > own.offset ? 1 : -1;
-  return side * own.sideways >= -side * other.sideways;
 }
 
 OvertakingRecord OvertakingMeter::record(bool timed_out) const {

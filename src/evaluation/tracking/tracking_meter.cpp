@@ -62,16 +62,17 @@ maps::Pose inverse(const maps::Pose& pose) {
 }  // namespace
 
 TrackingMeter::TrackingMeter(TrackingMode mode, const maps::OccupancyGrid& map, const sim::World& world,
-                             std::uint64_t seed)
+                             std::size_t own, std::uint64_t seed)
     : mode_(mode),
+      own_(own),
       car_(world.options().car),
       mount_(compose({car_.rear_length, 0, 0}, world.options().lidar.mount)),
       wheels_(car_, seeded_wheels(mode, seed)),
-      localiser_(make_localiser(mode, map, mount_, sim::rear_axle(car_, world.state(0)), seed)),
+      localiser_(make_localiser(mode, map, mount_, sim::rear_axle(car_, world.state(own)), seed)),
       tracker_(make_tracker(mode, map, world.options().lidar.noise)),
       ranges_(world.lidar().padded_beams()),
       body_ranges_(ranges_.size()) {
-  wheels_.reset(world.state(0));
+  wheels_.reset(world.state(own));
   wheels_before_ = wheels_.pose();
 }
 
@@ -101,7 +102,7 @@ tracking::TrackerInput TrackingMeter::locate(const sim::Observation& seen,
 
 std::span<const tracking::TrackedObject> TrackingMeter::observe(const sim::World& world,
                                                                 const maps::LaserScanView& scan) {
-  const sim::Observation seen = world.observe(0);
+  const sim::Observation seen = world.observe(own_);
   const tracking::TrackerOutput& output = tracker_.update(locate(seen, scan));
   aligned_ = output.sensor;
   record_.update_ms.push_back(static_cast<float>(1e3 * output.update_time));
@@ -117,8 +118,13 @@ void TrackingMeter::find_in_view(const sim::World& world, const maps::Pose& sens
   in_view_since_.resize(bodies, std::numeric_limits<double>::infinity());
   const sim::Lidar& lidar = world.lidar();
   lidar.scan(world.track(), sensor, ranges_);
-  for (std::size_t body = 1; body < bodies; ++body) lidar.cast(sensor, world.outline(body), ranges_);
-  for (std::size_t body = 1; body < bodies; ++body) {
+  for (std::size_t body = 0; body < bodies; ++body)
+    if (counts(world, body)) lidar.cast(sensor, world.outline(body), ranges_);
+  for (std::size_t body = 0; body < bodies; ++body) {
+    if (!counts(world, body)) {
+      in_view_since_[body] = std::numeric_limits<double>::infinity();
+      continue;
+    }
     const sim::Box box = world.outline(body);
     const bool moves = body < world.cars() && std::abs(world.state(body).speed) >= min_speed;
     int beams = 0;
@@ -141,9 +147,9 @@ void TrackingMeter::pair_up(const sim::World& world, const tracking::TrackerOutp
   pairs_.assign(world.bodies(), nullptr);
   taken_.assign(output.objects.size(), 0);
   while (true) {
-    std::size_t best_body = 0, best_object = 0;
+    std::size_t best_body = own_, best_object = 0;
     double least = match_distance;
-    for (std::size_t body = 1; body < world.bodies(); ++body) {
+    for (std::size_t body = 0; body < world.bodies(); ++body) {
       if (!in_view_[body] || pairs_[body]) continue;
       for (std::size_t i = 0; i < output.objects.size(); ++i) {
         const double apart = distance(world.outline(body).pose, in_map(output.objects[i].pose));
@@ -153,7 +159,7 @@ void TrackingMeter::pair_up(const sim::World& world, const tracking::TrackerOutp
         best_object = i;
       }
     }
-    if (best_body == 0) return;
+    if (best_body == own_) return;
     pairs_[best_body] = &output.objects[best_object];
     taken_[best_object] = 1;
   }
@@ -169,7 +175,7 @@ void TrackingMeter::compare(const sim::World& world, const tracking::TrackerOutp
     return compose(sensor, {at.x, at.y, pose.yaw - output.sensor.yaw});
   };
   pair_up(world, output, in_map);
-  for (std::size_t body = 1; body < world.bodies(); ++body) {
+  for (std::size_t body = 0; body < world.bodies(); ++body) {
     if (!in_view_[body]) continue;
     const maps::Pose truth = world.outline(body).pose;
     const bool settled = world.time() - in_view_since_[body] >= long_in_view;
@@ -191,8 +197,8 @@ void TrackingMeter::compare(const sim::World& world, const tracking::TrackerOutp
   for (const tracking::TrackedObject& object : output.objects) {
     if (object.unseen > 0) continue;
     bool real = false;
-    for (std::size_t body = 1; body < world.bodies() && !real; ++body)
-      real = distance(world.outline(body).pose, in_map(object.pose)) <= match_distance;
+    for (std::size_t body = 0; body < world.bodies() && !real; ++body)
+      real = counts(world, body) && distance(world.outline(body).pose, in_map(object.pose)) <= match_distance;
     const auto at = std::lower_bound(false_ids_.begin(), false_ids_.end(), object.id);
     if (!real && (at == false_ids_.end() || *at != object.id)) false_ids_.insert(at, object.id);
   }

@@ -14,11 +14,11 @@
 
 namespace slalom::evaluation {
 
-/// Runs a tracker on the scans of the first car, and compares its objects with the bodies of the world.
+/// Runs a tracker on the scans of a car, and compares its objects with the other bodies of the world.
 class TrackingMeter {
  public:
-  /// `mode` is not off. `seed` is that of the errors of the pose.
-  TrackingMeter(TrackingMode mode, const maps::OccupancyGrid& map, const sim::World& world,
+  /// `mode` is not off. `own` is the number of the car, `seed` that of the errors of the pose.
+  TrackingMeter(TrackingMode mode, const maps::OccupancyGrid& map, const sim::World& world, std::size_t own,
                 std::uint64_t seed);
 
   /// To be called in every control step. The objects, in the map frame, until the next step; without a map,
@@ -36,7 +36,12 @@ class TrackingMeter {
   void pair_up(const sim::World& world, const tracking::TrackerOutput& output, const InMap& in_map);
   void compare(const sim::World& world, const tracking::TrackerOutput& output, const maps::Pose& sensor);
 
+  bool counts(const sim::World& world, std::size_t body) const noexcept {
+    return body != own_ && (body >= world.cars() || world.on_track(body));
+  }
+
   TrackingMode mode_;
+  std::size_t own_;  ///< number of the car that scans
   sim::CarParameters car_;
   maps::Pose mount_;  ///< of the LiDAR, from the rear axle
   sim::WheelOdometry wheels_;
