@@ -1,7 +1,6 @@
 // One control step of a lap: the planner's update, then the world until the next one.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "evaluation/lap_in_progress.hpp"
 #include "evaluation/lap_rules.hpp"

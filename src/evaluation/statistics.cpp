@@ -60,6 +60,21 @@ double normal_tail(double z) {
   return 0.5 * std::erfc(z / std::sqrt(2.0));
 }
 
+/// The mean, at most `most`, of the Poisson distribution of which a draw is at most `count` with this
+/// probability.
+double poisson_mean(std::int64_t count, double probability, double most) {
+  const double log_factorial = std::lgamma(static_cast<double>(count) + 1);
+  double low = 0, high = most;
+  for (int halving = 0; halving < 80; ++halving) {
+    const double middle = 0.5 * (low + high);
+    double term = std::exp(static_cast<double>(count) * std::log(middle) - middle - log_factorial),
+           sum = term;
+    for (std::int64_t i = count; i > 0 && term > 0; --i) sum += term *= static_cast<double>(i) / middle;
+    (sum > probability ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
 }  // namespace
 
 Interval wilson_interval(std::int64_t successes, std::int64_t trials, double z) {
@@ -69,6 +84,13 @@ Interval wilson_interval(std::int64_t successes, std::int64_t trials, double z) 
   const double z2 = z * z, centre = p + z2 / (2 * n),
                spread = z * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
   return {std::max(0.0, (centre - spread) / (1 + z2 / n)), std::min(1.0, (centre + spread) / (1 + z2 / n))};
+}
+
+Interval poisson_interval(std::int64_t count) {
+  count = std::max<std::int64_t>(count, 0);
+  const auto n = static_cast<double>(count);
+  const double most = n + 10 * std::sqrt(n + 1) + 10;
+  return {count == 0 ? 0 : poisson_mean(count - 1, 0.975, most), poisson_mean(count, 0.025, most)};
 }
 
 double mean(std::span<const double> values) {

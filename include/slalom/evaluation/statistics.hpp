@@ -16,6 +16,10 @@ struct Interval {
 /// without trials; successes beyond the trials count as all of them.
 Interval wilson_interval(std::int64_t successes, std::int64_t trials, double z = 1.959963984540054);
 
+/// Exact interval for the mean of a Poisson distribution of which `count` was drawn (Garwood, Biometrika 28,
+/// 1936), for instance of contacts on a distance. A count below 0 is taken as 0.
+Interval poisson_interval(std::int64_t count);
+
 double mean(std::span<const double> values);  ///< NaN without values
 
 /// A percentile of ascending values by the nearest rank: the smallest of them that at least a share (0 to 1)

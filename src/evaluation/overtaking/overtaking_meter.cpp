@@ -1,6 +1,5 @@
 #include "evaluation/overtaking/overtaking_meter.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace slalom::evaluation {

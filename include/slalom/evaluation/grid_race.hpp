@@ -1,0 +1,159 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/statistics.hpp"
+
+namespace slalom::evaluation {
+
+/// Most cars of a race.
+inline constexpr int most_race_cars = 4;
+
+/// A car of a race, by what drives it.
+struct RaceEntry {
+  std::string name;                      ///< in results
+  vehicle::Configuration configuration;  ///< options of planner, vehicle model and methods
+  std::string method = "svg_mppi";       ///< name of the method
+};
+
+/// The rules of a race that can be chosen.
+struct GridRaceOptions {
+  int laps = 5;                ///< of each car, 1 ... 1000
+  double place_spacing = 1;    ///< m along the course from one place of the grid to the next, 0.7 ... 10
+  double place_offset = 0.25;  ///< m from the course line, to the left and to the right in turn, 0 ... 2;
+                               ///< less where a wall is too near
+};
+
+/// How a race ended for a car.
+enum class CarEnd {
+  finished,   ///< it drove all laps
+  wall,       ///< it hit a wall
+  timeout,    ///< it did not drive all laps in time
+  cancelled,  ///< the race was ended by the caller
+};
+/// The name of an end in results.
+std::string_view name(CarEnd end) noexcept;
+
+/// Two cars touch, which have not touched for 0.5 s. OvertakingRecord has the rule of who is at fault.
+struct CarContact {
+  double time = 0;            ///< s
+  std::array<int, 2> cars{};  ///< indices of entries
+  int at_fault = 0;           ///< one of these
+  maps::Pose pose{};          ///< of the centre of gravity of the first
+};
+
+/// A car is 1 m ahead of another along the course, from middle to middle, that was 1 m ahead of it: for a
+/// place in the race, so not where it laps the other, and not where that one has left the track.
+struct Overtake {
+  double time = 0;    ///< s
+  int car = 0;        ///< index of its entry
+  int overtaken = 0;  ///< index of the other's
+};
+
+/// A car of a race that has ended.
+struct CarResult {
+  int place = 0;                        ///< in the standings, from 0
+  int grid_place = 0;                   ///< at the start, from 0
+  CarEnd end = CarEnd::timeout;         ///< how the race ended for it
+  double time = 0;                      ///< s since the start, when it ended
+  double gap = 0;                       ///< s behind the winner; NaN unless finished
+  std::vector<double> lap_times;        ///< s, of whole laps; the first begins with the start
+  double distance = 0;                  ///< m, driven
+  double progress = 0;                  ///< m along the course beyond the finish line
+  int overtakes = 0;                    ///< of other cars
+  int overtaken = 0;                    ///< by other cars
+  int contacts = 0;                     ///< with other cars
+  int caused = 0;                       ///< those of them at which it is at fault
+  bool touched_before = false;          ///< with CarEnd::wall: it touched a car in the second before
+  maps::Pose last{};                    ///< of its centre of gravity, where it ended
+  std::array<int, 7> planner_status{};  ///< control steps by vehicle::PlannerStatus
+  std::vector<float> solve_ms;          ///< wall-clock time of each solve
+
+  double best_lap() const noexcept;  ///< s; NaN without a whole lap
+};
+
+/// A race that has ended.
+struct GridRaceResult {
+  std::uint64_t seed = 0;            ///< seed of the random numbers
+  bool cancelled = false;            ///< ended by the caller
+  double time = 0;                   ///< s, when it ended
+  std::vector<CarResult> cars;       ///< in the order of the entries
+  std::vector<int> standings;        ///< indices of the entries, the winner first
+  std::vector<CarContact> contacts;  ///< in order of time
+  std::vector<Overtake> overtakes;   ///< in order of time
+
+  /// Whether a car has finished.
+  bool has_winner() const noexcept;
+};
+
+/// A control step of a race, before the commands are applied. The references are valid until the callback
+/// returns.
+struct GridRaceStep {
+  double time = 0;                ///< s
+  double progress = 0;            ///< of the car that is first, as a share of the race
+  int contacts = 0;               ///< so far
+  int driving = 0;                ///< cars on the track
+  const sim::World& world;        ///< the simulated world; its cars are numbered by their place on the grid
+  std::span<const int> entry_of;  ///< for each car of the world, the index of its entry
+};
+/// Called in every control step.
+using GridRaceCallback = std::function<void(const GridRaceStep&)>;
+
+/// Races of several cars on a closed course, each with a planner, a LiDAR that sees the others, and, with
+/// LapSettings::tracking, a tracker and predictor of its own. All random numbers follow from the seed.
+///
+/// The cars stand on a grid behind the start of the course, to the left and to the right of its line in turn,
+/// and start together. A lap ends at the first place's arc length, for all cars. A car that has driven its
+/// laps, and one that hits a wall, leaves the track at once. After a contact both cars go on; the one that
+/// was driven into keeps its motion. The race ends when no car is left on the track, or after the longest
+/// timeout of a lap of its cars (LapRunner::timeout) times the laps. Standings: cars that finished, by time,
+/// then the others, by how far they came.
+class GridRace {
+ public:
+  /// With two to `most_race_cars` entries. Throws std::invalid_argument as LapRunner does, and on a course
+  /// that is not closed, another protocol than Protocol::true_physics, control periods that differ, settings
+  /// with obstacles, opponents or rounds, and options out of range; std::runtime_error if the course has no
+  /// room for the grid.
+  GridRace(const std::shared_ptr<const Environment>& environment, const std::vector<RaceEntry>& entries,
+           const LapSettings& settings, const GridRaceOptions& options);
+
+  /// Drives a race. Entry i starts from place (i + `rotation`) of the grid, modulo the number of cars. Ends
+  /// early when `cancel` becomes true. May be called by several threads at once.
+  GridRaceResult run(std::uint64_t seed, int rotation = 0, const GridRaceCallback& on_step = {},
+                     const std::atomic<bool>* cancel = nullptr) const;
+
+  /// For each car, what drives it and in which world.
+  std::span<const LapRunner> drivers() const noexcept { return drivers_; }
+  const GridRaceOptions& options() const noexcept { return options_; }     ///< as given
+  std::span<const maps::Pose> grid() const noexcept { return grid_; }      ///< centres of gravity
+  double timeout() const noexcept { return timeout_; }                     ///< s
+  double lap_length() const noexcept { return drivers_[0].lap_length(); }  ///< m
+
+ private:
+  std::vector<LapRunner> drivers_;
+  GridRaceOptions options_;
+  std::vector<maps::Pose> grid_;
+  double timeout_ = 0;
+};
+
+/// Contacts over the distance that was driven.
+struct ContactRate {
+  int contacts = 0;       ///< in which the car was, or of all cars
+  int caused = 0;         ///< those of them at which it was at fault; of all cars: every one
+  double kilometres = 0;  ///< driven
+  double per_100_km = 0;  ///< caused; NaN without a distance
+  Interval interval;      ///< of this, 95 % (poisson_interval)
+};
+/// Of the car of one entry, or of all cars together for -1, over several races.
+ContactRate contact_rate(std::span<const GridRaceResult> races, int entry = -1);
+
+}  // namespace slalom::evaluation

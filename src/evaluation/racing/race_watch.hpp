@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "evaluation/overtaking/fault_judge.hpp"
+#include "slalom/evaluation/grid_race.hpp"
+
+namespace slalom::evaluation {
+
+/// Watches the cars of a race: how far they are, who touches and who overtakes whom. Cars have their numbers
+/// in the world here.
+class RaceWatch {
+ public:
+  /// Begins with the cars on the grid. `line` is the arc length (m) of the finish line.
+  RaceWatch(const sim::World& world, double line);
+
+  /// To be called after each step of the world.
+  void update(const sim::World& world);
+
+  /// m along the course beyond the finish line as it was at the start.
+  double distance(const sim::World& world, std::size_t car) const noexcept {
+    return world.laps(car)->progress() - behind_[car];
+  }
+  /// s, when a car last touched another.
+  double last_touched(std::size_t car) const noexcept;
+  const std::vector<CarContact>& contacts() const noexcept { return contacts_; }  ///< in order of time
+  const std::vector<Overtake>& overtakes() const noexcept { return overtakes_; }  ///< in order of time
+
+ private:
+  /// What is known of two cars.
+  struct Pair {
+    std::size_t first = 0, second = 0;
+    bool first_leads = true;  ///< was the last to be 1 m ahead
+    double touched = -1e9;    ///< s, last
+  };
+  void touch(const sim::World& world, Pair& pair);
+
+  FaultJudge judge_;
+  std::vector<double> behind_;  ///< m, per car: from its place on the grid to the line
+  std::vector<Pair> pairs_;
+  std::vector<CarContact> contacts_;
+  std::vector<Overtake> overtakes_;
+};
+
+}  // namespace slalom::evaluation
