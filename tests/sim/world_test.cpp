@@ -164,7 +164,7 @@ TEST(World, ACarThatIsStruckKeepsItsMotionWhicheverItIs) {
     const World world = bump(CollisionResponse::slide_unless_struck, first_is_behind);
     const std::size_t behind = first_is_behind ? 0 : 1, ahead = 1 - behind;
     EXPECT_GT(world.state(ahead).speed, 1.5);
-    EXPECT_LT(world.state(behind).speed, 0.5);
+    EXPECT_LT(world.state(behind).speed, 3) << "of about 4 m/s";
     EXPECT_GT(signed_gap(world.outline(0), world.outline(1)), 0) << "they are apart after the step";
   }
   EXPECT_EQ(bump(CollisionResponse::slide, false).state(0).speed, 0) << "with slide the first car stops";

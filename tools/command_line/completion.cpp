@@ -20,7 +20,8 @@ std::string joined(const std::vector<std::string>& words) {
 std::vector<std::pair<std::string, std::string>> known_values(const CompletionValues& values) {
   return {{"--course", joined(values.courses)},
           {"--config", joined(values.configurations)},
-          {"--method|--methods|--against", joined(values.methods)}};
+          {"--method|--methods", joined(values.methods)},
+          {"--against", joined(values.methods) + " " + joined(values.configurations)}};
 }
 
 std::string bash_script(const std::vector<CommandDescription>& commands, const CompletionValues& values) {

@@ -10,6 +10,7 @@
 #include "slalom/vehicle/racing/racing_car.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/race_picture.hpp"
+#include "tools/racing/grid_race_job.hpp"
 #include "tools/racing/race_result.hpp"
 #include "tools/racing/race_text.hpp"
 #include "tools/report/lap_json.hpp"
@@ -169,25 +170,70 @@ class RaceJob {
   std::vector<float> solve_ms_;
 };
 
+/// Several cars, or laps against the clock.
+int run_race(const Subcommand& command, const RaceArguments& arguments, const GridRaceArguments& several) {
+  const bool grid = command.given("--cars") || command.given("--against");
+  for (const char* name : {"--races", "--jobs"})
+    if (!grid && command.given(name)) throw CommandLineError(name, "needs --cars or --against");
+  for (const char* name : {"--standing", "--friction", "--compare", "--plot"})
+    if (grid && command.given(name))
+      throw CommandLineError(name, "is for laps against the clock, without --cars and --against");
+  if (!grid) return RaceJob(arguments).run();
+  GridRaceArguments asked = several;
+  asked.laps = arguments.laps;
+  asked.seed = arguments.seed;
+  asked.json = arguments.json;
+  return drive_grid_races(arguments.scenario, arguments.method, asked);
+}
+
+/// The options of races of several cars.
+void add_grid_options(Subcommand& command, GridRaceArguments& several) {
+  command
+      .option("--cars", several.cars,
+              "A race of so many cars, each with its own planner, LiDAR and tracker of the others")
+      .range(2, evaluation::most_race_cars);
+  command
+      .option(
+          "--against", several.against,
+          "METHOD, CONFIG or CONFIG:METHOD of another car; may be repeated. If --cars is more, the own car "
+          "and these follow again in turn. --set applies to the configuration of --config and to the world")
+      .repeatable();
+  command
+      .option("--races", several.races,
+              "Number of races; the cars move by one place of the grid from each to the next")
+      .range(1, 100000)
+      .show_default();
+  command.option("--jobs", several.jobs, "Number of races driven in parallel; results do not depend on it")
+      .range(1, 1024)
+      .show_default();
+}
+
 }  // namespace
 
 void declare_race(Subcommand& command) {
   command.summary(
-      "Drive timed laps on tyres that saturate: lap times, sectors, grip used, and where time is lost");
+      "Drive timed laps on tyres that saturate: lap times, sectors, grip used, and where time is lost; or a "
+      "race of several cars");
   const auto arguments = std::make_shared<RaceArguments>();
+  const auto several = std::make_shared<GridRaceArguments>();
   arguments->scenario.config = "race";
   arguments->scenario.saturating_tyres = true;
   add_scenario_options(command, arguments->scenario);
   add_method_option(command, arguments->method);
   command
-      .option("--seed", arguments->seed,
-              "Seed of lap 1; a standing start in lap k has the seed SEED + (k - 1) (obstacles + 5)")
+      .option(
+          "--seed", arguments->seed,
+          "Seed of lap 1; a standing start in lap k has the seed SEED + (k - 1) (obstacles + 5), and race k "
+          "SEED + k - 1")
       .show_default();
   command
-      .option("--laps", arguments->laps,
-              "Number of laps: a standing start, then flying laps; after a collision, a standing start again")
+      .option(
+          "--laps", arguments->laps,
+          "Number of laps: a standing start, then flying laps; after a collision, a standing start again. "
+          "In a race, those of each car")
       .range(1, 100000)
       .show_default();
+  add_grid_options(command, *several);
   command.flag("--standing", arguments->standing, "Begin every lap with a standing start");
   command
       .option("--friction", arguments->friction,
@@ -202,7 +248,7 @@ void declare_race(Subcommand& command) {
   command.option(
       "--plot", arguments->plot,
       "Write a picture of the best lap to this PNG: speed and profile, time behind, accelerations");
-  command.action([arguments] { return RaceJob(*arguments).run(); });
+  command.action([&command, arguments, several] { return run_race(command, *arguments, *several); });
 }
 
 }  // namespace slalom::tools

@@ -22,11 +22,15 @@ ProgressLine::~ProgressLine() {
   clear();
 }
 
-void ProgressLine::show(int lap, int laps, const evaluation::ControlStep& tick) {
-  if (!active_) return;
+bool ProgressLine::due() {
   const auto now = std::chrono::steady_clock::now();
-  if (now < next_) return;
+  if (!active_ || now < next_) return false;
   next_ = now + std::chrono::milliseconds(50);
+  return true;
+}
+
+void ProgressLine::show(int lap, int laps, const evaluation::ControlStep& tick) {
+  if (!due()) return;
   const SolveResult* solve = tick.output.solve;
   std::vector<std::string> parts = {
       formatted("%.1f s", tick.time), formatted("%d collisions", tick.collisions),
@@ -36,8 +40,18 @@ void ProgressLine::show(int lap, int laps, const evaluation::ControlStep& tick) 
     if (solve->samples)
       parts.push_back(formatted("ESS %.0f of %d", solve->effective_sample_size, solve->samples->samples()));
   }
-  const std::string text = lap_text(formatted("lap %d of %d", lap, laps), tick.progress, parts,
-                                    terminal_columns(stream_), has_colour(stream_));
+  write(formatted("lap %d of %d", lap, laps), tick.progress, parts);
+}
+
+void ProgressLine::show(int race, int races, const evaluation::GridRaceStep& step) {
+  if (!due()) return;
+  write(formatted("race %d of %d", race, races), step.progress,
+        {formatted("%.1f s", step.time), formatted("%d cars", step.driving),
+         formatted("%d contacts", step.contacts)});
+}
+
+void ProgressLine::write(const std::string& title, double progress, const std::vector<std::string>& parts) {
+  const std::string text = lap_text(title, progress, parts, terminal_columns(stream_), has_colour(stream_));
   std::fprintf(stream_, "\r\033[K%s", text.c_str());
   std::fflush(stream_);
   shown_ = true;

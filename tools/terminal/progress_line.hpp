@@ -3,13 +3,15 @@
 #include <chrono>
 #include <cstdio>
 #include <string>
+#include <vector>
 
+#include "slalom/evaluation/grid_race.hpp"
 #include "slalom/evaluation/lap_runner.hpp"
 
 namespace slalom::tools {
 
-/// A line in a terminal that shows how a lap goes, about twenty times a second. Silent where the stream is
-/// none.
+/// A line in a terminal that shows how a lap or a race goes, about twenty times a second. Silent where the
+/// stream is none.
 class ProgressLine {
  public:
   explicit ProgressLine(std::FILE* stream);
@@ -18,10 +20,14 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(int lap, int laps, const evaluation::ControlStep& tick);
+  void show(int race, int races, const evaluation::GridRaceStep& step);
   /// Removes the line before other output.
   void clear();
 
  private:
+  bool due();
+  void write(const std::string& title, double progress, const std::vector<std::string>& parts);
+
   std::FILE* stream_;
   bool active_;
   bool shown_ = false;
