@@ -1,6 +1,8 @@
 #include "evaluation/hardware_model.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace slalom::evaluation {
 namespace {
@@ -77,11 +79,10 @@ std::optional<vehicle::Odometry> HardwareModel::sense(const sim::Observation& se
   const maps::Pose truth = sim::rear_axle(car_, state);
   record_.error.push_back(static_cast<float>(std::hypot(out.pose.x - truth.x, out.pose.y - truth.y)));
   record_.yaw_error.push_back(static_cast<float>(std::abs(maps::wrap_angle(out.pose.yaw - truth.yaw))));
-  return vehicle::Odometry{
-      .pose = out.pose,
-      .speed = wheels_.speed(),
-      .position_deviation = std::sqrt(0.5 * (out.covariance[0][0] + out.covariance[1][1])),
-      .yaw_deviation = std::sqrt(out.covariance[2][2])};
+  vehicle::Odometry made{.pose = out.pose, .speed = wheels_.speed()};
+  for (std::size_t i = 0; i < made.covariance.size(); ++i)
+    std::copy(std::begin(out.covariance[i]), std::end(out.covariance[i]), made.covariance[i].begin());
+  return made;
 }
 
 std::optional<ImuReading> HardwareModel::read_imu() noexcept {

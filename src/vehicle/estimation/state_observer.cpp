@@ -15,11 +15,28 @@ constexpr double piece = 0.005;         // s, of a prediction
 constexpr double reset_distance = 0.5;  // m or rad; a pose further from the predicted one was reset
 constexpr double slow = 0.5;            // m/s, below it tyres do not slip
 constexpr double max_slip = 1.2;        // rad
+constexpr double max_variance = 1e6;    // m^2 and rad^2, of a pose
 constexpr double bias_spread = 0.02, bias_drift = 1e-4;  // rad/s, at the start and in a period
 
 double slip_from(double sideways, double along) noexcept {
   const double safe = std::copysign(std::max(std::abs(along), 0.1), along);
   return std::asin(std::clamp(sideways / safe, -std::sin(max_slip), std::sin(max_slip)));
+}
+
+/// A covariance of the pose with the options' variances on top. Those alone remain where it is none: not
+/// finite, beyond any car's, or with correlations above 1.
+PoseCovariance with_noise(PoseCovariance pose, const ObserverOptions& options) noexcept {
+  double sum = 0;
+  for (const auto& row : pose)
+    for (const double value : row) sum += std::abs(value);
+  bool valid = sum < max_variance;
+  for (std::size_t i = 0; i < pose.size(); ++i)
+    for (std::size_t j = 0; j < pose.size(); ++j)
+      valid = valid && pose[i][i] >= 0 && square(pose[i][j]) <= (1 + 1e-6) * pose[i][i] * pose[j][j];
+  if (!valid) pose = {};
+  const double noise[] = {options.position_noise, options.position_noise, options.heading_noise};
+  for (std::size_t i = 0; i < pose.size(); ++i) pose[i][i] += square(noise[i]);
+  return pose;
 }
 
 }  // namespace
@@ -92,8 +109,9 @@ void StateObserver::begin(const VehicleModel& model, const ObserverInput& input)
             gyro};
   const double bias_variance = known_ ? covariance_[bias][bias] : square(bias_spread);
   covariance_ = {};
-  covariance_[x][x] = covariance_[y][y] = square(std::max(options_.position_noise, input.position_deviation));
-  covariance_[yaw][yaw] = square(std::max(options_.heading_noise, input.yaw_deviation));
+  const PoseCovariance pose = with_noise(input.covariance, options_);
+  for (std::size_t i = 0; i < pose.size(); ++i)
+    for (std::size_t j = 0; j < pose.size(); ++j) covariance_[i][j] = pose[i][j];
   covariance_[speed][speed] = square(options_.speed_noise);
   covariance_[yaw_rate][yaw_rate] = square(0.3 * std::abs(input.speed) * std::abs(slope) + 0.05);
   covariance_[lateral][lateral] = square(0.05 * std::abs(input.speed) + 0.01);
@@ -168,6 +186,27 @@ void StateObserver::correct(const Vector& row, double difference, double varianc
     for (std::size_t j = 0; j < size; ++j) covariance_[i][j] -= shared[i] * shared[j] / total;
 }
 
+/// The pose as three measurements whose errors do not depend on each other: with its covariance L D L^T (L
+/// with ones on its diagonal), L^-1 times the pose has the variances D.
+void StateObserver::correct_pose(const ObserverInput& input) noexcept {
+  const PoseCovariance c = with_noise(input.covariance, options_);
+  const double yx = c[1][0] / c[0][0], hx = c[2][0] / c[0][0];
+  // The bounds hold for every positive semidefinite matrix; others must do no harm.
+  const double y_variance = std::max(c[1][1] - yx * c[1][0], square(options_.position_noise));
+  const double coupling = c[2][1] - hx * c[1][0], hy = coupling / y_variance;
+  const double yaw_variance =
+      std::max(c[2][2] - hx * c[2][0] - hy * coupling, square(options_.heading_noise));
+  const Vector rows[3] = {{1}, {-yx, 1}, {hy * yx - hx, -hy, 1}};
+  const double variances[3] = {c[0][0], y_variance, yaw_variance};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double differences[3] = {input.pose.x - state_[x], input.pose.y - state_[y],
+                                   maps::wrap_angle(input.pose.yaw - state_[yaw])};
+    double difference = 0;
+    for (std::size_t j = 0; j < 3; ++j) difference += rows[i][j] * differences[j];
+    correct(rows[i], difference, variances[i]);
+  }
+}
+
 void StateObserver::update(const VehicleModel& model, const ObserverInput& input) noexcept {
   const bool missed = sent_since_ > 1;
   sent_since_ = 0;
@@ -182,11 +221,7 @@ void StateObserver::update(const VehicleModel& model, const ObserverInput& input
   if (!(std::hypot(input.pose.x - state_[x], input.pose.y - state_[y]) < reset_distance &&
         std::abs(turned) < reset_distance))
     return begin(model, input);
-  const double position = square(std::max(options_.position_noise, input.position_deviation));
-  correct({1}, input.pose.x - state_[x], position);
-  correct({0, 1}, input.pose.y - state_[y], position);
-  correct({0, 0, 1}, maps::wrap_angle(input.pose.yaw - state_[yaw]),
-          square(std::max(options_.heading_noise, input.yaw_deviation)));
+  correct_pose(input);
   correct({0, 0, 0, 1}, input.speed - state_[speed], square(options_.speed_noise));
   if (input.imu)
     correct({0, 0, 0, 0, 1, 0, 1}, input.imu->yaw_rate - state_[yaw_rate] - state_[bias],

@@ -96,12 +96,18 @@ struct Planner::Implementation {
   VehicleStart start_of_plan(const PlannerInput& input) noexcept {
     const Odometry& odometry = input.odometry;
     if (!model->has_dynamics()) return history.lead_ahead({odometry.pose, odometry.speed, history.steer()});
-    car.update(*model, {odometry.pose, odometry.speed, odometry.position_deviation, odometry.yaw_deviation,
-                        input.imu});
+    car.update(*model, {odometry.pose, odometry.speed, odometry.covariance, input.imu});
     const VehicleStart start = car.state().ahead(*model);
     speed_ahead = car.state().speed_ahead(*model);
     set_friction(car.cautious_friction());
     return start;
+  }
+  /// Where plans take the scan from. A pose with a covariance is an estimate, and plans begin where the
+  /// filter says. The scan must be seen from there, too: otherwise plans keep a wrong distance from walls, by
+  /// as much as the filter differs from the pose.
+  maps::Pose pose_of_scan(const Odometry& odometry) const noexcept {
+    const bool estimated = odometry.covariance[0][0] > 0;
+    return estimated && model->has_dynamics() ? car.state().now().pose : odometry.pose;
   }
   double steer_estimate() const noexcept {
     return model->has_dynamics() ? car.state().now().steer : history.steer();
@@ -139,7 +145,7 @@ struct Planner::Implementation {
         here.distance >= field.options().outside.distance) {
       return stop(PlannerStatus::off_course);
     }
-    model->set_maps(obstacles.seen_from(odometry.pose, followed, origin));
+    model->set_maps(obstacles.seen_from(pose_of_scan(odometry), followed, origin));
     model->set_start(start, traits.follows_path ? here.speed : traits.reference_speed);
     SolveRequest request{.elapsed = options.control_period};
     if (options.deadline > 0) request.deadline = options.deadline;

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <limits>
 
 #include "slalom/core/random.hpp"
 #include "slalom/sim/imu.hpp"
@@ -21,12 +23,24 @@ struct Drive {
   double friction = 1.0489, assumed_friction = 1.0489;
   double position_noise = 0, yaw_noise = 0, speed_noise = 0;  ///< m, rad, m/s, standard deviations
   bool imu = false;
+  /// Standard deviation of the position along the car, m; `position_noise` is then that across it.
+  double along_noise = 0;
+  bool mean_of_both = false;  ///< the covariance given has the mean of both variances along each axis
 };
 
 /// Root mean square errors.
 struct Errors {
   double yaw_rate = 0, slip = 0, speed = 0;  ///< rad/s, rad, m/s
+  double across = 0;                         ///< m, of the position, across the car
 };
+
+/// Of a position with these deviations (m) along and across a car with this yaw (rad), and of the yaw.
+PoseCovariance covariance_of(double along, double across, double yaw, double yaw_deviation) {
+  const double c = std::cos(yaw), s = std::sin(yaw), a = along * along, b = across * across;
+  return {{{c * c * a + s * s * b, c * s * (a - b), 0},
+           {c * s * (a - b), s * s * a + c * c * b, 0},
+           {0, 0, yaw_deviation * yaw_deviation}}};
+}
 
 std::unique_ptr<VehicleModel> model_with(double friction) {
   VehicleOptions options;
@@ -56,9 +70,18 @@ Errors errors_of(const Drive& drive) {
   for (int tick = 0; tick < 320; ++tick) {
     const double time = tick * period;
     const sim::CarState& state = plant.state();
-    ObserverInput input{sim::rear_axle(car, state), state.speed, drive.position_noise, drive.yaw_noise};
-    input.pose.x += drive.position_noise * noise.normal();
-    input.pose.y += drive.position_noise * noise.normal();
+    const maps::Pose truth = sim::rear_axle(car, state);
+    const double across_noise = drive.position_noise,
+                 along_noise = drive.along_noise > 0 ? drive.along_noise : across_noise;
+    const double mean = std::sqrt(0.5 * (along_noise * along_noise + across_noise * across_noise));
+    ObserverInput input{truth, state.speed,
+                        drive.mean_of_both
+                            ? covariance_of(mean, mean, 0, drive.yaw_noise)
+                            : covariance_of(along_noise, across_noise, truth.yaw, drive.yaw_noise)};
+    const maps::Point moved =
+        maps::transform(truth, {along_noise * noise.normal(), across_noise * noise.normal()});
+    input.pose.x = moved.x;
+    input.pose.y = moved.y;
     input.pose.yaw += drive.yaw_noise * noise.normal();
     input.speed += drive.speed_noise * noise.normal();
     if (drive.imu) input.imu = imu.read();
@@ -68,6 +91,8 @@ Errors errors_of(const Drive& drive) {
       sum.yaw_rate += std::pow(observer.now().yaw_rate - state.yaw_rate, 2);
       sum.slip += std::pow(observer.now().slip - state.slip, 2);
       sum.speed += std::pow(observer.now().speed - state.speed, 2);
+      sum.across +=
+          std::pow(maps::inverse_transform(truth, {observer.now().pose.x, observer.now().pose.y}).y, 2);
     }
     const Command command{0.16 * std::sin(2 * 3.14159 * time / 1.6), 4 + std::sin(time)};
     observer.send(command);
@@ -76,7 +101,8 @@ Errors errors_of(const Drive& drive) {
       imu.update(plant.state(), time_step);
     }
   }
-  return {std::sqrt(sum.yaw_rate / count), std::sqrt(sum.slip / count), std::sqrt(sum.speed / count)};
+  return {std::sqrt(sum.yaw_rate / count), std::sqrt(sum.slip / count), std::sqrt(sum.speed / count),
+          std::sqrt(sum.across / count)};
 }
 
 void show(const char* what, const Errors& e) {
@@ -123,6 +149,37 @@ TEST(StateObserver, WithTheWrongFrictionAnImuHelpsMost) {
   EXPECT_LT(with.slip, 0.8 * without.slip);
 }
 
+// Between two walls a localiser knows the position across them far better than that along them.
+TEST(StateObserver, KnowsInWhichDirectionAPoseIsCertain) {
+  Drive drive{.friction = 0.9, .position_noise = 0.01, .yaw_noise = 0.006, .along_noise = 0.15};
+  const Errors e = errors_of(drive);
+  drive.mean_of_both = true;
+  const Errors mean = errors_of(drive);
+  std::printf("[ across   ] %.4f m, with the mean of both variances %.4f m\n", e.across, mean.across);
+  EXPECT_LT(e.across, 0.02);
+  EXPECT_LT(e.across, 0.5 * mean.across);
+  EXPECT_LT(e.slip, mean.slip);
+}
+
+TEST(StateObserver, ACovarianceThatIsNoneDoesNoHarm) {
+  const auto model = model_with(1);
+  constexpr double huge = 1e300, none = std::numeric_limits<double>::quiet_NaN();
+  const PoseCovariance hostile[] = {{{{1, 9, 9}, {9, 1, 9}, {9, 9, 1}}},
+                                    {{{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}},
+                                    {{{none, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+                                    {{{huge, -huge, huge}, {huge, huge, huge}, {huge, huge, huge}}}};
+  for (const PoseCovariance& covariance : hostile) {
+    StateObserver observer({}, period, 0, 0.02);
+    for (int i = 0; i < 40; ++i) {
+      observer.update(*model, {{0.1 * i, 0, 0}, 4, covariance});
+      observer.send({0, 4});
+      const VehicleStart& now = observer.now();
+      ASSERT_TRUE(
+          std::isfinite(now.pose.x + now.pose.y + now.pose.yaw + now.speed + now.yaw_rate + now.slip));
+    }
+  }
+}
+
 TEST(StateObserver, BeginsAnewAfterAJumpAndAtAStandstill) {
   const auto model = model_with(1);
   StateObserver observer({}, period, 0, 0.02);
@@ -145,7 +202,7 @@ TEST(StateObserver, DoesNotAllocate) {
   StateObserver observer({}, period, 0, 0.02);
   const auto before = testing::allocations();
   for (int i = 0; i < 40; ++i) {
-    observer.update(*model, {{0.1 * i, 0, 0}, 4, 0, 0, ImuReading{}});
+    observer.update(*model, {{0.1 * i, 0, 0}, 4, {}, ImuReading{}});
     observer.send({0.1, 4});
   }
   EXPECT_EQ(testing::allocations(), before);

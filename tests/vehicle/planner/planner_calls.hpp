@@ -90,7 +90,10 @@ inline void call_planner(Adversary& adversary, int most, PlannerTally& tally) {
     const auto value = [&](double low, double high) {
       return hostile ? adversary.any(low, high) : adversary.within(low, high);
     };
-    const vehicle::Odometry odometry{{value(0, 60), aside * value(-1, 1), value(-4, 4)}, value(-1, 12)};
+    vehicle::Odometry odometry{{value(0, 60), aside * value(-1, 1), value(-4, 4)}, value(-1, 12)};
+    if (adversary.below(2))
+      for (auto& row : odometry.covariance)
+        for (double& entry : row) entry = value(-0.01, 0.1);
     const vehicle::PlannerOutput& out = planner.update({scan, odometry, points});
     check_output(out, options);
     ++tally.updates;

@@ -5,6 +5,7 @@
 
 #include "slalom/maps/imu_reading.hpp"
 #include "slalom/vehicle/estimation/estimation_options.hpp"
+#include "slalom/vehicle/estimation/pose_covariance.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
 
 namespace slalom::vehicle {
@@ -13,8 +14,7 @@ namespace slalom::vehicle {
 struct ObserverInput {
   maps::Pose pose;                  ///< of the rear axle, map frame
   double speed = 0;                 ///< m/s
-  double position_deviation = 0;    ///< m, standard deviation of the position along each axis
-  double yaw_deviation = 0;         ///< rad, standard deviation of the yaw
+  PoseCovariance covariance{};      ///< of `pose`
   std::optional<ImuReading> imu{};  ///< mean over the last control period
 };
 
@@ -64,6 +64,7 @@ class StateObserver {
   void begin(const VehicleModel& model, const ObserverInput& input) noexcept;
   void predict(const VehicleModel& model, const std::optional<ImuReading>& imu) noexcept;
   void correct(const Vector& row, double difference, double variance) noexcept;
+  void correct_pose(const ObserverInput& input) noexcept;
   void move(const VehicleModel& model, VehicleStart& car, double begin, double end) const noexcept;
   Vector moved(const VehicleModel& model, const Vector& from, double& steer) const noexcept;
   const Command& acting(double time, double delay) const noexcept;

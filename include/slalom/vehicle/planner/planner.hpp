@@ -14,6 +14,7 @@
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/solvers/solver.hpp"
 #include "slalom/vehicle/estimation/parameter_estimator.hpp"
+#include "slalom/vehicle/estimation/pose_covariance.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
 #include "slalom/vehicle/planner/planner_options.hpp"
 
@@ -33,8 +34,7 @@ struct Odometry {
   static constexpr double fastest = 200;   ///< m/s, largest magnitude that a planner takes as a speed
   maps::Pose pose;                         ///< m, m, rad, in the map frame
   double speed = 0;                        ///< m/s
-  double position_deviation = 0;  ///< m, standard deviation of the position along each axis; 0: not known
-  double yaw_deviation = 0;       ///< rad, standard deviation of the yaw; 0: not known
+  PoseCovariance covariance{};             ///< of `pose`; all 0 where the pose counts as exact
 };
 
 /// The reason for a command.
