@@ -29,6 +29,8 @@ class Obstacles {
 
   const maps::LocalCostMap& cost_map() const noexcept { return cost_map_; }
   const maps::ClearanceMap& clearance_map() const noexcept { return clearance_map_; }
+  /// Whether no obstacle moves.
+  bool alone() const noexcept { return others_.view().empty(); }
 
  private:
   maps::LaserScanView without_others(const PlannerInput& input) noexcept;

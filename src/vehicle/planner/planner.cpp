@@ -147,13 +147,14 @@ struct Planner::Implementation {
     }
     model->set_maps(obstacles.seen_from(pose_of_scan(odometry), followed, origin));
     model->set_start(start, traits.follows_path ? here.speed : traits.reference_speed);
+    choice.sees(obstacles.clearance_map().view(), obstacles.alone());
     SolveRequest request{.elapsed = options.control_period};
     if (options.deadline > 0) request.deadline = options.deadline;
     const SolveResult& result = solver->solve(model->evaluator(), request);
     output.solve = &result;
     output.status =
         result.status == Status::degenerate ? PlannerStatus::solver_degenerate : PlannerStatus::ok;
-    PredictedCost cost = model->predict(result.inputs, states);
+    PredictedCost cost = choice.predict(*model, result.inputs, states);
     std::span<const float> sent = result.inputs;
     if (options.verify_plan && model->has_dynamics() && !recovery.reversing()) {
       ways.draw(start, field.nearest(), speeds.speeds(), path_friction);

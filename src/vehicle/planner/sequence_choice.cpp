@@ -3,12 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slalom/core/math.hpp"
+
 namespace slalom::vehicle::detail {
 
 namespace {
 
 /// Of the largest deceleration, what a braking car reaches among curves, and what it accelerates with.
 constexpr double braking_share = 0.8, accelerating_share = 0.4;
+
+/// m, by which the nearest of many noisy readings is nearer than a wall.
+constexpr double reading_error = 0.02;
+
+/// A body without margin.
+BodyOptions bare(BodyOptions body) {
+  body.margin = std::min(body.margin, -reading_error);
+  body.soft_margin = 0;
+  return body;
+}
 
 /// Whether one sequence is better than another: without collision, else at the lower cost.
 bool cheaper(const PredictedCost& one, const PredictedCost& other) {
@@ -46,7 +58,35 @@ SequenceChoice::SequenceChoice(int horizon, int inputs, const VehicleTraits& tra
       kept_(candidate_.size()),
       slower_(candidate_.size()),
       candidate_states_(static_cast<std::size_t>(horizon) + 1),
-      path_(candidate_states_.size()) {}
+      path_(candidate_states_.size()) {
+  if (traits.seeks_lap_time && traits.body.margin > 0 && traits.obstacle_map == ObstacleMap::clearance)
+    body_.emplace(bare(traits.body));
+}
+
+void SequenceChoice::sees(const GridView<1>& clearances, bool alone) noexcept {
+  if (body_) body_->set_map(clearances, {});
+  alone_ = alone;
+}
+
+PredictedCost SequenceChoice::predict(const VehicleModel& model, std::span<const float> inputs,
+                                      std::vector<PredictedState>& states) const noexcept {
+  PredictedCost cost = model.predict(inputs, states);
+  if (body_ && alone_ && cost.collided)
+    cost.collided = body_collides({states.data(), inputs.size() / inputs_ + 1});
+  return cost;
+}
+
+/// As VehicleModel::predict says it: states before the first free one do not count.
+bool SequenceChoice::body_collides(std::span<const PredictedState> states) const noexcept {
+  bool was_free = false;
+  for (const PredictedState& s : states) {
+    const double value = body_->in_robot_frame(s.local.x, s.local.y, s.local.yaw);
+    const bool collides = value < 0 || value >= 100;
+    if (collides && was_free) return true;
+    was_free |= !collides;
+  }
+  return !was_free;
+}
 
 void SequenceChoice::sent(std::span<const float> inputs) noexcept {
   has_previous_ = inputs.size() == previous_.size();
@@ -59,7 +99,7 @@ SequenceChoice::Choice SequenceChoice::choose(const VehicleModel& model, const S
   Choice best = solution;
   const auto consider = [&](std::span<const float> inputs) {
     if (inputs.size() != candidate_.size()) return;
-    const PredictedCost cost = model.predict(inputs, candidate_states_);
+    const PredictedCost cost = predict(model, inputs, candidate_states_);
     if (!cheaper(cost, best.cost)) return;
     best = {inputs, cost};
     states.swap(candidate_states_);
@@ -72,7 +112,10 @@ SequenceChoice::Choice SequenceChoice::choose(const VehicleModel& model, const S
           result.samples->at(static_cast<int>(row / inputs_), static_cast<int>(row % inputs_), sample);
     consider(candidate_);
   }
-  if (best.cost.collided && model.has_dynamics()) brake(model, result, reversing, best, states);
+  if (!best.cost.collided || !model.has_dynamics()) return best;
+  const bool begins_free = body_ && alone_ ? !body_collides({states.data(), 1}) : !model.start_collides();
+  if (body_ && !reversing && begins_free) return least_harm(model, result, best, states);
+  brake(model, result, reversing, best, states);
   return best;
 }
 
@@ -95,7 +138,7 @@ SequenceChoice::Choice SequenceChoice::better(const VehicleModel& model, const C
                                               std::span<const float> other,
                                               std::vector<PredictedState>& states) noexcept {
   if (other.size() != candidate_.size()) return solution;
-  const PredictedCost cost = model.predict(other, candidate_states_);
+  const PredictedCost cost = predict(model, other, candidate_states_);
   if (!cheaper(cost, solution.cost)) return solution;
   states.swap(candidate_states_);
   return {other, cost};
@@ -107,7 +150,7 @@ SequenceChoice::Choice SequenceChoice::slower(const VehicleModel& model, const C
   std::copy(states.begin(), states.end(), path_.begin());
   for (const int steps : {0, 3, 6, 10, 16}) {
     follow_slower(steps);
-    const PredictedCost cost = model.predict(candidate_, candidate_states_);
+    const PredictedCost cost = predict(model, candidate_, candidate_states_);
     if (!cheaper(cost, best.cost)) continue;
     candidate_.swap(slower_);
     best = {slower_, cost};
@@ -148,7 +191,7 @@ void SequenceChoice::brake(const VehicleModel& model, const SolveResult& result,
     const float braking = reversing ? max_deceleration_ : -max_deceleration_;
     for (std::size_t row = 0; row < candidate_.size(); ++row)
       candidate_[row] = row % inputs_ == 0 ? steering[row] : braking;
-    const PredictedCost cost = model.predict(candidate_, candidate_states_);
+    const PredictedCost cost = predict(model, candidate_, candidate_states_);
     const bool better =
         best.cost.collided != cost.collided ? best.cost.collided : cost.collision < best.cost.collision;
     if (!first && !better) return;
@@ -161,6 +204,65 @@ void SequenceChoice::brake(const VehicleModel& model, const SolveResult& result,
   if (has_previous_) consider(previous_);
   consider(result.nominal);
   for_each_guide(result, candidate_.size(), consider);
+}
+
+/// The harm of a sequence: the squared speed (m^2/s^2) at which it first collides, times the share of its
+/// steps that is left then, since a collision far ahead can still be avoided. 0 without a collision.
+double SequenceChoice::harm(const VehicleModel& model, std::span<const float> inputs) noexcept {
+  const std::size_t steps = inputs.size() / inputs_;
+  const auto collides = [&](std::size_t end) {
+    return predict(model, inputs.first(end * inputs_), candidate_states_).collided;
+  };
+  if (!collides(steps)) return 0;
+  std::size_t free = 0, collided = steps;  // states; where the start does not collide
+  while (collided - free > 1) {
+    const std::size_t middle = free + (collided - free) / 2;
+    (collides(middle) ? collided : free) = middle;
+  }
+  const double left = static_cast<double>(steps + 1 - collided) / static_cast<double>(steps);
+  collides(collided);
+  return left * square(candidate_states_[collided].speed);
+}
+
+/// Of sequences that all collide the one with the least harm: the solution, the sequence sent before moved by
+/// the time since (`kept_`), the nominal sequence or a guide, each as it is and with brakes, or a stop with
+/// straight wheels, which has all the grip for braking. One with brakes must do clearly less harm: brakes
+/// take grip from the turn that the car is in.
+SequenceChoice::Choice SequenceChoice::least_harm(const VehicleModel& model, const SolveResult& result,
+                                                  const Choice& solution,
+                                                  std::vector<PredictedState>& states) noexcept {
+  std::copy(solution.inputs.begin(), solution.inputs.end(), braking_.begin());
+  double least = harm(model, braking_);
+  const auto consider = [&](double share) {
+    const double found = harm(model, candidate_);
+    if (found >= share * least) return false;
+    least = found;
+    candidate_.swap(braking_);
+    return true;
+  };
+  const auto for_each = [&](auto&& use) {
+    if (has_previous_) use(std::span<const float>(kept_));
+    use(result.nominal);
+    for_each_guide(result, candidate_.size(), use);
+  };
+  for_each([&](std::span<const float> inputs) {
+    if (inputs.size() != candidate_.size()) return;
+    std::copy(inputs.begin(), inputs.end(), candidate_.begin());
+    consider(1);
+  });
+  constexpr double clearly = 0.8;
+  double share = clearly;
+  const auto braked = [&](std::span<const float> steering) {
+    if (!steering.empty() && steering.size() != candidate_.size()) return;
+    for (std::size_t row = 0; row < candidate_.size(); ++row)
+      candidate_[row] = row % inputs_ != 0 ? -max_deceleration_ : steering.empty() ? 0 : steering[row];
+    if (consider(share)) share = 1;
+  };
+  std::copy(braking_.begin(), braking_.end(), slower_.begin());
+  braked(slower_);
+  for_each(braked);
+  braked({});
+  return {braking_, predict(model, braking_, states)};
 }
 
 }  // namespace slalom::vehicle::detail

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "slalom/solvers/solver.hpp"
+#include "slalom/vehicle/model/obstacle_cost.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
 
 namespace slalom::vehicle::detail {
@@ -19,6 +21,17 @@ class SequenceChoice {
 
   /// For sequences of `horizon` steps with so many inputs each, of a car with these traits.
   SequenceChoice(int horizon, int inputs, const VehicleTraits& traits);
+
+  /// The clearances (m, robot's frame) of what the car sees, until the next call. `alone`: nothing else can
+  /// collide with the car.
+  void sees(const GridView<1>& clearances, bool alone) noexcept;
+
+  /// The prediction of a sequence, with which all choices compare. Where plans seek the shortest time and the
+  /// body has a margin, it collides only where the body itself does: nearness is a matter of cost. Scans are
+  /// noisy, so at a wall that a plan passes closely each of them decides anew whether the margin is kept. A
+  /// car that brakes for it at the limit of grip turns in, and hits the wall that it would have passed.
+  PredictedCost predict(const VehicleModel& model, std::span<const float> inputs,
+                        std::vector<PredictedState>& states) const noexcept;
 
   /// The cheapest of the solution and of driving along it more slowly, which brakes first for some steps and
   /// keeps the path, or faster. Samples of the solver rarely brake for long, so it finds late that it must;
@@ -40,7 +53,9 @@ class SequenceChoice {
   /// The cheapest of the nominal sequence, the guides and the best sample that does not collide. If there is
   /// none and the model has the car's dynamics, a full stop: along the solution, the sequence sent last, the
   /// nominal one or a guide, as hard as the tyres allow; the cheapest that does not collide, else the
-  /// cheapest of all. `states` holds the prediction of the solution, afterwards that of the choice.
+  /// cheapest of all. Where plans seek the shortest time with a margin, what is sent then is the sequence
+  /// that does least harm instead: see `least_harm`. `states` holds the prediction of the solution,
+  /// afterwards that of the choice.
   Choice choose(const VehicleModel& model, const SolveResult& result, const Choice& solution, bool reversing,
                 std::vector<PredictedState>& states) noexcept;
 
@@ -54,12 +69,18 @@ class SequenceChoice {
   void brake(const VehicleModel& model, const SolveResult& result, bool reversing, Choice& best,
              std::vector<PredictedState>& states) noexcept;
 
+  Choice least_harm(const VehicleModel& model, const SolveResult& result, const Choice& solution,
+                    std::vector<PredictedState>& states) noexcept;
+  double harm(const VehicleModel& model, std::span<const float> inputs) noexcept;
+  bool body_collides(std::span<const PredictedState> states) const noexcept;
+
   std::size_t inputs_;
   VehicleTraits traits_;
   float max_deceleration_;
   std::vector<float> candidate_, braking_, previous_, kept_, slower_;
   std::vector<PredictedState> candidate_states_, path_;
-  bool has_previous_ = false;
+  std::optional<ObstacleCost> body_;  ///< without its margin, if it has one and plans seek the shortest time
+  bool alone_ = false, has_previous_ = false;
 };
 
 }  // namespace slalom::vehicle::detail

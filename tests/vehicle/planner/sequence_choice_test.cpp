@@ -90,5 +90,96 @@ TEST_F(SequenceChoiceTest, TakesTheSolutionWhereItIsBetter) {
   EXPECT_EQ(kept_or(solution, 0.04).inputs.data(), solution.data());
 }
 
+/// A car at 6 m/s in whose way there may be walls.
+class WallTest : public ::testing::Test {
+ protected:
+  explicit WallTest(Objective objective = Objective::lap_time) : field_(straight()) {
+    VehicleOptions options = car();
+    options.body.margin = 0.05;
+    options.own_of<SingleTrackOptions>().objective = objective;
+    model_ = make_vehicle_model(options);
+    choice_ = std::make_unique<SequenceChoice>(horizon, 2, model_->traits());
+    field_.update({10, 0});
+  }
+
+  /// A wall from one point to another, m in the frame of the car.
+  void see_wall(maps::Point from, maps::Point to) {
+    std::vector<maps::Point> points;
+    for (int i = 0; i <= 200; ++i)
+      points.push_back({from.x + (to.x - from.x) * i / 200, from.y + (to.y - from.y) * i / 200});
+    clearance_.add(points);
+    model_->set_maps({field_.view(), clearance_.view(), {10, 0, 0}});
+    model_->set_start({{10, 0, 0}, 6}, 5);
+    choice_->sees(clearance_.view(), true);
+  }
+  static std::vector<float> held(float steer, float acceleration) {
+    std::vector<float> inputs;
+    for (int k = 0; k < horizon; ++k) inputs.insert(inputs.end(), {steer, acceleration});
+    return inputs;
+  }
+  SequenceChoice::Choice chosen_for(const std::vector<float>& solution) {
+    states_.resize(horizon + 1);
+    const PredictedCost cost = choice_->predict(*model_, solution, states_);
+    EXPECT_TRUE(cost.collided);
+    choice_->sent(solution);
+    const auto best = choice_->kept(*model_, {solution, cost}, 0, states_);
+    return choice_->choose(*model_, {}, best, false, states_);
+  }
+
+  maps::ReferenceField field_;
+  maps::ClearanceMap clearance_{{.length_x = 14, .center_x = 5}};
+  std::unique_ptr<VehicleModel> model_;
+  std::unique_ptr<SequenceChoice> choice_;
+  std::vector<PredictedState> states_;
+};
+
+struct PathSpeeds : WallTest {
+  PathSpeeds() : WallTest(Objective::path_speed) {}
+};
+
+// The body's discs have a radius of 0.18 m; the wall is 0.02 to 0.04 m from them, and the margin 0.05 m.
+TEST_F(WallTest, TheMarginOfTheBodyIsAMatterOfCost) {
+  see_wall({2, 0.2}, {6, 0.2});
+  std::vector<PredictedState> states(horizon + 1);
+  const auto straight_on = held(0, 0);
+  EXPECT_TRUE(model_->predict(straight_on, states).collided);
+  const PredictedCost cost = choice_->predict(*model_, straight_on, states);
+  EXPECT_FALSE(cost.collided);
+  EXPECT_GE(cost.collision, 100) << "the cost of a collision remains";
+  choice_->sees(clearance_.view(), false);
+  EXPECT_TRUE(choice_->predict(*model_, straight_on, states).collided)
+      << "what moves is not in the clearances";
+}
+
+TEST_F(WallTest, TheBodyItselfCollides) {
+  see_wall({4, -2}, {4, 2});
+  std::vector<PredictedState> states(horizon + 1);
+  EXPECT_TRUE(choice_->predict(*model_, held(0, 0), states).collided);
+}
+
+TEST_F(PathSpeeds, ACarThatFollowsThemKeepsTheMargin) {
+  see_wall({2, 0.2}, {6, 0.2});
+  std::vector<PredictedState> states(horizon + 1);
+  EXPECT_TRUE(choice_->predict(*model_, held(0, 0), states).collided);
+}
+
+TEST_F(WallTest, BrakesBeforeAWallAcrossTheWay) {
+  see_wall({2.8, -3}, {2.8, 3});
+  const auto solution = held(0.2f, 0);
+  const auto chosen = chosen_for(solution);
+  EXPECT_LT(chosen.inputs[1], -5);
+  std::vector<PredictedState> states(horizon + 1);
+  choice_->predict(*model_, solution, states);
+  EXPECT_LT(states_.back().speed, 0.5 * states.back().speed);
+}
+
+// The car is about to touch the wall beside it. Brakes would turn it into the wall, and would take next to
+// nothing from its speed.
+TEST_F(WallTest, GoesOnWhereBrakesComeTooLate) {
+  see_wall({0.9, 0.12}, {2, 0.12});
+  const auto chosen = chosen_for(held(0, 1));
+  for (std::size_t k = 0; k < horizon; ++k) EXPECT_EQ(chosen.inputs[2 * k + 1], 1) << k;
+}
+
 }  // namespace
 }  // namespace slalom::vehicle::detail
