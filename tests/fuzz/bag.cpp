@@ -3,8 +3,8 @@
 
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
-#include "tools/bag_writer.hpp"
 #include "tools/bags/bag_drive.hpp"
+#include "tools/recording/bag_writer.hpp"
 
 namespace slalom::fuzz {
 namespace {

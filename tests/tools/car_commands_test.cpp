@@ -4,8 +4,8 @@
 
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/vehicle/course/course.hpp"
-#include "tools/bag_writer.hpp"
 #include "tools/program_test.hpp"
+#include "tools/recording/bag_writer.hpp"
 
 namespace slalom::tools {
 namespace {

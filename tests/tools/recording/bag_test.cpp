@@ -3,8 +3,8 @@
 
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
-#include "tools/bag_writer.hpp"
 #include "tools/bags/ros_bag.hpp"
+#include "tools/recording/bag_writer.hpp"
 
 namespace slalom::tools {
 namespace {
