@@ -34,8 +34,9 @@ PoseCovariance with_noise(PoseCovariance pose, const ObserverOptions& options) n
     for (std::size_t j = 0; j < pose.size(); ++j)
       valid = valid && pose[i][i] >= 0 && square(pose[i][j]) <= (1 + 1e-6) * pose[i][i] * pose[j][j];
   if (!valid) pose = {};
-  const double noise[] = {options.position_noise, options.position_noise, options.heading_noise};
-  for (std::size_t i = 0; i < pose.size(); ++i) pose[i][i] += square(noise[i]);
+  pose[0][0] += square(options.position_noise);
+  pose[1][1] += square(options.position_noise);
+  pose[2][2] += square(options.heading_noise);
   return pose;
 }
 
