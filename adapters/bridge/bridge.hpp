@@ -81,7 +81,7 @@ struct Command {
 /// The samples of an inertial measurement unit since the last update: base frame, x ahead, y to the left.
 class ImuSamples {
  public:
-  /// rad/s, m/s^2. Samples that are not finite are ignored.
+  /// rad/s, m/s^2. Samples that no car has (see slalom::ImuReading) are ignored.
   void add(double yaw_rate, double forward, double leftward);
   /// The number of samples since the last `clear`.
   int count() const { return count_; }

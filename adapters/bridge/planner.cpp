@@ -75,7 +75,7 @@ Pose Planner::laser() const {
 }
 
 void ImuSamples::add(double yaw_rate, double forward, double leftward) {
-  if (!std::isfinite(yaw_rate + forward + leftward)) return;
+  if (!slalom::plausible({yaw_rate, forward, leftward})) return;
   yaw_rate_ += yaw_rate;
   forward_ += forward;
   leftward_ += leftward;

@@ -9,7 +9,9 @@ namespace slalom::maps {
 
 void drop_readings_of(const PredictedObstacle& obstacle, double margin, const Pose& sensor,
                       const LaserScanView& scan, std::span<float> ranges) noexcept {
-  if (obstacle.poses.empty() || !(scan.angle_increment > 0)) return;
+  // Beams further apart than half a turn are no scan; a loop over their turns would hardly end.
+  const bool turns_left = scan.angle_increment > 0 && scan.angle_increment < std::numbers::pi;
+  if (obstacle.poses.empty() || !turns_left) return;
   const Pose& box = obstacle.poses.front().pose;
   const double half_length = 0.5 * obstacle.length + margin, half_width = 0.5 * obstacle.width + margin;
   const double distance = std::hypot(box.x - sensor.x, box.y - sensor.y),

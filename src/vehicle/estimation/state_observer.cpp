@@ -17,6 +17,7 @@ constexpr double slow = 0.5;            // m/s, below it tyres do not slip
 constexpr double max_slip = 1.2;        // rad
 constexpr double max_variance = 1e6;    // m^2 and rad^2, of a pose
 constexpr double bias_spread = 0.02, bias_drift = 1e-4;  // rad/s, at the start and in a period
+constexpr double max_bias = 0.5;  // rad/s, of a gyro that works; more is the trace of a wrong reading
 
 double slip_from(double sideways, double along) noexcept {
   const double safe = std::copysign(std::max(std::abs(along), 0.1), along);
@@ -227,6 +228,7 @@ void StateObserver::update(const VehicleModel& model, const ObserverInput& input
   if (input.imu)
     correct({0, 0, 0, 0, 1, 0, 1}, input.imu->yaw_rate - state_[yaw_rate] - state_[bias],
             square(options_.gyro_noise));
+  state_[bias] = std::clamp(state_[bias], -max_bias, max_bias);
   now_ = {{state_[x], state_[y], maps::wrap_angle(state_[yaw])},
           state_[speed],
           now_.steer,

@@ -40,8 +40,7 @@ class CarEstimator {
   /// friction.
   void update(VehicleModel& model, const ObserverInput& input) noexcept {
     ObserverInput checked = input;
-    if (input.imu && !std::isfinite(input.imu->yaw_rate + input.imu->forward + input.imu->leftward))
-      checked.imu.reset();
+    if (input.imu && !plausible(*input.imu)) checked.imu.reset();
     model.set_friction(friction());
     observer_.update(model, checked);
     if (!identify_ || !parameters_) return;

@@ -112,8 +112,10 @@ struct Planner::Implementation {
   double steer_estimate() const noexcept {
     return model->has_dynamics() ? car.state().now().steer : history.steer();
   }
-  /// Records the command that is sent; with the steering gain of the car where that is known.
-  void send() noexcept {
+  /// Records the command that is sent; with the steering gain of the car where that is known. What is
+  /// recorded must be valid, too.
+  void send(const Odometry& odometry) noexcept {
+    output.corrections = check_command(output.command, limits(odometry), steer_estimate());
     history.send(observed_steer(output.command));
     if (model->has_dynamics()) output.command = car.send(output.command, options.steer_limit);
   }
@@ -227,11 +229,9 @@ struct Planner::Implementation {
     if (!model->has_dynamics()) return -BackUp::speed;
     return recovery.reversing() ? -1.5 * Recovery::speed : 0;
   }
-  /// The final check of the output.
-  void check(const Odometry& odometry) noexcept {
+  CommandLimits limits(const Odometry& odometry) const noexcept {
     const double now = std::isfinite(odometry.speed) ? std::max(odometry.speed, 0.0) : 0;
-    const double fastest = brakes ? std::min(now, options.max_speed) : options.max_speed;
-    check_output(output, {options.steer_limit, fastest, slowest()}, steer_estimate());
+    return {options.steer_limit, brakes ? std::min(now, options.max_speed) : options.max_speed, slowest()};
   }
 
   /// The paper's program sends the planned angle less whole turns, as a float32.
@@ -308,9 +308,9 @@ const PlannerOutput& Planner::update(const PlannerInput& input) noexcept {
   } else {
     p.plan(input);
   }
-  p.check(input.odometry);
   if (p.model->has_dynamics()) p.car.publish(out);
-  p.send();
+  p.send(input.odometry);
+  check_output(out, p.limits(input.odometry), out.steer_estimate);
   out.tick_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }

@@ -1,14 +1,19 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 #include "solvers/set_option.hpp"
 #include "support/adversary.hpp"
+#include "support/any_others.hpp"
 #include "support/promise.hpp"
 
 /// Planners as state machines: updates with any scan and odometry, and what every command promises.
@@ -33,7 +38,7 @@ inline SolverOptions few_samples(const char* method) {
 
 /// What was called.
 struct PlannerTally {
-  long updates = 0, corrections = 0;
+  long planners = 0, refused = 0, updates = 0, corrections = 0;
   long statuses[7] = {};
 };
 
@@ -44,6 +49,23 @@ inline maps::LaserScanView any_scan(Adversary& adversary, std::vector<float>& ra
     range = static_cast<float>(walls ? adversary.within(0.3, 4) : adversary.any(-1, 31));
   if (adversary.below(4)) return {ranges, -2.35, 0.12, 0.05, 30};
   return {ranges, adversary.any(-7, 7), adversary.any(-0.1, 0.1), adversary.any(-1, 1), adversary.any(0, 40)};
+}
+
+/// Sets some options to any value in their ranges.
+template <class Options>
+void draw_options(Adversary& adversary, Options& options) {
+  visit_options(options, [&]<class Field>(Field& field, const Declaration& declared) {
+    if (!adversary.once_in(12)) return;
+    const double least = std::max(declared.min, -1e12), most = std::min(declared.max, 1e12);
+    const double drawn = adversary.once_in(3) ? (adversary.below(2) ? least : most)
+                         : least > 0          ? least * std::pow(most / least, adversary.within(0, 1))
+                                              : adversary.within(least, most);
+    if constexpr (std::is_same_v<Field, bool>) {
+      field = adversary.below(2) != 0;
+    } else if constexpr (std::is_same_v<Field, double> || std::is_same_v<Field, int>) {
+      field = static_cast<Field>(drawn);
+    }
+  });
 }
 
 /// Throws Finding unless a command may be sent to a car with these options.
@@ -66,6 +88,11 @@ inline void check_output(const vehicle::PlannerOutput& out, const vehicle::Plann
 /// One planner with some options, and up to `most` updates. Throws Finding.
 inline void call_planner(Adversary& adversary, int most, PlannerTally& tally) {
   vehicle::PlannerOptions options;
+  vehicle::VehicleOptions car;
+  if (adversary.below(2)) {
+    draw_options(adversary, options);
+    draw_options(adversary, car);
+  }
   options.max_speed = adversary.within(0.01, 20);
   options.steer_limit = adversary.within(0.01, 1.5);
   options.stop_when_blocked = adversary.below(4) != 0;
@@ -73,12 +100,20 @@ inline void call_planner(Adversary& adversary, int most, PlannerTally& tally) {
   options.back_up = adversary.below(2) != 0;
   options.published.maps = adversary.below(3) == 0;
   options.speed_lookahead = adversary.below(2) ? 0 : adversary.within(0, 2);
-  vehicle::VehicleOptions car;
   car.model = vehicle::VehicleModelId{adversary.below(static_cast<int>(vehicle::VehicleModels::size))};
   const auto methods = solver_names();
   const char* method = methods[static_cast<std::size_t>(adversary.below(static_cast<int>(methods.size())))];
-  vehicle::Planner planner(options, vehicle::make_vehicle_model(car), lane(adversary.within(0, 30)),
-                           make_solver(few_samples(method), vehicle::input_count(car)));
+  ++tally.planners;
+  std::optional<vehicle::Planner> made;
+  try {
+    made.emplace(options, vehicle::make_vehicle_model(car), lane(adversary.within(0, 30)),
+                 make_solver(few_samples(method), vehicle::input_count(car)));
+  } catch (const std::invalid_argument&) {  // options that do not go together
+    ++tally.refused;
+    return;
+  }
+  vehicle::Planner& planner = *made;
+  AnyOthers others;
   std::vector<float> ranges;
   std::vector<maps::Point> points;
   for (int i = 0; i < most && !adversary.is_done(); ++i) {
@@ -94,7 +129,10 @@ inline void call_planner(Adversary& adversary, int most, PlannerTally& tally) {
     if (adversary.below(2))
       for (auto& row : odometry.covariance)
         for (double& entry : row) entry = value(-0.01, 0.1);
-    const vehicle::PlannerOutput& out = planner.update({scan, odometry, points});
+    vehicle::PlannerInput input{.scan = scan, .odometry = odometry, .obstacles = points};
+    if (adversary.below(2)) input.imu = {value(-10, 10), value(-10, 10), value(-10, 10)};
+    input.others = others.draw(adversary);
+    const vehicle::PlannerOutput& out = planner.update(input);
     check_output(out, options);
     ++tally.updates;
     ++tally.statuses[static_cast<int>(out.status)];

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
 #include <vector>
 
 #include "support/repetitions.hpp"
@@ -48,6 +50,68 @@ TEST(PlannerCheck, BrakingStaysBelowTheLargestSpeed) {
   EXPECT_EQ(out.corrections, 1);
 }
 
+Planner make_sliding_planner() {
+  VehicleOptions car;
+  car.model = vehicle_model("single_track");
+  car.hold_first_input = false;
+  return {{},
+          make_vehicle_model(car),
+          testing::lane(3),
+          make_solver(testing::few_samples("svg_mppi"), input_count(car))};
+}
+
+/// The output after some updates of a car that drives straight on, with this yaw rate of its gyro (rad/s).
+PlannerOutput after_updates(Planner& planner, int updates, std::optional<double> yaw_rate) {
+  const auto wall = wall_around(10);
+  PlannerInput input{.scan = scan_of(wall), .odometry = {{5, 0, 0}, 3}};
+  if (yaw_rate) input.imu = ImuReading{.yaw_rate = *yaw_rate};
+  PlannerOutput out;
+  for (int i = 0; i < updates; ++i) {
+    out = planner.update(input);
+    input.odometry.pose.x += 3 * PlannerOptions().control_period;
+  }
+  return out;
+}
+
+TEST(PlannerCheck, ImuReadingsThatNoCarHasAreIgnored) {
+  for (const double yaw_rate : {101.0, -1e6, 1e300}) {
+    Planner without = make_sliding_planner(), with = make_sliding_planner();
+    const PlannerOutput expected = after_updates(without, 5, {}), out = after_updates(with, 5, yaw_rate);
+    EXPECT_EQ(out.yaw_rate_estimate, expected.yaw_rate_estimate) << yaw_rate;
+    EXPECT_EQ(out.command.steer, expected.command.steer) << yaw_rate;
+  }
+}
+
+TEST(PlannerCheck, AWrongGyroIsForgottenOnceItIsRight) {
+  Planner planner = make_sliding_planner();
+  after_updates(planner, 200, 90);
+  EXPECT_NEAR(after_updates(planner, 200, 0).yaw_rate_estimate, 0, 0.6);
+}
+
+TEST(PlannerCheck, ScansWhoseBeamsAreTurnsApartEndAmongOthers) {
+  Planner planner = make_planner(8);
+  const auto wall = wall_around(1.5F);
+  std::vector<maps::PredictedPose> poses(2, {{7, 0, 0}, 0.1, 0.1});
+  const maps::PredictedObstacle other{
+      .length = 0.6, .width = 0.3, .interval = 0.1, .hypotheses = 1, .weights = {1}, .poses = poses};
+  for (const double increment : {3.2, 1e3, 1e12, 1e300}) {
+    PlannerInput input{.scan = scan_of(wall), .odometry = {{5, 0, 0}, 3}};
+    input.scan.angle_increment = increment;
+    input.others = {&other, 1};
+    EXPECT_TRUE(std::isfinite(planner.update(input).command.steer)) << increment;
+  }
+}
+
+TEST(PlannerCheck, APlanThatBrakesCommandsLessThanTheEstimatedSpeed) {
+  Planner planner = make_sliding_planner();
+  const auto wall = wall_around(1.2F);
+  PlannerOutput out;
+  for (int i = 0; i < 5; ++i) out = planner.update({.scan = scan_of(wall), .odometry = {{5, 0, 0}, 3}});
+  ASSERT_EQ(out.inputs_per_step, 2);
+  EXPECT_LT(out.inputs[1], 0) << "3 m/s towards a wall";
+  EXPECT_LT(out.command.speed, out.speed_estimate);
+}
+
 TEST(PlannerCheck, EveryCommandIsValidForAnyInput) {
   const long calls = testing::repetitions(20000);
   testing::PlannerTally tally;
@@ -59,9 +123,11 @@ TEST(PlannerCheck, EveryCommandIsValidForAnyInput) {
       FAIL() << "seed " << seed << ": " << finding.what();
     }
   }
-  std::printf("[ calls    ] %ld updates, %ld corrections;", tally.updates, tally.corrections);
+  std::printf("[ calls    ] %ld updates of %ld planners (%ld more refused), %ld corrections;", tally.updates,
+              tally.planners - tally.refused, tally.refused, tally.corrections);
   for (int i = 0; i < 7; ++i) std::printf(" %s %ld", name(static_cast<PlannerStatus>(i)), tally.statuses[i]);
   std::printf("\n");
+  EXPECT_GT(tally.planners, 2 * tally.refused);
   for (int i = 0; i < 6; ++i) EXPECT_GT(tally.statuses[i], 0) << name(static_cast<PlannerStatus>(i));
 }
 
