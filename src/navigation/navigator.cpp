@@ -10,6 +10,7 @@
 
 #include "navigation/base_model.hpp"
 #include "navigation/closed_places.hpp"
+#include "navigation/final_check.hpp"
 #include "navigation/others.hpp"
 #include "navigation/path_guide.hpp"
 #include "slalom/navigation/path_planner.hpp"
@@ -33,8 +34,9 @@ bool finite(const maps::Pose& pose) {
   return std::abs(pose.x) <= largest && std::abs(pose.y) <= largest && std::abs(pose.yaw) <= largest;
 }
 
-bool finite(const Velocity& v) {
-  return std::isfinite(v.forward) && std::isfinite(v.left) && std::isfinite(v.turn);
+bool plausible(const Velocity& v) {
+  return std::abs(v.forward) <= Velocity::largest && std::abs(v.left) <= Velocity::largest &&
+         std::abs(v.turn) <= Velocity::largest;
 }
 
 maps::Point position(const maps::Pose& pose) {
@@ -60,6 +62,7 @@ class Navigator::Implementation {
   NavigationResult update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
                           double elapsed, std::span<const maps::PredictedObstacle> others) noexcept;
   void reset(std::uint64_t seed) noexcept;
+  const BaseOptions& base() const noexcept { return options_.base; }
 
  private:
   bool fits(const Costmap& costmap) const noexcept;
@@ -273,7 +276,7 @@ NavigationResult Navigator::Implementation::stand(NavigationStatus status, const
   result.status = status;
   result.remaining = guide_.remaining();
   result.path = guide_.points();
-  if (!finite(velocity)) return result;
+  if (!plausible(velocity)) return result;
   const double period = std::clamp(elapsed, 0.0, max_period);
   const double speed = std::hypot(velocity.forward, velocity.left);
   const double kept = speed > 0 ? std::max(1 - options_.base.max_acceleration * period / speed, 0.0) : 0;
@@ -286,7 +289,7 @@ NavigationResult Navigator::Implementation::stand(NavigationStatus status, const
 NavigationResult Navigator::Implementation::update(const maps::Pose& pose, const Velocity& velocity,
                                                    const Costmap& costmap, double elapsed,
                                                    std::span<const maps::PredictedObstacle> others) noexcept {
-  if (!finite(pose) || !finite(velocity) || !(elapsed >= 0) || !std::isfinite(elapsed) || !fits(costmap))
+  if (!finite(pose) || !plausible(velocity) || !(elapsed >= 0) || !std::isfinite(elapsed) || !fits(costmap))
     return stand(NavigationStatus::bad_input, velocity, std::isfinite(elapsed) ? elapsed : 0);
   since_solve_ += elapsed;
   if (guide_.empty() || costmap.geometry().row(pose.x) < 0 || costmap.geometry().column(pose.y) < 0)
@@ -331,7 +334,9 @@ void Navigator::set_path(std::span<const maps::Pose> path) {
 
 NavigationResult Navigator::update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
                                    double elapsed, std::span<const maps::PredictedObstacle> others) noexcept {
-  return implementation_->update(pose, velocity, costmap, elapsed, others);
+  NavigationResult result = implementation_->update(pose, velocity, costmap, elapsed, others);
+  detail::check_result(result, implementation_->base());
+  return result;
 }
 
 void Navigator::reset(std::uint64_t seed) noexcept {

@@ -22,9 +22,10 @@ inline const char* const* enum_names(BaseKind) {
 
 /// A velocity in the robot's frame.
 struct Velocity {
-  double forward = 0;  ///< m/s
-  double left = 0;     ///< m/s; 0 but for omnidirectional bases
-  double turn = 0;     ///< rad/s, counter-clockwise
+  static constexpr double largest = 100;  ///< m/s and rad/s, largest magnitude that a navigator takes
+  double forward = 0;                     ///< m/s
+  double left = 0;                        ///< m/s; 0 but for omnidirectional bases
+  double turn = 0;                        ///< rad/s, counter-clockwise
 };
 
 /// Limits of a base.

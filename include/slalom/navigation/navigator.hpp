@@ -80,7 +80,8 @@ enum class NavigationStatus {
   blocked,       ///< the path is blocked and there is no way round: the robot stands
   goal_reached,  ///< the robot stands at the goal
   no_path,       ///< no path was set, or the robot is off the costmap: the robot stands
-  bad_input,     ///< a pose, velocity or time is not finite, or the costmap has another size: it stands
+  bad_input,     ///< a pose, velocity or time is not finite or absurdly large, or the costmap has another
+                 ///< size: it brakes, or stands
 };
 /// The name of a status, as it is written in results.
 constexpr const char* name(NavigationStatus status) noexcept {
@@ -106,7 +107,8 @@ constexpr const char* name(NavigationStatus status) noexcept {
 /// The answer of a navigator.
 struct NavigationResult {
   NavigationStatus status = NavigationStatus::no_path;  ///< whether it drives, and if not, why
-  Velocity command;                                     ///< finite, within the limits
+  Velocity command;                                     ///< finite, within the limits of the base
+  int corrections = 0;                                  ///< values of it that the final check changed
   double remaining = 0;                                 ///< m of path to the goal
   std::span<const maps::Pose> plan;  ///< predicted poses, map frame; the first is now. Empty unless it drives
   std::span<const maps::Pose> path;  ///< what is followed, with the present detour
