@@ -12,7 +12,21 @@ namespace {
 
 constexpr double arc_error = 0.15, offset_error = 0.06, speed_error = 0.5;  // m, m, m/s: of comparisons
 
+constexpr double furthest = 1e7, fastest = 200, largest = 1e3;  // m, m/s, m: of objects
+constexpr double fastest_turn = 1e3, max_variance = 1e6;        // rad/s; of any component
+
 using Weights = std::array<double, manoeuvres>;
+
+/// Whether an object is one that a tracker can report.
+bool plausible(const TrackedObject& object) noexcept {
+  bool holds = std::abs(object.pose.x) <= furthest && std::abs(object.pose.y) <= furthest &&
+               std::abs(object.pose.yaw) <= furthest && std::abs(object.speed) <= fastest &&
+               std::abs(object.yaw_rate) <= fastest_turn && object.length >= 0 && object.length <= largest &&
+               object.width >= 0 && object.width <= largest;
+  for (const auto& row : object.covariance)
+    for (const double value : row) holds = holds && std::abs(value) <= max_variance;
+  return holds;
+}
 
 int possible(const Motion& motion) noexcept {
   return motion.on_course ? manoeuvres : manoeuvres_without_course;
@@ -186,8 +200,8 @@ std::span<const maps::PredictedObstacle> Predictor::update(std::span<const Track
   std::erase_if(p.remembered, gone);
   for (const TrackedObject& object : objects) {
     if (p.predicted.size() == p.predicted.capacity()) break;
-    const bool moves =
-        object.speed >= p.options.min_speed && square(object.speed) > 9 * object.covariance[3][3];
+    const bool moves = plausible(object) && object.speed >= p.options.min_speed &&
+                       square(object.speed) > 9 * object.covariance[3][3];
     if (!moves) continue;
     const bool room = p.remembered.size() < p.remembered.capacity() || p.find(object.id);
     if (!room) continue;

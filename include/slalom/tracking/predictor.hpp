@@ -47,7 +47,8 @@ class Predictor {
   Predictor& operator=(Predictor&&) noexcept;
 
   /// Predictions of the objects that move, as they are at `stamp` (s), in their frame, which is that of the
-  /// course. Valid until the next call.
+  /// course. Objects with numbers that are not finite or absurdly large are left out. Valid until the next
+  /// call.
   std::span<const maps::PredictedObstacle> update(std::span<const TrackedObject> objects,
                                                   double stamp) noexcept;
   /// Forgets what objects did.

@@ -37,6 +37,12 @@ bool is_finite(const maps::Pose& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
 }
 
+/// Whether a pose is a number and as large as that of a car may be.
+bool is_plausible(const maps::Pose& pose) {
+  return std::abs(pose.x) <= LocaliserInput::furthest && std::abs(pose.y) <= LocaliserInput::furthest &&
+         std::abs(pose.yaw) <= LocaliserInput::max_yaw;
+}
+
 /// The pose `to` in the frame of `from`.
 maps::Pose relative(const maps::Pose& from, const maps::Pose& to) {
   const maps::Point p = maps::inverse_transform(from, {to.x, to.y});
@@ -250,7 +256,7 @@ Localiser::Localiser(Localiser&&) noexcept = default;
 Localiser& Localiser::operator=(Localiser&&) noexcept = default;
 
 bool Localiser::start_at(const maps::Pose& pose) noexcept {
-  if (!is_finite(pose)) return false;
+  if (!is_plausible(pose)) return false;
   implementation_->start_at(pose);
   return true;
 }
@@ -275,7 +281,8 @@ const LocaliserOutput& Localiser::update(const LocaliserInput& input) noexcept {
   out.relocated = false;
   out.resampled = false;
   out.beams = 0;
-  if (!is_finite(input.odometry) || !std::isfinite(input.stamp)) return finish(LocaliserStatus::bad_odometry);
+  if (!is_plausible(input.odometry) || !(std::abs(input.stamp) <= LocaliserInput::latest))
+    return finish(LocaliserStatus::bad_odometry);
   if (self.has_odometry && input.stamp <= self.stamp && input.stamp > self.stamp - clock_set_back)
     return finish(LocaliserStatus::stale);
   const LocaliserStatus moved = self.move(input);
@@ -293,7 +300,7 @@ const LocaliserOutput& Localiser::output() const noexcept {
 }
 maps::Pose Localiser::carried_to(const maps::Pose& odometry) const noexcept {
   const Implementation& self = *implementation_;
-  if (!self.has_odometry || !is_finite(odometry)) return self.output.pose;
+  if (!self.has_odometry || !is_plausible(odometry)) return self.output.pose;
   return compose(self.output.pose, relative(self.odometry, odometry));
 }
 maps::Pose Localiser::odometry_frame() const noexcept {

@@ -37,7 +37,7 @@ enum class LocaliserStatus {
   ok,
   uncertain,      ///< the particles are in several places, or the scan does not fit: do not rely on it
   bad_scan,       ///< empty, of invalid geometry or with too few readings: moved by odometry alone
-  bad_odometry,   ///< pose or stamp not finite: ignored
+  bad_odometry,   ///< pose or stamp not finite, or larger than `LocaliserInput` allows: ignored
   odometry_jump,  ///< moved further than the car can: the last motion is continued, the scan is used
   stale,          ///< not later than the last update: ignored
 };
@@ -62,6 +62,10 @@ constexpr const char* name(LocaliserStatus status) noexcept {
 
 /// The input of an update.
 struct LocaliserInput {
+  static constexpr double furthest = 1e7;  ///< m, largest magnitude of a coordinate
+  static constexpr double max_yaw = 1e6;   ///< rad, largest magnitude of a yaw
+  static constexpr double latest = 1e12;   ///< s, largest magnitude of a stamp
+
   maps::LaserScanView scan;  ///< the scan, body frame
   maps::Pose odometry;       ///< of the rear axle at the time of the scan, in a frame that may drift
   double stamp = 0;          ///< s, of the scan
@@ -104,7 +108,8 @@ class Localiser {
   /// Moves.
   Localiser& operator=(Localiser&&) noexcept;
 
-  /// Draws all particles around a pose of the rear axle (map frame); false, without effect, if not finite.
+  /// Draws all particles around a pose of the rear axle (map frame); false, without effect, if it is not
+  /// finite or larger than `LocaliserInput` allows.
   bool start_at(const maps::Pose& pose) noexcept;
   /// Draws the particles from all of the free space.
   void start_everywhere() noexcept;
