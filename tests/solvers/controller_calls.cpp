@@ -16,6 +16,7 @@
 #include "slalom/problems/pendulum.hpp"
 #include "slalom/problems/quadrotor.hpp"
 #include "slalom/slalom.hpp"
+#include "slalom/solvers/proposals.hpp"
 #include "solvers/problems.hpp"
 #include "solvers/set_option.hpp"
 #include "support/promise.hpp"
@@ -39,25 +40,39 @@ struct RateLimitedIntegrator : DoubleIntegrator {
   double input_min = -2, input_max = 2.5, input_rate_max = 4;
 };
 
+/// The same with another input gain in every variant of the world.
+struct UncertainIntegrator : RateLimitedIntegrator {
+  double gain = 1;
+  void randomize(RandomStream& random) noexcept { gain = std::exp(0.5 * random.normal()); }
+  template <class T>
+  State<T> step(const State<T>& x, const Input<T, 1>& u) const {
+    return RateLimitedIntegrator::step(x, Input<T, 1>{{T(gain) * u[0]}});
+  }
+};
+
 template <class P>
 using StateValues = std::array<double, sizeof(typename Controller<P>::State) / sizeof(double)>;
 
+/// Throws Finding unless an input may follow another that far.
+void check_rate(double reach, double before, double now) {
+  require(std::abs(now - before) <= (reach >= 0 ? reach : 0) + 1e-15 * std::abs(before),
+          "an input is within its rate");
+}
+
 /// Throws Finding unless a plan is finite, within the bounds and within the rates.
-template <class P>
-void check_plan(const Plan<P>& plan, const PerInput& low, const PerInput& high, const P& problem) {
+template <class P, class Problem>
+void check_plan(const Plan<P>& plan, const PerInput& low, const PerInput& high, const Problem& problem) {
+  constexpr int inputs = Problem::inputs;
   for (const auto& u : plan.inputs)
-    for (int i = 0; i < P::inputs; ++i) {
+    for (int i = 0; i < inputs; ++i) {
       const double least = std::max(low[i], detail::min_input(problem, i));
       const double most = std::min(high[i], detail::largest_input(problem, i));
       require(std::isfinite(u[i]) && u[i] >= least && u[i] <= most,
               "an input is within its bounds: " + std::to_string(u[i]));
     }
   for (std::size_t k = 1; k < plan.inputs.size(); ++k)
-    for (int i = 0; i < P::inputs; ++i) {
-      const double reach = detail::input_step(problem, i), before = plan.inputs[k - 1][i];
-      const double change = std::abs(plan.inputs[k][i] - before);
-      require(change <= (reach >= 0 ? reach : 0) + 1e-15 * std::abs(before), "an input is within its rate");
-    }
+    for (int i = 0; i < inputs; ++i)
+      check_rate(detail::input_step(problem, i), plan.inputs[k - 1][i], plan.inputs[k][i]);
   require(std::isfinite(plan.cost), "the cost is finite");
   for (const auto& x : plan.states) {
     StateValues<P> values;
@@ -66,10 +81,23 @@ void check_plan(const Plan<P>& plan, const PerInput& low, const PerInput& high, 
   }
 }
 
-/// Solves from some state.
+/// Sequences that compete with the samples of a solve.
 template <class P>
-void call_solve(Controller<P>& controller, const PerInput& low, const PerInput& high, Adversary& adversary,
-                ControllerTally& tally) {
+void draw_proposals(Proposals<P>& proposals, Adversary& adversary) {
+  std::array<typename Proposals<P>::Inputs, 4> inputs;
+  proposals.clear();
+  for (int i = adversary.below(3); i > 0; --i) {
+    for (auto& u : inputs)
+      for (double& value : u.value) value = adversary.any(-3, 3);
+    proposals.add(std::span(inputs).first(static_cast<std::size_t>(adversary.below(5))));
+  }
+}
+
+/// Solves from some state. `told` is what was applied before, where that is known.
+template <class P>
+void call_solve(Controller<P>& controller, const PerInput& low, const PerInput& high,
+                const std::optional<typename Controller<P>::Inputs>& told, Proposals<P>* proposals,
+                Adversary& adversary, ControllerTally& tally) {
   StateValues<P> values;
   const bool hostile = adversary.once_in(3);
   for (double& value : values) value = hostile ? adversary.any(-3, 3) : adversary.within(-2, 2);
@@ -78,10 +106,18 @@ void call_solve(Controller<P>& controller, const PerInput& low, const PerInput& 
   const bool finite = std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
   SolveRequest request{.elapsed = hostile ? adversary.any(-3, 3) : 0.05};
   if (adversary.once_in(10)) request.deadline = adversary.any(-3, 3);
+  if (proposals) {
+    draw_proposals(*proposals, adversary);
+    request.proposals = *proposals;
+  }
   const auto plan = controller.solve(x, request);
   require((plan.status == Status::non_finite_state) == !finite,
           "the status says whether the state was finite");
   check_plan(plan, low, high, controller.problem());
+  for (int i = 0; told && finite && i < controller.evaluator().inputs(); ++i) {
+    const double before = controller.bounds().nearest(static_cast<std::size_t>(i), (*told)[i]);
+    check_rate(detail::input_step(controller.problem(), i), before, plan.inputs[0][i]);
+  }
   ++tally.plans;
   ++(plan.status == Status::ok ? tally.ok : tally.other);
   tally.corrections += plan.corrections;
@@ -100,25 +136,33 @@ void call_controller(P problem, SolverOptions options, Adversary& adversary, Con
   set(options, "input_min", low);
   set(options, "input_max", high);
   std::optional<Controller<P>> controller;
+  std::optional<Proposals<P>> proposals;
   try {
     controller.emplace(problem, options);
+    if (controller->solver().takes_proposals() && adversary.below(2)) proposals.emplace(*controller, 2);
   } catch (const std::invalid_argument&) {  // bounds apart from the problem's
     ++tally.calls;
     return;
   }
+  std::optional<typename Controller<P>::Inputs> told;  // what was applied before the next solve
   for (int i = 0; i < 60 && !adversary.is_done(); ++i) {
     ++tally.calls;
     const int what = adversary.below(16);
     if (what == 0) {
       controller->reset(static_cast<std::uint64_t>(i));
+      told.reset();
     } else if (what == 1) {
       controller->prepare();
     } else if (what <= 3) {
-      Input<double, P::inputs> told;
-      for (int j = 0; j < P::inputs; ++j) told[j] = adversary.any(-3, 3);
-      controller->set_previous_input(told);
+      typename Controller<P>::Inputs given;
+      for (double& value : given.value) value = adversary.any(-3, 3);
+      controller->set_previous_input(given);
+      const bool finite = std::all_of(std::begin(given.value), std::end(given.value),
+                                      [](double value) { return std::isfinite(value); });
+      told = finite ? std::optional(given) : std::nullopt;
     } else {
-      call_solve(*controller, low, high, adversary, tally);
+      call_solve(*controller, low, high, told, proposals ? &*proposals : nullptr, adversary, tally);
+      told.reset();
     }
   }
 }
@@ -127,11 +171,15 @@ void call_controller(P problem, SolverOptions options, Adversary& adversary, Con
 
 void call_any_controller(const SolverOptions& options, Adversary& adversary, ControllerTally& tally) {
   const auto call = [&](auto problem) { call_controller(problem, options, adversary, tally); };
-  switch (adversary.below(9)) {
+  switch (adversary.below(10)) {
     case 0:
       return call(DoubleIntegrator{});
     case 1:
       return call(RateLimitedIntegrator{});
+    case 9: {
+      const RiskMeasure measure = static_cast<RiskMeasure>(adversary.below(4));
+      return call(RiskEvaluator{UncertainIntegrator{}, {.variants = 3, .measure = measure}});
+    }
     case 2:
       return call(problems::Pendulum{});
     case 3:
