@@ -112,13 +112,14 @@ std::vector<PaperRow> paper_rows() {
   rows.back().released = "reverse_mppi";
   rows.back().note =
       "The log is not what one thread computes: the threads of the paper's program race when they sum the "
-      "moments, and contributions are lost (docs/algorithms.md). One thread of it has the figure of Slalom.";
+      "moments, and contributions are lost (docs/logbook/evaluation.md). One thread of it has the figure of "
+      "Slalom.";
   baseline("SV-MPC", "sv_mpc", "sv_mpc");
   rows.back().released = "sv_mpc";
   rows.back().note =
       "The log is not what one thread computes: particles diverge until numbers overflow, and contributions "
-      "that the threads of the paper's program lose in a race damp this (docs/algorithms.md). One thread of "
-      "it has the figure of Slalom.";
+      "that the threads of the paper's program lose in a race damp this (docs/logbook/evaluation.md). One "
+      "thread of it has the figure of Slalom.";
   baseline("SVG-MPPI", "svg_mppi", "svg_mppi");
   rows.back().released = "svg_mppi";
   rows.back().lockstep = "svg_mppi";

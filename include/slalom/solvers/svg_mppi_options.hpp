@@ -33,7 +33,7 @@ inline const char* const* enum_names(GuideGradient) {
   return names;
 }
 
-/// The sequence around which `svg_mppi` draws its samples. docs/algorithms.md derives both forms.
+/// The sequence around which `svg_mppi` draws its samples. docs/algorithms/svg-mppi.md derives both forms.
 enum class SampleCentre {
   /// The nominal sequence: the weights need no control term. The last solution joins the guides.
   nominal,

@@ -7,7 +7,7 @@
 #include "slalom/solvers/svg_mppi_options.hpp"
 #include "solvers/problems.hpp"
 
-/// Where `svg_mppi` draws its samples: docs/algorithms.md, "Where the samples are drawn".
+/// Where `svg_mppi` draws its samples: docs/algorithms/svg-mppi.md.
 namespace slalom {
 namespace {
 
