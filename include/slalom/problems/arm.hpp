@@ -15,7 +15,7 @@ struct Arm {
   /// State of the dynamics.
   template <class T>
   struct State {
-    T angle[joints];  // rad
+    T angle[joints];  ///< rad
   };
   /// Where the parts of an arm are, m.
   template <class T>
@@ -27,15 +27,15 @@ struct Arm {
   struct Posture {
     Point<T> elbow, wrist, hand;  ///< m, from the base of the arm
   };
-  static constexpr int inputs = joints;                                  // rad/s
+  static constexpr int inputs = joints;                                  ///< joint speeds, rad/s
   static constexpr std::array cost_names{"reach", "effort", "contact"};  ///< names of the cost terms
-  double dt = 0.05;                                                      // s
-  double input_min = -1.5, input_max = 1.5;                              // rad/s
-  double input_rate_max = 10;                                            // rad/s^2
-  double base = 0.33, upper = 0.32, fore = 0.38, hand = 0.2;  // m, lengths from the ground to the hand
-  double goal_x = 0.38, goal_y = -0.48, goal_z = 0.34;        // m, for the hand
-  double ball_x = 0.5, ball_y = 0, ball_z = 0.45, ball_radius = 0.15;  // m
-  double thickness = 0.06;                                             // m, half of a link's
+  double dt = 0.05;                                                      ///< duration of a step, s
+  double input_min = -1.5, input_max = 1.5;                              ///< joint speeds, rad/s
+  double input_rate_max = 10;                                 ///< bound on the rates of the inputs, rad/s^2
+  double base = 0.33, upper = 0.32, fore = 0.38, hand = 0.2;  ///< lengths from the ground to the hand, m
+  double goal_x = 0.38, goal_y = -0.48, goal_z = 0.34;        ///< for the hand, m
+  double ball_x = 0.5, ball_y = 0, ball_z = 0.45, ball_radius = 0.15;  ///< m
+  double thickness = 0.06;                                             ///< half of a link's, m
 
   /// A posture from which the ball is in the way.
   static constexpr std::array<double, joints> start{0.9, 0.5, 0, 1.3, 0, 0.9, 0};

@@ -13,15 +13,15 @@ struct Car {
   /// State of the dynamics.
   template <class T>
   struct State {
-    T x, y, yaw, speed;  // m, m, rad, m/s
+    T x, y, yaw, speed;  ///< m, m, rad, m/s
   };
-  static constexpr int inputs = 2;                              // steering angle, rad; acceleration, m/s^2
-  double dt = 0.1;                                              // s
-  double wheelbase = 2.7;                                       // m
-  double cruise = 8;                                            // m/s
-  double stop_x = 80;                                           // m
-  double half_road = 4;                                         // m
-  std::array<double, 2> parked_x{25, 50}, parked_y{0.2, -0.3};  // m, each 4.5 m long and 2 m wide
+  static constexpr int inputs = 2;                              ///< steering angle, rad; acceleration, m/s^2
+  double dt = 0.1;                                              ///< duration of a step, s
+  double wheelbase = 2.7;                                       ///< distance of the axles, m
+  double cruise = 8;                                            ///< speed at which the car drives, m/s
+  double stop_x = 80;                                           ///< where the car stops, m
+  double half_road = 4;                                         ///< half of the width of the road, m
+  std::array<double, 2> parked_x{25, 50}, parked_y{0.2, -0.3};  ///< parked cars of 4.5 m x 2 m; m
 
   /// State after one step.
   template <class T>

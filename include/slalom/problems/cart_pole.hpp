@@ -11,11 +11,11 @@ struct CartPole {
   /// State of the dynamics.
   template <class T>
   struct State {
-    T position, speed, angle, rate;  // m, m/s, rad, rad/s
+    T position, speed, angle, rate;  ///< m, m/s, rad, rad/s
   };
-  static constexpr int inputs = 1;  // force, N
-  double dt = 0.02;                 // s
-  double track = 2;                 // m, to either side
+  static constexpr int inputs = 1;  ///< force on the cart, N
+  double dt = 0.02;                 ///< duration of a step, s
+  double track = 2;                 ///< length of the track to either side, m
 
   /// State after one step.
   template <class T>

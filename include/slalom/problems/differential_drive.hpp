@@ -9,7 +9,7 @@ namespace slalom::problems {
 
 /// A disc obstacle.
 struct Disc {
-  double x, y, radius;  // m
+  double x, y, radius;  ///< m
 };
 
 /// A robot with two driven wheels on its way to a goal among discs that it must avoid.
@@ -17,13 +17,13 @@ struct DifferentialDrive {
   /// State of the dynamics.
   template <class T>
   struct State {
-    T x, y, yaw;  // m, m, rad
+    T x, y, yaw;  ///< m, m, rad
   };
-  static constexpr int inputs = 2;  // speed, m/s; yaw rate, rad/s
-  double dt = 0.1;                  // s
-  double goal_x = 8, goal_y = 0;    // m
+  static constexpr int inputs = 2;  ///< speed, m/s; yaw rate, rad/s
+  double dt = 0.1;                  ///< duration of a step, s
+  double goal_x = 8, goal_y = 0;    ///< where the drive ends, m
   std::array<Disc, 3> discs{
-      {{2.5, 0.0, 0.9}, {5.2, 1.0, 0.7}, {5.2, -1.0, 0.7}}};  // with the robot's radius added
+      {{2.5, 0.0, 0.9}, {5.2, 1.0, 0.7}, {5.2, -1.0, 0.7}}};  ///< the discs, with the robot's radius added
 
   /// State after one step.
   template <class T>

@@ -13,16 +13,16 @@ struct PassingPoint {
   /// State of the dynamics.
   template <class T>
   struct State {
-    T x, y;  // m; the way is y = 0
+    T x, y;  ///< m; the way is y = 0
   };
-  static constexpr int inputs = 1;  // speed to the left, m/s
-  double dt = 0.2;                  // s
-  double speed = 1;                 // m/s, ahead
-  double disc_x = 2, disc_y = 0;    // m
-  double disc_radius = 0.5;         // m
-  double collision_cost = 10;       // a step inside the disc
-  double way_weight = 0.5;          // 1/m^2
-  double input_weight = 0.05;       // s^2/m^2
+  static constexpr int inputs = 1;  ///< speed to the left, m/s
+  double dt = 0.2;                  ///< duration of a step, s
+  double speed = 1;                 ///< speed ahead, m/s
+  double disc_x = 2, disc_y = 0;    ///< centre of the disc, m
+  double disc_radius = 0.5;         ///< radius of the disc, m
+  double collision_cost = 10;       ///< cost of a step inside the disc
+  double way_weight = 0.5;          ///< of the squared distance from the way, 1/m^2
+  double input_weight = 0.05;       ///< of the squared input, s^2/m^2
 
   /// State after one step.
   template <class T>

@@ -10,13 +10,13 @@ struct Pendulum {
   /// State of the dynamics.
   template <class T>
   struct State {
-    T angle, rate;  // rad, rad/s
+    T angle, rate;  ///< rad, rad/s
   };
-  static constexpr int inputs = 1;  // torque, N m
-  double dt = 0.02;                 // s
-  double mass = 1;                  // kg, at the end of the rod
-  double length = 1;                // m
-  double gravity = 9.81;            // m/s^2
+  static constexpr int inputs = 1;  ///< torque, N m
+  double dt = 0.02;                 ///< duration of a step, s
+  double mass = 1;                  ///< mass at the end of the rod, kg
+  double length = 1;                ///< length of the rod, m
+  double gravity = 9.81;            ///< acceleration of gravity, m/s^2
 
   /// State after one step.
   template <class T>

@@ -10,13 +10,13 @@ struct Quadrotor {
   /// State of the dynamics.
   template <class T>
   struct State {
-    T x, z, tilt, speed_x, speed_z, rate;  // m, m, rad, m/s, m/s, rad/s
+    T x, z, tilt, speed_x, speed_z, rate;  ///< m, m, rad, m/s, m/s, rad/s
   };
-  static constexpr int inputs = 2;           // thrust beyond the weight, m/s^2; turning acceleration, rad/s^2
-  double dt = 0.05;                          // s
-  double goal_x = 6, goal_z = 0;             // m
-  double wall_from = 2.8, wall_to = 3.2;     // m, along x
-  double gap_centre = 1.0, gap_width = 1.0;  // m: gaps at z = +gap_centre and z = -gap_centre
+  static constexpr int inputs = 2;        ///< thrust beyond the weight, m/s^2; turning acceleration, rad/s^2
+  double dt = 0.05;                       ///< duration of a step, s
+  double goal_x = 6, goal_z = 0;          ///< where the flight ends, m
+  double wall_from = 2.8, wall_to = 3.2;  ///< extent of the wall along x, m
+  double gap_centre = 1.0, gap_width = 1.0;  ///< gaps at z = +gap_centre and z = -gap_centre; m
 
   /// State after one step.
   template <class T>

@@ -19,8 +19,8 @@ struct DialMpcOptions {
   int samples = 512;       ///< K, control sequences drawn in an update
   double temperature = 1;  ///< lambda
   PerInput variance = 1;   ///< Sigma of the first update at the last step, input^2
-  PerInput input_min = -std::numeric_limits<double>::infinity();
-  PerInput input_max = std::numeric_limits<double>::infinity();
+  PerInput input_min = -std::numeric_limits<double>::infinity();  ///< lower bounds of the inputs
+  PerInput input_max = std::numeric_limits<double>::infinity();   ///< upper bounds of the inputs
 
   int iterations = 2;            ///< N, updates in a solve
   int first_iterations = 10;     ///< updates in the first solve, which has no last solution
@@ -33,7 +33,7 @@ struct DialMpcOptions {
   double zero_mean_share = 0;    ///< of the samples, drawn around zero instead of the last solution
   bool shift_warm_start = true;  ///< move the last solution forward by the elapsed time
   std::uint64_t seed = 0;        ///< seed of the random numbers
-  int threads = 1;
+  int threads = 1;               ///< threads that work on a solve; the result does not depend on it
 };
 
 /// Declares the options above.

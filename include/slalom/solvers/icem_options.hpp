@@ -18,8 +18,8 @@ struct IcemOptions {
   int horizon = 30;       ///< T, steps
   int samples = 320;      ///< K, drawn in the first iteration
   PerInput variance = 1;  ///< Sigma at the start of every solve, input^2
-  PerInput input_min = -std::numeric_limits<double>::infinity();
-  PerInput input_max = std::numeric_limits<double>::infinity();
+  PerInput input_min = -std::numeric_limits<double>::infinity();  ///< lower bounds of the inputs
+  PerInput input_max = std::numeric_limits<double>::infinity();   ///< upper bounds of the inputs
 
   int iterations = 5;         ///< refits of the distribution in a solve
   double elite_share = 0.03;  ///< share of the first iteration's samples that the distribution is refitted to
@@ -33,7 +33,7 @@ struct IcemOptions {
   double zero_mean_share = 0;         ///< of the samples, drawn around zero instead of the mean
   bool shift_warm_start = true;       ///< move the last solution and elites forward by the elapsed time
   std::uint64_t seed = 0;             ///< seed of the random numbers
-  int threads = 1;
+  int threads = 1;                    ///< threads that work on a solve; the result does not depend on it
 };
 
 /// Declares the options above.

@@ -14,21 +14,21 @@ namespace slalom {
 struct MppiOptions {
   static constexpr const char* method = "mppi";  ///< name in configurations
 
-  int horizon = 30;        ///< T, steps
-  int samples = 1024;      ///< K, control sequences drawn in a solve
-  double temperature = 1;  ///< lambda
-  PerInput variance = 1;   ///< Sigma, input^2
-  PerInput input_min = -std::numeric_limits<double>::infinity();
-  PerInput input_max = std::numeric_limits<double>::infinity();
-  NoiseOptions noise{};              ///< shape of the noise; white and normal
-  WeightingOptions weighting{};      ///< how costs become weights; exponentially
-  SmoothingOptions smoothing{};      ///< of the solution; none
+  int horizon = 30;                                               ///< T, steps
+  int samples = 1024;                                             ///< K, control sequences drawn in a solve
+  double temperature = 1;                                         ///< lambda
+  PerInput variance = 1;                                          ///< Sigma, input^2
+  PerInput input_min = -std::numeric_limits<double>::infinity();  ///< lower bounds of the inputs
+  PerInput input_max = std::numeric_limits<double>::infinity();   ///< upper bounds of the inputs
+  NoiseOptions noise{};                                           ///< shape of the noise; white and normal
+  WeightingOptions weighting{};                                   ///< how costs become weights; exponentially
+  SmoothingOptions smoothing{};                                   ///< of the solution; none
   double control_cost_discount = 0;  ///< alpha: the control term is multiplied by 1 - alpha
   double zero_mean_share = 0;        ///< of the samples, drawn around zero instead of the last solution
   bool shift_warm_start = true;      ///< move the last solution forward by the elapsed time
   std::uint64_t seed = 0;            ///< seed of the random numbers
-  int threads = 1;
-  PublishedMppi published{};  ///< only to reproduce the program of proj-svg_mppi
+  int threads = 1;                   ///< threads that work on a solve; the result does not depend on it
+  PublishedMppi published{};         ///< only to reproduce the program of proj-svg_mppi
 };
 
 /// Declares the options above.

@@ -24,19 +24,19 @@ inline const char* const* enum_names(Resampling) {
 struct ReverseMppiOptions {
   static constexpr const char* method = "reverse_mppi";  ///< name in configurations
 
-  int horizon = 30;        ///< T, steps
-  int samples = 256;       ///< K, evaluated in each iteration
-  double temperature = 1;  ///< lambda
-  PerInput variance = 1;   ///< Sigma at the start, input^2
-  PerInput input_min = -std::numeric_limits<double>::infinity();
-  PerInput input_max = std::numeric_limits<double>::infinity();
+  int horizon = 30;                                               ///< T, steps
+  int samples = 256;                                              ///< K, evaluated in each iteration
+  double temperature = 1;                                         ///< lambda
+  PerInput variance = 1;                                          ///< Sigma at the start, input^2
+  PerInput input_min = -std::numeric_limits<double>::infinity();  ///< lower bounds of the inputs
+  PerInput input_max = std::numeric_limits<double>::infinity();   ///< upper bounds of the inputs
 
-  int iterations = 20;          ///< updates of the distribution in a solve
-  double step = 0.2;            ///< eta of the mirror descent
-  double negative_ratio = 0.5;  ///< weight of the repulsion from bad samples
-  bool reject_samples = true;   ///< draw more samples and keep those away from bad ones
-  double inflation = 2;         ///< samples drawn for each one that is kept
-  Resampling resampling = Resampling::systematic;
+  int iterations = 20;                             ///< updates of the distribution in a solve
+  double step = 0.2;                               ///< eta of the mirror descent
+  double negative_ratio = 0.5;                     ///< weight of the repulsion from bad samples
+  bool reject_samples = true;                      ///< draw more samples and keep those away from bad ones
+  double inflation = 2;                            ///< samples drawn for each one that is kept
+  Resampling resampling = Resampling::systematic;  ///< how samples are selected by their probability
   double warm_start = 0.5;       ///< share of the new distribution in the initial one of the next solve
   PerInput variance_min = 1e-4;  ///< least variance, input^2
 
@@ -44,7 +44,7 @@ struct ReverseMppiOptions {
   double zero_mean_share = 0;        ///< of the samples, drawn around zero instead of the mean
   bool shift_warm_start = true;      ///< move the last solution forward by the elapsed time
   std::uint64_t seed = 0;            ///< seed of the random numbers
-  int threads = 1;
+  int threads = 1;                   ///< threads that work on a solve; the result does not depend on it
   PublishedReverseMppi published{};  ///< only to reproduce the program of proj-svg_mppi
 };
 

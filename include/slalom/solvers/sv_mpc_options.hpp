@@ -13,12 +13,12 @@ namespace slalom {
 struct SvMpcOptions {
   static constexpr const char* method = "sv_mpc";  ///< name in configurations
 
-  int horizon = 30;        ///< T, steps
-  int samples = 128;       ///< number of particles n
-  double temperature = 1;  ///< lambda
-  PerInput variance = 1;   ///< of the prior at the start, input^2
-  PerInput input_min = -std::numeric_limits<double>::infinity();
-  PerInput input_max = std::numeric_limits<double>::infinity();
+  int horizon = 30;                                               ///< T, steps
+  int samples = 128;                                              ///< number of particles n
+  double temperature = 1;                                         ///< lambda
+  PerInput variance = 1;                                          ///< of the prior at the start, input^2
+  PerInput input_min = -std::numeric_limits<double>::infinity();  ///< lower bounds of the inputs
+  PerInput input_max = std::numeric_limits<double>::infinity();   ///< upper bounds of the inputs
 
   int iterations = 5;  ///< SVGD steps in a solve
   PerInput step = 1;   ///< epsilon, input^2
@@ -38,8 +38,8 @@ struct SvMpcOptions {
   double zero_mean_share = 0;        ///< of a gradient's samples, drawn around zero instead of the particle
   bool shift_warm_start = true;      ///< move the particles and the last solution forward by the elapsed time
   std::uint64_t seed = 0;            ///< seed of the random numbers
-  int threads = 1;
-  PublishedSvMpc published{};  ///< only to reproduce the program of proj-svg_mppi
+  int threads = 1;                   ///< threads that work on a solve; the result does not depend on it
+  PublishedSvMpc published{};        ///< only to reproduce the program of proj-svg_mppi
 };
 
 /// Declares the options above.

@@ -55,7 +55,7 @@ struct GuideOptions {
   int gradient_samples = 25;          ///< N, for the gradient of a guide
   PerInput gradient_variance = 0.25;  ///< Sigma_g, input^2
   double gradient_temperature = 1;    ///< lambda of the weights of the gradient
-  GuideWeight weight = GuideWeight::state_cost;
+  GuideWeight weight = GuideWeight::state_cost;  ///< how the weights of the gradient are computed
   /// In every solve all guides but the best restart at smooth deviations from the best one: they search for
   /// other modes, and the best is kept until another is better. Otherwise all guides continue.
   bool restart = true;
@@ -72,12 +72,12 @@ struct GuideOptions {
 struct SvgMppiOptions {
   static constexpr const char* method = "svg_mppi";  ///< name in configurations
 
-  int horizon = 30;        ///< T, steps
-  int samples = 1024;      ///< K, control sequences drawn in a solve
-  double temperature = 1;  ///< lambda
-  PerInput variance = 1;   ///< Sigma, input^2, where it is not adapted
-  PerInput input_min = -std::numeric_limits<double>::infinity();
-  PerInput input_max = std::numeric_limits<double>::infinity();
+  int horizon = 30;                                               ///< T, steps
+  int samples = 1024;                                             ///< K, control sequences drawn in a solve
+  double temperature = 1;                                         ///< lambda
+  PerInput variance = 1;                                          ///< Sigma, input^2, where it is not adapted
+  PerInput input_min = -std::numeric_limits<double>::infinity();  ///< lower bounds of the inputs
+  PerInput input_max = std::numeric_limits<double>::infinity();   ///< upper bounds of the inputs
 
   GuideOptions guides{};  ///< the guide particles
   bool use_nominal =
@@ -93,8 +93,8 @@ struct SvgMppiOptions {
   double zero_mean_share = 0;        ///< of the samples, drawn around zero instead of the last solution
   bool shift_warm_start = true;      ///< move guides and last solution forward by the elapsed time
   std::uint64_t seed = 0;            ///< seed of the random numbers
-  int threads = 1;
-  PublishedSvgMppi published{};  ///< only to reproduce the program of proj-svg_mppi
+  int threads = 1;                   ///< threads that work on a solve; the result does not depend on it
+  PublishedSvgMppi published{};      ///< only to reproduce the program of proj-svg_mppi
 };
 
 namespace detail {

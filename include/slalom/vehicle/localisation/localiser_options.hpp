@@ -68,8 +68,8 @@ struct LocaliserRecoveryOptions {
 
 /// Options of Localiser. The names of options do not contain those of the groups.
 struct LocaliserOptions {
-  std::uint64_t seed = 0;  ///< seed of the random numbers
-  SensorModel sensor_model = SensorModel::beam;
+  std::uint64_t seed = 0;                        ///< seed of the random numbers
+  SensorModel sensor_model = SensorModel::beam;  ///< probability of a range at a pose
 
   double laser_x = 0.275;  ///< m, of the laser from the rear axle
   double laser_y = 0;      ///< m

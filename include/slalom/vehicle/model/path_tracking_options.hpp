@@ -29,14 +29,14 @@ inline const char* const* enum_names(BodyModel) {
 
 /// The car's body and the clearance that it keeps from obstacles.
 struct BodyOptions {
-  BodyModel model = BodyModel::discs;
-  double front = 0.461;      ///< m, reach ahead of the rear axle
-  double rear = 0.119;       ///< m, reach behind the rear axle
-  double width = 0.31;       ///< m
-  double margin = 0.04;      ///< m, clearance below which a state collides
-  double soft_margin = 0.1;  ///< m, clearance beyond `margin` in which nearness has a cost
-  double soft_cost = 10;     ///< cost map value of a state that almost collides; with discs it falls off as
-                             ///< the square of the clearance, with a box it is constant
+  BodyModel model = BodyModel::discs;  ///< how the body is checked for collisions
+  double front = 0.461;                ///< m, reach ahead of the rear axle
+  double rear = 0.119;                 ///< m, reach behind the rear axle
+  double width = 0.31;                 ///< m
+  double margin = 0.04;                ///< m, clearance below which a state collides
+  double soft_margin = 0.1;            ///< m, clearance beyond `margin` in which nearness has a cost
+  double soft_cost = 10;  ///< cost map value of a state that almost collides; with discs it falls off as
+                          ///< the square of the clearance, with a box it is constant
 };
 
 /// Weights of the cost of a state (see PathTracking).

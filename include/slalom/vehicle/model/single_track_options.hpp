@@ -28,9 +28,9 @@ inline const char* const* enum_names(Objective) {
 
 /// Options of `vehicle.model: single_track`. The defaults are the 1/10-scale car of f1tenth_gym.
 struct SingleTrackOptions {
-  Objective objective = Objective::path_speed;
-  TyreModel tyres = TyreModel::saturating;
-  double friction = 1.0489;         ///< mu, between tyre and road
+  Objective objective = Objective::path_speed;  ///< what plans seek
+  TyreModel tyres = TyreModel::saturating;      ///< sideways force over slip angle
+  double friction = 1.0489;                     ///< mu, between tyre and road
   double cornering_front = 4.718;   ///< C_Sf, 1/rad, cornering stiffness over friction and axle load
   double cornering_rear = 5.4562;   ///< C_Sr, 1/rad
   double gravity_height = 0.074;    ///< h, m, of the centre of gravity

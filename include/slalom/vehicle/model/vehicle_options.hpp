@@ -21,7 +21,7 @@ VehicleModelId vehicle_model(std::string_view name);
 
 /// The options of the car: which model it has, the options that all models share, and each model's own.
 struct VehicleOptions : PathTrackingOptions {
-  VehicleModelId model{};
+  VehicleModelId model{};      ///< how the car moves, and what its inputs are
   VehicleModels::Options own;  ///< each model's own options
   RiskOptions risk;            ///< of rollouts in several variants of the world, for models that have them
 

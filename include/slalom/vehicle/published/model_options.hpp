@@ -21,7 +21,7 @@ inline const char* const* enum_names(BicycleModel) {
 
 /// Options of `vehicle.model: published` besides those of every model. The defaults are the correct forms.
 struct ModelOptions {
-  BicycleModel bicycle = BicycleModel::rear_axle;
+  BicycleModel bicycle = BicycleModel::rear_axle;  ///< reference point and yaw gain of the bicycle
   bool exact_lag = true;  ///< published: false, the lag of the steering by explicit Euler
   /// Published: true. Collisions are looked up along a second rollout in the robot's frame that starts with
   /// the wheels straight, whatever their angle.
