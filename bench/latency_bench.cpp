@@ -23,7 +23,7 @@
 #include "slalom/core/instruction_set.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
 
-namespace slalom::tools {
+namespace slalom::workload {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -135,11 +135,11 @@ int run(long solves, int threads, double period) {
 }
 
 }  // namespace
-}  // namespace slalom::tools
+}  // namespace slalom::workload
 
 int main(int count, char** arguments) {
   const long solves = count > 1 ? std::atol(arguments[1]) : 100000;
   const int threads = count > 2 ? std::atoi(arguments[2]) : 1;
   const double period = count > 3 ? 1e-3 * std::atof(arguments[3]) : 1e-3;
-  return slalom::tools::run(std::max(solves, 1L), std::max(threads, 1), period);
+  return slalom::workload::run(std::max(solves, 1L), std::max(threads, 1), period);
 }

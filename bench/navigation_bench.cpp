@@ -132,7 +132,7 @@ bool drive(int samples, int cycles) {
     x = problem.step(x, disc, u);
   }
   terms[3] = disc_cost * collided;  // of the samples that collided: the robot itself should not
-  const tools::TimeStatistics t = tools::time_statistics(times);
+  const workload::TimeStatistics t = workload::time_statistics(times);
   const double cycle_ns = 1e6 * t.p50 / (static_cast<double>(samples) * 100);
   std::printf("K %6d  mean %.3f ms, p50 %.3f, min %.3f, max %.3f; %.2f ns a rollout step; terms", samples,
               sum / cycles, t.p50, t.min, t.max, cycle_ns);

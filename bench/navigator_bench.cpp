@@ -74,7 +74,7 @@ void report(const char* what, int count, Work&& work) {
     work();
     times.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
   }
-  const tools::TimeStatistics t = tools::time_statistics(times);
+  const workload::TimeStatistics t = workload::time_statistics(times);
   std::printf("%-34s p50 %.3f ms, p99 %.3f, min %.3f, max %.3f\n", what, t.p50, t.p99, t.min, t.max);
 }
 

@@ -12,7 +12,7 @@
 
 /// An update of the planner of the configuration `default` among other cars, all of them near, with four
 /// hypotheses each.
-namespace slalom::tools {
+namespace slalom::workload {
 namespace {
 
 /// Cars round the car at `place` of the course, ahead, beside and behind.
@@ -65,4 +65,4 @@ void prediction(benchmark::State& state) {
 BENCHMARK(prediction)->ArgName("cars")->Arg(1)->Arg(4)->Arg(8)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace slalom::tools
+}  // namespace slalom::workload

@@ -8,7 +8,7 @@
 #include "slalom/core/instruction_set.hpp"
 
 /// Rollouts of the vehicle problem on every instruction set and of the yardstick: ns_per_step on one core.
-namespace slalom::tools {
+namespace slalom::workload {
 namespace {
 
 constexpr int samples = 8000;
@@ -76,4 +76,4 @@ void register_all() {
 const bool registered = (register_all(), true);
 
 }  // namespace
-}  // namespace slalom::tools
+}  // namespace slalom::workload

@@ -7,7 +7,7 @@
 #include "slalom/core/dispatch.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 
-namespace slalom::tools {
+namespace slalom::workload {
 
 namespace {
 
@@ -129,4 +129,4 @@ TickSpeed measure_tick(const vehicle::Configuration& configuration, double secon
   return {time_statistics(whole), time_statistics(rest)};
 }
 
-}  // namespace slalom::tools
+}  // namespace slalom::workload

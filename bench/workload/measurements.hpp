@@ -9,7 +9,7 @@
 
 /// The measurements of `slalom bench`. All times are of one core unless the number of threads is given. Every
 /// measurement takes `seconds` of wall-clock time or 30 repetitions, whichever is longer.
-namespace slalom::tools {
+namespace slalom::workload {
 
 struct RolloutSpeed {
   TimeStatistics yardstick;  ///< ns per step
@@ -41,4 +41,4 @@ TickSpeed measure_tick(const vehicle::Configuration& configuration, double secon
 /// counted by hand from the formulas (28 + 21 sines and cosines, 27 motion, 12 look-up, 15 cost).
 inline constexpr double operations_per_step = 103;
 
-}  // namespace slalom::tools
+}  // namespace slalom::workload

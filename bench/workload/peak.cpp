@@ -6,7 +6,7 @@
 #include "slalom/core/dispatch.hpp"
 #include "slalom/core/math.hpp"
 
-namespace slalom::tools {
+namespace slalom::workload {
 
 namespace {
 
@@ -59,4 +59,4 @@ double measured_peak_gflops(simd::Target target) {
   return 2e-9 * chains * rounds * lanes / least;
 }
 
-}  // namespace slalom::tools
+}  // namespace slalom::workload

@@ -7,7 +7,7 @@
 #include "slalom/core/random.hpp"
 #include "slalom/vehicle/published/options.hpp"
 
-namespace slalom::tools {
+namespace slalom::workload {
 
 namespace {
 
@@ -107,4 +107,4 @@ SequenceBatch ReferenceWorkload::sequences(int samples, int steps_wanted) const 
   return batch;
 }
 
-}  // namespace slalom::tools
+}  // namespace slalom::workload

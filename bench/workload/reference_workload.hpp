@@ -13,7 +13,7 @@
 
 /// The workload `reference` for measurements of speed: the vehicle problem with the parameters of Honda et
 /// al. (ICRA 2024) and 14 inputs (15 states), on a course with two parked cars. It is the same in every run.
-namespace slalom::tools {
+namespace slalom::workload {
 
 /// A closed course with straights and turns, points every 5 cm, speeds 3 to 5 m/s.
 std::vector<maps::ReferencePoint> reference_course();
@@ -57,4 +57,4 @@ class ReferenceWorkload {
   maps::LocalCostMap cost_map_;
 };
 
-}  // namespace slalom::tools
+}  // namespace slalom::workload

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace slalom::tools {
+namespace slalom::workload {
 
 /// Order statistics of measured times.
 struct TimeStatistics {
@@ -21,4 +21,4 @@ inline TimeStatistics time_statistics(std::vector<double> times) {
   return {times.front(), at(0.5), at(0.99), at(0.999), times.back()};
 }
 
-}  // namespace slalom::tools
+}  // namespace slalom::workload

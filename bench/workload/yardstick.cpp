@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace slalom::tools {
+namespace slalom::workload {
 
 Yardstick::Yardstick(const vehicle::PathTrackingOptions& options, const maps::ReferenceField& field,
                      const maps::LocalCostMap& cost_map, const maps::Pose& robot)
@@ -72,4 +72,4 @@ void Yardstick::evaluate(const CarStart& start, const SequenceBatch& batch, int 
   for (int k = 0; k < count; ++k) costs[k] = rollout(start, batch, k);
 }
 
-}  // namespace slalom::tools
+}  // namespace slalom::workload

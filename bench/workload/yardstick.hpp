@@ -7,7 +7,7 @@
 #include "slalom/maps/reference_field.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
 
-namespace slalom::tools {
+namespace slalom::workload {
 
 /// The state a rollout starts from, map frame.
 struct CarStart {
@@ -49,4 +49,4 @@ class Yardstick {
   Layer distance_, yaw_, speed_, off_map_, obstacle_;
 };
 
-}  // namespace slalom::tools
+}  // namespace slalom::workload

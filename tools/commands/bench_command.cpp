@@ -47,7 +47,7 @@ vehicle::Configuration configuration_of(const BenchArguments& arguments) {
   return made;
 }
 
-Json json_of(const TimeStatistics& t) {
+Json json_of(const workload::TimeStatistics& t) {
   return {{"p50", t.p50}, {"p99", t.p99}, {"max", t.max}, {"min", t.min}};
 }
 
@@ -104,9 +104,11 @@ class Bench {
   }
 
   void rollouts() {
-    const RolloutSpeed speed = measure_rollouts(workload_, configuration_.vehicle, 8000,
-                                                ReferenceWorkload::steps, target_, arguments_.seconds);
-    const double peak = measured_peak_gflops(target_), rate = operations_per_step / speed.rollout.p50;
+    const workload::RolloutSpeed speed =
+        workload::measure_rollouts(workload_, configuration_.vehicle, 8000,
+                                   workload::ReferenceWorkload::steps, target_, arguments_.seconds);
+    const double peak = workload::measured_peak_gflops(target_),
+                 rate = workload::operations_per_step / speed.rollout.p50;
     json_["yardstick_ns_per_step"] = speed.yardstick.p50;
     json_["rollout_ns_per_step"] = speed.rollout.p50;
     json_["rollout_times_faster"] = speed.yardstick.p50 / speed.rollout.p50;
@@ -123,8 +125,8 @@ class Bench {
   }
 
   void method(const SolverOptions& options) {
-    const SolveSpeed s =
-        measure_solve(workload_, configuration_.vehicle, with(options, 0, 1), arguments_.seconds);
+    const workload::SolveSpeed s =
+        workload::measure_solve(workload_, configuration_.vehicle, with(options, 0, 1), arguments_.seconds);
     Json& json = json_["methods"][s.method];
     json["solve_ms"] = json_of(s.solve);
     json["solve_yardstick_steps"] = s.solve.p50 * 1e6 / s.yardstick.p50;
@@ -141,18 +143,18 @@ class Bench {
   }
 
   void tick() {
-    const TickSpeed speed = measure_tick(configuration_, arguments_.seconds);
+    const workload::TickSpeed speed = workload::measure_tick(configuration_, arguments_.seconds);
     json_["tick_ms"] = speed.tick.p50;
     json_["tick"] = {{"whole_ms", json_of(speed.tick)}, {"without_solve_ms", json_of(speed.round_solver)}};
     std::fprintf(words_, "planner update %.3f ms (p99 %.3f), without the solve %.3f ms\n", speed.tick.p50,
                  speed.tick.p99, speed.round_solver.p50);
   }
 
-  SolveSpeed solve(const char* name, int samples, int threads, int horizon = 0) {
+  workload::SolveSpeed solve(const char* name, int samples, int threads, int horizon = 0) {
     for (const SolverOptions& options : configuration_.methods) {
       if (std::string(solver_name(options)) == name)
-        return measure_solve(workload_, configuration_.vehicle, with(options, samples, threads, horizon),
-                             0.1 * arguments_.seconds);
+        return workload::measure_solve(workload_, configuration_.vehicle,
+                                       with(options, samples, threads, horizon), 0.1 * arguments_.seconds);
     }
     throw std::invalid_argument(std::string("no method ") + name);
   }
@@ -163,7 +165,7 @@ class Bench {
     for (const char* name : {"mppi", "svg_mppi"}) {
       BenchCurve curve{name, {}, {}};
       for (int log2 = 7; log2 <= 17; ++log2) {
-        const SolveSpeed s = solve(name, 1 << log2, 1);
+        const workload::SolveSpeed s = solve(name, 1 << log2, 1);
         curve.samples.push_back(1 << log2);
         curve.milliseconds.push_back(s.solve.p50);
         json["samples"][name].push_back({{"samples", 1 << log2}, {"solve_ms", s.solve.p50}});
@@ -172,21 +174,22 @@ class Bench {
       curves.push_back(curve);
     }
     for (int horizon = 7; horizon <= 112; horizon *= 2) {
-      const SolveSpeed s = solve("svg_mppi", 0, 1, horizon);
+      const workload::SolveSpeed s = solve("svg_mppi", 0, 1, horizon);
       json["horizon"].push_back({{"steps", horizon}, {"solve_ms", s.solve.p50}});
       std::fprintf(words_, "svg_mppi  T %6d  %9.3f ms\n", horizon, s.solve.p50);
     }
     const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     for (int threads = 1; threads <= cores; threads *= 2) {
-      const SolveSpeed s = solve("svg_mppi", 0, threads);
+      const workload::SolveSpeed s = solve("svg_mppi", 0, threads);
       json["threads"].push_back({{"threads", threads}, {"solve_ms", s.solve.p50}});
       std::fprintf(words_, "svg_mppi  threads %d  %6.3f ms\n", threads, s.solve.p50);
     }
     for (const simd::Target target :
          {simd::Target::generic, simd::Target::sse4, simd::Target::avx2, simd::Target::avx512}) {
       if (!simd::supported(target)) continue;
-      const RolloutSpeed s = measure_rollouts(workload_, configuration_.vehicle, 8000,
-                                              ReferenceWorkload::steps, target, 0.2 * arguments_.seconds);
+      const workload::RolloutSpeed s =
+          workload::measure_rollouts(workload_, configuration_.vehicle, 8000,
+                                     workload::ReferenceWorkload::steps, target, 0.2 * arguments_.seconds);
       json["targets"].push_back({{"target", simd::name(target)},
                                  {"rollout_ns_per_step", s.rollout.p50},
                                  {"yardstick_ns_per_step", s.yardstick.p50}});
@@ -201,7 +204,7 @@ class Bench {
   std::FILE* words_;
   vehicle::Configuration configuration_;
   simd::Target target_;
-  ReferenceWorkload workload_;
+  workload::ReferenceWorkload workload_;
   Json json_;
 };
 
