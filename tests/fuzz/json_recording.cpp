@@ -4,7 +4,7 @@
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/json.hpp"
-#include "tools/recording/driven_samples.hpp"
+#include "tools/recorded_drives/driven_samples.hpp"
 
 namespace slalom::fuzz {
 namespace {

@@ -12,7 +12,7 @@
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/description.hpp"
 #include "tools/command_line/nearest.hpp"
-#include "tools/evaluation/ranks.hpp"
+#include "tools/ranks/ranks.hpp"
 
 namespace slalom::tools {
 
@@ -148,7 +148,7 @@ void check(const CLI::App& command) {
   simd::active_target();
 }
 
-/// "Did you mean ...?" for a word that is none of a list; empty if no word is near.
+/// "Did you mean ...?" for a word that is not in a list; empty if no word is near.
 std::string suggestion(const std::string& typed, const std::vector<std::string>& words) {
   const std::string nearest = nearest_word(typed, words);
   return nearest.empty() ? "" : "Did you mean " + nearest + "?\n";

@@ -15,7 +15,7 @@
 #include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/course_picture.hpp"
-#include "tools/recording/driven_line.hpp"
+#include "tools/recorded_drives/driven_line.hpp"
 #include "tools/scenario/start_pose.hpp"
 #include "tools/terminal/json_output.hpp"
 

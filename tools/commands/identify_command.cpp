@@ -4,7 +4,7 @@
 #include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/model/identification.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/recording/driven_samples.hpp"
+#include "tools/recorded_drives/driven_samples.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {

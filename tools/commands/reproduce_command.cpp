@@ -8,7 +8,7 @@
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/evaluation/racing_benchmark.hpp"
-#include "tools/evaluation/ranks.hpp"
+#include "tools/ranks/ranks.hpp"
 #include "tools/report/report.hpp"
 #include "tools/terminal/json_output.hpp"
 

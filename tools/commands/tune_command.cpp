@@ -2,8 +2,8 @@
 
 #include "slalom/core/error.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/evaluation/ranks.hpp"
 #include "tools/evaluation/tuning_job.hpp"
+#include "tools/ranks/ranks.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
 

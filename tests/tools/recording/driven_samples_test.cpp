@@ -1,5 +1,5 @@
 // The readers of driven laps: what a line must be, and how long it may be.
-#include "tools/recording/driven_samples.hpp"
+#include "tools/recorded_drives/driven_samples.hpp"
 
 #include <cmath>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "tools/evaluation/ranks.hpp"
+#include "tools/ranks/ranks.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "tools/recording/driven_samples.hpp"
+#include "tools/recorded_drives/driven_samples.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -45,7 +45,7 @@ bool next_line(std::istream& stream, std::string& line, const std::string& file,
 }  // namespace
 
 std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& file) {
-  if (std::filesystem::is_directory(file)) throw IoError(file, 0, "is a directory; a recording is a file");
+  if (std::filesystem::is_directory(file)) throw IoError(file, 0, "is a folder; a recording is a file");
   if (is_bag(file)) return read_bag_samples(file);
   if (!std::filesystem::is_regular_file(file))
     throw IoError(file, 0, "cannot be read: it must be a regular file");
