@@ -186,7 +186,7 @@ TEST(Navigator, StandsWhereItCannotDrive) {
   EXPECT_EQ(drive.step().status, NavigationStatus::following);
 }
 
-TEST(Navigator, OptionsAndPathsThatAreNoneAreRefused) {
+TEST(Navigator, RejectsInvalidOptionsAndPaths) {
   NavigatorOptions options;
   options.base.max_forward = -1;
   const Costmap costmap(50, 50, 0.05);
@@ -231,6 +231,21 @@ TEST(Navigator, TheSameSeedGivesTheSameCommandsOnAnyNumberOfThreads) {
   for (int i = 0; i < 30; ++i) one.step();
   EXPECT_EQ(one.pose.x, end.x);
   EXPECT_EQ(one.pose.yaw, end.yaw);
+}
+
+TEST(MethodOptions, ScaleWithTheLimitsOfTheBase) {
+  BaseOptions base;
+  base.max_forward = 2;
+  base.max_turn = 3;
+  const SolverOptions cem = method_options("cem", base), sv_mpc = method_options("sv_mpc", base);
+  EXPECT_STREQ(cem.method(), "cem");
+  EXPECT_EQ(*cem.find<int>("horizon"), 56);
+  EXPECT_NEAR((*cem.find<PerInput>("variance"))[0], 0.64, 1e-12);
+  EXPECT_NEAR((*cem.find<PerInput>("variance"))[1], 1.44, 1e-12);
+  EXPECT_NEAR((*sv_mpc.find<PerInput>("gradient_variance"))[1], 0.09, 1e-12);
+  EXPECT_EQ(*sv_mpc.find<double>("temperature"), 0.03);
+  EXPECT_TRUE(method_options("svg_mppi", base).get_if<SvgMppiOptions>());
+  EXPECT_THROW(method_options("dwa", base), std::invalid_argument);
 }
 
 }  // namespace

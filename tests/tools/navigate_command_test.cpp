@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "slalom/solvers/registry.hpp"
 #include "tools/program_test.hpp"
 
 namespace slalom::tools {
@@ -46,9 +47,24 @@ TEST_F(NavigateCommand, DrivesEachMethodWithAndWithoutDetours) {
   EXPECT_NE(content(folder_ / "out.md").find("`mppi` minus `mppi alone`"), std::string::npos);
 }
 
+TEST_F(NavigateCommand, DrivesWithEveryMethod) {
+  std::string methods;
+  for (const char* name : solver_names()) methods += (methods.empty() ? "" : ",") + std::string(name);
+  const auto run =
+      program("navigate --scenario no-way --seeds 1 --threads 2 --json out.json --methods " + methods);
+  ASSERT_EQ(run.status, 0) << run.output;
+  const auto results = nlohmann::json::parse(content(folder_ / "out.json"))["results"];
+  ASSERT_EQ(results.size(), solver_names().size());
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    EXPECT_EQ(results[i]["driver"], solver_names()[i]);
+    EXPECT_EQ(results[i]["successes"], 1) << solver_names()[i];
+  }
+}
+
 TEST_F(NavigateCommand, RefusesWhatItDoesNotKnow) {
   expect_refused("navigate --scenario kitchen", {"kitchen", "pallet-on-path"});
-  expect_refused("navigate --scenario no-way --methods cem", {"--methods", "cem", "svg_mppi or mppi"});
+  expect_refused("navigate --scenario no-way --methods dwa",
+                 {"--methods", "dwa: must be one of mppi, svg_mppi"});
   expect_refused("navigate --scenario no-way --methods mppi,svg_mppi,mppi",
                  {"--methods", "mppi", "must be named only once"});
   expect_refused("navigate --seeds 0", {"--seeds"});

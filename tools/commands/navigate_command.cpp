@@ -8,6 +8,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
+#include "slalom/solvers/registry.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/commands/navigate_picture.hpp"
 #include "tools/commands/navigate_report.hpp"
@@ -37,18 +38,29 @@ int rollouts(const SvgMppiOptions& o) {
   return o.samples + o.guides.count * o.guides.iterations * o.guides.gradient_samples;
 }
 
+/// The rollouts of a solve of another method, divided by its samples.
+int rollouts_per_sample(const SolverOptions& options) {
+  const int* const iterations = options.find<int>("iterations");
+  const int* const gradient_samples = options.find<int>("gradient_samples");
+  if (!iterations) return 1;
+  return gradient_samples ? 1 + *iterations * *gradient_samples : *iterations;
+}
+
 RoomDriver driver_of(const NamedDriver& named, const RoomScenario& scenario) {
   RoomDriver driver;
   driver.navigator.find_detours = named.detours;
-  const SvgMppiOptions svg = navigation::svg_mppi_options(scenario.base);
-  if (named.method == "svg_mppi") {
-    driver.solver = svg;
-  } else {
-    MppiOptions mppi = navigation::mppi_options(scenario.base);
-    mppi.samples = rollouts(svg);
-    driver.solver = mppi;
-  }
+  driver.solver = navigation::method_options(named.method, scenario.base);
+  if (driver.solver.get_if<SvgMppiOptions>()) return driver;
+  // As many rollouts in a solve as svg_mppi has; those of icem decrease from iteration to iteration.
+  if (int* const samples = driver.solver.find<int>("samples"))
+    *samples = rollouts(navigation::svg_mppi_options(scenario.base)) / rollouts_per_sample(driver.solver);
   return driver;
+}
+
+std::string method_names() {
+  std::string names;
+  for (const char* name : solver_names()) names += (names.empty() ? "" : ", ") + std::string(name);
+  return names;
 }
 
 std::vector<NamedDriver> drivers_of(const NavigateArguments& arguments) {
@@ -56,8 +68,9 @@ std::vector<NamedDriver> drivers_of(const NavigateArguments& arguments) {
   std::string rest = arguments.methods + ",";
   for (std::size_t comma; (comma = rest.find(',')) != std::string::npos; rest.erase(0, comma + 1)) {
     const std::string method = rest.substr(0, comma);
-    if (method != "svg_mppi" && method != "mppi")
-      throw CommandLineError("--methods", method + ": must be svg_mppi or mppi");
+    const auto known = solver_names();
+    if (std::find(known.begin(), known.end(), method) == known.end())
+      throw CommandLineError("--methods", method + ": must be one of " + method_names());
     if (std::any_of(drivers.begin(), drivers.end(), [&](const auto& each) { return each.method == method; }))
       throw CommandLineError("--methods", method + ": must be named only once");
     drivers.push_back({method, method, true});
@@ -136,7 +149,7 @@ void declare_navigate(Subcommand& command) {
   command.summary("Drive a mobile robot through rooms, with several methods on the same seeds");
   const auto arguments = std::make_shared<NavigateArguments>();
   command.option("--scenario", arguments->scenario, "Name of a scenario, or all").show_default();
-  command.option("--methods", arguments->methods, "Methods, separated by commas: svg_mppi, mppi")
+  command.option("--methods", arguments->methods, "Methods, separated by commas: " + method_names())
       .show_default();
   command.flag("--without-detours", arguments->without_detours,
                "Also drive with each method without the search for detours");

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/navigation/base.hpp"
@@ -18,6 +19,9 @@ namespace slalom::navigation {
 SvgMppiOptions svg_mppi_options(const BaseOptions& base);
 /// The same for `mppi`.
 MppiOptions mppi_options(const BaseOptions& base);
+/// The same for any method of the registry: those of these options that the method has, and the method's
+/// defaults for the others. Throws std::invalid_argument that lists the names if the method is unknown.
+SolverOptions method_options(std::string_view method, const BaseOptions& base);
 
 /// Options of a Navigator, besides those of its solver.
 struct NavigatorOptions {
