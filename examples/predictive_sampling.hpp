@@ -38,7 +38,7 @@ void visit_options(Options& o, Visit&& visit) {
                                 .max = 1e12});
   visit(o.input_min, Declaration{.name = "input_min", .unit = "input", .help = "lower bound of the inputs"});
   visit(o.input_max, Declaration{.name = "input_max", .unit = "input", .help = "upper bound of the inputs"});
-  slalom::detail::visit_run_options(o, visit);  // seed and threads
+  slalom::visit_run_options(o, visit);  // seed and threads
 }
 
 /// The method: shift, disturb, evaluate, take the best.

@@ -13,7 +13,8 @@ using Sequences = py::array_t<double, py::array::c_style | py::array::forcecast>
 void check_proposals(const Solver& solver, const Sequences& proposals) {
   if (proposals.size() == 0) return;
   if (!solver.takes_proposals())
-    throw std::invalid_argument("proposals: the method " + std::string(solver.name()) + " takes none");
+    throw std::invalid_argument("proposals: the method " + std::string(solver.name()) +
+                                " does not accept proposals");
   const py::ssize_t first = proposals.ndim() - 2;
   if ((first != 0 && first != 1) || proposals.shape(first) != solver.horizon() ||
       proposals.shape(first + 1) != solver.inputs()) {

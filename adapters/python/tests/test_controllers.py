@@ -290,7 +290,7 @@ def test_proposals_that_do_not_fit_are_errors():
         controller.solve([0, 0], proposals=np.zeros(10))
     with pytest.raises(ValueError, match="proposals: must be finite"):
         controller.solve([0, 0], proposals=np.full((10, 1), np.nan))
-    with pytest.raises(ValueError, match="proposals: the method sv_mpc takes none"):
+    with pytest.raises(ValueError, match="proposals: the method sv_mpc does not accept proposals"):
         slalom.SvMpc(slalom.Pendulum(), horizon=10).solve([0, 0], proposals=np.zeros((10, 1)))
 
 

@@ -40,7 +40,7 @@ void visit_options(Options& o, Visit&& visit) {
   detail::visit_sampling_options(o, visit);
   detail::visit_cross_entropy_options(o, visit);
   detail::visit_noise_options(o.noise, visit);
-  detail::visit_run_options(o, visit);
+  visit_run_options(o, visit);
 }
 
 /// A solver with these options, see registry.hpp.

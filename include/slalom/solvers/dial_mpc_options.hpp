@@ -61,7 +61,7 @@ void visit_options(Options& o, Visit&& visit) {
   detail::visit_noise_options(o.noise, visit);
   detail::visit_weighting_options(o.weighting, visit);
   detail::visit_smoothing_options(o.smoothing, visit);
-  detail::visit_run_options(o, visit);
+  visit_run_options(o, visit);
 }
 
 /// A solver with these options, see registry.hpp.

@@ -55,7 +55,7 @@ void visit_options(Options& o, Visit&& visit) {
                                     .min = 1,
                                     .max = 100});
   detail::visit_noise_options(o.noise, visit);
-  detail::visit_run_options(o, visit);
+  visit_run_options(o, visit);
 }
 
 /// A solver with these options, see registry.hpp.

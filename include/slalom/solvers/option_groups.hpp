@@ -161,6 +161,12 @@ void visit_control_cost_options(Options& o, Visit&& visit) {
                     .max = 1});
 }
 
+}  // namespace slalom::detail
+
+namespace slalom {
+
+/// Declares the options that every solver has: `std::uint64_t seed` and `int threads`. To be called in the
+/// `visit_options` of a solver's options.
 template <class Options, class Visit>
 void visit_run_options(Options& o, Visit&& visit) {
   visit(o.seed, Declaration{.name = "seed", .help = "seed of the random numbers"});
@@ -170,4 +176,4 @@ void visit_run_options(Options& o, Visit&& visit) {
                                .max = 1024});
 }
 
-}  // namespace slalom::detail
+}  // namespace slalom

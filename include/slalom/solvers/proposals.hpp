@@ -49,7 +49,8 @@ class Proposals {
       : steps_(controller.solver().horizon()), capacity_(capacity), bounds_(controller.bounds()) {
     const Solver& solver = controller.solver();
     if (!solver.takes_proposals())
-      throw std::invalid_argument("proposals: the method " + std::string(solver.name()) + " takes none");
+      throw std::invalid_argument("proposals: the method " + std::string(solver.name()) +
+                                  " does not accept proposals");
     if (capacity < 1)
       throw std::invalid_argument("proposals: capacity " + std::to_string(capacity) + " must be at least 1");
     values_.resize(static_cast<std::size_t>(capacity) * static_cast<std::size_t>(steps_ * solver.inputs()));

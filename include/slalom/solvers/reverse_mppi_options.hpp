@@ -83,7 +83,7 @@ void visit_options(Options& o, Visit&& visit) {
                                     .min = 0,
                                     .max = detail::finite});
   detail::visit_control_cost_options(o, visit);
-  detail::visit_run_options(o, visit);
+  visit_run_options(o, visit);
   visit_options(o.published, visit);
 }
 

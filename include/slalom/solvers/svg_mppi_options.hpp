@@ -189,7 +189,7 @@ void visit_options(Options& o, Visit&& visit) {
   detail::visit_weighting_options(o.weighting, visit);
   detail::visit_smoothing_options(o.smoothing, visit);
   detail::visit_control_cost_options(o, visit);
-  detail::visit_run_options(o, visit);
+  visit_run_options(o, visit);
   visit_options(o.published, visit);
 }
 

@@ -122,7 +122,7 @@ TEST(Proposals, SameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(Proposals, OtherMethodsTakeNone) {
+TEST(Proposals, AreRejectedByOtherMethods) {
   const auto evaluator = far_away();
   const std::vector<float> values(steps, 3.0f);
   for (const char* method : {"reverse_mppi", "sv_mpc"}) {
@@ -186,7 +186,7 @@ TEST(Proposals, MistakesNameTheRule) {
   EXPECT_EQ(message([] {
               Proposals{SvMpc{DoubleIntegrator{}}, 1};
             }),
-            "proposals: the method sv_mpc takes none");
+            "proposals: the method sv_mpc does not accept proposals");
 }
 
 }  // namespace
