@@ -21,7 +21,7 @@ struct LapRunner::LapInProgress {
 
   /// Sums over control steps, for the means of the result.
   struct Sums {
-    double state_cost = 0, collision_cost = 0, published_model_cost = 0, driven_cost = 0;
+    double state_cost = 0, collision_cost = 0, paper_model_cost = 0, driven_cost = 0;
     double input_error = 0, speed = 0, path_distance = 0;
     double variance = 0, effective_samples = 0;  ///< over `solves`
     int solves = 0;

@@ -154,7 +154,7 @@ void LapRunner::finish(LapInProgress& lap) const {
   result.state_cost = sums.state_cost / n;
   result.collision_cost = sums.collision_cost / n;
   result.mean_sequence_cost = result.state_cost + result.collision_cost;
-  result.published_model_cost = sums.published_model_cost / n;
+  result.paper_model_cost = sums.paper_model_cost / n;
   result.driven_cost = sums.driven_cost / n;
   result.input_error = sums.input_error / n;
   result.mean_speed = sums.speed / n;

@@ -54,7 +54,7 @@ void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, 
   lap.sums.state_cost += cost.state;
   lap.sums.collision_cost += cost.collision;
   if (settings_.additional_costs) {
-    lap.sums.published_model_cost += lap.meter.published_model(output).total();
+    lap.sums.paper_model_cost += lap.meter.paper_model(output).total();
     lap.sums.driven_cost += lap.meter.present().total();
   }
   lap.sums.input_error += sum_of_steering(output);

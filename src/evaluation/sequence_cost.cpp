@@ -56,7 +56,7 @@ struct SequenceCostMeter::Implementation {
   Problem problem{vehicle::published::vehicle_options(), vehicle::published::ModelOptions::published()};
   maps::LocalCostMap cost_map{cost_map_options()};
   maps::ReferenceField field;
-  std::unique_ptr<VehicleModel> own, published;
+  std::unique_ptr<VehicleModel> own, paper;
   std::vector<PredictedState> states;
   std::vector<float> inputs;
   maps::Pose robot;
@@ -68,7 +68,7 @@ struct SequenceCostMeter::Implementation {
       : model(m),
         field(path, maps::published_reference_field()),
         own(make_vehicle_model(m)),
-        published(make_vehicle_model(vehicle::published::vehicle_options())),
+        paper(make_vehicle_model(vehicle::published::vehicle_options())),
         states(std::max<std::size_t>(
                    static_cast<std::size_t>(std::ceil(steps * time_step / m.time_step - 1e-9)), steps) +
                1),
@@ -184,10 +184,10 @@ SequenceCostMeter::Cost SequenceCostMeter::planned(const vehicle::PlannerOutput&
                              m.model.time_step));
 }
 
-SequenceCostMeter::Cost SequenceCostMeter::published_model(const vehicle::PlannerOutput& output) noexcept {
+SequenceCostMeter::Cost SequenceCostMeter::paper_model(const vehicle::PlannerOutput& output) noexcept {
   Implementation& m = *implementation_;
   if (output.predicted.empty()) return present();
-  return m.cost_of(m.predict(*m.published, output, m.held(output, 1, steps, time_step), time_step));
+  return m.cost_of(m.predict(*m.paper, output, m.held(output, 1, steps, time_step), time_step));
 }
 
 SequenceCostMeter::Cost SequenceCostMeter::present() const noexcept {

@@ -181,14 +181,15 @@ void LocalCostMap::add_grid(const OccupancyGrid& obstacles, const Pose& robot) n
 
 /// Counts a square of half width `reach` (m) about (x, y) in every cell where the body would collide with it.
 void LocalCostMap::mark(double x, double y, double reach) noexcept {
-  const bool by_cells = options_.published.half_open_inflation || options_.published.forget_points_outside;
+  const PublishedCostMap& reproduction = options_.published;
+  const bool by_cells = reproduction.half_open_inflation || reproduction.forget_points_outside;
   int row = by_cells ? geometry_.row(x) : 0, column = by_cells ? geometry_.column(y) : 0;
-  if (options_.published.forget_points_outside && (row < 0 || column < 0)) return;
+  if (reproduction.forget_points_outside && (row < 0 || column < 0)) return;
   // The point in units of cells from the corner where row and column 0 begin.
   const double scale = 1 / geometry_.resolution;
   const double u = (geometry_.center_x - x) * scale + 0.5 * geometry_.rows;
   const double v = (geometry_.center_y - y) * scale + 0.5 * geometry_.columns;
-  if (options_.published.half_open_inflation) {
+  if (reproduction.half_open_inflation) {
     const int more = static_cast<int>(std::ceil(reach * scale));
     if (row < 0) row = clamped_floor(u, -100000, 100000);
     if (column < 0) column = clamped_floor(v, -100000, 100000);

@@ -119,7 +119,7 @@ TEST(LapRunner, DrivesWithTheAccelerationAsAnInputByEveryMethod) {
       const LapResult lap =
           LapRunner(whole ? wren() : begun, configuration(name), method, {.additional_costs = true}).run(0);
       EXPECT_TRUE(std::isfinite(lap.mean_sequence_cost));
-      EXPECT_TRUE(std::isfinite(lap.published_model_cost));
+      EXPECT_TRUE(std::isfinite(lap.paper_model_cost));
       EXPECT_GT(lap.mean_speed, 0.3);
       if (!whole) continue;
       EXPECT_TRUE(lap.finished);
@@ -178,7 +178,7 @@ TEST(LapRunner, APlannerThatEstimatesTheCarKnowsThePeriodOfThePublishedEvaluatio
 TEST(LapRunner, AdditionalCostsAreComparable) {
   LapRunner runner(wren(), configuration("published"), "svg_mppi", {.additional_costs = true});
   const LapResult lap = runner.run(0);
-  EXPECT_NEAR(lap.published_model_cost, lap.mean_sequence_cost, 1e-9);
+  EXPECT_NEAR(lap.paper_model_cost, lap.mean_sequence_cost, 1e-9);
   EXPECT_GT(lap.driven_cost, 0);
 }
 

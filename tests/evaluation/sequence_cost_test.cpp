@@ -36,14 +36,14 @@ struct Straight {
 
 const std::vector<float> nothing_near(1080, 30.0f);
 
-SequenceCostMeter::Cost cost(const Straight& straight, bool by_published_model = false) {
+SequenceCostMeter::Cost cost(const Straight& straight, bool by_paper_model = false) {
   SequenceCostMeter meter(straight_path(), straight.model);
   meter.observe({.ranges = nothing_near, .angle_min = -2.35, .angle_increment = 4.7 / 1079, .range_max = 30},
                 {0.012, offset, 0});
-  return by_published_model ? meter.published_model(straight.output) : meter.planned(straight.output);
+  return by_paper_model ? meter.paper_model(straight.output) : meter.planned(straight.output);
 }
 
-TEST(SequenceCost, OfAStraightLineIsItsDistance) {
+TEST(SequenceCost, EqualsTheDistanceOfAStraightLine) {
   const auto c = cost(Straight(0.05, 14));
   // Cells of 0.1 m: each look-up is at most 0.05 m off in each axis.
   EXPECT_NEAR(c.state, 15 * offset * offset, 15 * (2 * offset * 0.06 + 0.0036));

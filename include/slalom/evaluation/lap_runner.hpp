@@ -70,7 +70,7 @@ struct LapResult {
   double state_cost = 0;          ///< mean, of distance and yaw error
   double collision_cost = 0;      ///< mean
   double mean_sequence_cost = 0;  ///< MS = state_cost + collision_cost
-  double published_model_cost =
+  double paper_model_cost =
       0;                   ///< MS predicted with the model of the paper's program; with `additional_costs`
   double driven_cost = 0;  ///< MS of the states that the car reached; with `additional_costs`
   double input_error = 0;  ///< mean of the sum of |steering| over the control sequence, rad

@@ -19,7 +19,7 @@ struct LapSettings {
   int threads = 1;                               ///< of the solver, 1 ... 1024; they do not change the result
   std::optional<HardwareConditions> hardware{};  ///< as on a real car; Protocol::true_physics only
   std::optional<std::uint64_t> layout{};         ///< seed of the obstacle placement; default: the lap's
-  bool additional_costs = false;  ///< also compute `published_model_cost` and `driven_cost` (slower)
+  bool additional_costs = false;  ///< also compute `paper_model_cost` and `driven_cost` (slower)
 
   // Changes of the world, for Protocol::true_physics only. visit_options declares them, so that evaluations
   // can vary them by name.

@@ -48,7 +48,7 @@ class SequenceCostMeter {
 
   /// The cost of the states that the model of the paper's program predicts for the steering of that sequence,
   /// resampled to 0.05 s. Without a sequence: present().
-  Cost published_model(const vehicle::PlannerOutput& output) noexcept;
+  Cost paper_model(const vehicle::PlannerOutput& output) noexcept;
 
   /// 15 times the stage cost of the pose given to `observe`. Its mean over a lap is the cost of the driven
   /// trajectory.

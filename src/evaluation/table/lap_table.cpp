@@ -43,7 +43,7 @@ void visit_columns(Row& r, const std::vector<Experiment>& experiments, Visit&& v
   visit("max_path_distance", r.max_path_distance);
   visit("mean_variance", r.mean_variance);
   visit("mean_effective_samples", r.mean_effective_samples);
-  visit("ms_published_model", r.ms_published_model);
+  visit("ms_published_model", r.ms_paper_model);
   visit("ms_driven", r.ms_driven);
   visit("blocked_steps", r.blocked_steps);
   visit("degenerate_steps", r.degenerate_steps);
@@ -194,7 +194,7 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
   r.max_path_distance = result.max_path_distance;
   r.mean_variance = result.mean_variance;
   r.mean_effective_samples = result.mean_effective_samples;
-  r.ms_published_model = result.published_model_cost;
+  r.ms_paper_model = result.paper_model_cost;
   r.ms_driven = result.driven_cost;
   r.blocked_steps = result.planner_status[static_cast<std::size_t>(vehicle::PlannerStatus::blocked)];
   r.degenerate_steps =

@@ -67,7 +67,7 @@ Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float>
       abscissa_(path_costs_.size()) {
   for (int r = 0; r < rows_; ++r) {
     const double variance = deviation_[r];
-    inverse_[r] = static_cast<float>(inverse_variance(variance, options.published.inverse_variance_offset));
+    inverse_[r] = static_cast<float>(inverse_variance(variance, reproduction().inverse_variance_offset));
     deviation_[r] = static_cast<float>(std::sqrt(variance));
   }
 }
@@ -173,8 +173,8 @@ void Guides::estimate_gradient(int g) noexcept {
   std::copy_n(costs_.data() + block.first, block_, totals_.data() + block.first);
   SurrogateGradient<float> gradient;
   gradient.temperature = static_cast<float>(options_.guides.gradient_temperature);
-  gradient.subtract_minimum = options_.published.subtract_minimum;
-  gradient.floor = options_.published.gradient_floor;
+  gradient.subtract_minimum = reproduction().subtract_minimum;
+  gradient.floor = reproduction().gradient_floor;
   gradient.centre = guides_[g];
   gradient.inverse_variance = inverse_.data();
   if (options_.guides.weight == GuideWeight::importance) gradient.linear = linear_.data();
@@ -198,7 +198,7 @@ void Guides::step(int g, int iteration, const CostGradient* exact) noexcept {
   for (int r = 0; r < rows_; ++r) {
     const double slope = gradient_[g][r];
     theta[r] += part * step_[r] * slope;
-    if (options_.published.clamp_guides) theta[r] = std::clamp<double>(theta[r], low_[r], high_[r]);
+    if (reproduction().clamp_guides) theta[r] = std::clamp<double>(theta[r], low_[r], high_[r]);
     if (!(std::abs(theta[r]) < 1e30)) theta[r] = solution_[r];
   }
   std::copy_n(theta, rows_, guides_[g]);
@@ -210,7 +210,7 @@ void Guides::begin_move(const float* solution, const float* nominal, int shares)
   for (int r = 0; r < rows_; ++r) {
     const double inverse =
         options_.guides.gradient_temperature *
-        inverse_variance<double>(weight_variance_[r], options_.published.inverse_variance_offset);
+        inverse_variance<double>(weight_variance_[r], reproduction().inverse_variance_offset);
     const double u = solution[r], n = nominal[r];
     solution_[r] = solution[r];
     linear_[r] = static_cast<float>(inverse * (u - n));
@@ -263,8 +263,8 @@ int Guides::end_move(const BatchEvaluator& evaluator) noexcept {
 /// Computes q* (equation (5)) at points of the paths: exp(-S / lambda), multiplied by the density around the
 /// nominal sequence if the fit target is the optimal density, normalised over the points.
 void Guides::densities(std::span<const int> points) noexcept {
-  const bool with_prior = options_.published.fit_target == FitTarget::optimal_density;
-  const double temperature = with_prior ? options_.temperature : options_.published.fit_temperature;
+  const bool with_prior = reproduction().fit_target == FitTarget::optimal_density;
+  const double temperature = with_prior ? options_.temperature : reproduction().fit_temperature;
   double largest = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double* theta = path_[points[i]];
@@ -279,7 +279,7 @@ void Guides::densities(std::span<const int> points) noexcept {
     density_[i] = logarithm;
     largest = std::max(largest, logarithm);
   }
-  double sum = options_.published.normaliser_offset;
+  double sum = reproduction().normaliser_offset;
   for (std::size_t i = 0; i < points.size(); ++i) sum += density_[i] = std::exp(density_[i] - largest);
   for (std::size_t i = 0; i < points.size(); ++i) density_[i] /= sum;
 }
@@ -288,7 +288,7 @@ void Guides::fit_variance(float* variance) noexcept {
   int count = 0;
   for (int l = 0; l < iterations_; ++l)
     for (int g = 0; g < count_; ++g)
-      if (options_.published.fit_all_guides || g == best_) fit_points_[count++] = point(l, g);
+      if (reproduction().fit_all_guides || g == best_) fit_points_[count++] = point(l, g);
   const std::span<const int> points(fit_points_.data(), count);
   const bool known = best_cost_ < infinite && count > 0;
   if (known) {
@@ -302,8 +302,8 @@ void Guides::fit_variance(float* variance) noexcept {
     if (known) {
       for (int i = 0; i < count; ++i) abscissa_[i] = path_[points[i]][r];
       const GaussianFit fit = fit_gaussian(abscissa_.data(), square_.data(), logarithm_.data(), count);
-      fitted = fitted_variance(fit, options_.published.fit_absolute_curvature);
-      if (options_.published.fit_standard_deviation) fitted = std::sqrt(fitted);
+      fitted = fitted_variance(fit, reproduction().fit_absolute_curvature);
+      if (reproduction().fit_standard_deviation) fitted = std::sqrt(fitted);
     }
     variance[r] = static_cast<float>(std::clamp(fitted, least, std::max(least, most)));
   }

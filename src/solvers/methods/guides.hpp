@@ -68,6 +68,8 @@ class Guides {
   std::span<const float> path_costs() const noexcept;
 
  private:
+  /// The departures of the program of proj-svg_mppi from the paper, all off by default.
+  const PublishedSvgMppi& reproduction() const noexcept { return options_.published; }
   void fill_blocks(RandomKey key, int first, int last) noexcept;
   const CostGradient* exact_gradient(const BatchEvaluator& evaluator) const noexcept;
   void estimate_gradient(int guide) noexcept;

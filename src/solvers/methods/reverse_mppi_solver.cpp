@@ -39,7 +39,7 @@ class ReverseMppiSolver final : public SolverBase {
         sums_(size() * detail::moments),
         moment_mean_(size()),
         moment_variance_(size()),
-        published_(rows()),
+        rejection_(rows()),
         own_distance_(inflated_.stride()),
         rejected_distance_(own_distance_.size()),
         keep_(own_distance_.size()),
@@ -99,6 +99,8 @@ class ReverseMppiSolver final : public SolverBase {
   }
 
  private:
+  /// The departures of the program of proj-svg_mppi from the paper, all off by default.
+  const PublishedReverseMppi& reproduction() const noexcept { return options_.published; }
   static void copy(const Gaussian& from, Gaussian& to) noexcept {
     std::copy(from.mean.begin(), from.mean.end(), to.mean.begin());
     std::copy(from.variance.begin(), from.variance.end(), to.variance.begin());
@@ -138,10 +140,10 @@ class ReverseMppiSolver final : public SolverBase {
   void keep_probabilities() noexcept {
     const detail::Range range{0, inflated_.stride()};
     float* logarithms = own_distance_.data();
-    if (options_.published.rejection == RejectionModel::published) {
-      published_.set(now_.mean.data(), now_.variance.data(), now_rejected_.mean.data(),
+    if (reproduction().rejection == RejectionModel::published) {
+      rejection_.set(now_.mean.data(), now_.variance.data(), now_rejected_.mean.data(),
                      now_rejected_.variance.data());
-      detail::kernels().published_rejection(inflated_.row_view(), published_.rows(), range, logarithms);
+      detail::kernels().published_rejection(inflated_.row_view(), rejection_.rows(), range, logarithms);
     } else {
       const double own = distances(now_, own_distance_), other = distances(now_rejected_, rejected_distance_);
       detail::kernels().rejection_logarithm(rejected_distance_.data(), static_cast<float>(own - other), range,
@@ -175,7 +177,7 @@ class ReverseMppiSolver final : public SolverBase {
 
   detail::BatchStatistics evaluate(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
     detail::control_coefficients(options_.temperature, options_.control_cost_discount,
-                                 options_.published.inverse_variance_offset, now_.mean.data(), zero_.data(),
+                                 reproduction().inverse_variance_offset, now_.mean.data(), zero_.data(),
                                  now_.variance.data(), rows(), linear_.data());
     const detail::BatchStatistics statistics = samples_.evaluate(evaluator, linear_.data(), pool(), deadline);
     result_.times.evaluate += statistics.evaluate_time;
@@ -189,7 +191,7 @@ class ReverseMppiSolver final : public SolverBase {
     const detail::Range range{0, samples_.stride()};
     const detail::ReverseSums sums = detail::reverse_weights<float>(
         samples_.totals().data(), options_.temperature, options_.negative_ratio,
-        options_.published.normaliser_offset, range, evaluated_.data(), rejected_.data());
+        reproduction().normaliser_offset, range, evaluated_.data(), rejected_.data());
     if (!(sums.evaluated > 0)) {  // all costs are equal: no sample is better than another
       const float equal = 1.0f / statistics.finite;
       for (std::size_t k = 0; k < evaluated_.size(); ++k)
@@ -198,7 +200,7 @@ class ReverseMppiSolver final : public SolverBase {
     const Gaussian& before = now_;
     for (std::size_t r = 0; r < size(); ++r)
       inverse_[r] =
-          detail::inverse_variance<float>(before.variance[r], options_.published.inverse_variance_offset);
+          detail::inverse_variance<float>(before.variance[r], reproduction().inverse_variance_offset);
     std::copy(before.mean.begin(), before.mean.end(), shifted_.begin());
     samples_.two_moments(evaluated_.data(), rejected_.data(), shifted_.data(), sums_.data(), pool());
     if (sums.rejected > 0) descend(2, now_rejected_);
@@ -212,7 +214,7 @@ class ReverseMppiSolver final : public SolverBase {
   /// distribution.
   void descend(std::size_t list, Gaussian& g) noexcept {
     for (std::size_t r = 0; r < size(); ++r) {
-      const double scale = options_.published.dimensionless_variance ? inverse_[r] : 1.0;
+      const double scale = reproduction().dimensionless_variance ? inverse_[r] : 1.0;
       moment_mean_[r] = static_cast<float>(sums_[r * detail::moments + list]);
       moment_variance_[r] = static_cast<float>(sums_[r * detail::moments + list + 1] * scale);
     }
@@ -250,7 +252,7 @@ class ReverseMppiSolver final : public SolverBase {
       shifted_;                                       ///< [row]
   std::vector<double> sums_;                          ///< [row]
   std::vector<float> moment_mean_, moment_variance_;  ///< [row]
-  detail::PublishedRejection<float> published_;
+  detail::PublishedRejection<float> rejection_;
   std::vector<float> own_distance_, rejected_distance_;  ///< [inflated sample]
   std::vector<float> keep_;                              ///< [inflated sample]
   detail::Resampler resampler_;

@@ -53,7 +53,7 @@ class SvMpcSolver final : public SolverBase {
         shifted_(size()),
         sums_(size()) {
     for (std::size_t r = 0; r < size(); ++r) {
-      inverse_[r] = detail::inverse_variance<float>(deviation_[r], options.published.inverse_variance_offset);
+      inverse_[r] = detail::inverse_variance<float>(deviation_[r], reproduction().inverse_variance_offset);
       deviation_[r] = std::sqrt(deviation_[r]);
     }
     if (options.control_points > 0) use_splines();
@@ -62,7 +62,7 @@ class SvMpcSolver final : public SolverBase {
 
   int horizon() const noexcept override { return options_.horizon; }
   const char* name() const noexcept override { return SvMpcOptions::method; }
-  bool keeps_bounds() const noexcept override { return options_.published.clamp_solution; }
+  bool keeps_bounds() const noexcept override { return reproduction().clamp_solution; }
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
@@ -101,7 +101,7 @@ class SvMpcSolver final : public SolverBase {
     result_.guides = {};
     if (usable) {
       sums = particles_.weigh(statistics.minimum_total, static_cast<float>(options_.temperature), pool());
-      particles_.scale_weights(1.0 / (sums.weight + options_.published.normaliser_offset));
+      particles_.scale_weights(1.0 / (sums.weight + reproduction().normaliser_offset));
       update_solution();
     } else {
       std::fill(particles_.weights().begin(), particles_.weights().end(), 0.0f);
@@ -124,6 +124,8 @@ class SvMpcSolver final : public SolverBase {
 
  private:
   static constexpr int tile = 128;  ///< particles per task
+  /// The departures of the program of proj-svg_mppi from the paper, all off by default.
+  const PublishedSvMpc& reproduction() const noexcept { return options_.published; }
   int tiles() const noexcept { return (particles_.stride() + tile - 1) / tile; }
   detail::Range range(int t) const noexcept {
     return {t * tile, std::min(tile, particles_.stride() - t * tile)};
@@ -154,7 +156,7 @@ class SvMpcSolver final : public SolverBase {
   void expand_solution() noexcept {
     if (!spline_.active()) return;
     spline_.expand(solution_.data(), step_solution_.data());
-    if (!options_.published.clamp_solution) return;
+    if (!reproduction().clamp_solution) return;
     for (std::size_t r = 0; r < step_solution_.size(); ++r) {  // a mean may be rounded past a bound
       const std::size_t input = r % static_cast<std::size_t>(inputs());
       step_solution_[r] = std::clamp(step_solution_[r], low()[input], high()[input]);
@@ -178,7 +180,7 @@ class SvMpcSolver final : public SolverBase {
   void shift_particle(float* particle, double steps) noexcept {
     if (spline_.active()) {
       spline_.shift(particle, steps);
-      if (options_.published.clamp_particles) clamp(particle);  // least squares may leave the bounds
+      if (reproduction().clamp_particles) clamp(particle);  // least squares may leave the bounds
       return;
     }
     shift_sequence(particle, steps_, inputs(), steps, shifted_.data());
@@ -210,14 +212,14 @@ class SvMpcSolver final : public SolverBase {
   void set_prior() noexcept {
     for (std::size_t r = 0; r < size(); ++r) {
       prior_inverse_[r] =
-          detail::inverse_variance<float>(variance_[r], options_.published.inverse_variance_offset);
+          detail::inverse_variance<float>(variance_[r], reproduction().inverse_variance_offset);
       const float curvature = prior_inverse_[r] + inverse_[r];
       limited_step_[r] =
           options_.limit_step && curvature > 0 ? std::min(step_[r], 1.0f / curvature) : step_[r];
-      linear_[r] = options_.published.gradient_control_term ? mean_[r] * prior_inverse_[r] : 0.0f;
+      linear_[r] = reproduction().gradient_control_term ? mean_[r] * prior_inverse_[r] : 0.0f;
     }
     detail::control_coefficients(options_.temperature, options_.control_cost_discount,
-                                 options_.published.inverse_variance_offset, mean_.data(), zero_.data(),
+                                 reproduction().inverse_variance_offset, mean_.data(), zero_.data(),
                                  variance_.data(), rows(), control_.data());
   }
 
@@ -226,7 +228,7 @@ class SvMpcSolver final : public SolverBase {
     pool().run(tiles(), [&](int t) { estimate_gradients(evaluator, iteration, range(t)); });
     const detail::Rows<float> x = particles_.row_view();
     const int count = particles_.samples();
-    const int values = options_.published.bandwidth == BandwidthModel::squared_norms
+    const int values = reproduction().bandwidth == BandwidthModel::squared_norms
                            ? detail::squared_norms(x, count, distances_.data())
                            : detail::pair_distances(x, count, distances_.data());
     const float h = count > 1 ? detail::bandwidth(distances_.data(), values, count) : 1.0f;
@@ -250,8 +252,8 @@ class SvMpcSolver final : public SolverBase {
     const detail::GradientSettings<float> how{options_.gradient_samples,
                                               stride,
                                               static_cast<float>(options_.temperature),
-                                              options_.published.subtract_minimum,
-                                              static_cast<float>(options_.published.gradient_floor),
+                                              reproduction().subtract_minimum,
+                                              static_cast<float>(reproduction().gradient_floor),
                                               linear_.data(),
                                               inverse_.data()};
     detail::kernels().particle_gradients(how, v, x, r, exponents_.data(), detail::rows_of(gradient_));
@@ -259,7 +261,7 @@ class SvMpcSolver final : public SolverBase {
       if (!(prior_inverse_[row] > 0)) continue;
       float* g = gradient_.data(row);
       for (int k = r.first; k < r.first + r.count; ++k)
-        g[k] += options_.published.inverted_prior
+        g[k] += reproduction().inverted_prior
                     ? detail::published_prior_gradient(x.row(row)[k], mean_[row], prior_inverse_[row])
                     : detail::prior_gradient(x.row(row)[k], mean_[row], prior_inverse_[row]);
     }
@@ -270,9 +272,9 @@ class SvMpcSolver final : public SolverBase {
       float* x = particles_.values().data(row);
       const float* direction = phi_.data(row);
       const float low_bound =
-          options_.published.clamp_particles ? low()[row] : -std::numeric_limits<float>::infinity();
+          reproduction().clamp_particles ? low()[row] : -std::numeric_limits<float>::infinity();
       const float high_bound =
-          options_.published.clamp_particles ? high()[row] : std::numeric_limits<float>::infinity();
+          reproduction().clamp_particles ? high()[row] : std::numeric_limits<float>::infinity();
       for (int k = r.first; k < r.first + r.count; ++k)
         x[k] = std::min(std::max(x[k] + limited_step_[row] * direction[k], low_bound), high_bound);
     }
@@ -290,7 +292,7 @@ class SvMpcSolver final : public SolverBase {
   void update_solution() noexcept {
     particles_.weighted_squares(mean_.data(), sums_.data(), pool());
     for (std::size_t r = 0; r < size(); ++r) {
-      const double scale = options_.published.dimensionless_variance ? prior_inverse_[r] : 1.0;
+      const double scale = reproduction().dimensionless_variance ? prior_inverse_[r] : 1.0;
       const float least = std::min(min_variance_[r], first_variance_[r]);
       variance_[r] = std::clamp(static_cast<float>(sums_[r] * scale), least, 1e12f);
     }
@@ -303,7 +305,7 @@ class SvMpcSolver final : public SolverBase {
     } else {
       std::copy(mean_.begin(), mean_.end(), solution_.begin());
     }
-    if (options_.published.clamp_solution) clamp(solution_.data());
+    if (reproduction().clamp_solution) clamp(solution_.data());
     expand_solution();
   }
 
