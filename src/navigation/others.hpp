@@ -35,8 +35,8 @@ class Others {
   /// plans: they are gone soon.
   std::optional<ClosedPlace> meeting(std::span<const maps::Pose> path, double step) const noexcept;
   /// Whether a pose of the plan meets one of them, up to the one with this index: comes into their margins,
-  /// or touches them. A robot that is within the margins may leave them, and one that touches may move away,
-  /// but one within the margins must not touch.
+  /// or collides with them. A robot that is within the margins may leave them, and one that collides may move
+  /// away, but one within the margins must not collide.
   bool meet(std::span<const maps::Pose> plan, std::size_t last) const noexcept;
 
  private:

@@ -50,13 +50,13 @@ TEST(WorldProperty, StepsDoNotAllocate) {
     world.reset(3, two_cars, parked);
     world.step(wander(0));
     const long before = testing::allocations();
-    bool touched = false;
+    bool collided = false;
     for (int k = 1; k < 1500; ++k) {
       world.step(wander(k));
-      touched = touched || world.observe(0).collides() || world.observe(1).collides();
+      collided = collided || world.observe(0).collides() || world.observe(1).collides();
     }
     EXPECT_EQ(testing::allocations(), before);
-    EXPECT_TRUE(touched);
+    EXPECT_TRUE(collided);
   }
 }
 

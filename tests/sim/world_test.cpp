@@ -112,13 +112,13 @@ TEST(World, SlidesAlongWalls) {
   options.wall_response = CollisionResponse::slide;
   World world(options, std::make_shared<const Track>(testing::room(400, 100)));
   world.reset(1, std::array{maps::Pose{2, 4, 0.5}});
-  bool touched = false;
+  bool collided = false;
   for (int i = 0; i < 400; ++i) {
     world.step(std::array{Command{0, 3}});
-    touched = touched || world.observe(0).wall;
+    collided = collided || world.observe(0).wall;
     ASSERT_FALSE(world.track().collides_with_wall(world.outline(0)));
   }
-  EXPECT_TRUE(touched);
+  EXPECT_TRUE(collided);
   EXPECT_GT(world.state(0).x, 5);
 }
 

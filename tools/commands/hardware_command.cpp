@@ -103,7 +103,7 @@ Json summarise(const std::vector<Task>& tasks, std::size_t driver, bool among_ob
                const HardwareArguments& arguments) {
   std::vector<double> costs;
   std::vector<float> errors, yaw_errors, update_ms, solve_ms;
-  int laps = 0, finished = 0, contacts = 0, touched = 0, blind = 0, steps = 0;
+  int laps = 0, finished = 0, contacts = 0, with_collision = 0, blind = 0, steps = 0;
   double time = 0;
   for (const Task& task : tasks) {
     if (!task.done || task.driver != driver || (task.layout >= 0) != among_obstacles) continue;
@@ -111,7 +111,7 @@ Json summarise(const std::vector<Task>& tasks, std::size_t driver, bool among_ob
     ++laps;
     finished += r.finished;
     contacts += r.collisions;
-    touched += r.collisions > 0;
+    with_collision += r.collisions > 0;
     blind += r.localisation.blind;
     steps += r.steps;
     costs.push_back(r.mean_sequence_cost);
@@ -131,7 +131,7 @@ Json summarise(const std::vector<Task>& tasks, std::size_t driver, bool among_ob
       {"ms_mean", mean(costs)},
       {"ms_ci", {ms.low, ms.high}},
       {"contacts", contacts},
-      {"laps_with_contact", touched},
+      {"laps_with_contact", with_collision},
       {"lap_time_mean", finished > 0 ? Json(time / finished) : Json(nullptr)},
       {"blind_steps_share", steps > 0 ? static_cast<double>(blind) / steps : 0},
       {"localisation_error_m", {{"mean", mean_of(errors)}, {"p99", percentile_of(errors, 0.99)}}},

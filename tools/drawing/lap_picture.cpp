@@ -43,7 +43,7 @@ void draw_lap(const LapPicture& picture, const std::filesystem::path& file) {
 
   const auto was_hit = [&](std::size_t body) {
     return std::any_of(picture.lap.first_collisions.begin(), picture.lap.first_collisions.end(),
-                       [&](const auto& touch) { return touch.body == static_cast<int>(body); });
+                       [&](const auto& collision) { return collision.body == static_cast<int>(body); });
   };
   const sim::CarParameters car;
   for (std::size_t i = 0; i < picture.lap.obstacles.size(); ++i) {
@@ -52,8 +52,8 @@ void draw_lap(const LapPicture& picture, const std::filesystem::path& file) {
   }
   drawn.arrow(picture.start, 20, ink);
   const double cross = 0.010 * std::max(map.width, map.height) * map.resolution;
-  for (const auto& touch : picture.lap.first_collisions)
-    draw_cross(drawn, {touch.pose.x, touch.pose.y}, cross);
+  for (const auto& collision : picture.lap.first_collisions)
+    draw_cross(drawn, {collision.pose.x, collision.pose.y}, cross);
   drawn.legend(picture.title, picture.facts, slowest, fastest);
   drawn.save(file);
 }

@@ -48,7 +48,7 @@ std::string number_text(const char* format, double value) {
 
 /// How a race ended for a car, in words.
 std::string end_text(const CarResult& car) {
-  if (car.end == CarEnd::wall) return car.touched_before ? "out: wall, after a contact" : "out: wall";
+  if (car.end == CarEnd::wall) return car.contact_before ? "out: wall, after a contact" : "out: wall";
   return car.end == CarEnd::finished ? "" : std::string(evaluation::name(car.end));
 }
 
@@ -94,7 +94,7 @@ Json standing_json(const CarResult& car, const std::string& name) {
             {"contacts", car.contacts},
             {"contacts_caused", car.caused}};
   if (car.end == CarEnd::wall)
-    json["wall"] = {{"pose", {car.last.x, car.last.y, car.last.yaw}}, {"touched_before", car.touched_before}};
+    json["wall"] = {{"pose", {car.last.x, car.last.y, car.last.yaw}}, {"contact_before", car.contact_before}};
   return json;
 }
 

@@ -50,8 +50,8 @@ struct OtherRun {
   std::optional<evaluation::RacingLap> flying, standing;
 };
 
-/// Reads a result of `slalom race --json`. Throws IoError if it is none, if it has no completed lap, or if
-/// its course, start or length differs from that of `settings` and `length` (m).
+/// Reads a result of `slalom race --json`. Throws IoError if the file is not one, if it has no completed lap,
+/// or if its course, start or length differs from that of `settings` and `length` (m).
 OtherRun read_run(const std::string& file, const Json& settings, double length);
 
 }  // namespace slalom::tools

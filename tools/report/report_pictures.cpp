@@ -118,8 +118,8 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
   for (std::size_t i = lines.size(); i-- > 0;) {
     const Colour colour = i == 0 ? blue : orange;
     picture.line(lines[i].driven.points, colour, 4.5, false);
-    for (const Collision& touch : lines[i].lap.first_collisions)
-      picture.disc({touch.pose.x, touch.pose.y}, 11, colour);
+    for (const Collision& collision : lines[i].lap.first_collisions)
+      picture.disc({collision.pose.x, collision.pose.y}, 11, colour);
   }
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const auto row = std::find_if(report.rows.begin(), report.rows.end(),

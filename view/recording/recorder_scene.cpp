@@ -70,17 +70,17 @@ void Recorder::add_cars(const FrameReader& reader) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto id = bodies.get<std::uint16_t>();
     const auto kind = bodies.get<std::uint8_t>();
-    const bool touched = bodies.get<std::uint8_t>() != 0;
+    const bool collided = bodies.get<std::uint8_t>() != 0;
     const double x = bodies.f32(), y = bodies.f32(), yaw = bodies.f32(), length = bodies.f32();
     const double width = bodies.f32();
     const maps::Pose pose{x, y, yaw};
     if (id == 0) add(Topic::transform, foxglove::frame_transform(time_, "car", pose));
     constexpr int disc = 3;
     if (kind == disc)
-      scene.disc({x, y}, length, obstacle_height, touched ? hit_color : obstacle_color);
+      scene.disc({x, y}, length, obstacle_height, collided ? hit_color : obstacle_color);
     else
       scene.box(pose, length, width, id == 0 ? car_height : obstacle_height,
-                touched   ? hit_color
+                collided  ? hit_color
                 : id == 0 ? car_color
                           : obstacle_color);
   }

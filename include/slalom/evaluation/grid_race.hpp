@@ -43,7 +43,7 @@ enum class CarEnd {
 /// The name of an end in results.
 std::string_view name(CarEnd end) noexcept;
 
-/// Two cars touch, which have not touched for 0.5 s. OvertakingRecord has the rule of who is at fault.
+/// Two cars collide that have not collided for 0.5 s. OvertakingRecord has the rule of who is at fault.
 struct CarContact {
   double time = 0;            ///< s
   std::array<int, 2> cars{};  ///< indices of entries
@@ -73,7 +73,7 @@ struct CarResult {
   int overtaken = 0;                    ///< by other cars
   int contacts = 0;                     ///< with other cars
   int caused = 0;                       ///< those of them at which it is at fault
-  bool touched_before = false;          ///< with CarEnd::wall: it touched a car in the second before
+  bool contact_before = false;          ///< with CarEnd::wall: it collided with a car in the second before
   maps::Pose last{};                    ///< of its centre of gravity, where it ended
   std::array<int, 7> planner_status{};  ///< control steps by vehicle::PlannerStatus
   std::vector<float> solve_ms;          ///< wall-clock time of each solve

@@ -25,7 +25,7 @@ struct Encounter {
   int caused = 0;                         ///< those of them at which the car is at fault
 };
 
-/// The opponents of a lap. A contact begins where the cars touch and have not touched for 0.5 s.
+/// The opponents of a lap. A contact begins where the cars collide and have not collided for 0.5 s.
 ///
 /// At fault is the car behind, unless it is alongside: its front axle is past the rear axle of the other.
 /// Then it is the car that moves towards the other faster, across the course. Both are judged 0.05 to 0.1 s

@@ -7,10 +7,10 @@
 
 namespace slalom::evaluation {
 
-/// s without touching, after which another touch is another contact.
+/// s without a collision, after which the next collision is another contact.
 inline constexpr double contact_pause = 0.5;
 
-/// Watches the cars of a world, to say who is at fault where two of them touch (OvertakingRecord has the
+/// Watches the cars of a world, to say who is at fault where two of them collide (OvertakingRecord has the
 /// rule).
 class FaultJudge {
  public:
@@ -20,7 +20,7 @@ class FaultJudge {
   /// To be called after each step of the world.
   void update(const sim::World& world);
 
-  /// Whether `car`, which touches `other` now, is at fault; else the other one is.
+  /// Whether `car`, which collides with `other` now, is at fault; else the other one is.
   bool at_fault(std::size_t car, std::size_t other) const noexcept;
 
  private:

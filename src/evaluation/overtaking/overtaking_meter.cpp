@@ -29,7 +29,7 @@ void OvertakingMeter::update(const sim::World& world) {
   for (std::size_t car = 1; car <= opponents_.size(); ++car) meet(world, car);
   for (const int body : world.observe(0).colliding)
     if (body > 0 && static_cast<std::size_t>(body) < world.cars())
-      touch(world, static_cast<std::size_t>(body));
+      collide(world, static_cast<std::size_t>(body));
 }
 
 /// Begins and ends encounters.
@@ -53,10 +53,10 @@ void OvertakingMeter::meet(const sim::World& world, std::size_t car) {
   opponent.encounter = -1;
 }
 
-void OvertakingMeter::touch(const sim::World& world, std::size_t car) {
+void OvertakingMeter::collide(const sim::World& world, std::size_t car) {
   Opponent& opponent = opponents_[car - 1];
-  const bool goes_on = world.time() - opponent.touched < contact_pause;
-  opponent.touched = world.time();
+  const bool goes_on = world.time() - opponent.collided < contact_pause;
+  opponent.collided = world.time();
   if (goes_on) return;
   const bool caused = judge_.at_fault(0, car);
   ++record_.contacts;

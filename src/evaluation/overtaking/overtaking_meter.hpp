@@ -24,7 +24,7 @@ class OvertakingMeter {
   /// What is known of an opponent.
   struct Opponent {
     double start_gap = 0;     ///< m ahead of the first car at the start
-    double touched = -1e9;    ///< s, last
+    double collided = -1e9;   ///< s, when the cars last collided
     int encounter = -1;       ///< that is not over, -1 for none
     double met_gap = 0;       ///< m, whole turns between the cars when they met
     double met_progress = 0;  ///< m, of the first car
@@ -32,7 +32,7 @@ class OvertakingMeter {
 
   double gap(const sim::World& world, std::size_t car) const;
   void meet(const sim::World& world, std::size_t car);
-  void touch(const sim::World& world, std::size_t car);
+  void collide(const sim::World& world, std::size_t car);
 
   FaultJudge judge_;
   std::vector<Opponent> opponents_;

@@ -150,7 +150,7 @@ void RaceUnderWay::end(std::size_t car, CarEnd how, double time) {
   result.time = time;
   result.progress = watch_->distance(world_, car);
   result.last = world_.observe(car).pose;
-  result.touched_before = how == CarEnd::wall && time - watch_->last_touched(car) <= pushed_time;
+  result.contact_before = how == CarEnd::wall && time - watch_->last_collision(car) <= pushed_time;
   world_.take_away(car);
   --driving_;
 }

@@ -27,7 +27,7 @@ void RaceWatch::update(const sim::World& world) {
     if (!world.on_track(first) || !world.on_track(second)) continue;
     const auto colliding = world.observe(first).colliding;
     if (std::find(colliding.begin(), colliding.end(), static_cast<int>(second)) != colliding.end())
-      touch(world, pair);
+      collide(world, pair);
     const double ahead = distance(world, first) - distance(world, second);
     if ((pair.first_leads ? -ahead : ahead) < lead) continue;
     const auto winner = static_cast<int>(pair.first_leads ? second : first),
@@ -37,9 +37,9 @@ void RaceWatch::update(const sim::World& world) {
   }
 }
 
-void RaceWatch::touch(const sim::World& world, Pair& pair) {
-  const bool goes_on = world.time() - pair.touched < contact_pause;
-  pair.touched = world.time();
+void RaceWatch::collide(const sim::World& world, Pair& pair) {
+  const bool goes_on = world.time() - pair.collided < contact_pause;
+  pair.collided = world.time();
   if (goes_on) return;
   const auto first = static_cast<int>(pair.first), second = static_cast<int>(pair.second);
   contacts_.push_back({.time = world.time(),
@@ -48,10 +48,10 @@ void RaceWatch::touch(const sim::World& world, Pair& pair) {
                        .pose = world.observe(pair.first).pose});
 }
 
-double RaceWatch::last_touched(std::size_t car) const noexcept {
+double RaceWatch::last_collision(std::size_t car) const noexcept {
   double last = -1e9;
   for (const Pair& pair : pairs_)
-    if (pair.first == car || pair.second == car) last = std::max(last, pair.touched);
+    if (pair.first == car || pair.second == car) last = std::max(last, pair.collided);
   return last;
 }
 

@@ -8,8 +8,8 @@
 
 namespace slalom::evaluation {
 
-/// Watches the cars of a race: how far they are, who touches and who overtakes whom. Cars have their numbers
-/// in the world here.
+/// Watches the cars of a race: how far they are, who collides with whom and who overtakes whom. Cars have
+/// their numbers in the world here.
 class RaceWatch {
  public:
   /// Begins with the cars on the grid. `line` is the arc length (m) of the finish line.
@@ -22,8 +22,8 @@ class RaceWatch {
   double distance(const sim::World& world, std::size_t car) const noexcept {
     return world.laps(car)->progress() - behind_[car];
   }
-  /// s, when a car last touched another.
-  double last_touched(std::size_t car) const noexcept;
+  /// s, when a car last collided with another.
+  double last_collision(std::size_t car) const noexcept;
   const std::vector<CarContact>& contacts() const noexcept { return contacts_; }  ///< in order of time
   const std::vector<Overtake>& overtakes() const noexcept { return overtakes_; }  ///< in order of time
 
@@ -32,9 +32,9 @@ class RaceWatch {
   struct Pair {
     std::size_t first = 0, second = 0;
     bool first_leads = true;  ///< was the last to be 1 m ahead
-    double touched = -1e9;    ///< s, last
+    double collided = -1e9;   ///< s, when they last collided
   };
-  void touch(const sim::World& world, Pair& pair);
+  void collide(const sim::World& world, Pair& pair);
 
   FaultJudge judge_;
   std::vector<double> behind_;  ///< m, per car: from its place on the grid to the line

@@ -123,9 +123,9 @@ double RacingOpponent::wanted_speed() const noexcept {
   speed += share * std::max(rise, 0.0);
   for (const Neighbour& other : neighbours_) {
     if (other.gap <= 0) continue;
-    const double touching = other.half_width + half_width_;
-    if (alongside(other) && std::abs(place_.lateral - other.offset) >= touching) continue;
-    if (std::abs(offset_at(other.gap) - other.offset) > touching + options_.room) continue;
+    const double half_widths = other.half_width + half_width_;
+    if (alongside(other) && std::abs(place_.lateral - other.offset) >= half_widths) continue;
+    if (std::abs(offset_at(other.gap) - other.offset) > half_widths + options_.room) continue;
     const double gap = other.gap - other.half_length - half_length_ - follow_gap;
     speed = std::min(speed, std::max(other.speed + gap / headway, 0.0));
   }

@@ -173,7 +173,7 @@ void World::remove_body(int body) {
   for (int& partner : partners_) partner = partner == body ? -1 : partner > body ? partner - 1 : partner;
   for (Car& car : cars_) {
     std::erase(car.colliding, body);
-    for (int& touched : car.colliding) touched -= touched > body;
+    for (int& other : car.colliding) other -= other > body;
   }
   find_fixed_partners();
 }
