@@ -126,6 +126,7 @@ void detail::choose_cell_access(Target target) {
   if (target == Target::avx512 && !named) active_choice = measure_cell_access();
   set_cell_access(active_choice.access);
   if (wanted.empty()) return;
+  // The only output of the library, for which SLALOM_TUNE asks.
   std::fprintf(stderr, "slalom: cells are read by %s", name(active_choice.access));
   if (active_choice.loads_ns > 0) {
     std::fprintf(stderr, " (16 rollout steps: loads %.1f ns, gathers %.1f ns)", active_choice.loads_ns,

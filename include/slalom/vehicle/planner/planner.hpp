@@ -40,7 +40,7 @@ struct Odometry {
 /// The reason for a command.
 enum class PlannerStatus {
   ok,
-  blocked,            ///< every plan collides: braking, or reversing
+  blocked,            ///< every plan collides: braking or reversing; or reversing is not finished yet
   fallback_plan,      ///< the solution collided; another sequence, which does not, was sent
   bad_scan,           ///< empty, or of an invalid geometry: braking
   bad_odometry,       ///< not finite, or larger than `Odometry` allows: braking
@@ -107,9 +107,10 @@ struct PlannerOutput {
 /// The car's planner. After construction an update neither allocates nor throws.
 class Planner {
  public:
-  /// Drives `model` along `path` (as for ReferenceField: the first point of the path follows its last one)
-  /// with `solver`. Throws std::invalid_argument where an option is out of range, the path is not valid,
-  /// model or solver is null, or the solver has another number of inputs than the model.
+  /// Drives `model` along `path` with `solver`. The points are as for ReferenceField. The path is closed if
+  /// its ends are near each other (see path_geometry), otherwise open. Throws std::invalid_argument where an
+  /// option is out of range, the path is not valid, model or solver is null, or the solver has another number
+  /// of inputs than the model.
   Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
           std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver);
   ~Planner();
