@@ -136,7 +136,7 @@ void MlpNetwork::store(const MlpParameters::Layer& layer, std::vector<float>& we
                 : layer
                       .weights[r * static_cast<std::size_t>(layer.inputs) + static_cast<std::size_t>(column)];
         if (!(std::abs(value) <= std::numeric_limits<float>::max()))
-          reject("with its normalisation, a weight is no finite float32");
+          reject("with its normalisation, a weight is not a finite float32");
         weights.push_back(static_cast<float>(value));
       }
     }

@@ -96,7 +96,7 @@ void append(std::string_view data, std::vector<double>& values) {
 }
 
 NpyArray read_array(const Bytes& bytes) {
-  bytes.require(bytes.part(0, 6) == std::string_view("\x93NUMPY", 6), "is no numpy array");
+  bytes.require(bytes.part(0, 6) == std::string_view("\x93NUMPY", 6), "is not a numpy array");
   const std::uint64_t version = bytes.number(6, 1), wide = version >= 2 ? 4 : 2;
   bytes.require(version >= 1 && version <= 3, "is of a format version other than 1 to 3");
   const std::uint64_t length = bytes.number(8, static_cast<int>(wide));
@@ -144,7 +144,7 @@ NpyArray read_array(const Bytes& bytes) {
 std::pair<std::uint64_t, int> find_directory(const Bytes& zip) {
   constexpr std::uint64_t size = 22;  // of the record at the end, which numpy writes without a comment
   zip.require(zip.size() >= size && zip.number(zip.size() - size, 4) == 0x06054b50,
-              "is no .npz file of numpy.savez, or is cut off");
+              "is not an .npz file of numpy.savez, or is truncated");
   const std::uint64_t end = zip.size() - size, count = zip.number(end + 10, 2);
   zip.require(count <= max_arrays, "holds more than " + std::to_string(max_arrays) + " arrays");
   return {zip.number(end + 16, 4), static_cast<int>(count)};
@@ -165,7 +165,7 @@ std::map<std::string, NpyArray> read_npz(const std::filesystem::path& file) {
                         local = zip.number(at + 42, 4);
     std::string name(zip.part(at + 46, name_size));
     zip.require(name.size() > 4 && name.substr(name.size() - 4) == ".npy",
-                "holds '" + name + "', which is no array");
+                "holds '" + name + "', which is not an array: the name must end in .npy");
     name.resize(name.size() - 4);
     zip.require(method == 0, "array '" + name + "' is compressed: write it with numpy.savez");
     zip.require(zip.number(local, 4) == 0x04034b50, "has a damaged directory");

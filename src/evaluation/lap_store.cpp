@@ -196,7 +196,7 @@ LapStore::LapStore(const fs::path& folder, const Evaluation& evaluation, bool re
     : folder_(folder), experiments_(evaluation.experiments) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw IoError(folder.string(), 0, "cannot create directory: " + error.message());
+  if (error) throw IoError(folder.string(), 0, "cannot create the folder: " + error.message());
   lock_ = std::make_unique<detail::FolderLock>(folder);
   const fs::path settings = folder / settings_name, journal = folder / journal_name,
                  table = folder / table_name;

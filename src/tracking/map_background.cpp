@@ -129,7 +129,7 @@ maps::Pose MapBackground::align(const Readings& readings, const maps::Pose& sens
     for (int j = 0; j < 3; ++j) moved[j] += vector[j];
     if (std::abs(vector[0]) + std::abs(vector[1]) < 1e-4 && std::abs(vector[2]) < 1e-5) break;
   }
-  // More than the pose can be wrong by is no correction of it.
+  // A larger correction than the largest error of the pose is rejected.
   if (!(std::hypot(moved[0], moved[1]) <= 5 * position) || !(std::abs(moved[2]) <= 5 * yaw)) return sensor;
   return {sensor.x + moved[0], sensor.y + moved[1], sensor.yaw + moved[2]};
 }

@@ -16,12 +16,12 @@
 namespace slalom::tracking {
 namespace {
 
-constexpr double max_deviation = 0.8;  // m, of the position of an object that is not given up
+constexpr double max_deviation = 0.8;  // m, of the position of an object; beyond it the object is dropped
 constexpr double max_pause = 1.0;      // s between scans, after which all objects are forgotten
 constexpr double max_jump = 0.5;       // m, of the sensor beyond its largest way, after which they are, too
 constexpr double max_behind_walls = 0.1;  // share of the readings; with more the pose is wrong
 constexpr double min_gap = 2.5;           // of the distance of neighbouring beams, where a cluster is split
-constexpr double largest_object = 1.3;    // of the largest diameter: a larger cluster is no object
+constexpr double largest_object = 1.3;    // of the largest diameter: a larger cluster is not an object
 constexpr int max_scans_at_rest = 12;     // scans without a sign of motion, without a map
 constexpr int max_splits = 4;             // times that a cluster is halved
 
@@ -116,7 +116,7 @@ bool ObjectTracker::Implementation::detect(const TrackerInput& input) noexcept {
   return true;
 }
 
-/// Takes clusters away that are no objects, which without a map are most of the walls: an object that was
+/// Removes clusters that are not objects, which without a map are most of the walls: an object that was
 /// lost must not go on along one of them.
 void ObjectTracker::Implementation::leave_out_large_clusters() noexcept {
   std::size_t kept_candidates = 0, kept_clusters = 0;

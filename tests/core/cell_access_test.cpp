@@ -26,15 +26,15 @@ struct ReadCells {
   }
 };
 
-class CellAccessTest : public testing::Test {
+class CellReads : public testing::Test {
  protected:
-  ~CellAccessTest() override { set_cell_access(before_); }
+  ~CellReads() override { set_cell_access(before_); }
 
  private:
   CellAccess before_ = active_cell_access().access;
 };
 
-TEST_F(CellAccessTest, BothWaysReadTheSameBits) {
+TEST_F(CellReads, GiveTheSameBitsBothWays) {
   constexpr int count = 5000;
   std::vector<float> cells(4 * count);
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = 0.37f * static_cast<float>(i) - 3;
@@ -53,7 +53,7 @@ TEST_F(CellAccessTest, BothWaysReadTheSameBits) {
   }
 }
 
-TEST_F(CellAccessTest, AMeasurementTakesTheFasterWayAndChangesNothing) {
+TEST_F(CellReads, AreMeasuredWithoutAChangeOfTheChoice) {
   set_cell_access(CellAccess::gathers);
   const CellAccessChoice choice = measure_cell_access();
   if (!supported(Target::avx512)) {

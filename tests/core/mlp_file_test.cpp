@@ -144,9 +144,10 @@ TEST_F(MlpFile, MistakesAreNamed) {
   EXPECT_EQ(
       error_with("biases_0.npy", npy("<i8", "2,", std::string(16, '\0'))),
       "array 'biases_0': has the type <i8, must be float32, float64, bool or a single text, little-endian");
-  EXPECT_EQ(error_with("note.txt", "hello"), "holds 'note.txt', which is no array");
+  EXPECT_EQ(error_with("note.txt", "hello"),
+            "holds 'note.txt', which is not an array: the name must end in .npy");
   EXPECT_EQ(error_with("x.npy", "hello"), "array 'x': is cut off");
-  EXPECT_EQ(error_with("x.npy", std::string(200, 'x')), "array 'x': is no numpy array");
+  EXPECT_EQ(error_with("x.npy", std::string(200, 'x')), "array 'x': is not a numpy array");
   EXPECT_EQ(error_with("x.npy", floats("99999999999999999999,", {})), "array 'x': has too many values");
   EXPECT_EQ(error_with("x.npy", floats("4000000, 4000000", {})), "array 'x': has too many values");
   EXPECT_EQ(error(zip(network_files(), 8)), "array 'weights_0' is compressed: write it with numpy.savez");

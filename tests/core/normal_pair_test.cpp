@@ -27,7 +27,7 @@ SLALOM_TARGET_GENERIC void pairs_from(std::uint32_t first, float* x, float* y) {
 }
 
 /// Means of powers, and how many values lie beyond 3, 4 and 5.
-struct Census {
+struct ValueStatistics {
   double power[5] = {};
   std::int64_t above[3] = {}, below[3] = {};
 
@@ -48,7 +48,7 @@ struct Census {
 
 /// Not a sample: every pair there is.
 TEST(NormalPair, AllPairsTogetherAreNormal) {
-  Census x, y;
+  ValueStatistics x, y;
   double product = 0, squares = 0;
   std::vector<float> even(block), odd(block);
   for (std::uint32_t part = 0; part < 65536; ++part) {
@@ -66,16 +66,16 @@ TEST(NormalPair, AllPairsTogetherAreNormal) {
   }
   EXPECT_NEAR(product, 0, 2e-6);
   EXPECT_NEAR(squares, 1, 2e-6);
-  for (const Census& census : {x, y}) {
-    EXPECT_NEAR(census.power[1], 0, 1e-9);
-    EXPECT_NEAR(census.power[2], 1, 2e-6);
-    EXPECT_NEAR(census.power[3], 0, 1e-9);
-    EXPECT_NEAR(census.power[4], 3, 2e-5);
+  for (const ValueStatistics& each : {x, y}) {
+    EXPECT_NEAR(each.power[1], 0, 1e-9);
+    EXPECT_NEAR(each.power[2], 1, 2e-6);
+    EXPECT_NEAR(each.power[3], 0, 1e-9);
+    EXPECT_NEAR(each.power[4], 3, 2e-5);
     for (int i = 0; i < 3; ++i) {
       const double expected = 0.5 * std::erfc((3 + i) / std::sqrt(2.0)) * 4294967296.0;
       // One standard deviation of as many independent draws.
-      EXPECT_NEAR(static_cast<double>(census.above[i]), expected, std::sqrt(expected)) << "beyond " << 3 + i;
-      EXPECT_EQ(census.above[i], census.below[i]);
+      EXPECT_NEAR(static_cast<double>(each.above[i]), expected, std::sqrt(expected)) << "beyond " << 3 + i;
+      EXPECT_EQ(each.above[i], each.below[i]);
     }
   }
 }

@@ -39,7 +39,7 @@ LapRow row(int experiment, int lap) {
   return r;
 }
 
-TEST(LapTableColumns, OfATrackerAreThereIfAnExperimentHasOne) {
+TEST(LapTableColumns, IncludeThoseOfTheTrackerIfAnExperimentUsesOne) {
   std::vector<Experiment> tracking = experiments;
   tracking[1].set.emplace_back("world.tracking", "off");
   EXPECT_FALSE(tracking[1].tracks());

@@ -87,7 +87,7 @@ TEST_P(Fuzz, TakesEarlierFindings) {
 INSTANTIATE_TEST_SUITE_P(Target, Fuzz, ::testing::ValuesIn(targets()),
                          [](const auto& each) { return std::string(each.param->name()); });
 
-TEST(FuzzRegressions, BelongToTargets) {
+TEST(FuzzRegressions, HaveATargetForEachFolder) {
   if (!std::filesystem::exists(SLALOM_FUZZ_REGRESSIONS)) return;
   for (const auto& folder : std::filesystem::directory_iterator(SLALOM_FUZZ_REGRESSIONS)) {
     const std::string name = folder.path().filename().string();

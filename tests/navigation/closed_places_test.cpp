@@ -6,7 +6,7 @@
 namespace slalom::navigation::detail {
 namespace {
 
-TEST(ClosedPlaces, OfManyDeadEndsTheLastFourCount) {
+TEST(ClosedPlaces, KeepsTheLastFourOfManyDeadEnds) {
   ClosedPlaces places;
   for (int i = 0; i < 7; ++i) {
     places.add_dead_end({10.0 * i, 0});

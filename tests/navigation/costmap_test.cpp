@@ -135,7 +135,7 @@ TEST(Costmap, MovesWithItsGridAndDoesNotAllocate) {
   EXPECT_EQ(costmap.distance(102.1, -48.9), 0);
 }
 
-TEST(Costmap, SizesThatAreNoneAreRefused) {
+TEST(Costmap, RejectsInvalidSizes) {
   EXPECT_THROW(Costmap(2, 10, 0.05), std::invalid_argument);
   EXPECT_THROW(Costmap(10, 20001, 0.05), std::invalid_argument);
   EXPECT_THROW(Costmap(10, 10, 0), std::invalid_argument);

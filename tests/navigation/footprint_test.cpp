@@ -69,7 +69,7 @@ TEST(Footprint, TheOutlineHasNoGaps) {
   }
 }
 
-TEST(Footprint, OutlinesThatAreNoneAreRefused) {
+TEST(Footprint, RejectsInvalidOutlines) {
   const auto make = [](std::vector<Point> vertices) { return Footprint(vertices); };
   EXPECT_THROW(make({{1, 0}, {0, 1}}), std::invalid_argument);
   EXPECT_THROW(make({{1, 0}, {0, 1}, {std::nan(""), 0}}), std::invalid_argument);

@@ -1,4 +1,5 @@
-// What moves: plans meet it where it will be, the robot brakes before it, and waiting for it is no dead end.
+// What moves: plans meet it where it will be, the robot brakes before it, and waiting for it does not count
+// as a dead end.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -46,7 +46,7 @@ TEST(ScanMap, NeverClearsWhatTheMapKnows) {
   EXPECT_EQ(at(map, 1.55, 0.01), Occupancy::occupied);
 }
 
-TEST(ScanMap, DropsBeamsThatAreNoneAndAllocatesNothing) {
+TEST(ScanMap, DropsInvalidBeamsAndAllocatesNothing) {
   ScanMap map(walled());
   const std::vector<Occupancy> before = map.grid().cells;
   const std::vector<double> ranges{std::nan(""), -1, INFINITY, std::nan("")};

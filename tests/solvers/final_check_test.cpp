@@ -51,7 +51,7 @@ TEST(FinalCheck, APreviousInputOutsideTheBoundsIsMovedIntoThem) {
   expect_valid(plan, 0.5, 1, 1, plan.inputs[0][0]);
 }
 
-TEST(FinalCheck, APreviousInputThatIsNoNumberIsNotTaken) {
+TEST(FinalCheck, IgnoresAPreviousInputThatIsNotANumber) {
   Mppi controller{RateLimited{}, {.horizon = 10, .samples = 64, .input_min = 0.5, .input_max = 1}};
   const double before = controller.solve(start).inputs[0][0];
   controller.set_previous_input({{nan}});
@@ -113,7 +113,7 @@ std::string error_of(Make&& make) {
   return "";
 }
 
-TEST(FinalCheck, BoundsThatNoInputCanKeepAreRefused) {
+TEST(FinalCheck, RejectsBoundsThatNoInputCanKeep) {
   for (const char* method : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
     const auto error = [&](double low, double high) {
       SolverOptions options = solver_options(method);

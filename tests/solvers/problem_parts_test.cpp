@@ -39,7 +39,7 @@ void expect_within(P problem, SolverOptions options, double low, double high) {
   EXPECT_GT(largest, high - 0.2);
 }
 
-TEST(InputBounds, OfTheProblemHoldForEveryMethod) {
+TEST(InputBounds, EveryMethodKeepsThoseOfTheProblem) {
   for (const char* name : solver_names()) expect_within(Bounded{}, solver_options(name), -0.25, 0.75);
 }
 
@@ -117,7 +117,7 @@ void expect_blocks(Options options) {
   for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(plan.inputs[k][0], again.inputs[k][0]);
 }
 
-TEST(ProblemSampler, OfAProblemIsUsed) {
+TEST(ProblemSampler, ReplacesTheSamplesOfEveryMethod) {
   expect_blocks(MppiOptions{});
   expect_blocks(CemOptions{.iterations = 1});
 }

@@ -84,12 +84,12 @@ double risk_of(std::vector<double> costs, const RiskOptions& options) {
   return 0;
 }
 
-class EveryRiskMeasure : public ::testing::TestWithParam<RiskMeasure> {
+class RiskMeasures : public ::testing::TestWithParam<RiskMeasure> {
  protected:
   RiskOptions options_{.variants = 7, .measure = GetParam(), .tail = 0.4, .aversion = 0.3, .seed = 11};
 };
 
-TEST_P(EveryRiskMeasure, IsThatOfTheCostsInEveryVariant) {
+TEST_P(RiskMeasures, AgreeWithTheCostsOfEveryVariant) {
   RiskEvaluator evaluator(Glider{}, options_);
   const Glider::State<double> start{0, 0.4, 0};
   evaluator.set_state(start);
@@ -126,7 +126,7 @@ TEST_P(EveryRiskMeasure, IsThatOfTheCostsInEveryVariant) {
   EXPECT_EQ(differ, samples);
 }
 
-TEST_P(EveryRiskMeasure, IsTheSameInAnyRangesOfSamples) {
+TEST_P(RiskMeasures, DoNotDependOnTheRangesOfSamples) {
   RiskEvaluator evaluator(Glider{}, options_);
   evaluator.set_state({0, 0.4, 0});
   const SequenceBatch batch = some_inputs();
@@ -141,7 +141,7 @@ TEST_P(EveryRiskMeasure, IsTheSameInAnyRangesOfSamples) {
   EXPECT_EQ(whole, parts);
 }
 
-TEST_P(EveryRiskMeasure, OfACostThatIsNoNumberIsInfinite) {
+TEST_P(RiskMeasures, AreInfiniteForACostThatIsNotANumber) {
   VariantCosts costs{};
   for (int m = 0; m < options_.variants; ++m) costs.values[m][0] = costs.values[m][1] = 1;
   costs.values[3][0] = std::numeric_limits<float>::quiet_NaN();
@@ -151,14 +151,14 @@ TEST_P(EveryRiskMeasure, OfACostThatIsNoNumberIsInfinite) {
   EXPECT_NEAR(risks[1], 1, 1e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(Measures, EveryRiskMeasure,
+INSTANTIATE_TEST_SUITE_P(Measures, RiskMeasures,
                          ::testing::Values(RiskMeasure::mean, RiskMeasure::worst, RiskMeasure::cvar,
                                            RiskMeasure::exponential),
                          [](const auto& tested) {
                            return enum_names(tested.param)[static_cast<int>(tested.param)];
                          });
 
-TEST(RiskEvaluator, OfOneVariantIsTheProblemItself) {
+TEST(RiskEvaluator, EqualsTheProblemForOneVariant) {
   RiskEvaluator risk(Glider{}, {});
   ProblemEvaluator plain(Glider{});
   const SequenceBatch batch = some_inputs();

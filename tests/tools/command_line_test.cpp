@@ -178,7 +178,7 @@ TEST_F(CommandLine, ChecksItsOutputFilesFirst) {
         "hardware --json ", "bench --json ", "bench --plot ", "explain --plot ", "replay lap.jsonl --html ",
         "identify lap.jsonl --json ", "eval --out e --json ", "tune --set samples=10:20 --out e --json "})
     refuses(arguments + "nodir/x.png", {"slalom: nodir/x.png: cannot be written: No such file"});
-  refuses("explain --json .", {".: cannot be written: is a directory"});
+  refuses("explain --json .", {".: cannot be written: is a folder"});
   EXPECT_EQ(content(folder_ / "kept.json"), "kept");
   EXPECT_FALSE(fs::exists(folder_ / "new.jsonl"));
   EXPECT_FALSE(fs::exists(folder_ / "e"));
@@ -240,7 +240,7 @@ TEST_F(CommandLine, RejectsOptionsOfAMethodThatIsNotUsed) {
 TEST_F(CommandLine, ReproduceRequiresTheCourseAndTheLogsThatAreNamed) {
   refuses("reproduce --course nowhere/berlin --out r", {"nowhere/berlin"});
   const std::string command = "reproduce --course " + wren + " --out /proc/none --published logs";
-  refuses(command, {"--published", "logs is not a directory"});
+  refuses(command, {"--published", "logs is not a folder"});
   fs::create_directories(folder_ / "logs/path_tracking");
   refuses(command, {"--published", "logs contains none of the authors' logs"});
   std::ofstream(folder_ / "logs/path_tracking/svg_mppi.csv") << "";
@@ -298,7 +298,7 @@ TEST_F(CommandLine, IdentifyPrintsItsInputs) {
                 .status,
             0);
   refuses("identify a.mcap", {"a.mcap", "must be JSON lines"});
-  refuses("identify .", {".: is a directory"});
+  refuses("identify .", {".: is a folder"});
   std::ofstream(folder_ / "empty.jsonl") << "{\"type\":\"recording\",\"version\":1}\n";
   refuses("identify empty.jsonl", {"empty.jsonl: ", "usable samples"});
 }

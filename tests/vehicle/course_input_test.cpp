@@ -38,7 +38,7 @@ const std::vector<Spoiled>& cases() {
   static const std::vector<Spoiled> all = {
       {"no_folder",
        [](const CourseFolder& f) { std::filesystem::remove_all(f.path()); },
-       {"ring", "not a directory"}},
+       {"ring", "not a folder"}},
       {"no_map", without("map.yaml"), {"ring", "no map"}},
       {"no_image", without("map.png"), {"map.png"}},
       {"two_maps",

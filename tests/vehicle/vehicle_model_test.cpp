@@ -36,9 +36,9 @@ std::vector<maps::ReferencePoint> lane() {
   return path;
 }
 
-class EveryVehicleModel : public ::testing::TestWithParam<std::string> {
+class VehicleModelContract : public ::testing::TestWithParam<std::string> {
  protected:
-  EveryVehicleModel() : field_(lane()), model_(make_vehicle_model(options_of(GetParam()))) {
+  VehicleModelContract() : field_(lane()), model_(make_vehicle_model(options_of(GetParam()))) {
     field_.update({5, 0});
     const std::vector<maps::Point> obstacle = {{3, 0.4}};
     clearance_.add(obstacle);
@@ -57,7 +57,7 @@ class EveryVehicleModel : public ::testing::TestWithParam<std::string> {
   std::unique_ptr<VehicleModel> model_;
 };
 
-TEST_P(EveryVehicleModel, HasTheTraitsAndInputsThatItsOptionsSay) {
+TEST_P(VehicleModelContract, HasTheTraitsAndInputsThatItsOptionsSay) {
   const VehicleOptions options = options_of(GetParam());
   const VehicleTraits traits = model_->traits();
   EXPECT_EQ(model_->inputs(), input_count(options));
@@ -71,7 +71,7 @@ TEST_P(EveryVehicleModel, HasTheTraitsAndInputsThatItsOptionsSay) {
   }
 }
 
-TEST_P(EveryVehicleModel, PredictsTheStartFirstAndKeepsItsTurns) {
+TEST_P(VehicleModelContract, PredictsTheStartFirstAndKeepsItsTurns) {
   const int steps = 10, inputs = model_->inputs();
   const VehicleStart start{{5, 0.2, 0.1}, 2, 0.05};
   model_->set_start(start, 3);
@@ -95,7 +95,7 @@ TEST_P(EveryVehicleModel, PredictsTheStartFirstAndKeepsItsTurns) {
   EXPECT_GT(left.pose.x, 5.5);
 }
 
-TEST_P(EveryVehicleModel, RolloutsCostWhatIsPredicted) {
+TEST_P(VehicleModelContract, RolloutsCostWhatIsPredicted) {
   const int steps = 12, samples = 16, inputs = model_->inputs();
   SequenceBatch batch(steps, inputs, samples);
   for (int k = 0; k < samples; ++k)
@@ -120,7 +120,7 @@ TEST_P(EveryVehicleModel, RolloutsCostWhatIsPredicted) {
   EXPECT_LE(differing, 2) << "a position at an edge between two cells of a map may be in either";
 }
 
-TEST_P(EveryVehicleModel, HasVariantsOfTheWorldOrRejectsThem) {
+TEST_P(VehicleModelContract, HasVariantsOfTheWorldOrRejectsThem) {
   VehicleOptions options = options_of(GetParam());
   options.risk = {.variants = 5, .measure = RiskMeasure::worst};
   if (GetParam() != "single_track") {
@@ -154,7 +154,7 @@ TEST_P(EveryVehicleModel, HasVariantsOfTheWorldOrRejectsThem) {
   EXPECT_GT(higher, samples / 2) << "friction and stiffness matter at 6 m/s";
 }
 
-TEST_P(EveryVehicleModel, IsDrivenByThePlanner) {
+TEST_P(VehicleModelContract, IsDrivenByThePlanner) {
   Configuration configuration;
   set_option(configuration, "vehicle.model", GetParam());
   for (const char* bound : {"input_min", "input_max"})
@@ -175,7 +175,7 @@ TEST_P(EveryVehicleModel, IsDrivenByThePlanner) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Registered, EveryVehicleModel, ::testing::ValuesIn(model_names()),
+INSTANTIATE_TEST_SUITE_P(Registered, VehicleModelContract, ::testing::ValuesIn(model_names()),
                          [](const auto& name) { return name.param; });
 
 TEST(VehicleModels, HaveNamesAndOptionsOfTheirOwn) {

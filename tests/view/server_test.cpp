@@ -43,7 +43,7 @@ TEST(ViewServer, AcceptsOnlyItsOwnPages) {
   EXPECT_EQ(status(WebClient(server.port()).get("/ws", true, "localhost:1", "http://localhost:1")), "101");
   EXPECT_EQ(status(WebClient(server.port()).get("/ws", true, "localhost:1", "http://evil.example")), "403");
   EXPECT_EQ(status(WebClient(server.port()).get("/ws", true, "localhost:1", "null")), "403");
-  // A name that somebody has led to this machine is no name of ours.
+  // Somebody else's name may resolve to this machine; the server rejects it.
   EXPECT_EQ(status(WebClient(server.port()).get("/ws", true, "evil.example", "http://evil.example")), "403");
   EXPECT_EQ(status(WebClient(server.port()).get("/", false, "evil.example")), "403");
   EXPECT_EQ(server.counters().refused_origin, 4u);
@@ -107,7 +107,7 @@ TEST(ViewServer, SendsAFileThatIsLargerThanWhatMayWait) {
 
 TEST(ViewServer, SurvivesTenThousandInvalidMessages) {
   Server server({.max_message = 1000, .messages_per_second = 100, .burst = 100}, page);
-  // Each client says 400 times what is no command and ends with what is no message.
+  // Each client sends 400 messages that are not commands, and ends with bytes that are not a message.
   for (int client = 0; client < 25; ++client) {
     WebClient talker(server.port());
     talker.get("/ws", true);

@@ -67,7 +67,7 @@ void check_distinct(const std::vector<NamedFile>& files) {
 void require_writable(const std::string& file) {
   std::error_code unknown;
   const auto status = fs::status(file, unknown);
-  if (fs::is_directory(status)) throw IoError(file, 0, "cannot be written: is a directory");
+  if (fs::is_directory(status)) throw IoError(file, 0, "cannot be written: is a folder");
   // Opening a pipe would block until somebody reads it.
   if (fs::exists(status) && !fs::is_regular_file(status)) return;
   const bool there = fs::exists(status);

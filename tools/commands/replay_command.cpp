@@ -206,9 +206,9 @@ void declare_replay(Subcommand& command) {
   const Option record =
       command.option("--record", arguments->record,
                      "Record to this file: MCAP if its name ends in .mcap, otherwise JSON lines");
-  const Option repair = command.option(
-      "--repair", arguments->recording.repair,
-      "Recording that was cut: write what is whole of it to this file, as a finished recording");
+  const Option repair =
+      command.option("--repair", arguments->recording.repair,
+                     "Truncated recording: write its complete part to this file, as a finished recording");
   for (Option served : {host, port}) served.excludes(html).excludes(record).excludes(repair);
   command.find("--html").excludes(repair);
   command.action([arguments, &command] { return replay(*arguments, command); });

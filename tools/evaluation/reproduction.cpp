@@ -205,8 +205,7 @@ namespace {
 
 /// A folder that is given must hold at least one of the logs.
 void require_logs(const fs::path& published) {
-  if (!fs::is_directory(published))
-    throw IoError("--published", 0, published.string() + " is not a directory");
+  if (!fs::is_directory(published)) throw IoError("--published", 0, published.string() + " is not a folder");
   for (const PaperRow& row : paper_rows())
     if (fs::is_regular_file(published / row.log_pt) || fs::is_regular_file(published / row.log_oa)) return;
   throw IoError("--published", 0,

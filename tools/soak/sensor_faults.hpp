@@ -17,7 +17,7 @@ struct FaultRecord {
 
 /// Drives the scenario for `seconds` (simulated) with a planner that gets a faulty input for 0.3 s in every 2
 /// s: scans without a number, without beams, that stand still or lose half of their beams; poses and speeds
-/// that are no numbers, jump or are absurd. The rules: every command is finite and within the limits of the
+/// that are not numbers, jump or are absurd. The rules: every command is finite and within the limits of the
 /// planner; while an input cannot be used the status says so and the command is not faster than the car; and
 /// within 0.1 s after the fault the planner plans again. A collision breaks no rule. Ends early if `cancel`
 /// becomes true. The same seed makes the same drive. Throws as load_scenario does.

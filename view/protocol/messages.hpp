@@ -29,7 +29,7 @@ struct Choices {
 
 struct HelloFacts {
   std::string session{};      ///< another one after each start of the server
-  double history = 0;         ///< s that can be gone back
+  double history = 0;         ///< s of steps that are stored and can be shown again
   double control_period = 0;  ///< s
 };
 /// Names and sizes that do not change while a server runs.
@@ -64,7 +64,7 @@ struct StateFacts {
   const evaluation::Environment& environment;
   const std::vector<LapNote>& laps;
   double time = 0, control_period = 0;      ///< s
-  int tick = -1, newest = -1, oldest = -1;  ///< shown, and those that can be gone to
+  int tick = -1, newest = -1, oldest = -1;  ///< the one shown, and the range of the stored ones
   bool paused = false, real_time = false, edited = false;
   bool introduction = false;  ///< the scenario with which the program starts without arguments, unchanged
   double rate = 1;

@@ -141,7 +141,7 @@ void Session::tick() {
     stop_at_ = -1;
     state_changed_ = true;
   }
-  is_newest_published_ = false;
+  is_newest_sent_ = false;
   if (Clock::now() - last_frame_ >= min_frame_gap || paused_) publish_newest();
 }
 
@@ -162,7 +162,7 @@ std::shared_ptr<const std::string> Session::frame_of(const Step& step, const std
 }
 
 void Session::publish_newest() {
-  if (std::exchange(is_newest_published_, true) || history_.empty()) return;
+  if (std::exchange(is_newest_sent_, true) || history_.empty()) return;
   last_frame_ = Clock::now();
   server_.publish(history_.back().frame);
 }
@@ -233,7 +233,7 @@ void Session::show(int tick) {
   tick = std::clamp(tick, history_.front().tick, history_.back().tick);
   const auto& step = history_[static_cast<std::size_t>(tick - history_.front().tick)];
   viewed_ = tick == history_.back().tick ? -1 : tick;
-  paused_ = is_newest_published_ = true;
+  paused_ = is_newest_sent_ = true;
   server_.publish(step.frame);
   state_changed_ = true;
 }

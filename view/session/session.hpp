@@ -41,7 +41,7 @@ struct SessionOptions {
   std::function<LoadedScenario(const ScenarioNames&)> load;  ///< throws errors for the user
   Choices choices;
   std::string further_arguments;  ///< of the command line that drives the same lap, begins with a space
-  double history = 60;            ///< s that can be gone back
+  double history = 60;            ///< s of steps that are stored and can be shown again
   bool wait_for_client = true;    ///< the drive begins when the first page is opened
   /// An evaluation to show: its message to the page (JSON), and how one of its laps is loaded.
   std::string evaluation{};
@@ -168,7 +168,7 @@ class Session {
   double rate_ = 1;  ///< of simulated to real time; 0: as fast as it goes
   int generation_ = 0;
   Clock::time_point due_ = Clock::now(), last_state_ = Clock::now(), last_frame_ = Clock::now();
-  bool is_newest_published_ = true;  ///< false where the newest tick came too early for a frame
+  bool is_newest_sent_ = true;  ///< false where the newest tick came too early for a frame
   std::uint64_t refused_ = 0;
   std::atomic<bool> saving_{false};
   std::jthread saver_;  ///< the last member: it ends before what it uses

@@ -106,7 +106,7 @@ struct CellAccessChoice {
   double gathers_ns = 0;                  ///< for a step of 16 rollouts; 0 if not measured
 };
 
-/// Measures rollouts over a map with both ways to read its cells, by turns, in less than 0.2 ms, and takes
+/// Measures rollouts over a map with both ways to read its cells, alternately, in less than 0.2 ms, and takes
 /// the faster one; gathers if they are at most 3 % slower, since they are fewer instructions. Without AVX-512
 /// there is no choice: loads.
 CellAccessChoice measure_cell_access() noexcept;

@@ -241,7 +241,7 @@ struct Pack {
   template <std::same_as<double> Double>
   operator Double() const {
     static_assert(sizeof(Double) == 0,
-                  "slalom: T holds a number for each lane and is no double: write slalom::sin(x), "
+                  "slalom: T holds a number for each lane and is not a double: write slalom::sin(x), "
                   "slalom::exp(x) and so on "
                   "in place of std::sin(x), and T for the type of variables");
     return 0;

@@ -24,7 +24,7 @@ struct SearchDimension {
   /// The value at the coordinate `place` in [0, 1], as text. Numbers keep five significant digits.
   std::string value(double place) const;
   /// The coordinate in [0, 1] of a value; of the nearest value in the range if it is outside, of the first
-  /// choice or the lower end if the text is none of the choices or not a number.
+  /// choice or the lower end if the text is not one of the choices or not a number.
   double place(const std::string& value) const;
 };
 

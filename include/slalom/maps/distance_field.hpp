@@ -7,7 +7,7 @@
 namespace slalom::maps {
 
 /// The exact Euclidean distance from the centre of every cell to the centre of the nearest obstacle cell, in
-/// metres; 0 on obstacles. What lies outside the grid is no obstacle. Without any obstacle every distance is
+/// metres; 0 on obstacles. Outside the grid there are no obstacles. Without any obstacle every distance is
 /// infinite.
 struct DistanceField {
   int width = 0;                 ///< cells

@@ -12,7 +12,7 @@ struct LaserScanView {
   std::span<const float> ranges{};  ///< m; NaN, infinite or beyond the limits where there is no reading
   double angle_min = 0;             ///< rad
   double angle_increment = 0;       ///< rad
-  double range_min = 0;             ///< m; readings below it are no readings
+  double range_min = 0;             ///< m; readings below it are ignored
   double range_max = 0;             ///< m; readings of it or more mean that nothing was hit
 };
 

@@ -56,7 +56,7 @@ class Track {
 
   /// One entry per cell and a ring of cells round the map, row by row, `clearance_stride` a row: how far
   /// (1/64 cell, at most 500 cells) from any point of this cell there is no wall in any direction; negative
-  /// in walls, `exit` on the ring where the outside is no wall. One more entry at the end has no meaning.
+  /// in walls, `exit` on the ring where the outside is not a wall. One more entry at the end has no meaning.
   const std::vector<std::int16_t>& clearance() const noexcept { return clearance_; }
   /// Number of cells from one row of clearances to the next.
   int clearance_stride() const noexcept { return grid_.width + 2; }

@@ -32,7 +32,7 @@
 /// 5. An extended Kalman filter for constant turn rate and speed predicts and corrects each object
 ///    (R. Schubert, E. Richter & G. Wanielik, "Comparison and evaluation of advanced motion models for
 ///    vehicle tracking", FUSION 2008). A new object has constant velocity until it is confirmed.
-/// 6. An object is confirmed by several scans. It is given up when scans see through its place, or when it
+/// 6. An object is confirmed by several scans. It is dropped when scans see through its place, or when it
 ///    was out of view for too long.
 namespace slalom::tracking {
 

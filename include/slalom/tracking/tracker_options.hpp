@@ -29,8 +29,8 @@ struct TrackerOptions {
   double gate = 3.5;  ///< standard deviations from the predicted outline to readings of an object
 
   int confirming_scans = 2;      ///< with readings of an object, before it is reported
-  int max_misses = 3;            ///< scans that see through the place of an object, before it is given up
-  double max_unseen_time = 1.5;  ///< s, before an object that is out of view is given up
+  int max_misses = 3;            ///< scans that see through the place of an object, before it is dropped
+  double max_unseen_time = 1.5;  ///< s, before an object that is out of view is dropped
 
   double free_margin = 0.15;  ///< m, without a map: what counts as moved into or out of free space
   double min_speed = 0.5;     ///< m/s, without a map: of an object when it is confirmed
@@ -73,9 +73,9 @@ void visit_options(Options& o, Visit&& visit) {
   visit(o.confirming_scans,
         Declaration{"confirming_scans", "", "", "scans with an object before it is reported", 1, 100});
   visit(o.max_misses, Declaration{"max_misses", "", "",
-                                  "scans that see through an object's place before it is given up", 0, 1000});
+                                  "scans that see through an object's place before it is dropped", 0, 1000});
   visit(o.max_unseen_time,
-        Declaration{"max_unseen_time", "", "s", "time out of view before an object is given up", 0, 100});
+        Declaration{"max_unseen_time", "", "s", "time out of view before an object is dropped", 0, 100});
   visit(o.free_margin, Declaration{"free_margin", "", "m",
                                    "without a map: least motion into or out of free space", 0.01, 10});
   visit(o.min_speed,

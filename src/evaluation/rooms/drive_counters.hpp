@@ -34,7 +34,8 @@ class SideCounter {
   int changes() const { return changes_; }
 
  private:
-  static constexpr double side_margin = 0.1;  ///< m from the line to the obstacle; less is no side
+  static constexpr double side_margin =
+      0.1;  ///< m from the line to the obstacle; below it neither side is counted
   double ahead_x_, ahead_y_;
   int last_ = 0, changes_ = 0;
 };

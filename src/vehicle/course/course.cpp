@@ -165,7 +165,7 @@ void complete_course(Course& course, std::optional<bool> closed) {
 }
 
 Course load_course(const fs::path& folder, const maps::MapReading& reading) {
-  if (!fs::is_directory(folder)) throw IoError(folder.string(), 0, "is not a directory");
+  if (!fs::is_directory(folder)) throw IoError(folder.string(), 0, "is not a folder");
   Course course;
   course.name = fs::weakly_canonical(folder).filename().string();
   course.map = maps::load_ros_map(find_map(folder, course.notes), reading);

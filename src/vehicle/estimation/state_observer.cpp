@@ -24,8 +24,8 @@ double slip_from(double sideways, double along) noexcept {
   return std::asin(std::clamp(sideways / safe, -std::sin(max_slip), std::sin(max_slip)));
 }
 
-/// A covariance of the pose with the options' variances on top. Those alone remain where it is none: not
-/// finite, beyond any car's, or with correlations above 1.
+/// A covariance of the pose plus the options' variances. Only the options' variances remain if the covariance
+/// is invalid: not finite, larger than that of any car, or with correlations above 1.
 PoseCovariance with_noise(PoseCovariance pose, const ObserverOptions& options) noexcept {
   double sum = 0;
   for (const auto& row : pose)

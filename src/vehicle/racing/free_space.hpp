@@ -12,7 +12,7 @@ namespace slalom::vehicle::detail {
 class FreeSpace {
  public:
   /// Unknown cells are walls, but for spots of at most `spot` m that touch no occupied cell: gaps between
-  /// beams. Cells outside the map are no walls.
+  /// beams. Cells outside the map are not walls.
   FreeSpace(const maps::OccupancyGrid& map, double spot);
 
   const maps::OccupancyGrid& map() const { return map_; }  ///< without the spots

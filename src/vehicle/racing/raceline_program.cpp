@@ -121,7 +121,7 @@ T RacelineProgram::segment(int i, const T (&offset)[4], const T (&square)[2], do
   const maps::Point &from = corridor_.centre_line[nodes[1]], &to = corridor_.centre_line[nodes[2]];
   const Vector<T> step = between(p[1], p[2]);
   Barrier<T> barrier;
-  // A line that turns back on itself is none.
+  // A line that turns back on itself is not a raceline.
   if (!(value_of(step.x) * (to.x - from.x) + value_of(step.y) * (to.y - from.y) > 0)) return T(infinity);
   if (!(value_of(square[0]) > 0 && value_of(square[1]) > 0)) return T(infinity);
 

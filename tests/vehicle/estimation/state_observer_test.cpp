@@ -161,7 +161,7 @@ TEST(StateObserver, KnowsInWhichDirectionAPoseIsCertain) {
   EXPECT_LT(e.slip, mean.slip);
 }
 
-TEST(StateObserver, ACovarianceThatIsNoneDoesNoHarm) {
+TEST(StateObserver, ToleratesAnInvalidCovariance) {
   const auto model = model_with(1);
   constexpr double huge = 1e300, none = std::numeric_limits<double>::quiet_NaN();
   const PoseCovariance hostile[] = {{{{1, 9, 9}, {9, 1, 9}, {9, 9, 1}}},

@@ -31,9 +31,9 @@ VehicleOptions car() {
 }
 
 /// A car at 4 m/s on a straight course without obstacles.
-class SequenceChoiceTest : public ::testing::Test {
+class SequenceSelection : public ::testing::Test {
  protected:
-  SequenceChoiceTest()
+  SequenceSelection()
       : field_(straight()),
         model_(make_vehicle_model(car())),
         choice_(horizon, 2, model_->traits()),
@@ -65,7 +65,7 @@ class SequenceChoiceTest : public ::testing::Test {
   std::vector<PredictedState> states_;
 };
 
-TEST_F(SequenceChoiceTest, GoesOnAsPlannedWhereTheSolutionIsWorse) {
+TEST_F(SequenceSelection, KeepsThePlanWhereTheSolutionIsWorse) {
   const auto sent = sequence(0), solution = sequence(0.4f);
   EXPECT_EQ(kept_or(solution, 0.04).inputs.data(), solution.data()) << "nothing was sent before";
   choice_.sent(sent);
@@ -84,16 +84,16 @@ TEST_F(SequenceChoiceTest, GoesOnAsPlannedWhereTheSolutionIsWorse) {
   EXPECT_EQ(kept_or(solution, 0.04).inputs.data(), solution.data()) << "forgotten";
 }
 
-TEST_F(SequenceChoiceTest, TakesTheSolutionWhereItIsBetter) {
+TEST_F(SequenceSelection, TakesTheSolutionWhereItIsBetter) {
   const auto sent = sequence(0.4f), solution = sequence(0);
   choice_.sent(sent);
   EXPECT_EQ(kept_or(solution, 0.04).inputs.data(), solution.data());
 }
 
 /// A car at 6 m/s in whose way there may be walls.
-class WallTest : public ::testing::Test {
+class PlanNearAWall : public ::testing::Test {
  protected:
-  explicit WallTest(Objective objective = Objective::lap_time) : field_(straight()) {
+  explicit PlanNearAWall(Objective objective = Objective::lap_time) : field_(straight()) {
     VehicleOptions options = car();
     options.body.margin = 0.05;
     options.own_of<SingleTrackOptions>().objective = objective;
@@ -133,12 +133,12 @@ class WallTest : public ::testing::Test {
   std::vector<PredictedState> states_;
 };
 
-struct PathSpeeds : WallTest {
-  PathSpeeds() : WallTest(Objective::path_speed) {}
+struct PathSpeeds : PlanNearAWall {
+  PathSpeeds() : PlanNearAWall(Objective::path_speed) {}
 };
 
 // The body's discs have a radius of 0.18 m; the wall is 0.02 to 0.04 m from them, and the margin 0.05 m.
-TEST_F(WallTest, TheMarginOfTheBodyIsAMatterOfCost) {
+TEST_F(PlanNearAWall, PaysForTheMarginOfTheBody) {
   see_wall({2, 0.2}, {6, 0.2});
   std::vector<PredictedState> states(horizon + 1);
   const auto straight_on = held(0, 0);
@@ -151,7 +151,7 @@ TEST_F(WallTest, TheMarginOfTheBodyIsAMatterOfCost) {
       << "what moves is not in the clearances";
 }
 
-TEST_F(WallTest, TheBodyItselfCollides) {
+TEST_F(PlanNearAWall, CollidesWithTheBodyItself) {
   see_wall({4, -2}, {4, 2});
   std::vector<PredictedState> states(horizon + 1);
   EXPECT_TRUE(choice_->predict(*model_, held(0, 0), states).collided);
@@ -163,7 +163,7 @@ TEST_F(PathSpeeds, ACarThatFollowsThemKeepsTheMargin) {
   EXPECT_TRUE(choice_->predict(*model_, held(0, 0), states).collided);
 }
 
-TEST_F(WallTest, BrakesBeforeAWallAcrossTheWay) {
+TEST_F(PlanNearAWall, BrakesBeforeAWallAcrossTheWay) {
   see_wall({2.8, -3}, {2.8, 3});
   const auto solution = held(0.2f, 0);
   const auto chosen = chosen_for(solution);
@@ -175,7 +175,7 @@ TEST_F(WallTest, BrakesBeforeAWallAcrossTheWay) {
 
 // The car is about to touch the wall beside it. Brakes would turn it into the wall, and would take next to
 // nothing from its speed.
-TEST_F(WallTest, GoesOnWhereBrakesComeTooLate) {
+TEST_F(PlanNearAWall, ContinuesWhereBrakingComesTooLate) {
   see_wall({0.9, 0.12}, {2, 0.12});
   const auto chosen = chosen_for(held(0, 1));
   for (std::size_t k = 0; k < horizon; ++k) EXPECT_EQ(chosen.inputs[2 * k + 1], 1) << k;

@@ -196,7 +196,7 @@ TEST(RaceCourse, AnOpenLineIsDrivenFromEndToEnd) {
   EXPECT_NEAR(course.start.y, 2.5, 0.5);
 }
 
-TEST(RaceCourse, OfACorridorHasAMapOfIt) {
+TEST(RaceCourse, MakesTheMapOfACorridor) {
   const RacingCar car;
   const RaceCourse course = race_course(testing::circle(6, 0.9), car);
   EXPECT_GT(least(course.distance), wall_distance(car) - 0.08);

@@ -1,6 +1,6 @@
 import type { State } from "./protocol";
 
-/** The slider over the time that can be gone back to, with a mark at the time under the pointer. */
+/** The slider over the stored steps, with a mark at the time under the pointer. */
 export class Timeline {
   private scrubbing = false;
   private readonly slider = document.getElementById("timeline") as HTMLInputElement;

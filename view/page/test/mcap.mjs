@@ -21,10 +21,10 @@ function bare(schema) {
 
 /** Whether a value is what a schema demands; only what the schemas of recordings use. */
 function fits(value, schema, at) {
-  if (schema.oneOf) return assert.ok(schema.oneOf.some((s) => s.const === value), `${at}: ${value} is none of the choices`);
+  if (schema.oneOf) return assert.ok(schema.oneOf.some((s) => s.const === value), `${at}: ${value} is not one of the choices`);
   const types = [].concat(schema.type ?? []);
   const is = { object: (v) => v !== null && typeof v === "object" && !Array.isArray(v), array: Array.isArray, number: (v) => typeof v === "number", integer: Number.isInteger, string: (v) => typeof v === "string", boolean: (v) => typeof v === "boolean", null: (v) => v === null };
-  assert.ok(types.some((t) => is[t](value)), `${at}: ${JSON.stringify(value)?.slice(0, 60)} is no ${types}`);
+  assert.ok(types.some((t) => is[t](value)), `${at}: ${JSON.stringify(value)?.slice(0, 60)} is not of type ${types}`);
   if (schema.minimum !== undefined) assert.ok(value >= schema.minimum, at);
   if (schema.maximum !== undefined) assert.ok(value <= schema.maximum, at);
   if (schema.contentEncoding === "base64") assert.match(value, /^[A-Za-z0-9+/]*={0,2}$/, at);

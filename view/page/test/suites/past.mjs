@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 
 export default async function (h) {
   const { page } = h;
-  /** The page knows all steps that can be gone back to. */
+  /** The page knows every stored step, which are those that it can show again. */
   const known = () => window.slalom?.state && slalom.frame && !slalom.past.missing(Math.max(0, slalom.state.oldest), slalom.state.newest, 1);
 
   await h.test("the scalars of steps without a frame arrive late instead of never", async () => {
