@@ -7,58 +7,23 @@
 #include <cstring>
 #include <map>
 
-#include "evaluation/folder_lock.hpp"
+#include "evaluation/system_files.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/evaluation.hpp"
 #include "slalom/evaluation/json.hpp"
+#include "slalom/evaluation/result_folder.hpp"
 
 namespace slalom::evaluation {
 
 namespace {
 
 namespace fs = std::filesystem;
+using detail::throw_system;
+using detail::write_all;
 constexpr const char* journal_name = "laps.journal.csv";
 constexpr const char* table_name = "laps.csv";
 constexpr const char* settings_name = "settings.json";
-
-[[noreturn]] void throw_system(const fs::path& file, const char* what) {
-  throw IoError(file.string(), 0, std::string(what) + ": " + std::strerror(errno));
-}
-
-void write_all(int descriptor, const std::string& text, const fs::path& file) {
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t written = ::write(descriptor, text.data() + done, text.size() - done);
-    if (written < 0 && errno != EINTR) throw_system(file, "cannot be written");
-    if (written > 0) done += static_cast<std::size_t>(written);
-  }
-}
-
-/// Makes the entries of a folder survive a loss of power.
-void sync_folder(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) throw_system(folder, "cannot be opened");
-  const int failed = ::fsync(descriptor);
-  ::close(descriptor);
-  if (failed != 0 && errno != EINVAL) throw_system(folder, "cannot be written");  // EINVAL: cannot be synced
-}
-
-/// Replaces a file atomically; once this returns, it survives a loss of power.
-void replace_file(const fs::path& file, const std::string& text) {
-  const fs::path next = file.string() + ".new";
-  const int descriptor = ::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor < 0) throw_system(next, "cannot be written");
-  try {
-    write_all(descriptor, text, next);
-    if (::fsync(descriptor) != 0) throw_system(next, "cannot be written");
-  } catch (...) {
-    ::close(descriptor);
-    throw;
-  }
-  ::close(descriptor);
-  if (::rename(next.c_str(), file.c_str()) != 0) throw_system(file, "cannot be written");
-  sync_folder(file.parent_path());
-}
 
 constexpr const char* checksum_key = "checksum";
 
@@ -197,7 +162,7 @@ LapStore::LapStore(const fs::path& folder, const Evaluation& evaluation, bool re
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw IoError(folder.string(), 0, "cannot create the folder: " + error.message());
-  lock_ = std::make_unique<detail::FolderLock>(folder);
+  lock_ = std::make_unique<FolderLock>(folder);
   const fs::path settings = folder / settings_name, journal = folder / journal_name,
                  table = folder / table_name;
   std::string settings_to_write;

@@ -63,9 +63,7 @@ class LapQueue {
 /// which thread drives which lap. Returns how many threads worked: fewer if the system could not start all.
 int drive_laps(const Evaluation& evaluation, LapQueue& queue, int jobs, const std::atomic<bool>& cancel);
 
-namespace detail {
 class FolderLock;
-}
 
 /// The settings of an evaluation, as JSON text, with their checksum.
 std::string with_checksum(const std::string& settings);
@@ -105,7 +103,7 @@ class LapStore {
   void check_build(const Evaluation& evaluation, const std::string& stored_build) const;
 
   std::filesystem::path folder_;
-  std::unique_ptr<detail::FolderLock> lock_;
+  std::unique_ptr<FolderLock> lock_;
   const std::vector<Experiment>& experiments_;
   bool checked_ = true;
   std::vector<LapRow> rows_;

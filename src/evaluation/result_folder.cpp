@@ -1,4 +1,4 @@
-#include "evaluation/folder_lock.hpp"
+#include "slalom/evaluation/result_folder.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -9,9 +9,10 @@
 #include <cstring>
 #include <string>
 
+#include "evaluation/system_files.hpp"
 #include "slalom/core/error.hpp"
 
-namespace slalom::evaluation::detail {
+namespace slalom::evaluation {
 namespace {
 
 std::string holder_of(int descriptor) {
@@ -34,7 +35,33 @@ bool is_file(int descriptor, const std::filesystem::path& file) {
          opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
+/// Makes the entries of a folder survive a loss of power.
+void sync_folder(const std::filesystem::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) detail::throw_system(folder, "cannot be opened");
+  const int failed = ::fsync(descriptor);
+  ::close(descriptor);
+  if (failed != 0 && errno != EINVAL)
+    detail::throw_system(folder, "cannot be written");  // EINVAL: cannot be synced
+}
+
 }  // namespace
+
+namespace detail {
+
+void throw_system(const std::filesystem::path& file, const char* what) {
+  throw IoError(file.string(), 0, std::string(what) + ": " + std::strerror(errno));
+}
+
+void write_all(int descriptor, const std::string& text, const std::filesystem::path& file) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t written = ::write(descriptor, text.data() + done, text.size() - done);
+    if (written < 0 && errno != EINTR) throw_system(file, "cannot be written");
+    if (written > 0) done += static_cast<std::size_t>(written);
+  }
+}
+
+}  // namespace detail
 
 FolderLock::FolderLock(const std::filesystem::path& folder) : file_(folder / "lock") {
   const auto fail = [this] {
@@ -66,4 +93,20 @@ FolderLock::~FolderLock() {
   ::close(descriptor_);
 }
 
-}  // namespace slalom::evaluation::detail
+void replace_file(const std::filesystem::path& file, const std::string& text) {
+  const std::filesystem::path next = file.string() + ".new";
+  const int descriptor = ::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (descriptor < 0) detail::throw_system(next, "cannot be written");
+  try {
+    detail::write_all(descriptor, text, next);
+    if (::fsync(descriptor) != 0) detail::throw_system(next, "cannot be written");
+  } catch (...) {
+    ::close(descriptor);
+    throw;
+  }
+  ::close(descriptor);
+  if (::rename(next.c_str(), file.c_str()) != 0) detail::throw_system(file, "cannot be written");
+  sync_folder(file.parent_path());
+}
+
+}  // namespace slalom::evaluation
