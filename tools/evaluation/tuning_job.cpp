@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numeric>
 #include <sstream>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/json.hpp"
+#include "slalom/evaluation/result_folder.hpp"
 #include "slalom/evaluation/results.hpp"
-#include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -56,6 +55,22 @@ std::string differences(const Json& there, const Json& here) {
 }
 
 }  // namespace
+
+void keep_plan(const std::filesystem::path& file, const Json& plan, bool resume) {
+  if (!fs::exists(file)) return replace_file(file, plan.dump(2) + "\n");
+  if (!resume)
+    throw IoError(file.parent_path().string(), 0,
+                  "contains a search; continue it with --resume, or use another folder");
+  Json there;
+  try {
+    there = Json::parse(read_file(file, Json::max_bytes));
+  } catch (const JsonError& failure) {
+    throw IoError(file.string(), 0, failure.what());
+  }
+  const std::string differing = differences(there, plan);
+  if (!differing.empty())
+    throw IoError(file.string(), 0, "the folder contains a different search: " + differing);
+}
 
 TuningJob::TuningJob(TuningArguments arguments)
     : arguments_(std::move(arguments)), objective_([this] {
@@ -129,27 +144,6 @@ Json TuningJob::plan() const {
           {"rungs", rungs},
           {"held_out", arguments_.held_out},
           {"seed0", arguments_.evaluation.seed0}};
-}
-
-/// A folder belongs to one search.
-void TuningJob::keep_plan() const {
-  const fs::path file = fs::path(arguments_.evaluation.out) / "plan.json";
-  std::error_code error;
-  fs::create_directories(file.parent_path(), error);
-  if (error) throw IoError(file.parent_path().string(), 0, "cannot be created: " + error.message());
-  if (!fs::exists(file)) return write_json(plan(), file.string());
-  if (!arguments_.evaluation.resume)
-    throw IoError(arguments_.evaluation.out, 0,
-                  "contains a search; continue it with --resume, or use another folder");
-  Json there;
-  try {
-    there = Json::parse(read_file(file, Json::max_bytes));
-  } catch (const JsonError& failure) {
-    throw IoError(file.string(), 0, failure.what());
-  }
-  const std::string differing = differences(there, plan());
-  if (!differing.empty())
-    throw IoError(file.string(), 0, "the folder contains a different search: " + differing);
 }
 
 bool TuningJob::drive(const std::string& step, const std::vector<Candidate>& candidates, int first_lap,
@@ -285,11 +279,7 @@ void TuningJob::write_best() const {
     vehicle::set_option(configuration, key, value);
   }
   if (best_.set.empty()) head += "#   no candidate was better than the initial configuration\n";
-  const std::string file = arguments_.evaluation.out + "/best.yaml";
-  std::ofstream stream(file, std::ios::binary);
-  stream << head << vehicle::to_yaml(configuration);
-  stream.close();
-  if (!stream) throw IoError(file, 0, "cannot be written");
+  replace_file(arguments_.evaluation.out + "/best.yaml", head + vehicle::to_yaml(configuration));
 }
 
 bool TuningJob::run(const std::atomic<bool>& cancel, std::FILE* words) {
@@ -298,14 +288,20 @@ bool TuningJob::run(const std::atomic<bool>& cancel, std::FILE* words) {
   std::fprintf(words, "%d round%s of %d candidates: %d laps; then %d on held-out seeds\n", arguments_.rounds,
                arguments_.rounds == 1 ? "" : "s", rungs_.front().candidates, searched, held_out);
   std::fflush(words);
-  keep_plan();
+  const fs::path plan_file = fs::path(arguments_.evaluation.out) / "plan.json",
+                 folder = plan_file.parent_path();
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw IoError(folder.string(), 0, "cannot be created: " + error.message());
+  const FolderLock lock(folder);
+  keep_plan(plan_file, plan(), arguments_.evaluation.resume);
   result_ = {{"plan", plan()}, {"laps", searched + held_out}, {"steps", Json::array()}};
   for (int round = 0; round < arguments_.rounds; ++round)
     if (!search(round, cancel, words)) return false;
   result_["best"] = set_json(best_);
   if (!hold_out(cancel, words)) return false;
   write_best();
-  write_json(result_, arguments_.evaluation.out + "/tune.json");
+  replace_file(arguments_.evaluation.out + "/tune.json", result_.dump(2) + "\n");
   std::fprintf(words, "\nbest: %s\n%s/best.yaml\n", label(best_).c_str(), arguments_.evaluation.out.c_str());
   return true;
 }

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,14 @@ struct TuningArguments {
   int held_out = 30;  ///< laps of the final figure, in every scenario on every course; 0: none
 };
 
+/// Keeps the plan of a search in `file`, the `plan.json` of its folder: a folder belongs to one search.
+/// Throws IoError if the file exists and `resume` is false, if it is no JSON, if a value differs from that of
+/// `plan`, and if it cannot be written.
+void keep_plan(const std::filesystem::path& file, const Json& plan, bool resume);
+
 /// A search, from its arguments to `best.yaml` and `tune.json`. Every step of it is an evaluation of its own
-/// in the folder: an interrupted search can be continued, and its laps can be replayed.
+/// in the folder: an interrupted search can be continued, and its laps can be replayed. While it runs, its
+/// folder is locked.
 class TuningJob {
  public:
   /// Throws IoError, std::invalid_argument.
@@ -44,7 +51,6 @@ class TuningJob {
 
   int places() const { return static_cast<int>(courses_.size() * arguments_.scenarios.size()); }
   Json plan() const;
-  void keep_plan() const;
   bool drive(const std::string& step, const std::vector<evaluation::Candidate>& candidates, int first_lap,
              int laps, const std::atomic<bool>& cancel, Driven& driven) const;
   bool search(int round, const std::atomic<bool>& cancel, std::FILE* words);

@@ -139,9 +139,22 @@ int drive_with_ranks(const Evaluation& evaluation, EvaluationQueue& work, int jo
                      const std::atomic<bool>& cancel) {
   if (rank_count() == 1) return drive_laps(evaluation, work, jobs, cancel);
   int threads = 1;
-  std::thread own([&] { threads = drive_laps(evaluation, work, jobs, cancel); });
-  serve(evaluation, work);
-  own.join();
+  {
+    // It is joined even if serve() throws.
+    const std::jthread own([&] {
+      try {
+        threads = drive_laps(evaluation, work, jobs, cancel);
+      } catch (...) {
+        work.fail(std::current_exception());
+      }
+    });
+    try {
+      serve(evaluation, work);
+    } catch (...) {
+      work.fail(std::current_exception());  // the queue hands out no further lap
+      throw;
+    }
+  }
   MPI_Finalize();
   return threads;
 }
