@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <map>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 
 namespace slalom::evaluation {
 
@@ -25,15 +25,22 @@ std::vector<std::string> split_line(std::string line) {
   return cells;
 }
 
+constexpr std::uint64_t max_log_bytes = std::uint64_t{1} << 26;  // of a file
+constexpr std::size_t max_log_line = std::size_t{1} << 16;       // bytes
+constexpr int max_log_laps = 1000000;
+constexpr double max_log_value = 1e12;  // in magnitude; sums over all laps stay finite
+
 /// A table of numbers, read line by line, by the names of its columns.
 class NumberTable {
  public:
-  explicit NumberTable(const std::filesystem::path& file) : file_(file.string()), stream_(file) {
+  explicit NumberTable(const std::filesystem::path& file)
+      : file_(file.string()), text_(read_file(file, max_log_bytes)) {
     std::string line;
-    if (!stream_ || !std::getline(stream_, line)) throw IoError(file_, 0, "cannot be read");
-    stream_.exceptions(std::ios::badbit);  // otherwise the table ends where memory runs out
+    if (!next_line(line)) throw IoError(file_, 0, "is empty; the first line must name the columns");
     const auto names = split_line(line);
-    for (std::size_t i = 0; i < names.size(); ++i) columns_[names[i]] = i;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (!columns_.emplace(names[i], i).second)
+        throw IoError(file_, 1, "column '" + names[i] + "' is given twice");
     for (const char* needed : {"success", "collision", "state_cost", "collision_cost"}) {
       if (!columns_.contains(needed))
         throw IoError(file_, 1, "column " + std::string(needed) + " is missing");
@@ -42,8 +49,7 @@ class NumberTable {
 
   bool next() {
     std::string line;
-    while (std::getline(stream_, line)) {
-      ++number_;
+    while (next_line(line)) {
       cells_ = split_line(line);
       if (cells_.size() == 1 && cells_[0].empty()) continue;
       if (cells_.size() == columns_.size()) return true;
@@ -62,6 +68,8 @@ class NumberTable {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
       throw IoError(file_, number_, column + ": '" + text + "' must be a finite number");
+    if (std::abs(value) > max_log_value)
+      throw IoError(file_, number_, column + ": '" + text + "' must be at most 1e12 in magnitude");
     return value;
   }
 
@@ -75,11 +83,23 @@ class NumberTable {
   }
 
  private:
-  std::string file_;
-  std::ifstream stream_;
+  /// The next line, without its end; false at the end of the text.
+  bool next_line(std::string& line) {
+    if (at_ == text_.size()) return false;
+    ++number_;
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    if (end - at_ > max_log_line)
+      throw IoError(file_, number_, "is longer than " + std::to_string(max_log_line) + " bytes");
+    line = text_.substr(at_, end - at_);
+    at_ = std::min(end + 1, text_.size());
+    return true;
+  }
+
+  std::string file_, text_;
+  std::size_t at_ = 0;  ///< where the next line begins
   std::map<std::string, std::size_t> columns_;
   std::vector<std::string> cells_;
-  int number_ = 1;
+  int number_ = 0;  ///< of the last line
 };
 
 }  // namespace
@@ -91,7 +111,8 @@ LapLog read_lap_log(const std::filesystem::path& file) {
   double solve_sum = 0, solve_max = 0;
   const bool timed = table.has("mean_calculation_time") && table.has("max_calculation_time");
   while (table.next()) {
-    ++log.laps;
+    if (++log.laps > max_log_laps)
+      throw IoError(log.file, 0, "has more than " + std::to_string(max_log_laps) + " laps");
     log.successes += table.count("success", 1);
     log.collisions += table.count("collision", 100000);
     if (table.has("timeout")) log.timeouts += table.count("timeout", 1);

@@ -140,6 +140,26 @@ TEST_F(LapLogFile, ErrorsNameLineAndColumn) {
   EXPECT_NE(complaint(head + "2,0,1,0\n").find(":2: success"), std::string::npos);
 }
 
+TEST_F(LapLogFile, ColumnsThatAreGivenTwiceAreRefused) {
+  const std::string found = complaint("success,success,collision,state_cost,collision_cost\n1,0,1,2\n");
+  EXPECT_NE(found.find("log.csv:1: column 'success' is given twice"), std::string::npos) << found;
+}
+
+TEST_F(LapLogFile, SizesAndValuesAreBounded) {
+  const std::string head = "success,collision,state_cost,collision_cost\n";
+  EXPECT_NE(complaint(head + "1,0,1e308,1e308\n").find(":2: state_cost: '1e308' must be at most 1e12"),
+            std::string::npos);
+  EXPECT_NE(complaint(head + std::string(65537, ',') + "\n").find(":2: is longer than 65536 bytes"),
+            std::string::npos);
+  const auto file = write("log.csv", head);
+  std::filesystem::resize_file(file, (std::uintmax_t{1} << 26) + 1);
+  EXPECT_THROW(read_lap_log(file), IoError);
+  std::string laps = head;
+  for (int lap = 0; lap <= 1000000; ++lap) laps += "1,0,1,1\n";
+  EXPECT_NE(complaint(laps).find("has more than 1000000 laps"), std::string::npos);
+  EXPECT_NE(complaint("").find("is empty"), std::string::npos);
+}
+
 TEST_F(LapLogFile, IsComparedWithLaps) {
   const LapLog log =
       read("success,collision,state_cost,collision_cost\n1,0,1,2\n1,0,1,4\n0,6,2,20\n1,2,0.5,0\n");

@@ -1,4 +1,6 @@
 // `slalom tune`: finds what is known to be better, says so on seeds of its own, goes on where it was killed.
+#include <sys/file.h>
+
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -101,6 +103,34 @@ TEST_F(TuneCommand, AFolderHoldsOneSearch) {
   EXPECT_TRUE(contains(complaint(small(tiny) + "--out t"), "--resume"));
   EXPECT_TRUE(contains(complaint(small("--held-out 0 --rounds 1 --budget 5") + "--out t --resume"),
                        "budget: 4 there, 5 here"));
+}
+
+TEST_F(TuneCommand, TwoSearchesDoNotShareAFolder) {
+  fs::create_directories(folder_ / "t");
+  const int other = open((folder_ / "t/lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  ASSERT_EQ(flock(other, LOCK_EX), 0);
+  const std::string tiny = small("--held-out 0 --rounds 1 --budget 4") + "--out t";
+  EXPECT_TRUE(contains(complaint(tiny), "t: is in use by"));
+  EXPECT_FALSE(fs::exists(folder_ / "t/plan.json"));
+  close(other);
+  EXPECT_EQ(run(tiny).status, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "t/lock"));
+}
+
+/// The plan is longer than the largest file that the first run may write.
+TEST_F(TuneCommand, APlanThatCannotBeWrittenCompletelyIsNotKept) {
+  std::string objective = "ms";
+  for (int i = 0; i < 400; ++i) objective += " + log_ms";
+  std::string search = small("--held-out 0 --rounds 1 --budget 4") + "--out t";
+  const std::string given = "--objective ms";
+  search.replace(search.find(given), given.size(), "--objective '" + objective + "'");
+  const auto full =
+      testing::run_shell("trap '' XFSZ; ulimit -f 2; '" SLALOM_PROGRAM "' " + search, folder_.string());
+  EXPECT_EQ(full.status, 1) << full.output;
+  EXPECT_TRUE(contains(full.output, "plan.json.new: cannot be written")) << full.output;
+  EXPECT_FALSE(fs::exists(folder_ / "t/plan.json"));
+  const auto again = run(search);
+  EXPECT_EQ(again.status, 0) << again.output;
 }
 
 }  // namespace

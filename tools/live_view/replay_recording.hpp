@@ -6,7 +6,7 @@
 namespace slalom::tools {
 
 struct ReplayArguments {
-  std::string file;    ///< a recording in MCAP
+  std::string file;    ///< a recording in MCAP; to repair it, also one in JSON lines
   std::string html;    ///< write the page with the replay inside to this file instead of serving it
   std::string repair;  ///< write what is whole of the recording to this file instead
   std::string host = "127.0.0.1";

@@ -1,13 +1,12 @@
 #include "tools/recorded_drives/driven_samples.hpp"
 
-#include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/json.hpp"
 #include "tools/bags/bag_drive.hpp"
 #include "tools/bags/ros_bag.hpp"
+#include "tools/recording/record_lines.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -28,32 +27,15 @@ std::vector<vehicle::DrivenSample> read_bag_samples(const std::string& file) {
   return samples;
 }
 
-/// The next line, of at most `max_line` bytes, without its end; false at the end of the file.
-bool next_line(std::istream& stream, std::string& line, const std::string& file, int number) {
-  constexpr std::size_t max_line = std::size_t{1} << 22;
-  line.clear();
-  for (int c = stream.get(); c != std::istream::traits_type::eof(); c = stream.get()) {
-    if (c == '\n') return true;
-    if (line.size() == max_line)
-      throw IoError(file, number,
-                    "is longer than " + std::to_string(max_line) + " bytes: it is not a record");
-    line += static_cast<char>(c);
-  }
-  return !line.empty();
-}
-
 }  // namespace
 
 std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& file) {
-  if (std::filesystem::is_directory(file)) throw IoError(file, 0, "is a folder; a recording is a file");
   if (is_bag(file)) return read_bag_samples(file);
-  if (!std::filesystem::is_regular_file(file))
-    throw IoError(file, 0, "cannot be read: it must be a regular file");
-  std::ifstream stream(file);
-  if (!stream) throw IoError(file, 0, "cannot be read");
+  RecordLines lines(file);
   std::vector<vehicle::DrivenSample> samples;
   std::string line;
-  for (int number = 1; next_line(stream, line, file, number); ++number) {
+  while (lines.next(line)) {
+    const int number = lines.number();
     // The magic bytes of an MCAP file.
     if (number == 1 && line.rfind("\x89MCAP", 0) == 0)
       throw IoError(file, 0,
@@ -68,6 +50,11 @@ std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& file) 
                          entry(record, "odometry", 1), entry(record, "odometry", 2),
                          entry(record, "odometry", 3), entry(record, "command", 0)});
     } catch (const JsonError& error) {
+      if (!lines.ended() && number > 1)
+        throw IoError(
+            file, number,
+            "the recording was cut in this line; slalom replay --repair FILE writes the lines before "
+            "it to a file");
       throw IoError(file, number, std::string("must be a record of a recording: ") + error.what());
     }
   }

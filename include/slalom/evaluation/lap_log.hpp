@@ -22,7 +22,9 @@ struct LapLog {
   std::optional<double> solve_ms_mean, solve_ms_max;  ///< ms, where the log has `*_calculation_time`
 };
 
-/// Throws IoError with file, line and column if the file cannot be read or a value is invalid.
+/// Reads a log of at most 64 MiB, 64 KiB a line and 1,000,000 laps. Throws IoError with file, line and column
+/// if it is larger, is not a regular file or cannot be read, if a column is missing or given twice, and if a
+/// value is not a finite number of at most 1e12 in magnitude.
 LapLog read_lap_log(const std::filesystem::path& file);
 
 /// Whether measured laps agree with a log.

@@ -6,6 +6,7 @@
 
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -46,6 +47,20 @@ TEST_F(DrivenSamples, ALineOfMoreThanFourMebibytesIsRefused) {
   EXPECT_NE(refusal(header + longest + " \n" + tick).find("lap.jsonl:2: is longer than 4194304 bytes"),
             std::string::npos)
       << refusal(header + longest + " \n" + tick);
+}
+
+TEST_F(DrivenSamples, ARecordingOfMoreThanFourGibibytesIsRefused) {
+  const std::string file = written(header + tick + "\n");
+  std::filesystem::resize_file(file, (std::uintmax_t{1} << 32) + 1);  // zeros that take no place on the disk
+  expect_error_with<IoError>({"lap.jsonl: has 4294967297 bytes; at most 4294967296 are read"},
+                             [&] { read_driven_samples(file); });
+}
+
+TEST_F(DrivenSamples, OneThatWasCutNamesTheRepair) {
+  const std::string cut = header + tick + "\n" + tick.substr(0, 40);
+  EXPECT_NE(refusal(cut).find("lap.jsonl:3: the recording was cut in this line; slalom replay --repair"),
+            std::string::npos)
+      << refusal(cut);
 }
 
 TEST_F(DrivenSamples, ErrorsNameTheLine) {
