@@ -10,6 +10,8 @@ namespace slalom::evaluation {
 
 namespace {
 
+constexpr double max_weight = 1e12;  // of a figure: sums stay finite
+
 [[noreturn]] void throw_invalid(const std::string& text, const std::string& rule) {
   throw std::invalid_argument("'" + text + "' " + rule);
 }
@@ -124,7 +126,10 @@ SearchDimension parse_dimension(const std::string& text, const vehicle::Configur
       !parse_number(parts[0], dimension.low) || !parse_number(parts[1], dimension.high) ||
       !(dimension.low < dimension.high))
     throw_invalid(text, "must be key=lo:hi or key=lo:hi:log with numbers lo < hi");
+  if (!std::isfinite(dimension.high - dimension.low)) throw_invalid(text, "must have a finite range hi - lo");
   if (dimension.logarithmic && !(dimension.low > 0)) throw_invalid(text, "must have lo > 0 with log");
+  if (dimension.logarithmic && !std::isfinite(dimension.high / dimension.low))
+    throw_invalid(text, "must have a finite ratio hi / lo with log");
   const auto sections = vehicle::list_sections(configuration);
   if (const OptionEntry* entry = find_option(sections, dimension.key)) {
     dimension.whole =
@@ -191,8 +196,9 @@ Objective::Objective(std::string_view text) {
     const std::string name = name_at == std::string::npos ? "" : term.substr(name_at);
     if (!number.empty() && number.back() == '*') number.pop_back();
     double weight = 1;
-    if (!number.empty() && !(parse_number(number, weight) && weight > 0))
-      throw_invalid(all, "must be a sum of figures, each with a weight above 0 before it or none");
+    if (!number.empty() && !(parse_number(number, weight) && weight > 0 && weight <= max_weight))
+      throw_invalid(all,
+                    "must be a sum of figures, each with a weight above 0, at most 1e12, before it or none");
     std::string names;
     for (std::size_t i = 0; i < std::size(known_figures); ++i) {
       names += (i ? ", " : "") + std::string(known_figures[i].name);

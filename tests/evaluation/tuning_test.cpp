@@ -102,5 +102,14 @@ TEST(TuningObjective, IsASumOfFigures) {
     EXPECT_THROW(Objective{text}, std::invalid_argument) << text;
 }
 
+TEST(SearchDimension, RangesAndWeightsStayFinite) {
+  EXPECT_THROW(parse_dimension("mppi.temperature=1e-320:1:log", configuration, "mppi"),
+               std::invalid_argument);
+  EXPECT_THROW(parse_dimension("mppi.temperature=-1e308:1e308", configuration, "mppi"),
+               std::invalid_argument);
+  EXPECT_THROW(Objective("1" + std::string(308, '0') + " ms + 1" + std::string(308, '0') + " ms"),
+               std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace slalom::evaluation

@@ -1,5 +1,6 @@
 // Commands of a page to a session of the live view: one a line.
 #include <chrono>
+#include <stdexcept>
 
 #include "fuzz/target.hpp"
 #include "view/session/session.hpp"
@@ -39,6 +40,8 @@ std::vector<std::string> seeds() {
 {"do":"scenario","course":"wren","seed":"9","obstacles":1,"opponents":0}
 {"do":"save","what":"recording"}
 {"do":"lap","experiment":0,"lap":0}
+{"do":"step"}
+{"do":"lap","experiment":1,"lap":3,"contact":0}
 )"};
 }
 
@@ -58,6 +61,21 @@ view::SessionOptions session_options() {
   };
   options.choices = {
       .courses = {"wren"}, .methods = {"mppi", "svg_mppi", "cem"}, .configurations = {"default"}};
+  // Two experiments of four laps each, the second with obstacles to hit.
+  options.evaluation = R"({"type":"evaluation","folder":"ev","course":"wren","experiments":[],"laps":[]})";
+  options.load_lap = [load = options.load](int experiment, int lap) {
+    if (experiment < 0 || experiment > 1)
+      throw std::invalid_argument("experiment: must be one of this evaluation");
+    if (lap < 0 || lap > 3) throw std::invalid_argument("lap: must be a lap of the experiment");
+    view::LoadedLap loaded;
+    loaded.names = {.course = "wren",
+                    .method = "mppi",
+                    .config = "default",
+                    .seed = static_cast<std::uint64_t>(lap),
+                    .obstacles = 2 * experiment};
+    loaded.scenario = load(loaded.names);
+    return loaded;
+  };
   return options;
 }
 

@@ -1,9 +1,9 @@
 // Controllers as state machines: bytes choose method, problem and options, then a sequence of calls.
 #include "solvers/controller_calls.hpp"
 
-#include "fuzz/random_bytes.hpp"
 #include "fuzz/target.hpp"
 #include "solvers/solver_contract.hpp"
+#include "support/random_bytes.hpp"
 
 namespace slalom::fuzz {
 namespace {

@@ -1,6 +1,6 @@
 // Planners as state machines: bytes choose model, method and options, then scans and odometry.
-#include "fuzz/random_bytes.hpp"
 #include "fuzz/target.hpp"
+#include "support/random_bytes.hpp"
 #include "vehicle/planner/planner_calls.hpp"
 
 namespace slalom::fuzz {

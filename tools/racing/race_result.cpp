@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "slalom/core/error.hpp"
@@ -15,6 +16,7 @@ using evaluation::RacingLap;
 using evaluation::RacingSample;
 
 constexpr int along_steps = 100;
+constexpr double max_sample = 1e9;         // of any number of a sample that is read
 constexpr double length_tolerance = 1e-6;  // share of the length
 
 /// A number of a sample, as it is named and rounded in results.
@@ -80,14 +82,25 @@ Json statistics_json(const RaceStatistics& statistics) {
 std::optional<RacingLap> best_of(const Json& run, const char* key) {
   const Json& number = run.at(key).at("best_lap");
   if (number.is_null()) return std::nullopt;
-  const Json& lap = run.at("laps")[number.get<int>() - 1];
+  const int which = number.get<int>();
+  if (which < 1) throw JsonError("best_lap: " + std::to_string(which) + " must be at least 1");
+  const Json& lap = run.at("laps")[which - 1];
   RacingLap read;
   read.standing = std::string_view(key) == "standing";
+  read.sector.fill(std::numeric_limits<double>::quiet_NaN());
   read.samples.resize(lap.at("samples").at("distance_m").size());
   for (const SampleField& field : sample_fields) {
     const Json& values = lap.at("samples").at(field.key);
-    for (std::size_t i = 0; i < read.samples.size(); ++i)
-      read.samples[i].*field.value = values[i].get<double>();
+    if (values.size() != read.samples.size())
+      throw JsonError(std::string(field.key) + ": has " + std::to_string(values.size()) +
+                      " values, must have " + std::to_string(read.samples.size()) + " as distance_m");
+    for (std::size_t i = 0; i < read.samples.size(); ++i) {
+      const double value = values[i].get<double>();
+      if (!(std::abs(value) <= max_sample))
+        throw JsonError(std::string(field.key) + ": " + values[i].dump() +
+                        " must be at most 1e9 in magnitude");
+      read.samples[i].*field.value = value;
+    }
   }
   if (read.samples.size() < 2) throw JsonError("samples: at least 2 are needed");
   return read;
