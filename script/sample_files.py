@@ -1,8 +1,9 @@
-"""Writes bags of ROS 1 for script/damage."""
+"""Files that script/damage changes: bags of ROS 1, and maps as PGM."""
 
 import json
 import math
 import struct
+import zlib
 
 
 def record(fields, data):
@@ -46,3 +47,28 @@ def bag_of(lines):
             records += record({b"op": b"\x02", b"conn": struct.pack("<I", number), b"time": bytes(8)}, message)
     chunk = {b"op": b"\x05", b"compression": b"none", b"size": struct.pack("<I", len(records))}
     return b"#ROSBAG V2.0\n" + record({b"op": b"\x03", b"index_pos": bytes(8)}, b" " * 100) + record(chunk, records)
+
+
+def pgm_of(png):
+    """A map image, 8 bits of grey without interlacing, as a binary PGM."""
+    data = png.read_bytes()
+    at, packed, head = 8, b"", b""
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        body = data[at + 8:at + 8 + size]
+        head = body if kind == b"IHDR" else head
+        packed += body if kind == b"IDAT" else b""
+        at += 12 + size
+    width, height, depth, colour, _, _, interlaced = struct.unpack(">IIBBBBB", head)
+    if (depth, colour, interlaced) != (8, 0, 0):
+        raise ValueError(f"{png}: must have 8 bits of grey without interlacing")
+    rows, before, raw = b"", bytes(width), zlib.decompress(packed)
+    for row in range(height):
+        method, line = raw[row * (width + 1)], bytearray(raw[row * (width + 1) + 1:(row + 1) * (width + 1)])
+        for i in range(width):
+            left, up, corner = (line[i - 1], before[i], before[i - 1]) if i else (0, before[i], 0)
+            nearest = min((left, up, corner), key=lambda value, sum=left + up - corner: abs(sum - value))
+            line[i] = (line[i] + (0, left, up, (left + up) // 2, nearest)[method]) & 255
+        before = bytes(line)
+        rows += before
+    return b"P5\n%d %d\n255\n" % (width, height) + rows
