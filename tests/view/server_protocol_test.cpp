@@ -9,6 +9,9 @@
 #include <functional>
 #include <thread>
 
+#include "view/recording/encodings.hpp"
+#include "view/server/page_data.hpp"
+#include "view/server/page_policy.hpp"
 #include "view/server/server.hpp"
 #include "view/web_client.hpp"
 
@@ -119,14 +122,37 @@ TEST(ServerProtocol, ServesCompressedPageWithHeaders) {
   Server server({}, page);
   const std::string fields = "Host: localhost\r\nAccept-Encoding: br, gzip;q=0.5\r\n\r\n";
   const std::string whole = answer_to(server, "GET / HTTP/1.1\r\n" + fields);
-  for (const char* line : {"Content-Type: text/html", "Content-Encoding: gzip", "Content-Length: 17",
-                           "Cache-Control: no-store", "X-Content-Type-Options: nosniff",
-                           "Referrer-Policy: no-referrer", "Content-Security-Policy: default-src 'self'"})
+  for (const char* line :
+       {"Content-Type: text/html", "Content-Encoding: gzip", "Content-Length: 17", "Cache-Control: no-store",
+        "X-Content-Type-Options: nosniff", "Referrer-Policy: no-referrer",
+        "Content-Security-Policy: default-src 'none'; frame-ancestors 'none'\r\n"})
     EXPECT_NE(whole.find(line), std::string::npos) << whole;
   EXPECT_TRUE(whole.ends_with("\r\n\r\n<p>compressed</p>"));
   const std::string head = answer_to(server, "HEAD / HTTP/1.1\r\n" + fields);
   EXPECT_NE(head.find("Content-Length: 17"), std::string::npos) << head;
   EXPECT_TRUE(head.ends_with("\r\n\r\n"));
+}
+
+TEST(ServerProtocol, SendsThePolicyThatThePageDeclares) {
+  const std::string html = gunzip(page_gzip()), policy = page_policy(html);
+  EXPECT_NE(html.find("content=\"" + policy + "\""), std::string::npos);
+  EXPECT_NE(policy.find("; script-src 'sha256-"), std::string::npos) << policy;
+  const std::string scripts = policy.substr(policy.find("script-src"));
+  EXPECT_EQ(scripts.substr(0, scripts.find(';')).find("unsafe"), std::string::npos) << policy;
+  for (const std::string& encoded : {std::string(), page_gzip()}) {
+    Server server({}, {{"/", page_resource(html, encoded)}});
+    const std::string whole =
+        answer_to(server, "GET / HTTP/1.1\r\nHost: localhost\r\nAccept-Encoding: gzip\r\n\r\n");
+    const std::string name = "\r\nContent-Security-Policy: ";
+    const std::size_t begin = whole.find(name) + name.size();
+    ASSERT_NE(whole.find(name), std::string::npos);
+    EXPECT_EQ(whole.substr(begin, whole.find("\r\n", begin) - begin), policy + "; frame-ancestors 'none'");
+    EXPECT_EQ(whole.find(name, begin), std::string::npos) << "one policy alone";
+  }
+  EXPECT_THROW(page_policy("<html><head></head></html>"), std::invalid_argument);
+  EXPECT_THROW(page_policy("<head></head><meta http-equiv=\"Content-Security-Policy\" content=\"x\">"),
+               std::invalid_argument)
+      << "not in the head";
 }
 
 TEST(ServerProtocol, CompressesOnlyForThoseWhoAcceptIt) {

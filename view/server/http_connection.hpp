@@ -84,9 +84,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
     response_.set(http::field::content_type, resource.type);
     if (encoded) response_.set(http::field::content_encoding, resource.encoding);
     if (!resource.encoding.empty()) response_.set(http::field::vary, "Accept-Encoding");
-    response_.set("Content-Security-Policy",
-                  "default-src 'self' 'unsafe-inline' data: blob:; connect-src 'self' ws: wss:; "
-                  "frame-ancestors 'none'");
+    // Browsers ignore frame-ancestors in the head of a page, so the header alone has it.
+    response_.set("Content-Security-Policy", resource.policy + "; frame-ancestors 'none'");
     return encoded || resource.encoding.empty() ? resource.body : resource.plain;
   }
 

@@ -33,10 +33,12 @@ struct ServerOptions {
 
 /// A resource that is served under a path.
 struct Resource {
-  std::string type;      ///< Content-Type
-  std::string encoding;  ///< Content-Encoding, or empty
-  std::string body;      ///< in that encoding
-  std::string plain{};   ///< the body without the encoding, for clients that do not accept it
+  std::string type;        ///< Content-Type
+  std::string encoding{};  ///< Content-Encoding, or empty
+  std::string body{};      ///< in that encoding
+  std::string plain{};     ///< the body without the encoding, for clients that do not accept it
+  /// Content-Security-Policy, to which the server adds that no other page may show this one in a frame.
+  std::string policy = "default-src 'none'";
 };
 
 /// A message to clients; shared, so that one copy serves all.
