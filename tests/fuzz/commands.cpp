@@ -98,7 +98,7 @@ bool run(std::string_view bytes) {
     bytes.remove_prefix(std::min(bytes.size(), line.size() + 1));
     if (!client.send_message(line)) break;
     await(server, ++sent, until);
-    for (int ticks = 0; ticks < max_ticks && (ticks == 0 || session.is_stepping()); ++ticks) session.turn();
+    for (int ticks = 0; ticks < max_ticks && (ticks == 0 || session.is_busy()); ++ticks) session.turn();
   }
   require(session.refused() <= sent, "a command is refused once");
   return sent > 0 && session.refused() == 0;

@@ -77,12 +77,13 @@ class ViewSession : public ::testing::Test {
     client_.send_message(text);
     server_.wait(std::chrono::seconds(5));
     do session_.turn();
-    while (session_.is_stepping());
+    while (session_.is_busy());
   }
   /// Reads until a message of JSON of this type comes.
-  json next(const std::string& type) {
+  json next(const std::string& type) { return next(client_, type); }
+  static json next(testing::WebClient& client, const std::string& type) {
     for (;;) {
-      const std::string message = client_.next_message();
+      const std::string message = client.next_message();
       if (message.empty()) return nullptr;
       if (message.rfind("SLV1", 0) == 0) continue;
       json parsed = json::parse(message);

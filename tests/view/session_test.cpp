@@ -206,34 +206,6 @@ TEST_F(ViewSession, APauseHoldsAtTheTickThatASlowClientShows) {
   EXPECT_EQ(state["newest"], 40);
 }
 
-TEST_F(ViewSession, StepsOfOneClientDoNotDelayTheCommandsOfAnother) {
-  testing::WebClient other(server_.port());
-  other.get("/ws", true);
-  for (int i = 0; i < 60; ++i) client_.send_message(R"({"do":"step","ticks":400})");
-  // What arrives first, the second client's opening or the first's steps, is not determined.
-  while (server_.clients() < 2 || !session_.is_stepping()) {
-    server_.wait(std::chrono::milliseconds(5));
-    session_.turn();
-  }
-  other.send_message(R"({"do":"pause"})");
-  int turns = 0;
-  while (session_.is_stepping() && turns < 2000) {
-    server_.wait(std::chrono::milliseconds(5));
-    session_.turn();
-    ++turns;
-  }
-  EXPECT_LT(turns, 2000) << "a pause must not wait for the 24,000 steps";
-}
-
-TEST_F(ViewSession, RefusesOptionsThatMakeASolveTooLong) {
-  tell({{"do", "set"}, {"key", "samples"}, {"value", "4194304"}});
-  EXPECT_NE(next("error")["message"].get<std::string>().find("million rollout steps"), std::string::npos);
-  tell({{"do", "fork"}, {"method", "mppi"}, {"set", {"samples=4194304"}}});
-  EXPECT_NE(next("error")["message"].get<std::string>().find("million rollout steps"), std::string::npos);
-  tell({{"do", "set"}, {"key", "samples"}, {"value", "20000"}});
-  step_to(1);
-}
-
 TEST_F(ViewSession, LoadsOnlyListedCourses) {
   tell({{"do", "scenario"}, {"course", "/etc"}});
   EXPECT_NE(next("error")["message"].get<std::string>().find("is unknown"), std::string::npos);

@@ -67,6 +67,7 @@ void Session::restart() {
   contact_.fill(-1);
   slow_motion_ = {};
   slow_down();
+  for (Redrive& each : redrives_) each.begin_anew();
   ++generation_;
   due_ = Clock::now();
   state_changed_ = true;
@@ -80,7 +81,8 @@ std::shared_ptr<const evaluation::LapRunner> Session::make_runner(const vehicle:
 
 void Session::run(const std::atomic<bool>& stop) {
   while (!stop) {
-    const auto wait = std::min<Clock::duration>(until_due(), std::chrono::milliseconds(50));
+    const auto wait = is_busy() ? Clock::duration::zero()
+                                : std::min<Clock::duration>(until_due(), std::chrono::milliseconds(50));
     if (wait > Clock::duration::zero()) server_.wait(wait);
     turn();
   }
@@ -88,6 +90,7 @@ void Session::run(const std::atomic<bool>& stop) {
 
 void Session::turn() {
   handle_all();
+  drive_again();
   if (until_due() <= Clock::duration::zero()) {
     if (steps_left_ > 0) --steps_left_;
     tick();
@@ -209,13 +212,14 @@ void Session::forget_after(int tick) {
   while (!laps_.empty() && laps_.back().tick > tick + 1) laps_.pop_back();
 }
 
-/// If a past tick is shown, makes it the present.
+/// If a past tick is shown, makes it the present. The state there has been driven again (see `redrive_for`).
 void Session::go_to_viewed() {
   if (viewed_ < 0) return;
-  const int tick = viewed_;
-  viewed_ = -1;
-  simulation_->seek(tick + 1);
-  if (ghost_) ghost_->seek(tick + 1);
+  const int tick = std::exchange(viewed_, -1);
+  Redrive& prepared = prepared_.value();
+  simulation_->go_back(std::move(prepared.present.value()));
+  if (ghost_) ghost_->go_back(std::move(prepared.ghost.value()));
+  for (Redrive& each : redrives_) each.go_back(tick + 1);
   const auto& runner = simulation_->loop().runner();
   if (names_.method != runner.method() ||
       vehicle::to_yaml(configuration_) != vehicle::to_yaml(runner.configuration())) {

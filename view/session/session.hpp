@@ -17,24 +17,13 @@
 #include "view/protocol/frame.hpp"
 #include "view/protocol/messages.hpp"
 #include "view/server/server.hpp"
+#include "view/session/redrive.hpp"
+#include "view/session/scenario.hpp"
 #include "view/session/simulation.hpp"
 #include "view/session/slow_motion.hpp"
 #include "view/session/undo.hpp"
 
 namespace slalom::view {
-
-/// A scenario, loaded.
-struct LoadedScenario {
-  std::shared_ptr<const evaluation::Environment> environment;
-  vehicle::Configuration configuration;
-  evaluation::LapSettings lap;
-};
-
-/// A lap of an evaluation, loaded.
-struct LoadedLap {
-  ScenarioNames names;
-  LoadedScenario scenario;
-};
 
 struct SessionOptions {
   ScenarioNames scenario;
@@ -64,13 +53,18 @@ class Session {
   /// Until `stop` is set.
   void run(const std::atomic<bool>& stop);
 
-  /// Obeys what has come and makes one tick if it is due; for tests.
+  /// Obeys what has come, drives again a few ticks for a command that waits for them, and makes one tick if
+  /// it is due; for tests.
   void turn();
 
   std::uint64_t refused() const noexcept { return refused_; }  ///< messages that were not valid commands
   bool is_stepping() const noexcept {
     return steps_left_ > 0;
   }  ///< ticks of a command "step" are still to come
+  /// Whether commands wait for steps, or for ticks that are driven again.
+  bool is_busy() const noexcept { return is_stepping() || !redrives_.empty() || !deferred_.empty(); }
+  /// Ticks that were driven again since the start; a turn adds `max_redriven_ticks` at most.
+  std::uint64_t redriven() const noexcept { return redriven_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -109,8 +103,15 @@ class Session {
   void handle_all();
   bool must_wait(const Received& received) const;
   void defer(Received received);
+  void forget(std::uint64_t client);
+  void cancel_replaced(const Received& newer);
   void handle(const Received& received);
-  void handle(std::uint64_t client, const Json& command);
+  Redrive redrive_for(const Received& received, const std::string& what, const Json& command) const;
+  void drive_again();
+  void execute_prepared();
+  bool attempt(std::uint64_t client, const Json& command, const std::function<void()>& action);
+  bool execute(std::uint64_t client, const Json& command);
+  void obey(std::uint64_t client, const Json& command);
   void edit(const Edit& edit);
   void undo(bool again);
   void change(const vehicle::Configuration& configuration, const std::string& method, bool remember);
@@ -118,7 +119,8 @@ class Session {
   void end_ghost();
   void fork(const Json& command);
   void handle_lap(const Json& command);
-  int tick_of_contact(int contact);
+  LoadedLap load_lap(const Json& command);
+  void search_contact(Redrive& redrive, const Json& command);
   void handle_step(std::uint64_t client, const Json& command);
   void pause(const Json& command);
   void publish_newest();
@@ -160,7 +162,11 @@ class Session {
   int stop_at_ = -1;                   ///< tick at which to pause
   int steps_left_ = 0;                 ///< ticks of a command "step" that are still to come
   std::uint64_t stepping_client_ = 0;  ///< who asked for them; its further commands wait for them
-  std::vector<Received> deferred_;     ///< the commands that wait
+  std::vector<Received> deferred_;     ///< commands that wait for others of their client, by age
+  std::vector<std::uint64_t> served_;  ///< clients that had a costly command in this turn
+  std::deque<Redrive> redrives_;       ///< commands that wait for ticks driven again, at most one of a client
+  std::optional<Redrive> prepared_;    ///< the one that is executed
+  std::uint64_t redriven_ = 0;
   std::array<int, 4> contact_{-1, -1, -1, -1};
   bool waiting_ = true, paused_ = false, real_time_ = false, state_changed_ = true;
   bool introduces_ = false;  ///< the scenario of the introduction is driven, and nobody has changed it

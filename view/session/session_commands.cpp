@@ -12,8 +12,7 @@
 namespace slalom::view {
 namespace {
 
-constexpr int max_steps = 400;             // of one command "step"
-constexpr std::size_t max_deferred = 256;  // commands that wait for steps
+constexpr int max_steps = 400;  // of one command "step"
 constexpr double slowest_rate = 0.001;
 
 std::uint64_t count(const std::string& digits) {
@@ -38,58 +37,7 @@ bool apply_settings(vehicle::Configuration& configuration, const Json& command, 
 
 }  // namespace
 
-/// Handles what has come. While a client's steps are driven, tick by tick, its further commands wait, and
-/// those of other clients do not.
-void Session::handle_all() {
-  std::vector<Received> all = std::exchange(deferred_, {});
-  for (Received& each : server_.take()) all.push_back(std::move(each));
-  for (Received& each : all) {
-    if (each.kind == Received::Kind::left && each.client == stepping_client_) {
-      steps_left_ = 0;
-      std::erase_if(deferred_, [&](const Received& waiting) { return waiting.client == each.client; });
-    }
-    if (must_wait(each))
-      defer(std::move(each));
-    else
-      handle(each);
-  }
-}
-
-bool Session::must_wait(const Received& received) const {
-  return steps_left_ > 0 && received.client == stepping_client_ && received.kind == Received::Kind::message;
-}
-
-void Session::defer(Received received) {
-  if (deferred_.size() < max_deferred) return deferred_.push_back(std::move(received));
-  ++refused_;
-  refuse(received.client, "step: too many commands wait for the steps before them");
-}
-
-void Session::handle(const Received& received) {
-  if (received.kind == Received::Kind::joined) return greet(received.client);
-  if (received.kind == Received::Kind::left) {
-    state_changed_ = true;
-    return;
-  }
-  const Json command = Json::parse_or_null(received.text);
-  if (!command.is_object()) {
-    ++refused_;
-    return refuse(received.client, "a command must be a JSON object");
-  }
-  const Json* given = command.find("id");
-  const Json id = given != nullptr && given->is_integer() ? *given : Json();
-  try {
-    handle(received.client, command);
-    if (!id.is_null()) tell_done(received.client, id);
-  } catch (const MalformedCommand& error) {
-    ++refused_;
-    refuse(received.client, error.what(), id);
-  } catch (const std::exception& error) {
-    refuse(received.client, error.what(), id);
-  }
-}
-
-void Session::handle(std::uint64_t client, const Json& command) {
+void Session::obey(std::uint64_t client, const Json& command) {
   const std::string what = field::text(command, "do");
   state_changed_ = true;
   if (what == "step")
@@ -235,17 +183,20 @@ void Session::undo(bool again) {
 
 void Session::end_ghost() {
   ghost_.reset();
+  for (Redrive& each : redrives_) each.ghost.reset();
   ghost_method_.clear();
   ghost_label_.clear();
 }
 
-/// Starts a ghost in its own world with the same history.
+/// Starts a ghost in its own world with the same history, which has been driven again (see `redrive_for`).
 void Session::start_ghost(const std::string& method, const vehicle::Configuration& configuration) {
   if (method.empty()) return end_ghost();
   check_work(configuration, method);
   const auto runner = make_runner(configuration, method);
-  Simulation ghost(*simulation_, simulation_->ticks());
+  Simulation ghost =
+      simulation_->ticks() == 0 ? simulation_->from_start() : std::move(prepared_.value().copy.value());
   if (method != names_.method || ghost.ticks() == 0) ghost.apply(ChangeDriver{runner});
+  end_ghost();
   ghost_.emplace(std::move(ghost));
   ghost_method_ = ghost_label_ = method;
 }

@@ -1,5 +1,6 @@
-#include <algorithm>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "view/session/session.hpp"
 
@@ -14,34 +15,36 @@ constexpr double slow = 0.25;                                 // of simulated to
 
 }  // namespace
 
-/// The tick of a collision in a lap. Drives the lap to find it.
-int Session::tick_of_contact(int contact) {
-  const evaluation::LapRunner& runner = simulation_->loop().runner();
-  const double period = runner.control_period();
-  const int most = static_cast<int>(runner.timeout() / period) + 1;
-  const auto collisions = [&] { return simulation_->loop().first_collisions(); };
-  while (std::ssize(collisions()) <= contact && simulation_->ticks() < most) simulation_->tick({}, false);
-  if (std::ssize(collisions()) <= contact)
-    throw std::runtime_error("the repeated lap has no such collision: another version drove the evaluation");
-  return static_cast<int>(collisions()[static_cast<std::size_t>(contact)].time / period);
+LoadedLap Session::load_lap(const Json& command) {
+  if (!options_.load_lap) throw std::invalid_argument("lap: no evaluation is open");
+  const int experiment = field::integer(command, "experiment"), lap = field::integer(command, "lap");
+  note("Driving lap " + std::to_string(lap) + " again \xE2\x80\xA6");
+  return options_.load_lap(experiment, lap);
+}
+
+/// Begins to look for the collision that a command asks for, while the drive continues.
+void Session::search_contact(Redrive& redrive, const Json& command) {
+  const int contact = field::integer(command, "contact");
+  const LoadedLap& loaded = redrive.lap.emplace(load_lap(command));
+  const auto runner = std::make_shared<const evaluation::LapRunner>(
+      loaded.scenario.environment, loaded.scenario.configuration, loaded.names.method, loaded.scenario.lap);
+  redrive.search.emplace(runner, loaded.names.seed, contact, before_contact);
 }
 
 /// A lap of the evaluation: from its start, or the seconds before one of its collisions.
 void Session::handle_lap(const Json& command) {
-  if (!options_.load_lap) throw std::invalid_argument("lap: no evaluation is open");
   const int experiment = field::integer(command, "experiment"), lap = field::integer(command, "lap"),
             contact = command.contains("contact") ? field::integer(command, "contact") : -1;
-  note("Driving lap " + std::to_string(lap) + " again \xE2\x80\xA6");
-  LoadedLap loaded = options_.load_lap(experiment, lap);
+  LoadedLap loaded = contact >= 0 ? std::move(prepared_.value().lap.value()) : load_lap(command);
   install(std::move(loaded.scenario), loaded.names);
   waiting_ = real_time_ = paused_ = false;
   rate_ = 1;
   int hit = -1;
   if (contact >= 0) {
-    hit = tick_of_contact(contact);
-    const double period = simulation_->loop().runner().control_period();
-    simulation_->seek(std::max(0, hit - static_cast<int>(before_contact / period)));
-    stop_at_ = hit + static_cast<int>(after_contact / period);
+    ContactSearch& search = prepared_.value().search.value();
+    hit = search.hit();
+    simulation_->go_back(std::move(search.start()));
+    stop_at_ = hit + static_cast<int>(after_contact / simulation_->loop().runner().control_period());
     rate_ = slow;
   }
   contact_ = {experiment, lap, contact, hit};

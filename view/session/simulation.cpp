@@ -33,10 +33,6 @@ std::vector<AddBody> bodies_of(const sim::World& world) {
 Simulation::Simulation(std::shared_ptr<const evaluation::LapRunner> runner, std::uint64_t seed)
     : first_runner_(std::move(runner)), seed_(seed), loop_(first_runner_, seed) {}
 
-Simulation::Simulation(const Simulation& other, int ticks) : Simulation(other.first_runner_, other.seed_) {
-  repeat(other.log_, other.delays_, ticks);
-}
-
 void Simulation::tick(const evaluation::ControlStepCallback& on_step, bool real_time) {
   const double delay = real_time ? last_update_ : 0;
   if (delay > 0) {
@@ -57,21 +53,23 @@ void Simulation::apply(const Edit& edit) {
   log_.push_back({ticks(), edit});
 }
 
-void Simulation::seek(int ticks) {
-  const auto log = std::exchange(log_, {});
-  const auto delays = std::exchange(delays_, {});
-  loop_ = evaluation::ClosedLoop(first_runner_, seed_);
-  repeat(log, delays, ticks);
+void Simulation::follow(const Simulation& source) {
+  const auto at = static_cast<std::size_t>(ticks());
+  // The log of this simulation is the beginning of that of the source.
+  while (log_.size() < source.log_.size() && source.log_[log_.size()].tick <= ticks())
+    apply(source.log_[log_.size()].edit);
+  const float delay = at < source.delays_.size() ? source.delays_[at] : 0.0f;
+  if (at < source.delays_.size()) {
+    delays_.resize(at + 1, 0.0f);
+    delays_.back() = delay;
+  }
+  loop_.step({}, delay);
 }
 
-void Simulation::repeat(const std::vector<Logged>& log, const std::vector<float>& delays, int ticks) {
-  auto next = log.begin();
-  for (int i = 0; i < ticks; ++i) {
-    for (; next != log.end() && next->tick <= i; ++next) apply(next->edit);
-    const auto at = static_cast<std::size_t>(i);
-    loop_.step({}, at < delays.size() ? delays[at] : 0.0f);
-  }
-  delays_.assign(delays.begin(), delays.begin() + std::min<std::ptrdiff_t>(ticks, std::ssize(delays)));
+void Simulation::go_back(Simulation&& earlier) {
+  const double last_update = last_update_;  // of this computer's clock, which does not go back
+  *this = std::move(earlier);
+  last_update_ = last_update;
 }
 
 void Simulation::perform(const Edit& edit) {

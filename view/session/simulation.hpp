@@ -41,12 +41,11 @@ using Edit = std::variant<AddBody, MoveBody, RemoveBody, SetBodies, MoveCar, Cha
 std::vector<AddBody> bodies_of(const sim::World& world);
 
 /// A loop with the log of its edits. To go back, it is driven again from its start with the same seed and
-/// edits: everything is deterministic, so this is exact, and no state of solvers needs to be copied.
+/// edits: everything is deterministic, so this is exact, and no state of solvers needs to be copied. The cost
+/// grows with the ticks, so the caller drives them a few at a time (see Redrive).
 class Simulation {
  public:
   Simulation(std::shared_ptr<const evaluation::LapRunner> runner, std::uint64_t seed);
-  /// The same loop with the same edits up to `ticks`.
-  Simulation(const Simulation& other, int ticks);
   Simulation(Simulation&&) = default;
   Simulation& operator=(Simulation&&) = default;
 
@@ -54,8 +53,15 @@ class Simulation {
   void tick(const evaluation::ControlStepCallback& on_step, bool real_time);
   /// Throws std::invalid_argument if the world rejects the edit, which then has no effect.
   void apply(const Edit& edit);
-  /// Goes to the state before tick `ticks`; what was done after it is forgotten.
-  void seek(int ticks);
+
+  /// The same loop at tick 0. With `follow` it becomes any earlier state of this one.
+  Simulation from_start() const { return {first_runner_, seed_}; }
+  /// Drives the next tick as `source` drove it, with the edits that `source` got before it. This simulation
+  /// must come from `source.from_start()` and have fewer ticks than `source`.
+  void follow(const Simulation& source);
+  /// Goes back to an earlier state of this simulation, which `follow` has reached; what was done after it is
+  /// forgotten.
+  void go_back(Simulation&& earlier);
 
   int ticks() const noexcept { return loop_.steps(); }
   bool edited() const noexcept { return !log_.empty(); }
@@ -69,7 +75,6 @@ class Simulation {
     Edit edit;
   };
   void perform(const Edit& edit);
-  void repeat(const std::vector<Logged>& log, const std::vector<float>& delays, int ticks);
 
   std::shared_ptr<const evaluation::LapRunner> first_runner_;
   std::uint64_t seed_;
