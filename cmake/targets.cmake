@@ -1,3 +1,5 @@
+include(${CMAKE_CURRENT_LIST_DIR}/harden.cmake)
+
 # slalom_add_layer(<name> SOURCES ... [DEPENDS <layers>] [LINK <private libraries>])
 # A layer: the library slalom_<name>, which is slalom::<name> in the build tree and in the install tree.
 function(slalom_add_layer name)
@@ -35,15 +37,6 @@ function(slalom_compile_options target)
   else()
     slalom_harden(${target})
   endif()
-endfunction()
-
-# Checks of the stack and of calls that write to buffers; symbols bound at the start and read-only from then on; no
-# executable stack. SECURITY.md names them, and the test `install_hardening` looks for them in the installed files.
-function(slalom_harden target)
-  # Ubuntu's compiler defines _FORTIFY_SOURCE by itself; it needs optimised code.
-  target_compile_options(${target} PRIVATE -fstack-protector-strong
-    "$<$<CONFIG:Release,RelWithDebInfo,MinSizeRel>:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=2>")
-  target_link_options(${target} PRIVATE LINKER:-z,relro LINKER:-z,now LINKER:-z,noexecstack)
 endfunction()
 
 # Source files of the current folder that hold kernels: these read no input, and the check of the stack would take 1.5 %

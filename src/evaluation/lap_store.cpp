@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <map>
+#include <system_error>
 
 #include "evaluation/system_files.hpp"
 #include "slalom/core/error.hpp"

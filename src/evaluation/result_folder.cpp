@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <string>
+#include <system_error>
 
 #include "evaluation/system_files.hpp"
 #include "slalom/core/error.hpp"
@@ -50,7 +50,7 @@ void sync_folder(const std::filesystem::path& folder) {
 namespace detail {
 
 void throw_system(const std::filesystem::path& file, const char* what) {
-  throw IoError(file.string(), 0, std::string(what) + ": " + std::strerror(errno));
+  throw IoError(file.string(), 0, std::string(what) + ": " + std::generic_category().message(errno));
 }
 
 void write_all(int descriptor, const std::string& text, const std::filesystem::path& file) {
@@ -67,7 +67,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder) : file_(folder / "lo
   const auto fail = [this] {
     const int error = errno;
     if (descriptor_ >= 0) ::close(descriptor_);
-    throw IoError(file_.string(), 0, std::string("cannot be locked: ") + std::strerror(error));
+    throw IoError(file_.string(), 0,
+                  std::string("cannot be locked: ") + std::generic_category().message(error));
   };
   for (;;) {
     descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);

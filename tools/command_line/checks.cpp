@@ -10,10 +10,10 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
+#include <system_error>
 
 #include "slalom/core/error.hpp"
 #include "tools/command_line/command.hpp"
@@ -77,7 +77,7 @@ void require_writable(const std::string& file) {
     const int why = errno;
     // Under mpirun another process tries the same file.
     if (why == (there ? ENOENT : EEXIST)) return;
-    throw IoError(file, 0, std::string("cannot be written: ") + std::strerror(why));
+    throw IoError(file, 0, std::string("cannot be written: ") + std::generic_category().message(why));
   }
   ::close(descriptor);
   if (!there) ::unlink(file.c_str());
