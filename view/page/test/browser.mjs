@@ -6,6 +6,7 @@ import accessible from "./suites/accessible.mjs";
 import compare from "./suites/compare.mjs";
 import drive from "./suites/drive.mjs";
 import evaluation from "./suites/evaluation.mjs";
+import hostile from "./suites/hostile.mjs";
 import introduction from "./suites/introduction.mjs";
 import layout from "./suites/layout.mjs";
 import past from "./suites/past.mjs";
@@ -13,7 +14,7 @@ import responsive from "./suites/responsive.mjs";
 import save from "./suites/save.mjs";
 import space from "./suites/space.mjs";
 
-const suites = { introduction, drive, space, responsive, compare, past, save, evaluation, layout, accessible, access };
+const suites = { introduction, drive, space, responsive, compare, past, save, evaluation, hostile, layout, accessible, access };
 const chosen = process.env.SLALOM_SUITES?.split(",") ?? Object.keys(suites);
 const program = process.argv[2], pictures = process.argv[3];
 if (!program) {
