@@ -8,7 +8,7 @@
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
 #include "tools/recording/bag_writer.hpp"
-#include "tools/recording/driven_samples.hpp"
+#include "tools/recorded_drives/driven_samples.hpp"
 
 namespace slalom::fuzz {
 namespace {

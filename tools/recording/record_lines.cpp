@@ -7,7 +7,7 @@
 namespace slalom::tools {
 
 RecordLines::RecordLines(const std::string& file) : file_(file) {
-  if (std::filesystem::is_directory(file)) throw IoError(file, 0, "is a directory; a recording is a file");
+  if (std::filesystem::is_directory(file)) throw IoError(file, 0, "is a folder; a recording is a file");
   if (!std::filesystem::is_regular_file(file))
     throw IoError(file, 0, "cannot be read: it must be a regular file");
   stream_.open(file, std::ios::binary | std::ios::ate);

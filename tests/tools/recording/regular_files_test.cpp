@@ -18,7 +18,7 @@
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/evaluation/tuning_job.hpp"
 #include "tools/racing/race_result.hpp"
-#include "tools/recording/driven_samples.hpp"
+#include "tools/recorded_drives/driven_samples.hpp"
 #include "tools/recording/json_repair.hpp"
 #include "vehicle/course_folder.hpp"
 #include "view/recording/mcap_repair.hpp"
