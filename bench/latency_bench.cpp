@@ -138,8 +138,8 @@ int run(long solves, int threads, double period) {
 }  // namespace slalom::workload
 
 int main(int count, char** arguments) {
-  const long solves = count > 1 ? std::atol(arguments[1]) : 100000;
-  const int threads = count > 2 ? std::atoi(arguments[2]) : 1;
-  const double period = count > 3 ? 1e-3 * std::atof(arguments[3]) : 1e-3;
+  const long solves = count > 1 ? std::strtol(arguments[1], nullptr, 10) : 100000;
+  const int threads = count > 2 ? static_cast<int>(std::strtol(arguments[2], nullptr, 10)) : 1;
+  const double period = count > 3 ? 1e-3 * std::strtod(arguments[3], nullptr) : 1e-3;
   return slalom::workload::run(std::max(solves, 1L), std::max(threads, 1), period);
 }

@@ -149,7 +149,7 @@ bool drive(int samples, int cycles) {
 }  // namespace slalom
 
 int main(int count, char** arguments) {
-  const int cycles = count > 1 ? std::atoi(arguments[1]) : 400;
+  const int cycles = count > 1 ? static_cast<int>(std::strtol(arguments[1], nullptr, 10)) : 400;
   bool all = true;
   for (int samples = 128; samples <= 16384; samples *= 2) all = slalom::drive(samples, cycles) && all;
   return all ? 0 : 1;

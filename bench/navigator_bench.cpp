@@ -114,6 +114,6 @@ void run(int updates) {
 }  // namespace slalom::navigation
 
 int main(int count, char** arguments) {
-  slalom::navigation::run(count > 1 ? std::atoi(arguments[1]) : 400);
+  slalom::navigation::run(count > 1 ? static_cast<int>(std::strtol(arguments[1], nullptr, 10)) : 400);
   return 0;
 }

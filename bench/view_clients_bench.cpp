@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: slalom_view_clients_bench COURSE_FOLDER [ROUNDS]\n");
     return 2;
   }
-  const int rounds = argc > 2 ? std::atoi(argv[2]) : 20;
+  const int rounds = argc > 2 ? static_cast<int>(std::strtol(argv[2], nullptr, 10)) : 20;
   view::Server server({}, {});
   view::Session session(scenario(argv[1]), server);
   std::atomic<bool> stop{false};

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t max_interlaced_pixels = std::size_t{1} << 24;
 
 struct Closer {
-  void operator()(std::FILE* file) const { std::fclose(file); }
+  void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
 };
 using File = std::unique_ptr<std::FILE, Closer>;
 

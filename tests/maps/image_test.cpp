@@ -36,7 +36,7 @@ class Image : public TemporaryFolder {
     png_set_rows(png, info, rows);
     png_write_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
     png_destroy_write_struct(&png, &info);
-    std::fclose(file);
+    EXPECT_EQ(std::fclose(file), 0);
     return path;
   }
 

@@ -147,12 +147,15 @@ TEST(CourseSearch, LooksBesideTheProgram) {
   for (const char* made : {"courses", "build/release/bin", "usr/bin", "usr/share/slalom/courses", "mine"})
     std::filesystem::create_directories(tree / made);
   folder.write("../courses/known.yaml", "berlin: {start: {x: 0, y: 0, yaw: 3.14}, timeout: 50}\n");
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): the test has one thread.
   unsetenv("SLALOM_COURSES_DIR");
   const auto canonical = std::filesystem::weakly_canonical(tree);
   EXPECT_EQ(course_roots(tree / "build/release/bin").front(), canonical / "courses");
   EXPECT_EQ(course_roots(tree / "usr/bin").back(), canonical / "usr/share/slalom/courses");
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): the test has one thread.
   setenv("SLALOM_COURSES_DIR", (tree / "mine").c_str(), 1);
   EXPECT_EQ(course_roots(tree / "build/release/bin").front(), tree / "mine");
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): the test has one thread.
   unsetenv("SLALOM_COURSES_DIR");
 
   const auto berlin = known_course("berlin", {tree / "mine", tree / "courses"});

@@ -31,7 +31,7 @@ void check_value(const GivenOption& option, const std::string& value) {
   if (value.empty()) throw CommandLineError(option.name, "the value must not be empty");
   if (option.type == GivenOption::Type::natural_number) {
     errno = 0;
-    std::strtoull(value.c_str(), nullptr, 0);
+    static_cast<void>(std::strtoull(value.c_str(), nullptr, 0));  // sets errno
     if (value.find('-') != std::string::npos || errno == ERANGE)
       throw CommandLineError(option.name, value + " must be a whole number from 0 to 2^64 - 1");
   }

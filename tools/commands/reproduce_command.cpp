@@ -32,7 +32,7 @@ struct ReproduceArguments {
 };
 
 struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
+  void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
 };
 using UniqueFile = std::unique_ptr<std::FILE, CloseFile>;
 

@@ -21,7 +21,8 @@ namespace {
 /// The number of processes that mpirun started: Open MPI, MPICH, Intel MPI.
 int started_processes() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
-    if (const char* text = std::getenv(name)) return std::max(1, std::atoi(text));
+    if (const char* text = std::getenv(name))
+      return static_cast<int>(std::clamp(std::strtol(text, nullptr, 10), 1L, 1L << 20));
   return 1;
 }
 
