@@ -7,8 +7,8 @@
 
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
-#include "tools/recording/bag_writer.hpp"
 #include "tools/recorded_drives/driven_samples.hpp"
+#include "tools/recording/bag_writer.hpp"
 
 namespace slalom::fuzz {
 namespace {

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "slalom/core/error.hpp"
+#include "tools/json_lines/json_repair.hpp"
 #include "tools/live_view/view_setup.hpp"
-#include "tools/recording/json_repair.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/mcap_repair.hpp"

@@ -6,7 +6,7 @@
 #include "slalom/evaluation/json.hpp"
 #include "tools/bags/bag_drive.hpp"
 #include "tools/bags/ros_bag.hpp"
-#include "tools/recording/record_lines.hpp"
+#include "tools/json_lines/record_lines.hpp"
 
 namespace slalom::tools {
 namespace {

@@ -1,5 +1,5 @@
 // Recordings in JSON lines that were cut: what is whole of them is written out.
-#include "tools/recording/json_repair.hpp"
+#include "tools/json_lines/json_repair.hpp"
 
 #include <sstream>
 

@@ -1,11 +1,11 @@
-#include "tools/recording/json_repair.hpp"
+#include "tools/json_lines/json_repair.hpp"
 
 #include <filesystem>
 #include <fstream>
 
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/json.hpp"
-#include "tools/recording/record_lines.hpp"
+#include "tools/json_lines/record_lines.hpp"
 
 namespace slalom::tools {
 
