@@ -93,11 +93,11 @@ void draw_proposals(Proposals<P>& proposals, Adversary& adversary) {
   }
 }
 
-/// Solves from some state. `told` is what was applied before, where that is known.
+/// Solves from some state. `told` is what was applied before, or null.
 template <class P>
 void call_solve(Controller<P>& controller, const PerInput& low, const PerInput& high,
-                const std::optional<typename Controller<P>::Inputs>& told, Proposals<P>* proposals,
-                Adversary& adversary, ControllerTally& tally) {
+                const typename Controller<P>::Inputs* told, Proposals<P>* proposals, Adversary& adversary,
+                ControllerTally& tally) {
   StateValues<P> values;
   const bool hostile = adversary.once_in(3);
   for (double& value : values) value = hostile ? adversary.any(-3, 3) : adversary.within(-2, 2);
@@ -144,25 +144,25 @@ void call_controller(P problem, SolverOptions options, Adversary& adversary, Con
     ++tally.calls;
     return;
   }
-  std::optional<typename Controller<P>::Inputs> told;  // what was applied before the next solve
+  typename Controller<P>::Inputs told{};  // what was applied before the next solve
+  bool knows = false;
   for (int i = 0; i < 60 && !adversary.is_done(); ++i) {
     ++tally.calls;
     const int what = adversary.below(16);
     if (what == 0) {
       controller->reset(static_cast<std::uint64_t>(i));
-      told.reset();
+      knows = false;
     } else if (what == 1) {
       controller->prepare();
     } else if (what <= 3) {
-      typename Controller<P>::Inputs given;
-      for (double& value : given.value) value = adversary.any(-3, 3);
-      controller->set_previous_input(given);
-      const bool finite = std::all_of(std::begin(given.value), std::end(given.value),
-                                      [](double value) { return std::isfinite(value); });
-      told = finite ? std::optional(given) : std::nullopt;
+      for (double& value : told.value) value = adversary.any(-3, 3);
+      controller->set_previous_input(told);
+      knows = std::all_of(std::begin(told.value), std::end(told.value),
+                          [](double value) { return std::isfinite(value); });
     } else {
-      call_solve(*controller, low, high, told, proposals ? &*proposals : nullptr, adversary, tally);
-      told.reset();
+      call_solve(*controller, low, high, knows ? &told : nullptr, proposals ? &*proposals : nullptr,
+                 adversary, tally);
+      knows = false;
     }
   }
 }

@@ -173,7 +173,7 @@ void Session::execute_prepared() {
   if (!is_done) {
     viewed_ = shown;
   } else if (shown >= 0) {  // the command continued from the newest tick, which is not the one on the screens
-    is_newest_published_ = false;
+    is_newest_sent_ = false;
     publish_newest();
   }
 }
