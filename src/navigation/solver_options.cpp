@@ -32,7 +32,7 @@ void set_shared(SolverOptions& options, const BaseOptions& base) {
 }  // namespace
 
 SvgMppiOptions svg_mppi_options(const BaseOptions& base) {
-  SolverOptions shared = SvgMppiOptions{};
+  SolverOptions shared = solver_options(SvgMppiOptions::method);
   set_shared(shared, base);
   SvgMppiOptions options = *shared.get_if<SvgMppiOptions>();
   options.variance_min = variances(base, 0.15);
@@ -46,7 +46,7 @@ SvgMppiOptions svg_mppi_options(const BaseOptions& base) {
 }
 
 MppiOptions mppi_options(const BaseOptions& base) {
-  SolverOptions shared = MppiOptions{};
+  SolverOptions shared = solver_options(MppiOptions::method);
   set_shared(shared, base);
   return *shared.get_if<MppiOptions>();
 }

@@ -77,8 +77,8 @@ TEST_F(MlpFile, MistakesAreNamed) {
   EXPECT_EQ(error_with("x.npy", floats("99999999999999999999,", {})), "array 'x': has too many values");
   EXPECT_EQ(error_with("x.npy", floats("4000000, 4000000", {})), "array 'x': has too many values");
   EXPECT_EQ(error(zip(network_files(), 8)), "array 'weights_0' is compressed: write it with numpy.savez");
-  EXPECT_EQ(error("no archive"), "is no .npz file of numpy.savez, or is cut off");
-  EXPECT_EQ(error(""), "is no .npz file of numpy.savez, or is cut off");
+  EXPECT_EQ(error("no archive"), "is not an .npz file of numpy.savez, or is truncated");
+  EXPECT_EQ(error(""), "is not an .npz file of numpy.savez, or is truncated");
   Files twice = network_files();
   twice.push_back(twice[0]);
   EXPECT_EQ(error(zip(twice)), "holds array 'weights_0' twice");

@@ -49,7 +49,10 @@ TEST_F(NavigateCommand, DrivesEachMethodWithAndWithoutDetours) {
 
 TEST_F(NavigateCommand, DrivesWithEveryMethod) {
   std::string methods;
-  for (const char* name : solver_names()) methods += (methods.empty() ? "" : ",") + std::string(name);
+  for (const char* name : solver_names()) {
+    methods += methods.empty() ? "" : ",";
+    methods += name;
+  }
   const auto run =
       program("navigate --scenario no-way --seeds 1 --threads 2 --json out.json --methods " + methods);
   ASSERT_EQ(run.status, 0) << run.output;
