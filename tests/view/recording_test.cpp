@@ -145,6 +145,18 @@ TEST_F(McapRecording, RepairStopsAtDamage) {
   }
 }
 
+TEST_F(McapRecording, RepairStopsAtASecondHeader) {
+  const std::string good = record(false, 900);
+  const std::size_t magic = 8, length = 1 + 8 + static_cast<unsigned char>(good[magic + 1]);
+  std::string damaged = good;
+  damaged.insert(magic, good, magic, length);
+  std::ostringstream out, again;
+  EXPECT_EQ(mcap::repair(file(damaged), out).messages, 0u);
+  const mcap::Repaired second = mcap::repair(write("repaired.mcap", out.str()).string(), again);
+  EXPECT_EQ(second.lost, 0u);
+  EXPECT_EQ(again.str(), out.str());
+}
+
 TEST_F(McapRecording, RejectsOtherAndDamagedFiles) {
   const std::string good = record(false, 3);
   EXPECT_NE(refusal(file("no recording at all, but long enough to have a head and a foot"))

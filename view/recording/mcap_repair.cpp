@@ -38,7 +38,9 @@ class Copier {
 
   void take(Op op, std::string_view content) {
     Reader reader(content, file_);
-    if (op == Op::header) {
+    if (op == Op::header && writer_) {
+      throw IoError(file_, 0, "is damaged: it has a second header");
+    } else if (op == Op::header) {
       reader.text();  // the profile
       writer_.emplace(out_, reader.text());
     } else if (!writer_) {
