@@ -24,7 +24,8 @@ std::array<Command, 2> wander(std::int64_t k) {
 }
 
 bool same_bits(const CarState& a, const CarState& b) {
-  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): bits, not values
+  // Bits count here, not values.
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c,cert-oop57-cpp)
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
