@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <exception>
 
 #include <slalom/maps/field.hpp>
 #include <slalom/maps/ros_map.hpp>
@@ -63,7 +65,7 @@ bool arrives(Controller controller) {
   return robot.distance(x) < 0.3;
 }
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   if (argc != 2) {
     std::fprintf(stderr, "usage: %s examples/hall/hall.yaml\n", argv[0]);
     return 2;
@@ -88,4 +90,7 @@ int main(int argc, char** argv) {
                                     .seed = seed}});
   });
   return report("the robot arrives", mppi, svg_mppi, 18);
+} catch (const std::exception& error) {  // a file that cannot be read
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 
 #include <slalom/slalom.hpp>
 
@@ -76,7 +77,7 @@ bool holds(const Water& water, std::uint64_t seed) {
   return most < 0.3 * 0.3;
 }
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   if (argc != 2) {
     std::fprintf(stderr, "usage: %s examples/learned/boat.npz\n", argv[0]);
     return 2;
@@ -88,4 +89,7 @@ int main(int argc, char** argv) {
       "the boat holds its place: without a model of the water %d of 20 seeds, with the network %d of 20\n",
       without, learned);
   return learned >= 18 && learned > without ? 0 : 1;
+} catch (const std::exception& error) {  // a file that cannot be read, or is damaged
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
 }
