@@ -12,6 +12,7 @@ namespace {
 
 constexpr double arc_error = 0.15, offset_error = 0.06, speed_error = 0.5;  // m, m, m/s: of comparisons
 
+constexpr double longest_gap = 10;  // s between comparisons, after which an object counts as unknown
 constexpr double furthest = 1e7, fastest = 200, largest = 1e3;  // m, m/s, m: of objects
 constexpr double fastest_turn = 1e3, max_variance = 1e6;        // rad/s; of any component
 
@@ -124,9 +125,11 @@ struct Predictor::Implementation {
       remembered.push_back({id, stamp, now, first_weights(now)});
       return remembered.back().weights;
     }
-    if (past->motion.on_course != now.on_course) {
+    const double elapsed = stamp - past->since;
+    const bool follows = elapsed >= 0 && elapsed <= longest_gap && past->motion.on_course == now.on_course;
+    if (!follows) {
       *past = {id, stamp, now, first_weights(now)};
-    } else if (const double elapsed = stamp - past->since; elapsed >= options.memory - 1e-9) {
+    } else if (elapsed >= options.memory - 1e-9) {
       learn(*past, now, elapsed);
       past->since = stamp;
       past->motion = now;

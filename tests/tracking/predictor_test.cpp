@@ -182,6 +182,18 @@ TEST(Predictor, WeightsSumToOneAndDeviationsGrow) {
   EXPECT_NEAR(predicted.poses[0].along_deviation, 0.03, 1e-9);
 }
 
+TEST(Predictor, StampsThatJumpMakeAnObjectUnknownAgain) {
+  const TrackedObject then = object_at(beside(0, 0.6), 3), now = object_at(beside(4, 0.6), 3);
+  Predictor fresh(circle());
+  const maps::PredictedObstacle unknown = fresh.update({&now, 1}, 0)[0];
+  for (const double stamp : {1e7, -5.0, 1e300}) {
+    Predictor predictor(circle());
+    const maps::PredictedObstacle known = after_two_seconds(predictor, [&](double) { return then; });
+    EXPECT_NE(known.weights, unknown.weights);
+    EXPECT_EQ(predictor.update({&now, 1}, stamp)[0].weights, unknown.weights) << stamp;
+  }
+}
+
 TEST(Predictor, WhatStandsOrWhoseSpeedIsNotKnownIsNotPredicted) {
   Predictor predictor(circle());
   const TrackedObject standing = object_at(beside(0, 0), 0.3);

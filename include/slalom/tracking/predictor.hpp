@@ -28,8 +28,9 @@
 /// Weights are probabilities. Every `memory` seconds each hypothesis of that time ago is compared with what
 /// the object has done since: w_h <- (1 - f) w_h L_h / sum + f p_h, with L_h the normal density of its error
 /// in arc length, offset and speed, f the `forgetting` and p_h the weights of an unknown object (the steps of
-/// a filter for a hidden Markov chain, in which an object changes its mind with probability f). The four
-/// heaviest hypotheses are returned. Deviations grow from those of the track.
+/// a filter for a hidden Markov chain, in which an object changes its mind with probability f). An object
+/// that was not compared for more than 10 s, or whose stamps go back, is unknown again. The four heaviest
+/// hypotheses are returned. Deviations grow from those of the track.
 namespace slalom::tracking {
 
 /// Predicts objects. After construction nothing allocates or throws.
