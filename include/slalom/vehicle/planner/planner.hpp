@@ -82,7 +82,8 @@ struct PlannerInput {
 };
 
 /// The outcome of an update. Spans stay valid until the next one. For any input the command is finite,
-/// within `steer_limit` and `max_speed`, and where the planner brakes it is not faster than the car.
+/// within `steer_limit` and `max_speed`, in reverse at most 0.7 m/s fast, and where the planner brakes it is
+/// not faster than the car.
 struct PlannerOutput {
   PlannerStatus status = PlannerStatus::ok;  ///< result of the update
   Command command;                           ///< to send now
