@@ -73,7 +73,8 @@ inline void check_output(const vehicle::PlannerOutput& out, const vehicle::Plann
   using vehicle::PlannerStatus;
   require(std::abs(out.command.steer) <= options.steer_limit, "the steering is within its limit");
   require(out.command.speed <= options.max_speed, "the speed is at most the largest");
-  require(out.command.speed >= -0.7, "the car backs up slowly");
+  const bool slips = out.parameters.friction > 0;  // such cars correct their speed in reverse
+  require(out.command.speed >= (slips ? -0.675 : -0.5), "the car backs up slowly");
   if (out.status == PlannerStatus::bad_scan || out.status == PlannerStatus::bad_odometry ||
       out.status == PlannerStatus::off_course)
     require(out.command.speed == 0, "without a plan the car stops");
