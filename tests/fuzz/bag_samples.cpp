@@ -7,6 +7,7 @@
 
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
+#include "support/identification_promise.hpp"
 #include "tools/recorded_drives/driven_samples.hpp"
 #include "tools/recording/bag_writer.hpp"
 
@@ -75,14 +76,8 @@ std::string bag_of(std::string_view bytes) {
 
 bool run(std::string_view bytes) {
   try {
-    const vehicle::Identification found =
-        vehicle::identify(tools::read_driven_samples(scratch_file("samples.bag", bag_of(bytes))));
-    for (const vehicle::Identified& each : {found.steering_gain, found.steering_offset, found.delay,
-                                            found.time_constant, found.wheelbase, found.understeer})
-      require(std::isfinite(each.value) && each.deviation >= 0,
-              "estimates are finite, deviations are not negative");
-    require(std::isfinite(found.speed_scale) && std::isfinite(found.residual) && found.explained <= 1,
-            "what is explained is finite");
+    testing::check_identification(
+        vehicle::identify(tools::read_driven_samples(scratch_file("samples.bag", bag_of(bytes)))));
     return true;
   } catch (const IoError&) {
     return false;

@@ -4,6 +4,7 @@
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/json.hpp"
+#include "support/identification_promise.hpp"
 #include "tools/recorded_drives/driven_samples.hpp"
 
 namespace slalom::fuzz {
@@ -38,13 +39,7 @@ std::vector<std::string> seeds() {
 bool run(std::string_view bytes) {
   try {
     const auto samples = tools::read_driven_samples(scratch_file("drive.jsonl", bytes));
-    const vehicle::Identification found = vehicle::identify(samples);
-    for (const vehicle::Identified& each : {found.steering_gain, found.steering_offset, found.delay,
-                                            found.time_constant, found.wheelbase, found.understeer})
-      require(std::isfinite(each.value) && each.deviation >= 0,
-              "estimates are finite, deviations are not negative");
-    require(std::isfinite(found.speed_scale) && std::isfinite(found.residual) && found.explained <= 1,
-            "what is explained is finite");
+    testing::check_identification(vehicle::identify(samples));
     return true;
   } catch (const IoError&) {
     return false;
