@@ -1,42 +1,22 @@
-// What happens when the system cannot start a thread: `pthread_create` is replaced by one that fails on
-// demand.
-#include <dlfcn.h>
+// What happens when the system cannot start a thread.
 #include <gtest/gtest.h>
-#include <pthread.h>
 
 #include <atomic>
-#include <cerrno>
 #include <stdexcept>
 #include <string>
 
 #include "slalom/core/thread_pool.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
-
-namespace {
-
-std::atomic<int> allowed{1 << 20};  // threads that can still be started
-
-}  // namespace
-
-extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
-                              void* argument) {
-  if (allowed.fetch_sub(1) <= 0) return EAGAIN;
-  using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
-  static const auto create = reinterpret_cast<Create>(dlsym(RTLD_NEXT, "pthread_create"));
-  return create(thread, attributes, start, argument);
-}
+#include "support/thread_starts.hpp"
 
 namespace slalom {
 namespace {
 
-class ThreadStart : public ::testing::Test {
- protected:
-  ~ThreadStart() override { allowed = 1 << 20; }
-};
+using testing::FewThreads;
 
-TEST_F(ThreadStart, APoolThatCannotStartAllItsThreadsSaysHowManyItCould) {
+TEST(ThreadStart, APoolThatCannotStartAllItsThreadsSaysHowManyItCould) {
   for (int possible = 0; possible < 5; ++possible) {
-    allowed = possible;
+    const FewThreads few(possible);
     try {
       ThreadPool pool(6);
       FAIL() << possible;
@@ -47,16 +27,16 @@ TEST_F(ThreadStart, APoolThatCannotStartAllItsThreadsSaysHowManyItCould) {
           << said;
     }
   }
-  allowed = 5;
+  const FewThreads enough(5);
   ThreadPool pool(6);
   std::atomic<int> calls{0};
   pool.run(100, [&](int) { ++calls; });
   EXPECT_EQ(calls, 100);
 }
 
-TEST_F(ThreadStart, SharedWorkIsDoneByTheThreadsThatRun) {
+TEST(ThreadStart, SharedWorkIsDoneByTheThreadsThatRun) {
   for (int possible = 0; possible < 4; ++possible) {
-    allowed = possible;
+    const FewThreads few(possible);
     std::atomic<int> next{0}, done{0};
     const int threads = evaluation::run_in_threads(4, [&] {
       while (next.fetch_add(1) < 1000) ++done;
