@@ -37,27 +37,37 @@ void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
   const auto runner = std::make_shared<const evaluation::LapRunner>(loaded.environment, loaded.configuration,
                                                                     names.method, loaded.lap);
   Simulation simulation(runner, names.seed);
+  const auto scene = std::make_shared<const std::string>(encode_scene(*loaded.environment));
   scenario_ = std::move(loaded);
   configuration_ = scenario_.configuration;
   undo_.clear();
   names_ = names;
-  scene_ = std::make_shared<const std::string>(encode_scene(*scenario_.environment));
+  scene_ = scene;
   server_.broadcast({scene_, true});
-  end_ghost();
-  restart();
+  begin_drive(std::move(simulation), {});
   tell_options();
 }
 
 /// Restarts the drive with the same seed, and the ghost with it.
 void Session::restart() {
-  simulation_.emplace(make_runner(configuration_, names_.method), names_.seed);
+  // All that may throw comes before anything is replaced.
+  Simulation simulation(make_runner(configuration_, names_.method), names_.seed);
+  std::optional<Simulation> ghost;
   if (ghost_) {
     const auto& runner = ghost_->loop().runner();
-    if (runner.control_period() == simulation_->loop().runner().control_period())
-      ghost_.emplace(make_runner(runner.configuration(), runner.method()), names_.seed);
-    else
-      end_ghost();
+    if (runner.control_period() == simulation.loop().runner().control_period())
+      ghost.emplace(make_runner(runner.configuration(), runner.method()), names_.seed);
   }
+  begin_drive(std::move(simulation), std::move(ghost));
+}
+
+/// Drives these from now on; without a ghost the present one ends.
+void Session::begin_drive(Simulation simulation, std::optional<Simulation> ghost) {
+  simulation_ = std::move(simulation);
+  if (ghost)
+    ghost_ = std::move(ghost);
+  else
+    end_ghost();
   history_.clear();
   history_bytes_ = 0;
   laps_.clear();

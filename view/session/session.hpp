@@ -82,6 +82,7 @@ class Session {
   void load(const ScenarioNames& names);
   void install(LoadedScenario loaded, const ScenarioNames& names);
   void restart();
+  void begin_drive(Simulation simulation, std::optional<Simulation> ghost);
   std::shared_ptr<const evaluation::LapRunner> make_runner(const vehicle::Configuration& configuration,
                                                            const std::string& method) const;
   void tick();
@@ -116,6 +117,8 @@ class Session {
   void undo(bool again);
   void change(const vehicle::Configuration& configuration, const std::string& method, bool remember);
   void start_ghost(const std::string& method, const vehicle::Configuration& configuration);
+  Simulation make_ghost(const std::string& method, const vehicle::Configuration& configuration);
+  void set_ghost(Simulation ghost, const std::string& method, const std::string& label);
   void end_ghost();
   void fork(const Json& command);
   void handle_lap(const Json& command);

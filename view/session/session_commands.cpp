@@ -154,31 +154,40 @@ void Session::edit(const Edit& edit) {
 /// Another configuration or method drives from now on.
 void Session::change(const vehicle::Configuration& configuration, const std::string& method, bool remember) {
   check_work(configuration, method);
-  const auto runner = make_runner(configuration, method);  // throws before anything changes
-  if (remember) undo_.remember(configuration_);
-  const bool other_clock = runner->control_period() != simulation_->loop().runner().control_period();
-  configuration_ = configuration;
-  names_.method = method;
-  if (other_clock)
-    restart();
+  const auto runner = make_runner(configuration, method);
+  // All that may throw comes before anything is replaced. With another clock the drive begins anew, without
+  // a ghost, whose clock is the present one.
+  std::optional<Simulation> anew;
+  if (runner->control_period() != simulation_->loop().runner().control_period())
+    anew.emplace(runner, names_.seed);
   else
     simulation_->apply(ChangeDriver{runner});
+  if (remember) undo_.remember(configuration_);
+  configuration_ = configuration;
+  names_.method = method;
+  if (anew) begin_drive(std::move(*anew), {});
   tell_options();
 }
 
 /// Takes back the last change of options or of bodies, or with `again` the last undo.
 void Session::undo(bool again) {
   go_to_viewed();
+  const UndoHistory before = undo_;
   const SetBodies present{bodies_of(simulation_->loop().world())};
   const auto last = again ? undo_.take_redo(present) : undo_.take_undo(present);
   if (!last) throw std::invalid_argument(again ? "nothing to redo" : "nothing to undo");
-  if (const auto* bodies = std::get_if<SetBodies>(&*last)) {
-    edit(*bodies);
-    undo_.replaced(present, again);
-    return tell_options();
+  try {
+    if (const auto* bodies = std::get_if<SetBodies>(&*last)) {
+      edit(*bodies);
+      undo_.replaced(present, again);
+      return tell_options();
+    }
+    undo_.replaced(configuration_, again);
+    change(std::get<vehicle::Configuration>(*last), names_.method, false);
+  } catch (...) {
+    undo_ = before;
+    throw;
   }
-  undo_.replaced(configuration_, again);
-  change(std::get<vehicle::Configuration>(*last), names_.method, false);
 }
 
 void Session::end_ghost() {
@@ -191,14 +200,23 @@ void Session::end_ghost() {
 /// Starts a ghost in its own world with the same history, which has been driven again (see `redrive_for`).
 void Session::start_ghost(const std::string& method, const vehicle::Configuration& configuration) {
   if (method.empty()) return end_ghost();
+  set_ghost(make_ghost(method, configuration), method, method);
+}
+
+Simulation Session::make_ghost(const std::string& method, const vehicle::Configuration& configuration) {
   check_work(configuration, method);
   const auto runner = make_runner(configuration, method);
   Simulation ghost =
       simulation_->ticks() == 0 ? simulation_->from_start() : std::move(prepared_.value().copy.value());
   if (method != names_.method || ghost.ticks() == 0) ghost.apply(ChangeDriver{runner});
+  return ghost;
+}
+
+void Session::set_ghost(Simulation ghost, const std::string& method, const std::string& label) {
   end_ghost();
-  ghost_.emplace(std::move(ghost));
-  ghost_method_ = ghost_label_ = method;
+  ghost_ = std::move(ghost);
+  ghost_method_ = method;
+  ghost_label_ = label;
 }
 
 /// Continues with another method or other options; the previous driver continues as a ghost.
@@ -211,9 +229,9 @@ void Session::fork(const Json& command) {
   if (runner->control_period() != simulation_->loop().runner().control_period())
     throw std::invalid_argument("fork: the control period cannot change during a drive");
   go_to_viewed();
-  start_ghost(before, configuration_);
-  if (before == method) ghost_label_ = before + " as before";
+  Simulation ghost = make_ghost(before, configuration_);
   change(changed, method, has_settings);
+  set_ghost(std::move(ghost), before, before == method ? before + " as before" : before);
 }
 
 bool Session::handle_options(const std::string& what, const Json& command) {

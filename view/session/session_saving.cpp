@@ -65,7 +65,7 @@ void Session::save(std::uint64_t client, const std::string& what) {
   if (what != "recording" && what != "replay")
     throw std::invalid_argument("what: must be recording or replay");
   if (history_.empty()) throw std::invalid_argument("nothing has been driven yet");
-  if (saving_.exchange(true)) throw std::invalid_argument("the previous file is still being written");
+  if (saving_) throw std::invalid_argument("the previous file is still being written");
   Frames frames;
   for (const Step& step : history_) frames.push_back(step.frame);
   const sim::WorldOptions world = scenario_.environment->world_options();
@@ -83,16 +83,24 @@ void Session::save(std::uint64_t client, const std::string& what) {
           what == "replay" ? replay_of(opening, frames) : recording_of(opening, frames, recorder);
       server_.send(client, {std::make_shared<const std::string>(file_message(name, content)), true});
     } catch (const std::exception& error) {
-      refuse(client, error.what());
+      try {
+        refuse(client, error.what());
+      } catch (const std::exception&) {
+        // No memory for the answer either; the drive continues.
+      }
     }
     saving_ = false;
   };
+  saving_ = true;
   try {
     saver_ = std::jthread(std::move(write));
   } catch (const std::system_error& error) {
     saving_ = false;
     throw std::runtime_error("save: the system cannot start a thread to write the file (" +
                              error.code().message() + ")");
+  } catch (...) {
+    saving_ = false;
+    throw;
   }
 }
 
