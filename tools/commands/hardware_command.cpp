@@ -12,6 +12,7 @@
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
+#include "tools/terminal/thread_note.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -83,7 +84,7 @@ bool drive(std::vector<Task>& tasks, const std::vector<Driver>& drivers,
       }
     }
   };
-  run_in_threads(arguments.jobs, work);
+  note_fewer_threads("--jobs", arguments.jobs, run_in_threads(arguments.jobs, work));
   if (failed) std::rethrow_exception(failed);
   return !interrupt.raised();
 }

@@ -13,6 +13,7 @@
 #include "tools/commands/navigate_picture.hpp"
 #include "tools/commands/navigate_report.hpp"
 #include "tools/terminal/json_output.hpp"
+#include "tools/terminal/thread_note.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -93,12 +94,13 @@ void write_results(const NavigateArguments& arguments, const std::vector<RoomSer
 }
 
 /// Adds the drive of a seed to each series. Drives do not depend on each other, so threads change no result.
-void drive_all(const NavigateArguments& arguments, const std::vector<NamedDriver>& drivers,
-               std::uint64_t seed, std::vector<RoomSeries>& all) {
+/// Returns how many threads drove.
+int drive_all(const NavigateArguments& arguments, const std::vector<NamedDriver>& drivers, std::uint64_t seed,
+              std::vector<RoomSeries>& all) {
   std::vector<evaluation::RoomDrive> drives(all.size());
   std::vector<std::exception_ptr> errors(all.size());
   std::atomic<std::size_t> next{0};
-  evaluation::run_in_threads(arguments.threads, [&] {
+  const int threads = evaluation::run_in_threads(arguments.threads, [&] {
     for (std::size_t k; (k = next++) < all.size();) {
       try {
         const RoomScenario& scenario = *all[k].scenario;
@@ -112,6 +114,7 @@ void drive_all(const NavigateArguments& arguments, const std::vector<NamedDriver
     if (errors[k]) std::rethrow_exception(errors[k]);
     all[k].drives.push_back(std::move(drives[k]));
   }
+  return threads;
 }
 
 int navigate(const NavigateArguments& arguments) {
@@ -126,10 +129,13 @@ int navigate(const NavigateArguments& arguments) {
   for (const RoomScenario* scenario : scenarios)
     for (const NamedDriver& driver : drivers) all.push_back({scenario, driver.name, {}});
   // Seed by seed, so that what is written when a long run is stopped is complete up to a seed.
+  int threads = arguments.threads;  // the fewest that drove
   for (int i = 0; i < arguments.seeds; ++i) {
-    drive_all(arguments, drivers, arguments.first_seed + static_cast<std::uint64_t>(i), all);
+    const std::uint64_t seed = arguments.first_seed + static_cast<std::uint64_t>(i);
+    threads = std::min(threads, drive_all(arguments, drivers, seed, all));
     write_results(arguments, all, i + 1 == arguments.seeds);
   }
+  note_fewer_threads("--threads", arguments.threads, threads);
   std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
   print_heading(words);
   for (const RoomSeries& series : all) print_row(series, words);

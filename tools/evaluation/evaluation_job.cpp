@@ -17,6 +17,7 @@
 #include "tools/terminal/evaluation_progress.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
+#include "tools/terminal/thread_note.hpp"
 
 namespace slalom::tools {
 
@@ -242,9 +243,7 @@ bool drive_evaluation(const Evaluation& evaluation, const EvaluationArguments& a
   EvaluationQueue work(
       evaluation, store, [&](const EvaluationProgress& p) { bar.show(p); }, cancel);
   const int threads = drive_with_ranks(evaluation, work, jobs, cancel);
-  if (threads < jobs)
-    std::fprintf(stderr, "--jobs %d: the system could start %d threads only; the laps are the same\n", jobs,
-                 threads);
+  note_fewer_threads("--jobs", jobs, threads);
   if (!work.finish()) {
     std::fprintf(stderr, "interrupted after %zu laps; --resume continues\n", store.rows().size());
     return false;

@@ -12,6 +12,7 @@
 
 #include <chrono>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #endif
 
@@ -139,16 +140,20 @@ int rank() {
 int drive_with_ranks(const Evaluation& evaluation, EvaluationQueue& work, int jobs,
                      const std::atomic<bool>& cancel) {
   if (rank_count() == 1) return drive_laps(evaluation, work, jobs, cancel);
-  int threads = 1;
+  int threads = 0;
   {
-    // It is joined even if serve() throws.
-    const std::jthread own([&] {
-      try {
-        threads = drive_laps(evaluation, work, jobs, cancel);
-      } catch (...) {
-        work.fail(std::current_exception());
-      }
-    });
+    std::jthread own;  // it is joined even if serve() throws
+    try {
+      own = std::jthread([&] {
+        try {
+          threads = drive_laps(evaluation, work, jobs, cancel);
+        } catch (...) {
+          work.fail(std::current_exception());
+        }
+      });
+    } catch (const std::system_error&) {
+      // The system cannot start it. The other processes drive all laps.
+    }
     try {
       serve(evaluation, work);
     } catch (...) {

@@ -13,7 +13,7 @@ int rank_count();
 int rank();
 
 /// In the first process: drives laps on `jobs` threads of its own and hands laps to the other processes,
-/// until there are none left. Returns how many threads of its own worked.
+/// until there are none left. Returns how many threads of its own worked; 0 under mpirun if none could start.
 int drive_with_ranks(const evaluation::Evaluation& evaluation, evaluation::EvaluationQueue& work, int jobs,
                      const std::atomic<bool>& cancel);
 
