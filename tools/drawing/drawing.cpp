@@ -9,6 +9,7 @@
 namespace slalom::tools {
 
 std::string to_svg(const Drawing& drawing) {
+  require_font_files();
   std::string text;
   const auto append = [](void* to, const unsigned char* data, unsigned int size) {
     static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), size);
@@ -21,8 +22,9 @@ std::string to_svg(const Drawing& drawing) {
   Pen pen(cairo.get());
   pen.fill_surface({1, 1, 1});
   drawing.draw(pen);
+  const auto drawn = cairo_status(cairo.get());
   cairo_surface_finish(surface.get());
-  const auto status = cairo_surface_status(surface.get());
+  const auto status = drawn != CAIRO_STATUS_SUCCESS ? drawn : cairo_surface_status(surface.get());
   if (status != CAIRO_STATUS_SUCCESS) throw IoError("SVG", 0, cairo_status_to_string(status));
   return text;
 }

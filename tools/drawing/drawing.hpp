@@ -14,9 +14,9 @@ struct Drawing {
   std::function<void(Pen&)> draw;
 };
 
-/// The drawing as an SVG document. Throws IoError.
+/// The drawing as an SVG document. Throws IoError, and as `require_font_files` does.
 std::string to_svg(const Drawing& drawing);
-/// Writes it with `scale` pixels for one. Throws IoError.
+/// Writes it with `scale` pixels for one. Throws IoError, and as `require_font_files` does.
 void save_png(const Drawing& drawing, const std::filesystem::path& file, double scale = 2);
 
 }  // namespace slalom::tools

@@ -67,14 +67,18 @@ class Pen {
   _cairo* cairo_;
 };
 
+/// Throws std::runtime_error if the process cannot open a few more files: cairo would find no fonts and draw
+/// another picture without an error.
+void require_font_files();
+
 /// An image in memory.
 class Surface {
  public:
-  /// Pixels; `scale` of them for a unit of length of the pen.
+  /// Pixels; `scale` of them for a unit of length of the pen. Throws as `require_font_files` does.
   Surface(int width, int height, double scale = 1);
 
   Pen pen() const { return Pen(cairo_.get()); }
-  /// Writes a PNG. Throws IoError.
+  /// Writes a PNG. Throws IoError if it cannot be written, or if not everything could be drawn.
   void save(const std::filesystem::path& file) const;
 
  private:
