@@ -3,11 +3,11 @@
 #include <dirent.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <memory>
 #include <string_view>
-
-#include "slalom/core/error.hpp"
+#include <system_error>
 
 namespace slalom {
 
@@ -19,7 +19,7 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t most) {
   if (!std::filesystem::is_regular_file(status))
     throw IoError(file.string(), 0, "must be a regular file, not a pipe or device");
   std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) throw IoError(file.string(), 0, "does not exist or cannot be read");
+  if (!stream) throw cannot_open(file);
   const auto size = static_cast<std::uint64_t>(stream.tellg());
   if (size > most) {
     throw IoError(file.string(), 0,
@@ -32,10 +32,14 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t most) {
   return bytes;
 }
 
+IoError cannot_open(const std::filesystem::path& file) {
+  return {file.string(), 0, "cannot be opened: " + std::generic_category().message(errno)};
+}
+
 std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder) {
   const auto close = [](DIR* open) { ::closedir(open); };
   const std::unique_ptr<DIR, decltype(close)> open(::opendir(folder.c_str()), close);
-  if (!open) throw IoError(folder.string(), 0, "is not a folder, or cannot be read");
+  if (!open) throw cannot_open(folder);
   std::vector<std::filesystem::path> found;
   while (const dirent* const entry = ::readdir(open.get())) {
     const std::string_view name = entry->d_name;

@@ -124,7 +124,7 @@ GreyImage load_image(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path))  // opening a pipe would wait for its other end
     throw IoError(path.string(), 0, "the image does not exist or cannot be read: it must be a regular file");
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw IoError(path.string(), 0, "the image does not exist or cannot be read");
+  if (!stream) throw cannot_open(path);
   std::array<char, 2> magic{};
   stream.read(magic.data(), magic.size());
   if (magic[0] == 'P' && (magic[1] == '2' || magic[1] == '5')) return read_pgm(path);

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 
 namespace slalom::maps::detail {
 namespace {
@@ -130,7 +131,7 @@ GreyImage read_pixels(Session& session, const std::filesystem::path& path) {
 
 GreyImage read_png(const std::filesystem::path& path) {
   const File file(std::fopen(path.c_str(), "rb"));
-  if (!file) throw IoError(path.string(), 0, "the image cannot be opened");
+  if (!file) throw cannot_open(path);
   Session session;
   session.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &session, on_error, on_warning);
   if (!session.png) throw IoError(path.string(), 0, "libpng cannot be set up");

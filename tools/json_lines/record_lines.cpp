@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 
 namespace slalom::tools {
 
@@ -11,7 +12,7 @@ RecordLines::RecordLines(const std::string& file) : file_(file) {
   if (!std::filesystem::is_regular_file(file))
     throw IoError(file, 0, "cannot be read: it must be a regular file");
   stream_.open(file, std::ios::binary | std::ios::ate);
-  if (!stream_) throw IoError(file, 0, "cannot be read");
+  if (!stream_) throw cannot_open(file);
   size_ = static_cast<std::uint64_t>(stream_.tellg());
   if (size_ > max_bytes)
     throw IoError(

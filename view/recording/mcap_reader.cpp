@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "slalom/core/error.hpp"
+#include "slalom/core/read_file.hpp"
 
 namespace slalom::view::mcap {
 namespace {
@@ -18,8 +19,10 @@ constexpr std::uint64_t footer_size = 1 + 8 + 20;
 class File {
  public:
   explicit File(const std::string& name) : name_(name) {
-    if (std::filesystem::is_regular_file(name)) stream_.open(name, std::ios::binary | std::ios::ate);
-    if (!stream_.is_open()) throw IoError(name, 0, "cannot be read: it must be a regular file");
+    if (!std::filesystem::is_regular_file(name))
+      throw IoError(name, 0, "cannot be read: it must be a regular file");
+    stream_.open(name, std::ios::binary | std::ios::ate);
+    if (!stream_.is_open()) throw cannot_open(name);
     size_ = static_cast<std::uint64_t>(stream_.tellg());
     if (size_ < magic.size() || read(0, magic.size()) != magic)
       throw IoError(name, 0, "is not an MCAP recording");

@@ -5,11 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "slalom/core/error.hpp"
+
 namespace slalom {
 
 /// The bytes of a regular file of at most `most` bytes. Throws IoError if the file does not exist or cannot
 /// be read, is not a regular file (a pipe could block for ever), or is larger.
 std::string read_file(const std::filesystem::path& file, std::uint64_t most);
+
+/// The error of a file or folder that is there, but that the system did not open. It states the reason, such
+/// as too many open files: the `errno` of the failed call.
+IoError cannot_open(const std::filesystem::path& file);
 
 /// What is in a folder, sorted. Throws IoError if it cannot be listed. Unlike the iterators of the standard
 /// library it can run out of memory without ending the program.
