@@ -33,6 +33,10 @@ bool usable(const PredictedObstacle& obstacle) noexcept {
 
 }  // namespace
 
+int PredictedObstacle::likeliest() const noexcept {
+  return static_cast<int>(std::max_element(weights.begin(), weights.begin() + hypotheses) - weights.begin());
+}
+
 PredictedPose PredictedObstacle::at(int hypothesis, double time) const noexcept {
   const std::size_t count = times();
   const std::span<const PredictedPose> own =
@@ -51,6 +55,7 @@ MovingObstacles::MovingObstacles(const MovingObstacleOptions& options, int steps
   const auto times = static_cast<std::size_t>(steps) + 1;
   boxes_.resize(times * max_count * PredictedObstacle::max_hypotheses);
   reaches_.resize(times * max_count);
+  followed_.resize(max_count);
   view_.steps_ = steps;
   view_.lead_ = 0.5 * (options.front - options.rear);
   view_.half_length_ = 0.5 * (options.front + options.rear) + options.margin;
@@ -88,9 +93,23 @@ void MovingObstacles::update(std::span<const PredictedObstacle> predicted, const
             reaches_[static_cast<std::size_t>(k * count + i)]);
   view_.boxes_ = boxes_.data();
   view_.reaches_ = reaches_.data();
+  view_.followed_at_ = followed_.data();
   view_.obstacles_ = count;
+  view_.followed_ = 0;
   view_.x_ = -origin.x;
   view_.y_ = -origin.y;
+}
+
+void MovingObstacles::set_following_costs(std::span<const double> costs) noexcept {
+  const std::size_t count = std::min(costs.size(), taken().size());
+  view_.followed_ = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(costs[i] > 0)) continue;
+    const MovingObstaclesView::Reach& reach = reaches_[static_cast<std::size_t>(steps_) * taken().size() + i];
+    const auto& box = boxes_[static_cast<std::size_t>(reach.first + taken_[i]->likeliest())];
+    followed_[static_cast<std::size_t>(view_.followed_++)] = {box.x, box.y, box.sine, box.cosine,
+                                                              static_cast<float>(costs[i])};
+  }
 }
 
 /// Writes the boxes of an obstacle at a time, and the circle round them.

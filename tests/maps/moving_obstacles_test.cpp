@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -153,6 +154,27 @@ TEST(MovingObstacles, AreMetWhereTheyWillBe) {
     EXPECT_TRUE(cost_at(others.view(), {x + 0.59, 0, 0}, k).collided) << k;
     EXPECT_FALSE(cost_at(others.view(), {x + 0.61, 0, 0}, k).collided) << k;
   }
+}
+
+TEST(MovingObstacles, ToEndBehindOneCostsWhatWasSetUntilItIsPassed) {
+  MovingObstacles others(touching(), 10);
+  // The likeliest hypothesis drives along y; the last step is 1 s ahead.
+  const Predicted ahead(0.6, 0.3, {{0.3, {50, 50, 0}, 1}, {0.7, {0, 2, 0.5 * std::numbers::pi}, 0}}),
+      other(0.6, 0.3, {{1, {0, 0, 0}}});
+  const std::vector<PredictedObstacle> all{other.obstacle, ahead.obstacle};
+  others.update(all, {0, 0}, 0, 0.1);
+  EXPECT_EQ(others.view().following_cost(0.0, -8.0), 0);
+  const std::vector<double> costs{0, 20};
+  others.set_following_costs(costs);
+  const MovingObstaclesView view = others.view();
+  EXPECT_NEAR(view.following_cost(0.0, -8.0), 20, 1e-5);
+  EXPECT_NEAR(view.following_cost(0.7, -2.0), 20, 1e-5);  // 4 m behind
+  EXPECT_NEAR(view.following_cost(0.0, 0.5), 10, 1e-5);
+  EXPECT_NEAR(view.following_cost(-3.0, 2.0), 4, 1e-5);
+  EXPECT_EQ(view.following_cost(0.0, 3.01), 0);
+  EXPECT_NEAR(view.relative_to({5, 5}).following_cost(-5.0, -4.5), 10, 1e-5);
+  others.update(all, {0, 0}, 0, 0.1);
+  EXPECT_EQ(others.view().following_cost(0.0, -8.0), 0) << "after the next update";
 }
 
 /// A point that drives along x, among others.

@@ -49,6 +49,8 @@ struct PredictedObstacle {
 
   /// How many poses a hypothesis has.
   std::size_t times() const noexcept { return poses.size() / static_cast<std::size_t>(hypotheses); }
+  /// The hypothesis with the greatest weight.
+  int likeliest() const noexcept;
   /// A hypothesis at a time (s, >= 0), by interpolation.
   PredictedPose at(int hypothesis, double time) const noexcept;
 };
@@ -140,9 +142,30 @@ class MovingObstaclesView {
     return sum;
   }
 
+  /// The sum of what MovingObstacles::set_following_costs made the obstacles cost a body whose reference
+  /// point is at (x, y) (m) at the last step: for each its whole cost from 4 m behind it on, nothing from 1 m
+  /// ahead of it on, linear between, along the heading of its likeliest hypothesis.
+  template <class T>
+  SLALOM_INLINE_CALLS T following_cost(const T& x, const T& y) const {
+    constexpr double ahead = 1, behind = 4;  // m
+    T sum(0);
+    for (int i = 0; i < followed_; ++i) {
+      const Followed& each = followed_at_[i];
+      const T along = (x + T(x_) - T(each.x)) * T(each.cosine) + (y + T(y_) - T(each.y)) * T(each.sine);
+      sum = sum + T(each.cost) * min(max((T(ahead) - along) * T(1 / (ahead + behind)), T(0)), T(1));
+    }
+    return sum;
+  }
+
  private:
   friend class MovingObstacles;
 
+  /// The likeliest hypothesis of an obstacle at the last step, and what it costs to end behind it.
+  struct Followed {
+    float x, y;  ///< m, of the middle
+    float sine, cosine;
+    float cost;
+  };
   /// A hypothesis at a step.
   struct Box {
     float x, y;  ///< m, of the middle
@@ -177,7 +200,8 @@ class MovingObstaclesView {
 
   const Box* boxes_ = nullptr;
   const Reach* reaches_ = nullptr;  ///< [step][obstacle]
-  int obstacles_ = 0, steps_ = 0;
+  const Followed* followed_at_ = nullptr;
+  int obstacles_ = 0, followed_ = 0, steps_ = 0;
   Coefficient x_, y_;                     ///< m, the origin of rollouts in the frame of the boxes
   Coefficient lead_;                      ///< m, of the own body's middle ahead of its reference point
   Coefficient half_length_, half_width_;  ///< m, of the own body
@@ -197,12 +221,16 @@ class MovingObstacles {
   MovingObstacles& operator=(MovingObstacles&&) noexcept = default;
 
   /// Forgets all obstacles.
-  void clear() noexcept { view_.obstacles_ = 0; }
+  void clear() noexcept { view_.obstacles_ = view_.followed_ = 0; }
   /// Takes predictions to the times `first` + k `time_step` (s from now), k = 0 ... steps. They are kept
   /// relative to `origin` (m), a point near which rollouts begin, and must live until the next update.
   /// Obstacles whose numbers are not finite are left out.
   void update(std::span<const PredictedObstacle> predicted, const Point& origin, double first,
               double time_step) noexcept;
+
+  /// Sets what it costs to end behind each of those that `taken` returns (see
+  /// MovingObstaclesView::following_cost), until the next update, after which it costs nothing.
+  void set_following_costs(std::span<const double> costs) noexcept;
 
   /// Those of the last update that count.
   std::span<const PredictedObstacle* const> taken() const noexcept {
@@ -220,6 +248,7 @@ class MovingObstacles {
   Point origin_;
   std::vector<MovingObstaclesView::Box> boxes_;
   std::vector<MovingObstaclesView::Reach> reaches_;
+  std::vector<MovingObstaclesView::Followed> followed_;
   std::array<const PredictedObstacle*, max_count> taken_{};
   int count_ = 0;  ///< boxes
   MovingObstaclesView view_;

@@ -36,6 +36,7 @@ Obstacles::Obstacles(const PlannerOptions& options, const VehicleTraits& traits,
       cost_map_(cost_map_options(options, traits)),
       clearance_map_(clearance_options(traits, reach)),
       others_(moving_options(options, traits.body), horizon),
+      pace_(options.time_behind / traits.time_step, options.control_period),
       ranges_(meets_others_ ? static_cast<std::size_t>(cost_map_.options().max_beams) : 0) {}
 
 maps::ScanReport Obstacles::update(const PlannerInput& input, bool placed) noexcept {
@@ -56,7 +57,13 @@ maps::ScanReport Obstacles::update(const PlannerInput& input, bool placed) noexc
   return report;
 }
 
+void Obstacles::charge_time_behind(const maps::ReferenceField& field, const maps::Point& origin,
+                                   const maps::Pose& own) noexcept {
+  if (slips_ && !alone()) others_.set_following_costs(pace_.steps_lost(others_.taken(), field, origin, own));
+}
+
 void Obstacles::reset() noexcept {
+  pace_.reset();
   memory_.reset();
   cost_map_.clear();
   others_.clear();

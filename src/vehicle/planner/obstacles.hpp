@@ -7,6 +7,7 @@
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 #include "vehicle/planner/obstacle_memory.hpp"
+#include "vehicle/planner/pace_of_others.hpp"
 
 namespace slalom::vehicle::detail {
 
@@ -19,6 +20,10 @@ class Obstacles {
   /// Takes the scan and what else an input says. Readings of cars whose future is known are left out of the
   /// maps. `placed`: the odometry can be used.
   maps::ScanReport update(const PlannerInput& input, bool placed) noexcept;
+  /// Makes plans that end behind a slower car cost the time that is lost there; after `update`. The car is
+  /// at `own` in the field's frame, which begins at `origin` (m, map frame).
+  void charge_time_behind(const maps::ReferenceField& field, const maps::Point& origin,
+                          const maps::Pose& own) noexcept;
   /// Forgets all.
   void reset() noexcept;
 
@@ -42,6 +47,7 @@ class Obstacles {
   maps::ClearanceMap clearance_map_;
   ObstacleMemory memory_;
   maps::MovingObstacles others_;
+  PaceOfOthers pace_;
   std::vector<float> ranges_;  ///< of a scan without the readings of other cars
 };
 

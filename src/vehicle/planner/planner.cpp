@@ -140,6 +140,7 @@ struct Planner::Implementation {
     const double furthest =
         std::max(std::abs(odometry.speed), 1.0) + (jumps ? 0 : traits.max_acceleration * horizon_time());
     field.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? time_in_view() : 0);
+    obstacles.charge_time_behind(field, origin, start.pose);
     const maps::ReferenceCell here = field.at(start.pose.x, start.pose.y);
     GridView<4> followed = field.view();
     if (model->has_dynamics() && options.back_up) followed = recover(odometry, start.pose);

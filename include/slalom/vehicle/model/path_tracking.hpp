@@ -157,6 +157,7 @@ class PathTracking {
       if (motion_.seeks_lap_time())
         cost.value = cost.value + (cost_.time_cost(motion_.steps_behind(s, seen.speed)) +
                                    motion_.overspeed_cost(s, seen.speed));
+      if (!others_.empty()) cost.value = cost.value + cost_.time_cost(others_.following_cost(s.x, s.y));
     }
     return with_others(cost, s, others_.last_step());
   }

@@ -28,9 +28,11 @@ struct PlannerOptions {
                             ///< best sample that does not
   bool back_up = true;  ///< with `stop_when_blocked` and `verify_plan`: where the car stands and every plan
                         ///< collides, it reverses a little and tries again
-  bool predict_others = true;           ///< plans meet `PlannerInput::others` where they will be
-  double collision_probability = 0.2;   ///< of others in a step, above which a plan collides
-  EstimationOptions estimation;         ///< of state, car and ground, for models whose tyres slip
+  bool predict_others = true;          ///< plans meet `PlannerInput::others` where they will be
+  double collision_probability = 0.2;  ///< of others in a step, above which a plan collides
+  double time_behind = 0;              ///< s, for how long a car whose plan ends behind a slower one is taken
+                                       ///< to lose time behind it; 0: such plans cost nothing
+  EstimationOptions estimation;        ///< of state, car and ground, for models whose tyres slip
   published::PlannerOptions published;  ///< to reproduce the program of proj-svg_mppi
 };
 
@@ -113,6 +115,13 @@ void visit_options(Options& o, Visit&& visit) {
             .help = "probability of a collision with another car in a step, above which a plan collides",
             .min = 0,
             .max = 1});
+  visit(o.time_behind,
+        Declaration{.name = "time_behind",
+                    .unit = "s",
+                    .help = "with a model whose tyres slip: for how long a car whose plan ends behind a "
+                            "slower one is taken to lose time behind it; 0: such plans cost nothing",
+                    .min = 0,
+                    .max = 1000});
   visit_options(o.estimation, visit);
   visit(o.published.maps, Declaration{.name = "published_maps",
                                       .help = "cost map and reference field as in the paper's program"});

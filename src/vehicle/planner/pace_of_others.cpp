@@ -1,0 +1,65 @@
+#include "vehicle/planner/pace_of_others.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slalom/core/math.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+constexpr double memory = 3;            // s, time constant of the mean of a car's speed
+constexpr double largest_share = 0.25;  // of the time, that counts as lost: a car that stands need not be
+                                        // passed at any risk
+constexpr double behind = 10, ahead = 1;  // m along the other car, where the own car is taken to follow it
+constexpr double beside = 3;              // m across it
+constexpr double same_way = 1;            // rad, between the cars, and between a car and the path
+constexpr double slowest_path = 0.5;      // m/s, below which a share of the path's speed says nothing
+
+bool follows(const maps::Pose& own, const maps::Pose& other) noexcept {
+  const maps::Point place = maps::inverse_transform(other, {own.x, own.y});
+  return place.x > -behind && place.x < ahead && std::abs(place.y) < beside &&
+         std::abs(wrap_angle(own.yaw - other.yaw)) < same_way;
+}
+
+}  // namespace
+
+PaceOfOthers::PaceOfOthers(double steps_behind, double control_period) noexcept
+    : steps_behind_(steps_behind), weight_of_new_(std::min(control_period / memory, 1.0)) {}
+
+std::span<const double> PaceOfOthers::steps_lost(std::span<const maps::PredictedObstacle* const> others,
+                                                 const maps::ReferenceField& field, const maps::Point& origin,
+                                                 const maps::Pose& own) noexcept {
+  ++calls_;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const maps::PredictedObstacle& other = *others[i];
+    // The first pose may hold an error of the tracker that the hypothesis removes: the next two are its path.
+    const maps::Pose from = other.at(other.likeliest(), other.interval).pose,
+                     to = other.at(other.likeliest(), 2 * other.interval).pose;
+    const maps::Pose place{from.x - origin.x, from.y - origin.y, from.yaw};
+    const maps::ReferenceCell path = field.at(place.x, place.y);
+    Pace& pace = pace_of(other.id);
+    if (path.distance < field.options().outside.distance && path.speed >= slowest_path &&
+        std::abs(wrap_angle(place.yaw - double(path.yaw))) < same_way) {
+      const double share = std::hypot(to.x - from.x, to.y - from.y) / other.interval / double(path.speed);
+      pace.share += weight_of_new_ * (share - pace.share);
+    }
+    lost_[i] = follows(own, place) ? steps_behind_ * std::clamp(1 - pace.share, 0.0, largest_share) : 0;
+  }
+  return {lost_.data(), others.size()};
+}
+
+/// What is known of this car; of one not seen before, in the place of the one that was seen longest ago.
+PaceOfOthers::Pace& PaceOfOthers::pace_of(int id) noexcept {
+  auto found = std::find_if(paces_.begin(), paces_.end(),
+                            [id](const Pace& each) { return each.noted > 0 && each.id == id; });
+  if (found == paces_.end()) {
+    found = std::min_element(paces_.begin(), paces_.end(),
+                             [](const Pace& a, const Pace& b) { return a.noted < b.noted; });
+    *found = {.id = id};
+  }
+  found->noted = calls_;
+  return *found;
+}
+
+}  // namespace slalom::vehicle::detail
