@@ -1,8 +1,12 @@
-// Memory that runs out at any allocation of a planner, a course or the start of a lap: std::bad_alloc, and
-// nothing is lost.
+// Memory that runs out at any allocation of a planner, a course, or the start of a lap, a race or a drive in
+// a room: std::bad_alloc, and nothing is lost.
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "slalom/evaluation/closed_loop.hpp"
+#include "slalom/evaluation/grid_race.hpp"
+#include "slalom/evaluation/rooms/room_drive.hpp"
 #include "support/allocation_failures.hpp"
 #include "vehicle/planner/planner_calls.hpp"
 
@@ -46,6 +50,32 @@ TEST(AllocationFailure, ALapStartsOrThrows) {
               for (int step = 0; step < 2; ++step) loop.step();
               return loop.world().state(0).x;
             }),
+            100);
+}
+
+TEST(AllocationFailure, ARaceAmongCarsStartsOrThrows) {
+  const auto environment = load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {});
+  vehicle::Configuration configuration;
+  vehicle::set_option(configuration, "samples", "40", "mppi");
+  const std::vector<RaceEntry> entries{{"first", configuration, "mppi"}, {"second", configuration, "mppi"}};
+  EXPECT_GT(testing::fail_every_allocation([&] {
+              const GridRace race(environment, entries, {.tracking = TrackingMode::exact}, {.laps = 1});
+              std::atomic<bool> cancel{false};
+              const GridRaceResult result = race.run(
+                  3, 0, [&](const GridRaceStep& step) { cancel = step.time > 0.03; }, &cancel);
+              return result.cars[0].last.x + result.cars[1].last.yaw;
+            }),
+            100);
+}
+
+TEST(AllocationFailure, ADriveInARoomStartsOrThrows) {
+  RoomDriver driver;
+  SvgMppiOptions options = navigation::svg_mppi_options({});
+  options.samples = 32;
+  driver.solver = options;
+  const RoomScenario& scenario = room_scenario("oncoming-walker");
+  EXPECT_GT(testing::fail_every_allocation(
+                [&] { return drive_room(scenario, driver, 3, {.timeout = 0.2}).trace.back().x; }),
             100);
 }
 
