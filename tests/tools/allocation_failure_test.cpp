@@ -19,7 +19,7 @@ TEST(AllocationFailure, ADriveStartsOrThrows) {
                   const Scenario scenario = load_scenario(arguments, "mppi");
                   return settings_json(arguments, scenario, "mppi").dump();
                 },
-                100),
+                2000),
             1000);
 }
 

@@ -9,17 +9,21 @@
 /// Runs of the program that are repeated while the system gives it less.
 namespace slalom::testing {
 
-/// Removes what differs from run to run of the same command: times of the wall clock, in ms, and the machine.
-inline void remove_times(nlohmann::json& json) {
+/// Removes what differs between runs of the same command: times of the wall clock, in ms, the machine, and
+/// the build, which a preloaded library changes, with the checksums of files that hold it.
+inline void remove_conditions(nlohmann::json& json) {
+  const auto differs = [](const std::string& key) {
+    return contains(key, "_ms") || key == "machine" || key == "build" || key == "checksum";
+  };
   if (json.is_object()) {
     for (auto each = json.begin(); each != json.end();)
-      each = contains(each.key(), "_ms") || each.key() == "machine" ? json.erase(each) : std::next(each);
+      each = differs(each.key()) ? json.erase(each) : std::next(each);
   }
   if (json.is_structured())
-    for (auto& each : json) remove_times(each);
+    for (auto& each : json) remove_conditions(each);
 }
 
-/// The files in `folder` and below by their names, without times of the wall clock.
+/// The files in `folder` and below by their names, without what differs between runs.
 inline std::map<std::string, std::string> repeatable_files(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -28,7 +32,7 @@ inline std::map<std::string, std::string> repeatable_files(const fs::path& folde
     std::string text = file.filename() == "laps.csv" ? repeatable(file) : content(file);
     if (file.extension() == ".json") {
       auto json = nlohmann::json::parse(text);
-      remove_times(json);
+      remove_conditions(json);
       text = json.dump();
     }
     files[fs::relative(file, folder).string()] = text;

@@ -63,7 +63,7 @@ TEST(PaceOfOthers, BehindASlowerCarItsShareOfTheTimeIsLost) {
 }
 
 TEST(PaceOfOthers, NothingIsLostBehindACarAsFastAsThePath) {
-  EXPECT_EQ(lost_behind(Car(1, {3, 0, 0}, path_speed), 10), 0);
+  EXPECT_NEAR(lost_behind(Car(1, {3, 0, 0}, path_speed), 10), 0, 1e-6);
   EXPECT_EQ(lost_behind(Car(1, {3, 0, 0}, 1.2 * path_speed), 10), 0);
 }
 
@@ -91,7 +91,7 @@ TEST(PaceOfOthers, EveryCarIsRememberedByItself) {
   const maps::PredictedObstacle* const swapped[] = {&fast.obstacle, &slow.obstacle};
   for (int i = 0; i < 1200; ++i) pace.steps_lost(both, field, origin, {0, 0, 0});
   const auto lost = pace.steps_lost(swapped, field, origin, {0, 0, 0});
-  EXPECT_EQ(lost[0], 0);
+  EXPECT_NEAR(lost[0], 0, 1e-6);
   EXPECT_NEAR(lost[1], 0.2 * steps_behind, 1);
   pace.reset();
   EXPECT_LT(pace.steps_lost(swapped, field, origin, {0, 0, 0})[1], 0.01 * steps_behind);
