@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "slalom/maps/moving_obstacles.hpp"
+#include "slalom/solvers/mppi_options.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
+#include "slalom/vehicle/model/registry.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 #include "support/allocations.hpp"
 
@@ -104,6 +106,40 @@ TEST(PlannerAmongOthers, PassesACarThatIsSlower) {
   }
   EXPECT_LT(closest, 10) << "the plan does not reach the car";
   EXPECT_GT(closest, car_width);
+}
+
+/// How far (m) a plan of one second leads. The car, 0.25 m beside the path, has followed another for 5 s at
+/// 0.8 of the path's speed.
+double lead_after_following(double time_behind) {
+  constexpr double followed = 0.8 * speed, gap = 1;  // m/s, m
+  std::vector<maps::ReferencePoint> path;
+  for (int i = 0; i < 600; ++i) path.push_back({0.1 * i, 0, 0, speed});
+  MppiOptions method;
+  method.horizon = 20;
+  method.samples = 1024;
+  method.temperature = 3;
+  method.variance = {0.05, 4};
+  method.input_min = {-0.4, -9};
+  method.input_max = {0.4, 9};
+  VehicleOptions car;
+  car.model = vehicle_model("single_track");
+  PlannerOptions options;
+  options.time_behind = time_behind;
+  Planner planner(options, make_vehicle_model(car), path, make_solver(method, 2));
+  double lead = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double x = 5 + followed * options.control_period * i;
+    Lane wide{.half_width = 1.5, .car = 0.461 + gap};
+    const Other other(x + wide.car, followed);
+    const PlannerOutput& out = planner.update(
+        {.scan = wide.scan(), .odometry = {{x, 0.25, 0}, followed}, .others = {&other.obstacle, 1}});
+    lead = out.predicted.back().pose.x - x;
+  }
+  return lead;
+}
+
+TEST(PlannerAmongOthers, GoesAheadToPassACarBehindWhichItLosesTime) {
+  EXPECT_GT(lead_after_following(100), lead_after_following(0) + 0.15);
 }
 
 TEST(PlannerAmongOthers, AvoidsWhatIsNotInTheWayYet) {
