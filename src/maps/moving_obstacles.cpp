@@ -104,9 +104,11 @@ void MovingObstacles::set_following_costs(std::span<const double> costs) noexcep
   const std::size_t count = std::min(costs.size(), taken().size());
   view_.followed_ = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    if (!(costs[i] > 0)) continue;
     const MovingObstaclesView::Reach& reach = reaches_[static_cast<std::size_t>(steps_) * taken().size() + i];
     const auto& box = boxes_[static_cast<std::size_t>(reach.first + taken_[i]->likeliest())];
+    // One that would be far away by then, or turned by an angle without a sine, is not followed.
+    const bool near = std::hypot(box.x, box.y) < 1e6F && std::isfinite(box.sine + box.cosine);
+    if (!(costs[i] > 0) || !near) continue;
     followed_[static_cast<std::size_t>(view_.followed_++)] = {box.x, box.y, box.sine, box.cosine,
                                                               static_cast<float>(costs[i])};
   }

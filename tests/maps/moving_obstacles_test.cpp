@@ -177,6 +177,15 @@ TEST(MovingObstacles, ToEndBehindOneCostsWhatWasSetUntilItIsPassed) {
   EXPECT_EQ(others.view().following_cost(0.0, -8.0), 0) << "after the next update";
 }
 
+TEST(MovingObstacles, OneThatIsFarAwayAtTheLastStepIsNotFollowed) {
+  MovingObstacles others(touching(), 10);
+  const Predicted flies(0.6, 0.3, {{1, {2, 0, 0}, 1e40}});
+  others.update({&flies.obstacle, 1}, {0, 0}, 0, 0.1);
+  const std::vector<double> costs{20};
+  others.set_following_costs(costs);
+  EXPECT_EQ(others.view().following_cost(0.0, 0.0), 0);
+}
+
 /// A point that drives along x, among others.
 struct Walker {
   template <class T>

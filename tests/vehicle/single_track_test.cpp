@@ -8,6 +8,7 @@
 #include <random>
 
 #include "slalom/sim/dynamics.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -192,6 +193,17 @@ TEST(SingleTrack, HasNoHeldInput) {
   PathTrackingOptions options = car_options();
   options.hold_first_input = true;
   EXPECT_THROW(SingleTrack{options}, std::invalid_argument);
+}
+
+TEST(SingleTrack, RefusesAnInertiaThatNoCarOfItsMassHas) {
+  SingleTrackOptions own;
+  EXPECT_NO_THROW(SingleTrack(car_options(), own));
+  for (const double inertia :
+       {0.004, 0.5}) {  // kg m^2: radii of gyration of 0.033 and 0.37 m, a wheelbase of 0.33 m
+    own.inertia = inertia;
+    expect_error_with<std::invalid_argument>({"vehicle.inertia", "radius of gyration", "0.1 to 1"},
+                                             [&] { SingleTrack(car_options(), own); });
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace slalom::vehicle {
 
@@ -72,6 +73,13 @@ SingleTrack::SingleTrack(const PathTrackingOptions& options, const Options& own)
     throw std::invalid_argument(
         "vehicle.hold_first_input: must be false with vehicle.model 'single_track', whose start the planner "
         "predicts by the dead time");
+  // Mass far from the axles, or all of it in one place: the yaw rate would change by more than a step
+  // resolves.
+  const double gyration = std::sqrt(own.inertia / own.mass) / options.wheelbase();
+  if (gyration < 0.1 || gyration > 1)
+    throw std::invalid_argument(
+        "vehicle.inertia: the radius of gyration, sqrt(inertia / mass), is " + std::to_string(gyration) +
+        " of the wheelbase, must be 0.1 to 1 of it with vehicle.model 'single_track'");
 }
 
 void SingleTrack::complete(VehicleTraits& traits) const noexcept {
