@@ -35,22 +35,31 @@ TEST(AllocationFailure, ACourseIsLoadedOrThrows) {
   EXPECT_GT(
       testing::fail_every_allocation(
           [&] { return load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {})->path.size(); },
-          100000),
+          testing::every_allocation),
       100);
+}
+
+/// The start of a lap with few samples.
+double start_of_lap(const std::shared_ptr<const Environment>& environment,
+                    const vehicle::Configuration& configuration, const LapSettings& settings) {
+  ClosedLoop loop(std::make_shared<const LapRunner>(environment, configuration, "svg_mppi", settings), 5);
+  for (int step = 0; step < 2; ++step) loop.step();
+  return loop.world().state(0).x;
 }
 
 TEST(AllocationFailure, ALapStartsOrThrows) {
   const auto environment = load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {});
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "40", "svg_mppi");
-  EXPECT_GT(testing::fail_every_allocation([&] {
-              ClosedLoop loop(std::make_shared<const LapRunner>(environment, configuration, "svg_mppi",
-                                                                LapSettings{.obstacles = 2}),
-                              5);
-              for (int step = 0; step < 2; ++step) loop.step();
-              return loop.world().state(0).x;
-            }),
-            100);
+  const LapSettings among_obstacles{.obstacles = 2};
+  const LapSettings behind_another{.opponents = 1, .opponent_gap = 3, .tracking = TrackingMode::exact};
+  for (const LapSettings& settings : {among_obstacles, behind_another}) {
+    SCOPED_TRACE(std::to_string(settings.opponents) + " opponents");
+    EXPECT_GT(
+        testing::fail_every_allocation([&] { return start_of_lap(environment, configuration, settings); },
+                                       testing::every_allocation),
+        100);
+  }
 }
 
 TEST(AllocationFailure, ARaceAmongCarsStartsOrThrows) {
@@ -58,13 +67,15 @@ TEST(AllocationFailure, ARaceAmongCarsStartsOrThrows) {
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "40", "mppi");
   const std::vector<RaceEntry> entries{{"first", configuration, "mppi"}, {"second", configuration, "mppi"}};
-  EXPECT_GT(testing::fail_every_allocation([&] {
-              const GridRace race(environment, entries, {.tracking = TrackingMode::exact}, {.laps = 1});
-              std::atomic<bool> cancel{false};
-              const GridRaceResult result = race.run(
-                  3, 0, [&](const GridRaceStep& step) { cancel = step.time > 0.03; }, &cancel);
-              return result.cars[0].last.x + result.cars[1].last.yaw;
-            }),
+  EXPECT_GT(testing::fail_every_allocation(
+                [&] {
+                  const GridRace race(environment, entries, {.tracking = TrackingMode::exact}, {.laps = 1});
+                  std::atomic<bool> cancel{false};
+                  const GridRaceResult result = race.run(
+                      3, 0, [&](const GridRaceStep& step) { cancel = step.time > 0.03; }, &cancel);
+                  return result.cars[0].last.x + result.cars[1].last.yaw;
+                },
+                testing::every_allocation),
             100);
 }
 
@@ -75,7 +86,8 @@ TEST(AllocationFailure, ADriveInARoomStartsOrThrows) {
   driver.solver = options;
   const RoomScenario& scenario = room_scenario("oncoming-walker");
   EXPECT_GT(testing::fail_every_allocation(
-                [&] { return drive_room(scenario, driver, 3, {.timeout = 0.2}).trace.back().x; }),
+                [&] { return drive_room(scenario, driver, 3, {.timeout = 0.2}).trace.back().x; },
+                testing::every_allocation),
             100);
 }
 
