@@ -8,9 +8,9 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-constexpr double memory = 3;            // s, time constant of the mean of a car's speed
-constexpr double largest_share = 0.25;  // of the time, that counts as lost: a car that stands need not be
-                                        // passed at any risk
+constexpr double memory = 3;              // s, time constant of the mean of a car's speed
+constexpr double largest_share = 0.25;    // of the time, that counts as lost: a car that stands need not be
+                                          // passed at any risk
 constexpr double behind = 10, ahead = 1;  // m along the other car, where the own car is taken to follow it
 constexpr double beside = 3;              // m across it
 constexpr double same_way = 1;            // rad, between the cars, and between a car and the path
