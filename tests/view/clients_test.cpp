@@ -25,7 +25,7 @@ class TwoClients : public ViewSession {
     ViewSession::SetUp();
     hostile_.emplace(server_.port());
     hostile_->get("/ws", true);
-    for (int i = 0; i < 1000 && server_.clients() < 2; ++i)
+    for (int i = 0; i < 30000 && server_.clients() < 2; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     ASSERT_EQ(server_.clients(), 2);
     session_.turn();
@@ -35,7 +35,7 @@ class TwoClients : public ViewSession {
   void deliver(testing::WebClient& from, const json& command) {
     const auto before = server_.counters().messages;
     from.send_message(command.dump());
-    for (int i = 0; i < 2000 && server_.counters().messages == before; ++i)
+    for (int i = 0; i < 60000 && server_.counters().messages == before; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ASSERT_GT(server_.counters().messages, before);
   }
@@ -57,7 +57,7 @@ class TwoClients : public ViewSession {
   /// Ends the connection of the hostile client. Nothing waits for it within a few turns.
   void leave() {
     hostile_.reset();
-    for (int i = 0; i < 2000 && server_.clients() > 1; ++i)
+    for (int i = 0; i < 60000 && server_.clients() > 1; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ASSERT_EQ(server_.clients(), 1);
     for (int i = 0; i < 5 && session_.is_busy(); ++i) {
