@@ -10,10 +10,13 @@
 #include <sensor_msgs/LaserScan.h>
 
 #include "bridge/bridge.hpp"
+#include "bridge/input_watch.hpp"
+#include "bridge/throttled_log.hpp"
 
 /// Conversions between ROS messages and the structs of the bridge.
 namespace slalom_ros {
 
+using slalom_bridge::angle_between;
 using slalom_bridge::Pose;
 
 inline geometry_msgs::Quaternion quaternion(double yaw) {
@@ -70,40 +73,20 @@ inline nav_msgs::OccupancyGrid message_of(const slalom_bridge::Grid& g) {
 
 /// Whether the number of ranges matches the angles of the scan, to within one beam.
 inline bool count_fits(const sensor_msgs::LaserScan& s) {
-  const double promised = (static_cast<double>(s.angle_max) - s.angle_min) / s.angle_increment + 1;
-  return std::isfinite(promised) && std::abs(promised - static_cast<double>(s.ranges.size())) <= 1.5;
+  return slalom_bridge::count_fits(scan_of(s), s.angle_max);
 }
 
-inline double angle_between(double a, double b) {
-  return std::abs(std::remainder(a - b, 6.283185307179586));
+/// The clock of ROS, which can jump, and that of the computer.
+inline slalom_bridge::Clocks ros_clocks() {
+  return {[] { return ros::Time::now().toSec(); }, [] { return ros::SteadyTime::now().toSec(); }};
 }
 
-/// A duration in seconds, rounded for messages.
-inline std::string seconds(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f s", value);
-  return text;
-}
-
-/// Logs at most one message per second of the steady clock. Of the messages that come sooner the last is
-/// logged when the second is over.
-class ThrottledLog {
+/// A log of warnings.
+class ThrottledLog : public slalom_bridge::ThrottledLog {
  public:
-  void operator()(const std::string& message) {
-    waiting_ = message;
-    flush();
-  }
-  void flush() {
-    const double now = ros::SteadyTime::now().toSec();
-    if (waiting_.empty() || now - last_ < 1) return;
-    last_ = now;
-    ROS_WARN_STREAM(waiting_);
-    waiting_.clear();
-  }
-
- private:
-  double last_ = -1e9;
-  std::string waiting_;
+  ThrottledLog()
+      : slalom_bridge::ThrottledLog(ros_clocks().steady,
+                                    [](const std::string& message) { ROS_WARN_STREAM(message); }) {}
 };
 
 }  // namespace slalom_ros

@@ -11,8 +11,8 @@
 
 #include <ros/callback_queue.h>
 
+#include "conversions.hpp"
 #include "diagnostics.hpp"
-#include "input_watch.hpp"
 #include "parameters.hpp"
 
 namespace slalom_ros {
@@ -25,7 +25,8 @@ const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
 
 class LocaliserNode {
  public:
-  LocaliserNode() : own_("~"), watch_({}), listener_(buffer_, true, at_once), diagnostics_(node_) {
+  LocaliserNode()
+      : own_("~"), watch_({}, ros_clocks()), listener_(buffer_, true, at_once), diagnostics_(node_) {
     tolerance_ = own_.param("transform_tolerance", tolerance_);
     trust_scans_ = own_.param("trust_scans", trust_scans_);
     trust_health_ = own_.param("trust_health", trust_health_);
@@ -98,14 +99,14 @@ class LocaliserNode {
     localiser_.start_at(pose_of(m->pose.pose));
   }
   void hear_odometry(const Odometry::ConstPtr& m) {
-    if (!watch_.accepts("odometry", m->header.stamp,
-                        odometry_.empty() ? ros::Time(0) : odometry_.back()->header.stamp))
+    if (!watch_.accepts("odometry", m->header.stamp.toSec(),
+                        odometry_.empty() ? 0 : odometry_.back()->header.stamp.toSec()))
       return log_("localisation: " + watch_.fault());
     odometry_.push_back(m);
     if (odometry_.size() > 50) odometry_.pop_front();
   }
   void hear_scan(const sensor_msgs::LaserScan::ConstPtr& scan) {
-    if (!watch_.accepts("scan", scan->header.stamp, last_scan_))
+    if (!watch_.accepts("scan", scan->header.stamp.toSec(), last_scan_.toSec()))
       return log_("localisation: " + watch_.fault());
     last_scan_ = scan->header.stamp;
     Pose at;
@@ -222,7 +223,7 @@ class LocaliserNode {
 
   ros::NodeHandle node_, own_;
   slalom_bridge::Localiser localiser_;
-  InputWatch watch_;
+  slalom_bridge::InputWatch watch_;
   tf2_ros::Buffer buffer_;
   tf2_ros::TransformListener listener_;
   Diagnostics diagnostics_;

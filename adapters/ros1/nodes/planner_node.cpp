@@ -14,14 +14,16 @@
 
 #include <ros/callback_queue.h>
 
+#include "conversions.hpp"
 #include "diagnostics.hpp"
-#include "input_watch.hpp"
 #include "parameters.hpp"
 
 namespace slalom_ros {
 namespace {
 
 using slalom_bridge::Command;
+using slalom_bridge::InputWatch;
+using slalom_bridge::WatchLimits;
 using Drive = ackermann_msgs::AckermannDriveStamped;
 
 const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
@@ -31,6 +33,12 @@ WatchLimits limits_from(ros::NodeHandle& own) {
   l.max_age = own.param("timeout", l.max_age);
   l.settle_time = own.param("settle_time", l.settle_time);
   return l;
+}
+
+/// s, of a message; 0 where there is none.
+template <class Message>
+double stamp_of(const Message& message) {
+  return message ? message->header.stamp.toSec() : 0;
 }
 
 /// A path is closed if its end is near its start.
@@ -55,7 +63,7 @@ class PlannerNode {
       : own_("~"),
         planner_(own_.param<std::string>("configuration", "default"),
                  own_.param<std::string>("method", "svg_mppi")),
-        watch_(limits_from(own_)),
+        watch_(limits_from(own_), ros_clocks()),
         listener_(buffer_, true, at_once),
         diagnostics_(node_) {
     base_ = own_.param<std::string>("base_frame", "base_link");
@@ -111,15 +119,14 @@ class PlannerNode {
   }
 
   void hear_scan(const sensor_msgs::LaserScan::ConstPtr& m) {
-    if (!watch_.accepts("scan", m->header.stamp, scan_ ? scan_->header.stamp : ros::Time(0))) return;
+    if (!watch_.accepts("scan", m->header.stamp.toSec(), stamp_of(scan_))) return;
     if (!count_fits(*m)) return watch_.report("the number of ranges of the scan does not match its angles");
     scan_ = m;
     scan_heard_ = ros::SteadyTime::now().toSec();
     new_scan_ = true;
   }
   void hear_odometry(const nav_msgs::Odometry::ConstPtr& m) {
-    if (!watch_.accepts("odometry", m->header.stamp, odometry_ ? odometry_->header.stamp : ros::Time(0)))
-      return;
+    if (!watch_.accepts("odometry", m->header.stamp.toSec(), stamp_of(odometry_))) return;
     if (!std::isfinite(m->twist.twist.linear.x))
       return watch_.report("the speed of the odometry is not finite");
     odometry_ = m;
@@ -179,7 +186,7 @@ class PlannerNode {
       const ros::Time stamp = scan_->header.stamp;
       pose = pose_of(buffer_.lookupTransform(map_, base_, stamp).transform);
       place_laser(pose_of(buffer_.lookupTransform(base_, scan_->header.frame_id, ros::Time(0)).transform));
-      return watch_.moves_like_a_car(pose, stamp);
+      return watch_.moves_like_a_car(pose, stamp.toSec());
     } catch (const std::exception& error) {
       watch_.report_consequence(std::string("tf: ") + error.what());
       return false;
@@ -202,10 +209,9 @@ class PlannerNode {
     const bool scanned = new_scan_;
     new_scan_ = false;
     Pose pose;
-    const bool well = planner_.has_path()
-                          ? watch_.fresh("scan", scan_ ? scan_->header.stamp : ros::Time(0)) &&
-                                watch_.fresh("odometry", odometry_ ? odometry_->header.stamp : ros::Time(0))
-                          : (watch_.report_consequence("no waypoints yet"), false);
+    const bool well = planner_.has_path() ? watch_.fresh("scan", stamp_of(scan_)) &&
+                                                watch_.fresh("odometry", stamp_of(odometry_))
+                                          : (watch_.report_consequence("no waypoints yet"), false);
     const bool placed = well && (!scanned || find_pose(pose));
     const std::string fault = watch_.fault();
     if (!fault.empty()) return stop(fault);
