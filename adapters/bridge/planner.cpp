@@ -102,7 +102,7 @@ Command Planner::update(const Scan& scan, const Pose& at, double speed, const Im
   command.slip = out.slip_estimate;
   command.state_cost = out.state_cost;
   command.collision_cost = out.collision_cost;
-  for (const float input : out.inputs) command.input_error += std::abs(static_cast<double>(input));
+  for (const float each : out.inputs) command.input_error += std::abs(static_cast<double>(each));
   if (out.solve) command.effective_samples = out.solve->effective_sample_size;
   command.corrections = out.corrections;
   command.steer = out.command.steer;

@@ -11,6 +11,7 @@
 
 #include <ros/callback_queue.h>
 
+#include "bridge/pose_trust.hpp"
 #include "conversions.hpp"
 #include "diagnostics.hpp"
 #include "parameters.hpp"
@@ -28,8 +29,7 @@ class LocaliserNode {
   LocaliserNode()
       : own_("~"), watch_({}, ros_clocks()), listener_(buffer_, true, at_once), diagnostics_(node_) {
     tolerance_ = own_.param("transform_tolerance", tolerance_);
-    trust_scans_ = own_.param("trust_scans", trust_scans_);
-    trust_health_ = own_.param("trust_health", trust_health_);
+    trust_ = slalom_bridge::PoseTrust(own_.param("trust_scans", 10), own_.param("trust_health", 0.7));
     base_ = own_.param<std::string>("base_frame", "base_link");
     localiser_.change(parameters_set(own_, localiser_.options()));
     parameters_ = std::make_unique<DynamicParameters>(
@@ -117,22 +117,10 @@ class LocaliserNode {
     if (!count_fits(*scan)) plain.count = 0;
     estimate_ = localiser_.update(plain, at, scan->header.stamp.toSec());
     slowest_ = std::max(slowest_, estimate_.update_time);
-    if (!estimate_.usable) doubt_ = estimate_.status;
-    if (!trusted())
-      return log_("localisation: " + doubt_ + (estimate_.usable ? ", over, until it is sure" : "") +
-                  ", health " + std::to_string(estimate_.health));
+    if (!trust_.update(estimate_))
+      return log_("localisation: " + trust_.doubt() + ", health " + std::to_string(estimate_.health));
     known_ = estimate_.pose;
     publish(*scan);
-  }
-
-  /// Whether the estimate can be used for driving. After it could not, it must be good for a moment, since
-  /// some scans fit a wrong pose by chance. A mediocre estimate, as beside a parked car, must persist for
-  /// longer.
-  bool trusted() {
-    good_ = estimate_.usable ? good_ + 1 : 0;
-    fine_ = estimate_.usable && estimate_.health >= trust_health_ ? fine_ + 1 : 0;
-    trust_ = estimate_.usable && (trust_ || fine_ >= trust_scans_ || good_ >= 6 * trust_scans_);
-    return trust_;
   }
 
   /// The odometry at the time of the scan: interpolated between messages, extrapolated by speed after the
@@ -206,9 +194,9 @@ class LocaliserNode {
     diagnostics_.add("slowest update, ms", 1e3 * slowest_);
     const bool seen = !last_scan_.isZero() && (ros::Time::now() - last_scan_).toSec() < 1;
     const std::string what = !localiser_.has_map() ? "no map" : !seen ? "no scans" : estimate_.status;
-    diagnostics_.send(seen && trust_ ? 0 : 2, what, "localisation");
+    diagnostics_.send(seen && trust_.holds() ? 0 : 2, what, "localisation");
     slowest_ = 0;
-    if (known_ && trust_) {  // for a node that is restarted
+    if (known_ && trust_.holds()) {  // for a node that is restarted
       own_.setParam("initial_pose/x", known_->x);
       own_.setParam("initial_pose/y", known_->y);
       own_.setParam("initial_pose/yaw", known_->yaw);
@@ -230,16 +218,13 @@ class LocaliserNode {
   std::unique_ptr<DynamicParameters> parameters_;
   std::string base_;
   double tolerance_ = 0.1;  // s
-  int trust_scans_ = 10, good_ = 0, fine_ = 0;
-  bool trust_ = false;
-  double trust_health_ = 0.7;
+  slalom_bridge::PoseTrust trust_;
   ros::Publisher pose_out_, cloud_out_, tf_out_, map_out_;
   ros::Subscriber map_in_, odometry_in_, scan_in_, start_in_;
   std::deque<Odometry::ConstPtr> odometry_;
   ros::Time last_scan_{0};
   std::optional<Pose> start_, known_;
   Estimate estimate_;
-  std::string doubt_ = "uncertain";  ///< the last reason
   double slowest_ = 0;
   ThrottledLog log_;
 };
