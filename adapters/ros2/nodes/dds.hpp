@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <functional>
+#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -25,9 +26,12 @@ enum class Quality {
   latched,      ///< reliable and transient local, keep last 1
 };
 
+/// Whose messages a reader receives.
+enum class From { all_nodes, other_nodes };
+
 class Qos {
  public:
-  explicit Qos(Quality quality) : qos_(dds_create_qos()) {
+  explicit Qos(Quality quality, From from = From::all_nodes) : qos_(dds_create_qos()) {
     const bool best_effort = quality == Quality::sensor_data;
     dds_qset_reliability(qos_, best_effort ? DDS_RELIABILITY_BEST_EFFORT : DDS_RELIABILITY_RELIABLE,
                          DDS_MSECS(100));
@@ -36,6 +40,7 @@ class Qos {
         qos_, quality == Quality::latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
     const dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
     dds_qset_data_representation(qos_, 1, &representation);
+    if (from == From::other_nodes) dds_qset_ignorelocal(qos_, DDS_IGNORELOCAL_PARTICIPANT);
   }
   ~Qos() { dds_delete_qos(qos_); }
   Qos(const Qos&) = delete;
@@ -67,10 +72,11 @@ class Node {
     writers_.push_back(make_writer(type, "rt/" + topic, quality));
     return writers_.back();
   }
-  dds_entity_t reader(const dds_topic_descriptor_t* type, const std::string& topic, Quality quality) {
+  dds_entity_t reader(const dds_topic_descriptor_t* type, const std::string& topic, Quality quality,
+                      From from = From::all_nodes) {
     const dds_entity_t made = make_topic(type, "rt/" + topic);
     readers_.push_back(
-        checked(dds_create_reader(participant_, made, Qos(quality), nullptr), "reader of " + topic));
+        checked(dds_create_reader(participant_, made, Qos(quality, from), nullptr), "reader of " + topic));
     return readers_.back();
   }
 
@@ -97,7 +103,10 @@ class Node {
 
  private:
   dds_entity_t make_topic(const dds_topic_descriptor_t* type, const std::string& name) {
-    return checked(dds_create_topic(participant_, type, name.c_str(), nullptr, nullptr), "topic " + name);
+    dds_entity_t& topic = topics_[name];
+    if (topic == 0)
+      topic = checked(dds_create_topic(participant_, type, name.c_str(), nullptr, nullptr), "topic " + name);
+    return topic;
   }
   dds_entity_t make_writer(const dds_topic_descriptor_t* type, const std::string& name, Quality quality) {
     return checked(dds_create_writer(participant_, make_topic(type, name), Qos(quality), nullptr),
@@ -113,6 +122,7 @@ class Node {
 
   std::string name_;
   dds_entity_t participant_ = 0, discovery_ = 0;
+  std::map<std::string, dds_entity_t> topics_;  ///< by name
   std::vector<dds_entity_t> readers_, writers_;
 };
 
