@@ -7,6 +7,10 @@ import subprocess
 import sys
 import time
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "test"))
+
+from faults import Commands, wait  # noqa: E402, F401  (wait is for the tests)
+
 PREFIX = os.path.abspath(sys.argv[1])  # where the adapter is installed
 NODES = f"{PREFIX}/share/slalom_ros1"
 
@@ -56,34 +60,13 @@ def start_master():
     raise SystemExit("FAILED: no roscore")
 
 
-def wait(what, holds, seconds):
-    begin = time.time()
-    while time.time() < begin + seconds:
-        if holds():
-            print(f"ok: {what} ({time.time() - begin:.1f} s)", flush=True)
-            return
-        time.sleep(0.02)
-    raise SystemExit(f"FAILED: {what}: not within {seconds} s")
-
-
-class Drive:
-    """The commands on `drive`, each with time and publisher."""
+class Drive(Commands):
+    """The commands on `drive`."""
 
     def __init__(self):
-        self.commands = []
+        super().__init__()
         rospy.Subscriber("drive", rospy.AnyMsg, self.hear, queue_size=20)
 
     def hear(self, message):
         # The last five float32 of an AckermannDriveStamped: steering angle and its rate, speed, acceleration, jerk.
-        speed = struct.unpack("<5f", message._buff[-20:])[2]
-        self.commands.append((time.time(), speed, message._connection_header["callerid"]))
-
-    def speeds(self, seconds):
-        begin = time.time() - seconds
-        return [v for t, v, _ in self.commands[-400:] if t >= begin]
-
-    def stopped(self):
-        return len(self.speeds(0.3)) > 3 and max(self.speeds(0.3)) == 0
-
-    def drives(self):
-        return len(self.speeds(0.3)) > 3 and min(self.speeds(0.3)) > 0.2
+        self.add(struct.unpack("<5f", message._buff[-20:])[2])

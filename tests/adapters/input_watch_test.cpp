@@ -1,0 +1,165 @@
+// The checks that every driving node makes of its inputs, with clocks that the tests set.
+#include "bridge/input_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "bridge/pose_trust.hpp"
+#include "bridge/throttled_log.hpp"
+
+namespace slalom_bridge {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+class InputWatchTest : public ::testing::Test {
+ protected:
+  /// Lets time pass, s.
+  void pass(double seconds) {
+    now_ += seconds;
+    steady_ += seconds;
+  }
+
+  double now_ = 5000, steady_ = 300;  ///< s
+  InputWatch watch_{{}, {[this] { return now_; }, [this] { return steady_; }}};
+};
+
+TEST_F(InputWatchTest, AcceptsAMessageOfNow) {
+  EXPECT_TRUE(watch_.accepts("scan", now_, 0));
+  EXPECT_TRUE(watch_.accepts("scan", now_ - 0.14, now_ - 0.14)) << "as old as it may be, and sent twice";
+  EXPECT_TRUE(watch_.accepts("scan", now_ + 0.04, now_)) << "from a clock that is slightly ahead";
+  EXPECT_EQ(watch_.fault(), "");
+}
+
+TEST_F(InputWatchTest, RejectsStampsThatAreLateOutOfOrderOrFromTheFuture) {
+  EXPECT_FALSE(watch_.accepts("scan", now_ + 5, now_));
+  EXPECT_EQ(watch_.fault(), "scan from the future, by 5.00 s");
+  EXPECT_FALSE(watch_.accepts("scan", now_ - 0.05, now_));
+  EXPECT_EQ(watch_.fault(), "scan out of order");
+  EXPECT_FALSE(watch_.accepts("odometry", now_ - 0.5, 0));
+  EXPECT_EQ(watch_.fault(), "odometry late by 0.50 s");
+  EXPECT_FALSE(watch_.accepts("odometry", unknown, 0));
+}
+
+TEST_F(InputWatchTest, AFaultLastsUntilItHasSettled) {
+  watch_.report("fault");
+  pass(0.24);
+  EXPECT_EQ(watch_.fault(), "fault");
+  pass(0.02);
+  EXPECT_EQ(watch_.fault(), "");
+}
+
+TEST_F(InputWatchTest, AConsequenceExtendsAFaultAndKeepsItsReason) {
+  watch_.report("cause");
+  pass(0.2);
+  watch_.report_consequence("consequence");
+  pass(0.2);
+  EXPECT_EQ(watch_.fault(), "cause");
+  pass(1);
+  watch_.report_consequence("consequence");
+  EXPECT_EQ(watch_.fault(), "consequence") << "the cause was long ago";
+}
+
+TEST_F(InputWatchTest, AnInputThatIsMissingOrOldIsAFault) {
+  EXPECT_FALSE(watch_.fresh("scan", 0));
+  EXPECT_EQ(watch_.fault(), "no scan yet");
+  EXPECT_TRUE(watch_.fresh("scan", now_ - 0.1));
+  pass(2);
+  EXPECT_EQ(watch_.fault(), "");
+  EXPECT_FALSE(watch_.fresh("odometry", now_ - 0.3));
+  EXPECT_EQ(watch_.fault(), "no odometry for 0.30 s");
+}
+
+TEST_F(InputWatchTest, AClockThatJumpsIsAFault) {
+  EXPECT_TRUE(watch_.clock_runs());
+  pass(10);
+  EXPECT_TRUE(watch_.clock_runs()) << "both clocks went on";
+  now_ += 20;
+  EXPECT_FALSE(watch_.clock_runs());
+  EXPECT_EQ(watch_.fault(), "the clock jumped by 20.00 s");
+  EXPECT_TRUE(watch_.clock_runs());
+  now_ -= 20;
+  EXPECT_FALSE(watch_.clock_runs());
+  EXPECT_EQ(watch_.fault(), "the clock jumped by -20.00 s");
+  now_ += 0.3;
+  EXPECT_TRUE(watch_.clock_runs()) << "a correction of the clock";
+}
+
+TEST_F(InputWatchTest, APoseThatTheCarCannotHaveReachedIsAFault) {
+  EXPECT_TRUE(watch_.moves_like_a_car({1, 2, 3.1}, now_));
+  EXPECT_TRUE(watch_.moves_like_a_car({1.2, 2, -3.1}, now_ + 0.025)) << "a small turn across half a turn";
+  EXPECT_FALSE(watch_.moves_like_a_car({4.2, 2, -3.1}, now_ + 0.05));
+  EXPECT_EQ(watch_.fault(), "pose jumped by 3 m");
+  EXPECT_TRUE(watch_.moves_like_a_car({4.2, 2, -3.1}, now_ + 0.075)) << "where it jumped to";
+  EXPECT_FALSE(watch_.moves_like_a_car({4.2, 2, 0}, now_ + 0.1)) << "a turn within one period";
+  EXPECT_FALSE(watch_.moves_like_a_car({1e300, 2, 0}, now_ + 0.125));
+  EXPECT_EQ(watch_.fault(), "pose jumped by 1e+300 m");
+  watch_.forget();
+  EXPECT_TRUE(watch_.moves_like_a_car({4.2, 2, 0}, now_ + 0.15));
+}
+
+TEST_F(InputWatchTest, APoseThatIsNotFiniteIsAFaultAndIsNotComparedWith) {
+  EXPECT_TRUE(watch_.moves_like_a_car({1, 2, 3}, now_));
+  for (const Pose& pose : {Pose{unknown, 2, 3}, Pose{1, unknown, 3}, Pose{1, 2, unknown}}) {
+    EXPECT_FALSE(watch_.moves_like_a_car(pose, now_ + 0.01));
+    EXPECT_EQ(watch_.fault(), "pose is not finite");
+  }
+  EXPECT_TRUE(watch_.moves_like_a_car({1, 2, 3}, now_ + 0.02));
+}
+
+TEST(CountFits, ComparesTheNumberOfRangesWithTheAngles) {
+  const auto scan = [](std::size_t count, double increment) {
+    return Scan{nullptr, count, -2, increment, 0, 10};
+  };
+  EXPECT_TRUE(count_fits(scan(401, 0.01), 2));
+  EXPECT_TRUE(count_fits(scan(400, 0.01), 2)) << "drivers differ in whether they count the last beam";
+  EXPECT_FALSE(count_fits(scan(200, 0.01), 2));
+  EXPECT_FALSE(count_fits(scan(401, 0), 2));
+  EXPECT_FALSE(count_fits(scan(401, unknown), 2));
+  EXPECT_FALSE(count_fits(scan(401, 0.01), unknown));
+}
+
+Estimate estimate(bool usable, double health) {
+  Estimate made;
+  made.usable = usable;
+  made.status = usable ? "ok" : "odometry_jump";
+  made.health = health;
+  return made;
+}
+
+TEST(PoseTrust, ComesBackAfterConsecutiveGoodScans) {
+  PoseTrust trust(3, 0.7);
+  EXPECT_EQ(trust.doubt(), "uncertain");
+  EXPECT_FALSE(trust.update(estimate(true, 0.8)));
+  EXPECT_FALSE(trust.update(estimate(true, 0.8)));
+  EXPECT_FALSE(trust.update(estimate(false, 0.8)));
+  EXPECT_EQ(trust.doubt(), "odometry_jump");
+  for (int scan = 1; scan <= 3; ++scan) {
+    EXPECT_EQ(trust.update(estimate(true, 0.8)), scan == 3) << scan;
+    EXPECT_EQ(trust.doubt(), "odometry_jump, over, until it is sure");
+  }
+  EXPECT_TRUE(trust.update(estimate(true, 0.1))) << "trust lasts while the estimate is usable";
+  EXPECT_FALSE(trust.update(estimate(false, 0.9)));
+  EXPECT_FALSE(trust.holds());
+  for (int scan = 1; scan <= 18; ++scan)
+    EXPECT_EQ(trust.update(estimate(true, 0.6)), scan == 18) << "mediocre, scan " << scan;
+}
+
+TEST(ThrottledLog, WritesAtMostOneMessagePerSecondAndTheLastOneThatWaits) {
+  double steady = 7;
+  std::vector<std::string> written;
+  ThrottledLog log([&] { return steady; }, [&](const std::string& message) { written.push_back(message); });
+  log("first");
+  steady += 0.4;
+  log("second");
+  log("third");
+  EXPECT_EQ(written, std::vector<std::string>{"first"});
+  steady += 0.7;
+  log.flush();
+  log.flush();
+  EXPECT_EQ(written, (std::vector<std::string>{"first", "third"}));
+}
+
+}  // namespace
+}  // namespace slalom_bridge
