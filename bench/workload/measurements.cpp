@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "slalom/core/dispatch.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
@@ -48,34 +50,64 @@ class Stick {
   std::vector<double> costs_, times_;
 };
 
+/// Measures rollouts of one problem, ns per step.
+class Rollouts {
+ public:
+  Rollouts(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem, int samples, int steps,
+           simd::Target target)
+      : model_(workload.model(problem, target)),
+        batch_(workload.sequences(samples, steps, model_->inputs())),
+        costs_(static_cast<std::size_t>(batch_.stride())),
+        collided_(static_cast<std::size_t>(batch_.stride())) {}
+  void run() {
+    const BatchEvaluator* const evaluator = &model_->evaluator();
+    const auto begin = Clock::now();
+    evaluator->evaluate(batch_, 0, batch_.samples(), costs_.data(), collided_.data());
+    times_.push_back(1e9 * seconds_since(begin) / (static_cast<double>(batch_.samples()) * batch_.steps()));
+    if (!(costs_[0] > 0)) throw std::logic_error("the costs of the rollouts must be positive");
+  }
+  TimeStatistics statistics() const { return time_statistics(times_); }
+
+ private:
+  std::unique_ptr<vehicle::VehicleModel> model_;
+  SequenceBatch batch_;
+  AlignedBuffer costs_;
+  std::vector<std::uint8_t> collided_;
+  std::vector<double> times_;
+};
+
 }  // namespace
 
 RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
                               int samples, int steps, simd::Target target, double seconds) {
-  const auto model = workload.model(problem, target);
-  const BatchEvaluator* const evaluator = &model->evaluator();
-  const SequenceBatch batch = workload.sequences(samples, steps);
-  AlignedBuffer costs(static_cast<std::size_t>(batch.stride()));
-  std::vector<std::uint8_t> collided(costs.size());
+  Rollouts rollouts(workload, problem, samples, steps, target);
   Stick stick(workload);
-  std::vector<double> times;
   repeat(seconds, [&] {
     stick.run();
-    for (int i = 0; i < 4; ++i) {
-      const auto begin = Clock::now();
-      evaluator->evaluate(batch, 0, samples, costs.data(), collided.data());
-      times.push_back(1e9 * seconds_since(begin) / (static_cast<double>(samples) * steps));
-    }
+    for (int i = 0; i < 4; ++i) rollouts.run();
   });
-  if (!(costs[0] > 0)) throw std::logic_error("the costs of the rollouts must be positive");
-  return {stick.statistics(), time_statistics(times)};
+  return {stick.statistics(), rollouts.statistics()};
+}
+
+std::vector<TimeStatistics> measure_by_turns(const ReferenceWorkload& workload,
+                                             std::span<const vehicle::VehicleOptions> problems, int samples,
+                                             int steps, simd::Target target, double seconds) {
+  std::vector<Rollouts> all;
+  for (const vehicle::VehicleOptions& problem : problems)
+    all.emplace_back(workload, problem, samples, steps, target);
+  repeat(seconds, [&] {
+    for (Rollouts& each : all) each.run();
+  });
+  std::vector<TimeStatistics> statistics;
+  for (const Rollouts& each : all) statistics.push_back(each.statistics());
+  return statistics;
 }
 
 SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
                          const SolverOptions& options, double seconds) {
   const auto model = workload.model(problem, simd::active_target());
   const BatchEvaluator* const evaluator = &model->evaluator();
-  const auto solver = make_solver(options, 1);
+  const auto solver = make_solver(options, model->inputs());
   Stick stick(workload);
   std::vector<double> fresh, prepared, draw, evaluate, guide, update;
   int turn = 0, solves = 0, degenerate = 0;
@@ -107,24 +139,30 @@ SolveSpeed measure_solve(const ReferenceWorkload& workload, const vehicle::Vehic
 
 TickSpeed measure_tick(const vehicle::Configuration& configuration, double seconds) {
   const auto course = reference_course();
-  vehicle::Planner planner(configuration.planner, vehicle::make_vehicle_model(configuration.vehicle), course,
+  auto model = vehicle::make_vehicle_model(configuration.vehicle);
+  // A planner with slipping tyres estimates the motion of the car. So its poses are those of a steady drive,
+  // longer than the window of the identification, and it starts anew where they do: otherwise it would see a
+  // car that makes no progress, and reverse.
+  const bool estimates = model->has_dynamics();
+  const int places = estimates ? 48 : 16;
+  vehicle::Planner planner(configuration.planner, std::move(model), course,
                            make_solver(configuration, "svg_mppi", 1));
-  constexpr int places = 16;
   std::vector<maps::Pose> poses;
   std::vector<ReferenceScan> scans;
   for (int i = 0; i < places; ++i) {
     const maps::ReferencePoint& p = course[static_cast<std::size_t>(2 * i)];
-    poses.push_back({p.x + 0.05 * std::sin(i), p.y, p.yaw});
+    poses.push_back({p.x + 0.05 * std::sin(estimates ? 0.1 * i : i), p.y, p.yaw});
     scans.push_back(reference_scan(poses.back()));
   }
   std::vector<double> whole, rest;
   std::size_t at = 0;
   repeat(seconds, [&] {
+    if (estimates && at == 0) planner.reset(1);
     const vehicle::PlannerOutput& out = planner.update({scans[at].view(), {poses[at], 4.0}, {}});
     if (!out.solve) throw std::logic_error("the planner of the workload returned no plan");
     whole.push_back(1e3 * out.tick_time);
     rest.push_back(1e3 * (out.tick_time - out.solve->times.total));
-    at = (at + 1) % places;
+    at = (at + 1) % scans.size();
   });
   return {time_statistics(whole), time_statistics(rest)};
 }

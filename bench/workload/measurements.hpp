@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,12 @@ struct RolloutSpeed {
 RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
                               int samples, int steps, simd::Target target, double seconds);
 
+/// Measures the rollouts of several problems by turns, so that all run at the same clock frequency: ns per
+/// step with its cost, in the order of `problems`.
+std::vector<TimeStatistics> measure_by_turns(const ReferenceWorkload& workload,
+                                             std::span<const vehicle::VehicleOptions> problems, int samples,
+                                             int steps, simd::Target target, double seconds);
+
 struct SolveSpeed {
   std::string method;
   TimeStatistics solve;      ///< ms
@@ -34,7 +41,7 @@ struct TickSpeed {
   TimeStatistics tick;          ///< ms, a whole update of the planner
   TimeStatistics round_solver;  ///< ms, of the update without the solve
 };
-/// Measures the planner with svg_mppi on successive scans along the course.
+/// Measures the planner with svg_mppi on successive scans along the course, at 4 m/s.
 TickSpeed measure_tick(const vehicle::Configuration& configuration, double seconds);
 
 /// Additions and multiplications of one step and its cost in the published problem with one trajectory;

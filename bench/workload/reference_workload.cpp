@@ -76,32 +76,38 @@ vehicle::VehicleOptions reference_problem(bool two_trajectories) {
 }
 
 ReferenceWorkload::ReferenceWorkload()
-    : field_(reference_course(), maps::published_reference_field()), cost_map_([] {
+    : field_(reference_course(), maps::published_reference_field()),
+      cost_map_([] {
         auto options = maps::published_cost_map();
         options.outside = -1;
         return options;
-      }()) {
+      }()),
+      clearance_map_({.reach = 1}) {
   const maps::ReferencePoint first = reference_course().front();
   robot_ = {first.x + 0.1, first.y, first.yaw + 0.05};
   start_ = {robot_.x, robot_.y, robot_.yaw, first.speed, 0.05};
   field_.update({robot_.x, robot_.y});
   cost_map_.update(reference_scan(robot_).view());
+  clearance_map_.add(cost_map_.points());
 }
 
 std::unique_ptr<vehicle::VehicleModel> ReferenceWorkload::model(const vehicle::VehicleOptions& options,
                                                                 simd::Target target) const {
   auto made = vehicle::make_vehicle_model(options, target);
-  made->set_maps({field_.view(), cost_map_.view(), robot_});
+  const bool discs = made->traits().obstacle_map == vehicle::ObstacleMap::clearance;
+  made->set_maps({field_.view(), discs ? clearance_map_.view() : cost_map_.view(), robot_});
   made->set_start({{start_.x, start_.y, start_.yaw}, start_.speed, start_.steer}, options.reference_speed);
   return made;
 }
 
-SequenceBatch ReferenceWorkload::sequences(int samples, int steps_wanted) const {
-  SequenceBatch batch(steps_wanted, 1, samples);
+SequenceBatch ReferenceWorkload::sequences(int samples, int steps_wanted, int inputs) const {
+  SequenceBatch batch(steps_wanted, inputs, samples);
   RandomStream random({1, 2});
   for (int t = 0; t < steps_wanted; ++t) {
     for (int k = 0; k < batch.stride(); ++k) {
       batch.at(t, 0, k) = static_cast<float>(std::clamp(0.05 + 0.2 * random.normal(), -0.45, 0.45));
+      for (int i = 1; i < inputs; ++i)
+        batch.at(t, i, k) = static_cast<float>(std::clamp(2 * random.normal(), -9.0, 9.0));
     }
   }
   return batch;

@@ -7,6 +7,7 @@
 #include "slalom/core/batch_evaluator.hpp"
 #include "slalom/core/sequence_batch.hpp"
 #include "slalom/core/simd.hpp"
+#include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/reference_field.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
@@ -41,12 +42,14 @@ class ReferenceWorkload {
   const maps::ReferenceField& field() const { return field_; }
   const maps::LocalCostMap& cost_map() const { return cost_map_; }
 
-  /// Normal samples of `steps` inputs, steering in [-0.45, 0.45] rad, around a sequence that drives straight.
-  SequenceBatch sequences(int samples, int steps_wanted = steps) const;
+  /// Normal samples of `steps_wanted` steps, steering in [-0.45, 0.45] rad, around a sequence that drives
+  /// straight; for models with two inputs also accelerations in [-9, 9] m/s^2.
+  SequenceBatch sequences(int samples, int steps_wanted = steps, int inputs = 1) const;
 
   Yardstick yardstick() const { return {reference_problem(false), field_, cost_map_, robot_}; }
 
-  /// The vehicle model with maps and start set, for one instruction set.
+  /// The vehicle model with maps and start set, for one instruction set. It refers to the maps of this
+  /// object.
   std::unique_ptr<vehicle::VehicleModel> model(const vehicle::VehicleOptions& options,
                                                simd::Target target) const;
 
@@ -55,6 +58,7 @@ class ReferenceWorkload {
   CarStart start_;
   maps::ReferenceField field_;
   maps::LocalCostMap cost_map_;
+  maps::ClearanceMap clearance_map_;  ///< the same obstacles, for bodies that consist of discs
 };
 
 }  // namespace slalom::workload

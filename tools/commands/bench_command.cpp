@@ -40,10 +40,31 @@ vehicle::Configuration configuration_of(const BenchArguments& arguments) {
   vehicle::Configuration made = load_configuration(scenario, "svg_mppi");
   if (arguments.config.empty())
     made.vehicle.own_of<vehicle::published::ModelOptions>().straight_local_rollout = false;
-  if (input_count(made.vehicle) != 1) {
-    throw std::invalid_argument(
-        "key vehicle.model: must have the steering as its only input for this measurement");
-  }
+  return made;
+}
+
+/// A vehicle model to compare, with the name that it has in the output.
+struct ComparedModel {
+  std::string name;
+  vehicle::VehicleOptions options;
+};
+
+/// The vehicle models with the car and the body of the configuration `default`. The first one is the
+/// reference.
+std::vector<ComparedModel> compared_models() {
+  ScenarioArguments scenario;
+  scenario.config = "default";
+  const vehicle::VehicleOptions sliding = load_configuration(scenario, "svg_mppi").vehicle;
+  vehicle::VehicleOptions gripping;
+  static_cast<vehicle::PathTrackingOptions&>(gripping) = sliding;
+  std::vector<ComparedModel> made{{"kinematic", gripping},
+                                  {"kinematic_acceleration", gripping},
+                                  {"single_track, linear tyres", sliding},
+                                  {"single_track, saturating tyres", sliding}};
+  made[0].options.model = vehicle::vehicle_model("kinematic");
+  made[1].options.model = vehicle::vehicle_model("kinematic_acceleration");
+  made[2].options.own_of<vehicle::SingleTrackOptions>().tyres = vehicle::TyreModel::linear;
+  made[3].options.own_of<vehicle::SingleTrackOptions>().tyres = vehicle::TyreModel::saturating;
   return made;
 }
 
@@ -80,6 +101,9 @@ class Bench {
                  json_["config"].get<std::string>().c_str());
     cell_access();
     rollouts();
+    vehicle_models();
+    std::fprintf(words_, "%-14s %8s %8s %8s %10s %9s | %s\n", "ms", "p50", "p99", "max", "yardstick",
+                 "prepared", "draw, evaluate, guide, update (us)");
     for (const SolverOptions& options : configuration_.methods) {
       const std::string name = solver_name(options);
       const auto& wanted = arguments_.methods;
@@ -107,21 +131,44 @@ class Bench {
     const workload::RolloutSpeed speed =
         workload::measure_rollouts(workload_, configuration_.vehicle, 8000,
                                    workload::ReferenceWorkload::steps, target_, arguments_.seconds);
-    const double peak = workload::measured_peak_gflops(target_),
-                 rate = workload::operations_per_step / speed.rollout.p50;
     json_["yardstick_ns_per_step"] = speed.yardstick.p50;
     json_["rollout_ns_per_step"] = speed.rollout.p50;
     json_["rollout_times_faster"] = speed.yardstick.p50 / speed.rollout.p50;
+    std::fprintf(words_,
+                 "yardstick %.1f ns a step, rollouts %.3f ns: %.1f times faster (minimum times: %.1f)",
+                 speed.yardstick.p50, speed.rollout.p50, speed.yardstick.p50 / speed.rollout.p50,
+                 speed.yardstick.min / speed.rollout.min);
+    if (arguments_.config.empty()) operations(speed.rollout.p50);
+    std::fprintf(words_, "\n");
+  }
+
+  /// The rate of the fixed workload, whose operations are known.
+  void operations(double ns_per_step) {
+    const double peak = workload::measured_peak_gflops(target_),
+                 rate = workload::operations_per_step / ns_per_step;
     json_["rollout_gflops"] = rate;
     json_["peak_gflops"] = peak;
     json_["share_of_peak"] = rate / peak;
-    std::fprintf(words_,
-                 "yardstick %.1f ns a step, rollouts %.3f ns: %.1f times faster (minimum times: %.1f); %.0f "
-                 "GFLOP/s, %.0f %% of this core's %.0f\n",
-                 speed.yardstick.p50, speed.rollout.p50, speed.yardstick.p50 / speed.rollout.p50,
-                 speed.yardstick.min / speed.rollout.min, rate, 100 * rate / peak, peak);
-    std::fprintf(words_, "%-14s %8s %8s %8s %10s %9s | %s\n", "ms", "p50", "p99", "max", "yardstick",
-                 "prepared", "draw, evaluate, guide, update (us)");
+    std::fprintf(words_, "; %.0f GFLOP/s, %.0f %% of this core's %.0f", rate, 100 * rate / peak, peak);
+  }
+
+  /// Rollouts of each vehicle model over plans as long as those of the configuration `default`, by turns.
+  void vehicle_models() {
+    constexpr int samples = 2000, steps = 20;
+    const std::vector<ComparedModel> compared = compared_models();
+    std::vector<vehicle::VehicleOptions> options;
+    for (const ComparedModel& each : compared) options.push_back(each.options);
+    const auto times =
+        workload::measure_by_turns(workload_, options, samples, steps, target_, arguments_.seconds);
+    std::fprintf(words_, "vehicle models by turns, ns a step (times the first):");
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const double ratio = times[i].p50 / times.front().p50;
+      json_["vehicle_models"].push_back(
+          {{"model", compared[i].name}, {"rollout_ns_per_step", times[i].p50}, {"times_the_first", ratio}});
+      std::fprintf(words_, "%s %s %.3f (%.2f)", i > 0 ? ";" : "", compared[i].name.c_str(), times[i].p50,
+                   ratio);
+    }
+    std::fprintf(words_, "\n");
   }
 
   void method(const SolverOptions& options) {
