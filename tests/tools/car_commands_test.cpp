@@ -1,5 +1,5 @@
 // `slalom hardware`, `slalom identify` and `slalom replay` of a bag: what they find of a drive that is known,
-// and what they say of bad input.
+// and what they say of bad input. And what `slalom bench` measures of models with two inputs.
 #include <nlohmann/json.hpp>
 
 #include "slalom/maps/ros_map.hpp"
@@ -57,6 +57,45 @@ TEST_F(HardwareCommand, RepeatsWithAnyNumberOfJobsAndAppliesItsSettings) {
   EXPECT_EQ(one["latency_ms"], 10);
   EXPECT_NE(results("--latency-ms 40")["results"], one["results"]);
   EXPECT_NE(results("--set planner.max_speed=1")["results"], one["results"]);
+}
+
+TEST_F(HardwareCommand, ReportsTheErrorsOfTheStateEstimatesOfACarWhoseTyresSlip) {
+  const auto run = program(
+      "hardware --drivers mppi@default,mppi@default_kinematic --set samples=256 --tracking-laps 1 --layouts "
+      "0 "
+      "--json out.json");
+  ASSERT_EQ(run.status, 0) << run.output;
+  EXPECT_NE(run.output.find("error of yaw rate "), std::string::npos) << run.output;
+  const json rows = json::parse(content(folder_ / "out.json"))["results"];
+  ASSERT_EQ(rows.size(), 2u);
+  const json& errors = rows[0]["estimation"];
+  // The sensors have noise, so no estimate is exact. The car turns at 3 rad/s and drives at 5 m/s.
+  const std::pair<const char*, double> bounds[] = {
+      {"yaw_rate_rms", 0.3}, {"slip_rms", 0.1}, {"speed_rms", 0.5}};
+  for (const auto& [key, largest] : bounds) {
+    EXPECT_GT(errors[key], 1e-4) << key;
+    EXPECT_LT(errors[key], largest) << key;
+  }
+  EXPECT_FALSE(rows[1].contains("estimation")) << "a model without slip estimates no slip";
+}
+
+class BenchCommand : public testing::ProgramTest {};
+
+TEST_F(BenchCommand, MeasuresModelsWithTwoInputs) {
+  for (const std::string config : {"default", "default_speed"}) {
+    const auto run = program("bench --config " + config +
+                             " --methods svg_mppi --set svg_mppi.samples=256 --seconds 0.01 --json b.json");
+    ASSERT_EQ(run.status, 0) << run.output;
+    const json told = json::parse(content(folder_ / "b.json"));
+    EXPECT_GT(told["rollout_ns_per_step"], 0) << config;
+    EXPECT_GT(told["methods"]["svg_mppi"]["solve_ms"]["p50"], 0) << config;
+    EXPECT_GT(told["tick_ms"], told["tick"]["without_solve_ms"]["p50"]) << config;
+    EXPECT_FALSE(told.contains("rollout_gflops")) << "only the operations of the fixed workload are known";
+    ASSERT_EQ(told["vehicle_models"].size(), 4u);
+    EXPECT_EQ(told["vehicle_models"][0]["times_the_first"], 1);
+    EXPECT_EQ(told["vehicle_models"][3]["model"], "single_track, saturating tyres");
+    EXPECT_GT(told["vehicle_models"][3]["rollout_ns_per_step"], 0);
+  }
 }
 
 TEST_F(HardwareCommand, RejectsInvalidArguments) {

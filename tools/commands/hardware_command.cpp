@@ -9,6 +9,7 @@
 #include "slalom/evaluation/statistics.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
 #include "tools/commands/commands.hpp"
+#include "tools/report/lap_json.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
@@ -104,6 +105,7 @@ Json summarise(const std::vector<Task>& tasks, std::size_t driver, bool among_ob
                const HardwareArguments& arguments) {
   std::vector<double> costs;
   std::vector<float> errors, yaw_errors, update_ms, solve_ms;
+  EstimationRecord states;  // empty for models whose tyres do not slip
   int laps = 0, finished = 0, contacts = 0, with_collision = 0, blind = 0, steps = 0;
   double time = 0;
   for (const Task& task : tasks) {
@@ -124,6 +126,9 @@ Json summarise(const std::vector<Task>& tasks, std::size_t driver, bool among_ob
     append(yaw_errors, r.localisation.yaw_error);
     append(update_ms, r.localisation.update_ms);
     append(solve_ms, r.solve_ms);
+    append(states.yaw_rate_error, r.estimation.yaw_rate_error);
+    append(states.slip_error, r.estimation.slip_error);
+    append(states.speed_error, r.estimation.speed_error);
   }
   const Interval ms = bootstrap_mean(costs);
   Json row{
@@ -139,6 +144,11 @@ Json summarise(const std::vector<Task>& tasks, std::size_t driver, bool among_ob
       {"localisation_error_rad", {{"mean", mean_of(yaw_errors)}, {"p99", percentile_of(yaw_errors, 0.99)}}},
       {"localisation_ms", {{"p50", percentile_of(update_ms, 0.5)}, {"p99", percentile_of(update_ms, 0.99)}}},
       {"solve_ms", {{"p50", percentile_of(solve_ms, 0.5)}, {"p99", percentile_of(solve_ms, 0.99)}}}};
+  if (!states.slip_error.empty()) {
+    row["estimation"] = {{"yaw_rate_rms", root_mean_square(states.yaw_rate_error)},
+                         {"slip_rms", root_mean_square(states.slip_error)},
+                         {"speed_rms", root_mean_square(states.speed_error)}};
+  }
   if (among_obstacles) {
     const int chances = laps * arguments.obstacles;
     const Interval rate = wilson_interval(contacts, chances);
@@ -160,6 +170,13 @@ void print_row(std::FILE* out, const std::string& label, const char* scenario, c
                r["contacts"].get<int>(), rate, r["localisation_error_m"]["mean"].get<double>(),
                r["localisation_error_m"]["p99"].get<double>(), r["localisation_ms"]["p50"].get<double>(),
                r["localisation_ms"]["p99"].get<double>());
+  if (!r.contains("estimation")) return;
+  const Json& errors = r["estimation"];
+  std::fprintf(out,
+               "  error of yaw rate %.3f rad/s, slip %.4f rad, speed %.3f m/s (root mean square of all "
+               "control steps)\n",
+               errors["yaw_rate_rms"].get<double>(), errors["slip_rms"].get<double>(),
+               errors["speed_rms"].get<double>());
 }
 
 int hardware(const HardwareArguments& arguments) {
