@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "slalom/sim/dynamics.hpp"
 #include "support/thrown_words.hpp"
@@ -24,20 +25,30 @@ struct Drive {
   TyreModel tyres;
   double speed;         ///< m/s, at the start
   double acceleration;  ///< m/s^2
+  double lateral = 6;   ///< m/s^2, that the steering asks for; tyres that saturate may have less
+  double friction = SingleTrackOptions{}.friction;
 };
 
-/// The largest distance (m) between the rear axles of model and simulator in one second of steps of 0.05 s,
-/// for steering that is held and for steering that swings, of about 6 m/s^2 of lateral acceleration.
-double largest_error(const Drive& drive) {
+/// How a drive of one second in the model differs from the same in the simulator.
+struct Comparison {
+  double error = 0;    ///< m, the largest distance between the rear axles
+  double lateral = 0;  ///< m/s^2, the largest lateral acceleration of the simulated car
+};
+
+/// Steps of 0.05 s, for steering that is held and for steering that swings.
+Comparison compared(const Drive& drive) {
   const PathTrackingOptions options = car_options();
   SingleTrackOptions own;
   own.tyres = drive.tyres;
+  own.friction = drive.friction;
   const SingleTrackDynamics dynamics(options, own);
-  const sim::CarParameters car;
+  sim::CarParameters car;
+  car.friction = drive.friction;
   sim::DynamicsOptions reference;
   reference.model = drive.tyres == TyreModel::linear ? sim::Model::single_track : sim::Model::saturating;
-  const double steer = std::min(0.35, 1.2 * std::atan(car.wheelbase() * 6 / (drive.speed * drive.speed)));
-  double worst = 0;
+  const double steer =
+      std::min(0.35, 1.2 * std::atan(car.wheelbase() * drive.lateral / (drive.speed * drive.speed)));
+  Comparison found;
   for (const bool swinging : {false, true}) {
     SingleTrackState<double> s{0, 0, 0, drive.speed, 0, 0, 0};
     sim::CarState truth;
@@ -51,10 +62,15 @@ double largest_error(const Drive& drive) {
         truth = sim::advance(car, reference, truth, {(command - truth.steer) / 0.005, acceleration}, 0.005);
       const double x = truth.x - car.rear_length * std::cos(truth.yaw),
                    y = truth.y - car.rear_length * std::sin(truth.yaw);
-      worst = std::max(worst, std::hypot(x - s.x, y - s.y));
+      found.error = std::max(found.error, std::hypot(x - s.x, y - s.y));
+      found.lateral = std::max(found.lateral, std::abs(truth.speed * truth.yaw_rate));
     }
   }
-  return worst;
+  return found;
+}
+
+double largest_error(const Drive& drive) {
+  return compared(drive).error;
 }
 
 TEST(SingleTrack, LinearTyresAgreeWithTheSimulator) {
@@ -71,6 +87,35 @@ TEST(SingleTrack, SaturatingTyresAgreeWithTheSimulator) {
     EXPECT_LT(largest_error({TyreModel::saturating, speed, 0}), 0.08) << speed << " m/s";
   for (const double speed : {3.0, 5.0, 8.0})
     EXPECT_LT(largest_error({TyreModel::saturating, speed, 3}), 0.12) << speed << " m/s, accelerating";
+}
+
+TEST(SingleTrack, AgreesWithTheSimulatorAtTenToFifteenMetresPerSquareSecondOfLateralAcceleration) {
+  for (const double speed : {4.0, 5.0, 6.0, 8.0, 12.0}) {
+    for (const double lateral : {12.0, 15.0}) {
+      const std::string drive = std::to_string(speed) + " m/s, " + std::to_string(lateral) + " m/s^2";
+      const Comparison linear = compared({TyreModel::linear, speed, 0, lateral});
+      EXPECT_GT(linear.lateral, 10) << drive;
+      EXPECT_LT(linear.error, 0.02) << drive;
+      const Comparison saturating = compared({TyreModel::saturating, speed, 0, lateral});
+      EXPECT_GT(saturating.lateral, 10) << drive << ": about all that the tyres have";
+      EXPECT_LT(saturating.error, lateral < 15 ? 0.13 : 0.22) << drive;
+    }
+  }
+}
+
+TEST(SingleTrack, AgreesWithTheSimulatorOnSlipperyGround) {
+  for (const double friction : {0.7, 0.5, 0.3}) {
+    const double grip = friction * 9.81;
+    for (const double speed : {3.0, 5.0, 8.0, 12.0}) {
+      const std::string drive = std::to_string(speed) + " m/s, friction " + std::to_string(friction);
+      EXPECT_LT(largest_error({TyreModel::linear, speed, 0, 0.8 * grip, friction}), 0.01) << drive;
+      EXPECT_LT(largest_error({TyreModel::saturating, speed, 0, 0.8 * grip, friction}), 0.06) << drive;
+      EXPECT_LT(largest_error({TyreModel::saturating, speed, 0, grip, friction}), 0.08) << drive;
+      const Comparison beyond = compared({TyreModel::saturating, speed, 0, 1.5 * grip, friction});
+      EXPECT_GT(beyond.lateral, 0.75 * grip) << drive;
+      EXPECT_LT(beyond.error, 0.15) << drive << ", steering beyond the grip";
+    }
+  }
 }
 
 TEST(SingleTrack, StandsStillAtAStandstill) {
