@@ -2,10 +2,12 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -28,8 +30,8 @@ class WebClient {
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
     inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
-    if (connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-      throw std::runtime_error("no connection");
+    if (connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 && !connected())
+      throw std::runtime_error(std::string("no connection: ") + std::strerror(errno));
   }
   ~WebClient() { close(socket_); }
   WebClient(const WebClient&) = delete;
@@ -39,6 +41,7 @@ class WebClient {
   bool say(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t sent = send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (sent < 0 && errno == EINTR) continue;
       if (sent <= 0) return false;
       bytes.remove_prefix(static_cast<std::size_t>(sent));
     }
@@ -138,10 +141,23 @@ class WebClient {
   }
 
  private:
+  /// A signal, such as that of the timer of a fuzzer, interrupts `connect`, and the system connects all the
+  /// same. Whether it has.
+  bool connected() const {
+    if (errno != EINTR) return false;
+    pollfd wanted{socket_, POLLOUT, 0};
+    while (poll(&wanted, 1, -1) < 0)
+      if (errno != EINTR) return false;
+    socklen_t size = sizeof errno;
+    return getsockopt(socket_, SOL_SOCKET, SO_ERROR, &errno, &size) == 0 && errno == 0;
+  }
   unsigned byte(std::size_t i) const { return static_cast<unsigned char>(received_[i]); }
   bool more() {
     char buffer[65536];
-    const ssize_t got = recv(socket_, buffer, sizeof buffer, 0);
+    ssize_t got = 0;
+    do {
+      got = recv(socket_, buffer, sizeof buffer, 0);
+    } while (got < 0 && errno == EINTR);
     if (got <= 0) return false;
     received_.append(buffer, static_cast<std::size_t>(got));
     return true;
