@@ -6,7 +6,7 @@
 #include <cmath>
 #include <ostream>
 
-#include "ros2/nodes/driver.hpp"
+#include "dds/nodes/driver.hpp"
 #include "test/faulty_car.hpp"
 
 namespace slalom_bridge::testing {
