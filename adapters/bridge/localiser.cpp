@@ -26,6 +26,14 @@ struct Localiser::Hidden {
   slalom::vehicle::LocaliserOptions options;
   slalom::maps::OccupancyGrid map;
   std::optional<slalom::vehicle::Localiser> localiser;
+  std::optional<slalom::maps::Pose> start;  ///< the last pose that was told or reliable; none: everywhere
+
+  void start_again() {
+    if (start)
+      localiser->start_at(*start);
+    else
+      localiser->start_everywhere();
+  }
 };
 
 Localiser::Localiser() : hidden_(std::make_unique<Hidden>()) {}
@@ -49,10 +57,8 @@ void Localiser::change(const Changes& changes) {
   }
   changed.validate();
   if (hidden_->localiser) {
-    const auto& before = hidden_->localiser->output();
-    slalom::vehicle::Localiser made(hidden_->map, changed);
-    if (before.status == slalom::vehicle::LocaliserStatus::ok) made.start_at(before.pose);
-    hidden_->localiser = std::move(made);
+    hidden_->localiser = slalom::vehicle::Localiser(hidden_->map, changed);
+    hidden_->start_again();
   }
   hidden_->options = changed;
 }
@@ -61,6 +67,7 @@ void Localiser::use_map(const Grid& map) {
   slalom::maps::OccupancyGrid grid = grid_of(map);
   hidden_->localiser = slalom::vehicle::Localiser(grid, hidden_->options);
   hidden_->map = std::move(grid);
+  hidden_->start.reset();
 }
 
 bool Localiser::has_map() const {
@@ -70,10 +77,14 @@ Pose Localiser::laser() const {
   return {hidden_->options.laser_x, hidden_->options.laser_y, hidden_->options.laser_yaw};
 }
 void Localiser::start_at(const Pose& at) {
-  if (hidden_->localiser) hidden_->localiser->start_at(pose(at));
+  if (!hidden_->localiser) return;
+  hidden_->start = pose(at);
+  hidden_->start_again();
 }
 void Localiser::start_everywhere() {
-  if (hidden_->localiser) hidden_->localiser->start_everywhere();
+  if (!hidden_->localiser) return;
+  hidden_->start.reset();
+  hidden_->start_again();
 }
 
 Estimate Localiser::update(const Scan& scan, const Pose& odometry, double stamp) {
@@ -88,6 +99,7 @@ Estimate Localiser::update(const Scan& scan, const Pose& odometry, double stamp)
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) e.covariance[i][j] = out.covariance[i][j];
   e.usable = out.status == slalom::vehicle::LocaliserStatus::ok;
+  if (e.usable) hidden_->start = out.pose;
   e.status = slalom::vehicle::name(out.status);
   e.health = out.health;
   e.fit = out.fit;

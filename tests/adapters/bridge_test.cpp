@@ -115,6 +115,20 @@ TEST(BridgeLocaliser, AnInputThatIsNotFiniteIsNotUsable) {
   }
 }
 
+TEST(BridgeLocaliser, AChangeOfOptionsKeepsTheStartThatWasTold) {
+  Localiser localiser;
+  localiser.use_map(room());
+  localiser.start_at({2, 1, 0.5});
+  localiser.change({{"beams", "20"}});
+  const std::vector<Pose> some = localiser.particles(50);
+  ASSERT_FALSE(some.empty());
+  for (const Pose& each : some) {
+    EXPECT_NEAR(each.x, 2, 1.5);
+    EXPECT_NEAR(each.y, 1, 1.5);
+    EXPECT_NEAR(each.yaw, 0.5, 1);
+  }
+}
+
 TEST(BridgeImu, ReadingsThatNoCarHasAreIgnored) {
   ImuSamples samples;
   samples.add(0.5, 1, -1);
