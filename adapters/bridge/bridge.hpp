@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -66,7 +67,7 @@ struct Command {
   double steer = 0;              ///< rad
   double speed = 0;              ///< m/s
   bool ok = false;               ///< false: there is no plan without collision, and the car brakes
-  std::string status;            ///< name of the planner's status
+  std::string_view status;       ///< name of the planner's status, valid for the whole run
   double effective_samples = 0;  ///< effective sample size of the solver
   double update_time = 0;        ///< s, wall-clock
   int corrections = 0;           ///< values that the planner's final check changed; 0 in normal operation
@@ -108,6 +109,8 @@ class Planner {
   bool has_path() const;                             ///< whether a path was set
   double control_period() const;                     ///< s
   Pose laser() const;                                ///< pose relative to the rear axle, from the options
+  /// Writes all options as a configuration file; an old file is replaced.
+  void save(const std::string& file) const;
 
   /// `speed` in m/s. `imu` has the samples since the last update; none where there is no unit. Does not
   /// throw.
@@ -120,13 +123,33 @@ class Planner {
   std::unique_ptr<Hidden> hidden_;
 };
 
+/// Counts the laps of a car along a closed path. Driving backwards counts down.
+class LapCount {
+ public:
+  LapCount();  ///< without a path; counts nothing
+  /// Throws std::exception if the path has fewer than 3 points or points that are not finite.
+  explicit LapCount(const std::vector<Waypoint>& path);
+  ~LapCount();
+  LapCount(LapCount&&) noexcept;
+  LapCount& operator=(LapCount&&) noexcept;
+
+  bool counts() const { return hidden_ != nullptr; }  ///< whether it has a path
+  void restart();                                     ///< counts from the next pose on
+  void update(const Pose& pose, double time);         ///< s; neither allocates nor throws
+  int laps() const;                                   ///< whole laps
+
+ private:
+  struct Hidden;
+  std::unique_ptr<Hidden> hidden_;
+};
+
 /// The result of an update of the localiser.
 struct Estimate {
   Pose pose;                              ///< of the rear axle, map frame
   Pose odometry_frame;                    ///< pose of the odometry frame in the map frame
   double covariance[3][3] = {};           ///< of x, y (m) and yaw (rad)
   bool usable = false;                    ///< whether the pose can be used for driving
-  std::string status;                     ///< name of the localiser's status
+  std::string_view status;                ///< name of the localiser's status, valid for the whole run
   double health = 0, fit = 0, share = 0;  ///< 0 .. 1
   double effective_samples = 0;
   double update_time = 0;  ///< s

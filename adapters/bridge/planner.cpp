@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "bridge/convert.hpp"
+#include "slalom/evaluation/result_folder.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 
@@ -72,6 +73,10 @@ double Planner::control_period() const {
 Pose Planner::laser() const {
   const auto& o = hidden_->settings.planner;
   return {o.laser_x, o.laser_y, o.laser_yaw};
+}
+
+void Planner::save(const std::string& file) const {
+  slalom::evaluation::replace_file(file, slalom::vehicle::to_yaml(hidden_->settings));
 }
 
 void ImuSamples::add(double yaw_rate, double forward, double leftward) {

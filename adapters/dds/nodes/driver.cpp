@@ -89,7 +89,7 @@ void Driver::hear_scan(double stamp, const slalom_bridge::Scan& scan, double ang
     const slalom_bridge::Command command = planner_.update(scan, pose_, speed_, imu_);
     imu_.clear();
     report(command);
-    if (!command.ok) log_("braking: " + command.status);
+    if (!command.ok) log_("braking: " + std::string(command.status));
     steer_ = command.steer;
     return send(command.steer, command.speed);
   }

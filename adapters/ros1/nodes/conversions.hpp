@@ -8,16 +8,23 @@
 #include <nav_msgs/OccupancyGrid.h>
 #include <ros/ros.h>
 #include <sensor_msgs/LaserScan.h>
+#include <tf2_ros/buffer.h>
 
 #include "bridge/bridge.hpp"
+#include "bridge/frames.hpp"
 #include "bridge/input_watch.hpp"
-#include "bridge/throttled_log.hpp"
 
 /// Conversions between ROS messages and the structs of the bridge.
 namespace slalom_ros {
 
-using slalom_bridge::angle_between;
 using slalom_bridge::Pose;
+
+inline slalom_bridge::Stamp stamp_of(const ros::Time& time) {
+  return static_cast<slalom_bridge::Stamp>(time.toNSec());
+}
+inline ros::Time time_of(slalom_bridge::Stamp stamp) {
+  return ros::Time().fromNSec(static_cast<std::uint64_t>(stamp));
+}
 
 inline geometry_msgs::Quaternion quaternion(double yaw) {
   geometry_msgs::Quaternion q;
@@ -71,22 +78,33 @@ inline nav_msgs::OccupancyGrid message_of(const slalom_bridge::Grid& g) {
   return m;
 }
 
-/// Whether the number of ranges matches the angles of the scan, to within one beam.
-inline bool count_fits(const sensor_msgs::LaserScan& s) {
-  return slalom_bridge::count_fits(scan_of(s), s.angle_max);
-}
-
 /// The clock of ROS, which can jump, and that of the computer.
 inline slalom_bridge::Clocks ros_clocks() {
   return {[] { return ros::Time::now().toSec(); }, [] { return ros::SteadyTime::now().toSec(); }};
 }
 
-/// A log of warnings.
-class ThrottledLog : public slalom_bridge::ThrottledLog {
- public:
-  ThrottledLog()
-      : slalom_bridge::ThrottledLog(ros_clocks().steady,
-                                    [](const std::string& message) { ROS_WARN_STREAM(message); }) {}
-};
+/// The transforms in a buffer, which must remain valid.
+inline slalom_bridge::Frames frames_of(tf2_ros::Buffer& buffer, const std::string& map,
+                                       const std::string& base) {
+  return {
+      [&buffer, map, base](slalom_bridge::Stamp at) { return buffer.canTransform(map, base, time_of(at)); },
+      [&buffer, map, base](slalom_bridge::Stamp at) {
+        return pose_of(buffer.lookupTransform(map, base, time_of(at)).transform);
+      },
+      [&buffer, base](const std::string& frame) -> slalom_bridge::Mount {
+        if (frame.empty() || frame == base) return {};
+        const auto t = buffer.lookupTransform(base, frame, ros::Time(0)).transform;
+        return slalom_bridge::mount_of(t.translation.x, t.translation.y, t.translation.z, t.rotation.x,
+                                       t.rotation.y, t.rotation.z, t.rotation.w);
+      },
+      [&buffer] { buffer.clear(); }};
+}
+
+inline void warn(const std::string& message) {
+  ROS_WARN_STREAM(message);
+}
+inline void inform(const std::string& message) {
+  ROS_INFO_STREAM(message);
+}
 
 }  // namespace slalom_ros

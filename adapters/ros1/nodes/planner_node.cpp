@@ -1,7 +1,5 @@
-// The controller: computes `drive` from `scan`, `odom` and tf, with a new plan for every scan. If an input is
-// missing, late, out of order, from the future or invalid, it sends speed 0 and reports the reason, and
-// continues once the inputs have been valid for a moment. docs/on-the-car.md has topics, frames and
-// parameters.
+// The controller: computes `drive` from `scan`, `odom` and tf, with a new plan for every scan. The core of
+// the bridge does the work. docs/on-the-car.md has topics, frames, parameters and faults.
 #include <ackermann_msgs/AckermannDriveStamped.h>
 #include <mppi_metrics_msgs/MPPIMetrics.h>
 #include <nav_msgs/Odometry.h>
@@ -14,6 +12,7 @@
 
 #include <ros/callback_queue.h>
 
+#include "bridge/planner_core.hpp"
 #include "conversions.hpp"
 #include "diagnostics.hpp"
 #include "parameters.hpp"
@@ -22,151 +21,102 @@ namespace slalom_ros {
 namespace {
 
 using slalom_bridge::Command;
-using slalom_bridge::InputWatch;
-using slalom_bridge::WatchLimits;
+using slalom_bridge::PlannerCore;
+using slalom_bridge::Stamp;
+using slalom_bridge::Waypoint;
 using Drive = ackermann_msgs::AckermannDriveStamped;
 
 const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
 
-WatchLimits limits_from(ros::NodeHandle& own) {
-  WatchLimits l;
-  l.max_age = own.param("timeout", l.max_age);
-  l.settle_time = own.param("settle_time", l.settle_time);
-  return l;
+PlannerCore::Settings settings_from(ros::NodeHandle& own) {
+  PlannerCore::Settings s;
+  s.configuration = own.param<std::string>("configuration", s.configuration);
+  s.method = own.param<std::string>("method", s.method);
+  s.course = own.param<std::string>("course", s.course);
+  s.limits.max_age = own.param("timeout", s.limits.max_age);
+  s.limits.settle_time = own.param("settle_time", s.limits.settle_time);
+  return s;
 }
-
-/// s, of a message; 0 where there is none.
-template <class Message>
-double stamp_of(const Message& message) {
-  return message ? message->header.stamp.toSec() : 0;
-}
-
-/// A path is closed if its end is near its start.
-bool is_closed(const std::vector<slalom_bridge::Waypoint>& path) {
-  double length = 0;
-  for (std::size_t i = 1; i < path.size(); ++i)
-    length += std::hypot(path[i].x - path[i - 1].x, path[i].y - path[i - 1].y);
-  const double gap = std::hypot(path.front().x - path.back().x, path.front().y - path.back().y);
-  return gap < 5 * length / static_cast<double>(path.size());
-}
-
-/// Statistics since the last report.
-struct Second {
-  int plans = 0, stops = 0, late = 0, corrections = 0;
-  double slowest = 0, min_samples = 1e300;
-  std::string why;
-};
 
 class PlannerNode {
  public:
   PlannerNode()
       : own_("~"),
-        planner_(own_.param<std::string>("configuration", "default"),
-                 own_.param<std::string>("method", "svg_mppi")),
-        watch_(limits_from(own_), ros_clocks()),
+        base_(own_.param<std::string>("base_frame", "base_link")),
+        map_(own_.param<std::string>("map_frame", "map")),
         listener_(buffer_, true, at_once),
-        diagnostics_(node_) {
-    base_ = own_.param<std::string>("base_frame", "base_link");
-    map_ = own_.param<std::string>("map_frame", "map");
-    planner_.change(parameters_set(own_, planner_.options()));
+        diagnostics_(node_),
+        drive_out_(node_.advertise<Drive>("drive", 1)),
+        metrics_out_(node_.advertise<mppi_metrics_msgs::MPPIMetrics>("mppi/eval_metrics", 1)),
+        markers_out_(node_.advertise<visualization_msgs::MarkerArray>("planner_markers", 1)),
+        path_out_(node_.advertise<nav_msgs::Path>("reference_path", 1, true)),
+        core_(settings_from(own_), ros_clocks(), frames_of(buffer_, map_, base_),
+              {[this](double steer, double speed) { send(steer, speed); },
+               [this](const Command& command, Stamp scan) { show(command, time_of(scan)); },
+               [this](const std::vector<Waypoint>& path, bool closed) { show_path(path, closed); }, warn,
+               inform}) {
+    core_.change(parameters_set(own_, core_.options()));
+    core_.use_course();
     parameters_ = std::make_unique<DynamicParameters>(
-        own_, [this] { return planner_.options(); },
-        [this](const slalom_bridge::Changes& changes) { planner_.change(changes); });
-    drive_out_ = node_.advertise<Drive>("drive", 1);
-    metrics_out_ = node_.advertise<mppi_metrics_msgs::MPPIMetrics>("mppi/eval_metrics", 1);
-    markers_out_ = node_.advertise<visualization_msgs::MarkerArray>("planner_markers", 1);
-    path_out_ = node_.advertise<nav_msgs::Path>("reference_path", 1, true);
-    const auto course = own_.param<std::string>("course", "");
-    if (!course.empty()) {
-      const auto loaded = slalom_bridge::load_course(course);
-      use_path(loaded.waypoints, loaded.closed);
-    }
+        own_, [this] { return core_.options(); },
+        [this](const slalom_bridge::Changes& changes) { core_.change(changes); });
     scan_in_ = node_.subscribe("scan", 5, &PlannerNode::hear_scan, this, at_once);
     odometry_in_ = node_.subscribe("odom", 5, &PlannerNode::hear_odometry, this, at_once);
     imu_in_ = node_.subscribe("imu", 50, &PlannerNode::hear_imu, this, at_once);
     drive_in_ = node_.subscribe("drive", 10, &PlannerNode::hear_drive, this, at_once);
     goal_in_ = node_.subscribe("goal_speed", 1, &PlannerNode::hear_goal_speed, this);
-    if (course.empty())
+    if (own_.param<std::string>("course", "").empty())
       waypoints_in_ = node_.subscribe("reference_waypoint", 1, &PlannerNode::hear_waypoints, this);
   }
 
   void spin() {
     while (ros::ok()) {
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.002));
-      if (!watch_.clock_runs()) start_anew();
-      const double idle = ros::SteadyTime::now().toSec() - sent_;
-      if (scan_is_due() || idle > 1.6 * planner_.control_period()) tick();
-      log_.flush();
-      if (diagnostics_.due()) report();
+      core_.tick();
+      if (diagnostics_.due()) diagnostics_.send(core_.report());
     }
   }
 
  private:
-  /// A scan waits a little for the transforms of its time, which arrive on another topic.
-  bool scan_is_due() const {
-    if (!new_scan_) return false;
-    return ros::SteadyTime::now().toSec() - scan_heard_ > 0.8 * planner_.control_period() ||
-           buffer_.canTransform(map_, base_, scan_->header.stamp);
-  }
-
-  void start_anew() {
-    buffer_.clear();
-    scan_.reset();
-    odometry_.reset();
-    imu_.clear();
-    new_scan_ = false;
-    watch_.forget();
-  }
-
   void hear_scan(const sensor_msgs::LaserScan::ConstPtr& m) {
-    if (!watch_.accepts("scan", m->header.stamp.toSec(), stamp_of(scan_))) return;
-    if (!count_fits(*m)) return watch_.report("the number of ranges of the scan does not match its angles");
-    scan_ = m;
-    scan_heard_ = ros::SteadyTime::now().toSec();
-    new_scan_ = true;
+    core_.hear_scan(stamp_of(m->header.stamp), m->header.frame_id, scan_of(*m), m->angle_max);
   }
   void hear_odometry(const nav_msgs::Odometry::ConstPtr& m) {
-    if (!watch_.accepts("odometry", m->header.stamp.toSec(), stamp_of(odometry_))) return;
-    if (!std::isfinite(m->twist.twist.linear.x))
-      return watch_.report("the speed of the odometry is not finite");
-    odometry_ = m;
+    core_.hear_odometry(stamp_of(m->header.stamp), m->twist.twist.linear.x);
   }
-  /// A unit that is mounted along the axes of the base frame.
   void hear_imu(const sensor_msgs::Imu::ConstPtr& m) {
-    imu_.add(m->angular_velocity.z, m->linear_acceleration.x, m->linear_acceleration.y);
+    const auto &turn = m->angular_velocity, &acceleration = m->linear_acceleration;
+    core_.hear_imu(
+        {m->header.frame_id, {turn.x, turn.y, turn.z}, {acceleration.x, acceleration.y, acceleration.z}});
   }
   void hear_drive(const ros::MessageEvent<Drive const>& event) {
     if (event.getPublisherName() != ros::this_node::getName())
-      watch_.report("another node commands the car: " + event.getPublisherName());
+      core_.hear_other_command(event.getPublisherName());
   }
   void hear_goal_speed(const std_msgs::Float32::ConstPtr& m) {
-    if (!std::isfinite(m->data)) return log_("goal speed is not finite; ignored");
-    stopped_by_goal_ = m->data <= 0;
-    if (stopped_by_goal_) return;
-    try {
-      planner_.change({{"planner/max_speed", std::to_string(std::clamp<double>(m->data, 0.01, 100))}});
-    } catch (const std::exception& error) {
-      log_(error.what());
-    }
+    core_.hear_goal_speed(static_cast<double>(m->data));
   }
   void hear_waypoints(const waypoint_msg::Waypoint::ConstPtr& m) {
-    std::vector<slalom_bridge::Waypoint> path;
-    const std::size_t count = m->poses.size();
-    if (m->twists.size() != count) return log_("waypoints: the numbers of poses and speeds differ; ignored");
-    for (std::size_t i = 0; i < count; ++i) {
+    if (m->twists.size() != m->poses.size())
+      return warn("waypoints: the numbers of poses and speeds differ; ignored");
+    std::vector<Waypoint> path;
+    for (std::size_t i = 0; i < m->poses.size(); ++i) {
       const Pose p = pose_of(m->poses[i].pose);
       path.push_back({p.x, p.y, p.yaw, m->twists[i].twist.linear.x});
     }
-    try {
-      if (count < 3) throw std::invalid_argument("fewer than 3");
-      use_path(path, is_closed(path));
-    } catch (const std::exception& error) {
-      log_(std::string("waypoints: ") + error.what() + "; ignored");
-    }
+    core_.hear_path(path);
   }
 
-  void use_path(const std::vector<slalom_bridge::Waypoint>& path, bool closed) {
-    planner_.use_path(path);
+  void send(double steer, double speed) {
+    Drive m;
+    m.header.stamp = ros::Time::now();
+    m.header.frame_id = base_;
+    m.drive.steering_angle = static_cast<float>(steer);
+    m.drive.speed = static_cast<float>(speed);
+    drive_out_.publish(m);
+  }
+
+  void show_path(const std::vector<Waypoint>& path, bool closed) {
     nav_msgs::Path m;
     m.header.frame_id = map_;
     m.header.stamp = ros::Time::now();
@@ -180,81 +130,9 @@ class PlannerNode {
     path_out_.publish(m);
   }
 
-  /// The pose of the rear axle at the time of the scan. Returns false and reports the fault if it is unknown.
-  bool find_pose(Pose& pose) {
-    try {
-      const ros::Time stamp = scan_->header.stamp;
-      pose = pose_of(buffer_.lookupTransform(map_, base_, stamp).transform);
-      place_laser(pose_of(buffer_.lookupTransform(base_, scan_->header.frame_id, ros::Time(0)).transform));
-      return watch_.moves_like_a_car(pose, stamp.toSec());
-    } catch (const std::exception& error) {
-      watch_.report_consequence(std::string("tf: ") + error.what());
-      return false;
-    }
-  }
-
-  void place_laser(const Pose& laser) {
-    const Pose known = planner_.laser();
-    if (std::hypot(laser.x - known.x, laser.y - known.y) < 0.005 &&
-        angle_between(laser.yaw, known.yaw) < 0.005)
-      return;
-    planner_.change({{"planner/laser_x", std::to_string(laser.x)},
-                     {"planner/laser_y", std::to_string(laser.y)},
-                     {"planner/laser_yaw", std::to_string(laser.yaw)}});
-    ROS_INFO_STREAM("the laser is at x " << laser.x << " m, y " << laser.y << " m, yaw " << laser.yaw
-                                         << " rad by tf");
-  }
-
-  void tick() {
-    const bool scanned = new_scan_;
-    new_scan_ = false;
-    Pose pose;
-    const bool well = planner_.has_path() ? watch_.fresh("scan", stamp_of(scan_)) &&
-                                                watch_.fresh("odometry", stamp_of(odometry_))
-                                          : (watch_.report_consequence("no waypoints yet"), false);
-    const bool placed = well && (!scanned || find_pose(pose));
-    const std::string fault = watch_.fault();
-    if (!fault.empty()) return stop(fault);
-    if (!placed) return stop("input");
-    if (stopped_by_goal_) return stop("goal speed is 0");
-    if (!scanned) return;  // the scan is slightly late; the last command remains valid
-    const Command command = planner_.update(scan_of(*scan_), pose, odometry_->twist.twist.linear.x, imu_);
-    imu_.clear();
-    known_ = command;
-    ++second_.plans;
-    second_.late += command.update_time > planner_.control_period();
-    second_.slowest = std::max(second_.slowest, command.update_time);
-    second_.corrections += command.corrections;
-    second_.min_samples = std::min(second_.min_samples, command.effective_samples);
-    if (!command.ok) {
-      second_.why = command.status;
-      log_("braking: " + command.status);
-    }
-    last_steer_ = command.steer;
-    send(command.steer, command.speed);
-    show(command);
-  }
-
-  void stop(const std::string& why) {
-    ++second_.stops;
-    second_.why = why;
-    log_("stopping: " + why);
-    send(last_steer_, 0);
-  }
-
-  void send(double steer, double speed) {
-    Drive m;
-    m.header.stamp = ros::Time::now();
-    m.header.frame_id = base_;
-    m.drive.steering_angle = static_cast<float>(steer);
-    m.drive.speed = static_cast<float>(speed);
-    drive_out_.publish(m);
-    sent_ = ros::SteadyTime::now().toSec();
-  }
-
-  void show(const Command& command) {
+  void show(const Command& command, ros::Time scan) {
     mppi_metrics_msgs::MPPIMetrics metrics;
-    metrics.header.stamp = scan_->header.stamp;
+    metrics.header.stamp = scan;
     metrics.state_cost = static_cast<float>(command.state_cost);
     metrics.collision_cost = static_cast<float>(command.collision_cost);
     metrics.input_error = static_cast<float>(command.input_error);
@@ -263,7 +141,7 @@ class PlannerNode {
     if (markers_out_.getNumSubscribers() == 0) return;
     visualization_msgs::MarkerArray array;
     visualization_msgs::Marker line;
-    line.header.stamp = scan_->header.stamp;
+    line.header.stamp = scan;
     line.header.frame_id = map_;
     line.ns = "plan";
     line.type = visualization_msgs::Marker::LINE_STRIP;
@@ -273,7 +151,7 @@ class PlannerNode {
     line.color.r = command.ok ? 0.1F : 0.9F;
     line.color.g = command.ok ? 0.5F : 0.1F;
     line.color.b = command.ok ? 0.9F : 0.1F;
-    for (const Pose& p : planner_.predicted()) {
+    for (const Pose& p : core_.predicted()) {
       line.points.emplace_back();
       line.points.back().x = p.x;
       line.points.back().y = p.y;
@@ -284,48 +162,15 @@ class PlannerNode {
     markers_out_.publish(array);
   }
 
-  void report() {
-    diagnostics_.add("plans", second_.plans);
-    diagnostics_.add("stops", second_.stops);
-    diagnostics_.add("deadlines missed", second_.late);
-    diagnostics_.add("values corrected", second_.corrections);
-    diagnostics_.add("slowest update, ms", 1e3 * second_.slowest);
-    diagnostics_.add("deadline, ms", 1e3 * planner_.control_period());
-    if (known_.friction > 0) {
-      diagnostics_.add("friction", known_.friction);
-      diagnostics_.add("friction, standard deviation", known_.friction_deviation);
-      diagnostics_.add("friction that plans rely on", known_.cautious_friction);
-      diagnostics_.add("confidence of the friction", known_.confidence);
-      diagnostics_.add("steering gain", known_.steering_gain);
-      diagnostics_.add("steering delay, ms", 1e3 * known_.delay);
-      diagnostics_.add("slip angle, rad", known_.slip);
-    }
-    if (second_.plans > 0) diagnostics_.add("least effective sample size", second_.min_samples);
-    const int level = second_.stops > 0 || second_.plans == 0    ? 2
-                      : second_.late > 0 || !second_.why.empty() ? 1
-                                                                 : 0;
-    diagnostics_.send(level, second_.why.empty() ? "driving" : second_.why, "plans");
-    second_ = {};
-  }
-
   ros::NodeHandle node_, own_;
-  slalom_bridge::Planner planner_;
-  InputWatch watch_;
+  std::string base_, map_;
   tf2_ros::Buffer buffer_;
   tf2_ros::TransformListener listener_;
   Diagnostics diagnostics_;
-  std::unique_ptr<DynamicParameters> parameters_;
-  std::string base_, map_;
   ros::Publisher drive_out_, metrics_out_, markers_out_, path_out_;
+  PlannerCore core_;
+  std::unique_ptr<DynamicParameters> parameters_;
   ros::Subscriber scan_in_, odometry_in_, imu_in_, drive_in_, goal_in_, waypoints_in_;
-  sensor_msgs::LaserScan::ConstPtr scan_;
-  nav_msgs::Odometry::ConstPtr odometry_;
-  slalom_bridge::ImuSamples imu_;
-  Command known_;  ///< of the last plan
-  bool new_scan_ = false, stopped_by_goal_ = false;
-  double last_steer_ = 0, sent_ = 0, scan_heard_ = 0;
-  ThrottledLog log_;
-  Second second_;
 };
 
 }  // namespace

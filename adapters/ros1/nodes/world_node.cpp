@@ -12,8 +12,7 @@
 
 #include <ros/callback_queue.h>
 
-#include <map>
-
+#include "bridge/world_core.hpp"
 #include "conversions.hpp"
 
 namespace slalom_ros {
@@ -22,7 +21,15 @@ namespace {
 using Drive = ackermann_msgs::AckermannDriveStamped;
 
 const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
-constexpr double period = 0.025;  // s
+
+slalom_bridge::WorldCore::Settings settings_from(ros::NodeHandle& own) {
+  slalom_bridge::WorldCore::Settings s;
+  s.course = own.param<std::string>("course", s.course);
+  s.seed = static_cast<std::uint64_t>(own.param("seed", 1));
+  s.obstacles = own.param("obstacles", s.obstacles);
+  s.command_timeout = own.param("command_timeout", s.command_timeout);
+  return s;
+}
 
 nav_msgs::Odometry odometry(const Pose& p, const slalom_bridge::World::Reading& seen, const char* frame,
                             ros::Time stamp) {
@@ -53,11 +60,7 @@ visualization_msgs::Marker box(int id, const char* frame, const Pose& pose, doub
 
 class WorldNode {
  public:
-  WorldNode()
-      : own_("~"),
-        course_(own_.param<std::string>("course", "wren")),
-        world_(course_, static_cast<std::uint64_t>(own_.param("seed", 1)), own_.param("obstacles", 5)),
-        timeout_(own_.param("command_timeout", 0.2)) {
+  WorldNode() : own_("~"), core_(settings_from(own_), ros_clocks(), warn) {
     scan_out_ = node_.advertise<sensor_msgs::LaserScan>("scan", 1);
     odometry_out_ = node_.advertise<nav_msgs::Odometry>("odom", 1);
     truth_out_ = node_.advertise<nav_msgs::Odometry>("ground_truth", 1);
@@ -74,36 +77,27 @@ class WorldNode {
   }
 
   void spin() {
-    ros::Time due = ros::Time::now();
     while (ros::ok()) {
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.001));
-      log_.flush();
-      const double behind = (ros::Time::now() - due).toSec();
-      if (behind < -1 || behind > 0.5)
-        due = ros::Time::now();  // the clock jumped, or this process was stopped
-      if (ros::Time::now() < due) continue;
-      step(due);
-      due += ros::Duration(period);
+      slalom_bridge::Stamp stamp = 0;
+      if (core_.step_if_due(stamp)) publish(time_of(stamp));
     }
   }
 
  private:
   void hear_drive(const ros::MessageEvent<Drive const>& event) {
     const auto& drive = event.getMessage()->drive;
-    if (!std::isfinite(drive.steering_angle) || !std::isfinite(drive.speed))
-      return log_("a command is not finite");
-    steer_ = drive.steering_angle;
-    speed_ = drive.speed;
-    heard_[event.getPublisherName()] = ros::SteadyTime::now().toSec();
+    core_.hear_drive(event.getPublisherName(), static_cast<double>(drive.steering_angle),
+                     static_cast<double>(drive.speed));
   }
   bool reset(std_srvs::Empty::Request&, std_srvs::Empty::Response&) {
-    world_.reset();
+    core_.reset();
     return true;
   }
 
   /// Publishes what does not change: map, path, pose of the laser.
   void describe() {
-    const auto course = slalom_bridge::load_course(course_);
+    const auto& course = core_.course();
     map_out_.publish(message_of(course.map));
     waypoint_msg::Waypoint path;
     path.header.frame_id = "map";
@@ -119,45 +113,28 @@ class WorldNode {
     }
     waypoints_out_.publish(path);
     tf2_msgs::TFMessage tf;
-    tf.transforms.push_back(transform(world_.laser(), "base_link", "laser", ros::Time::now()));
+    tf.transforms.push_back(transform(core_.world().laser(), "base_link", "laser", ros::Time::now()));
     tf_static_out_.publish(tf);
   }
 
-  /// Publishes obstacles and car, repeatedly, since a display discards markers that it has no transform for
-  /// yet.
+  /// Publishes obstacles and car.
   void mark() {
+    const slalom_bridge::World& world = core_.world();
     visualization_msgs::MarkerArray array;
-    for (const Pose& p : world_.obstacles()) {
+    for (const Pose& p : world.obstacles()) {
       array.markers.push_back(
-          box(static_cast<int>(array.markers.size()), "map", p, world_.car_length(), world_.car_width()));
+          box(static_cast<int>(array.markers.size()), "map", p, world.car_length(), world.car_width()));
       array.markers.back().color.r = 0.9F;
     }
-    array.markers.push_back(box(0, "base_link", {0.17145, 0, 0}, world_.car_length(), world_.car_width()));
+    array.markers.push_back(box(0, "base_link", {0.17145, 0, 0}, world.car_length(), world.car_width()));
     array.markers.back().color.g = 0.6F;
     array.markers.back().frame_locked = true;
     markers_out_.publish(array);
   }
 
-  /// The command that the car follows; none unless exactly one node publishes commands.
-  bool commanded() {
-    const double now = ros::SteadyTime::now().toSec();
-    int voices = 0;
-    std::string names;
-    for (const auto& [name, at] : heard_) {
-      if (now - at > timeout_) continue;
-      ++voices;
-      names += " " + name;
-    }
-    if (voices > 1) log_("braking: commanded by more than one:" + names);
-    return voices == 1;
-  }
-
-  void step(ros::Time due) {
-    world_.step(steer_, commanded() ? speed_ : 0);
-    constexpr int marks_every = 40;
-    if (steps_++ % marks_every == 0) mark();
-    const ros::Time stamp = due;
-    const auto& seen = world_.reading();
+  void publish(ros::Time stamp) {
+    if (core_.marks_due()) mark();
+    const auto& seen = core_.world().reading();
     odometry_out_.publish(odometry(seen.odometry, seen, "odom", stamp));
     truth_out_.publish(odometry(seen.truth, seen, "map", stamp));
     tf2_msgs::TFMessage tf;
@@ -181,17 +158,11 @@ class WorldNode {
   }
 
   ros::NodeHandle node_, own_;
-  std::string course_;
-  slalom_bridge::World world_;
-  double timeout_;  // s
-  double steer_ = 0, speed_ = 0;
-  int steps_ = 0;
-  std::map<std::string, double> heard_;  // s, by name of the publisher
+  slalom_bridge::WorldCore core_;
   ros::Publisher scan_out_, odometry_out_, truth_out_, laps_out_, contacts_out_, tf_out_, tf_static_out_,
       map_out_, waypoints_out_, markers_out_;
   ros::Subscriber drive_in_;
   ros::ServiceServer reset_in_;
-  ThrottledLog log_;
 };
 
 }  // namespace
