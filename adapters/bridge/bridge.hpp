@@ -59,6 +59,7 @@ struct Option {
   std::string value, unit, help;
   double min = 0, max = 0;
   std::vector<std::string> choices;
+  std::string rule;  ///< of the range, for instance "must be in [1, 4096]"; empty for flags and choices
 };
 using Changes = std::vector<std::pair<std::string, std::string>>;  ///< names and values as text
 

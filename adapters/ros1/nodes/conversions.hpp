@@ -15,7 +15,7 @@
 #include "bridge/input_watch.hpp"
 
 /// Conversions between ROS messages and the structs of the bridge.
-namespace slalom_ros {
+namespace slalom_ros1 {
 
 using slalom_bridge::Pose;
 
@@ -107,4 +107,4 @@ inline void inform(const std::string& message) {
   ROS_INFO_STREAM(message);
 }
 
-}  // namespace slalom_ros
+}  // namespace slalom_ros1

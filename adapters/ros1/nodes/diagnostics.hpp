@@ -6,7 +6,7 @@
 #include "bridge/report.hpp"
 
 /// Publishes the state of a node on `/diagnostics` once per second.
-namespace slalom_ros {
+namespace slalom_ros1 {
 
 class Diagnostics {
  public:
@@ -38,4 +38,4 @@ class Diagnostics {
   double sent_ = 0;
 };
 
-}  // namespace slalom_ros
+}  // namespace slalom_ros1

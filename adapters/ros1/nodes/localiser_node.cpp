@@ -14,7 +14,7 @@
 #include "diagnostics.hpp"
 #include "parameters.hpp"
 
-namespace slalom_ros {
+namespace slalom_ros1 {
 namespace {
 
 using nav_msgs::Odometry;
@@ -139,11 +139,11 @@ class LocaliserNode {
 };
 
 }  // namespace
-}  // namespace slalom_ros
+}  // namespace slalom_ros1
 
 int main(int argc, char** argv) try {
   ros::init(argc, argv, "localiser");
-  slalom_ros::LocaliserNode().spin();
+  slalom_ros1::LocaliserNode().spin();
 } catch (const std::exception& error) {
   ROS_FATAL_STREAM(error.what());
   return 1;

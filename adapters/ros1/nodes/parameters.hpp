@@ -15,7 +15,7 @@
 /// Declared options as ROS parameters that can change while the node runs. The messages of
 /// dynamic_reconfigure are made from the declarations, so that rqt_reconfigure and `dynparam` know every
 /// option.
-namespace slalom_ros {
+namespace slalom_ros1 {
 
 inline std::string text_of(XmlRpc::XmlRpcValue value) {
   std::ostringstream text;
@@ -185,4 +185,4 @@ class DynamicParameters {
   ros::ServiceServer service_;
 };
 
-}  // namespace slalom_ros
+}  // namespace slalom_ros1

@@ -17,7 +17,7 @@
 #include "diagnostics.hpp"
 #include "parameters.hpp"
 
-namespace slalom_ros {
+namespace slalom_ros1 {
 namespace {
 
 using slalom_bridge::Command;
@@ -174,11 +174,11 @@ class PlannerNode {
 };
 
 }  // namespace
-}  // namespace slalom_ros
+}  // namespace slalom_ros1
 
 int main(int argc, char** argv) try {
   ros::init(argc, argv, "planner");
-  slalom_ros::PlannerNode().spin();
+  slalom_ros1::PlannerNode().spin();
 } catch (const std::exception& error) {
   ROS_FATAL_STREAM(error.what());
   return 1;

@@ -15,7 +15,7 @@
 #include "bridge/world_core.hpp"
 #include "conversions.hpp"
 
-namespace slalom_ros {
+namespace slalom_ros1 {
 namespace {
 
 using Drive = ackermann_msgs::AckermannDriveStamped;
@@ -166,11 +166,11 @@ class WorldNode {
 };
 
 }  // namespace
-}  // namespace slalom_ros
+}  // namespace slalom_ros1
 
 int main(int argc, char** argv) try {
   ros::init(argc, argv, "world");
-  slalom_ros::WorldNode().spin();
+  slalom_ros1::WorldNode().spin();
 } catch (const std::exception& error) {
   ROS_FATAL_STREAM(error.what());
   return 1;

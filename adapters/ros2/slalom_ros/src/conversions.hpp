@@ -1,0 +1,107 @@
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include <tf2/buffer_core.h>
+#include <builtin_interfaces/msg/time.hpp>
+#include <geometry_msgs/msg/pose.hpp>
+#include <geometry_msgs/msg/transform_stamped.hpp>
+#include <nav_msgs/msg/occupancy_grid.hpp>
+#include <sensor_msgs/msg/laser_scan.hpp>
+
+#include "bridge/bridge.hpp"
+#include "bridge/frames.hpp"
+
+/// Conversions between the messages of ROS 2 and the structs of the bridge.
+namespace slalom_ros {
+
+using slalom_bridge::Pose;
+using slalom_bridge::Stamp;
+
+constexpr std::int64_t second = 1'000'000'000;  ///< ns
+
+inline Stamp stamp_of(const builtin_interfaces::msg::Time& time) {
+  return second * time.sec + static_cast<Stamp>(time.nanosec);
+}
+inline builtin_interfaces::msg::Time time_of(Stamp stamp) {
+  builtin_interfaces::msg::Time time;
+  time.sec = static_cast<std::int32_t>(stamp / second);
+  time.nanosec = static_cast<std::uint32_t>(stamp % second);
+  return time;
+}
+
+inline geometry_msgs::msg::Quaternion quaternion(double yaw) {
+  geometry_msgs::msg::Quaternion q;
+  q.z = std::sin(yaw / 2);
+  q.w = std::cos(yaw / 2);
+  return q;
+}
+inline double yaw_of(const geometry_msgs::msg::Quaternion& q) {
+  return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
+}
+inline Pose pose_of(const geometry_msgs::msg::Pose& p) {
+  return {p.position.x, p.position.y, yaw_of(p.orientation)};
+}
+inline geometry_msgs::msg::Pose message_of(const Pose& p) {
+  geometry_msgs::msg::Pose m;
+  m.position.x = p.x;
+  m.position.y = p.y;
+  m.orientation = quaternion(p.yaw);
+  return m;
+}
+/// Sets all but the names of the frames.
+inline void set_transform(geometry_msgs::msg::TransformStamped& m, const Pose& p, Stamp stamp) {
+  m.header.stamp = time_of(stamp);
+  m.transform.translation.x = p.x;
+  m.transform.translation.y = p.y;
+  m.transform.rotation = quaternion(p.yaw);
+}
+
+inline slalom_bridge::Scan scan_of(const sensor_msgs::msg::LaserScan& s) {
+  return {s.ranges.data(),
+          s.ranges.size(),
+          static_cast<double>(s.angle_min),
+          static_cast<double>(s.angle_increment),
+          static_cast<double>(s.range_min),
+          static_cast<double>(s.range_max)};
+}
+inline slalom_bridge::Grid grid_of(const nav_msgs::msg::OccupancyGrid& m) {
+  return {static_cast<int>(m.info.width), static_cast<int>(m.info.height),
+          static_cast<double>(m.info.resolution), pose_of(m.info.origin), m.data};
+}
+/// Without a stamp.
+inline nav_msgs::msg::OccupancyGrid message_of(const slalom_bridge::Grid& g, const std::string& frame) {
+  nav_msgs::msg::OccupancyGrid m;
+  m.header.frame_id = frame;
+  m.info.width = static_cast<std::uint32_t>(g.width);
+  m.info.height = static_cast<std::uint32_t>(g.height);
+  m.info.resolution = static_cast<float>(g.resolution);
+  m.info.origin = message_of(g.origin);
+  m.data = g.cells;
+  return m;
+}
+
+inline slalom_bridge::Mount mount_of(const geometry_msgs::msg::Transform& t) {
+  return slalom_bridge::mount_of(t.translation.x, t.translation.y, t.translation.z, t.rotation.x,
+                                 t.rotation.y, t.rotation.z, t.rotation.w);
+}
+
+/// The transforms in a buffer, which must remain valid.
+inline slalom_bridge::Frames frames_of(tf2::BufferCore& buffer, const std::string& map,
+                                       const std::string& base) {
+  const auto at = [](Stamp stamp) { return tf2::TimePoint(std::chrono::nanoseconds(stamp)); };
+  return {[&buffer, map, base, at](Stamp stamp) { return buffer.canTransform(map, base, at(stamp)); },
+          [&buffer, map, base, at](Stamp stamp) {
+            return mount_of(buffer.lookupTransform(map, base, at(stamp)).transform).planar();
+          },
+          [&buffer, base](const std::string& frame) -> slalom_bridge::Mount {
+            if (frame.empty() || frame == base) return {};
+            return mount_of(buffer.lookupTransform(base, frame, tf2::TimePointZero).transform);
+          },
+          [&buffer] { buffer.clear(); }};
+}
+
+}  // namespace slalom_ros

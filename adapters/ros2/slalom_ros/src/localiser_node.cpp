@@ -1,0 +1,194 @@
+// Localisation: computes the transform from map to odom, `pf/pose/odom` and `particlecloud` from `scan`,
+// `odom` and a map. The core of the bridge does the work. docs/on-the-car.md has topics, frames, parameters
+// and faults.
+#include <ctime>
+#include <limits>
+#include <optional>
+
+#include <tf2_ros/transform_listener.h>
+#include <geometry_msgs/msg/pose_array.hpp>
+#include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>
+#include <nav_msgs/msg/odometry.hpp>
+#include <rclcpp_components/register_node_macro.hpp>
+#include <tf2_msgs/msg/tf_message.hpp>
+#include <tf2_ros/qos.hpp>
+
+#include "bridge/localiser_core.hpp"
+#include "bridge/pose_file.hpp"
+#include "conversions.hpp"
+#include "managed_node.hpp"
+#include "option_parameters.hpp"
+
+namespace slalom_ros {
+
+using geometry_msgs::msg::PoseArray;
+using geometry_msgs::msg::PoseWithCovarianceStamped;
+using nav_msgs::msg::OccupancyGrid;
+using nav_msgs::msg::Odometry;
+using rclcpp_lifecycle::LifecyclePublisher;
+using sensor_msgs::msg::LaserScan;
+using slalom_bridge::Estimate;
+using slalom_bridge::LocaliserCore;
+using tf2_msgs::msg::TFMessage;
+
+class LocaliserNode : public ManagedNode {
+ public:
+  explicit LocaliserNode(const rclcpp::NodeOptions& options)
+      : ManagedNode("localiser", options, std::chrono::milliseconds(2)),
+        base_(setting<std::string>("base_frame", "base_link", "frame of the car, x ahead and y to the left")),
+        map_(setting<std::string>("map_frame", "map", "frame of the map")),
+        pose_file_(setting<std::string>(
+            "pose_file", "",
+            "keeps the last pose; a node that is restarted within 10 s continues from it; empty: none")) {
+    settings_.course = setting("course", settings_.course,
+                               "a name or a folder, whose map is used; empty: that of the topic map");
+    settings_.everywhere = setting("everywhere", settings_.everywhere, "search the whole map at the start");
+    settings_.trust_scans =
+        setting("trust_scans", settings_.trust_scans,
+                "after a doubt the pose is trusted again after this number of consecutive good scans");
+    settings_.trust_health = setting("trust_health", settings_.trust_health, "of these scans, 0 to 1");
+    settings_.transform_tolerance = setting("transform_tolerance", settings_.transform_tolerance,
+                                            "how far the stamps of the transforms are in the future [s]");
+    settings_.rear_axle =
+        setting("rear_axle", settings_.rear_axle, "x of the middle of the rear axle in the base frame [m]");
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const Pose start{setting("initial_pose.x", none, "of the car at the start [m]"),
+                     setting("initial_pose.y", none, "of the car at the start [m]"),
+                     setting("initial_pose.yaw", none, "of the car at the start [rad]")};
+    if (std::isfinite(start.x) && std::isfinite(start.y) && std::isfinite(start.yaw)) told_ = start;
+    out_.header.frame_id = map_;
+    out_.child_frame_id = base_;
+    transforms_.transforms.resize(1);
+    transforms_.transforms[0].header.frame_id = map_;
+  }
+
+ protected:
+  void set_up() override {
+    pose_out_ = create_publisher<Odometry>("pf/pose/odom", rclcpp::QoS(1));
+    cloud_out_ = create_publisher<PoseArray>("particlecloud", rclcpp::QoS(1));
+    tf_out_ = create_publisher<TFMessage>("/tf", tf2_ros::DynamicBroadcasterQoS());
+    LocaliserCore::Settings settings = settings_;
+    settings.start = told_;
+    constexpr double long_ago = 10;  // s
+    if (const auto kept = slalom_bridge::read_pose(pose_file_, wall_time(), long_ago); kept) {
+      settings.start = kept;
+      settings.everywhere = false;
+    }
+    core_.emplace(
+        settings, clocks(), frames_of(buffer_, map_, base_),
+        LocaliserCore::Outputs{
+            [this](const Pose& base, const Estimate& estimate, Stamp scan) { publish(base, estimate, scan); },
+            [this](const Pose& odometry_frame, Stamp stamp) {
+              set_transform(transforms_.transforms[0], odometry_frame, stamp);
+              tf_out_->publish(transforms_);
+            },
+            [this](const slalom_bridge::Grid& map) { course_map_ = message_of(map, map_); },
+            [this](const std::string& message) { warn(message); },
+            [this](const std::string& message) { inform(message); }});
+    parameters_.emplace(
+        *this, [this] { return core_->options(); },
+        [this](const slalom_bridge::Changes& changes) { core_->change(changes); });
+    core_->use_course();
+    if (!settings_.course.empty())
+      map_out_ = create_publisher<OccupancyGrid>("map", rclcpp::QoS(1).transient_local());
+  }
+
+  void start() override {
+    listener_.emplace(buffer_, shared_from_this(), true);
+    if (map_out_) {
+      course_map_.header.stamp = now();
+      map_out_->publish(course_map_);
+    } else {
+      map_in_ = create_subscription<OccupancyGrid>(
+          "map", rclcpp::QoS(1).transient_local(),
+          [this](const OccupancyGrid::ConstSharedPtr m) { core_->hear_map(grid_of(*m)); });
+    }
+    const auto sensor = rclcpp::SensorDataQoS();
+    odometry_in_ = create_subscription<Odometry>("odom", rclcpp::SensorDataQoS().keep_last(10),
+                                                 [this](const Odometry::ConstSharedPtr m) { hear(*m); });
+    scan_in_ = create_subscription<LaserScan>("scan", sensor, [this](const LaserScan::ConstSharedPtr m) {
+      core_->hear_scan(stamp_of(m->header.stamp), m->header.frame_id, scan_of(*m),
+                       static_cast<double>(m->angle_max));
+    });
+    start_in_ = create_subscription<PoseWithCovarianceStamped>(
+        "initialpose", rclcpp::QoS(1), [this](const PoseWithCovarianceStamped::ConstSharedPtr m) {
+          core_->hear_start(pose_of(m->pose.pose));
+        });
+  }
+
+  void stop() override {
+    map_in_.reset();
+    odometry_in_.reset();
+    scan_in_.reset();
+    start_in_.reset();
+    listener_.reset();
+  }
+
+  void tear_down() override {
+    parameters_.reset();
+    core_.reset();
+    pose_out_.reset();
+    cloud_out_.reset();
+    tf_out_.reset();
+    map_out_.reset();
+  }
+
+  void tick() override { core_->tick(); }
+
+  slalom_bridge::Report report() override {
+    parameters_->refresh();
+    if (const auto pose = core_->reliable();
+        pose && !pose_file_.empty() && !slalom_bridge::write_pose(pose_file_, *pose, wall_time()))
+      RCLCPP_WARN_ONCE(get_logger(), "pose_file: %s cannot be written", pose_file_.c_str());
+    if (cloud_out_->get_subscription_count() > 0) {
+      PoseArray cloud;
+      cloud.header.frame_id = map_;
+      cloud.header.stamp = now();
+      for (const Pose& p : core_->particles(300)) cloud.poses.push_back(message_of(p));
+      cloud_out_->publish(cloud);
+    }
+    return core_->report();
+  }
+
+ private:
+  /// s since 1970, of the computer.
+  static double wall_time() { return static_cast<double>(std::time(nullptr)); }
+
+  void hear(const Odometry& m) {
+    out_.twist = m.twist;
+    transforms_.transforms[0].child_frame_id = m.header.frame_id;
+    core_->hear_odometry(
+        {stamp_of(m.header.stamp), pose_of(m.pose.pose), m.twist.twist.linear.x, m.twist.twist.angular.z});
+  }
+
+  void publish(const Pose& base, const Estimate& estimate, Stamp scan) {
+    out_.header.stamp = time_of(scan);
+    out_.pose.pose = message_of(base);
+    constexpr std::size_t row[3] = {0, 1, 5};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        out_.pose.covariance[6 * row[i] + row[j]] = estimate.covariance[i][j];
+    pose_out_->publish(out_);
+  }
+
+  LocaliserCore::Settings settings_;
+  std::string base_, map_, pose_file_;
+  std::optional<Pose> told_;  ///< the start in the parameters
+  tf2::BufferCore buffer_;
+  std::optional<tf2_ros::TransformListener> listener_;
+  std::shared_ptr<LifecyclePublisher<Odometry>> pose_out_;
+  std::shared_ptr<LifecyclePublisher<PoseArray>> cloud_out_;
+  std::shared_ptr<LifecyclePublisher<TFMessage>> tf_out_;
+  std::shared_ptr<LifecyclePublisher<OccupancyGrid>> map_out_;
+  // Kept, so that their memory is reused.
+  Odometry out_;
+  TFMessage transforms_;
+  OccupancyGrid course_map_;
+  std::optional<LocaliserCore> core_;
+  std::optional<OptionParameters> parameters_;
+  rclcpp::SubscriptionBase::SharedPtr map_in_, odometry_in_, scan_in_, start_in_;
+};
+
+}  // namespace slalom_ros
+
+RCLCPP_COMPONENTS_REGISTER_NODE(slalom_ros::LocaliserNode)

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include <diagnostic_msgs/msg/diagnostic_array.hpp>
+#include <rclcpp/rclcpp.hpp>
+#include <rclcpp_lifecycle/lifecycle_node.hpp>
+
+#include "bridge/input_watch.hpp"
+#include "bridge/report.hpp"
+
+namespace slalom_ros {
+
+/// A lifecycle node that publishes its state on `/diagnostics` once per second while it is active. With the
+/// parameter `autostart` it configures and activates itself. A transition that throws fails with the message
+/// in the log. All callbacks are in the default callback group, so they never run at the same time.
+class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
+ public:
+  /// `tick_period` is that of the calls of `tick`.
+  ManagedNode(const std::string& name, const rclcpp::NodeOptions& options,
+              std::chrono::milliseconds tick_period);
+
+  using State = rclcpp_lifecycle::State;
+  using CallbackReturn = rclcpp_lifecycle::node_interfaces::LifecycleNodeInterface::CallbackReturn;
+  CallbackReturn on_configure(const State& before) override;
+  CallbackReturn on_activate(const State& before) override;
+  CallbackReturn on_deactivate(const State& before) override;
+  CallbackReturn on_cleanup(const State& before) override;
+  CallbackReturn on_shutdown(const State& before) override;
+  CallbackReturn on_error(const State& before) override;
+
+ protected:
+  // What a node does in each transition; these may throw std::exception.
+  virtual void set_up() = 0;     ///< unconfigured to inactive
+  virtual void start() = 0;      ///< inactive to active; publishers are active
+  virtual void stop() = 0;       ///< active to inactive; publishers are still active
+  virtual void tear_down() = 0;  ///< inactive to unconfigured
+  virtual void tick() {}         ///< every few milliseconds while active
+  /// What happened since the last report; once per second while active.
+  virtual slalom_bridge::Report report() = 0;
+
+  /// A parameter that is fixed when the node is made.
+  template <class Value>
+  Value setting(const std::string& name, const Value& value, const std::string& description) {
+    rcl_interfaces::msg::ParameterDescriptor descriptor;
+    descriptor.description = description;
+    descriptor.read_only = true;
+    return declare_parameter<Value>(name, value, descriptor);
+  }
+
+  slalom_bridge::Clocks clocks() const;
+  void warn(const std::string& message) const;
+  void inform(const std::string& message) const;
+
+ private:
+  template <class Action>
+  CallbackReturn attempt(const char* what, Action&& action);
+  void send_report();
+  void drop_timers();
+
+  std::chrono::milliseconds tick_period_;
+  std::shared_ptr<rclcpp_lifecycle::LifecyclePublisher<diagnostic_msgs::msg::DiagnosticArray>>
+      diagnostics_out_;
+  rclcpp::TimerBase::SharedPtr autostart_timer_, tick_timer_, report_timer_;
+};
+
+}  // namespace slalom_ros

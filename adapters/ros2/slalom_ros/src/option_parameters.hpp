@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <rclcpp_lifecycle/lifecycle_node.hpp>
+
+#include "bridge/bridge.hpp"
+
+namespace slalom_ros {
+
+/// Declared options of Slalom as parameters of a node, with type, range and description, that can change
+/// while the node runs. The option "section/name" is the parameter "section.name". A change that breaks a
+/// rule is refused with that rule. Ranges are checked by rclcpp, whose answer does not state them; so from
+/// Iron on the rule is also written to the log.
+class OptionParameters {
+ public:
+  using List = std::function<std::vector<slalom_bridge::Option>()>;
+  using Change = std::function<void(const slalom_bridge::Changes&)>;  ///< throws std::exception
+
+  /// Declares the options, with the values of `list` where the user gave none, and applies those of the user.
+  /// Throws std::exception if one of them breaks a rule or a section has no option of its name. The node must
+  /// outlive this.
+  OptionParameters(rclcpp_lifecycle::LifecycleNode& node, List list, Change change);
+
+  /// Sets the parameters to the options that something else changed.
+  void refresh();
+
+ private:
+  void declare(const slalom_bridge::Option& option);
+  void check_names() const;
+  rcl_interfaces::msg::SetParametersResult set(const std::vector<rclcpp::Parameter>& parameters);
+  void log_broken_ranges(const std::vector<rclcpp::Parameter>& parameters) const;
+
+  rclcpp_lifecycle::LifecycleNode& node_;
+  List list_;
+  Change change_;
+  std::map<std::string, slalom_bridge::Option> options_;  ///< by the names of the parameters
+  bool refreshing_ = false;
+  std::shared_ptr<void> before_set_, on_set_;  ///< the registrations of the callbacks
+};
+
+}  // namespace slalom_ros

@@ -1,0 +1,279 @@
+// The controller: computes `drive` from `scan`, `odom` and tf, with a new plan for every scan. The core of
+// the bridge does the work. docs/on-the-car.md has topics, frames, parameters and faults.
+#include <optional>
+
+#include <tf2_ros/transform_listener.h>
+#include <ackermann_msgs/msg/ackermann_drive_stamped.hpp>
+#include <nav_msgs/msg/odometry.hpp>
+#include <nav_msgs/msg/path.hpp>
+#include <rclcpp_components/register_node_macro.hpp>
+#include <sensor_msgs/msg/imu.hpp>
+#include <slalom_msgs/msg/planner_metrics.hpp>
+#include <slalom_msgs/msg/waypoints.hpp>
+#include <slalom_msgs/srv/drive_laps.hpp>
+#include <slalom_msgs/srv/save.hpp>
+#include <std_msgs/msg/float32.hpp>
+#include <visualization_msgs/msg/marker_array.hpp>
+
+#include "bridge/planner_core.hpp"
+#include "conversions.hpp"
+#include "managed_node.hpp"
+#include "option_parameters.hpp"
+
+namespace slalom_ros {
+
+using ackermann_msgs::msg::AckermannDriveStamped;
+using nav_msgs::msg::Odometry;
+using rclcpp_lifecycle::LifecyclePublisher;
+using sensor_msgs::msg::Imu;
+using sensor_msgs::msg::LaserScan;
+using slalom_bridge::Command;
+using slalom_bridge::PlannerCore;
+using slalom_bridge::Waypoint;
+using slalom_msgs::msg::PlannerMetrics;
+using slalom_msgs::msg::Waypoints;
+using slalom_msgs::srv::DriveLaps;
+using slalom_msgs::srv::Save;
+using visualization_msgs::msg::MarkerArray;
+
+class PlannerNode : public ManagedNode {
+ public:
+  explicit PlannerNode(const rclcpp::NodeOptions& options)
+      : ManagedNode("planner", options, std::chrono::milliseconds(2)),
+        base_(setting<std::string>("base_frame", "base_link", "frame of the car, x ahead and y to the left")),
+        map_(setting<std::string>("map_frame", "map", "frame of the path")) {
+    settings_.configuration = setting("configuration", settings_.configuration, "a name or a file");
+    settings_.method = setting("method", settings_.method, "the solver");
+    settings_.course = setting("course", settings_.course,
+                               "a name or a folder, whose path is driven; empty: that of reference_waypoint");
+    settings_.limits.max_age =
+        setting("timeout", settings_.limits.max_age, "the car stops if scan or odometry is older [s]");
+    settings_.limits.settle_time = setting("settle_time", settings_.limits.settle_time,
+                                           "how long the car stays stopped after a fault [s]");
+    settings_.rear_axle =
+        setting("rear_axle", settings_.rear_axle, "x of the middle of the rear axle in the base frame [m]");
+    settings_.scan_interval =
+        setting("scan_interval", settings_.scan_interval,
+                "scans that come sooner after the last one used are not used; 0: all are used [s]");
+    drive_.header.frame_id = base_;
+    path_.header.frame_id = map_;
+    make_marker();
+  }
+
+ protected:
+  void set_up() override {
+    drive_out_ = create_publisher<AckermannDriveStamped>("drive", rclcpp::QoS(1));
+    metrics_out_ = create_publisher<PlannerMetrics>("mppi/eval_metrics", rclcpp::QoS(1));
+    markers_out_ = create_publisher<MarkerArray>("planner_markers", rclcpp::QoS(1));
+    path_out_ = create_publisher<nav_msgs::msg::Path>("reference_path", rclcpp::QoS(1).transient_local());
+    core_.emplace(settings_, clocks(), frames_of(buffer_, map_, base_),
+                  PlannerCore::Outputs{
+                      [this](double steer, double speed) { send(steer, speed); },
+                      [this](const Command& command, Stamp scan) { show(command, scan); },
+                      [this](const std::vector<Waypoint>& path, bool closed) { use_path(path, closed); },
+                      [this](const std::string& message) { warn(message); },
+                      [this](const std::string& message) { inform(message); }});
+    limit_speed();
+    parameters_.emplace(
+        *this, [this] { return core_->options(); },
+        [this](const slalom_bridge::Changes& changes) { core_->change(changes); });
+    core_->use_course();
+    laps_service_ = create_service<DriveLaps>(
+        "~/drive_laps",
+        [this](const DriveLaps::Request::SharedPtr asked, const DriveLaps::Response::SharedPtr answer) {
+          attempt(*answer, [&] { core_->drive_laps(asked->laps); });
+        });
+    save_service_ = create_service<Save>(
+        "~/save", [this](const Save::Request::SharedPtr asked, const Save::Response::SharedPtr answer) {
+          attempt(*answer, [&] { core_->save(asked->file); });
+        });
+  }
+
+  void start() override {
+    listener_.emplace(buffer_, shared_from_this(), true);
+    if (!path_.poses.empty()) path_out_->publish(path_);
+    const auto sensor = rclcpp::SensorDataQoS();
+    scan_in_ = create_subscription<LaserScan>("scan", sensor, [this](const LaserScan::ConstSharedPtr m) {
+      core_->hear_scan(stamp_of(m->header.stamp), m->header.frame_id, scan_of(*m),
+                       static_cast<double>(m->angle_max));
+      core_->tick();
+    });
+    odometry_in_ = create_subscription<Odometry>("odom", sensor, [this](const Odometry::ConstSharedPtr m) {
+      core_->hear_odometry(stamp_of(m->header.stamp), m->twist.twist.linear.x);
+    });
+    imu_in_ = create_subscription<Imu>("imu", rclcpp::SensorDataQoS().keep_last(50),
+                                       [this](const Imu::ConstSharedPtr m) { hear_imu(*m); });
+    // Messages between the nodes of a process do not say who sent them.
+    rclcpp::SubscriptionOptions with_sender;
+    with_sender.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
+    drive_in_ = create_subscription<AckermannDriveStamped>(
+        "drive", rclcpp::QoS(10),
+        [this](const AckermannDriveStamped::ConstSharedPtr, const rclcpp::MessageInfo& info) {
+          if (!(*drive_out_ == info.get_rmw_message_info().publisher_gid))
+            core_->hear_other_command(others());
+        },
+        with_sender);
+    goal_in_ = create_subscription<std_msgs::msg::Float32>(
+        "goal_speed", rclcpp::QoS(1), [this](const std_msgs::msg::Float32::ConstSharedPtr m) {
+          core_->hear_goal_speed(static_cast<double>(m->data));
+        });
+    if (settings_.course.empty())
+      waypoints_in_ =
+          create_subscription<Waypoints>("reference_waypoint", rclcpp::QoS(1).transient_local(),
+                                         [this](const Waypoints::ConstSharedPtr m) { hear_waypoints(*m); });
+  }
+
+  void stop() override {
+    core_->halt();
+    scan_in_.reset();
+    odometry_in_.reset();
+    imu_in_.reset();
+    drive_in_.reset();
+    goal_in_.reset();
+    waypoints_in_.reset();
+    listener_.reset();
+  }
+
+  void tear_down() override {
+    laps_service_.reset();
+    save_service_.reset();
+    parameters_.reset();
+    core_.reset();
+    drive_out_.reset();
+    metrics_out_.reset();
+    markers_out_.reset();
+    path_out_.reset();
+  }
+
+  void tick() override { core_->tick(); }
+  slalom_bridge::Report report() override {
+    parameters_->refresh();
+    return core_->report();
+  }
+
+ private:
+  template <class Answer, class Action>
+  static void attempt(Answer& answer, Action&& action) {
+    try {
+      action();
+      answer.success = true;
+    } catch (const std::exception& error) {
+      answer.message = error.what();
+    }
+  }
+
+  /// A car drives at most 1 m/s unless the user says otherwise.
+  void limit_speed() {
+    const char* const name = "planner.max_speed";
+    if (has_parameter(name) || get_node_parameters_interface()->get_parameter_overrides().count(name) > 0)
+      return;
+    core_->change({{"planner/max_speed", "1"}});
+    inform("the car drives at most 1 m/s; the parameter planner.max_speed sets another limit");
+  }
+
+  /// The other nodes that publish commands.
+  std::string others() const {
+    std::string names;
+    for (const auto& publisher : get_publishers_info_by_topic(drive_in_->get_topic_name()))
+      if (publisher.node_name() != get_name() || publisher.node_namespace() != get_namespace())
+        names += (names.empty() ? "" : ", ") + publisher.node_name();
+    return names;
+  }
+
+  void hear_imu(const Imu& m) {
+    const auto &turn = m.angular_velocity, &acceleration = m.linear_acceleration;
+    core_->hear_imu(
+        {m.header.frame_id, {turn.x, turn.y, turn.z}, {acceleration.x, acceleration.y, acceleration.z}});
+  }
+
+  void hear_waypoints(const Waypoints& m) {
+    if (m.speeds.size() != m.poses.size())
+      return warn("waypoints: the numbers of poses and speeds differ; ignored");
+    std::vector<Waypoint> path;
+    for (std::size_t i = 0; i < m.poses.size(); ++i) {
+      const Pose p = pose_of(m.poses[i]);
+      path.push_back({p.x, p.y, p.yaw, m.speeds[i]});
+    }
+    core_->hear_path(path);
+  }
+
+  void send(double steer, double speed) {
+    drive_.header.stamp = now();
+    drive_.drive.steering_angle = static_cast<float>(steer);
+    drive_.drive.speed = static_cast<float>(speed);
+    drive_out_->publish(drive_);
+  }
+
+  void use_path(const std::vector<Waypoint>& path, bool closed) {
+    path_.header.stamp = now();
+    path_.poses.clear();
+    for (const Waypoint& w : path) {
+      path_.poses.emplace_back();
+      path_.poses.back().header = path_.header;
+      path_.poses.back().pose = message_of(Pose{w.x, w.y, w.yaw});
+    }
+    if (closed) path_.poses.push_back(path_.poses.front());
+    if (path_out_->is_activated()) path_out_->publish(path_);
+  }
+
+  void show(const Command& command, Stamp scan) {
+    metrics_.header.stamp = time_of(scan);
+    metrics_.status = command.status;
+    metrics_.state_cost = static_cast<float>(command.state_cost);
+    metrics_.collision_cost = static_cast<float>(command.collision_cost);
+    metrics_.input_error = static_cast<float>(command.input_error);
+    metrics_.effective_samples = static_cast<float>(command.effective_samples);
+    metrics_.calculation_time = static_cast<float>(1e3 * command.update_time);
+    metrics_out_->publish(metrics_);
+    if (markers_out_->get_subscription_count() == 0) return;
+    auto& line = markers_.markers[0];
+    line.header.stamp = time_of(scan);
+    line.color.r = command.ok ? 0.1F : 0.9F;
+    line.color.g = command.ok ? 0.5F : 0.1F;
+    line.color.b = command.ok ? 0.9F : 0.1F;
+    line.points.clear();
+    for (const Pose& p : core_->predicted()) {
+      line.points.emplace_back();
+      line.points.back().x = p.x;
+      line.points.back().y = p.y;
+      line.points.back().z = 0.05;
+    }
+    using visualization_msgs::msg::Marker;
+    line.action = line.points.empty() ? Marker::DELETE : Marker::ADD;
+    markers_out_->publish(markers_);
+  }
+
+  /// What all markers of plans have in common.
+  void make_marker() {
+    markers_.markers.resize(1);
+    auto& line = markers_.markers[0];
+    line.header.frame_id = map_;
+    line.ns = "plan";
+    line.type = visualization_msgs::msg::Marker::LINE_STRIP;
+    line.pose.orientation.w = 1;
+    line.scale.x = 0.06;
+    line.color.a = 1;
+  }
+
+  PlannerCore::Settings settings_;
+  std::string base_, map_;
+  tf2::BufferCore buffer_;
+  std::optional<tf2_ros::TransformListener> listener_;
+  std::shared_ptr<LifecyclePublisher<AckermannDriveStamped>> drive_out_;
+  std::shared_ptr<LifecyclePublisher<PlannerMetrics>> metrics_out_;
+  std::shared_ptr<LifecyclePublisher<MarkerArray>> markers_out_;
+  std::shared_ptr<LifecyclePublisher<nav_msgs::msg::Path>> path_out_;
+  // Kept, so that their memory is reused.
+  AckermannDriveStamped drive_;
+  PlannerMetrics metrics_;
+  MarkerArray markers_;
+  nav_msgs::msg::Path path_;
+  std::optional<PlannerCore> core_;
+  std::optional<OptionParameters> parameters_;
+  rclcpp::SubscriptionBase::SharedPtr scan_in_, odometry_in_, imu_in_, drive_in_, goal_in_, waypoints_in_;
+  rclcpp::ServiceBase::SharedPtr laps_service_, save_service_;
+};
+
+}  // namespace slalom_ros
+
+RCLCPP_COMPONENTS_REGISTER_NODE(slalom_ros::PlannerNode)
