@@ -1,0 +1,194 @@
+// Parameters, lifecycle, services and speed limit of the nodes, as a client sees them.
+//
+// usage: node_test processes|composed
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <lifecycle_msgs/msg/state.hpp>
+#include <lifecycle_msgs/msg/transition.hpp>
+#include <lifecycle_msgs/srv/change_state.hpp>
+#include <lifecycle_msgs/srv/get_state.hpp>
+#include <rcl_interfaces/srv/describe_parameters.hpp>
+#include <rcl_interfaces/srv/get_parameters.hpp>
+#include <rcl_interfaces/srv/set_parameters.hpp>
+#include <slalom_msgs/srv/drive_laps.hpp>
+#include <slalom_msgs/srv/save.hpp>
+#include <std_srvs/srv/empty.hpp>
+
+#include "nodes.hpp"
+#include "recording.hpp"
+
+namespace slalom_ros_test {
+namespace {
+
+using lifecycle_msgs::msg::State;
+using lifecycle_msgs::msg::Transition;
+using lifecycle_msgs::srv::ChangeState;
+using lifecycle_msgs::srv::GetState;
+using rcl_interfaces::srv::DescribeParameters;
+using rcl_interfaces::srv::GetParameters;
+using rcl_interfaces::srv::SetParameters;
+using slalom_msgs::srv::DriveLaps;
+using slalom_msgs::srv::Save;
+
+class NodeTest {
+ public:
+  explicit NodeTest(Nodes::Place place) : client_("node_test"), nodes_(place) {
+    nodes_.start("world", "world", {"autostart:=true", "course:=wren", "obstacles:=0"});
+    nodes_.start("track", "track", {"autostart:=true", "course:=wren"});
+    nodes_.start("localiser", "localiser", {"autostart:=true", "everywhere:=true"});
+    nodes_.start("planner", "planner", {"svg_mppi.samples:=500"});
+    nodes_.start("planner", "wrong", {"planner.max_sped:=1.0"});
+    nodes_.start("planner", "wild", {"svg_mppi.samples:=-5"});
+  }
+
+  void lifecycle_until_it_drives() {
+    expect(state("planner") == State::PRIMARY_STATE_UNCONFIGURED, "without autostart a node is unconfigured");
+    expect(change("planner", Transition::TRANSITION_CONFIGURE), "configure");
+    expect(state("planner") == State::PRIMARY_STATE_INACTIVE, "then it is inactive");
+    client_.run(1);
+    expect(client_.commanded_at == 0, "an inactive planner sends no commands");
+    expect(change("planner", Transition::TRANSITION_ACTIVATE), "activate");
+    client_.wait(
+        "the active planner drives", [&] { return client_.drives(); }, 60);
+  }
+
+  void speed_limit() {
+    client_.run(5);
+    expect(number("planner.max_speed") == 1, "planner.max_speed is 1 m/s if nobody sets it");
+    expect(client_.speed <= 1.01, "the car drives at most 1 m/s");
+  }
+
+  void parameters() {
+    const auto described = describe("planner.max_speed");
+    expect(!described.description.empty(), "a parameter has a description");
+    expect(described.floating_point_range.size() == 1 && described.floating_point_range[0].to_value > 1,
+           "a parameter has a range");
+    expect(described.additional_constraints.find("must be") != std::string::npos, "and its rule");
+    expect(set("planner.max_speed", rclcpp::ParameterValue(2.5)).successful, "it can change while driving");
+    client_.wait(
+        "the car drives faster than 1 m/s", [&] { return client_.speed > 1.2; }, 20);
+    const auto refused = set("planner.max_speed", rclcpp::ParameterValue(-3.0));
+    expect(!refused.successful, "a value out of range is refused");
+    std::printf("   %s\n", refused.reason.c_str());
+    expect(number("planner.max_speed") == 2.5, "then it is unchanged");
+    expect(!set("svg_mppi.none", rclcpp::ParameterValue(1.0)).successful, "an unknown one is refused");
+    const auto choice = set("vehicle.model", rclcpp::ParameterValue(std::string("boat")));
+    expect(!choice.successful && choice.reason.find("boat") != std::string::npos, "a choice states its rule");
+    std::printf("   %s\n", choice.reason.c_str());
+    client_.run(1);
+    expect(client_.drives(), "the car drives on");
+  }
+
+  void wrong_parameters() {
+    for (const char* name : {"wrong", "wild"}) {
+      expect(!change(name, Transition::TRANSITION_CONFIGURE), std::string(name) + " cannot be configured");
+      expect(state(name) == State::PRIMARY_STATE_UNCONFIGURED, "it stays unconfigured");
+      nodes_.end(name);
+    }
+  }
+
+  void services() {
+    DriveLaps::Request negative;
+    negative.laps = -1;
+    const auto refused = client_.call<DriveLaps>("/planner/drive_laps", negative);
+    expect(!refused->success && !refused->message.empty(), "a negative number of laps is refused");
+    expect(set("planner.max_speed", rclcpp::ParameterValue(100.0)).successful, "full speed");
+    DriveLaps::Request once;
+    once.laps = 1;
+    expect(client_.call<DriveLaps>("/planner/drive_laps", once)->success, "a lap is asked for");
+    const double begin = steady_seconds();
+    client_.wait(
+        "after a lap the car stops",
+        [&] { return !client_.reason("all laps are driven", begin).empty() && client_.stops(); }, 120);
+    DriveLaps::Request forever;
+    expect(client_.call<DriveLaps>("/planner/drive_laps", forever)->success, "laps without end");
+    client_.wait(
+        "it drives on", [&] { return client_.drives(); }, 20);
+
+    const std::string file = std::filesystem::temp_directory_path() / "slalom_ros_node_test.yaml";
+    Save::Request save;
+    save.file = file;
+    expect(client_.call<Save>("/planner/save", save)->success, "the options are saved");
+    std::ifstream stream(file);
+    std::stringstream text;
+    text << stream.rdbuf();
+    expect(text.str().find("samples: 500") != std::string::npos, "the file has the options");
+    std::filesystem::remove(file);
+    save.file = "/none/at/all.yaml";
+    expect(!client_.call<Save>("/planner/save", save)->success, "a file that cannot be written is an error");
+    client_.call<std_srvs::srv::Empty>("/reset", {});
+  }
+
+  void lifecycle_to_the_end() {
+    client_.wait(
+        "the car drives after the reset", [&] { return client_.drives(); }, 60);
+    expect(change("planner", Transition::TRANSITION_DEACTIVATE), "deactivate");
+    expect(client_.speed == 0, "the last command is to stop");
+    const double at = client_.commanded_at;
+    client_.run(1);
+    expect(client_.commanded_at <= at + 0.1, "an inactive planner sends no commands");
+    expect(change("planner", Transition::TRANSITION_CLEANUP), "cleanup");
+    expect(change("planner", Transition::TRANSITION_CONFIGURE), "configure again");
+    expect(change("planner", Transition::TRANSITION_ACTIVATE), "activate again");
+    client_.wait(
+        "it drives again", [&] { return client_.drives(); }, 60);
+    expect(change("planner", Transition::TRANSITION_ACTIVE_SHUTDOWN), "shutdown");
+    expect(state("planner") == State::PRIMARY_STATE_FINALIZED, "then it is finalized");
+  }
+
+ private:
+  unsigned state(const std::string& name) {
+    return client_.call<GetState>("/" + name + "/get_state", {})->current_state.id;
+  }
+  bool change(const std::string& name, unsigned char transition) {
+    ChangeState::Request request;
+    request.transition.id = transition;
+    const bool changed = client_.call<ChangeState>("/" + name + "/change_state", request)->success;
+    client_.run(0.2);
+    return changed;
+  }
+  rcl_interfaces::msg::SetParametersResult set(const std::string& name, const rclcpp::ParameterValue& value) {
+    SetParameters::Request request;
+    request.parameters.push_back(rclcpp::Parameter(name, value).to_parameter_msg());
+    return client_.call<SetParameters>("/planner/set_parameters", request)->results.at(0);
+  }
+  double number(const std::string& name) {
+    GetParameters::Request request;
+    request.names = {name};
+    return client_.call<GetParameters>("/planner/get_parameters", request)->values.at(0).double_value;
+  }
+  rcl_interfaces::msg::ParameterDescriptor describe(const std::string& name) {
+    DescribeParameters::Request request;
+    request.names = {name};
+    return client_.call<DescribeParameters>("/planner/describe_parameters", request)->descriptors.at(0);
+  }
+
+  Client client_;
+  Nodes nodes_;
+};
+
+void test(int argc, char** argv) {
+  expect(argc == 2, "usage: node_test processes|composed");
+  NodeTest all(place_of(argv[1]));
+  all.lifecycle_until_it_drives();
+  all.speed_limit();
+  all.parameters();
+  all.wrong_parameters();
+  all.services();
+  all.lifecycle_to_the_end();
+}
+
+}  // namespace
+}  // namespace slalom_ros_test
+
+int main(int argc, char** argv) try {
+  rclcpp::init(1, argv);
+  slalom_ros_test::test(argc, argv);
+  rclcpp::shutdown();
+} catch (const std::exception& error) {
+  std::printf("%s\n", error.what());
+  return 1;
+}
