@@ -8,7 +8,7 @@
 namespace slalom_ros {
 
 using diagnostic_msgs::msg::DiagnosticArray;
-using lifecycle_msgs::msg::State;
+using States = lifecycle_msgs::msg::State;
 
 ManagedNode::ManagedNode(const std::string& name, const rclcpp::NodeOptions& options,
                          std::chrono::milliseconds tick_period)
@@ -16,7 +16,7 @@ ManagedNode::ManagedNode(const std::string& name, const rclcpp::NodeOptions& opt
   if (!setting("autostart", false, "whether the node configures and activates itself")) return;
   autostart_timer_ = create_wall_timer(std::chrono::milliseconds(1), [this] {
     autostart_timer_->cancel();
-    if (configure().id() == State::PRIMARY_STATE_INACTIVE) activate();
+    if (configure().id() == States::PRIMARY_STATE_INACTIVE) activate();
   });
 }
 
@@ -67,7 +67,7 @@ ManagedNode::CallbackReturn ManagedNode::on_cleanup(const ManagedNode::State&) {
 ManagedNode::CallbackReturn ManagedNode::on_shutdown(const ManagedNode::State& before) {
   drop_timers();
   return attempt("shutdown", [this, &before] {
-    if (before.id() == State::PRIMARY_STATE_ACTIVE) stop();
+    if (before.id() == States::PRIMARY_STATE_ACTIVE) stop();
     tear_down();
     diagnostics_out_.reset();
   });
