@@ -89,19 +89,19 @@ class LocaliserNode : public ManagedNode {
         *this, [this] { return core_->options(); },
         [this](const slalom_bridge::Changes& changes) { core_->change(changes); });
     core_->use_course();
-    if (!settings_.course.empty())
-      map_out_ = create_publisher<OccupancyGrid>("map", rclcpp::QoS(1).transient_local());
+    if (!settings_.course.empty()) map_out_ = latched_publisher<OccupancyGrid>("map");
   }
 
   void start() override {
-    listener_.emplace(buffer_, shared_from_this(), true);
+    listener_.emplace(buffer_, shared_from_this(), true, tf2_ros::DynamicListenerQoS(),
+                      tf2_ros::StaticListenerQoS(), from_middleware(), from_middleware());
     if (map_out_) {
       course_map_.header.stamp = now();
       map_out_->publish(course_map_);
     } else {
       map_in_ = create_subscription<OccupancyGrid>(
           "map", rclcpp::QoS(1).transient_local(),
-          [this](const OccupancyGrid::ConstSharedPtr m) { core_->hear_map(grid_of(*m)); });
+          [this](const OccupancyGrid::ConstSharedPtr m) { core_->hear_map(grid_of(*m)); }, from_middleware());
     }
     const auto sensor = rclcpp::SensorDataQoS();
     odometry_in_ = create_subscription<Odometry>("odom", rclcpp::SensorDataQoS().keep_last(10),

@@ -43,11 +43,13 @@ ManagedNode::CallbackReturn ManagedNode::on_configure(const ManagedNode::State&)
 
 ManagedNode::CallbackReturn ManagedNode::on_activate(const ManagedNode::State& before) {
   LifecycleNode::on_activate(before);
-  return attempt("activate", [this] {
+  const auto result = attempt("activate", [this] {
     start();
     tick_timer_ = create_wall_timer(tick_period_, [this] { tick(); });
     report_timer_ = create_wall_timer(std::chrono::seconds(1), [this] { send_report(); });
   });
+  if (result != CallbackReturn::SUCCESS) LifecycleNode::on_deactivate(before);
+  return result;
 }
 
 ManagedNode::CallbackReturn ManagedNode::on_deactivate(const ManagedNode::State& before) {

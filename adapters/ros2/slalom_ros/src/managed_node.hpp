@@ -50,6 +50,22 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
     return declare_parameter<Value>(name, value, descriptor);
   }
 
+  /// A publisher whose last message later subscribers receive. Humble knows no such messages within a
+  /// process.
+  template <class Message>
+  auto latched_publisher(const std::string& topic) {
+    rclcpp::PublisherOptions options;
+    options.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
+    return create_publisher<Message>(topic, rclcpp::QoS(1).transient_local(), options);
+  }
+  /// For a subscription that receives all messages from the middleware: those of latched publishers, and
+  /// those of which the sender matters, which messages within a process do not have.
+  static rclcpp::SubscriptionOptions from_middleware() {
+    rclcpp::SubscriptionOptions options;
+    options.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
+    return options;
+  }
+
   slalom_bridge::Clocks clocks() const;
   void warn(const std::string& message) const;
   void inform(const std::string& message) const;

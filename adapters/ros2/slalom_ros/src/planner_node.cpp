@@ -65,7 +65,7 @@ class PlannerNode : public ManagedNode {
     drive_out_ = create_publisher<AckermannDriveStamped>("drive", rclcpp::QoS(1));
     metrics_out_ = create_publisher<PlannerMetrics>("mppi/eval_metrics", rclcpp::QoS(1));
     markers_out_ = create_publisher<MarkerArray>("planner_markers", rclcpp::QoS(1));
-    path_out_ = create_publisher<nav_msgs::msg::Path>("reference_path", rclcpp::QoS(1).transient_local());
+    path_out_ = latched_publisher<nav_msgs::msg::Path>("reference_path");
     core_.emplace(settings_, clocks(), frames_of(buffer_, map_, base_),
                   PlannerCore::Outputs{
                       [this](double steer, double speed) { send(steer, speed); },
@@ -90,7 +90,8 @@ class PlannerNode : public ManagedNode {
   }
 
   void start() override {
-    listener_.emplace(buffer_, shared_from_this(), true);
+    listener_.emplace(buffer_, shared_from_this(), true, tf2_ros::DynamicListenerQoS(),
+                      tf2_ros::StaticListenerQoS(), from_middleware(), from_middleware());
     if (!path_.poses.empty()) path_out_->publish(path_);
     const auto sensor = rclcpp::SensorDataQoS();
     scan_in_ = create_subscription<LaserScan>("scan", sensor, [this](const LaserScan::ConstSharedPtr m) {
@@ -103,24 +104,21 @@ class PlannerNode : public ManagedNode {
     });
     imu_in_ = create_subscription<Imu>("imu", rclcpp::SensorDataQoS().keep_last(50),
                                        [this](const Imu::ConstSharedPtr m) { hear_imu(*m); });
-    // Messages between the nodes of a process do not say who sent them.
-    rclcpp::SubscriptionOptions with_sender;
-    with_sender.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
     drive_in_ = create_subscription<AckermannDriveStamped>(
         "drive", rclcpp::QoS(10),
         [this](const AckermannDriveStamped::ConstSharedPtr, const rclcpp::MessageInfo& info) {
           if (!(*drive_out_ == info.get_rmw_message_info().publisher_gid))
             core_->hear_other_command(others());
         },
-        with_sender);
+        from_middleware());
     goal_in_ = create_subscription<std_msgs::msg::Float32>(
         "goal_speed", rclcpp::QoS(1), [this](const std_msgs::msg::Float32::ConstSharedPtr m) {
           core_->hear_goal_speed(static_cast<double>(m->data));
         });
     if (settings_.course.empty())
-      waypoints_in_ =
-          create_subscription<Waypoints>("reference_waypoint", rclcpp::QoS(1).transient_local(),
-                                         [this](const Waypoints::ConstSharedPtr m) { hear_waypoints(*m); });
+      waypoints_in_ = create_subscription<Waypoints>(
+          "reference_waypoint", rclcpp::QoS(1).transient_local(),
+          [this](const Waypoints::ConstSharedPtr m) { hear_waypoints(*m); }, from_middleware());
   }
 
   void stop() override {

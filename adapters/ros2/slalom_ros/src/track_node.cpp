@@ -24,9 +24,8 @@ class TrackNode : public ManagedNode {
  protected:
   void set_up() override {
     course_ = slalom_bridge::load_course(name_);
-    const auto latched = rclcpp::QoS(1).transient_local();
-    map_out_ = create_publisher<OccupancyGrid>("map", latched);
-    waypoints_out_ = create_publisher<Waypoints>("reference_waypoint", latched);
+    map_out_ = latched_publisher<OccupancyGrid>("map");
+    waypoints_out_ = latched_publisher<Waypoints>("reference_waypoint");
   }
 
   void start() override {

@@ -50,15 +50,14 @@ class WorldNode : public ManagedNode {
 
  protected:
   void set_up() override {
-    const auto latched = rclcpp::QoS(1).transient_local();
     scan_out_ = create_publisher<LaserScan>("scan", rclcpp::QoS(5));
     odometry_out_ = create_publisher<Odometry>("odom", rclcpp::QoS(10));
     truth_out_ = create_publisher<Odometry>("ground_truth", rclcpp::QoS(1));
     laps_out_ = create_publisher<Int32>("laps", rclcpp::QoS(1));
     contacts_out_ = create_publisher<Int32>("contacts", rclcpp::QoS(1));
     tf_out_ = create_publisher<TFMessage>("/tf", tf2_ros::DynamicBroadcasterQoS());
-    tf_static_out_ = create_publisher<TFMessage>("/tf_static", tf2_ros::StaticBroadcasterQoS());
-    markers_out_ = create_publisher<MarkerArray>("obstacles", latched);
+    tf_static_out_ = latched_publisher<TFMessage>("/tf_static");
+    markers_out_ = latched_publisher<MarkerArray>("obstacles");
     core_.emplace(settings_, clocks(), [this](const std::string& message) { warn(message); });
     reset_service_ = create_service<Empty>(
         "reset",
@@ -72,9 +71,6 @@ class WorldNode : public ManagedNode {
     fixed.transforms[0].child_frame_id = laser_;
     set_transform(fixed.transforms[0], core_->world().laser(), now().nanoseconds());
     tf_static_out_->publish(fixed);
-    // Messages between the nodes of a process do not say who sent them.
-    rclcpp::SubscriptionOptions with_sender;
-    with_sender.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
     drive_in_ = create_subscription<AckermannDriveStamped>(
         "drive", rclcpp::QoS(10),
         [this](const AckermannDriveStamped::ConstSharedPtr m, const rclcpp::MessageInfo& info) {
@@ -82,7 +78,7 @@ class WorldNode : public ManagedNode {
                             static_cast<double>(m->drive.steering_angle),
                             static_cast<double>(m->drive.speed));
         },
-        with_sender);
+        from_middleware());
   }
 
   void stop() override { drive_in_.reset(); }
