@@ -27,11 +27,13 @@ double number_of(const std::string& text) {
   return text == ".inf" ? infinity : text == "-.inf" ? -infinity : std::strtod(text.c_str(), nullptr);
 }
 
-std::vector<double> numbers_of(const std::string& text) {
+/// Of "0.1" or "[0.1, 0.2]".
+std::vector<double> numbers_of(std::string text) {
+  for (char& c : text)
+    if (c == '[' || c == ']' || c == ',') c = ' ';
   std::vector<double> numbers;
-  std::istringstream entries(text.size() < 2 ? text : text.substr(1, text.size() - 2));  // without brackets
-  for (std::string entry; std::getline(entries, entry, ',');)
-    numbers.push_back(number_of(entry.substr(entry.find_first_not_of(' '))));
+  std::istringstream words(text);
+  for (std::string word; words >> word;) numbers.push_back(number_of(word));
   return numbers;
 }
 

@@ -3,6 +3,7 @@
 //
 // usage: fault_test processes|composed FAULTS_CSV [FAULT...]
 #include <algorithm>
+#include <filesystem>
 
 #include "car.hpp"
 #include "nodes.hpp"
@@ -10,6 +11,7 @@
 namespace slalom_ros_test {
 namespace {
 
+constexpr const char* pose_file = "fault_test_pose";  // in the working folder
 const std::vector<std::string> common{"autostart:=true", "use_sim_time:=true"};
 
 class FaultTest {
@@ -19,6 +21,7 @@ class FaultTest {
         car_(client_, "wren", 3),
         nodes_(place),
         processes_(place == Nodes::Place::processes) {
+    std::filesystem::remove(pose_file);
     start("track", "track", {"course:=wren"}, {"map:=map_of_track"});
     start_localiser();
     start_planner("planner");
@@ -68,7 +71,7 @@ class FaultTest {
     starts_.emplace_back(steady_seconds(), name);
     nodes_.start(kind, name, parameters, remappings);
   }
-  void start_localiser() { start("localiser", "localiser", {"pose_file:=fault_test_pose"}); }
+  void start_localiser() { start("localiser", "localiser", {std::string("pose_file:=") + pose_file}); }
   void start_planner(const std::string& name) {
     start("planner", name, {"planner.max_speed:=3.0", "svg_mppi.samples:=500"});
   }
