@@ -84,19 +84,26 @@ void PlannerCore::hear_odometry(Stamp stamp, double speed) {
 /// Rotates a sample to the axes of the base frame. How far the unit is from the centre of gravity is
 /// neglected: it changes the accelerations by the distance times the squared yaw rate.
 void PlannerCore::hear_imu(const ImuMessage& sample) {
-  auto found = imu_mounts_.find(sample.frame);
-  if (found == imu_mounts_.end()) {
-    try {
-      found = imu_mounts_.emplace(sample.frame, frames_.mount(sample.frame)).first;
-    } catch (const std::exception& error) {
-      return log_(std::string("imu is not used; tf: ") + error.what());
-    }
+  const Mount* const mount = imu_mount(sample.frame);
+  if (!mount) return;
+  imu_.add(along(2, *mount, sample.turn), along(0, *mount, sample.acceleration),
+           along(1, *mount, sample.acceleration));
+}
+
+/// Where the unit is; null if tf does not know it. Then it is looked up again after a second.
+const Mount* PlannerCore::imu_mount(const std::string& frame) {
+  const auto found = imu_mounts_.find(frame);
+  if (found != imu_mounts_.end()) return &found->second;
+  const double now = clocks_.steady();
+  if (now < imu_retry_) return nullptr;
+  imu_retry_ = now + 1;
+  try {
+    return &imu_mounts_.emplace(frame, frames_.mount(frame)).first->second;
+  } catch (const std::exception& error) {
+    // Not through the throttled log, whose other messages say why the car stops.
+    if (!std::exchange(imu_warned_, true)) outputs_.warn(std::string("imu is not used; tf: ") + error.what());
+    return nullptr;
   }
-  const auto along = [&](const double(&vector)[3], int axis) {
-    const double(&row)[3] = found->second.rotation[axis];
-    return row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2];
-  };
-  imu_.add(along(sample.turn, 2), along(sample.acceleration, 0), along(sample.acceleration, 1));
 }
 
 void PlannerCore::hear_other_command(const std::string& name) {

@@ -89,6 +89,7 @@ class PlannerCore {
 
   bool scan_is_due() const;
   void start_anew();
+  const Mount* imu_mount(const std::string& frame);
   void use_path(const std::vector<Waypoint>& path, bool closed);
   bool find_pose(Pose& pose);
   void place_laser();
@@ -106,6 +107,8 @@ class PlannerCore {
   LapCount laps_;
   ImuSamples imu_;
   std::map<std::string, Mount> imu_mounts_;
+  double imu_retry_ = -1e9;  ///< s, steady clock
+  bool imu_warned_ = false;
   std::vector<float> ranges_;  ///< of the last scan, which `scan_` shows
   Scan scan_;
   std::string scan_frame_;

@@ -106,6 +106,13 @@ class Drive {
     });
   }
 
+  /// How often a line with these words has been logged since a time.
+  long count_said(const std::string& words, double since) const {
+    return std::count_if(said_.begin(), said_.end(), [&](const Line& line) {
+      return line.time >= since && line.text.find(words) != std::string::npos;
+    });
+  }
+
   void expect_valid_commands() const {
     for (const Command& c : commands_) {
       ASSERT_TRUE(std::isfinite(c.steer) && std::isfinite(c.speed)) << "at " << c.time << " s";

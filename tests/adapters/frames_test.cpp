@@ -32,6 +32,16 @@ TEST(FramesMount, ASensorThatHangsUpsideDownIsNotUpright) {
   EXPECT_NEAR(hanging.rotation[2][2], -1, 1e-12) << "a turn to its left is one to the right of the car";
 }
 
+TEST(FramesMount, RotatesVectorsToTheAxesOfTheCar) {
+  const Mount turned = mount_of(0, 0, 0, 0, 0, std::sin(quarter / 2), std::cos(quarter / 2));
+  const double ahead_of_sensor[3] = {2, 0, 0}, up[3] = {0, 0, 3};
+  EXPECT_NEAR(along(0, turned, ahead_of_sensor), 0, 1e-12);
+  EXPECT_NEAR(along(1, turned, ahead_of_sensor), 2, 1e-12) << "it looks to the left of the car";
+  EXPECT_NEAR(along(2, turned, up), 3, 1e-12);
+  const Mount hanging = mount_of(0, 0, 0, 1, 0, 0, 0);
+  EXPECT_NEAR(along(2, hanging, up), -3, 1e-12);
+}
+
 TEST(FramesStamp, SurvivesTheWayThroughSeconds) {
   const Stamp stamp = 1'700'000'000'250'000'000;
   EXPECT_NEAR(static_cast<double>(stamp_of(in_seconds(stamp)) - stamp), 0, 300) << "ns";

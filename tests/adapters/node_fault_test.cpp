@@ -77,7 +77,10 @@ class NodeComputer {
   Frames frames() {
     return {[this](Stamp at) { return map_to_odometry_.knows(at) && odometry_to_base_.knows(at); },
             [this](Stamp at) { return composed(map_to_odometry_.at(at), odometry_to_base_.at(at)); },
-            [this](const std::string&) { return mount_of(laser_.x, laser_.y, 0, 0, 0, 0, 1); },
+            [this](const std::string& frame) {
+              if (frame == "unknown") throw std::runtime_error("there is no transform");
+              return mount_of(laser_.x, laser_.y, 0, 0, 0, 0, 1);
+            },
             [this] {
               map_to_odometry_.clear();
               odometry_to_base_.clear();
@@ -196,6 +199,17 @@ TEST_F(NodeDrive, ReportsPlansAndLatency) {
   EXPECT_EQ(value("stops"), 0);
   EXPECT_GE(value("latency from scan to command, p99, ms"), value("latency from scan to command, p50, ms"));
   EXPECT_LT(value("latency from scan to command, p99, ms"), 25) << "of the simulated clock";
+}
+
+TEST_F(NodeDrive, AnImuThatTfDoesNotKnowIsReportedOnce) {
+  const double begin = drive_.time();
+  for (int i = 0; i < 200; ++i) {
+    planner().hear_imu({"unknown", {0, 0, 0}, {0, 0, 0}});
+    planner().hear_imu({"imu", {0, 0, 0.1}, {0, 0, 9.81}});
+    drive_.run(0.025);
+  }
+  EXPECT_EQ(drive_.count_said("imu is not used", begin), 1) << drive_.log();
+  EXPECT_TRUE(drive_.drives()) << drive_.log();
 }
 
 TEST(RecentValuesTest, PercentilesAreThoseOfTheSortedValues) {
