@@ -203,9 +203,8 @@ TEST_F(NodeDrive, ReportsPlansAndLatency) {
 
 TEST_F(NodeDrive, AnImuThatTfDoesNotKnowIsReportedOnce) {
   const double begin = drive_.time();
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 100; ++i) {
     planner().hear_imu({"unknown", {0, 0, 0}, {0, 0, 0}});
-    planner().hear_imu({"imu", {0, 0, 0.1}, {0, 0, 9.81}});
     drive_.run(0.025);
   }
   EXPECT_EQ(drive_.count_said("imu is not used", begin), 1) << drive_.log();
