@@ -67,11 +67,12 @@ class Client {
 
   /// The answer of a service. Throws if there is none within 10 s.
   template <class Service>
-  typename Service::Response::SharedPtr call(const std::string& name, typename Service::Request request) {
+  typename Service::Response::SharedPtr call(
+      const std::string& name, const typename Service::Request& request = typename Service::Request()) {
     const auto client = node->create_client<Service>(name);
     wait(
         name + ": is there", [&] { return client->service_is_ready(); }, 20);
-    auto answer = client->async_send_request(std::make_shared<typename Service::Request>(std::move(request)));
+    auto answer = client->async_send_request(std::make_shared<typename Service::Request>(request));
     wait(
         name + ": answers",
         [&] { return answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }, 10);

@@ -119,7 +119,7 @@ class NodeTest {
     std::filesystem::remove(file);
     save.file = "/none/at/all.yaml";
     expect(!client_.call<Save>("/planner/save", save)->success, "a file that cannot be written is an error");
-    client_.call<std_srvs::srv::Empty>("/reset", {});
+    client_.call<std_srvs::srv::Empty>("/reset");
   }
 
   void lifecycle_to_the_end() {
@@ -141,7 +141,7 @@ class NodeTest {
 
  private:
   unsigned state(const std::string& name) {
-    return client_.call<GetState>("/" + name + "/get_state", {})->current_state.id;
+    return client_.call<GetState>("/" + name + "/get_state")->current_state.id;
   }
   bool change(const std::string& name, unsigned char transition) {
     ChangeState::Request request;
