@@ -92,7 +92,8 @@ void ManagedNode::send_report() {
   array.status.resize(1);
   auto& status = array.status[0];
   status.level = static_cast<unsigned char>(report.level);
-  status.name = std::string(get_fully_qualified_name()).substr(1) + ": " + report.about;
+  status.name =
+      std::string(get_node_base_interface()->get_fully_qualified_name()).substr(1) + ": " + report.about;
   status.hardware_id = "slalom";
   status.message = report.message;
   for (auto& [key, value] : report.values) {
