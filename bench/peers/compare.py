@@ -4,7 +4,8 @@ Times are the processor's, so that neighbours count little.
 
 usage: PYTHONPATH=build/release/adapters/python taskset -c 1 python3 bench/peers/compare.py [seeds]
 
-Needs numpy; torch (Debian: python3-torch) where it is there.
+Needs numpy. With torch (Debian: python3-torch) there is a row for a loop on torch; if SLALOM_PEERS_DIR names a folder with
+clones of pytorch_mppi and of what it needs, there is one for pytorch_mppi itself.
 """
 
 import os
@@ -16,6 +17,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 import slalom
 from batched_mppi import NumpyMppi, TorchMppi
+from peers import PytorchMppi, pytorch_mppi_version
 from problems import DoubleIntegrator, Obstacles, Pendulum
 
 try:
@@ -25,6 +27,7 @@ try:
 except ImportError:
     torch = None
 
+PEER = pytorch_mppi_version()
 K, T = 1000, 30
 SEEDS = int(sys.argv[1]) if len(sys.argv) > 1 else 10
 
@@ -52,6 +55,8 @@ def ways(Kind):
     yield "batched numpy (this folder)", lambda seed: NumpyMppi(p, *common, seed).solve
     if torch:
         yield "batched torch (this folder)", lambda seed: TorchMppi(Kind(torch), *common, seed).solve
+        if PEER:
+            yield f"pytorch_mppi {PEER}", lambda seed: PytorchMppi(Kind(torch), *common, seed).solve
     own = callables(p)
     yield "slalom `mppi`, numpy callables", lambda seed: of_slalom(slalom.Mppi, own, p, seed, variance=p.variance)
     built_in = {"pendulum": slalom.Pendulum(dt=0.04), "obstacles": slalom.DifferentialDrive()}.get(p.name)
@@ -75,7 +80,8 @@ def drive(p, solve):
     return cost, times
 
 
-print(f"K = {K}, T = {T}, {SEEDS} seeds, one thread, numpy {np.__version__}, torch {torch and torch.__version__}\n")
+print(f"K = {K}, T = {T}, {SEEDS} seeds, one thread, numpy {np.__version__}, torch {torch and torch.__version__}, "
+      f"pytorch_mppi {PEER or '(none: SLALOM_PEERS_DIR)'}\n")
 print("| problem | solver | CPU time of a solve, ms (p50) | p99 | closed-loop cost (mean, standard error) |\n|---|---|---|---|---|")
 for Kind in Pendulum, DoubleIntegrator, Obstacles:
     for name, make in ways(Kind):
