@@ -112,8 +112,9 @@ def check_python(root):
                 try:
                     exec(compile(text, f"{page}:{line}", "exec"), names)
                 except Exception as error:
-                    if getattr(error, "name", None) == "torch":
-                        print(f"{page.relative_to(root)}:{line}: not run, since torch is missing (Debian: python3-torch)")
+                    if isinstance(error, ModuleNotFoundError) and error.name in ("torch", "onnx"):
+                        print(f"{page.relative_to(root)}:{line}: not run, since {error.name} is missing "
+                              f"(Debian: python3-{error.name})")
                     else:
                         errors.append(f"{page}:{line}: {type(error).__name__}: {error}")
             os.chdir(root)

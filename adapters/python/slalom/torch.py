@@ -1,4 +1,4 @@
-"""Callables of a problem on torch tensors, which share the memory of the arrays."""
+"""Callables of a problem on torch tensors, which share the memory of the arrays; networks that torch has trained."""
 
 from __future__ import annotations
 
@@ -7,6 +7,35 @@ from typing import Any, Callable
 
 import numpy as np
 import torch
+
+from .mlp import Mlp, MlpChain
+
+_ACTIVATIONS = {torch.nn.Tanh: "tanh", torch.nn.ReLU: "relu", torch.nn.Softplus: "softplus", torch.nn.SiLU: "silu"}
+
+
+def to_mlp(network: torch.nn.Sequential, *, residual: bool = False) -> Mlp:
+    """The Mlp of a trained network, for instance to save it for slalom::load_mlp in C++.
+
+    network: torch.nn.Sequential of Linear, one kind of Tanh, ReLU, Softplus or SiLU, and Identity or Dropout (which has
+        no effect after training)
+    residual: whether the network was trained to predict the change of its first inputs
+    """
+    parts = list(network)
+    linear = [part for part in parts if isinstance(part, torch.nn.Linear)]
+    if not linear:
+        raise ValueError("to_mlp: the network has no torch.nn.Linear")
+    chain = MlpChain(linear[0].in_features)
+    for i, part in enumerate(parts):
+        if isinstance(part, torch.nn.Linear):
+            weights = part.weight.detach().numpy()
+            chain.affine(weights, np.zeros(len(weights)) if part.bias is None else part.bias.detach().numpy())
+        elif isinstance(part, torch.nn.Softplus) and part.beta != 1:
+            raise ValueError(f"to_mlp: part {i}: {part} must have beta=1")
+        elif type(part) in _ACTIVATIONS:
+            chain.activate(_ACTIVATIONS[type(part)])
+        elif not isinstance(part, (torch.nn.Identity, torch.nn.Dropout)):
+            raise ValueError(f"to_mlp: part {i}: {part} must be Linear, Tanh, ReLU, Softplus, SiLU, Identity or Dropout")
+    return chain.network(residual)
 
 
 def on_tensors(function: Callable[..., Any]) -> Callable[..., Any]:
