@@ -88,7 +88,11 @@ struct Point {
 };
 
 int main() {
+#if MISTAKE == 18
+  slalom::Mppi controller{Point{}, slalom::MppiOptions{.horizn = 5}};
+#else
   slalom::Mppi controller{Point{}, {.horizon = 5}};
+#endif
 #if MISTAKE == 0 || MISTAKE == 17
   if (slalom::linearize(controller.problem(), {1}, {{2}}).next.position != 3) return 1;
 #endif
