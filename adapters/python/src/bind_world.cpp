@@ -43,7 +43,10 @@ py::dict observe(const py::object& self, std::size_t car) {
   all["speed"] = seen.speed;
   all["steer"] = seen.steer;
   all["yaw_rate"] = seen.yaw_rate;
+  all["slip"] = seen.slip;
   all["time"] = seen.time;
+  all["scan_time"] = seen.scan_time;
+  all["sensor"] = to_tuple(seen.sensor);
   all["ranges"] = view(seen.scan.ranges.data(), {static_cast<py::ssize_t>(seen.scan.ranges.size())}, self);
   all["angle_min"] = seen.scan.angle_min;
   all["angle_increment"] = seen.scan.angle_increment;
@@ -51,6 +54,7 @@ py::dict observe(const py::object& self, std::size_t car) {
   all["range_max"] = seen.scan.range_max;
   all["contact"] = seen.collides();
   all["wall"] = seen.wall;
+  all["colliding"] = py::cast(std::vector<int>(seen.colliding.begin(), seen.colliding.end()));
   if (const auto* laps = world.laps(car)) {
     all["laps"] = laps->laps();
     all["progress"] = laps->progress();

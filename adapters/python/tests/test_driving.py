@@ -89,6 +89,38 @@ def test_a_world_takes_the_options_of_the_simulator():
     assert speed_after_half_a_second(acceleration_max=1) < 0.6 < 1.5 < speed_after_half_a_second()
 
 
+def test_a_world_has_the_car_that_its_options_describe():
+    course = slalom.Course("wren")
+    chosen = {"integrator": "euler", "substeps": 4, "speed_gain": 3.0, "brake_gain": 9.0, "coast": "brake",
+              "cornering_front": 4.0, "cornering_rear": 6.0, "front_length": 0.2, "rear_length": 0.15,
+              "gravity_height": 0.05, "inertia": 0.06, "steer_rate_max": 2.0, "switch_speed": 5.0, "speed_min": -2.0,
+              "sectors": 5}
+    assert chosen.items() <= slalom.World(course, **chosen).options.items()
+    with pytest.raises(ValueError, match="inertia"):
+        slalom.World(course, inertia=0)
+
+    def turning(**options):
+        """The car in a curve, and the angle from its yaw to its way in the last step."""
+        world = slalom.World(course, beams=3, wall_response="count_only", **options)
+        world.reset(0, [course.start])
+        world.step([(0.2, 3.0)], steps=200)
+        before = world.observe()["pose"]
+        world.step([(0.2, 3.0)])
+        now = world.observe()
+        way = np.arctan2(now["pose"][1] - before[1], now["pose"][0] - before[0])
+        return now, np.angle(np.exp(1j * (way - 0.5 * (now["pose"][2] + before[2]))))
+
+    short, travel = turning()
+    assert short["slip"] == pytest.approx(travel, abs=2e-3)
+    slippery, travel = turning(friction=0.4)
+    assert slippery["slip"] == pytest.approx(travel, abs=2e-3) and slippery["slip"] < short["slip"] - 0.05
+    long, _ = turning(front_length=0.3, rear_length=0.3)
+    assert long["yaw_rate"] < 0.75 * short["yaw_rate"]
+    x, y, yaw = short["pose"]
+    assert short["sensor"] == pytest.approx((x + 0.10355 * np.cos(yaw), y + 0.10355 * np.sin(yaw), yaw))
+    assert short["scan_time"] == pytest.approx(short["time"])
+
+
 def test_bodies_are_placed_moved_and_taken_away():
     course = slalom.Course("wren")
     world = slalom.World(course, beams=1, noise=0)
@@ -105,6 +137,10 @@ def test_bodies_are_placed_moved_and_taken_away():
     free = seen()
     box = world.add_box(ahead(1.5), 0.2, 0.2)
     assert world.cars == 1 and box == 1 and seen() == pytest.approx(1.5 - 0.1 - 0.10355, abs=0.01)
+    assert not world.observe()["colliding"]
+    world.move_body(box, ahead(0.3))
+    seen()
+    assert world.observe()["colliding"] == [box]
     world.move_body(box, ahead(1.0))
     assert seen() == pytest.approx(1.0 - 0.1 - 0.10355, abs=0.01)
     world.remove_body(box)
