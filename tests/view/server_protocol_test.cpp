@@ -116,6 +116,14 @@ TEST(ServerProtocol, ClosesOnViolations) {
   };
   EXPECT_EQ(fragments(0x81, 1), violation) << "a message within another";
   EXPECT_EQ(fragments(0x80, 600), too_big);
+  for (const char* text : {"\xe2\x82", "x\xf0\x90\x80", "\xc3"}) {
+    EXPECT_EQ(close_code_after([&](WebClient& client) {
+                client.send_frame(0x01, text);
+                client.send_frame(0x80, "");
+              }),
+              invalid_text)
+        << "ends within a character, before an empty frame";
+  }
 }
 
 TEST(ServerProtocol, ServesCompressedPageWithHeaders) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <string>
+#include <string_view>
 #include <utility>  // before asio, which needs it in C++20 and does not include it
 
 #include <boost/asio/ip/tcp.hpp>
@@ -30,6 +33,16 @@ inline constexpr std::chrono::seconds request_time{10};  // for a request, an an
 inline constexpr std::chrono::seconds silent_time{
     30};                                     // without a byte from a client; a ping is sent after half of it
 inline constexpr int send_buffer = 1 << 18;  // bytes; small, so that a slow client does not see old frames
+
+/// Whether a text whose characters are otherwise valid UTF-8 ends within one.
+inline bool ends_within_character(std::string_view text) {
+  for (std::size_t bytes = 1; bytes <= std::min<std::size_t>(3, text.size()); ++bytes) {
+    const auto last = static_cast<unsigned char>(text[text.size() - bytes]);
+    if ((last & 0xC0u) != 0x80u)
+      return bytes < (last >= 0xF0u ? 4u : last >= 0xE0u ? 3u : last >= 0xC0u ? 2u : 1u);
+  }
+  return false;
+}
 
 /// One WebSocket. Exists as long as an operation of it is pending.
 class WebSocketClient final : public Client, public std::enable_shared_from_this<WebSocketClient> {
@@ -86,7 +99,7 @@ class WebSocketClient final : public Client, public std::enable_shared_from_this
   void read() {
     socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
       if (error) return self->failed(error);
-      self->got_message();
+      if (!self->got_message()) return self->refuse_text();
       self->buffer_.clear();
       self->read();
     });
@@ -100,15 +113,29 @@ class WebSocketClient final : public Client, public std::enable_shared_from_this
     leave();
   }
 
-  void got_message() {
+  /// False if the message is a text that is not UTF-8.
+  bool got_message() {
     // Acknowledgements do not count as messages: there are never more of them than frames.
-    if (socket_.got_binary() && acknowledge()) return write_next();
+    if (socket_.got_binary() && acknowledge()) {
+      write_next();
+      return true;
+    }
+    std::string message = beast::buffers_to_string(buffer_.data());
+    // Beast does not check the end of a message whose last frame is empty.
+    if (socket_.got_text() && ends_within_character(message)) return false;
     if (!rate_.allow())
       ++state_.counters.refused_rate;
     else if (!socket_.got_text())
       ++state_.counters.refused_other;
     else
-      state_.inbox.deliver({Received::Kind::message, id_, beast::buffers_to_string(buffer_.data())});
+      state_.inbox.deliver({Received::Kind::message, id_, std::move(message)});
+    return true;
+  }
+
+  void refuse_text() {
+    ++state_.counters.refused_other;
+    leave();
+    socket_.async_close(websocket::close_code::bad_payload, [self = shared_from_this()](error_code) {});
   }
 
   /// True if the message is a valid acknowledgement: the number of frames shown so far, little-endian.
