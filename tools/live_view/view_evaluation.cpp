@@ -65,10 +65,12 @@ void open_evaluation(const std::string& folder, view::SessionOptions& options) {
                     .method = e.method,
                     .config = arguments.config,
                     .seed = evaluation::lap_seed(evaluation->seed0, lap, e.obstacles),
-                    .obstacles = e.obstacles};
+                    .obstacles = e.obstacles,
+                    .opponents = runner.settings().opponents};
     loaded.scenario = {.environment = evaluation->environment,
                        .configuration = runner.configuration(),
-                       .lap = {.obstacles = e.obstacles, .latency = evaluation->latency}};
+                       .lap = runner.settings()};
+    loaded.scenario.lap.additional_costs = false;  // the page does not show them
     return loaded;
   };
   const view::LoadedLap first = options.load_lap(0, 0);
