@@ -103,6 +103,10 @@ LapRunner make_runner(const Evaluation& evaluation, int index) {
   for (const auto& [key, value] : experiment.set)
     if (!set_world_option(settings, key, value))
       vehicle::set_option(configuration, key, value, experiment.method);
+  // All experiments meet the same opponents.
+  if (settings.planning_opponents > 0)
+    settings.opponent_planner =
+        std::make_shared<const OpponentPlanner>(OpponentPlanner{evaluation.configuration});
   return LapRunner(evaluation.environment, configuration, experiment.method, settings);
 }
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "evaluation/driver/driver_stack.hpp"
@@ -34,10 +35,11 @@ struct LapRunner::LapInProgress {
   sim::CollisionLog log;
   LapResult result;
   Sums sums;
-  std::vector<sim::PurePursuit> pursuits;   ///< of opponents, by speed
-  std::vector<sim::RacingOpponent> racers;  ///< opponents that look where they drive
-  std::vector<int> drivers;                 ///< per opponent: index in `racers`, or -1 - index in `pursuits`
-  std::vector<Command> commands{1};         ///< of all cars
+  /// With which drivers the opponents began. They may not be those of the runner that drives the car now.
+  std::vector<std::shared_ptr<const LapRunner>> planning_opponents;
+  /// Drivers of the opponents: along the path, by the states of all cars, or with sensors and planner.
+  std::vector<std::variant<sim::PurePursuit, sim::RacingOpponent, DriverStack>> opponents;
+  std::vector<Command> commands{1};  ///< of all cars
 };
 
 }  // namespace slalom::evaluation

@@ -36,13 +36,14 @@ void check(const LapSettings& settings, const LapRules& rules, bool closed) {
   require(settings.rounds == 1 || closed,
           "world.rounds: " + std::to_string(settings.rounds) + " must be 1 on an open course");
   const int others = std::max(settings.opponents, 1),
-            special = settings.blocking_opponents + settings.erratic_opponents;
+            special = settings.blocking_opponents + settings.erratic_opponents + settings.planning_opponents;
   require(settings.opponent_speed.fits(others), "world.opponent_speed: has " +
                                                     std::to_string(settings.opponent_speed.values().size()) +
                                                     " values, must have one, or one for each opponent");
-  require(special <= settings.opponents, "world.blocking_opponents and world.erratic_opponents: together " +
-                                             std::to_string(special) + ", must be at most world.opponents, " +
-                                             std::to_string(settings.opponents));
+  require(special <= settings.opponents,
+          "world.blocking_opponents, world.erratic_opponents and world.planning_opponents: together " +
+              std::to_string(special) + ", must be at most world.opponents, " +
+              std::to_string(settings.opponents));
 }
 
 }  // namespace
@@ -74,6 +75,8 @@ LapRunner::LapRunner(std::shared_ptr<const Environment> environment,
   start_ = settings.start.value_or(environment_->start);
   vehicle::check_start(course, start_);
   make_planner();  // reports invalid options here and not in the first lap
+  for (int i = 0; i < settings_.opponents; ++i)
+    if (has_planner(settings_, i)) planning_opponents_.push_back(planning_opponent(i));
 
   vehicle::Course capped;
   capped.waypoints = course.waypoints;
@@ -101,7 +104,9 @@ std::unique_ptr<vehicle::Planner> LapRunner::make_planner() const {
   // A planner that estimates the car's motion must know the time between two updates. The paper's program
   // does not: its planner assumes 0.025 s where its simulator takes steps of 0.01 s.
   if (model->has_dynamics()) options.control_period = control_period();
-  return std::make_unique<vehicle::Planner>(options, std::move(model), path_,
+  std::vector<maps::ReferencePoint> path = path_;
+  for (maps::ReferencePoint& point : path) point.speed *= speed_share_;
+  return std::make_unique<vehicle::Planner>(options, std::move(model), path,
                                             vehicle::make_solver(configuration_, method_, settings_.threads));
 }
 

@@ -7,6 +7,11 @@
 
 namespace slalom::evaluation {
 
+bool has_planner(const LapSettings& settings, int index) noexcept {
+  const int first = settings.blocking_opponents + settings.erratic_opponents;
+  return index >= first && index < first + settings.planning_opponents;
+}
+
 sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept {
   if (index < settings.blocking_opponents) return sim::OpponentDriver::blocking;
   if (index < settings.blocking_opponents + settings.erratic_opponents) return sim::OpponentDriver::erratic;

@@ -88,6 +88,8 @@ void LapRunner::advance(LapInProgress& lap, bool past_finish) const {
     command_opponents(lap, k == 0);
     lap.world.step(lap.commands);
     lap.driver->moved(lap.world);
+    for (auto& opponent : lap.opponents)
+      if (auto* driver = std::get_if<DriverStack>(&opponent)) driver->moved(lap.world);
     if (lap.overtaking) lap.overtaking->update(lap.world);
     record_collisions(lap);
   }
@@ -99,16 +101,20 @@ void LapRunner::advance(LapInProgress& lap, bool past_finish) const {
     result.min_clearance = std::min(result.min_clearance, sim::signed_gap(body, lap.world.outline(i)));
 }
 
-/// Sets the commands of all opponents. Those that look decide once in every control period.
+/// Sets the commands of all opponents. Those that look or plan decide once in every control period.
 void LapRunner::command_opponents(LapInProgress& lap, bool decide) const {
-  for (std::size_t i = 1; i < lap.commands.size(); ++i) {
-    const int driver = lap.drivers[i - 1];
-    if (driver < 0) {
-      const sim::CarState& opponent = lap.world.state(i);
-      lap.commands[i] =
-          lap.pursuits[static_cast<std::size_t>(-1 - driver)].command({opponent.x, opponent.y, opponent.yaw});
-    } else if (decide) {
-      lap.commands[i] = lap.racers[static_cast<std::size_t>(driver)].command(lap.world);
+  for (std::size_t i = 0; i < lap.opponents.size(); ++i) {
+    auto& opponent = lap.opponents[i];
+    Command& command = lap.commands[i + 1];
+    if (const auto* pursuit = std::get_if<sim::PurePursuit>(&opponent)) {
+      const sim::CarState& car = lap.world.state(i + 1);
+      command = pursuit->command({car.x, car.y, car.yaw});
+    } else if (auto* racer = std::get_if<sim::RacingOpponent>(&opponent)) {
+      if (decide) command = racer->command(lap.world);
+    } else {
+      auto& driver = std::get<DriverStack>(opponent);
+      if (decide) driver.send(driver.update(lap.world).output.command, lap.world);
+      command = driver.command(lap.world);
     }
   }
 }

@@ -30,6 +30,8 @@ Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
   Json options, list = Json::array();
   for (const Experiment& e : experiments) {
     options.update(options_json(scenario.configuration, e.method));
+    if (e.has_planning_opponents())
+      options.update(options_json(scenario.configuration, evaluation::OpponentPlanner{}.method));
     list.push_back({{"method", e.method},
                     {"scenario", e.scenario},
                     {"set", e.set_text()},

@@ -77,6 +77,12 @@ void apply_settings(const std::vector<std::string>& assignments, const std::stri
   }
 }
 
+/// The configuration as its file has it.
+vehicle::Configuration file_configuration(const std::string& config) {
+  const auto roots = vehicle::configuration_roots(program_folder());
+  return vehicle::load_configuration(vehicle::find_configuration(config, roots), roots);
+}
+
 }  // namespace
 
 void apply_setting(const std::string& key, const std::string& value, const std::string& method,
@@ -139,9 +145,7 @@ void add_method_option(Subcommand& command, std::string& method) {
 
 vehicle::Configuration load_configuration(const ScenarioArguments& arguments, const std::string& method) {
   solver_options(method);  // throws if the method is unknown
-  const auto roots = vehicle::configuration_roots(program_folder());
-  auto configuration =
-      vehicle::load_configuration(vehicle::find_configuration(arguments.config, roots), roots);
+  vehicle::Configuration configuration = file_configuration(arguments.config);
   evaluation::LapSettings world;
   apply_settings(arguments.set, method, configuration, world);
   return configuration;
@@ -161,6 +165,9 @@ Scenario load_scenario(const ScenarioArguments& arguments, const std::string& me
   scenario.lap.threads = arguments.threads;
   scenario.lap.saturating_tyres = arguments.saturating_tyres;
   apply_settings(arguments.set, method, scenario.configuration, scenario.lap);
+  if (scenario.lap.planning_opponents > 0)
+    scenario.lap.opponent_planner = std::make_shared<const evaluation::OpponentPlanner>(
+        evaluation::OpponentPlanner{file_configuration(arguments.config)});
   const maps::Point& origin = scenario.environment->course.origin;
   if (!arguments.start.empty()) {
     const maps::Pose start = parse_start(arguments.start);
@@ -209,6 +216,9 @@ Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario,
                 {"options", options_json(scenario.configuration, method)}};
   for (const OptionEntry& entry : list_options(scenario.lap))
     settings["options"]["world"][entry.declaration.name] = value_json(entry.value);
+  if (const auto& driver = scenario.lap.opponent_planner)
+    settings["opponent_planner"] = {{"method", driver->method},
+                                    {"options", options_json(driver->configuration, driver->method)}};
   if (origin.x != 0 || origin.y != 0) settings["origin"] = {origin.x, origin.y};
   if (arguments.hardware) settings["hardware"] = true;
   if (const std::string folder = folder_without_name(scenario); !folder.empty())

@@ -133,6 +133,7 @@ class LapRunner {
   std::unique_ptr<LapInProgress> begin(std::uint64_t seed) const;
   std::vector<maps::Pose> place_obstacles(std::uint64_t seed) const;
   std::vector<maps::Pose> place_opponents(const std::vector<maps::Pose>& obstacles) const;
+  std::shared_ptr<const LapRunner> planning_opponent(int index) const;
   void make_opponents(LapInProgress& lap) const;
   void command_opponents(LapInProgress& lap, bool decide) const;
   std::unique_ptr<vehicle::Planner> make_planner() const;
@@ -148,6 +149,9 @@ class LapRunner {
   vehicle::Configuration configuration_;
   std::string method_;
   LapSettings settings_;
+  double speed_share_ = 1;  ///< of the path's speeds, which the planner is given
+  /// Drivers of the opponents that have a planner, in their order.
+  std::vector<std::shared_ptr<const LapRunner>> planning_opponents_;
   maps::Pose start_;
   double timeout_ = 0;
   double open_length_ = 0;  ///< m to drive on an open course; 0 on closed courses

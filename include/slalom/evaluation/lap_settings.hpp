@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "slalom/core/options.hpp"
@@ -9,8 +11,18 @@
 #include "slalom/evaluation/tracking_record.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/sim/racing_opponent.hpp"
+#include "slalom/vehicle/configuration/configuration.hpp"
 
 namespace slalom::evaluation {
+
+/// Most opponents of a lap that have a planner of their own.
+inline constexpr int most_planning_opponents = 4;
+
+/// What drives opponents that have a planner of their own.
+struct OpponentPlanner {
+  vehicle::Configuration configuration;  ///< options of planner, vehicle model and methods
+  std::string method = "svg_mppi";       ///< name of the method
+};
 
 /// The settings of a lap besides environment, configuration and method.
 struct LapSettings {
@@ -19,6 +31,9 @@ struct LapSettings {
   int threads = 1;                               ///< of the solver, 1 ... 1024; they do not change the result
   std::optional<HardwareConditions> hardware{};  ///< as on a real car; Protocol::true_physics only
   std::optional<std::uint64_t> layout{};         ///< seed of the obstacle placement; default: the lap's
+  /// Drives the `planning_opponents`, at the control period of the car. Null: the car's own configuration and
+  /// method.
+  std::shared_ptr<const OpponentPlanner> opponent_planner{};
   bool additional_costs = false;  ///< also compute `paper_model_cost` and `driven_cost` (slower)
 
   // Changes of the world, for Protocol::true_physics only. visit_options declares them, so that evaluations
@@ -26,9 +41,10 @@ struct LapSettings {
   double latency = 0;             ///< s from a scan until its command takes effect
   int opponents = 0;              ///< cars that drive along the path; closed courses only
   PerInput opponent_speed = 0.5;  ///< fraction of the path's speed, one or one for each opponent
-  sim::OpponentDriver opponent_driver = sim::OpponentDriver::pursuit;  ///< of all but the next two
+  sim::OpponentDriver opponent_driver = sim::OpponentDriver::pursuit;  ///< of all but the next three
   int blocking_opponents = 0;     ///< of the opponents, the nearest ahead of the start block
   int erratic_opponents = 0;      ///< those after the blocking ones are erratic
+  int planning_opponents = 0;     ///< those after the erratic ones have a LiDAR and a planner
   double opponent_gap = 0;        ///< m from one car to the next at the start; 0: around the course
   int rounds = 1;                 ///< times around the course until a lap is finished
   double speed_scale = 1;         ///< factor of the course's speed profile
@@ -55,11 +71,14 @@ void visit_options(Options& o, Visit&& visit) {
          "fraction of the path's speed: one value, or one for each opponent", 0.01, 1);
   visit(o.opponent_driver,
         Declaration{.name = "opponent_driver",
-                    .help = "driver of the opponents that are neither blocking nor erratic"});
+                    .help = "driver of the opponents that are neither blocking, erratic nor planning"});
   number(o.blocking_opponents, "blocking_opponents", "",
          "number of opponents that block, from the first ahead of the car on", 0, 16);
   number(o.erratic_opponents, "erratic_opponents", "", "number of erratic opponents, after the blocking ones",
          0, 16);
+  number(o.planning_opponents, "planning_opponents", "",
+         "number of opponents with a planner of their own, after the erratic ones", 0,
+         most_planning_opponents);
   number(o.opponent_gap, "opponent_gap", "m",
          "distance between cars at the start; 0: equal distances around the course", 0, 100);
   number(o.rounds, "rounds", "", "number of times around the course in a lap", 1, 100);
@@ -81,7 +100,9 @@ void visit_options(Options& o, Visit&& visit) {
                 "track other cars with this pose: measures the tracker, and planner.predict_others uses it"});
 }
 
-/// How opponent `index` (from 0, in the order in which they start ahead of the car) drives.
+/// Whether opponent `index` (from 0, in the order in which they start ahead of the car) has a planner.
+bool has_planner(const LapSettings& settings, int index) noexcept;
+/// How opponent `index` drives if it has no planner.
 sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept;
 
 /// Sets the option that `key` names, for instance "world.friction", from text. Returns false if `key` does

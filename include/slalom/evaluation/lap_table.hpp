@@ -30,6 +30,8 @@ struct Experiment {
   bool tracks() const;
   /// Whether there are opponents: sets world.opponents to another value than 0.
   bool has_opponents() const;
+  /// Whether some of them have a planner: sets world.planning_opponents to another value than 0.
+  bool has_planning_opponents() const;
 };
 
 /// What a lap with `world.tracking` says about its tracker: the figures of TrackingRecord.

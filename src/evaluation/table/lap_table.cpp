@@ -75,6 +75,12 @@ void visit_columns(Row& r, const std::vector<Experiment>& experiments, Visit&& v
 
 constexpr const char* checksum_column = "checksum";
 
+/// Whether an experiment gives an option another value than this.
+bool sets_other_than(const Experiment& experiment, std::string_view key, std::string_view value) {
+  return std::any_of(experiment.set.begin(), experiment.set.end(),
+                     [&](const auto& each) { return each.first == key && each.second != value; });
+}
+
 std::uint32_t row_hash(std::string_view line) {
   std::uint32_t hash = 2166136261U;
   for (const char c : line) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
@@ -152,13 +158,15 @@ std::string Experiment::label() const {
 }
 
 bool Experiment::tracks() const {
-  return std::any_of(set.begin(), set.end(),
-                     [](const auto& each) { return each.first == "world.tracking" && each.second != "off"; });
+  return sets_other_than(*this, "world.tracking", "off");
 }
 
 bool Experiment::has_opponents() const {
-  return std::any_of(set.begin(), set.end(),
-                     [](const auto& each) { return each.first == "world.opponents" && each.second != "0"; });
+  return sets_other_than(*this, "world.opponents", "0");
+}
+
+bool Experiment::has_planning_opponents() const {
+  return sets_other_than(*this, "world.planning_opponents", "0");
 }
 
 LapRow make_row(int experiment, int lap, const LapResult& result, double wall_time) {
