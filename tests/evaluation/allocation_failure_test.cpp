@@ -60,6 +60,11 @@ TEST(AllocationFailure, ALapStartsOrThrows) {
                                        testing::every_allocation),
         100);
   }
+  const LapSettings behind_a_planner{
+      .opponents = 1, .planning_opponents = 1, .opponent_gap = 3, .tracking = TrackingMode::exact};
+  EXPECT_GT(testing::fail_every_allocation(
+                [&] { return start_of_lap(environment, configuration, behind_a_planner); }, 100),
+            100);
 }
 
 TEST(AllocationFailure, ARaceAmongCarsStartsOrThrows) {

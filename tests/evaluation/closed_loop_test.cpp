@@ -8,7 +8,8 @@
 namespace slalom::evaluation {
 namespace {
 
-std::shared_ptr<const LapRunner> runner(const std::string& method, int obstacles = 2) {
+std::shared_ptr<const LapRunner> runner(const std::string& method,
+                                        const LapSettings& settings = {.obstacles = 2}) {
   static const auto environment = load_environment(SLALOM_COURSES "/stag", Protocol::true_physics, {});
   vehicle::Configuration configuration;
   for (const char* each : {"svg_mppi", "mppi"}) {
@@ -18,8 +19,6 @@ std::shared_ptr<const LapRunner> runner(const std::string& method, int obstacles
     vehicle::set_option(configuration, "input_min", "-0.4", each);
     vehicle::set_option(configuration, "input_max", "0.4", each);
   }
-  LapSettings settings;
-  settings.obstacles = obstacles;
   return std::make_shared<const LapRunner>(environment, configuration, method, settings);
 }
 
@@ -62,6 +61,24 @@ TEST(ClosedLoop, SameInterventionsGiveTheSameDrive) {
   ClosedLoop untouched(runner("mppi"), 5);
   for (int i = 0; i < 60; ++i) untouched.step();
   EXPECT_FALSE(once == untouched.world().state(0));
+}
+
+TEST(ClosedLoop, AnOpponentKeepsItsPlannerWhenTheControllerOfTheCarChanges) {
+  // Half the course ahead, where neither car sees the other.
+  const LapSettings settings{.opponents = 1, .planning_opponents = 1};
+  const auto drive = [&](const char* later) {
+    ClosedLoop loop(runner("mppi", settings), 5);
+    for (int i = 0; i < 60; ++i) {
+      if (i == 20) loop.change_controller(runner(later, settings));
+      loop.step();
+    }
+    return std::pair(loop.world().state(0), loop.world().state(1));
+  };
+  const auto [car, opponent] = drive("mppi");
+  const auto [other_car, same_opponent] = drive("svg_mppi");
+  EXPECT_FALSE(car == other_car);
+  EXPECT_TRUE(opponent == same_opponent);
+  EXPECT_GT(opponent.speed, 0.5);
 }
 
 TEST(ClosedLoop, RejectsAnotherEnvironmentOrPeriod) {

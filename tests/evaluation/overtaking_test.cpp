@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <filesystem>
@@ -117,12 +118,20 @@ std::shared_ptr<const Environment> wren() {
   return load_environment(fs::path(SLALOM_COURSES) / "wren", Protocol::true_physics, {SLALOM_COURSES});
 }
 
-LapResult lap_with(const LapSettings& settings, std::uint64_t seed = 1) {
-  auto driver =
-      vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / "default_kinematic.yaml", {SLALOM_CONFIGS});
+vehicle::Configuration configuration(const std::string& name) {
+  return vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / (name + ".yaml"), {SLALOM_CONFIGS});
+}
+
+LapRunner runner_with(const LapSettings& settings, const std::string& method = "mppi") {
+  auto driver = configuration("default_kinematic");
   vehicle::set_option(driver, "mppi.samples", "64");
+  vehicle::set_option(driver, "svg_mppi.samples", "64");
   static const auto environment = wren();
-  return LapRunner(environment, driver, "mppi", settings).run(seed);
+  return {environment, driver, method, settings};
+}
+
+LapResult lap_with(const LapSettings& settings, std::uint64_t seed = 1) {
+  return runner_with(settings).run(seed);
 }
 
 TEST(Overtaking, OpponentsOfEveryKindAreInALapAndItRepeats) {
@@ -150,6 +159,83 @@ TEST(Overtaking, OpponentsOfEveryKindAreInALapAndItRepeats) {
   EXPECT_EQ(row.overtaking.caused, first.overtaking.caused);
 }
 
+void expect_same(const LapResult& a, const LapResult& b) {
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(a.state_cost), std::bit_cast<std::uint64_t>(b.state_cost));
+  EXPECT_EQ(a.time, b.time);
+  ASSERT_EQ(a.overtaking.encounters.size(), b.overtaking.encounters.size());
+  for (std::size_t i = 0; i < a.overtaking.encounters.size(); ++i)
+    EXPECT_EQ(a.overtaking.encounters[i].duration, b.overtaking.encounters[i].duration);
+}
+
+TEST(Overtaking, OpponentsWithPlannersAreInALapAndItRepeatsWithAnyThreads) {
+  LapSettings settings{.opponents = 3,
+                       .opponent_speed = PerInput{0.6, 0.7, 0.8},
+                       .blocking_opponents = 1,
+                       .planning_opponents = 2,
+                       .opponent_gap = 3,
+                       .tracking = TrackingMode::exact};
+  EXPECT_FALSE(has_planner(settings, 0));
+  EXPECT_TRUE(has_planner(settings, 1));
+  EXPECT_TRUE(has_planner(settings, 2));
+  const LapResult first = lap_with(settings);
+  ASSERT_FALSE(first.overtaking.encounters.empty());
+  EXPECT_LT(first.overtaking.encounters[0].time, 0.1) << "the first opponent starts 3 m ahead";
+  settings.threads = 2;
+  expect_same(first, lap_with(settings));
+  EXPECT_NE(first.state_cost, lap_with(settings, 2).state_cost);
+}
+
+/// m along the course that the opponent of a lap has driven after `time` (s). It starts half the course
+/// ahead: for the first seconds, neither car sees the other.
+double way_of_opponent(const LapSettings& settings, double time, const std::string& method = "mppi") {
+  double way = 0;
+  std::atomic<bool> enough = false;
+  runner_with(settings, method)
+      .run(
+          1,
+          [&](const ControlStep& step) {
+            way = step.world.laps(1)->progress();
+            enough = step.time >= time;
+          },
+          &enough);
+  return way;
+}
+
+TEST(Overtaking, AnOpponentWithAPlannerDrivesAtItsShareOfTheSpeed) {
+  const auto way = [](double share, bool fastest) {
+    LapSettings settings{.opponents = 1, .opponent_speed = share, .planning_opponents = 1};
+    settings.saturating_tyres = fastest;
+    if (fastest)
+      settings.opponent_planner = std::make_shared<OpponentPlanner>(OpponentPlanner{configuration("race")});
+    return way_of_opponent(settings, 1.5);
+  };
+  const double all = way(1, false), all_fastest = way(1, true);
+  EXPECT_GT(all, 3);
+  EXPECT_GT(all_fastest, 3);
+  for (const double share : {0.5, 0.7}) {
+    EXPECT_NEAR(way(share, false) / all, share, 0.12) << share;
+    EXPECT_NEAR(way(share, true) / all_fastest, share, 0.2) << share << ", for the shortest time";
+  }
+  EXPECT_THROW(way(0.4, true), std::invalid_argument) << "less than vehicle.speed_share can be";
+}
+
+TEST(Overtaking, OpponentsCanHaveAPlannerThatDoesNotDependOnTheCar) {
+  LapSettings settings{.opponents = 1, .opponent_speed = 1, .planning_opponents = 1};
+  const auto way = [&](const char* method) { return way_of_opponent(settings, 2, method); };
+  EXPECT_NE(way("mppi"), way("svg_mppi")) << "that of the car";
+  OpponentPlanner slow{configuration("default_kinematic"), "mppi"};
+  vehicle::set_option(slow.configuration, "mppi.samples", "64");
+  slow.configuration.planner.max_speed = 0.5;
+  settings.opponent_planner = std::make_shared<OpponentPlanner>(slow);
+  const double way_of_slow = way("mppi");
+  EXPECT_EQ(way_of_slow, way("svg_mppi"));
+  slow.configuration.planner.control_period = 0.05;
+  settings.opponent_planner = std::make_shared<OpponentPlanner>(slow);
+  EXPECT_EQ(way_of_slow, way("mppi")) << "at the control period of the car";
+  EXPECT_GT(way_of_slow, 0.4);
+  EXPECT_LT(way_of_slow, 1.1);
+}
+
 TEST(Overtaking, ALapCanHaveSeveralRounds) {
   const LapResult one = lap_with({}), two = lap_with({.rounds = 2});
   ASSERT_TRUE(one.finished && two.finished);
@@ -162,6 +248,9 @@ TEST(Overtaking, SettingsThatDoNotFitAreRefused) {
   EXPECT_THROW(lap_with({.opponents = 2, .opponent_speed = PerInput{0.5, 0.6, 0.7}}), std::invalid_argument);
   EXPECT_THROW(lap_with({.opponents = 1, .blocking_opponents = 1, .erratic_opponents = 1}),
                std::invalid_argument);
+  EXPECT_THROW(lap_with({.opponents = 2, .erratic_opponents = 1, .planning_opponents = 2}),
+               std::invalid_argument);
+  EXPECT_THROW(lap_with({.opponents = 5, .planning_opponents = 5}), std::invalid_argument);
   EXPECT_THROW(lap_with({.rounds = 0}), std::invalid_argument);
 }
 

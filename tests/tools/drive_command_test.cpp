@@ -71,6 +71,28 @@ TEST_F(DriveCommand, GivesTheSameBytesForTheSameSeedAndAnyThreads) {
   EXPECT_NE(cleaned("--seed 1").first, first.first);
 }
 
+TEST_F(DriveCommand, OpponentsWithPlannersHaveTheOptionsOfTheFileAndAreRecorded) {
+  const std::string among =
+      "--opponents 1 --set world.planning_opponents=1 --set world.opponent_gap=3 --set world.tracking=exact ";
+  const auto cleaned = [&](const std::string& arguments) {
+    const auto run = drive(among + arguments + " --json out.json --record out.jsonl");
+    EXPECT_EQ(run.status, 0) << run.output;
+    return content(folder_ / "out.jsonl");
+  };
+  const std::string first = cleaned("--threads 1");
+  EXPECT_EQ(cleaned("--threads 2"), first);
+  const json settings = result("out.json")["settings"];
+  EXPECT_EQ(settings["options"]["world"]["planning_opponents"], 1);
+  EXPECT_EQ(settings["options"]["svg_mppi"]["samples"], 256);
+  EXPECT_EQ(settings["opponent_planner"]["method"], "svg_mppi");
+  EXPECT_EQ(settings["opponent_planner"]["options"]["svg_mppi"]["samples"], 4000) << "that of default.yaml";
+  EXPECT_FALSE(result("out.json")["laps"][0]["overtaking"]["encounters"].empty());
+  expect_refused("drive --set world.planning_opponents=1", {"world.planning_opponents", "world.opponents"});
+  expect_refused("drive --opponents 5 --set world.planning_opponents=5", {"planning_opponents", "[0, 4]"});
+  expect_refused("drive --evaluation published --set world.planning_opponents=1",
+                 {"planning_opponents", "published"});
+}
+
 TEST_F(DriveCommand, WritesOnlyJsonToStandardOutput) {
   const auto run = drive("--json - 2>/dev/null");
   EXPECT_EQ(run.status, 0);

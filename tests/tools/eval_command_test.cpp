@@ -269,6 +269,21 @@ TEST_F(EvalCommand, ReplaysALapBitForBitAndComparesTwoRuns) {
   EXPECT_TRUE(contains(run("compare a c").output, "or a folder of evaluations"));
 }
 
+TEST_F(EvalCommand, EveryExperimentMeetsTheSameOpponentsWithPlanners) {
+  const ProgramRun driven = run("eval --course " SLALOM_COURSES
+                                "/wren --methods mppi --scenario pt --laps 1 --config default_kinematic "
+                                "--set mppi.samples=48 --set world.opponents=1 --set "
+                                "world.planning_opponents=1 --set world.opponent_gap=3 --out one");
+  ASSERT_EQ(driven.status, 0) << driven.output;
+  const auto summary = nlohmann::json::parse(content(folder_ / "one/summary.json"));
+  EXPECT_EQ(summary.at("settings").at("options").at("svg_mppi").at("samples"), 8000)
+      << "options of a method that drives opponents only are kept for replays";
+  EXPECT_GT(summary.at("results").at(0).at("overtaking").at("met"), 0);
+  const ProgramRun lap = run("replay one --lap 0");
+  EXPECT_EQ(lap.status, 0) << lap.output;
+  EXPECT_TRUE(contains(lap.output, "bit for bit")) << lap.output;
+}
+
 TEST_F(EvalCommand, RemembersTheFolderOfACourseThatHasNoKnownName) {
   fs::copy(SLALOM_COURSES "/wren", folder_ / "elsewhere");
   const std::string drive =
