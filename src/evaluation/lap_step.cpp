@@ -76,7 +76,7 @@ void LapRunner::control(LapInProgress& lap, const ControlStepCallback& on_step, 
   if (on_step)
     on_step({result.steps, seen.time, progress(lap.world),
              rules_of(environment_->protocol).collisions(lap.log), seen, update.scan, update.odometry, output,
-             planner, lap.world, cost});
+             planner, lap.world, cost, update.others});
   ++result.steps;
   lap.driver->send(output.command, lap.world, extra_latency);
 }

@@ -2,6 +2,7 @@
 // what was recorded. That other programs read them is checked in view/page/test/mcap.mjs.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -41,6 +42,48 @@ std::string record(bool wall_clock, int ticks = 12, bool ghost = false) {
     });
   recorder.finish();
   return std::move(stream).str();
+}
+
+/// Checks the block of tracked cars in the frame of a step with one opponent. Returns whether there is one.
+bool shows_the_opponent(const evaluation::ControlStep& tick, const std::string& frame) {
+  const std::string_view block = FrameReader(frame).block(Block::others);
+  EXPECT_EQ(block.empty(), tick.others.empty());
+  if (block.empty()) return false;
+  PayloadReader others(block);
+  EXPECT_EQ(others.get<std::uint32_t>(), 1u);
+  others.take(3 * sizeof(float));
+  const std::size_t hypotheses = others.get<std::uint16_t>(), times = others.get<std::uint16_t>();
+  double sum = 0;
+  for (std::size_t k = 0; k < hypotheses; ++k) sum += others.f32();
+  EXPECT_NEAR(sum, 1, 1e-3) << "of the weights";
+  const auto places = others.points(hypotheses * times);
+  const maps::Pose opponent = tick.world.outline(1).pose;
+  for (std::size_t k = 0; k < hypotheses; ++k)
+    EXPECT_LT(std::hypot(places[k * times].x - opponent.x, places[k * times].y - opponent.y), 0.5)
+        << "where it is now";
+  return true;
+}
+
+TEST(FrameEncoder, ShowsWhereTheOtherCarsAreExpectedIfTheyAreTracked) {
+  vehicle::Configuration configuration;
+  vehicle::set_option(configuration, "samples", "64", "svg_mppi");
+  for (const auto mode : {evaluation::TrackingMode::off, evaluation::TrackingMode::exact}) {
+    evaluation::ClosedLoop loop(
+        std::make_shared<const evaluation::LapRunner>(
+            environment(), configuration, "svg_mppi",
+            evaluation::LapSettings{.opponents = 1, .opponent_gap = 3, .tracking = mode}),
+        5);
+    FrameEncoder encoder;
+    int shown = 0;
+    for (int i = 0; i < 60; ++i)
+      loop.step([&](const evaluation::ControlStep& tick) {
+        shown += shows_the_opponent(tick, encoder.encode(tick, {}));
+      });
+    if (mode == evaluation::TrackingMode::off)
+      EXPECT_EQ(shown, 0);
+    else
+      EXPECT_GT(shown, 20);
+  }
 }
 
 class McapRecording : public testing::TemporaryFolder {

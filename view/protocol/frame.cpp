@@ -151,6 +151,7 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
   to.end();
   put_scan(to, tick);
   put_cost_map(to, tick);
+  put_others(to, tick);
   if (!solve) return to.take();
   put_candidates(to, tick);
   put_guides(to, tick);
@@ -299,6 +300,22 @@ void FrameEncoder::put_plan(FrameWriter& to, const ControlStep& tick) {
     for (const double value : {state.pose.x - tick.seen.pose.x, state.pose.y - tick.seen.pose.y,
                                state.pose.yaw, state.speed, state.steer, std::sqrt(spread[k])})
       to.put_f32(value);
+  }
+  to.end();
+}
+
+/// The cars that are tracked: the box of now, and the places of all hypotheses.
+void FrameEncoder::put_others(FrameWriter& to, const ControlStep& tick) {
+  if (tick.others.empty()) return;
+  to.begin(Block::others);
+  to.put(static_cast<std::uint32_t>(tick.others.size()));
+  for (const maps::PredictedObstacle& other : tick.others) {
+    for (const double value : {other.length, other.width, other.poses.front().pose.yaw}) to.put_f32(value);
+    to.put(static_cast<std::uint16_t>(other.hypotheses));
+    to.put(static_cast<std::uint16_t>(other.times()));
+    for (int k = 0; k < other.hypotheses; ++k) to.put_f32(other.weights[static_cast<std::size_t>(k)]);
+    to.begin_points({tick.seen.pose.x, tick.seen.pose.y});
+    for (const maps::PredictedPose& place : other.poses) to.put_point({place.pose.x, place.pose.y});
   }
   to.end();
 }

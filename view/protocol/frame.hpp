@@ -40,6 +40,7 @@ class FrameEncoder {
   void put_candidates(FrameWriter& to, const evaluation::ControlStep& tick);
   void put_guides(FrameWriter& to, const evaluation::ControlStep& tick);
   void put_plan(FrameWriter& to, const evaluation::ControlStep& tick);
+  static void put_others(FrameWriter& to, const evaluation::ControlStep& tick);
 
   int max_candidates_;
   std::vector<vehicle::PredictedState> states_;

@@ -24,6 +24,7 @@ enum class Block : std::uint16_t {
   covariance = 9,
   ghost = 10,
   ghost_frame = 11,
+  others = 12,
   grid = 20,
   path = 21,
   past = 22,

@@ -84,6 +84,22 @@ void Recorder::add_cars(const FrameReader& reader) {
                 : id == 0 ? car_color
                           : obstacle_color);
   }
+  scene.begin("predictions");
+  if (const auto block = reader.block(Block::others); !block.empty()) {
+    PayloadReader others(block);
+    for (auto left = others.get<std::uint32_t>(); left > 0; --left) {
+      others.take(3 * sizeof(float));
+      const std::size_t hypotheses = others.get<std::uint16_t>(), times = others.get<std::uint16_t>();
+      std::vector<double> weights(hypotheses);
+      for (double& weight : weights) weight = others.f32();
+      const auto places = others.points(hypotheses * times);
+      for (std::size_t k = 0; k < hypotheses; ++k) {
+        Color color = obstacle_color;
+        color[3] = weights[k];
+        scene.line(std::span(places).subspan(k * times, times), color, 2);
+      }
+    }
+  }
   scene.begin("ghost");
   if (const auto block = reader.block(Block::ghost); !block.empty()) {
     PayloadReader ghost(block);

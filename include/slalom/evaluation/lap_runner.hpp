@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,6 +53,8 @@ struct ControlStep {
   const vehicle::Planner& planner;       ///< after the update
   const sim::World& world;               ///< the simulated world
   SequenceCostMeter::Cost cost;          ///< of the control sequence that the planner chose
+  /// Input of the planner: the other cars that are tracked, with their hypotheses, in the map frame.
+  std::span<const maps::PredictedObstacle> others{};
 };
 /// Called in every control step.
 using ControlStepCallback = std::function<void(const ControlStep&)>;

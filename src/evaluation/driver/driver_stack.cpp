@@ -62,7 +62,7 @@ DriverStack::Update DriverStack::update(const sim::World& world) {
        .odometry = localised ? odometry : vehicle::Odometry{{unknown, unknown, unknown}, odometry.speed},
        .imu = hardware_ ? hardware_->read_imu() : std::nullopt,
        .others = others});
-  return {seen, scan, odometry, localised, output};
+  return {seen, scan, odometry, localised, output, others};
 }
 
 void DriverStack::send(const Command& command, const sim::World& world, double extra_latency) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +39,7 @@ class DriverStack {
     vehicle::Odometry odometry;            ///< input of the planner; if not `localised`, the true one
     bool localised = true;                 ///< whether the planner was given a pose
     const vehicle::PlannerOutput& output;  ///< until the next update
+    std::span<const maps::PredictedObstacle> others;  ///< input of the planner, until the next update
   };
   /// Senses, tracks and plans.
   Update update(const sim::World& world);

@@ -27,6 +27,8 @@ export interface CostMap {
   x: number; y: number; yaw: number; rows: number; columns: number; resolution: number;
   centerX: number; centerY: number; cells: Uint8Array;
 }
+/** A car that is tracked: its box now, and where it is expected. */
+export interface Other { x: number; y: number; yaw: number; length: number; width: number; weights: Float32Array; points: number; xy: Float32Array } // xy: [hypothesis][time][2]
 export interface Ghost { x: number; y: number; yaw: number; steer: number; speed: number; laps: number; lapTime: number; plan: Float32Array }
 export interface Frame {
   scalars: Float64Array;
@@ -38,6 +40,7 @@ export interface Frame {
   plan?: PlanState[];
   covariance?: Float32Array;
   bodies: Body[];
+  others?: Other[];
   ghost?: Ghost;
   ghostFrame?: Frame; // what the ghost's controller considers, in the ghost's world
 }
@@ -46,7 +49,7 @@ export interface Path { closed: boolean; xyv: Float32Array }
 export interface Scene { grid?: Grid; path?: Path }
 
 const MAGIC = 0x31564c53; // "SLV1"
-const kinds = { scalars: 1, scan: 2, costMap: 3, candidates: 4, guides: 5, nominal: 6, plan: 7, bodies: 8, covariance: 9, ghost: 10, ghostFrame: 11, grid: 20, path: 21, past: 22, file: 30 };
+const kinds = { scalars: 1, scan: 2, costMap: 3, candidates: 4, guides: 5, nominal: 6, plan: 7, bodies: 8, covariance: 9, ghost: 10, ghostFrame: 11, others: 12, grid: 20, path: 21, past: 22, file: 30 };
 
 class Reader {
   at: number;
@@ -147,6 +150,14 @@ export function decode(buffer: ArrayBuffer): { frame?: Frame; scene?: Scene; pas
         for (let i = 0; i < n; ++i) {
           const id = r.u16(), bodyKind = r.u8(), touched = r.u8() !== 0, v = r.f32s(5);
           frame.bodies.push({ id, kind: bodyKind, touched, x: v[0], y: v[1], yaw: v[2], length: v[3], width: v[4] });
+        }
+        break;
+      }
+      case kinds.others: {
+        frame.others = [];
+        for (let left = r.u32(); left > 0; --left) {
+          const [length, width, yaw] = r.f32s(3), count = r.u16(), n = r.u16(), weights = r.f32s(count), xy = points(r, count * n);
+          frame.others.push({ x: xy[0], y: xy[1], yaw, length, width, weights, points: n, xy });
         }
         break;
       }

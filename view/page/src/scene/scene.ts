@@ -6,7 +6,7 @@ import type { Rgba, Theme } from "./palette";
 import type { Body, Frame, Hello, Scene } from "../protocol";
 import { freeSpace } from "./solid/contours";
 import { SpaceView } from "./solid/view";
-import { circle, corners, dashed, drawCar, drawObstacle, faded, usualCar, type Point, type Pose } from "./shapes";
+import { circle, corners, dashed, drawCar, drawObstacle, drawTracked, faded, usualCar, type Point, type Pose } from "./shapes";
 
 export interface Mark { x: number; y: number; shown: boolean }
 const opponent = 4; // kind of body
@@ -210,6 +210,7 @@ export class SceneView {
       if (body.kind === opponent && this.visible.has("opponents")) drawCar(painter, theme, this.size, body, 0, theme.opponent, theme.carEdge);
       else if (body.kind !== 0 && body.kind !== opponent && this.visible.has("obstacles")) drawObstacle(painter, theme, body, this.selected === body.id);
     }
+    if (this.visible.has("opponents")) drawTracked(painter, theme, frame.others ?? []);
     this.drawMarks();
     if (this.preview) this.drawPreview(this.preview);
     if (this.visible.has("nominal") && frame.nominal) dashed(painter, frame.nominal.xy, frame.nominal.points, theme.nominal, 1.6);

@@ -1,6 +1,6 @@
 import type { Painter } from "./painter";
 import type { Rgba, Theme } from "./palette";
-import type { Body } from "../protocol";
+import type { Body, Other } from "../protocol";
 
 /** Cars, obstacles and lines as they are seen from above. */
 
@@ -35,6 +35,15 @@ export function drawObstacle(painter: Painter, theme: Theme, b: Body, isSelected
     painter.outline(front, faded(theme.obstacleEdge, 0.7), 1);
   }
   painter.flush();
+}
+
+/** Cars that are tracked: outlines, and a dot for each place where they may be, as opaque as it is likely. */
+export function drawTracked(painter: Painter, theme: Theme, others: Other[]) {
+  for (const other of others) {
+    painter.outline(corners(other), theme.opponent, 2);
+    for (const [k, weight] of other.weights.entries())
+      for (let i = k * other.points; i < (k + 1) * other.points; ++i) painter.dot(other.xy[2 * i], other.xy[2 * i + 1], 4, faded(theme.opponent, 0.15 + 0.85 * weight));
+  }
 }
 
 /** A car with its front wheels turned by `steer` (rad). */

@@ -114,6 +114,8 @@ export class SpaceView {
         lines.segment([x, y, lift.scan], [x, y, lift.scan], theme.scan, 2.6);
       }
     }
+    if (visible.has("opponents")) for (const { xy, points, weights } of frame.others ?? []) for (const [k, weight] of weights.entries())
+      for (let i = k * points; i < (k + 1) * points; ++i) lines.segment([xy[2 * i], xy[2 * i + 1], lift.nominal], [xy[2 * i], xy[2 * i + 1], lift.nominal], faded(theme.opponent, 0.15 + 0.85 * weight), 4);
     if (frame.nominal && visible.has("nominal")) for (let i = 0; i + 1 < frame.nominal.points; i += 2) lines.polyline(frame.nominal.xy, i, 2, lift.nominal, theme.nominal, 1.6);
     if (frame.ghost && visible.has("ghost")) for (let i = 0; i + 1 < frame.ghost.plan.length / 2; i += 2) lines.polyline(frame.ghost.plan, i, 2, lift.ghost, faded(theme.ghost, 0.9), 2.6);
     const plan = frame.plan;
