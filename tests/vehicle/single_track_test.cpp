@@ -166,6 +166,32 @@ TEST(SingleTrack, IsFiniteForAnyInput) {
   }
 }
 
+TEST(SingleTrack, StaysInBoundsForAnyInputAndStep) {
+  std::mt19937 random(2);
+  const auto between = [&](double low, double high) {
+    return low * std::pow(high / low, std::uniform_real_distribution<double>(0, 1)(random));
+  };
+  for (int n = 0; n < 4000; ++n) {
+    PathTrackingOptions options = car_options();
+    options.time_step = between(0.01, 1);
+    SingleTrackOptions own;
+    own.tyres = n % 2 ? TyreModel::saturating : TyreModel::linear;
+    own.half_steer_speed = between(0.1, 100);
+    const SingleTrack car(options, own);
+    SingleTrackState<double> s{0, 0, 0, between(0.01, 20), 0, 0, 0};
+    const double most = between(0.1, 1e4);
+    for (int k = 0; k < 100; ++k) {
+      const double side = random() % 2 ? 1 : -1;
+      const double acceleration = between(0.1, 10) * (random() % 2 ? 1 : -1);
+      s = car.step(s, 8.0, Input<double, 2>{{side * most, acceleration}}, k);
+      ASSERT_LT(std::abs(s.steer), 1.51) << n;
+      ASSERT_LE(std::abs(s.yaw_rate), 100) << n;
+      ASSERT_LE(std::abs(s.lateral), 1e3) << n;
+      ASSERT_LE(std::abs(s.speed), 100) << n << ", step " << options.time_step << " s";
+    }
+  }
+}
+
 TEST(SingleTrack, BrakesNoHarderThanTurningLeavesGrip) {
   SingleTrackOptions own;
   own.usable_grip = 0.9;

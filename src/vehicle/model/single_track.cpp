@@ -39,6 +39,7 @@ SingleTrackDynamics::SingleTrackDynamics(const PathTrackingOptions& car, const S
       min_squared_share_(own.objective == Objective::lap_time ? 1.0 / 9 : 0.01),
       braking_share_(own.braking_share),
       negative_inverse_braking_share_(-1 / own.braking_share),
+      gravity_(gravity),
       inverse_gravity_(1 / gravity) {}
 
 double slip_of(const SingleTrackState<double>& s) noexcept {

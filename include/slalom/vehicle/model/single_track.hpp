@@ -69,10 +69,12 @@ class SingleTrack {
 
   /// The steering command (rad) of an input: the whole of it at a standstill, half of it at
   /// `half_steer_speed`. So the same input turns the car about as much at any speed, where the angles that
-  /// the tyres can use fall with its square.
+  /// the tyres can use fall with its square. It is at most 1.5 rad: an input that is reasonable at speed may
+  /// ask for whole turns once the car is slow.
   template <class T>
   SLALOM_INLINE T steering(const State<T>& s, const T& input) const {
-    return input * (T(squared_half_steer_speed_) / (T(squared_half_steer_speed_) + square(s.speed)));
+    const T share = T(squared_half_steer_speed_) / (T(squared_half_steer_speed_) + square(s.speed));
+    return clamp(input * share, T(-1.5), T(1.5));
   }
   /// The acceleration (m/s^2) that takes effect where `wanted` is asked for on a path of this reference speed
   /// (m/s).

@@ -114,7 +114,9 @@ class SingleTrackDynamics {
       front = front * (left * secant(T(front_sharpness_) * front_slip * flattened));
       rear = rear * (left * secant(T(rear_sharpness_) * rear_slip));
       const T slip = way * s.lateral * inverse;
-      drag = rear * rear_slip * slip - front * front_slip * (s.steer - slip);
+      // The angles are not small in a spin.
+      const T grip = friction * T(gravity_);
+      drag = clamp(rear * rear_slip * slip - front * front_slip * (s.steer - slip), -grip, grip);
       front = front * (T(1) - T(0.5) * squared);
     }
     const T missed = (next_steer - steer) * abs(turned) * (T(1) / reach);
@@ -166,8 +168,9 @@ class SingleTrackDynamics {
     const T second = u * s.yaw_rate - old_dt * (c * s.lateral + d * s.yaw_rate) + ratio * lf * push;
     const T m11 = u + new_dt * a, m12 = new_dt * b, m21 = new_dt * c, m22 = u + new_dt * d;
     const T inverse = T(1) / max(m11 * m22 - m12 * m21, T(1e-9));
-    next.lateral = (first * m22 - second * m12) * inverse;
-    next.yaw_rate = (second * m11 - first * m21) * inverse;
+    // A car that spins is unstable, and over a long step the solution has a pole.
+    next.lateral = clamp((first * m22 - second * m12) * inverse, T(-1e3), T(1e3));
+    next.yaw_rate = clamp((second * m11 - first * m21) * inverse, T(-100), T(100));
   }
 
   bool saturating_;
@@ -184,7 +187,7 @@ class SingleTrackDynamics {
   Coefficient usable_acceleration_;  ///< over the friction
   Coefficient min_squared_share_;    ///< of the usable grip, left to slow down
   Coefficient braking_share_, negative_inverse_braking_share_;
-  Coefficient inverse_gravity_;
+  Coefficient gravity_, inverse_gravity_;
 };
 
 }  // namespace slalom::vehicle
