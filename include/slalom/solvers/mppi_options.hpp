@@ -26,9 +26,12 @@ struct MppiOptions {
   double control_cost_discount = 0;  ///< alpha: the control term is multiplied by 1 - alpha
   double zero_mean_share = 0;        ///< of the samples, drawn around zero instead of the last solution
   bool shift_warm_start = true;      ///< move the last solution forward by the elapsed time
-  std::uint64_t seed = 0;            ///< seed of the random numbers
-  int threads = 1;                   ///< threads that work on a solve; the result does not depend on it
-  PublishedMppi published{};         ///< only to reproduce the program of proj-svg_mppi
+  /// Mean of the samples and nominal sequence are the best of the proposals and the last solution, so that
+  /// there is no control term; the proposals are no samples.
+  bool nominal_from_proposals = false;
+  std::uint64_t seed = 0;     ///< seed of the random numbers
+  int threads = 1;            ///< threads that work on a solve; the result does not depend on it
+  PublishedMppi published{};  ///< only to reproduce the program of proj-svg_mppi
 };
 
 /// Declares the options above.
@@ -40,6 +43,11 @@ void visit_options(Options& o, Visit&& visit) {
   detail::visit_weighting_options(o.weighting, visit);
   detail::visit_smoothing_options(o.smoothing, visit);
   detail::visit_control_cost_options(o, visit);
+  visit(
+      o.nominal_from_proposals,
+      Declaration{.name = "nominal_from_proposals",
+                  .help = "draw the samples around the best of the proposals and the last solution, which is "
+                          "the nominal sequence; otherwise proposals are samples"});
   visit_run_options(o, visit);
   visit_options(o.published, visit);
 }

@@ -122,6 +122,98 @@ TEST(Proposals, SameBitsForAnyNumberOfThreads) {
   }
 }
 
+/// `mppi` whose nominal sequence is the best proposal.
+std::unique_ptr<Solver> make_with_nominal(int threads = 1) {
+  return make_solver(MppiOptions{.horizon = steps,
+                                 .samples = 64,
+                                 .variance = 0.01,
+                                 .input_min = -4,
+                                 .input_max = 4,
+                                 .nominal_from_proposals = true,
+                                 .threads = threads},
+                     1);
+}
+
+TEST(Proposals, MppiSamplesAroundTheBestOne) {
+  const auto evaluator = far_away();
+  std::vector<float> values(3 * steps, 0.5f);
+  std::fill_n(values.begin() + steps, steps, 2.5f);
+  const auto solver = make_with_nominal();
+  const SolveResult& result = solver->solve(evaluator, {.proposals = {values, 3}});
+  for (const float u : result.nominal) EXPECT_EQ(u, 2.5f);
+  for (int k = 0; k < result.samples->samples(); ++k)
+    EXPECT_NEAR(static_cast<double>(result.samples->at(0, 0, k)), 2.5, 0.7) << "no sample is a proposal";
+  EXPECT_LT(mean_error(result), 0.5);
+}
+
+TEST(Proposals, TheLastSolutionCompetesToBeNominal) {
+  const auto evaluator = far_away();
+  const std::vector<float> good(steps, 3.0f), bad(steps, -3.0f);
+  const auto solver = make_with_nominal();
+  const auto last = solver->solve(evaluator, {.proposals = {good, 1}}).inputs;
+  const std::vector<float> before(last.begin(), last.end());
+  const auto nominal = solver->solve(evaluator, {.proposals = {bad, 1}}).nominal;
+  EXPECT_TRUE(std::equal(nominal.begin(), nominal.end(), before.begin()));
+  solver->reset(0);
+  for (const float u : solver->solve(evaluator, {}).nominal) EXPECT_EQ(u, 0.0f) << "reset forgets it";
+}
+
+TEST(Proposals, TheNominalOneIsFoundAmongAnyNumber) {
+  const auto evaluator = far_away();
+  for (const int count : {1, 63, 64, 65, 1024, 1025, 3000}) {
+    std::vector<float> values(static_cast<std::size_t>(count) * steps, -1.0f);
+    for (const int best : {0, count / 2, count - 1}) {
+      std::fill_n(values.begin() + best * steps, steps, 2.75f);
+      for (const int threads : {1, 3}) {
+        const auto solver = make_with_nominal(threads);
+        for (const float u : solver->solve(evaluator, {.proposals = {values, count}}).nominal)
+          EXPECT_EQ(u, 2.75f) << best << " of " << count;
+      }
+      std::fill_n(values.begin() + best * steps, steps, -1.0f);
+    }
+  }
+}
+
+TEST(Proposals, ANominalOneHasNoControlTerm) {
+  // The costs of all samples are the same, and so are their weights without a control term.
+  const auto flat = testing::FunctionEvaluator(1, [](const SequenceBatch& batch, int k) {
+    return std::pair(batch.at(0, 0, k) > 1.0f ? 0.0 : 1e6, false);
+  });
+  const std::vector<float> values(steps, 3.0f);
+  const auto solver = make_with_nominal();
+  const SolveResult& result = solver->solve(flat, {.proposals = {values, 1}});
+  EXPECT_NEAR(result.effective_sample_size, 64, 0.01);
+}
+
+TEST(Proposals, BadValuesAreNotNominal) {
+  const auto evaluator = far_away();
+  for (const float value :
+       {std::numeric_limits<float>::quiet_NaN(), 1e30f, -1e30f, std::numeric_limits<float>::infinity()}) {
+    const std::vector<float> values(steps, value);
+    const auto solver = make_with_nominal();
+    for (int i = 0; i < 2; ++i) {
+      const SolveResult& result = solver->solve(evaluator, {.proposals = {values, 1}});
+      for (const float u : result.nominal) EXPECT_LE(std::abs(u), 4.0f) << value;
+      for (const float u : result.inputs) EXPECT_LE(std::abs(u), 4.0f) << value;
+    }
+  }
+  const auto broken =
+      testing::FunctionEvaluator(1, [](const SequenceBatch&, int) { return std::pair(std::nan(""), false); });
+  const std::vector<float> values(steps, 3.0f);
+  const auto solver = make_with_nominal();
+  const SolveResult& result = solver->solve(broken, {.proposals = {values, 1}});
+  EXPECT_EQ(result.status, Status::degenerate);
+}
+
+TEST(Proposals, NoneIsNominalAfterTheDeadline) {
+  const auto evaluator = far_away();
+  const std::vector<float> values(steps, 3.0f);
+  const auto solver = make_with_nominal();
+  const SolveResult& result = solver->solve(evaluator, {.deadline = 0, .proposals = {values, 1}});
+  EXPECT_EQ(result.status, Status::deadline);
+  for (const float u : result.inputs) EXPECT_EQ(u, 0.0f);
+}
+
 TEST(Proposals, AreRejectedByOtherMethods) {
   const auto evaluator = far_away();
   const std::vector<float> values(steps, 3.0f);
