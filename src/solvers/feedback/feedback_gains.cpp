@@ -6,11 +6,13 @@
 #include <string>
 
 #include "slalom/solvers/differentiable_problem.hpp"
+#include "solvers/all_finite.hpp"
 #include "solvers/feedback/symmetric_matrix.hpp"
 
 namespace slalom {
 namespace {
 
+using detail::all_finite;
 using detail::SquareMatrix;
 
 std::size_t count(int a, int b = 1, int c = 1) {
@@ -19,10 +21,6 @@ std::size_t count(int a, int b = 1, int c = 1) {
 
 std::span<double> part(std::vector<double>& all, int index, std::size_t size) {
   return std::span(all).subspan(static_cast<std::size_t>(index) * size, size);
-}
-
-bool all_finite(std::span<const double> values) {
-  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
 /// Added to the diagonal of a matrix that may be singular, relative to its largest entry there.
