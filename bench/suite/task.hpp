@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "proposal_source.hpp"
 #include "slalom/slalom.hpp"
 
 /// Control problems with a criterion of success, solved in closed loop by any method.
@@ -27,6 +28,7 @@ struct Runs {
   std::uint64_t first = 0;  ///< seed of the first run; the others follow
   int count = 0;            ///< number
   int ilqr_iterations = 0;  ///< of a proposal by iterative LQR in every solve; 0: none
+  int c_uniform = 0;        ///< C-Uniform proposals in every solve, for a task that has a law; 0: none
 };
 
 /// A task: a problem, what is known of its inputs, and closed-loop runs.
@@ -37,36 +39,32 @@ struct Task {
   std::vector<double> deviation;  ///< standard deviation that samples should have, one for each input
   std::vector<double> low, high;  ///< bounds of the inputs
   std::function<Outcome(const Runs&)> run;  ///< drives the closed loop
+  bool has_law = false;                     ///< whether it has a C-Uniform law
 };
 
 /// Closed-loop runs of a controller of problem P from `start`. `judge(problem, x, k)` gives the verdict on
 /// the state after step k; a run of `steps` steps without a verdict has failed. `change(problem, x, k)`, if
-/// given, changes the problem before the solve of step k.
-template <class P, class Judge, class Change = std::nullptr_t>
+/// given, changes the problem before the solve of step k. `make_law(controller)` makes the task's C-Uniform
+/// law (proposal_source.hpp).
+template <class P, class Judge, class Change = std::nullptr_t, class MakeLaw = NoLaw>
 auto closed_loop(const P& problem, const typename P::template State<double>& start, int steps, Judge judge,
-                 Change change = nullptr) {
+                 Change change = nullptr, MakeLaw make_law = {}) {
   return [=](const Runs& runs) {
     Outcome outcome;
     Controller<GradientEvaluator<P>> controller(GradientEvaluator<P>(problem), runs.options);
-    std::optional<Proposals<GradientEvaluator<P>>> proposals;
-    Ilqr ilqr(controller, {std::max(runs.ilqr_iterations, 1)});
-    if (runs.ilqr_iterations > 0) proposals.emplace(controller, 1);
+    ProposalSource source(controller, make_law, runs.ilqr_iterations, runs.c_uniform);
     for (int run = 0; run < runs.count; ++run) {
-      controller.reset(runs.first + static_cast<std::uint64_t>(run));
-      ilqr.start_from({});
+      const std::uint64_t seed = runs.first + static_cast<std::uint64_t>(run);
+      controller.reset(seed);
+      source.restart(seed);
       controller.problem() = problem;
       auto x = start;
       Verdict verdict = Verdict::running;
       for (int k = 0; k < steps && verdict == Verdict::running; ++k) {
         if constexpr (!std::is_same_v<Change, std::nullptr_t>) change(controller.problem(), x, k);
-        SolveRequest request{.elapsed = problem.dt};
-        if (proposals) {
-          proposals->clear();
-          proposals->add(ilqr.improve(controller.problem(), x, problem.dt));
-          request.proposals = *proposals;
-        }
-        const auto plan = controller.solve(x, request);
-        if (proposals) ilqr.start_from(plan.inputs);
+        const auto plan = controller.solve(
+            x, {.elapsed = problem.dt, .proposals = source.propose(controller, x, problem.dt)});
+        source.learn(plan.inputs);
         outcome.effective_sample_sizes.push_back(plan.stats.effective_sample_size);
         x = slalom::detail::step<P, double>(controller.problem(), x, NoLookUp{}, plan.inputs[0], 0);
         verdict = judge(controller.problem(), x, k);
