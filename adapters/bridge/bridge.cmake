@@ -1,5 +1,7 @@
 # The library slalom_bridge: the one part of the adapters that is C++20. Needs the package slalom.
-add_library(slalom_bridge STATIC ${CMAKE_CURRENT_LIST_DIR}/lap_count.cpp ${CMAKE_CURRENT_LIST_DIR}/localiser.cpp
+add_library(slalom_bridge STATIC ${CMAKE_CURRENT_LIST_DIR}/follower/follower_plan.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/follower/follower_settings.cpp ${CMAKE_CURRENT_LIST_DIR}/follower/path_follower.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/lap_count.cpp ${CMAKE_CURRENT_LIST_DIR}/localiser.cpp
   ${CMAKE_CURRENT_LIST_DIR}/localiser_core.cpp ${CMAKE_CURRENT_LIST_DIR}/planner.cpp
   ${CMAKE_CURRENT_LIST_DIR}/planner_core.cpp ${CMAKE_CURRENT_LIST_DIR}/world.cpp ${CMAKE_CURRENT_LIST_DIR}/world_core.cpp)
 target_compile_features(slalom_bridge PRIVATE cxx_std_20)

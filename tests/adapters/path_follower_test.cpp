@@ -1,0 +1,304 @@
+// What a controller of nav2 promises, played through without ROS: costs of cells, plans, limits and refusals.
+#include "bridge/follower/path_follower.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace slalom_bridge {
+namespace {
+
+using Problem = FollowerAnswer::Problem;
+
+constexpr double period = 0.05;  // s
+constexpr unsigned char lethal = 254, inscribed = 253, unknown = 255;
+
+/// A costmap of 0.05 m whose lower left corner lies at the origin unless it is moved.
+struct Room {
+  Room(double length_x, double length_y)
+      : width(static_cast<int>(std::lround(length_x / 0.05))),
+        height(static_cast<int>(std::lround(length_y / 0.05))),
+        costs(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0) {}
+  void fill(double x0, double y0, double x1, double y1, unsigned char cost = lethal) {
+    for (int row = 0; row < height; ++row)
+      for (int column = 0; column < width; ++column) {
+        const double px = x + (column + 0.5) * 0.05, py = y + (row + 0.5) * 0.05;
+        if (px >= x0 && px <= x1 && py >= y0 && py <= y1)
+          costs[static_cast<std::size_t>(row * width + column)] = cost;
+      }
+  }
+  /// Whether an obstacle is nearer than a distance (m).
+  bool is_obstacle_within(const Pose& pose, double distance) const {
+    for (int row = 0; row < height; ++row)
+      for (int column = 0; column < width; ++column)
+        if (costs[static_cast<std::size_t>(row * width + column)] == lethal &&
+            std::hypot(x + (column + 0.5) * 0.05 - pose.x, y + (row + 0.5) * 0.05 - pose.y) < distance)
+          return true;
+    return false;
+  }
+  CostGrid grid() const { return {width, height, 0.05, x, y, costs.data()}; }
+
+  int width, height;
+  double x = 0, y = 0;  // m
+  std::vector<unsigned char> costs;
+};
+
+std::vector<Pose> line(double x0, double y0, double x1, double y1) {
+  std::vector<Pose> plan;
+  const double yaw = std::atan2(y1 - y0, x1 - x0);
+  for (int i = 0; i <= 100; ++i) plan.push_back({x0 + i * (x1 - x0) / 100, y0 + i * (y1 - y0) / 100, yaw});
+  return plan;
+}
+
+/// A robot of 0.4 x 0.4 m in a room of 8 x 4 m that moves as it is told.
+struct Drive {
+  explicit Drive(const std::string& method = "svg_mppi") : follower(method) {
+    follower.change({{"batch_size", "256"}});
+    if (method == "svg_mppi") follower.change({{"svg_mppi/guide_iterations", "2"}});
+    follower.use_footprint({{0.2, 0.2, 0}, {-0.2, 0.2, 0}, {-0.2, -0.2, 0}, {0.2, -0.2, 0}});
+  }
+  FollowerAnswer step() {
+    follower.use_costmap(room.grid());
+    input.time += period;
+    const FollowerAnswer answer = follower.update(input);
+    const Velocity& v = answer.command;
+    Pose& pose = input.pose;
+    const double c = std::cos(pose.yaw), sine = std::sin(pose.yaw);
+    pose = {pose.x + period * (c * v.forward - sine * v.left),
+            pose.y + period * (sine * v.forward + c * v.left), pose.yaw + period * v.turn};
+    input.velocity = v;
+    fastest = std::max(fastest, v.forward);
+    collided = collided || room.is_obstacle_within(pose, 0.2);
+    return answer;
+  }
+  /// Drives until there is a problem, the robot is so near to a point, or for so long (s).
+  FollowerAnswer drive(double duration, const Pose& to, double near = 0.15) {
+    FollowerAnswer answer;
+    const double end = input.time + duration;
+    while (input.time < end && answer.problem == Problem::none &&
+           std::hypot(input.pose.x - to.x, input.pose.y - to.y) > near)
+      answer = step();
+    return answer;
+  }
+  double distance_to(double x, double y) const { return std::hypot(input.pose.x - x, input.pose.y - y); }
+
+  Room room{8, 4};
+  PathFollower follower;
+  FollowerInput input{{1, 2, 0}, {}, 100, {}, {}};
+  double fastest = 0;
+  bool collided = false;
+};
+
+TEST(PathFollower, DrivesRoundAnObstacleAlongAPlanOfAnotherFrame) {
+  Drive drive;
+  drive.room.fill(3.5, 1.6, 4.2, 2.6);
+  // A frame that is turned by a quarter: its x axis points along y of the costmap.
+  drive.input.plan_frame = {0, 0, std::acos(0.0)};
+  drive.follower.use_plan(line(2, -1, 2, -7), "map");
+  const FollowerAnswer answer = drive.drive(40, {7, 2, 0});
+  EXPECT_EQ(answer.problem, Problem::none) << answer.why;
+  EXPECT_LT(drive.distance_to(7, 2), 0.16) << answer.status;
+  EXPECT_FALSE(drive.collided);
+  EXPECT_GT(drive.fastest, 0.4);
+}
+
+TEST(PathFollower, DrivesAcrossACostmapThatMovesWithTheRobot) {
+  Drive drive;
+  drive.room = Room(3, 3);
+  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  FollowerAnswer answer;
+  for (int i = 0; i < 600 && drive.distance_to(7, 2) > 0.15 && answer.problem == Problem::none; ++i) {
+    drive.room.x = 0.05 * std::round((drive.input.pose.x - 1.5) / 0.05);
+    drive.room.y = 0.05 * std::round((drive.input.pose.y - 1.5) / 0.05);
+    answer = drive.step();
+  }
+  EXPECT_EQ(answer.problem, Problem::none) << answer.why;
+  EXPECT_LT(drive.distance_to(7, 2), 0.16) << answer.status;
+}
+
+TEST(PathFollower, RefusesABlockedPathWithinHalfASecondAndGoesOnWhenItOpens) {
+  Drive drive;
+  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  drive.drive(2, {7, 2, 0});
+  drive.room.fill(4, 0, 4.2, 4);
+  const double begin = drive.input.time;
+  const FollowerAnswer blocked = drive.drive(2, {7, 2, 0});
+  EXPECT_EQ(blocked.problem, Problem::no_control);
+  EXPECT_EQ(blocked.status, "blocked");
+  EXPECT_NE(blocked.why.find("no way round"), std::string::npos) << blocked.why;
+  EXPECT_LE(drive.input.time - begin, 0.5 + 1e-9);
+  EXPECT_EQ(blocked.command.forward, 0);
+  drive.room.fill(4, 0, 4.2, 4, 0);
+  drive.drive(1.5, {7, 2, 0});
+  EXPECT_EQ(drive.drive(20, {7, 2, 0}).problem, Problem::none);
+  EXPECT_LT(drive.distance_to(7, 2), 0.16);
+}
+
+TEST(PathFollower, TakesInflatedCostsForFreeAndUnknownCellsAsItIsTold) {
+  Drive drive;
+  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  std::fill(drive.room.costs.begin(), drive.room.costs.end(), inscribed);
+  EXPECT_EQ(drive.drive(1, {7, 2, 0}).problem, Problem::none) << "253 is no obstacle: the footprint decides";
+  EXPECT_GT(drive.fastest, 0.2);
+  std::fill(drive.room.costs.begin(), drive.room.costs.end(), unknown);
+  drive.fastest = 0;
+  EXPECT_EQ(drive.drive(1, {7, 2, 0}).problem, Problem::none) << "unknown cells have a price";
+  EXPECT_GT(drive.fastest, 0.2);
+  drive.follower.change({{"unknown_cells", "obstacle"}});
+  EXPECT_EQ(drive.drive(1, {7, 2, 0}).problem, Problem::no_control);
+}
+
+TEST(PathFollower, KeepsToSpeedLimitsInPercentAndInMetresPerSecond) {
+  Drive drive;
+  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  const auto fastest_in = [&](double duration) {
+    drive.drive(1, {7, 2, 0});  // for the change of speed
+    drive.fastest = 0;
+    drive.drive(duration, {7, 2, 0});
+    return drive.fastest;
+  };
+  drive.follower.limit_speed(40, true);
+  EXPECT_NEAR(fastest_in(1), 0.2, 0.03);
+  drive.follower.limit_speed(0.3, false);
+  EXPECT_NEAR(fastest_in(1), 0.3, 0.03);
+  drive.follower.change({{"vx_max", "1"}});
+  EXPECT_NEAR(fastest_in(1), 0.3, 0.03) << "an absolute limit does not depend on vx_max";
+  drive.follower.reset();
+  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  EXPECT_NEAR(fastest_in(1), 0.3, 0.03) << "it outlasts a task";
+  EXPECT_THROW(drive.follower.limit_speed(-1, false), std::invalid_argument);
+  EXPECT_THROW(drive.follower.limit_speed(std::numeric_limits<double>::quiet_NaN(), true),
+               std::invalid_argument);
+  EXPECT_NEAR(fastest_in(0.5), 0.3, 0.03);
+  drive.follower.limit_speed(0, false);
+  EXPECT_GT(fastest_in(0.5), 0.5) << "0 is no limit";
+}
+
+TEST(PathFollower, StandsOnlyWhereTheGoalCheckerIsContent) {
+  const auto status_at = [](const Pose& pose, const GoalTolerance& tolerance) {
+    Drive drive;
+    drive.input.pose = pose;
+    drive.input.tolerance = tolerance;
+    drive.follower.use_plan(line(1, 2, 3, 2), "map");
+    return drive.step().status;
+  };
+  EXPECT_EQ(status_at({2.92, 2, 0}, {}), "goal_reached") << "goal_distance is 0.1 m";
+  EXPECT_EQ(status_at({2.92, 2, 0}, {0.25, 0.25, true}), "goal_reached");
+  EXPECT_EQ(status_at({2.92, 2, 0}, {0.05, 0.25, true}), "following");
+  EXPECT_EQ(status_at({2.8, 2, 0}, {0.25, 0.25, true}), "following") << "it aims for the goal itself";
+  EXPECT_EQ(status_at({2.95, 2, 1}, {0.25, 0.25, true}), "following");
+  EXPECT_EQ(status_at({2.95, 2, 1}, {0.25, 0, true}), "goal_reached") << "the heading does not matter";
+}
+
+TEST(PathFollower, RefusesWithoutAPlan) {
+  Drive drive;
+  EXPECT_EQ(drive.step().problem, Problem::invalid_path);
+  EXPECT_THROW(drive.follower.use_plan({}, "map"), std::invalid_argument);
+  EXPECT_EQ(drive.step().problem, Problem::invalid_path);
+  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  EXPECT_EQ(drive.step().problem, Problem::none);
+  EXPECT_FALSE(drive.follower.predicted().empty());
+  EXPECT_FALSE(drive.follower.path().empty());
+  drive.follower.reset();
+  EXPECT_EQ(drive.step().problem, Problem::invalid_path);
+}
+
+TEST(PathFollower, RefusesAPoseThatIsNotFiniteOrOffTheCostmap) {
+  Drive drive;
+  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  const Pose pose = drive.input.pose;
+  drive.input.pose.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(drive.step().problem, Problem::no_control);
+  drive.input.pose = {-3, 2, 0};
+  const FollowerAnswer off = drive.step();
+  EXPECT_EQ(off.problem, Problem::no_control);
+  EXPECT_NE(off.why.find("off the costmap"), std::string::npos) << off.why;
+  drive.input.pose = pose;
+  EXPECT_EQ(drive.step().problem, Problem::none);
+}
+
+TEST(PathFollower, BrakesWhenItIsCancelled) {
+  Drive drive;
+  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  drive.drive(2, {7, 2, 0});
+  ASSERT_GT(drive.input.velocity.forward, 0.3);
+  int periods = 0;
+  for (double before = drive.input.velocity.forward; !drive.follower.cancel() && periods < 20; ++periods) {
+    EXPECT_EQ(drive.step().problem, Problem::none);
+    EXPECT_LE(drive.input.velocity.forward, before);
+    EXPECT_GE(drive.input.velocity.forward, before - 2.5 * period - 1e-6);
+    before = drive.input.velocity.forward;
+  }
+  EXPECT_GE(periods, 2) << "it does not stop at once";
+  EXPECT_LT(periods, 10);
+  EXPECT_LT(drive.input.velocity.forward, 0.01);
+  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  drive.drive(1, {7, 2, 0});
+  EXPECT_GT(drive.input.velocity.forward, 0.1) << "a new plan ends the cancellation";
+}
+
+TEST(PathFollower, KeepsItsDetourWhenThePlannerPlansTheSameWayAgain) {
+  Drive drive;
+  drive.room.fill(3.5, 1.6, 4.2, 2.6);
+  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  ASSERT_EQ(drive.step().status, "detour");
+  const auto off_the_line = [&] {
+    double most = 0;
+    for (const Pose& pose : drive.follower.path()) most = std::max(most, std::abs(pose.y - 2));
+    return most;
+  };
+  const double detour = off_the_line();
+  EXPECT_GT(detour, 0.3);
+  drive.follower.use_plan(line(drive.input.pose.x, 2, 7, 2), "map");
+  EXPECT_EQ(drive.step().status, "detour");
+  EXPECT_EQ(off_the_line(), detour);
+}
+
+TEST(PathFollower, PlansFromItsLastCommandInOpenLoop) {
+  const auto speed_after = [](const char* open_loop, int periods) {
+    Drive drive;
+    drive.follower.change({{"open_loop", open_loop}});
+    drive.follower.use_plan(line(1, 2, 7, 2), "map");
+    double speed = 0;
+    for (int i = 0; i < periods; ++i) {
+      drive.input.velocity = {};  // as if the odometry came much later
+      speed = drive.step().command.forward;
+    }
+    return speed;
+  };
+  EXPECT_LE(speed_after("false", 10), 2.5 * period + 1e-6);
+  EXPECT_GT(speed_after("true", 10), 0.3);
+}
+
+TEST(PathFollower, RefusesFootprintsAndCostmapsThatAreNone) {
+  Drive drive;
+  EXPECT_THROW(drive.follower.use_footprint({}), std::invalid_argument);
+  EXPECT_THROW(drive.follower.use_footprint({{0.1, 0, 0}, {0.2, 0, 0}, {0.1, 0.1, 0}}), std::invalid_argument)
+      << "the robot's origin lies outside";
+  const unsigned char cells[4] = {};
+  EXPECT_THROW(drive.follower.use_costmap({2, 2, 0.05, 0, 0, cells}), std::invalid_argument);
+  drive.follower.use_plan(line(1, 2, 7, 2), "map");
+  EXPECT_EQ(drive.step().problem, Problem::none);
+  // It fits through a door of 1 m. A body of 1.4 m does not.
+  drive.room.fill(4, 0, 4.2, 1.5);
+  drive.room.fill(4, 2.5, 4.2, 4);
+  EXPECT_EQ(drive.drive(0.5, {7, 2, 0}).status, "following");
+  drive.follower.use_footprint({{0.7, 0.7, 0}, {-0.7, 0.7, 0}, {-0.7, -0.7, 0}, {0.7, -0.7, 0}});
+  EXPECT_EQ(drive.drive(1, {7, 2, 0}).problem, Problem::no_control);
+}
+
+TEST(PathFollower, DrivesEveryBaseWithOtherMethods) {
+  for (const char* model : {"DiffDrive", "Omni", "Ackermann"}) {
+    Drive drive("mppi");
+    drive.follower.change({{"motion_model", model}, {"vy_std", "0.3"}});
+    drive.follower.use_plan(line(1, 2, 7, 2), "map");
+    EXPECT_EQ(drive.drive(3, {7, 2, 0}).problem, Problem::none) << model;
+    EXPECT_GT(drive.input.pose.x, 1.7) << model;
+  }
+}
+
+}  // namespace
+}  // namespace slalom_bridge
