@@ -17,11 +17,6 @@ using rclcpp::ParameterType;
 using rclcpp::ParameterValue;
 using slalom_bridge::Option;
 
-std::string parameter_name(std::string option) {
-  std::replace(option.begin(), option.end(), '/', '.');
-  return option;
-}
-
 double number_of(const std::string& text) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   return text == ".inf" ? infinity : text == "-.inf" ? -infinity : std::strtod(text.c_str(), nullptr);
@@ -102,8 +97,9 @@ rcl_interfaces::msg::ParameterDescriptor descriptor_of(const Option& o) {
 
 }  // namespace
 
-OptionParameters::OptionParameters(rclcpp_lifecycle::LifecycleNode& node, List list, Change change)
-    : node_(node), list_(std::move(list)), change_(std::move(change)) {
+OptionParameters::OptionParameters(rclcpp_lifecycle::LifecycleNode& node, List list, Change change,
+                                   std::string prefix)
+    : node_(node), list_(std::move(list)), change_(std::move(change)), prefix_(std::move(prefix)) {
   slalom_bridge::Changes given;
   for (const Option& option : list_()) {
     declare(option);
@@ -120,6 +116,11 @@ OptionParameters::OptionParameters(rclcpp_lifecycle::LifecycleNode& node, List l
 #endif
 }
 
+std::string OptionParameters::parameter_name(std::string option) const {
+  std::replace(option.begin(), option.end(), '/', '.');
+  return prefix_ + option;
+}
+
 void OptionParameters::declare(const Option& option) {
   const std::string name = parameter_name(option.name);
   options_.emplace(name, option);
@@ -133,14 +134,24 @@ void OptionParameters::declare(const Option& option) {
 
 /// Values that the user gave for no option of their section.
 void OptionParameters::check_names() const {
+  const auto section_of = [this](const std::string& name) {
+    const auto dot = name.find('.', prefix_.size());
+    return name.rfind(prefix_, 0) != 0 || dot == std::string::npos ? "" : name.substr(0, dot);
+  };
   std::set<std::string> sections;
-  for (const auto& [name, option] : options_)
-    if (const auto dot = name.find('.'); dot != std::string::npos) sections.insert(name.substr(0, dot));
+  for (const auto& [name, option] : options_) sections.insert(section_of(name));
   for (const auto& [name, value] : node_.get_node_parameters_interface()->get_parameter_overrides()) {
-    const auto dot = name.find('.');
-    if (dot == std::string::npos || sections.count(name.substr(0, dot)) == 0) continue;
+    const std::string section = section_of(name);
+    if (section.empty() || sections.count(section) == 0) continue;
     if (options_.count(name) == 0) throw std::invalid_argument("parameter " + name + ": unknown option");
   }
+}
+
+std::vector<std::string> OptionParameters::unused() const {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : node_.get_node_parameters_interface()->get_parameter_overrides())
+    if (name.rfind(prefix_, 0) == 0 && !node_.has_parameter(name)) names.push_back(name);
+  return names;
 }
 
 rcl_interfaces::msg::SetParametersResult OptionParameters::set(

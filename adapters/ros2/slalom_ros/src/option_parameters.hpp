@@ -21,14 +21,18 @@ class OptionParameters {
   using Change = std::function<void(const slalom_bridge::Changes&)>;  ///< throws std::exception
 
   /// Declares the options, with the values of `list` where the user gave none, and applies those of the user.
-  /// Throws std::exception if one of them breaks a rule or a section has no option of its name. The node must
-  /// outlive this.
-  OptionParameters(rclcpp_lifecycle::LifecycleNode& node, List list, Change change);
+  /// The names of all parameters begin with `prefix`. Throws std::exception if one of them breaks a rule or a
+  /// section has no option of its name. The node must outlive this.
+  OptionParameters(rclcpp_lifecycle::LifecycleNode& node, List list, Change change, std::string prefix = "");
+
+  /// Values that the user gave under the prefix, for which nobody has declared a parameter.
+  std::vector<std::string> unused() const;
 
   /// Sets the parameters to the options that something else changed.
   void refresh();
 
  private:
+  std::string parameter_name(std::string option) const;
   void declare(const slalom_bridge::Option& option);
   void check_names() const;
   rcl_interfaces::msg::SetParametersResult set(const std::vector<rclcpp::Parameter>& parameters);
@@ -37,6 +41,7 @@ class OptionParameters {
   rclcpp_lifecycle::LifecycleNode& node_;
   List list_;
   Change change_;
+  std::string prefix_;
   std::map<std::string, slalom_bridge::Option> options_;  ///< by the names of the parameters
   bool refreshing_ = false;
   std::shared_ptr<void> before_set_, on_set_;  ///< the registrations of the callbacks
