@@ -1,0 +1,208 @@
+#include "controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include <tf2_ros/buffer.h>
+#include <nav2_core/controller_exceptions.hpp>
+#include <pluginlib/class_list_macros.hpp>
+
+#include "conversions.hpp"
+
+namespace slalom_nav2 {
+namespace {
+
+using slalom_bridge::FollowerAnswer;
+using slalom_bridge::GoalTolerance;
+using slalom_bridge::Pose;
+
+/// Goal checkers set what they do not measure to a value that no tolerance has, or to 0.
+double tolerance(double told) {
+  return std::isfinite(told) && told > 0 && told < 1e6 ? told : 0;
+}
+GoalTolerance tolerance_of(nav2_core::GoalChecker* checker) {
+  geometry_msgs::msg::Pose pose;
+  geometry_msgs::msg::Twist velocity;
+  if (checker == nullptr || !checker->getTolerances(pose, velocity)) return {};
+  return {tolerance(std::min(pose.position.x, pose.position.y)),
+          tolerance(slalom_ros::yaw_of(pose.orientation)), true};
+}
+
+/// A pose given in a frame, in the frame in which that frame is given.
+Pose composed(const Pose& frame, const Pose& pose) {
+  const double c = std::cos(frame.yaw), s = std::sin(frame.yaw);
+  return {frame.x + c * pose.x - s * pose.y, frame.y + s * pose.x + c * pose.y, frame.yaw + pose.yaw};
+}
+
+nav_msgs::msg::Path message_of(const std::vector<Pose>& poses, const std::string& frame,
+                               const rclcpp::Time& time) {
+  nav_msgs::msg::Path path;
+  path.header.frame_id = frame;
+  path.header.stamp = time;
+  for (const Pose& pose : poses) {
+    path.poses.emplace_back();
+    path.poses.back().header = path.header;
+    path.poses.back().pose = slalom_ros::message_of(pose);
+  }
+  return path;
+}
+
+}  // namespace
+
+void Controller::configure(const rclcpp_lifecycle::LifecycleNode::WeakPtr& parent, std::string name,
+                           std::shared_ptr<tf2_ros::Buffer> transforms,
+                           std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap) {
+  const std::shared_ptr<rclcpp_lifecycle::LifecycleNode> node = parent.lock();
+  if (!node) throw nav2_core::ControllerException("the node of the controller is gone");
+  clock_ = node->get_clock();
+  logger_ = node->get_logger();
+  transforms_ = std::move(transforms);
+  costmap_ = std::move(costmap);
+
+  const std::string prefix = name + ".";
+  if (!node->has_parameter(prefix + "method")) {
+    rcl_interfaces::msg::ParameterDescriptor descriptor;
+    descriptor.description = "method that plans; `slalom options` lists them";
+    descriptor.read_only = true;
+    node->declare_parameter<std::string>(prefix + "method", "svg_mppi", descriptor);
+  }
+  follower_ =
+      std::make_unique<slalom_bridge::PathFollower>(node->get_parameter(prefix + "method").as_string());
+  parameters_ = std::make_unique<slalom_ros::OptionParameters>(
+      *node,
+      [this] {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        return follower_->options();
+      },
+      [this](const slalom_bridge::Changes& changes) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        follower_->change(changes);
+      },
+      prefix);
+  for (const std::string& unused : parameters_->unused())
+    RCLCPP_WARN(logger_, "parameter %s has no meaning for this controller", unused.c_str());
+  predicted_out_ = node->create_publisher<nav_msgs::msg::Path>("local_plan", 1);
+  path_out_ = node->create_publisher<nav_msgs::msg::Path>("transformed_global_plan", 1);
+}
+
+void Controller::cleanup() {
+  // First what calls back, without the lock that it takes.
+  parameters_.reset();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  follower_.reset();
+  predicted_out_.reset();
+  path_out_.reset();
+  costmap_.reset();
+  transforms_.reset();
+  clock_.reset();
+}
+
+void Controller::activate() {
+  predicted_out_->on_activate();
+  path_out_->on_activate();
+}
+
+void Controller::deactivate() {
+  predicted_out_->on_deactivate();
+  path_out_->on_deactivate();
+}
+
+void Controller::setPlan(const nav_msgs::msg::Path& plan) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (plan.header.frame_id.empty()) throw nav2_core::InvalidPath("path: its frame has no name");
+  std::vector<Pose> poses;
+  for (const auto& stamped : plan.poses) poses.push_back(slalom_ros::pose_of(stamped.pose));
+  try {
+    follower_->use_plan(poses, plan.header.frame_id);
+  } catch (const std::exception& error) {
+    throw nav2_core::InvalidPath(error.what());
+  }
+  plan_frame_ = plan.header.frame_id;
+}
+
+/// The pose of a frame in that of the costmap. Throws nav2_core::ControllerTFError.
+Pose Controller::frame_in_costmap(const std::string& frame, const rclcpp::Time& time) const {
+  const std::string costmap = costmap_->getGlobalFrameID();
+  if (frame == costmap || frame.empty()) return {};
+  try {
+    return slalom_ros::mount_of(transforms_
+                                    ->lookupTransform(costmap, frame, tf2_ros::fromRclcpp(time),
+                                                      tf2::durationFromSec(follower_->transform_tolerance()))
+                                    .transform)
+        .planar();
+  } catch (const tf2::TransformException& error) {
+    throw nav2_core::ControllerTFError(error.what());
+  }
+}
+
+void Controller::read_costmap() try {
+  const std::vector<geometry_msgs::msg::Point> footprint = costmap_->getRobotFootprint();
+  std::vector<Pose> vertices;
+  for (const auto& point : footprint) vertices.push_back({point.x, point.y, 0});
+  follower_->use_footprint(vertices);
+
+  nav2_costmap_2d::Costmap2D& costmap = *costmap_->getCostmap();
+  const std::lock_guard<nav2_costmap_2d::Costmap2D::mutex_t> lock(*costmap.getMutex());
+  follower_->use_costmap({static_cast<int>(costmap.getSizeInCellsX()),
+                          static_cast<int>(costmap.getSizeInCellsY()), costmap.getResolution(),
+                          costmap.getOriginX(), costmap.getOriginY(), costmap.getCharMap()});
+} catch (const std::exception& error) {
+  throw nav2_core::ControllerException(error.what());
+}
+
+geometry_msgs::msg::TwistStamped Controller::computeVelocityCommands(
+    const geometry_msgs::msg::PoseStamped& pose, const geometry_msgs::msg::Twist& velocity,
+    nav2_core::GoalChecker* goal_checker) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  read_costmap();
+  slalom_bridge::FollowerInput input;
+  input.pose =
+      composed(frame_in_costmap(pose.header.frame_id, pose.header.stamp), slalom_ros::pose_of(pose.pose));
+  input.plan_frame = frame_in_costmap(plan_frame_, pose.header.stamp);
+  input.velocity = {velocity.linear.x, velocity.linear.y, velocity.angular.z};
+  input.time = clock_->now().seconds();
+  input.tolerance = tolerance_of(goal_checker);
+  const FollowerAnswer answer = follower_->update(input);
+  if (follower_->visualizes()) publish(pose.header.stamp);
+  if (answer.problem == FollowerAnswer::Problem::invalid_path) throw nav2_core::InvalidPath(answer.why);
+  if (answer.problem == FollowerAnswer::Problem::no_control) throw nav2_core::NoValidControl(answer.why);
+
+  geometry_msgs::msg::TwistStamped command;
+  command.header.stamp = pose.header.stamp;
+  command.header.frame_id = costmap_->getBaseFrameID();
+  command.twist.linear.x = answer.command.forward;
+  command.twist.linear.y = answer.command.left;
+  command.twist.angular.z = answer.command.turn;
+  return command;
+}
+
+void Controller::publish(const rclcpp::Time& time) {
+  const std::string frame = costmap_->getGlobalFrameID();
+  predicted_out_->publish(message_of(follower_->predicted(), frame, time));
+  path_out_->publish(message_of(follower_->path(), frame, time));
+}
+
+bool Controller::cancel() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return follower_->cancel();
+}
+
+void Controller::setSpeedLimit(const double& limit, const bool& percentage) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  try {
+    follower_->limit_speed(limit, percentage);
+  } catch (const std::exception& error) {
+    RCLCPP_ERROR(logger_, "not changed: %s", error.what());
+  }
+}
+
+void Controller::reset() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  follower_->reset();
+}
+
+}  // namespace slalom_nav2
+
+PLUGINLIB_EXPORT_CLASS(slalom_nav2::Controller, nav2_core::Controller)
