@@ -1,0 +1,197 @@
+// nav2's own controller server loads the controller and drives a simulated robot, with a local costmap that
+// moves with it: to a goal round an obstacle, to a goal behind a wall, and until it is cancelled.
+//
+// usage: controller_test FILE                            a parameter file to write
+#include <exception>
+#include <fstream>
+
+#include <ament_index_cpp/get_package_prefix.hpp>
+#include <lifecycle_msgs/msg/transition.hpp>
+#include <lifecycle_msgs/srv/change_state.hpp>
+#include <nav2_msgs/action/follow_path.hpp>
+#include <rclcpp_action/rclcpp_action.hpp>
+
+#include "drive.hpp"
+#include "processes.hpp"
+
+namespace slalom_nav2_test {
+namespace {
+
+using lifecycle_msgs::msg::Transition;
+using lifecycle_msgs::srv::ChangeState;
+using nav2_msgs::action::FollowPath;
+using GoalHandle = rclcpp_action::ClientGoalHandle<FollowPath>;
+
+constexpr const char* parameters = R"(
+controller_server:
+  ros__parameters:
+    controller_frequency: 20.0
+    failure_tolerance: 0.3
+    odom_topic: odom
+    progress_checker_plugins: ["progress_checker"]
+    goal_checker_plugins: ["goal_checker"]
+    controller_plugins: ["FollowPath"]
+    progress_checker:
+      plugin: "nav2_controller::SimpleProgressChecker"
+      required_movement_radius: 0.2
+      movement_time_allowance: 10.0
+    goal_checker:
+      plugin: "nav2_controller::SimpleGoalChecker"
+      xy_goal_tolerance: 0.2
+      yaw_goal_tolerance: 0.3
+    FollowPath:
+      plugin: "slalom_nav2::Controller"
+      batch_size: 1000
+      vx_max: 0.5
+      visualize: true
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      global_frame: odom
+      robot_base_frame: base_link
+      rolling_window: true
+      width: 6
+      height: 6
+      resolution: 0.05
+      robot_radius: 0.22
+      update_frequency: 10.0
+      publish_frequency: 2.0
+      plugins: ["static_layer", "inflation_layer"]
+      static_layer:
+        plugin: "nav2_costmap_2d::StaticLayer"
+        map_topic: /map
+        map_subscribe_transient_local: true
+      inflation_layer:
+        plugin: "nav2_costmap_2d::InflationLayer"
+        inflation_radius: 0.5
+        cost_scaling_factor: 3.0
+)";
+
+class ControllerTest {
+ public:
+  explicit ControllerTest(const std::string& file) {
+    std::ofstream(file) << parameters;
+    const std::string server =
+        ament_index_cpp::get_package_prefix("nav2_controller") + "/lib/nav2_controller/controller_server";
+    server_ = std::make_unique<slalom_ros_test::Process>(
+        std::vector<std::string>{server, "--ros-args", "--params-file", file});
+    states_ = drive_.node->create_client<ChangeState>("/controller_server/change_state");
+    follow_ = rclcpp_action::create_client<FollowPath>(drive_.node, "/follow_path");
+    drive_.show({pallet});
+    drive_.wait(
+        "the server is there", [&] { return states_->service_is_ready(); }, 30);
+    change(Transition::TRANSITION_CONFIGURE, "the server configures the controller");
+    change(Transition::TRANSITION_ACTIVATE, "the server is active");
+  }
+
+  void drives_to_a_goal() {
+    start({1, 3, 0}, {9, 3, 0});
+    drive_.wait(
+        "it drives round an obstacle to the goal", [&] { return ended_; }, 60);
+    check(result_.code == rclcpp_action::ResultCode::SUCCEEDED, "the goal is reached");
+    check(std::hypot(drive_.pose.x - 9, drive_.pose.y - 3) < 0.25, "the robot is there");
+  }
+
+  /// The wall is longer than the costmap sees.
+  void gives_up_in_front_of_a_wall() {
+    drive_.show({pallet, {3, -4, 3.2, 10}});
+    drive_.run(1);
+    start({9, 3, 3.1416}, {1, 3, 3.1416});
+    drive_.wait(
+        "it gives up in front of a wall", [&] { return ended_; }, 40);
+    check(result_.code == rclcpp_action::ResultCode::ABORTED, "the goal is aborted");
+    const auto why = result_.result->error_code;
+    check(why == FollowPath::Result::PATIENCE_EXCEEDED || why == FollowPath::Result::NO_VALID_CONTROL,
+          "since there is no valid control");
+    check(drive_.pose.x > 3.4, "it has not passed the wall");
+  }
+
+  void can_be_cancelled() {
+    drive_.show({pallet});
+    drive_.run(1);
+    start({drive_.pose.x, drive_.pose.y, 0}, {9, drive_.pose.y, 0});
+    drive_.wait(
+        "it drives again", [&] { return std::abs(drive_.command.linear.x) > 0.1; }, 20);
+    follow_->async_cancel_goal(handle_);
+    drive_.wait(
+        "it can be cancelled", [&] { return ended_; }, 5);
+    check(result_.code == rclcpp_action::ResultCode::CANCELED, "the goal is cancelled");
+    drive_.run(0.2);
+    check(std::abs(drive_.command.linear.x) < 0.01, "the robot stands");
+  }
+
+  void ends() {
+    change(Transition::TRANSITION_DEACTIVATE, "the server is inactive");
+    change(Transition::TRANSITION_CLEANUP, "the server is unconfigured");
+  }
+
+ private:
+  static constexpr Box pallet{4.5, 2.5, 5.5, 3.5};
+
+  static void check(bool holds, const std::string& what) {
+    if (!holds) throw std::runtime_error("FAILED: " + what);
+  }
+
+  void change(unsigned char transition, const std::string& what) {
+    const auto request = std::make_shared<ChangeState::Request>();
+    request->transition.id = transition;
+    auto answer = states_->async_send_request(request);
+    drive_.wait(
+        what, [&] { return answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }, 60);
+    check(answer.get()->success, what);
+  }
+
+  /// Sends a straight path.
+  void start(const Pose& from, const Pose& to) {
+    FollowPath::Goal goal;
+    goal.path.header.frame_id = "odom";
+    goal.path.header.stamp = drive_.node->now();
+    for (int i = 0; i <= 160; ++i) {
+      const double share = i / 160.0;
+      goal.path.poses.emplace_back();
+      goal.path.poses.back().header = goal.path.header;
+      goal.path.poses.back().pose = slalom_ros::message_of(
+          Pose{from.x + share * (to.x - from.x), from.y + share * (to.y - from.y), to.yaw});
+    }
+    ended_ = false;
+    handle_.reset();
+    rclcpp_action::Client<FollowPath>::SendGoalOptions options;
+    options.goal_response_callback = [this](const GoalHandle::SharedPtr& handle) { handle_ = handle; };
+    options.result_callback = [this](const GoalHandle::WrappedResult& result) {
+      result_ = result;
+      ended_ = true;
+    };
+    drive_.wait(
+        "the server takes paths", [&] { return follow_->action_server_is_ready(); }, 20);
+    follow_->async_send_goal(goal, options);
+    drive_.wait(
+        "the path is accepted", [&] { return handle_ != nullptr; }, 10);
+  }
+
+  Drive drive_;
+  std::unique_ptr<slalom_ros_test::Process> server_;
+  rclcpp::Client<ChangeState>::SharedPtr states_;
+  rclcpp_action::Client<FollowPath>::SharedPtr follow_;
+  GoalHandle::SharedPtr handle_;
+  GoalHandle::WrappedResult result_;
+  bool ended_ = false;
+};
+
+}  // namespace
+}  // namespace slalom_nav2_test
+
+int main(int argc, char** argv) try {
+  rclcpp::init(argc, argv);
+  if (argc != 2) throw std::runtime_error("usage: controller_test FILE");
+  {
+    slalom_nav2_test::ControllerTest test(argv[1]);
+    test.drives_to_a_goal();
+    test.gives_up_in_front_of_a_wall();
+    test.can_be_cancelled();
+    test.ends();
+  }
+  rclcpp::shutdown();
+} catch (const std::exception& error) {
+  std::printf("%s\n", error.what());
+  return 1;
+}
