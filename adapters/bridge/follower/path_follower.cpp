@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
 
@@ -22,7 +23,6 @@ constexpr unsigned char lethal = 254, unknown = 255;
 constexpr double longest_period = 1;   ///< s; after a longer one the robot was not controlled in between
 constexpr double usual_period = 0.05;  ///< s, of the first update
 constexpr double longest_braking = 3;  ///< s, after which a cancellation waits no longer
-constexpr std::uint64_t seed = 1;
 
 bool stands(const Velocity& v) {
   return std::hypot(v.forward, v.left) < 0.01 && std::abs(v.turn) < 0.05;
@@ -70,6 +70,11 @@ struct PathFollower::Hidden {
   double cancelling_for = 0;  ///< s
   std::vector<Pose> predicted, path;
 
+  std::uint64_t seed() const {
+    const slalom::SolverOptions solver = settings.solver(1);
+    const std::uint64_t* const of_method = solver.find<std::uint64_t>("seed");
+    return of_method ? *of_method : 0;
+  }
   void find_share() {
     const double most = settings.max_forward();
     const double before = share;
@@ -159,14 +164,14 @@ bool PathFollower::cancel() {
     hidden_->cancelling = true;
     hidden_->cancelling_for = 0;
     hidden_->plan.clear();
-    if (hidden_->navigator) hidden_->navigator->reset(seed);
+    if (hidden_->navigator) hidden_->navigator->reset(hidden_->seed());
   }
   return !hidden_->navigator || stands(hidden_->velocity) || hidden_->cancelling_for > longest_braking;
 }
 
 void PathFollower::reset() {
   hidden_->plan.clear();
-  if (hidden_->navigator) hidden_->navigator->reset(seed);
+  if (hidden_->navigator) hidden_->navigator->reset(hidden_->seed());
   hidden_->cancelling = false;
   hidden_->standing = 0;
   hidden_->last_time.reset();
