@@ -245,16 +245,20 @@ TEST(PathFollower, KeepsItsDetourWhenThePlannerPlansTheSameWayAgain) {
   drive.room.fill(3.5, 1.6, 4.2, 2.6);
   drive.follower.use_plan(line(1, 2, 7, 2), "map");
   ASSERT_EQ(drive.step().status, "detour");
-  const auto off_the_line = [&] {
+  const auto aside = [&] {
     double most = 0;
     for (const Pose& pose : drive.follower.path()) most = std::max(most, std::abs(pose.y - 2));
     return most;
   };
-  const double detour = off_the_line();
-  EXPECT_GT(detour, 0.3);
+  EXPECT_GT(aside(), 0.3);
+  const double begin = drive.follower.path().front().x;
+  drive.drive(1.5, {7, 2, 0});
   drive.follower.use_plan(line(drive.input.pose.x, 2, 7, 2), "map");
   EXPECT_EQ(drive.step().status, "detour");
-  EXPECT_EQ(off_the_line(), detour);
+  EXPECT_EQ(drive.follower.path().front().x, begin) << "the same detour, not a new one from where it is";
+  drive.follower.use_plan(line(drive.input.pose.x, 2, 7, 2.5), "map");
+  drive.step();
+  EXPECT_GT(drive.follower.path().front().x, begin + 0.2) << "another goal is news";
 }
 
 TEST(PathFollower, PlansFromItsLastCommandInOpenLoop) {
