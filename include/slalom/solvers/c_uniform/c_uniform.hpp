@@ -117,6 +117,7 @@ class CUniform {
   std::vector<Inputs> inputs_;
 };
 
+/// The law of the problem of a controller.
 template <class C, class Locate, std::size_t N>
 CUniform(const Controller<C>&, const typename Controller<C>::State&, Locate&&, const CellAxis (&)[N],
          CUniformOptions = {})
