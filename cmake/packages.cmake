@@ -1,7 +1,7 @@
 # Debian packages: cpack -G DEB in the build folder. slalom-dev (headers, libraries, CMake and pkg-config files),
 # slalom-tools (the program, courses and configurations), python3-slalom.
 set(CPACK_PACKAGE_NAME slalom)
-set(CPACK_PACKAGE_CONTACT "The Slalom authors <slalom@localhost>")
+set(CPACK_PACKAGE_CONTACT "The Slalom authors <slalom@example.org>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
