@@ -1,23 +1,23 @@
 // Solves the tasks of the suite in closed loop with several methods over temperatures, and writes one line of
 // CSV for each task, method and temperature. script/problem-suite runs it and makes the table and the plot.
-//
-//   slalom_problem_suite [--seeds 40] [--first-seed 0] [--tasks NAME,...] [--methods
-//   METHOD[:OPTION=VALUE]...,...]
-//                        [--temperatures NUMBER,...] [--ilqr ITERATIONS]
-//
-// --ilqr adds a proposal by iterative LQR to every solve. The method cu_mppi is mppi with the best C-Uniform
-// proposal as nominal sequence; tasks without a C-Uniform law have no lines of it.
 
 #include <cmath>
 #include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "slalom/core/option_access.hpp"
 #include "task.hpp"
 
 namespace slalom::suite {
+
+constexpr const char* usage =
+    "usage: slalom_problem_suite [--seeds 40] [--first-seed 0] [--tasks NAME,...] [--ilqr ITERATIONS]\n"
+    "                            [--methods METHOD[:OPTION=VALUE]...,...] [--temperatures NUMBER,...]\n\n"
+    "--ilqr adds a proposal by iterative LQR to every solve. The method cu_mppi is mppi with the best\n"
+    "C-Uniform proposal as nominal sequence; tasks without a C-Uniform law have no lines of it.\n";
 
 namespace {
 
@@ -184,6 +184,10 @@ void run(const Arguments& a) {
 }  // namespace slalom::suite
 
 int main(int argc, char** argv) {
+  if (argc == 2 && std::string_view(argv[1]) == "--help") {
+    std::fputs(slalom::suite::usage, stdout);
+    return 0;
+  }
   try {
     slalom::suite::run(slalom::suite::parse(argc, argv));
   } catch (const std::exception& error) {
