@@ -96,6 +96,7 @@ struct Localiser::Implementation {
   void start_everywhere() noexcept {
     particles.spread_everywhere(next_key());
     forget();
+    lost = true;
   }
   void start_at(const maps::Pose& pose) noexcept {
     particles.spread_about(relative(origin, pose), options.start_deviation, options.start_yaw_deviation,
@@ -112,7 +113,7 @@ struct Localiser::Implementation {
     slow = fast = 0;
     search_until = -1;
     trust = 0;
-    settled = false;
+    settled = lost = false;
     search.clear();
   }
 
@@ -139,6 +140,7 @@ struct Localiser::Implementation {
   double fit = 0, slow = 0, fast = 0;  ///< of the estimate: now, and averaged
   double trust = 0;                    ///< s without doubt about the place, reduced by doubt
   bool settled = false;                ///< the place was given, or a search ended with it
+  bool lost = false;                   ///< no place is known, and no scan was used since
   double search_until = -1;            ///< s, stamp
   double place_log_fit = 0;  ///< of the particles' place, averaged as those of the search's hypotheses are
 };
@@ -222,8 +224,11 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   } else if (settled) {
     trust = std::min(trust + std::max(0.0, elapsed), max_trust);
   }
-  if (doubtful) search_until = stamp + options.recovery.search_time;
-  output.searching = doubtful || (was_searching && stamp < search_until);
+  // The particles that fit the first scan best may all be in a wrong place.
+  const bool cause = doubtful || lost;
+  lost = false;
+  if (cause) search_until = stamp + options.recovery.search_time;
+  output.searching = cause || (was_searching && stamp < search_until);
   if (!output.searching) {
     settled = true;
     return;
@@ -236,8 +241,8 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   place_log_fit = was_searching ? memory * place_log_fit + (1 - memory) * now : now;
   search.update(step, sensor, beams, memory, next_key());
   const detail::Search::Hypothesis* best = search.best();
-  if (!best || best->log_fit < place_log_fit + options.recovery.rival_margin * (1 + trust / trust_unit))
-    return;
+  const double margin = settled ? options.recovery.rival_margin * (1 + trust / trust_unit) : 0;
+  if (!best || best->log_fit < place_log_fit + margin) return;
   const double apart = std::hypot(best->pose.x - place.x, best->pose.y - place.y);
   const double turned = std::abs(maps::wrap_angle(best->pose.yaw - place.yaw));
   if (output.share > options.good_share && apart < near_place && turned < near_yaw) return;

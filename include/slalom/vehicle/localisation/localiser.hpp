@@ -27,9 +27,9 @@
 /// the right one. They are tracked separately, and the particles move to one of them after it has fitted
 /// better for some time. Resampling uses a shifted radical inverse sequence, so that any number of draws is
 /// nearly stratified. The averaged fit is that of the estimate by the likelihood field, the mean over beams,
-/// so that neither the number of beams nor a parked car that is not on the map triggers a search. The
-/// long-term average is at least `min_fit`, so that a global start begins with a search. A rear axle in a
-/// wall counts as improbable.
+/// so that neither the number of beams nor a parked car that is not on the map triggers a search. A start
+/// everywhere begins with a search, since the particles that fit the first scan best may all be in a wrong
+/// place; until it is over, the estimate is uncertain. A rear axle in a wall counts as improbable.
 namespace slalom::vehicle {
 
 /// How reliable the estimate is.
@@ -111,7 +111,7 @@ class Localiser {
   /// Draws all particles around a pose of the rear axle (map frame); false, without effect, if it is not
   /// finite or larger than `LocaliserInput` allows.
   bool start_at(const maps::Pose& pose) noexcept;
-  /// Draws the particles from all of the free space.
+  /// Draws the particles from all of the free space. The estimate is uncertain for at least `search_time`.
   void start_everywhere() noexcept;
   /// Starts everywhere, with another seed.
   void reset(std::uint64_t seed) noexcept;
