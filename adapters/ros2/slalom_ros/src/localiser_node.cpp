@@ -99,21 +99,20 @@ class LocaliserNode : public ManagedNode {
       course_map_.header.stamp = now();
       map_out_->publish(course_map_);
     } else {
-      map_in_ = create_subscription<OccupancyGrid>(
+      map_in_ = subscribe<OccupancyGrid>(
           "map", rclcpp::QoS(1).transient_local(),
-          [this](const OccupancyGrid::ConstSharedPtr m) { core_->hear_map(grid_of(*m)); }, from_middleware());
+          [this](const OccupancyGrid& m) { core_->hear_map(grid_of(m)); }, from_middleware());
     }
     const auto sensor = rclcpp::SensorDataQoS();
-    odometry_in_ = create_subscription<Odometry>("odom", rclcpp::SensorDataQoS().keep_last(10),
-                                                 [this](const Odometry::ConstSharedPtr m) { hear(*m); });
-    scan_in_ = create_subscription<LaserScan>("scan", sensor, [this](const LaserScan::ConstSharedPtr m) {
-      core_->hear_scan(stamp_of(m->header.stamp), m->header.frame_id, scan_of(*m),
-                       static_cast<double>(m->angle_max));
+    odometry_in_ = subscribe<Odometry>("odom", rclcpp::SensorDataQoS().keep_last(10),
+                                       [this](const Odometry& m) { hear(m); });
+    scan_in_ = subscribe<LaserScan>("scan", sensor, [this](const LaserScan& m) {
+      core_->hear_scan(stamp_of(m.header.stamp), m.header.frame_id, scan_of(m),
+                       static_cast<double>(m.angle_max));
     });
-    start_in_ = create_subscription<PoseWithCovarianceStamped>(
-        "initialpose", rclcpp::QoS(1), [this](const PoseWithCovarianceStamped::ConstSharedPtr m) {
-          core_->hear_start(pose_of(m->pose.pose));
-        });
+    start_in_ = subscribe<PoseWithCovarianceStamped>(
+        "initialpose", rclcpp::QoS(1),
+        [this](const PoseWithCovarianceStamped& m) { core_->hear_start(pose_of(m.pose.pose)); });
   }
 
   void stop() override {

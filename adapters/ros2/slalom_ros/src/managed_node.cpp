@@ -36,6 +36,7 @@ ManagedNode::CallbackReturn ManagedNode::on_configure(const ManagedNode::State&)
   const auto result = attempt("configure", [this] {
     diagnostics_out_ = create_publisher<DiagnosticArray>("/diagnostics", 5);
     set_up();
+    configured_ = true;
   });
   if (result != CallbackReturn::SUCCESS) attempt("configure", [this] { tear_down(); });
   return result;
@@ -45,6 +46,7 @@ ManagedNode::CallbackReturn ManagedNode::on_activate(const ManagedNode::State& b
   LifecycleNode::on_activate(before);
   const auto result = attempt("activate", [this] {
     start();
+    active_ = true;
     tick_timer_ = create_wall_timer(tick_period_, [this] { tick(); });
     report_timer_ = create_wall_timer(std::chrono::seconds(1), [this] { send_report(); });
   });
@@ -53,13 +55,14 @@ ManagedNode::CallbackReturn ManagedNode::on_activate(const ManagedNode::State& b
 }
 
 ManagedNode::CallbackReturn ManagedNode::on_deactivate(const ManagedNode::State& before) {
-  drop_timers();
+  fall_silent();
   const auto result = attempt("deactivate", [this] { stop(); });
   LifecycleNode::on_deactivate(before);
   return result;
 }
 
 ManagedNode::CallbackReturn ManagedNode::on_cleanup(const ManagedNode::State&) {
+  configured_ = false;
   return attempt("cleanup", [this] {
     tear_down();
     diagnostics_out_.reset();
@@ -67,7 +70,8 @@ ManagedNode::CallbackReturn ManagedNode::on_cleanup(const ManagedNode::State&) {
 }
 
 ManagedNode::CallbackReturn ManagedNode::on_shutdown(const ManagedNode::State& before) {
-  drop_timers();
+  fall_silent();
+  configured_ = false;
   return attempt("shutdown", [this, &before] {
     if (before.id() == States::PRIMARY_STATE_ACTIVE) stop();
     tear_down();
@@ -76,11 +80,13 @@ ManagedNode::CallbackReturn ManagedNode::on_shutdown(const ManagedNode::State& b
 }
 
 ManagedNode::CallbackReturn ManagedNode::on_error(const ManagedNode::State&) {
-  drop_timers();
+  fall_silent();
+  configured_ = false;
   return attempt("error", [this] { tear_down(); });
 }
 
-void ManagedNode::drop_timers() {
+void ManagedNode::fall_silent() {
+  active_ = false;
   tick_timer_.reset();
   report_timer_.reset();
 }

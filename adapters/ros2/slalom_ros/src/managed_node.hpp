@@ -3,6 +3,8 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <rclcpp/rclcpp.hpp>
@@ -66,6 +68,35 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
     return options;
   }
 
+  /// A subscription that hears only while the node is active. An executor may have taken messages already
+  /// when a transition drops their subscription. `hear` takes a message, or a message and its
+  /// rclcpp::MessageInfo.
+  template <class Message, class Hear>
+  rclcpp::SubscriptionBase::SharedPtr subscribe(const std::string& topic, const rclcpp::QoS& qos, Hear hear,
+                                                const rclcpp::SubscriptionOptions& options = {}) {
+    return create_subscription<Message>(
+        topic, qos,
+        [this, hear = std::move(hear)](const std::shared_ptr<const Message>& m,
+                                       const rclcpp::MessageInfo& info) {
+          if (!active_) return;
+          if constexpr (std::is_invocable_v<const Hear&, const Message&, const rclcpp::MessageInfo&>)
+            hear(*m, info);
+          else
+            hear(*m);
+        },
+        options);
+  }
+  /// A service that acts only while the node is configured, for the same reason; otherwise the answer is that
+  /// of the type's defaults.
+  template <class Service, class Act>
+  rclcpp::ServiceBase::SharedPtr serve(const std::string& name, Act act) {
+    return create_service<Service>(
+        name, [this, act = std::move(act)](const typename Service::Request::SharedPtr asked,
+                                           const typename Service::Response::SharedPtr answer) {
+          if (configured_) act(*asked, *answer);
+        });
+  }
+
   slalom_bridge::Clocks clocks() const;
   void warn(const std::string& message) const;
   void inform(const std::string& message) const;
@@ -74,9 +105,10 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
   template <class Action>
   CallbackReturn attempt(const char* what, Action&& action);
   void send_report();
-  void drop_timers();
+  void fall_silent();
 
   std::chrono::milliseconds tick_period_;
+  bool configured_ = false, active_ = false;
   std::shared_ptr<rclcpp_lifecycle::LifecyclePublisher<diagnostic_msgs::msg::DiagnosticArray>>
       diagnostics_out_;
   rclcpp::TimerBase::SharedPtr autostart_timer_, tick_timer_, report_timer_;

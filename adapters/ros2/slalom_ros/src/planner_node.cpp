@@ -78,15 +78,13 @@ class PlannerNode : public ManagedNode {
         *this, [this] { return core_->options(); },
         [this](const slalom_bridge::Changes& changes) { core_->change(changes); });
     core_->use_course();
-    laps_service_ = create_service<DriveLaps>(
-        "~/drive_laps",
-        [this](const DriveLaps::Request::SharedPtr asked, const DriveLaps::Response::SharedPtr answer) {
-          attempt(*answer, [&] { core_->drive_laps(asked->laps); });
-        });
-    save_service_ = create_service<Save>(
-        "~/save", [this](const Save::Request::SharedPtr asked, const Save::Response::SharedPtr answer) {
-          attempt(*answer, [&] { core_->save(asked->file); });
-        });
+    laps_service_ = serve<DriveLaps>("~/drive_laps",
+                                     [this](const DriveLaps::Request& asked, DriveLaps::Response& answer) {
+                                       attempt(answer, [&] { core_->drive_laps(asked.laps); });
+                                     });
+    save_service_ = serve<Save>("~/save", [this](const Save::Request& asked, Save::Response& answer) {
+      attempt(answer, [&] { core_->save(asked.file); });
+    });
   }
 
   void start() override {
@@ -94,31 +92,30 @@ class PlannerNode : public ManagedNode {
                       tf2_ros::StaticListenerQoS(), from_middleware(), from_middleware());
     if (!path_.poses.empty()) path_out_->publish(path_);
     const auto sensor = rclcpp::SensorDataQoS();
-    scan_in_ = create_subscription<LaserScan>("scan", sensor, [this](const LaserScan::ConstSharedPtr m) {
-      core_->hear_scan(stamp_of(m->header.stamp), m->header.frame_id, scan_of(*m),
-                       static_cast<double>(m->angle_max));
+    scan_in_ = subscribe<LaserScan>("scan", sensor, [this](const LaserScan& m) {
+      core_->hear_scan(stamp_of(m.header.stamp), m.header.frame_id, scan_of(m),
+                       static_cast<double>(m.angle_max));
       core_->tick();
     });
-    odometry_in_ = create_subscription<Odometry>("odom", sensor, [this](const Odometry::ConstSharedPtr m) {
-      core_->hear_odometry(stamp_of(m->header.stamp), m->twist.twist.linear.x);
+    odometry_in_ = subscribe<Odometry>("odom", sensor, [this](const Odometry& m) {
+      core_->hear_odometry(stamp_of(m.header.stamp), m.twist.twist.linear.x);
     });
-    imu_in_ = create_subscription<Imu>("imu", rclcpp::SensorDataQoS().keep_last(50),
-                                       [this](const Imu::ConstSharedPtr m) { hear_imu(*m); });
-    drive_in_ = create_subscription<AckermannDriveStamped>(
+    imu_in_ =
+        subscribe<Imu>("imu", rclcpp::SensorDataQoS().keep_last(50), [this](const Imu& m) { hear_imu(m); });
+    drive_in_ = subscribe<AckermannDriveStamped>(
         "drive", rclcpp::QoS(10),
-        [this](const AckermannDriveStamped::ConstSharedPtr, const rclcpp::MessageInfo& info) {
+        [this](const AckermannDriveStamped&, const rclcpp::MessageInfo& info) {
           if (!(*drive_out_ == info.get_rmw_message_info().publisher_gid))
             core_->hear_other_command(others());
         },
         from_middleware());
-    goal_in_ = create_subscription<std_msgs::msg::Float32>(
-        "goal_speed", rclcpp::QoS(1), [this](const std_msgs::msg::Float32::ConstSharedPtr m) {
-          core_->hear_goal_speed(static_cast<double>(m->data));
-        });
+    goal_in_ = subscribe<std_msgs::msg::Float32>(
+        "goal_speed", rclcpp::QoS(1),
+        [this](const std_msgs::msg::Float32& m) { core_->hear_goal_speed(static_cast<double>(m.data)); });
     if (settings_.course.empty())
-      waypoints_in_ = create_subscription<Waypoints>(
+      waypoints_in_ = subscribe<Waypoints>(
           "reference_waypoint", rclcpp::QoS(1).transient_local(),
-          [this](const Waypoints::ConstSharedPtr m) { hear_waypoints(*m); }, from_middleware());
+          [this](const Waypoints& m) { hear_waypoints(m); }, from_middleware());
   }
 
   void stop() override {

@@ -59,9 +59,8 @@ class WorldNode : public ManagedNode {
     tf_static_out_ = latched_publisher<TFMessage>("/tf_static");
     markers_out_ = latched_publisher<MarkerArray>("obstacles");
     core_.emplace(settings_, clocks(), [this](const std::string& message) { warn(message); });
-    reset_service_ = create_service<Empty>(
-        "reset",
-        [this](const Empty::Request::SharedPtr, const Empty::Response::SharedPtr) { core_->reset(); });
+    reset_service_ =
+        serve<Empty>("reset", [this](const Empty::Request&, Empty::Response&) { core_->reset(); });
   }
 
   void start() override {
@@ -71,12 +70,11 @@ class WorldNode : public ManagedNode {
     fixed.transforms[0].child_frame_id = laser_;
     set_transform(fixed.transforms[0], core_->world().laser(), now().nanoseconds());
     tf_static_out_->publish(fixed);
-    drive_in_ = create_subscription<AckermannDriveStamped>(
+    drive_in_ = subscribe<AckermannDriveStamped>(
         "drive", rclcpp::QoS(10),
-        [this](const AckermannDriveStamped::ConstSharedPtr m, const rclcpp::MessageInfo& info) {
+        [this](const AckermannDriveStamped& m, const rclcpp::MessageInfo& info) {
           core_->hear_drive(sender_of(info.get_rmw_message_info().publisher_gid),
-                            static_cast<double>(m->drive.steering_angle),
-                            static_cast<double>(m->drive.speed));
+                            static_cast<double>(m.drive.steering_angle), static_cast<double>(m.drive.speed));
         },
         from_middleware());
   }
