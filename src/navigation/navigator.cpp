@@ -12,6 +12,7 @@
 #include "navigation/closed_places.hpp"
 #include "navigation/final_check.hpp"
 #include "navigation/others.hpp"
+#include "navigation/path_ahead.hpp"
 #include "navigation/path_guide.hpp"
 #include "slalom/navigation/path_planner.hpp"
 
@@ -21,7 +22,8 @@ namespace {
 
 constexpr double largest = 1e6;         // m from the origin, of positions
 constexpr double search_period = 0.1;   // s between searches while there is no way
-constexpr double min_rejoin = 0.5;      // m of path with room that a detour needs where it ends
+constexpr double nearest_unseen = 0.5;  // m to what closes the path, beside those of braking, to see its end
+constexpr double least_period = 1e-3;   // s
 constexpr double progress_step = 0.1;   // m of progress after which the robot is not stuck
 constexpr double settling = 1;          // m before the goal, where a robot that turns makes no progress
 constexpr double dead_end_ahead = 0.2;  // m from the robot's front to the middle of what counts as closed
@@ -67,9 +69,9 @@ class Navigator::Implementation {
  private:
   bool fits(const Costmap& costmap) const noexcept;
   bool is_at_goal(const maps::Pose& pose) const noexcept;
-  bool is_closed(const Costmap& costmap, const maps::Point& point) const noexcept;
-  std::size_t first_closed(const Costmap& costmap) const noexcept;
-  bool can_rejoin(const Costmap& costmap, std::size_t point) const noexcept;
+  detail::PathAhead ahead(const Costmap& costmap) const noexcept {
+    return {guide_, planner_, closed_, costmap};
+  }
   bool find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed, double most) noexcept;
   void avoid_meeting(const maps::Pose& pose, const Costmap& costmap, double elapsed) noexcept;
   bool keep_way(const maps::Pose& pose, const Costmap& costmap, double elapsed) noexcept;
@@ -106,7 +108,8 @@ void Navigator::Implementation::set_path(std::span<const maps::Pose> path) {
                                   " must be finite and within 1e6 m of the origin");
     if (i > 0) length += distance(position(path[i]), position(path[i - 1]));
   }
-  if (guide_.empty() || distance(position(guide_.goal()), position(path.back())) > min_rejoin) {
+  if (guide_.empty() ||
+      distance(position(guide_.goal()), position(path.back())) > detail::PathAhead::min_rejoin) {
     chosen_.clear();
     closed_.forget_dead_ends();
   }
@@ -144,30 +147,6 @@ bool Navigator::Implementation::is_at_goal(const maps::Pose& pose) const noexcep
          std::abs(maps::wrap_angle(pose.yaw - goal.yaw)) <= options_.goal_angle;
 }
 
-/// Whether the body is known to have no room at a point of the path, or that is closed for another reason.
-bool Navigator::Implementation::is_closed(const Costmap& costmap, const maps::Point& point) const noexcept {
-  return (planner_.knows(costmap, point) && !planner_.has_room(costmap, point)) || closed_.contain(point);
-}
-
-/// The first closed point of the path within the look-ahead; the number of points if there is none.
-std::size_t Navigator::Implementation::first_closed(const Costmap& costmap) const noexcept {
-  const std::span<const maps::Pose> path = guide_.points();
-  const std::size_t last =
-      std::min(path.size() - 1, guide_.nearest() + guide_.points_for(options_.look_ahead));
-  for (std::size_t i = guide_.nearest(); i <= last; ++i)
-    if (is_closed(costmap, position(path[i]))) return i;
-  return path.size();
-}
-
-/// Whether a detour may end at a point: the path is open from there on for a while, or to its end.
-bool Navigator::Implementation::can_rejoin(const Costmap& costmap, std::size_t point) const noexcept {
-  const std::span<const maps::Pose> path = guide_.points();
-  const std::size_t last = std::min(path.size() - 1, point + guide_.points_for(min_rejoin));
-  for (std::size_t i = point; i <= last; ++i)
-    if (is_closed(costmap, position(path[i]))) return false;
-  return true;
-}
-
 /// Searches for the cheapest way to a point of the path behind the first closed one, and joins it to the rest
 /// of the path. Returns false and keeps the path if there is none that costs less than `most` (m).
 bool Navigator::Implementation::find_way(const maps::Pose& pose, const Costmap& costmap, std::size_t closed,
@@ -180,7 +159,7 @@ bool Navigator::Implementation::find_way(const maps::Pose& pose, const Costmap& 
   for (std::size_t i = closed + 1; i < path.size(); ++i) {
     const double left = guide_.step() * static_cast<double>(path.size() - 1 - i);
     const double cost = planner_.cost_to(position(path[i])) + left;
-    if (cost >= least || !can_rejoin(costmap, i)) continue;
+    if (cost >= least || !ahead(costmap).can_rejoin(i)) continue;
     least = cost;
     best = i;
   }
@@ -206,7 +185,7 @@ void Navigator::Implementation::avoid_meeting(const maps::Pose& pose, const Cost
   if (!place) return;
   since_meeting_ = 0;
   const detail::ClosedPlaces::Meeting meeting(closed_, *place);
-  const std::size_t closed = first_closed(costmap);
+  const std::size_t closed = ahead(costmap).first_closed(options_.look_ahead);
   if (closed < guide_.points().size()) find_way(pose, costmap, closed, guide_.remaining() + longest_way_past);
 }
 
@@ -214,7 +193,7 @@ void Navigator::Implementation::avoid_meeting(const maps::Pose& pose, const Cost
 bool Navigator::Implementation::keep_way(const maps::Pose& pose, const Costmap& costmap,
                                          double elapsed) noexcept {
   watch_progress(position(pose), elapsed);
-  const std::size_t closed = first_closed(costmap);
+  const std::size_t closed = ahead(costmap).first_closed(options_.look_ahead);
   if (closed == guide_.points().size()) {
     without_way_ = 0;
     avoid_meeting(pose, costmap, elapsed);
@@ -228,7 +207,14 @@ bool Navigator::Implementation::keep_way(const maps::Pose& pose, const Costmap& 
       return true;
     }
   }
-  without_way_ += std::max(elapsed, 1e-3);
+  // A costmap that moves with the robot may show the end of what closes the path once the robot is nearer.
+  const BaseOptions& base = options_.base;
+  const double braking = base.max_forward * base.max_forward / (2 * base.max_acceleration);
+  if (ahead(costmap).opens_off_the_map(closed, nearest_unseen + braking)) {
+    without_way_ = least_period;
+    return true;
+  }
+  without_way_ += std::max(elapsed, least_period);
   if (without_way_ > retry_after && closed_.has_dead_ends()) {
     closed_.forget_dead_ends();
     without_way_ = 0;

@@ -134,6 +134,40 @@ TEST(Navigator, PassesAPalletOnThePathWithoutChangingItsSide) {
   EXPECT_FALSE(drive.collided);
 }
 
+/// Drives on a costmap of 6 x 6 m around the robot until the goal is reached or the way is blocked.
+NavigationStatus drive_with_a_moving_costmap(Drive& drive, double x0, double y0, double x1, double y1) {
+  NavigationStatus status = NavigationStatus::following;
+  maps::OccupancyGrid seen = free_grid(0, 0, 6, 6);
+  drive.costmap = Costmap(seen.width, seen.height, seen.resolution);
+  SvgMppiOptions solver = svg_mppi_options(drive.options.base);
+  solver.samples = 512;
+  drive.navigator.emplace(body, drive.options, solver, drive.costmap);
+  const maps::Pose path[] = {{1, 0, 0}, {9, 0, 0}};
+  drive.navigator->set_path(path);
+  for (int i = 0; i < 800 && status != NavigationStatus::goal_reached && status != NavigationStatus::blocked;
+       ++i) {
+    seen = free_grid(std::floor(drive.pose.x / 0.05) * 0.05 - 3, std::floor(drive.pose.y / 0.05) * 0.05 - 3,
+                     6, 6);
+    fill(seen, x0, y0, x1, y1);
+    drive.costmap.update(seen);
+    status = drive.step().status;
+  }
+  EXPECT_FALSE(drive.collided);
+  return status;
+}
+
+// At first the costmap shows where the pallet begins and not where it ends.
+TEST(Navigator, GoesOnWhileTheEndOfAnObstacleIsOffTheCostmap) {
+  Drive drive;
+  EXPECT_EQ(drive_with_a_moving_costmap(drive, 4.5, -0.5, 5.5, 0.5), NavigationStatus::goal_reached);
+}
+
+TEST(Navigator, IsBlockedByAWallThatIsLongerThanTheCostmapShows) {
+  Drive drive;
+  EXPECT_EQ(drive_with_a_moving_costmap(drive, 4.5, -20, 5.5, 20), NavigationStatus::blocked);
+  EXPECT_LT(drive.pose.x, 4.5 - 0.35);
+}
+
 TEST(Navigator, SaysWithinHalfASecondThatThereIsNoWay) {
   Drive drive;
   drive.navigator->set_path(straight);

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+
+#include "navigation/closed_places.hpp"
+#include "navigation/path_guide.hpp"
+#include "slalom/navigation/path_planner.hpp"
+
+namespace slalom::navigation::detail {
+
+/// Where the path ahead is open, as far as a costmap and the closed places tell. Refers to its arguments.
+class PathAhead {
+ public:
+  static constexpr double min_rejoin = 0.5;  ///< m of path with room that a detour needs where it ends
+
+  PathAhead(const PathGuide& guide, const PathPlanner& planner, const ClosedPlaces& places,
+            const Costmap& costmap) noexcept
+      : guide_(guide), planner_(planner), places_(places), costmap_(costmap) {}
+
+  /// The first closed point within a length (m) of path; the number of points if there is none.
+  std::size_t first_closed(double length) const noexcept {
+    const std::size_t last = std::min(points().size() - 1, guide_.nearest() + guide_.points_for(length));
+    for (std::size_t i = guide_.nearest(); i <= last; ++i)
+      if (is_closed(i)) return i;
+    return points().size();
+  }
+  /// Whether a detour may end at a point: the path is open from there on for a while, or to its end.
+  bool can_rejoin(std::size_t point) const noexcept {
+    const std::size_t last = std::min(points().size() - 1, point + guide_.points_for(min_rejoin));
+    for (std::size_t i = point; i <= last; ++i)
+      if (is_closed(i)) return false;
+    return true;
+  }
+  /// Whether the path leaves the costmap before a detour round what closes it at a point could end, and the
+  /// robot is further than `distance` (m) before that point.
+  bool opens_off_the_map(std::size_t closed, double distance) const noexcept {
+    if (guide_.step() * static_cast<double>(closed - guide_.nearest()) <= distance) return false;
+    for (std::size_t i = closed + 1; i < points().size(); ++i) {
+      if (!planner_.knows(costmap_, place(i))) return true;
+      if (can_rejoin(i)) return false;
+    }
+    return false;
+  }
+
+ private:
+  std::span<const maps::Pose> points() const noexcept { return guide_.points(); }
+  maps::Point place(std::size_t i) const noexcept { return {points()[i].x, points()[i].y}; }
+  /// Whether the body is known to have no room at a point, or that is closed for another reason.
+  bool is_closed(std::size_t i) const noexcept {
+    return (planner_.knows(costmap_, place(i)) && !planner_.has_room(costmap_, place(i))) ||
+           places_.contain(place(i));
+  }
+
+  const PathGuide& guide_;
+  const PathPlanner& planner_;
+  const ClosedPlaces& places_;
+  const Costmap& costmap_;
+};
+
+}  // namespace slalom::navigation::detail
