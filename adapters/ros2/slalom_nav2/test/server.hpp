@@ -1,10 +1,12 @@
 #pragma once
 
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <rcl/time.h>
@@ -81,6 +83,8 @@ class Server {
   }
   ~Server() {
     controller.reset();
+    // A costmap whose thread has not begun to spin does not end: Executor::cancel has no effect before.
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
     costmap->cleanup();
   }
   void configure() {
