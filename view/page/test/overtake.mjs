@@ -55,7 +55,8 @@ for (const tick of ticks) {
     for (const layer of ["path", "driven", "candidates", "plan", "obstacles", "opponents"]) visible.add(layer);
     const car = slalom.frame.bodies.find((body) => body.kind === 0);
     Object.assign(camera, { follow: "free", turn: -car.yaw, zoom: 80, x: car.x + 1.2 * Math.cos(car.yaw), y: car.y + 1.2 * Math.sin(car.yaw) });
-    const stage = document.querySelector("#scene").getBoundingClientRect();
+    const canvas = document.querySelector("#scene"), stage = canvas.getBoundingClientRect();
+    canvas.dispatchEvent(new PointerEvent("pointerleave")); // draws the scene again
     return { x: stage.left + camera.middleX - width / 2, y: stage.top + camera.middleY - height / 2, width, height };
   }, size);
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
