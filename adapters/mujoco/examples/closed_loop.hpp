@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <memory>
+
+#include <slalom/mujoco/evaluator.hpp>
+#include <slalom/slalom.hpp>
+
+/// The model that the plans move, as MuJoCo simulates it by itself.
+class World {
+ public:
+  explicit World(const slalom::mujoco::Model& model) : model_(model), data_(mj_makeData(&model.get())) {}
+
+  mjData& data() { return *data_; }
+
+  /// Applies inputs for some time steps of the model.
+  template <int N>
+  void step(const slalom::Input<double, N>& inputs, int physics_steps) {
+    for (int i = 0; i < N; ++i) data_->ctrl[i] = inputs[i];
+    for (int i = 0; i < physics_steps; ++i) mj_step(&model_.get(), data_.get());
+  }
+
+ private:
+  struct Delete {
+    void operator()(mjData* data) const { mj_deleteData(data); }
+  };
+  slalom::mujoco::Model model_;
+  std::unique_ptr<mjData, Delete> data_;
+};
+
+/// What the runs of all seeds come to.
+struct Summary {
+  int runs = 0, succeeded = 0;
+  long rollouts = 0, invalid = 0;
+  double simulated = 0;       ///< s, in closed loop
+  double rolled_out = 0;      ///< s, in the rollouts of all solves
+  double processor_time = 0;  ///< s, of solves and steps
+
+  /// Prints the figures. The exit code is 0 if all runs succeeded.
+  int report(const char* what) const {
+    std::printf("%s: %d of %d runs; %ld rollouts, %ld of them invalid\n", what, succeeded, runs, rollouts,
+                invalid);
+    std::printf("simulated time over processor time: %.2f in closed loop, %.0f in rollouts\n",
+                simulated / processor_time, rolled_out / processor_time);
+    return succeeded == runs ? 0 : 1;
+  }
+};
+
+/// Drives the world with the controller's plans for some time (s); after every step `visit(data)` sees it.
+template <class Controller, class Visit>
+void drive(Controller& controller, World& world, int physics_steps, double duration, Summary& summary,
+           Visit&& visit) {
+  const auto& evaluator = controller.evaluator();
+  const double dt = evaluator.time_step();
+  const std::clock_t start = std::clock();
+  for (double t = 0; t < duration; t += dt) {
+    const auto plan = controller.solve(evaluator.state_of(world.data()), {.elapsed = dt});
+    world.step(plan.inputs[0], physics_steps);
+    visit(world.data());
+  }
+  summary.processor_time += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  summary.simulated += duration;
+  summary.rollouts += evaluator.rollouts().simulated;
+  summary.invalid += evaluator.rollouts().invalid;
+  summary.rolled_out +=
+      static_cast<double>(evaluator.rollouts().simulated) * controller.solver().horizon() * dt;
+  ++summary.runs;
+}
+
+/// The number of seeds that an argument asks for.
+inline std::uint64_t seeds_of(int argc, char** argv, const char* otherwise) {
+  return std::strtoull(argc > 2 ? argv[2] : otherwise, nullptr, 10);
+}

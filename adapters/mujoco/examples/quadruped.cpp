@@ -1,0 +1,82 @@
+// A quadruped that lies on its back, a side or its belly, simulated by MuJoCo: it turns over and stands up.
+//   slalom_mujoco_quadruped quadruped.xml [seeds [heights.csv]]
+
+#include <cmath>
+#include <numbers>
+
+#include "closed_loop.hpp"
+
+constexpr double standing_height = 0.33;       // m, of the torso
+constexpr double standing[] = {0, 0.6, -1.2};  // rad, of abduction, hip and knee
+constexpr double folded[] = {0, 1.6, -2.6};    // rad
+
+/// Height of the torso, m.
+double height(const mjData& data) {
+  return data.xpos[3 * 1 + 2];
+}
+/// Cosine of the torso's tilt.
+double uprightness(const mjData& data) {
+  return data.xmat[9 * 1 + 8];
+}
+
+struct StandUp {
+  static constexpr int positions = 7 + 12, velocities = 6 + 12, inputs = 12;
+
+  double stage_cost(const mjModel&, const mjData& data) const {
+    const double up = uprightness(data);
+    double posture = 0, effort = 0, motion = 0;
+    for (int i = 0; i < 12; ++i) {
+      posture += slalom::square(data.qpos[7 + i] - standing[i % 3]);
+      effort += slalom::square(data.ctrl[i] - data.qpos[7 + i]);
+    }
+    for (int i = 0; i < 6; ++i) motion += slalom::square(data.qvel[i]);
+    return 3 * (1 - up) + 40 * slalom::square(height(data) - standing_height) + 0.05 * (1 + up) * posture +
+           0.02 * motion + 0.01 * effort;
+  }
+  double terminal_cost(const mjModel& model, const mjData& data) const { return 5 * stage_cost(model, data); }
+};
+
+/// Lets it fall from 0.3 m with folded legs, and lie still.
+void lay_down(World& world, slalom::RandomStream& random) {
+  double* const q = world.data().qpos;
+  const double roll = random.uniform(-std::numbers::pi, std::numbers::pi);
+  q[2] = 0.3;
+  q[3] = std::cos(roll / 2);
+  q[4] = std::sin(roll / 2);
+  slalom::Input<double, StandUp::inputs> hold;
+  for (int i = 0; i < StandUp::inputs; ++i) hold[i] = q[7 + i] = folded[i % 3] + 0.2 * random.normal();
+  world.step(hold, 200);
+  world.data().time = 0;
+}
+
+int main(int argc, char** argv) {
+  if (argc < 2) return std::puts("usage: slalom_mujoco_quadruped quadruped.xml [seeds [heights.csv]]"), 2;
+  constexpr int physics_steps = 2;
+  const slalom::mujoco::Model model(argv[1]);
+  std::FILE* const heights = argc > 3 ? std::fopen(argv[3], "w") : nullptr;
+  Summary summary;
+  for (std::uint64_t seed = 0; seed < seeds_of(argc, argv, "5"); ++seed) {
+    slalom::Controller controller{
+        slalom::mujoco::Evaluator{model, StandUp{}, {.physics_steps = physics_steps}},
+        slalom::MppiOptions{.horizon = 25,
+                            .samples = 64,
+                            .temperature = 0.1,
+                            .variance = 0.1,
+                            .noise = {.knots = 5},
+                            .control_cost_discount = 1,
+                            .seed = seed}};
+    World world(model);
+    slalom::RandomStream random({.seed = seed});
+    lay_down(world, random);
+    bool stands = true;  // in the last half second of 3
+    drive(controller, world, physics_steps, 3, summary, [&](const mjData& data) {
+      if (data.time > 2.5) stands = stands && height(data) > 0.25 && uprightness(data) > 0.85;
+      if (heights)
+        std::fprintf(heights, "%d,%.2f,%.4f,%.4f\n", static_cast<int>(seed), data.time, height(data),
+                     uprightness(data));
+    });
+    summary.succeeded += stands;
+  }
+  if (heights) std::fclose(heights);
+  return summary.report("the quadruped stands");
+}

@@ -1,0 +1,30 @@
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "slalom/mujoco/evaluator.hpp"
+
+namespace slalom::mujoco::detail {
+
+void check_model(const Model& model, const Sizes& task) {
+  const auto compare = [&](const char* what, int in_model, int in_task) {
+    if (in_model != in_task) {
+      throw std::invalid_argument(model.file() + ": has " + std::to_string(in_model) + ' ' + what +
+                                  ", and the task " + std::to_string(in_task) + ": they must be equal");
+    }
+  };
+  compare("positions (nq)", model->nq, task.positions);
+  compare("velocities (nv)", model->nv, task.velocities);
+  compare("activations (na)", model->na, task.activations);
+  compare("inputs (nu)", model->nu, task.inputs);
+  if (model->opt.integrator == mjINT_RK4)
+    throw std::invalid_argument(model.file() + ": option integrator: RK4 must be Euler or implicit");
+}
+
+std::pair<double, double> input_range(const Model& model, int input) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (!model->actuator_ctrllimited[input]) return {-infinity, infinity};
+  return {model->actuator_ctrlrange[2 * input], model->actuator_ctrlrange[2 * input + 1]};
+}
+
+}  // namespace slalom::mujoco::detail
