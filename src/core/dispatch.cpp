@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/cell_access.hpp"
+#include "core/tuning.hpp"
 
 namespace slalom::simd {
 
@@ -69,7 +69,7 @@ Target choose() {
 Target active_target() {
   static const Target target = [] {
     const Target chosen = choose();
-    detail::choose_cell_access(chosen);
+    detail::choose(chosen);
     return chosen;
   }();
   return target;

@@ -24,6 +24,30 @@ TEST(ThreadPool, RunsEveryTaskOnceEachTime) {
   }
 }
 
+TEST(ThreadPool, RunsAnyNumberOfTasks) {
+  ThreadPool pool(3);
+  for (const int count : {65534, 65535, 65536, 200001}) {
+    std::vector<int> runs(static_cast<std::size_t>(count));
+    pool.run(count, [&](int i) { ++runs[static_cast<std::size_t>(i)]; });
+    for (const int each : runs) ASSERT_EQ(each, 1);
+  }
+}
+
+TEST(ThreadPool, AThreadTakesTasksOfAnotherOneThatIsBusy) {
+  ThreadPool pool(2);
+  constexpr int count = 6;
+  std::atomic<int> ended{0};
+  pool.run(count, [&](int i) {
+    if (i == 0) {  // the caller's first task ends after all others, two of which are the caller's too
+      while (ended.load() < count - 1) std::this_thread::yield();
+    } else {
+      for (volatile int work = 0; work < 300000;) work = work + 1;  // long enough to be worth a move
+    }
+    ++ended;
+  });
+  EXPECT_EQ(ended.load(), count);
+}
+
 TEST(ThreadPool, SleepingWorkersWake) {
   ThreadPool pool(3);
   for (int round = 0; round < 20; ++round) {

@@ -6,7 +6,7 @@
 
 #include "bench/workload/measurements.hpp"
 #include "bench/workload/peak.hpp"
-#include "slalom/core/instruction_set.hpp"
+#include "slalom/core/tuning.hpp"
 #include "slalom/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/bench_plot.hpp"
@@ -100,6 +100,7 @@ class Bench {
     std::fprintf(words_, "%s, %s, %s; workload %s\n", processor().c_str(), simd::name(target_), __VERSION__,
                  json_["config"].get<std::string>().c_str());
     cell_access();
+    packs_in_flight();
     rollouts();
     vehicle_models();
     std::fprintf(words_, "%-14s %8s %8s %8s %10s %9s | %s\n", "ms", "p50", "p99", "max", "yardstick",
@@ -125,6 +126,17 @@ class Bench {
     json_["cell_gathers_ns"] = measured.gathers_ns;
     std::fprintf(words_, "cells are read by %s; a step of 16 rollouts: loads %.1f ns, gathers %.1f ns\n",
                  simd::name(used), measured.loads_ns, measured.gathers_ns);
+  }
+
+  void packs_in_flight() {
+    const simd::PacksInFlight used = simd::active_packs_in_flight().packs;
+    const simd::PacksInFlightChoice measured = simd::measure_packs_in_flight(target_);
+    if (measured.two_ns == 0) return;  // this instruction set has no choice
+    json_["packs_in_flight"] = simd::name(used);
+    json_["two_packs_ns"] = measured.two_ns;
+    json_["four_packs_ns"] = measured.four_ns;
+    std::fprintf(words_, "packs in flight: %s; a step of 16 rollouts: two %.1f ns, four %.1f ns\n",
+                 simd::name(used), measured.two_ns, measured.four_ns);
   }
 
   void rollouts() {

@@ -89,37 +89,6 @@ bool supported(Target target) noexcept;
 /// set, or one that this processor lacks.
 Target active_target();
 
-/// How the four values of a cell are read with AVX-512. Which is faster depends on the processor: on some,
-/// microcode against gather data sampling slows gathers down. The bits of results do not depend on it.
-enum class CellAccess : std::uint8_t {
-  loads,   ///< a load of 128 bits for each cell, then a transpose
-  gathers  ///< gathers of 64 bits
-};
-
-/// "loads" or "gathers", as `SLALOM_TUNE` takes it.
-const char* name(CellAccess access) noexcept;
-
-/// How cells are read, and what the choice is based on.
-struct CellAccessChoice {
-  CellAccess access = CellAccess::loads;  ///< that kernels use
-  double loads_ns = 0;                    ///< for a step of 16 rollouts; 0 if not measured
-  double gathers_ns = 0;                  ///< for a step of 16 rollouts; 0 if not measured
-};
-
-/// Measures rollouts over a map with both ways to read its cells, alternately, in less than 0.2 ms, and takes
-/// the faster one; gathers if they are at most 3 % slower, since they are fewer instructions. Without AVX-512
-/// there is no choice: loads.
-CellAccessChoice measure_cell_access() noexcept;
-
-/// How kernels read cells. `active_target()` makes the choice when it is first called with AVX-512: the one
-/// that the environment variable `SLALOM_TUNE` names, or else by measurement. With `SLALOM_TUNE` it prints
-/// the choice to standard error. Throws std::invalid_argument if the variable is not one of loads, gathers,
-/// measure.
-CellAccessChoice active_cell_access();
-
-/// Changes how kernels read cells, for tests and benchmarks.
-void set_cell_access(CellAccess access) noexcept;
-
 /// Tags of the instruction sets: the `lanes` of a pack, and whether products and sums are fused, that is,
 /// rounded once. `Generic` uses what the build's baseline has (SSE2 on x86-64, NEON on AArch64).
 struct Generic {

@@ -57,21 +57,18 @@ struct RolloutStart {
 template <class P>
 inline constexpr int start_size = state_size<P> + (limits_rates<P> ? P::inputs : 0);
 
-/// How packs are interleaved: enough of them to hide latencies, few enough for the registers. With `ahead` 1,
-/// what a pack sees is looked up while the pack before it takes its step, since a processor does not see past
-/// one pack's step to the loads of the next. That costs registers, of which the narrow sets have few.
+/// Where the inputs of a batch are: for each step and input a row with a value for each sample.
+struct InputRows {
+  const float* values;
+  std::ptrdiff_t stride;  ///< from a row to the next
+  int steps;
+};
+
+/// Whether an instruction set has two ways to interleave packs, between which `packs_in_flight` decides.
+/// Without fused multiply-adds every operation is rounded for itself, so both have the same bits whatever a
+/// compiler does.
 template <class Target>
-struct Interleaving {
-  static constexpr int packs = 2, ahead = 0;
-};
-template <>
-struct Interleaving<simd::Avx2> {
-  static constexpr int packs = 4, ahead = 1;
-};
-template <>
-struct Interleaving<simd::Avx512> {
-  static constexpr int packs = 4, ahead = 1;
-};
+inline constexpr bool chooses_packs = Target::lanes == 4 && !Target::fused;
 
 #if defined(__clang__)
 /// Unrolls the next loop.
@@ -96,13 +93,14 @@ SLALOM_INLINE_CALLS RolloutStart<P, F> rollout_start(const P& problem, const flo
   return start;
 }
 
-/// The rollouts of `packs` packs of samples from `sample` on, all in flight at once.
+/// The rollouts of `packs` packs of samples from `sample` on, all in flight at once, so that their latencies
+/// hide behind each other. With `ahead` 1, what a pack sees is looked up while the pack before it takes its
+/// step, since a processor does not see past one pack's step to the loads of the next.
 template <int packs, int ahead, class P, class F>
-SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& start,
-                                  const SequenceBatch& batch, int sample, float* costs,
-                                  std::uint8_t* collided) {
-  const int steps = batch.steps();
-  const std::ptrdiff_t stride = batch.stride();
+SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& start, const InputRows& rows,
+                                  int sample, float* costs, std::uint8_t* collided) {
+  const int steps = rows.steps;
+  const std::ptrdiff_t stride = rows.stride;
   Rollout<P, F> r[packs];
   SLALOM_UNROLL for (int j = 0; j < packs; ++j) {
     r[j].x = start.x;
@@ -111,7 +109,7 @@ SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& st
     if constexpr (limits_rates<P>) r[j].previous = start.previous;
   }
   SeenOf<P, F> seen = start.seen;
-  const float* row = batch.data() + sample;
+  const float* row = rows.values + sample;
   for (int k = 0; k < steps; ++k, row += P::inputs * stride) {
     SLALOM_UNROLL for (int j = 0; j < packs; ++j) {
       SeenOf<P, F> looked =
@@ -137,22 +135,46 @@ SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& st
 
 #undef SLALOM_UNROLL
 
-/// The kernel of a problem's rollouts: costs and collisions of the samples `first` ... `first + count - 1` of
-/// a batch. `initial` holds `start_size` values. Packs are taken several at a time, the rest one by one.
+/// The rollouts of the samples from `sample` to `end`: `packs` packs at a time, the rest one by one.
+template <int packs, int ahead, class P, class F>
+SLALOM_INLINE_CALLS void roll_out_all(const P& problem, const RolloutStart<P, F>& start,
+                                      const InputRows& rows, int sample, int end, float* costs,
+                                      std::uint8_t* collided) {
+  for (; sample + (packs - 1) * F::lanes < end; sample += packs * F::lanes)
+    roll_out<packs, ahead>(problem, start, rows, sample, costs, collided);
+  for (; sample < end; sample += F::lanes) roll_out<1, 0>(problem, start, rows, sample, costs, collided);
+}
+
+/// The rollouts of the samples `first` ... `first + count - 1`, with as many packs in flight as suit the
+/// instruction set (docs/performance.md). `initial` holds `start_size` values.
+template <class Target, class P>
+SLALOM_INLINE_CALLS void roll_out_range(const P& problem, const float* initial, const InputRows& rows,
+                                        int first, int count, float* costs, std::uint8_t* collided) {
+  using F = Pack<Target>;
+  static_assert(simd::padding % F::lanes == 0);
+  const RolloutStart<P, F> start = rollout_start<P, F>(problem, initial);
+  const int end = first + count;
+  if constexpr (chooses_packs<Target>) {
+    if (simd::detail::four_packs_in_flight()) {
+      roll_out_all<4, 1>(problem, start, rows, first, end, costs, collided);
+    } else {
+      roll_out_all<2, 0>(problem, start, rows, first, end, costs, collided);
+    }
+  } else if constexpr (Target::lanes == 4) {
+    roll_out_all<2, 0>(problem, start, rows, first, end, costs, collided);
+  } else {
+    roll_out_all<4, 1>(problem, start, rows, first, end, costs, collided);
+  }
+}
+
+/// The kernel of a problem's rollouts: costs and collisions of samples of a batch.
 template <class P>
 struct RolloutKernel {
   template <class Target>
   SLALOM_KERNEL static void run(const P& problem, const float* initial, const SequenceBatch& batch, int first,
                                 int count, float* costs, std::uint8_t* collided) {
-    using F = Pack<Target>;
-    constexpr int packs = Interleaving<Target>::packs, ahead = Interleaving<Target>::ahead;
-    static_assert(simd::padding % F::lanes == 0);
-    const RolloutStart<P, F> start = rollout_start<P, F>(problem, initial);
-    const int end = first + count;
-    int sample = first;
-    for (; sample + (packs - 1) * F::lanes < end; sample += packs * F::lanes)
-      roll_out<packs, ahead>(problem, start, batch, sample, costs, collided);
-    for (; sample < end; sample += F::lanes) roll_out<1, 0>(problem, start, batch, sample, costs, collided);
+    const InputRows rows{batch.data(), batch.stride(), batch.steps()};
+    roll_out_range<Target>(problem, initial, rows, first, count, costs, collided);
   }
 };
 

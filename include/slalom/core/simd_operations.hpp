@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slalom/core/simd.hpp"
+#include "slalom/core/tuning.hpp"
 
 #if defined(__aarch64__)
 #include <arm_neon.h>
@@ -128,8 +129,6 @@ struct Operations<Generic> : PortableOperations<Generic> {};
 
 #if SLALOM_X86
 namespace detail {
-/// How AVX-512 kernels read cells: a CellAccess. Results do not depend on it.
-extern std::uint8_t cell_access;
 /// Bytes 3 2 1 0, 7 6 5 4, ...: the order of a shuffle that reverses the bytes of each 32-bit lane.
 inline constexpr __m128i reversed_bytes = {0x0405060700010203, 0x0c0d0e0f08090a0b};
 }  // namespace detail

@@ -62,8 +62,8 @@ Status MppiUpdate::update(const BatchEvaluator& evaluator, RandomKey key, const 
     } else {
       sums = weighting_.weigh(samples_, statistics.minimum_total, pool);
     }
-    samples_.scale_weights(1.0 / (sums.weight + settings_.normaliser_offset));
-    samples_.weighted_sums(zero_.data(), sums_.data(), pool);
+    const double normaliser = 1.0 / (sums.weight + settings_.normaliser_offset);
+    samples_.scaled_sums(normaliser, zero_.data(), sums_.data(), pool);
     std::copy(sums_.begin(), sums_.end(), mean);
     if (smoother_.active()) smoother_.apply(mean);
     for (std::size_t r = 0; r < rows; ++r) mean[r] = std::clamp(mean[r], low[r], high[r]);

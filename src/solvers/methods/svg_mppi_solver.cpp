@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <stdexcept>
 
@@ -101,7 +102,8 @@ class SvgMppiSolver final : public SolverBase {
     }
   }
 
-  /// Moves the guides. With several threads, those that have no guide to move draw the noise of the samples.
+  /// Moves the guides. With several threads, those that have no guide to move draw the noise of the samples
+  /// until the last guide has moved.
   void move_guides(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
     detail::SampleSet& set = update_.samples();
     const bool parallel = pool().threads() > 1;
@@ -110,14 +112,16 @@ class SvgMppiSolver final : public SolverBase {
     // The guides may use half of the time: without samples, they do not give a solution.
     const Deadline half = deadline.part(0.5);
     guides_.begin_move(mean_.data(), nominal_.data(), shares);
+    if (draws) set.begin_prepare(key(samples));
+    std::atomic<int> moving{shares};
     pool().run(draws ? shares + set.tiles() : shares, [&](int task) {
       if (task < shares) {
         guides_.move_share(task, evaluator, key(gradients), half);
-      } else {
+        moving.fetch_sub(1, std::memory_order_relaxed);
+      } else if (moving.load(std::memory_order_relaxed) > 0) {
         set.prepare_tile(task - shares, key(samples));
       }
     });
-    if (draws) set.set_prepared(key(samples));
     result_.iterations = guides_.end_move(evaluator);
   }
 

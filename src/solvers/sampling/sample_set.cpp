@@ -11,9 +11,11 @@ namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
-/// Samples per tile. Their values fill about 32 KiB, and rollouts process four packs at a time.
+/// Rollouts process four packs at a time.
+constexpr int together = 4 * simd::padding;
+
+/// Samples per tile. Their values fill about 32 KiB.
 int tile_size(int rows) {
-  constexpr int together = 4 * simd::padding;
   const int fitting = 32768 / (4 * std::max(rows, 1)) / together * together;
   return std::clamp(fitting, together, 512);
 }
@@ -30,15 +32,17 @@ SampleSet::SampleSet(int steps, int inputs, int samples, NoiseShape shape)
       terms_(padded(samples)),
       collided_(padded(samples)),
       tile_(tile_size(steps * inputs)),
-      statistics_(tiles()),
+      prepared_(tiles()),
+      statistics_(2 * tiles()),
       weight_sums_(tiles()),
       least_(tiles()),
       row_sums_(tiles(), steps * inputs),
       moment_sums_(tiles(), steps * inputs * moments) {}
 
-Range SampleSet::range(int tile) const noexcept {
-  const int first = tile * tile_;
-  return {first, std::min(tile_, values_.stride() - first)};
+/// The part with an index, if the set is divided into parts of `size` samples.
+Range SampleSet::part(int index, int size) const noexcept {
+  const int first = index * size;
+  return {first, std::min(size, values_.stride() - first)};
 }
 
 /// Fills a range of samples with noise: values of the problem's sampler, or normal values if it has none,
@@ -53,24 +57,29 @@ void SampleSet::fill_noise(const Sampler* sampler, SequenceBatch& to, Range r, R
 }
 
 void SampleSet::prepare(RandomKey key, ThreadPool& pool) noexcept {
+  begin_prepare(key);
   pool.run(tiles(), [&](int tile) { prepare_tile(tile, key); });
-  set_prepared(key);
 }
 
-void SampleSet::set_prepared(RandomKey key) noexcept {
-  prepared_ = true;
+void SampleSet::begin_prepare(RandomKey key) noexcept {
+  std::fill(prepared_.begin(), prepared_.end(), std::uint8_t{0});
   prepared_key_ = key;
 }
 
-bool SampleSet::lacks_noise(const BatchEvaluator& evaluator, RandomKey key) const noexcept {
-  return !evaluator.sampler() && !prepared_for(key);
+void SampleSet::prepare_tile(int tile, RandomKey key) noexcept {
+  fill_noise(nullptr, noise_, range(tile), key);
+  prepared_[tile] = 1;
 }
 
-/// Evaluates a tile if `evaluator` is not null, sets its costs to infinity where they are not finite and in
+bool SampleSet::lacks_noise(const BatchEvaluator& evaluator, RandomKey key) const noexcept {
+  const bool all = std::find(prepared_.begin(), prepared_.end(), 0) == prepared_.end();
+  return !evaluator.sampler() && !(all && prepared_for(key));
+}
+
+/// Evaluates a range if `evaluator` is not null, sets its costs to infinity where they are not finite and in
 /// the padding, and computes its totals and statistics.
-void SampleSet::finish_tile(int tile, const BatchEvaluator* evaluator, const float* linear,
-                            BatchStatistics& statistics) noexcept {
-  const Range r = range(tile);
+void SampleSet::finish(Range r, const BatchEvaluator* evaluator, const float* linear,
+                       BatchStatistics& statistics) noexcept {
   const int count = std::min(r.count, samples() - r.first);
   if (evaluator) evaluator->evaluate(values_, r.first, count, costs_.data(), collided_.data());
   for (int i = r.first + count; i < r.first + r.count; ++i) {
@@ -86,18 +95,33 @@ void SampleSet::finish_tile(int tile, const BatchEvaluator* evaluator, const flo
   for (int i = 0; i < count; ++i) statistics.collided += hit[i] != 0;
 }
 
-void SampleSet::skip_tile(int tile, BatchStatistics& statistics) noexcept {
-  const Range r = range(tile);
+void SampleSet::skip(Range r, BatchStatistics& statistics) noexcept {
   std::fill_n(costs_.data() + r.first, r.count, infinite);
   std::fill_n(totals_.data() + r.first, r.count, infinite);
   std::fill_n(collided_.data() + r.first, r.count, std::uint8_t{0});
   statistics.minimum_cost = statistics.minimum_total = infinite;
 }
 
-BatchStatistics SampleSet::combine() const noexcept {
+/// Calls `each(range, statistics)` for all samples, omits what has not begun at the deadline, and combines
+/// the statistics, none of which depends on how the samples are divided. Several threads take halves of
+/// tiles, in whole groups of packs, so that none waits long for the last one.
+template <class Each>
+BatchStatistics SampleSet::run_parts(ThreadPool& pool, const Deadline& deadline, Each&& each) noexcept {
+  const int size = pool.threads() > 1 && tile_ % (2 * together) == 0 ? tile_ / 2 : tile_;
+  const int parts = (values_.stride() + size - 1) / size;
+  pool.run(parts, [&](int index) {
+    BatchStatistics statistics;
+    if (deadline.passed()) {
+      skip(part(index, size), statistics);
+    } else {
+      each(part(index, size), statistics);
+    }
+    statistics_[index] = statistics;
+  });
   BatchStatistics all;
   all.minimum_cost = all.minimum_total = infinite;
-  for (const BatchStatistics& c : statistics_) {
+  for (int i = 0; i < parts; ++i) {
+    const BatchStatistics& c = statistics_[i];
     all.minimum_total = std::min(all.minimum_total, c.minimum_total);
     all.minimum_cost = std::min(all.minimum_cost, c.minimum_cost);
     all.finite += c.finite;
@@ -118,27 +142,24 @@ BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, Ra
                                              const SamplingDistribution<float>& to, const float* linear,
                                              ThreadPool& pool, const Deadline& deadline) noexcept {
   const Sampler* const sampler = evaluator.sampler();
-  const bool ready = !sampler && prepared_for(key);
-  prepared_ = false;
+  if (sampler || !prepared_for(key)) begin_prepare({});
+  const auto draw = [&](Range r) { sample_range(sampler, key, to, prepared_[r.first / tile_] != 0, r); };
+  BatchStatistics statistics;
   if (evaluator.whole_batches()) {
-    draw_all(sampler, key, to, ready, pool);
-    return evaluate_whole(evaluator, linear, pool, deadline);
-  }
-  pool.run(tiles(), [&](int tile) {
-    BatchStatistics statistics;
-    if (deadline.passed()) {
-      skip_tile(tile, statistics);
-    } else {
+    pool.run(tiles(), [&](int tile) { draw(range(tile)); });
+    statistics = evaluate_whole(evaluator, linear, pool, deadline);
+  } else {
+    statistics = run_parts(pool, deadline, [&](Range r, BatchStatistics& of_part) {
       const auto start = Clock::now();
-      sample_range(sampler, key, to, ready, range(tile));
+      draw(r);
       const auto drawn = Clock::now();
-      finish_tile(tile, &evaluator, linear, statistics);
-      statistics.draw_time = seconds(start, drawn);
-      statistics.evaluate_time = seconds(drawn, Clock::now());
-    }
-    statistics_[tile] = statistics;
-  });
-  return combine();
+      finish(r, &evaluator, linear, of_part);
+      of_part.draw_time = seconds(start, drawn);
+      of_part.evaluate_time = seconds(drawn, Clock::now());
+    });
+  }
+  begin_prepare({});
+  return statistics;
 }
 
 /// Draws a range of the samples, from the prepared noise if `ready`. Proposals take the places of the last
@@ -158,15 +179,9 @@ void SampleSet::sample_range(const Sampler* sampler, RandomKey key, const Sampli
   }
 }
 
-/// Draws the samples, from the prepared noise if `ready`.
-void SampleSet::draw_all(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to,
-                         bool ready, ThreadPool& pool) noexcept {
-  pool.run(tiles(), [&](int tile) { sample_range(sampler, key, to, ready, range(tile)); });
-}
-
 void SampleSet::draw(RandomKey key, const SamplingDistribution<float>& to, ThreadPool& pool,
                      const Sampler* sampler) noexcept {
-  draw_all(sampler, key, to, false, pool);
+  pool.run(tiles(), [&](int tile) { sample_range(sampler, key, to, false, range(tile)); });
 }
 
 BatchStatistics SampleSet::evaluate_whole(const BatchEvaluator& evaluator, const float* linear,
@@ -175,34 +190,20 @@ BatchStatistics SampleSet::evaluate_whole(const BatchEvaluator& evaluator, const
   const bool late = deadline.passed();
   if (!late) evaluator.evaluate(values_, 0, samples(), costs_.data(), collided_.data());
   const double taken = seconds(start, Clock::now());
-  pool.run(tiles(), [&](int tile) {
-    BatchStatistics statistics;
-    if (late) {
-      skip_tile(tile, statistics);
-    } else {
-      finish_tile(tile, nullptr, linear, statistics);
-    }
-    if (tile == 0) statistics.evaluate_time = taken;
-    statistics_[tile] = statistics;
-  });
-  return combine();
+  BatchStatistics statistics = run_parts(pool, late ? Deadline(start, 0) : Deadline(),
+                                         [&](Range r, BatchStatistics& s) { finish(r, nullptr, linear, s); });
+  statistics.evaluate_time += taken;
+  return statistics;
 }
 
 BatchStatistics SampleSet::evaluate(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
                                     const Deadline& deadline) noexcept {
   if (evaluator.whole_batches()) return evaluate_whole(evaluator, linear, pool, deadline);
-  pool.run(tiles(), [&](int tile) {
-    BatchStatistics statistics;
-    if (deadline.passed()) {
-      skip_tile(tile, statistics);
-    } else {
-      const auto start = Clock::now();
-      finish_tile(tile, &evaluator, linear, statistics);
-      statistics.evaluate_time = seconds(start, Clock::now());
-    }
-    statistics_[tile] = statistics;
+  return run_parts(pool, deadline, [&](Range r, BatchStatistics& statistics) {
+    const auto start = Clock::now();
+    finish(r, &evaluator, linear, statistics);
+    statistics.evaluate_time = seconds(start, Clock::now());
   });
-  return combine();
 }
 
 void SampleSet::keep_terms(const float* linear, ThreadPool& pool) noexcept {
@@ -256,20 +257,28 @@ void SampleSet::scale_weights(double factor) noexcept {
   kernels().scale(static_cast<float>(factor), {0, values_.stride()}, weights_.data());
 }
 
-void SampleSet::sum_rows(RowSums kernel, const float* centre, double* sums, ThreadPool& pool) noexcept {
-  pool.run(tiles(),
-           [&](int tile) { kernel(row_view(), weights_.data(), centre, range(tile), row_sums_[tile]); });
+/// Multiplies the weights by `factor` unless it is 1, then sums over them.
+void SampleSet::sum_rows(RowSums kernel, double factor, const float* centre, double* sums,
+                         ThreadPool& pool) noexcept {
+  pool.run(tiles(), [&](int tile) {
+    if (factor != 1) kernels().scale(static_cast<float>(factor), range(tile), weights_.data());
+    kernel(row_view(), weights_.data(), centre, range(tile), row_sums_[tile]);
+  });
   std::fill_n(sums, rows(), 0.0);
   for (int tile = 0; tile < tiles(); ++tile)
     for (int r = 0; r < rows(); ++r) sums[r] += row_sums_[tile][r];
 }
 
 void SampleSet::weighted_sums(const float* centre, double* sums, ThreadPool& pool) noexcept {
-  sum_rows(kernels().weighted_sums, centre, sums, pool);
+  sum_rows(kernels().weighted_sums, 1, centre, sums, pool);
+}
+
+void SampleSet::scaled_sums(double factor, const float* centre, double* sums, ThreadPool& pool) noexcept {
+  sum_rows(kernels().weighted_sums, factor, centre, sums, pool);
 }
 
 void SampleSet::weighted_squares(const float* centre, double* sums, ThreadPool& pool) noexcept {
-  sum_rows(kernels().weighted_squares, centre, sums, pool);
+  sum_rows(kernels().weighted_squares, 1, centre, sums, pool);
 }
 
 void SampleSet::two_moments(const float* first, const float* second, const float* centre, double* sums,

@@ -60,9 +60,10 @@ class SampleSet {
 
   /// Draws the normal values for `key` in advance.
   void prepare(RandomKey key, ThreadPool& pool) noexcept;
-  /// The same in `tiles()` tasks, which may run at the same time, and then `set_prepared`.
-  void prepare_tile(int tile, RandomKey key) noexcept { fill_noise(nullptr, noise_, range(tile), key); }
-  void set_prepared(RandomKey key) noexcept;
+  /// The same in parts: after `begin_prepare`, `prepare_tile` for any of `tiles()` tiles, which may run at
+  /// the same time. Tiles that were not prepared are drawn when they are evaluated.
+  void begin_prepare(RandomKey key) noexcept;
+  void prepare_tile(int tile, RandomKey key) noexcept;
   /// Whether samples for this evaluator and `key` need normal values that have not been drawn.
   bool lacks_noise(const BatchEvaluator& evaluator, RandomKey key) const noexcept;
   int tiles() const noexcept { return (values_.stride() + tile_ - 1) / tile_; }
@@ -104,6 +105,8 @@ class SampleSet {
 
   /// sums[row] = sum of w (v - centre), where w are the present weights.
   void weighted_sums(const float* centre, double* sums, ThreadPool& pool) noexcept;
+  /// Multiplies the weights by a factor, then computes their sums.
+  void scaled_sums(double factor, const float* centre, double* sums, ThreadPool& pool) noexcept;
   /// sums[row] = sum of w (v - centre)^2.
   void weighted_squares(const float* centre, double* sums, ThreadPool& pool) noexcept;
   /// sums[row * moments ...] for two lists of weights [padded sample]: the sums of w v and w (v - centre)^2
@@ -116,33 +119,33 @@ class SampleSet {
 
   std::size_t count() const noexcept { return static_cast<std::size_t>(values_.samples()); }
   bool prepared_for(RandomKey key) const noexcept {
-    return prepared_ && prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
+    return prepared_key_.seed == key.seed && prepared_key_.stream == key.stream;
   }
-  Range range(int tile) const noexcept;
+  Range range(int tile) const noexcept { return part(tile, tile_); }
+  Range part(int index, int size) const noexcept;
   void fill_noise(const Sampler* sampler, SequenceBatch& to, Range range, RandomKey key) noexcept;
   void sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to, bool ready,
                     Range range) noexcept;
-  void draw_all(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to, bool ready,
-                ThreadPool& pool) noexcept;
+  template <class Each>
+  BatchStatistics run_parts(ThreadPool& pool, const Deadline& deadline, Each&& each) noexcept;
   BatchStatistics evaluate_whole(const BatchEvaluator& evaluator, const float* linear, ThreadPool& pool,
                                  const Deadline& deadline) noexcept;
-  void finish_tile(int tile, const BatchEvaluator* evaluator, const float* linear,
-                   BatchStatistics& statistics) noexcept;
-  void skip_tile(int tile, BatchStatistics& statistics) noexcept;
-  BatchStatistics combine() const noexcept;
-  void sum_rows(RowSums kernel, const float* centre, double* sums, ThreadPool& pool) noexcept;
+  void finish(Range range, const BatchEvaluator* evaluator, const float* linear,
+              BatchStatistics& statistics) noexcept;
+  void skip(Range range, BatchStatistics& statistics) noexcept;
+  void sum_rows(RowSums kernel, double factor, const float* centre, double* sums, ThreadPool& pool) noexcept;
 
   SequenceBatch values_;
   SequenceBatch noise_;
   NoiseShape shape_;
   const float* proposals_ = nullptr;  ///< [proposal][row]
   int proposed_ = 0;
-  bool prepared_ = false;
   RandomKey prepared_key_;
   AlignedBuffer costs_, totals_, weights_, terms_;
   std::vector<std::uint8_t> collided_;
   int tile_;
-  std::vector<BatchStatistics> statistics_;     ///< [tile]
+  std::vector<std::uint8_t> prepared_;          ///< whether `noise_` is that of `prepared_key_` [tile]
+  std::vector<BatchStatistics> statistics_;     ///< [part of a tile]
   std::vector<WeightSums<float>> weight_sums_;  ///< [tile]
   std::vector<float> least_;                    ///< [tile]
   Matrix<float> row_sums_;                      ///< [tile][row]
