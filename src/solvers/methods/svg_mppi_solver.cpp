@@ -103,23 +103,25 @@ class SvgMppiSolver final : public SolverBase {
   }
 
   /// Moves the guides. With several threads, those that have no guide to move draw the noise of the samples
-  /// until the last guide has moved.
+  /// until the last guide has moved, but for the tiles that this thread will evaluate: they would have to
+  /// move between caches.
   void move_guides(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
     detail::SampleSet& set = update_.samples();
     const bool parallel = pool().threads() > 1;
     const bool draws = parallel && set.lacks_noise(evaluator, key(samples));
     const int shares = parallel ? guides_.sequences().sequences : 1;
+    const int first = set.tiles() / pool().threads();
     // The guides may use half of the time: without samples, they do not give a solution.
     const Deadline half = deadline.part(0.5);
     guides_.begin_move(mean_.data(), nominal_.data(), shares);
     if (draws) set.begin_prepare(key(samples));
     std::atomic<int> moving{shares};
-    pool().run(draws ? shares + set.tiles() : shares, [&](int task) {
+    pool().run(draws ? shares + set.tiles() - first : shares, [&](int task) {
       if (task < shares) {
         guides_.move_share(task, evaluator, key(gradients), half);
         moving.fetch_sub(1, std::memory_order_relaxed);
       } else if (moving.load(std::memory_order_relaxed) > 0) {
-        set.prepare_tile(task - shares, key(samples));
+        set.prepare_tile(first + task - shares, key(samples));
       }
     });
     result_.iterations = guides_.end_move(evaluator);

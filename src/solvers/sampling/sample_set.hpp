@@ -123,6 +123,8 @@ class SampleSet {
   }
   Range range(int tile) const noexcept { return part(tile, tile_); }
   Range part(int index, int size) const noexcept;
+  int part_size(int threads) const noexcept;
+  bool prepared(Range range) const noexcept;
   void fill_noise(const Sampler* sampler, SequenceBatch& to, Range range, RandomKey key) noexcept;
   void sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to, bool ready,
                     Range range) noexcept;
