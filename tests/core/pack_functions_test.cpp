@@ -29,6 +29,16 @@ struct Apply {
   }
 };
 
+/// The same in pairs of packs.
+template <class Function>
+struct ApplyToPairs {
+  template <class Target>
+  SLALOM_KERNEL static void run(const float* x, const float* y, int count, float* result) {
+    using F = PackPair<Target>;
+    for (int i = 0; i < count; i += F::lanes) Function{}(F::load(x + i), F::load(y + i)).store(result + i);
+  }
+};
+
 /// A range of arguments, over which a grid is laid.
 struct Span {
   double low, high;
@@ -198,6 +208,39 @@ INSTANTIATE_TEST_SUITE_P(Targets, PackFunctions,
                          testing::Values(simd::Target::generic, simd::Target::sse4, simd::Target::avx2,
                                          simd::Target::avx512),
                          [](const auto& target) { return simd::name(target.param); });
+
+/// Every operation and function of pairs, of two values in (0, 1).
+struct AllOperations {
+  template <class T>
+  SLALOM_INLINE T operator()(const T& x, const T& y) const {
+    T sine, cosine;
+    sin_cos(T(9) * x, sine, cosine);
+    T sum = sine + 2 * cosine + sin(x) * cos(y) + tan(x) / (1 + exp(y)) - log(x) * atan(y) + tanh(x - y);
+    sum += min(x, y) + max(x, T(0.5)) * copysign(y, x - y) + hypot(x, y) + atan2(y, x) + abs(x - y);
+    sum -= floor(3 * x) + ceil(3 * y) + round(5 * x) + sqrt(x) + reciprocal_sqrt(y) + wrap_angle(20 * x);
+    sum *= select((x < y) & !(x >= 0.7), -x, y) + select((x > 0.2) | (x == y), T(1), T(2));
+    sum /= select((x <= y) && (x != y), square(x) + 1, clamp(y, 0.25, 0.75)) +
+           select((x < 0.1) || (y < 0.1), T(0.5), T(0));
+    return sum + (any(x < 0) ? T(1000) : T(0));
+  }
+};
+
+TEST(PackPair, ComputesWhatItsHalvesDo) {
+  std::vector<float> x(96), y(96);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = (static_cast<float>(i) + 0.5f) / 96;
+    y[i] = std::fmod(static_cast<float>(i) * 0.618f + 0.1f, 1.0f);
+  }
+  for (const simd::Target target :
+       {simd::Target::generic, simd::Target::sse4, simd::Target::avx2, simd::Target::avx512}) {
+    if (!simd::supported(target)) continue;
+    std::vector<float> halves(96), pairs(96);
+    simd::kernel<Apply<AllOperations>>(target)(x.data(), y.data(), 96, halves.data());
+    simd::kernel<ApplyToPairs<AllOperations>>(target)(x.data(), y.data(), 96, pairs.data());
+    for (std::size_t i = 0; i < x.size(); ++i)
+      EXPECT_NEAR(pairs[i], halves[i], 1e-5 * (1 + std::abs(halves[i]))) << simd::name(target) << ' ' << i;
+  }
+}
 
 }  // namespace
 }  // namespace slalom

@@ -94,6 +94,39 @@ TEST_P(RolloutOn, AgreesWithDouble) {
   EXPECT_LT(collisions, 299);
 }
 
+/// The same problem, whose rollouts take packs in pairs.
+struct LongUnicycle : Unicycle {
+  static constexpr bool long_steps = true;
+};
+
+TEST_P(RolloutOn, TakesPacksInPairsWithTheSameResults) {
+  if (!simd::supported(GetParam())) GTEST_SKIP() << "this processor has no " << simd::name(GetParam());
+  Fixture f;
+  ProblemEvaluator<Unicycle> alone(f.problem, GetParam());
+  ProblemEvaluator<LongUnicycle> pairs({f.problem}, GetParam());
+  static_assert(detail::has_long_steps<LongUnicycle> && !detail::has_long_steps<Unicycle>);
+  alone.set_state({0.513, -0.271, 0.4});
+  pairs.set_state({0.513, -0.271, 0.4});
+  std::vector<float> expected(padded(300));
+  std::vector<std::uint8_t> expected_hits(padded(300));
+  alone.evaluate(f.batch, 0, 300, expected.data(), expected_hits.data());
+  // Every number of packs, an odd one too, and the ends of the batch.
+  for (const int first : {0, 16, 208})
+    for (const int count : {1, 16, 17, 32, 40, 48, 92}) {
+      std::vector<float> costs(padded(300), -1.0f);
+      std::vector<std::uint8_t> hits(padded(300), 9);
+      pairs.evaluate(f.batch, first, count, costs.data(), hits.data());
+      const auto at = static_cast<std::size_t>(first), end = static_cast<std::size_t>(first + count);
+      for (std::size_t k = at; k < end; ++k) {
+        EXPECT_NEAR(costs[k], expected[k], 1e-5 * expected[k]) << first << " + " << count << ": " << k;
+        EXPECT_EQ(hits[k], expected_hits[k]) << first << " + " << count << ": " << k;
+      }
+      for (std::size_t k = 0; k < costs.size(); ++k)
+        if (k < at || k >= static_cast<std::size_t>(padded(first + count)))
+          EXPECT_EQ(costs[k], -1.0f) << k << " was not asked for";
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Targets, RolloutOn,
                          ::testing::Values(simd::Target::generic, simd::Target::sse4, simd::Target::avx2,
                                            simd::Target::avx512),

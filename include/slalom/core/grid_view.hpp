@@ -179,6 +179,13 @@ SLALOM_INLINE_CALLS CellValues<Pack<Target>> look_up(const GridView<4>& grid, co
   simd::Operations<Target>::gather_cells(grid.cells(), index.v, r.a.v, r.b.v, r.c.v, r.d.v);
   return r;
 }
+/// The cells at the positions of a pair of packs.
+template <class T>
+SLALOM_INLINE_CALLS CellValues<PackPair<T>> look_up(const GridView<4>& grid, const PackPair<T>& x,
+                                                    const PackPair<T>& y) {
+  const auto low = look_up(grid, x.low, y.low), high = look_up(grid, x.high, y.high);
+  return {{low.a, high.a}, {low.b, high.b}, {low.c, high.c}, {low.d, high.d}};
+}
 /// The cell at a position that is given in cells (`GridView::rows_axis`, `columns_axis`).
 template <class Target>
 SLALOM_INLINE_CALLS Pack<Target> look_up_cell(const GridView<1>& grid, const Pack<Target>& row,
@@ -196,6 +203,17 @@ SLALOM_INLINE_CALLS Pack<Target> look_up(const GridView<1>& grid, const Pack<Tar
   Pack<Target> r;
   simd::Operations<Target>::gather(grid.cells(), index.v, r.v);
   return r;
+}
+/// The values of the cells at the positions of a pair of packs.
+template <class T>
+SLALOM_INLINE_CALLS PackPair<T> look_up(const GridView<1>& grid, const PackPair<T>& x, const PackPair<T>& y) {
+  return {look_up(grid, x.low, y.low), look_up(grid, x.high, y.high)};
+}
+/// The same for positions in cells.
+template <class T>
+SLALOM_INLINE_CALLS PackPair<T> look_up_cell(const GridView<1>& grid, const PackPair<T>& row,
+                                             const PackPair<T>& column) {
+  return {look_up_cell(grid, row.low, column.low), look_up_cell(grid, row.high, column.high)};
 }
 
 }  // namespace slalom

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "slalom/core/pack_functions.hpp"
+#include "slalom/core/pack_pair.hpp"
 
 /// Mathematics that a problem may use, written once for `float`, `double` and packs of SIMD lanes: call these
 /// by their unqualified or `slalom::` names instead of those in `std`.
@@ -34,9 +34,15 @@ using mask_t = typename MaskOf<T>::type;
 /// Whether a type is a pack of SIMD lanes.
 template <class T>
 inline constexpr bool is_pack = false;
-/// True for packs.
+/// True for packs, and for pairs of them.
 template <class Target>
 inline constexpr bool is_pack<Pack<Target>> = true;
+/// Whether a type is a pair of packs.
+template <class T>
+inline constexpr bool is_pair = false;
+/// True for pairs.
+template <class Target>
+inline constexpr bool is_pair<PackPair<Target>> = true;
 
 // --- scalars
 // -------------------------------------------------------------------------------------------------------
@@ -225,7 +231,9 @@ SLALOM_INLINE T clamp(const T& x, const std::type_identity_t<T>& low, const std:
 /// The angle shifted by whole turns into [-pi, pi].
 template <class T>
 SLALOM_INLINE T wrap_angle(const T& angle) {
-  if constexpr (is_pack<T>) {
+  if constexpr (is_pair<T>) {
+    return {wrap_angle(angle.low), wrap_angle(angle.high)};
+  } else if constexpr (is_pack<T>) {
     typename simd::IntPack<typename T::Target>::Vector turns;
     return angle - rounded_product(angle, 0.159154943f, turns) * T(6.28318531f);
   } else {

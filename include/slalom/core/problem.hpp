@@ -31,7 +31,10 @@
 ///    besides those of a method's options; read when a controller is made;
 ///  - a member `input_rate_max`, of the same kind, in 1/s: inputs move no faster, in rollouts as in plans;
 ///  - `void sample(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept`: noise of its
-///    own in place of independent standard normal values (see `Sampler`).
+///    own in place of independent standard normal values (see `Sampler`);
+///  - `static constexpr bool long_steps = true`: a step is so long, several hundred instructions, that
+///  rollouts
+///    are faster if every operation of it is that of two packs. It changes no result (see pack_pair.hpp).
 namespace slalom {
 
 /// The `M` inputs of one step.

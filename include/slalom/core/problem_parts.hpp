@@ -113,6 +113,12 @@ inline constexpr bool limits_rates = requires(const P& p) {
   p.input_rate_max;
 };
 
+/// Whether rollouts of a problem take packs in pairs (pack_pair.hpp).
+template <class P>
+inline constexpr bool has_long_steps = requires {
+  requires P::long_steps;
+};
+
 /// Duration of a problem's step, s; 0 where it has none.
 template <class P>
 double time_step_of(const P& problem) noexcept {

@@ -129,7 +129,7 @@ SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& st
     accumulate<F>(terminal_cost<P, F>(problem, r[j].x, now), r[j].total, r[j].hit);
     if constexpr (ahead != 0) seen = looked;
     r[j].total.store(costs + sample + j * F::lanes);
-    simd::Operations<typename F::Target>::store_mask(r[j].hit.v, collided + sample + j * F::lanes);
+    r[j].hit.store(collided + sample + j * F::lanes);
   }
 }
 
@@ -146,7 +146,8 @@ SLALOM_INLINE_CALLS void roll_out_all(const P& problem, const RolloutStart<P, F>
 }
 
 /// The rollouts of the samples `first` ... `first + count - 1`, with as many packs in flight as suit the
-/// instruction set (docs/performance.md). `initial` holds `start_size` values.
+/// instruction set (docs/performance.md) or, where steps are long, in pairs. `initial` holds `start_size`
+/// values.
 template <class Target, class P>
 SLALOM_INLINE_CALLS void roll_out_range(const P& problem, const float* initial, const InputRows& rows,
                                         int first, int count, float* costs, std::uint8_t* collided) {
@@ -154,7 +155,13 @@ SLALOM_INLINE_CALLS void roll_out_range(const P& problem, const float* initial, 
   static_assert(simd::padding % F::lanes == 0);
   const RolloutStart<P, F> start = rollout_start<P, F>(problem, initial);
   const int end = first + count;
-  if constexpr (chooses_packs<Target>) {
+  if constexpr (has_long_steps<P>) {
+    const RolloutStart<P, PackPair<Target>> both = rollout_start<P, PackPair<Target>>(problem, initial);
+    int sample = first;
+    for (; sample + F::lanes < end; sample += 2 * F::lanes)
+      roll_out<1, 0>(problem, both, rows, sample, costs, collided);
+    roll_out_all<1, 0>(problem, start, rows, sample, end, costs, collided);
+  } else if constexpr (chooses_packs<Target>) {
     if (simd::detail::four_packs_in_flight()) {
       roll_out_all<4, 1>(problem, start, rows, first, end, costs, collided);
     } else {

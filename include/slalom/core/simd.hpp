@@ -95,6 +95,10 @@ struct Broadcast<Unfused<T>> : Broadcast<T> {};
 
 }  // namespace detail
 
+/// Operations for which compilers need to be told the instruction: simd_operations.hpp.
+template <class T>
+struct Operations;
+
 /// One truth value per lane.
 template <class T>
 struct Mask {
@@ -144,6 +148,8 @@ struct Mask {
         "slalom::any(condition) or slalom::all(condition) where one answer for all lanes will do");
     return false;
   }
+  /// Writes 1 for each lane that is true, else 0.
+  SLALOM_INLINE_CALLS void store(std::uint8_t* to) const { Operations<T>::store_mask(v, to); }
   /// The value of one lane.
   bool operator[](int lane) const {
     if constexpr (bits) {
@@ -153,10 +159,6 @@ struct Mask {
     }
   }
 };
-
-/// Operations for which compilers need to be told the instruction: simd_operations.hpp.
-template <class T>
-struct Operations;
 
 /// A pack of 32-bit integers.
 template <class T>

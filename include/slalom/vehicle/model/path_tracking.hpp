@@ -58,6 +58,7 @@ class PathTracking {
   static constexpr int inputs = Motion::inputs;             ///< inputs of a step
   static constexpr auto input_names = Motion::input_names;  ///< names of the inputs
   static constexpr bool plans_speed = inputs > 1;           ///< the acceleration is an input
+  static constexpr bool long_steps = requires { requires Motion::long_steps; };  ///< see Problem
 
   /// Options must be valid (see validate_options).
   explicit PathTracking(const PathTrackingOptions& options, const Options& own = {})

@@ -23,6 +23,7 @@ class SingleTrack {
   static constexpr const char* help =
       "single-track model with slipping tyres; steering and acceleration are the inputs";
   static constexpr int inputs = 2;                                      ///< inputs of a step
+  static constexpr bool long_steps = true;                              ///< see Problem
   static constexpr std::array input_names{"steering", "acceleration"};  ///< names of the inputs
 
   /// With the options of the car. Throws std::invalid_argument where `hold_first_input` is set, which this
