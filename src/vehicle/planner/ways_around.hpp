@@ -33,11 +33,18 @@ class WaysAround {
   static constexpr int sides = 8, speeds = 3, count = (2 * sides + 1) * speeds;
 
   struct Car;
+  /// A point of the path.
+  struct Place {
+    double x, y;            ///< m
+    double left_x, left_y;  ///< to the left of the path
+    double gap;             ///< m, to the next point
+  };
   void draw_way(int way, Car car, std::span<const double> path_speeds, double grip) noexcept;
+  void look_ahead(Car& car) const noexcept;
   double steering_to(const Car& car, double offset) const noexcept;
   bool advance(std::size_t& at) const noexcept;
 
-  std::vector<maps::ReferencePoint> path_;
+  std::vector<Place> path_;
   bool closed_;
   VehicleTraits traits_;
   double steepest_;  ///< tangent of the wheels' angle

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "slalom/core/option_access.hpp"
@@ -112,6 +113,35 @@ TEST(WaysAround, FollowThePathAtItsSpeedWhereItIsFree) {
       << "the map has cells of 0.1 m";
   EXPECT_NEAR(lane.end().speed, 5, 0.3);
   EXPECT_NEAR(lane.end().pose.y, 0, 0.05);
+}
+
+/// On a circle, across the end of its path, while the car slows down and looks less far ahead.
+TEST(WaysAround, FollowACircleAcrossTheEndOfItsPath) {
+  constexpr double radius = 5;
+  std::vector<maps::ReferencePoint> circle;
+  for (int i = 0; i < 300; ++i) {
+    const double turn = 2 * std::numbers::pi * i / 300;
+    circle.push_back({radius * std::cos(turn), radius * std::sin(turn), turn + std::numbers::pi / 2, 3});
+  }
+  maps::ReferenceField field(circle);
+  maps::ClearanceMap clearance;
+  const auto model = make_vehicle_model(Lane::car());
+  const double turn = 2 * std::numbers::pi * 290 / 300;
+  const VehicleStart start{{circle[290].x, circle[290].y, circle[290].yaw}, 4};
+  field.update({start.pose.x, start.pose.y});
+  model->set_maps({field.view(), clearance.view(), start.pose});
+  model->set_start(start, 3);
+  WaysAround around(circle, true, horizon, 2, model->traits(), 0.42);
+  for (const double speed : {2.0, 4.0}) {
+    const std::vector<double> speeds(300, speed);
+    around.draw(start, 290, speeds, 1.0);
+    std::vector<PredictedState> states(horizon + 1);
+    EXPECT_FALSE(model->predict(around.cheapest(model->evaluator()), states).collided);
+    for (const PredictedState& s : states)
+      EXPECT_NEAR(std::hypot(s.pose.x, s.pose.y), radius, 0.15) << "at " << speed << " m/s";
+    const double gone = maps::wrap_angle(std::atan2(states.back().pose.y, states.back().pose.x) - turn);
+    EXPECT_GT(gone, 0.4) << "past the first point";
+  }
 }
 
 /// The same plan, with and without a wall that begins beyond its end.
