@@ -62,6 +62,7 @@ void LocalCostMap::forget() noexcept {
     layer->last_box = {};
   }
   point_count_ = 0;
+  marked_ = false;
 }
 
 void LocalCostMap::clear() noexcept {
@@ -74,6 +75,11 @@ ScanReport LocalCostMap::update(const LaserScanView& scan) noexcept {
   const ScanReport report = mark_scan(scan);
   write_cells();
   return report;
+}
+
+ScanReport LocalCostMap::read(const LaserScanView& scan) noexcept {
+  if (marked_) clear();
+  return take_points(scan, [](const ScanPoint&) {});
 }
 
 ScanReport LocalCostMap::add_scan(const LaserScanView& scan) noexcept {
@@ -96,6 +102,11 @@ void LocalCostMap::set_beams(const LaserScanView& scan) noexcept {
 }
 
 ScanReport LocalCostMap::mark_scan(const LaserScanView& scan) noexcept {
+  return take_points(scan, [this](const ScanPoint& point) { mark(point.x, point.y, 0); });
+}
+
+template <class Use>
+ScanReport LocalCostMap::take_points(const LaserScanView& scan, Use&& use) noexcept {
   ScanReport report;
   point_count_ = 0;
   if (scan.ranges.empty() || scan.ranges.size() > points_.size() || !std::isfinite(scan.angle_min) ||
@@ -130,7 +141,7 @@ ScanReport LocalCostMap::mark_scan(const LaserScanView& scan) noexcept {
       continue;
     }
     points_[point_count_++] = point;
-    mark(point.x, point.y, 0);
+    use(point);
   }
   report.used = static_cast<int>(point_count_);
   return report;
@@ -181,6 +192,7 @@ void LocalCostMap::add_grid(const OccupancyGrid& obstacles, const Pose& robot) n
 
 /// Counts a square of half width `reach` (m) about (x, y) in every cell where the body would collide with it.
 void LocalCostMap::mark(double x, double y, double reach) noexcept {
+  marked_ = true;
   const PublishedCostMap& reproduction = options_.published;
   const bool by_cells = reproduction.half_open_inflation || reproduction.forget_points_outside;
   int row = by_cells ? geometry_.row(x) : 0, column = by_cells ? geometry_.column(y) : 0;

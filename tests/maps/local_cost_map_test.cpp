@@ -208,5 +208,26 @@ TEST(LocalCostMap, RejectsInvalidOptions) {
   refused([](auto& o) { o.occupied = NAN; });
 }
 
+TEST(LocalCostMap, ReadsThePointsOfAScanWithoutMarkingThem) {
+  const std::vector<float> ranges{1.0f, nan, 2.0f, 0.01f, 3.0f};
+  const LaserScanView scan{ranges, -0.2, 0.1, 0.05, 30};
+  LocalCostMap marked, read;
+  const ScanReport expected = marked.update(scan);
+  ASSERT_TRUE(read.update(scan).accepted);
+  ASSERT_GT(occupied_cells(read), 0);
+  const ScanReport report = read.read(scan);
+  EXPECT_EQ(report.accepted, expected.accepted);
+  EXPECT_EQ(report.used, expected.used);
+  EXPECT_EQ(report.invalid, expected.invalid);
+  ASSERT_EQ(read.points().size(), marked.points().size());
+  for (std::size_t i = 0; i < read.points().size(); ++i) {
+    EXPECT_EQ(read.points()[i].x, marked.points()[i].x);
+    EXPECT_EQ(read.points()[i].y, marked.points()[i].y);
+  }
+  EXPECT_EQ(occupied_cells(read), 0) << "what was marked before is forgotten";
+  read.update(scan);
+  EXPECT_EQ(occupied_cells(read), occupied_cells(marked));
+}
+
 }  // namespace
 }  // namespace slalom::maps

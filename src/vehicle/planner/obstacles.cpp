@@ -44,9 +44,12 @@ maps::ScanReport Obstacles::update(const PlannerInput& input, bool placed) noexc
   const auto others = predicts ? input.others : std::span<const maps::PredictedObstacle>{};
   others_.update(others, {input.odometry.pose.x, input.odometry.pose.y}, delay_, time_step_);
   const maps::LaserScanView scan = others_.view().empty() ? input.scan : without_others(input);
-  const maps::ScanReport report = cost_map_.update(scan);
-  cost_map_.add_points(input.obstacles);
-  if (!has_clearance_) return report;
+  if (!has_clearance_) {
+    const maps::ScanReport report = cost_map_.update(scan);
+    cost_map_.add_points(input.obstacles);
+    return report;
+  }
+  const maps::ScanReport report = cost_map_.read(scan);
   clearance_map_.clear();
   clearance_map_.add(cost_map_.points());
   clearance_map_.add(input.obstacles);

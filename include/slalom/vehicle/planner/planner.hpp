@@ -132,7 +132,8 @@ class Planner {
 
   /// The solver in use.
   const Solver& solver() const noexcept;
-  const maps::LocalCostMap& cost_map() const noexcept;  ///< of the last scan
+  /// Of the last scan. Where the model takes a map of distances (`vehicle.body: discs`), only its points.
+  const maps::LocalCostMap& cost_map() const noexcept;
 
  private:
   struct Implementation;
