@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -43,20 +44,50 @@ class ObstacleMemory {
   std::span<const maps::Point> blind_points(const maps::Pose& pose, const maps::Pose& laser,
                                             const maps::LaserScanView& view) noexcept {
     blind_.clear();
-    const double first = view.angle_min,
-                 last = view.angle_min + view.angle_increment * (static_cast<double>(view.ranges.size()) - 1);
+    const Sector seen(laser, view);
+    const double cosine = std::cos(pose.yaw), sine = std::sin(pose.yaw);
     for (const Scan& scan : scans_) {
       for (std::size_t i = 0; i < scan.count; ++i) {
-        const maps::Point point = maps::inverse_transform(pose, scan.points[i]);
-        const double angle = maps::wrap_angle(std::atan2(point.y - laser.y, point.x - laser.x) - laser.yaw);
+        const double dx = scan.points[i].x - pose.x, dy = scan.points[i].y - pose.y;
+        const maps::Point point{cosine * dx + sine * dy, cosine * dy - sine * dx};
         const bool near = std::abs(point.x) < reach && std::abs(point.y) < reach;
-        if (near && (angle < first || angle > last)) blind_.push_back(point);
+        if (near && !seen.contains(point)) blind_.push_back(point);
       }
     }
     return blind_;
   }
 
  private:
+  /// The directions that a scan covers.
+  class Sector {
+   public:
+    Sector(const maps::Pose& laser, const maps::LaserScanView& view)
+        : laser_(laser),
+          first_(view.angle_min),
+          last_(view.angle_min + view.angle_increment * (static_cast<double>(view.ranges.size()) - 1)) {
+      if (!(first_ >= -std::numbers::pi && last_ <= std::numbers::pi && first_ <= last_)) return;
+      const double middle = 0.5 * (first_ + last_) + laser.yaw;
+      along_x_ = std::cos(middle);
+      along_y_ = std::sin(middle);
+      border_ = std::cos(0.5 * (last_ - first_));
+    }
+
+    bool contains(const maps::Point& point) const noexcept {
+      const double x = point.x - laser_.x, y = point.y - laser_.y, distance = std::sqrt(x * x + y * y);
+      const double inside = along_x_ * x + along_y_ * y - border_ * distance;
+      // Only at the border does the angle itself decide: it takes most of the time.
+      if (std::abs(inside) > 1e-6 * distance) return inside > 0;
+      const double angle = maps::wrap_angle(std::atan2(y, x) - laser_.yaw);
+      return !(angle < first_ || angle > last_);
+    }
+
+   private:
+    maps::Pose laser_;
+    double first_, last_;  ///< rad, from the laser's axis
+    /// The middle direction and the cosine of half the sector. With zeros, the angle decides everywhere.
+    double along_x_ = 0, along_y_ = 0, border_ = 0;
+  };
+
   static constexpr std::size_t scans = 24, max_points = 160;
   static constexpr double interval = 0.2;  ///< s between scans that are kept
   static constexpr double reach = 4;       ///< m, of points that are kept

@@ -115,6 +115,34 @@ TEST(ObstacleMemory, KnowsWhatTheCarHasPassed) {
   EXPECT_TRUE(memory.blind_points({13.5, 5, 0}, {}, view).empty());
 }
 
+/// By the angle of each point, for scans that cover a part of a turn, all of it, or go beyond half a turn.
+TEST(ObstacleMemory, KnowsTheDirectionsThatAScanDoesNotCover) {
+  std::vector<maps::ScanPoint> seen;
+  for (int i = 0; i < 150; ++i)
+    seen.push_back(
+        {3.0f * std::cos(0.042f * static_cast<float>(i)), 3.0f * std::sin(0.042f * static_cast<float>(i))});
+  const maps::Pose laser{0.1, 0.02, 0.3};
+  for (const auto& [first, last] : {std::pair{-2.356, 2.356}, {-1.0, 0.4}, {-3.1, 3.14}, {0.0, 6.28}}) {
+    ObstacleMemory memory;
+    memory.remember(seen, {1, 2, 0.7}, 0.25);
+    const std::vector<float> ranges(201, 10.0f);
+    const maps::LaserScanView view{ranges, first, (last - first) / 200, 0.05, 30};
+    const maps::Pose pose{1.4, 1.8, -2.1};
+    const auto blind = memory.blind_points(pose, laser, view);
+    std::size_t at = 0;
+    for (const maps::ScanPoint& point : seen) {
+      const maps::Point here =
+          maps::inverse_transform(pose, maps::transform({1, 2, 0.7}, {double(point.x), double(point.y)}));
+      const double angle = maps::wrap_angle(std::atan2(here.y - laser.y, here.x - laser.x) - laser.yaw);
+      if (angle >= view.angle_min && angle <= view.angle_min + 200 * view.angle_increment) continue;
+      ASSERT_LT(at, blind.size()) << first << " to " << last;
+      EXPECT_NEAR(blind[at].x, here.x, 1e-12);
+      EXPECT_NEAR(blind[at++].y, here.y, 1e-12);
+    }
+    EXPECT_EQ(at, blind.size()) << first << " to " << last;
+  }
+}
+
 /// A closed course of two straights of 30 m and two half circles of 3 m radius, driven at 12 m/s.
 std::vector<maps::ReferencePoint> oval() {
   std::vector<maps::ReferencePoint> path;
