@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "maps/validation.hpp"
+#include "slalom/core/dispatch.hpp"
+#include "slalom/core/math.hpp"
+#include "slalom/core/sequence_batch.hpp"
 
 namespace slalom::maps {
 
@@ -16,6 +19,19 @@ GridGeometry geometry_of(const ClearanceMapOptions& options) {
           options.resolution, options.center_x, options.center_y};
 }
 
+/// Lowers cells to the distances from one point. Rows of distances have `width` values, a multiple of the
+/// padding; what they have more than the kernel is larger than any cell.
+struct Lower {
+  template <class Target>
+  SLALOM_KERNEL static void run(const float* distances, int width, int rows, std::ptrdiff_t stride,
+                                float* cells) {
+    using F = Pack<Target>;
+    for (int r = 0; r < rows; ++r, distances += width, cells += stride)
+      for (int k = 0; k < width; k += F::lanes)
+        min(F::load(distances + k), F::load(cells + k)).store(cells + k);
+  }
+};
+
 }  // namespace
 
 ClearanceMap::ClearanceMap(const ClearanceMapOptions& options)
@@ -23,9 +39,14 @@ ClearanceMap::ClearanceMap(const ClearanceMapOptions& options)
       geometry_(geometry_of(options)),
       cells_(geometry_.rows, geometry_.columns),
       kernel_reach_(static_cast<int>(std::ceil(options.reach / options.resolution))) {
-  for (int i = -kernel_reach_; i <= kernel_reach_; ++i) {
-    for (int j = -kernel_reach_; j <= kernel_reach_; ++j) {
-      kernel_.push_back(static_cast<float>(options.resolution * std::hypot(i, j)));
+  const int width = 2 * kernel_reach_ + 1;
+  kernel_width_ = padded(width);
+  kernel_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(kernel_width_),
+                 static_cast<float>(options.reach));
+  for (int i = 0; i < width; ++i) {
+    for (int j = 0; j < width; ++j) {
+      kernel_[static_cast<std::size_t>(i * kernel_width_ + j)] =
+          static_cast<float>(options.resolution * std::hypot(i - kernel_reach_, j - kernel_reach_));
     }
   }
   cells_.fill({-1.0F});
@@ -61,9 +82,15 @@ void ClearanceMap::stamp(double x, double y) noexcept {
   const bool inside = row >= 0 && column >= 0 && row < geometry_.rows && column < geometry_.columns;
   if (inside && *cells_.at(row, column) == 0) return;  // neighbouring beams often hit the same cell
   const int begin = std::max(column - n, 0), end = std::min(column + n + 1, geometry_.columns);
-  const int width = 2 * n + 1;
-  for (int r = std::max(row - n, 0); r < std::min(row + n + 1, geometry_.rows); ++r) {
-    const float* kernel = kernel_.data() + (r - row + n) * width + (begin - column + n);
+  const int row_begin = std::max(row - n, 0), row_end = std::min(row + n + 1, geometry_.rows);
+  if (end - begin == 2 * n + 1 && row_begin < row_end) {
+    simd::dispatch<Lower>(kernel_.data() + (row_begin - row + n) * kernel_width_, kernel_width_,
+                          row_end - row_begin, cells_.at(1, 0) - cells_.at(0, 0),
+                          cells_.at(row_begin, begin));
+    return;
+  }
+  for (int r = row_begin; r < row_end; ++r) {
+    const float* kernel = kernel_.data() + (r - row + n) * kernel_width_ + (begin - column + n);
     float* cells = cells_.at(r, begin);
     for (int c = 0; c < end - begin; ++c) cells[c] = std::min(cells[c], kernel[c]);
   }

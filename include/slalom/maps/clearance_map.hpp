@@ -74,7 +74,8 @@ class ClearanceMap {
   GridGeometry geometry_;
   CellGrid<1> cells_;
   int kernel_reach_ = 0;       ///< cells
-  std::vector<float> kernel_;  ///< (2 reach + 1)^2 distances, m
+  int kernel_width_ = 0;       ///< values of a row of the kernel: 2 reach + 1, padded with `reach` (m)
+  std::vector<float> kernel_;  ///< 2 reach + 1 rows of distances, m
 };
 
 }  // namespace slalom::maps
