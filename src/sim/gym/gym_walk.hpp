@@ -1,8 +1,8 @@
 #pragma once
 
+#include "sim/gym/double_pack.hpp"
 #include "sim/lidar/scan.hpp"
 #include "slalom/core/dispatch.hpp"
-#include "slalom/core/double_pack.hpp"
 
 namespace slalom::sim::detail {
 
