@@ -60,7 +60,8 @@ void Way::advance_on_course(double duration) noexcept {
     const double there = course_.at(start_.arc).speed;
     const double ratio = there > 0 ? start_.speed / there : 0;
     const double next = course_.at(now_.arc + before * duration).speed;
-    if (ratio > min_ratio && ratio < max_ratio && next > 0) now_.speed = ratio * next;
+    const double risen = std::min(ratio + start_.rise * time_, std::max(ratio, 1.0));
+    if (ratio > min_ratio && ratio < max_ratio && next > 0) now_.speed = risen * next;
   }
   const double widening = std::max(1 - now_.offset * course_.at(now_.arc).curvature, 0.2);
   now_.arc += 0.5 * (before + now_.speed) * duration / widening;

@@ -24,6 +24,7 @@ struct Motion {
   double arc = 0;       ///< m, on a course
   double offset = 0;    ///< m, on a course
   double drift = 0;     ///< m/s, by which the offset grows
+  double rise = 0;      ///< 1/s, by which the ratio of the speed to the course's rises while it is below 1
 };
 
 /// The motion of an object: on the course if there is one and it drives along it.

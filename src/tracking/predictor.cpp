@@ -12,6 +12,8 @@ namespace {
 
 constexpr double arc_error = 0.15, offset_error = 0.06, speed_error = 0.5;  // m, m, m/s: of comparisons
 
+constexpr double rise_memory = 0.15;                        // s, time constant of the rise of speed ratios
+constexpr double clear_rise = 0.4, clear_acceleration = 2;  // 1/s, m/s^2, of a car that gets up to speed
 constexpr double longest_gap = 10;  // s between comparisons, after which an object counts as unknown
 constexpr double furthest = 1e7, fastest = 200, largest = 1e3;  // m, m/s, m: of objects
 constexpr double fastest_turn = 1e3, max_variance = 1e6;        // rad/s; of any component
@@ -54,6 +56,11 @@ struct Predictor::Implementation {
     double since = 0;  ///< s, when `motion` was
     Motion motion;
     Weights weights{};
+    double seen = 0;          ///< s, when `ratio` was
+    double ratio = 0;         ///< of its speed to the course's
+    double speed = 0;         ///< m/s, at that time
+    double rise = 0;          ///< 1/s, mean of the rise of `ratio`
+    double acceleration = 0;  ///< m/s^2, mean
   };
 
   PredictorOptions options;
@@ -118,18 +125,39 @@ struct Predictor::Implementation {
     }
   }
 
+  /// Whether a car gets up to speed, as after a start: sets `now.rise`. Others keep the ratio of their speed.
+  void note_rise(Remembered& past, Motion& now, double stamp) const noexcept {
+    const double there = now.on_course ? course.at(now.arc).speed : 0;
+    const double ratio = there > 0 ? now.speed / there : 0, elapsed = stamp - past.seen;
+    if (elapsed > 0) {
+      const double share = std::min(elapsed / rise_memory, 1.0);
+      past.rise += share * ((ratio - past.ratio) / elapsed - past.rise);
+      past.acceleration += share * ((now.speed - past.speed) / elapsed - past.acceleration);
+      past.seen = stamp;
+      past.ratio = ratio;
+      past.speed = now.speed;
+    }
+    if (past.rise > clear_rise && past.acceleration > clear_acceleration) now.rise = past.rise;
+  }
+
   /// The weights of an object's hypotheses after it was seen in this motion.
-  const Weights& weigh(int id, const Motion& now, double stamp) noexcept {
+  const Weights& weigh(int id, Motion& now, double stamp) noexcept {
+    const double there = now.on_course ? course.at(now.arc).speed : 0;
+    const Remembered fresh{id,       stamp, now, first_weights(now), stamp, there > 0 ? now.speed / there : 0,
+                           now.speed};
     Remembered* past = find(id);
     if (!past) {
-      remembered.push_back({id, stamp, now, first_weights(now)});
+      remembered.push_back(fresh);
       return remembered.back().weights;
     }
     const double elapsed = stamp - past->since;
     const bool follows = elapsed >= 0 && elapsed <= longest_gap && past->motion.on_course == now.on_course;
     if (!follows) {
-      *past = {id, stamp, now, first_weights(now)};
-    } else if (elapsed >= options.memory - 1e-9) {
+      *past = fresh;
+      return past->weights;
+    }
+    note_rise(*past, now, stamp);
+    if (elapsed >= options.memory - 1e-9) {
       learn(*past, now, elapsed);
       past->since = stamp;
       past->motion = now;
@@ -208,8 +236,9 @@ std::span<const maps::PredictedObstacle> Predictor::update(std::span<const Track
     if (!moves) continue;
     const bool room = p.remembered.size() < p.remembered.capacity() || p.find(object.id);
     if (!room) continue;
-    const Motion motion = motion_of(object, p.course, p.options);
-    p.predict(object, motion, p.weigh(object.id, motion, stamp));
+    Motion motion = motion_of(object, p.course, p.options);
+    const Weights& weights = p.weigh(object.id, motion, stamp);
+    p.predict(object, motion, weights);
   }
   return p.predicted;
 }

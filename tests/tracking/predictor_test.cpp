@@ -148,6 +148,20 @@ TEST(Predictor, ACarThatBrakesIsExpectedToBrake) {
   EXPECT_GT(weight_near(after, beside(arc(2), 0), 0.4, 0.2), 0.5);
 }
 
+TEST(Predictor, ACarThatGetsUpToSpeedIsExpectedToGoOn) {
+  constexpr double acceleration = 4, slow = 0.6;  // m/s^2, m/s
+  const auto arc = [](double time) { return slow * time + 0.5 * acceleration * time * time; };
+  Predictor predictor(circle());
+  maps::PredictedObstacle predicted;
+  for (int i = 0; i <= 20; ++i) {  // 0.5 s, to 2.6 m/s
+    const TrackedObject now = object_at(beside(arc(period * i), 0), slow + acceleration * period * i);
+    predicted = predictor.update({&now, 1}, period * i)[0];
+  }
+  EXPECT_GT(weight_near(predicted, beside(arc(0.8), 0), 0.3, 0.12), 0.7);
+  // The course's 4 m/s from 0.85 s on.
+  EXPECT_GT(weight_near(predicted, beside(arc(0.85) + 4 * 0.65, 0), 1, 0.25), 0.7);
+}
+
 TEST(Predictor, SpeedsFollowTheCourse) {
   std::vector<maps::ReferencePoint> path = circle();
   for (std::size_t i = 150; i < 300; ++i) path[i].speed = 2;
