@@ -1,6 +1,7 @@
 #include "vehicle/planner/obstacles.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "slalom/maps/moving_readings.hpp"
 #include "vehicle/planner/car_estimator.hpp"
@@ -11,13 +12,19 @@ namespace {
 
 constexpr double tracking_error = 0.12;  // m, between readings of a car and its box
 
+/// m, of distances to other cars: where they will be is known less well than where walls are.
+constexpr double least_margin = 0.05, least_soft_margin = 0.25;
+
+constexpr double close_ahead = 3,
+                 close_beside = 1;  // m from the rear axle, of a car for which the own one waits
+
 maps::MovingObstacleOptions moving_options(const PlannerOptions& options, const BodyOptions& body) {
   maps::MovingObstacleOptions made;
   made.front = body.front;
   made.rear = body.rear;
   made.width = body.width;
-  made.margin = body.margin;
-  made.soft_margin = body.soft_margin;
+  made.margin = std::max(body.margin, least_margin);
+  made.soft_margin = std::max(body.soft_margin, least_soft_margin);
   made.soft_cost = body.soft_cost;
   made.max_probability = options.collision_probability;
   return made;
@@ -36,12 +43,14 @@ Obstacles::Obstacles(const PlannerOptions& options, const VehicleTraits& traits,
       cost_map_(cost_map_options(options, traits)),
       clearance_map_(clearance_options(traits, reach)),
       others_(moving_options(options, traits.body), horizon),
+      behind_(traits.wheelbase),
       pace_(options.time_behind / traits.time_step, options.control_period),
       ranges_(meets_others_ ? static_cast<std::size_t>(cost_map_.options().max_beams) : 0) {}
 
 maps::ScanReport Obstacles::update(const PlannerInput& input, bool placed) noexcept {
   const bool predicts = meets_others_ && placed;
-  const auto others = predicts ? input.others : std::span<const maps::PredictedObstacle>{};
+  const auto others = predicts ? behind_.giving_way(input.others, input.odometry.pose)
+                               : std::span<const maps::PredictedObstacle>{};
   others_.update(others, {input.odometry.pose.x, input.odometry.pose.y}, delay_, time_step_);
   const maps::LaserScanView scan = others_.view().empty() ? input.scan : without_others(input);
   if (!has_clearance_) {
@@ -62,7 +71,17 @@ maps::ScanReport Obstacles::update(const PlannerInput& input, bool placed) noexc
 
 void Obstacles::charge_time_behind(const maps::ReferenceField& field, const maps::Point& origin,
                                    const maps::Pose& own) noexcept {
-  if (slips_ && !alone()) others_.set_following_costs(pace_.steps_lost(others_.taken(), field, origin, own));
+  if (slips_ && !others_.view().empty())
+    others_.set_following_costs(pace_.steps_lost(others_.taken(), field, origin, own));
+}
+
+bool Obstacles::one_drives_ahead(const maps::Pose& own, const maps::Point& origin) const noexcept {
+  const auto taken = others_.taken();
+  return std::any_of(taken.begin(), taken.end(), [&](const maps::PredictedObstacle* each) {
+    const maps::Pose& now = each->poses.front().pose;
+    const maps::Point place = maps::inverse_transform(own, {now.x - origin.x, now.y - origin.y});
+    return place.x > 0 && place.x < close_ahead && std::abs(place.y) < close_beside;
+  });
 }
 
 void Obstacles::reset() noexcept {

@@ -6,6 +6,7 @@
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
+#include "vehicle/planner/cars_behind.hpp"
 #include "vehicle/planner/obstacle_memory.hpp"
 #include "vehicle/planner/pace_of_others.hpp"
 
@@ -32,10 +33,16 @@ class Obstacles {
   VehicleMaps seen_from(const maps::Pose& robot, const GridView<4>& reference,
                         const maps::Point& origin) const noexcept;
 
+  /// Whether a car that drives is close ahead of one at `own`, which is in the frame that begins at `origin`
+  /// (m, map frame).
+  bool one_drives_ahead(const maps::Pose& own, const maps::Point& origin) const noexcept;
+
   const maps::LocalCostMap& cost_map() const noexcept { return cost_map_; }
   const maps::ClearanceMap& clearance_map() const noexcept { return clearance_map_; }
-  /// Whether no obstacle moves.
-  bool alone() const noexcept { return others_.view().empty(); }
+  /// The obstacles that move, in the frame that begins at `origin` (m, map frame).
+  maps::MovingObstaclesView others(const maps::Point& origin) const noexcept {
+    return others_.view().relative_to(origin);
+  }
 
  private:
   maps::LaserScanView without_others(const PlannerInput& input) noexcept;
@@ -47,6 +54,7 @@ class Obstacles {
   maps::ClearanceMap clearance_map_;
   ObstacleMemory memory_;
   maps::MovingObstacles others_;
+  CarsBehind behind_;
   PaceOfOthers pace_;
   std::vector<float> ranges_;  ///< of a scan without the readings of other cars
 };

@@ -9,6 +9,8 @@ namespace slalom::vehicle::detail {
 namespace {
 
 constexpr double memory = 3;              // s, time constant of the mean of a car's speed
+constexpr double short_memory = 0.15;     // s, time constant by which a share that rises is recognised
+constexpr double rising = 0.05;           // of the path's speed, above the mean over the short memory
 constexpr double largest_share = 0.25;    // of the time, that counts as lost: a car that stands need not be
                                           // passed at any risk
 constexpr double behind = 10, ahead = 1;  // m along the other car, where the own car is taken to follow it
@@ -25,7 +27,9 @@ bool follows(const maps::Pose& own, const maps::Pose& other) noexcept {
 }  // namespace
 
 PaceOfOthers::PaceOfOthers(double steps_behind, double control_period) noexcept
-    : steps_behind_(steps_behind), weight_of_new_(std::min(control_period / memory, 1.0)) {}
+    : steps_behind_(steps_behind),
+      weight_of_new_(std::min(control_period / memory, 1.0)),
+      weight_of_latest_(std::min(control_period / short_memory, 1.0)) {}
 
 std::span<const double> PaceOfOthers::steps_lost(std::span<const maps::PredictedObstacle* const> others,
                                                  const maps::ReferenceField& field, const maps::Point& origin,
@@ -42,7 +46,9 @@ std::span<const double> PaceOfOthers::steps_lost(std::span<const maps::Predicted
     if (path.distance < field.options().outside.distance && path.speed >= slowest_path &&
         std::abs(wrap_angle(place.yaw - double(path.yaw))) < same_way) {
       const double share = std::hypot(to.x - from.x, to.y - from.y) / other.interval / double(path.speed);
-      pace.share += weight_of_new_ * (share - pace.share);
+      // A car that gets up to speed, as after a start, has not shown its pace yet.
+      if (share < pace.latest + rising) pace.share += weight_of_new_ * (share - pace.share);
+      pace.latest += weight_of_latest_ * (share - pace.latest);
     }
     lost_[i] = follows(own, place) ? steps_behind_ * std::clamp(1 - pace.share, 0.0, largest_share) : 0;
   }

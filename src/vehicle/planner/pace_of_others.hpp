@@ -32,12 +32,13 @@ class PaceOfOthers {
   /// What is known of a car.
   struct Pace {
     int id = 0;
-    double share = 1;  ///< mean of its speed as a share of the path's
-    long noted = 0;    ///< call of `steps_lost` at which it was seen last; 0: no car
+    double share = 1;   ///< mean of its speed as a share of the path's
+    double latest = 0;  ///< the same over a short time
+    long noted = 0;     ///< call of `steps_lost` at which it was seen last; 0: no car
   };
   Pace& pace_of(int id) noexcept;
 
-  double steps_behind_, weight_of_new_;
+  double steps_behind_, weight_of_new_, weight_of_latest_;
   long calls_ = 0;
   std::array<Pace, max_count> paces_{};
   std::array<double, max_count> lost_{};

@@ -150,7 +150,7 @@ struct Planner::Implementation {
     }
     model->set_maps(obstacles.seen_from(pose_of_scan(odometry), followed, origin));
     model->set_start(start, traits.follows_path ? here.speed : traits.reference_speed);
-    choice.sees(obstacles.clearance_map().view(), obstacles.alone());
+    choice.sees(obstacles.clearance_map().view(), obstacles.others(origin));
     SolveRequest request{.elapsed = options.control_period};
     if (options.deadline > 0) request.deadline = options.deadline;
     const SolveResult& result = solver->solve(model->evaluator(), request);
@@ -197,7 +197,8 @@ struct Planner::Implementation {
   GridView<4> recover(const Odometry& odometry, const maps::Pose& start) noexcept {
     const int nearest = field.nearest();
     recovery.update(speeds.arc(nearest), speeds.length(), odometry.speed,
-                    speeds.speeds()[static_cast<std::size_t>(nearest)], options.control_period);
+                    speeds.speeds()[static_cast<std::size_t>(nearest)], options.control_period,
+                    obstacles.one_drives_ahead(odometry.pose, origin));
     detour->note(recovery, odometry.pose);
     model->set_reverse(recovery.reversing() ? Recovery::speed : 0);
     if (recovery.tries_again() && detour->search(obstacles.clearance_map(), odometry.pose, nearest)) {

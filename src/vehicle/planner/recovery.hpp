@@ -25,15 +25,17 @@ class Recovery {
 
   /// Advances by one control period (s), with where the car is along the course (m) of this length (m), 0
   /// where it is not closed, its speed (m/s) and the one at which it would drive if the path were free.
-  /// Returns whether to reverse now.
-  bool update(double arc, double length, double speed_now, double free_speed, double period) noexcept {
+  /// `waits`: a car that drives is close ahead; what blocks the way then drives off, so that the car is not
+  /// stuck. Returns whether to reverse now.
+  bool update(double arc, double length, double speed_now, double free_speed, double period,
+              bool waits = false) noexcept {
     if (!started_) furthest_ = arc, started_ = true;
     const bool crawls = speed_now < crawling * free_speed || speed_now < standing;
-    crawling_for_ = crawls && !reversing_ ? crawling_for_ + period : 0;
+    crawling_for_ = crawls && !reversing_ && !waits ? crawling_for_ + period : 0;
     if (reversing_) {
       reverse(speed_now, period, arc);
     } else {
-      watch(arc, length, speed_now, period);
+      watch(arc, length, speed_now, waits ? 0 : period);
     }
     return reversing_;
   }
@@ -61,7 +63,7 @@ class Recovery {
       leaving_ = trying_again_ = false;
     }
     since_progress_ += period;
-    standing_for_ = std::abs(speed_now) < standing ? standing_for_ + period : 0;
+    standing_for_ = std::abs(speed_now) < standing && period > 0 ? standing_for_ + period : 0;
     if (ahead > progress) {
       furthest_ = arc;
       since_progress_ = 0;

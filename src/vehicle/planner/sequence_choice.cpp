@@ -63,16 +63,17 @@ SequenceChoice::SequenceChoice(int horizon, int inputs, const VehicleTraits& tra
     body_.emplace(bare(traits.body));
 }
 
-void SequenceChoice::sees(const GridView<1>& clearances, bool alone) noexcept {
+void SequenceChoice::sees(const GridView<1>& clearances, const maps::MovingObstaclesView& others) noexcept {
   if (body_) body_->set_map(clearances, {});
-  alone_ = alone;
+  others_ = others;
 }
 
 PredictedCost SequenceChoice::predict(const VehicleModel& model, std::span<const float> inputs,
                                       std::vector<PredictedState>& states) const noexcept {
   PredictedCost cost = model.predict(inputs, states);
-  if (body_ && alone_ && cost.collided)
-    cost.collided = body_collides({states.data(), inputs.size() / inputs_ + 1});
+  if (!body_ || !cost.collided) return cost;
+  const std::span<const PredictedState> predicted{states.data(), inputs.size() / inputs_ + 1};
+  cost.collided = body_collides(predicted) || others_collide(predicted);
   return cost;
 }
 
@@ -82,6 +83,20 @@ bool SequenceChoice::body_collides(std::span<const PredictedState> states) const
   for (const PredictedState& s : states) {
     const double value = body_->in_robot_frame(s.local.x, s.local.y, s.local.yaw);
     const bool collides = value < 0 || value >= 100;
+    if (collides && was_free) return true;
+    was_free |= !collides;
+  }
+  return !was_free;
+}
+
+/// Likewise: where it begins near another car, it collides with one only after it has been free of them.
+bool SequenceChoice::others_collide(std::span<const PredictedState> states) const noexcept {
+  if (others_.empty()) return false;
+  bool was_free = false;
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    const maps::Pose& at = states[k].pose;
+    const int step = std::min(static_cast<int>(k), others_.last_step());
+    const bool collides = others_.cost(at.x, at.y, std::sin(at.yaw), std::cos(at.yaw), step).collided;
     if (collides && was_free) return true;
     was_free |= !collides;
   }
@@ -113,7 +128,8 @@ SequenceChoice::Choice SequenceChoice::choose(const VehicleModel& model, const S
     consider(candidate_);
   }
   if (!best.cost.collided || !model.has_dynamics()) return best;
-  const bool begins_free = body_ && alone_ ? !body_collides({states.data(), 1}) : !model.start_collides();
+  const bool begins_free = body_ ? !body_collides({states.data(), 1}) && !others_collide({states.data(), 1})
+                                 : !model.start_collides();
   if (body_ && !reversing && begins_free) return least_harm(model, result, best, states);
   brake(model, result, reversing, best, states);
   return best;

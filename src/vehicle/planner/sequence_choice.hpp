@@ -22,14 +22,15 @@ class SequenceChoice {
   /// For sequences of `horizon` steps with so many inputs each, of a car with these traits.
   SequenceChoice(int horizon, int inputs, const VehicleTraits& traits);
 
-  /// The clearances (m, robot's frame) of what the car sees, until the next call. `alone`: nothing else can
-  /// collide with the car.
-  void sees(const GridView<1>& clearances, bool alone) noexcept;
+  /// The clearances (m, robot's frame) of what the car sees, and what moves (in the frame of predictions),
+  /// until the next call.
+  void sees(const GridView<1>& clearances, const maps::MovingObstaclesView& others) noexcept;
 
   /// The prediction of a sequence, with which all choices compare. Where plans seek the shortest time and the
-  /// body has a margin, it collides only where the body itself does: nearness is a matter of cost. Scans are
-  /// noisy, so at a wall that a plan passes closely each of them decides anew whether the margin is kept. A
-  /// car that brakes for it at the limit of grip turns in, and hits the wall that it would have passed.
+  /// body has a margin, it collides with what stands only where the body itself does: nearness is a matter of
+  /// cost. Scans are noisy, so at a wall that a plan passes closely each of them decides anew whether the
+  /// margin is kept. A car that brakes for it at the limit of grip turns in, and hits the wall that it would
+  /// have passed.
   PredictedCost predict(const VehicleModel& model, std::span<const float> inputs,
                         std::vector<PredictedState>& states) const noexcept;
 
@@ -73,6 +74,7 @@ class SequenceChoice {
                     std::vector<PredictedState>& states) noexcept;
   double harm(const VehicleModel& model, std::span<const float> inputs) noexcept;
   bool body_collides(std::span<const PredictedState> states) const noexcept;
+  bool others_collide(std::span<const PredictedState> states) const noexcept;
 
   std::size_t inputs_;
   VehicleTraits traits_;
@@ -80,7 +82,8 @@ class SequenceChoice {
   std::vector<float> candidate_, braking_, previous_, kept_, slower_;
   std::vector<PredictedState> candidate_states_, path_;
   std::optional<ObstacleCost> body_;  ///< without its margin, if it has one and plans seek the shortest time
-  bool alone_ = false, has_previous_ = false;
+  maps::MovingObstaclesView others_;
+  bool has_previous_ = false;
 };
 
 }  // namespace slalom::vehicle::detail

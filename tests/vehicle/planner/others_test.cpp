@@ -18,7 +18,7 @@ namespace {
 constexpr double speed = 3;                            // m/s, of the path
 constexpr double car_length = 0.58, car_width = 0.31;  // m
 
-Planner make_planner(const PlannerOptions& options = {}) {
+Planner make_planner(const PlannerOptions& options = {}, VehicleOptions vehicle = {}) {
   std::vector<maps::ReferencePoint> path;
   for (int i = 0; i < 600; ++i) path.push_back({0.1 * i, 0, 0, speed});
   SvgMppiOptions method;
@@ -31,7 +31,6 @@ Planner make_planner(const PlannerOptions& options = {}) {
   method.variance_max = 0.1;
   method.input_min = -0.4;
   method.input_max = 0.4;
-  VehicleOptions vehicle;
   vehicle.cost.outside_cost = vehicle.cost.outside_terminal_cost = 0;
   return {options, make_vehicle_model(vehicle), path, make_solver(method, 1)};
 }
@@ -80,6 +79,18 @@ const PlannerOutput& settle(Planner& planner, Lane& lane, std::span<const maps::
   return planner.update({.scan = lane.scan(), .odometry = {{5, 0, 0}, speed}, .others = others});
 }
 
+/// How near (m) a plan comes to the middle line of another car, while it is beside it.
+double distance_beside(const PlannerOutput& out, const Other& other) {
+  double closest = 10;
+  for (std::size_t k = 0; k < out.predicted.size(); ++k) {
+    const maps::PredictedPose at = other.obstacle.at(0, 0.05 * static_cast<double>(k));
+    const maps::Pose& pose = out.predicted[k].pose;
+    if (std::abs(pose.x + 0.17 - at.pose.x) < car_length) closest = std::min(closest, std::abs(pose.y));
+  }
+  EXPECT_LT(closest, 10) << "the plan does not reach the car";
+  return closest;
+}
+
 TEST(PlannerAmongOthers, FollowsACarThatIsAsFast) {
   Lane narrow{.half_width = 0.45, .car = 1.3};
   Planner reacts = make_planner(), predicts = make_planner();
@@ -98,14 +109,7 @@ TEST(PlannerAmongOthers, PassesACarThatIsSlower) {
   const Other other(5 + wide.car, 1);
   const PlannerOutput& out = settle(planner, wide, {&other.obstacle, 1});
   EXPECT_EQ(out.status, PlannerStatus::ok);
-  double closest = 10;
-  for (std::size_t k = 0; k < out.predicted.size(); ++k) {
-    const maps::PredictedPose at = other.obstacle.at(0, 0.05 * static_cast<double>(k));
-    const maps::Pose& pose = out.predicted[k].pose;
-    if (std::abs(pose.x + 0.17 - at.pose.x) < car_length) closest = std::min(closest, std::abs(pose.y));
-  }
-  EXPECT_LT(closest, 10) << "the plan does not reach the car";
-  EXPECT_GT(closest, car_width);
+  EXPECT_GT(distance_beside(out, other), car_width);
 }
 
 /// How far (m) a plan of one second leads. The car, 0.25 m beside the path, has followed another for 5 s at
@@ -148,6 +152,26 @@ TEST(PlannerAmongOthers, AvoidsWhatIsNotInTheWayYet) {
   const Other comes(5 + 5, -2);  // meets the car after 0.9 s
   const PlannerOutput& out = settle(planner, wide, {&comes.obstacle, 1});
   EXPECT_GT(std::abs(out.predicted[18].pose.y), car_width);
+}
+
+TEST(PlannerAmongOthers, AFasterCarBehindDoesNotMakeItBrake) {
+  Lane narrow{.half_width = 0.45};
+  Planner planner = make_planner();
+  const Other behind(5 - 1.75, speed + 2);  // 1.05 m behind the own rear end
+  const PlannerOutput& out = settle(planner, narrow, {&behind.obstacle, 1});
+  EXPECT_EQ(out.status, PlannerStatus::ok);
+  EXPECT_DOUBLE_EQ(out.command.speed, speed);
+}
+
+TEST(PlannerAmongOthers, KeepsMoreDistanceToThemThanToWalls) {
+  Lane wide{.half_width = 1.5, .car = 1.5};
+  VehicleOptions car;
+  car.body.margin = car.body.soft_margin = 0;
+  Planner planner = make_planner({}, car);
+  const Other other(5 + wide.car, 1);
+  const PlannerOutput& out = settle(planner, wide, {&other.obstacle, 1});
+  EXPECT_EQ(out.status, PlannerStatus::ok);
+  EXPECT_GT(distance_beside(out, other), car_width + 0.05);
 }
 
 TEST(PlannerAmongOthers, WithoutPredictionTheyAreWhatTheScanSees) {

@@ -73,6 +73,23 @@ TEST(PaceOfOthers, ASpeedIsBelievedOnlyAfterSomeSeconds) {
   EXPECT_NEAR(lost_behind(car, 3), (1 - std::exp(-1)) * 0.2 * steps_behind, 0.02 * steps_behind);
 }
 
+TEST(PaceOfOthers, ACarThatGetsUpToSpeedHasNotShownItsPace) {
+  const maps::ReferenceField field = straight_field();
+  PaceOfOthers pace(steps_behind, period);
+  double lost = 0;
+  const auto drive = [&](double seconds, auto&& speed_after) {
+    for (double t = 0; t < seconds; t += period) {
+      const Car car(1, {3, 0, 0}, speed_after(t));
+      const maps::PredictedObstacle* const all[] = {&car.obstacle};
+      lost = pace.steps_lost(all, field, origin, {0, 0, 0})[0];
+    }
+  };
+  drive(1, [](double t) { return 0.5 + t * (path_speed - 0.5); });
+  EXPECT_EQ(lost, 0);
+  drive(20, [](double) { return 0.8 * path_speed; });
+  EXPECT_NEAR(lost, 0.2 * steps_behind, 0.01 * steps_behind) << "then it has";
+}
+
 TEST(PaceOfOthers, CarsThatAreNotFollowedCostNothing) {
   const double slow = 0.5 * path_speed;
   EXPECT_EQ(lost_behind(Car(1, {-2, 0, 0}, slow), 10), 0) << "behind";

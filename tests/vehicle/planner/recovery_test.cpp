@@ -35,6 +35,17 @@ TEST(Recovery, ReversesACarThatStandsAndDrivesOnAfterTheWayItChose) {
   EXPECT_FALSE(recovery.reversing());
 }
 
+TEST(Recovery, ACarThatWaitsForOneThatDrivesIsNotStuck) {
+  Recovery recovery;
+  for (int k = 0; k < 400; ++k) {
+    EXPECT_FALSE(recovery.update(7, length, 0, 2, period, true));
+    EXPECT_FALSE(recovery.leaving());
+  }
+  int waited = 0;
+  while (!recovery.update(7, length, 0, 2, period)) ++waited;
+  EXPECT_NEAR(waited * period, 0.7, 0.05) << "it is once the other has left";
+}
+
 TEST(Recovery, ReversesFurtherEachTimeUntilTheCarGetsOn) {
   Recovery recovery;
   const auto way_of_a_try = [&] {

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <vector>
 
 #include "slalom/maps/clearance_map.hpp"
+#include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/maps/reference_field.hpp"
 
 namespace slalom::vehicle::detail {
@@ -103,14 +105,14 @@ class PlanNearAWall : public ::testing::Test {
   }
 
   /// A wall from one point to another, m in the frame of the car.
-  void see_wall(maps::Point from, maps::Point to) {
+  void see_wall(maps::Point from, maps::Point to, const maps::MovingObstaclesView& others = {}) {
     std::vector<maps::Point> points;
     for (int i = 0; i <= 200; ++i)
       points.push_back({from.x + (to.x - from.x) * i / 200, from.y + (to.y - from.y) * i / 200});
     clearance_.add(points);
-    model_->set_maps({field_.view(), clearance_.view(), {10, 0, 0}});
+    model_->set_maps({field_.view(), clearance_.view(), {10, 0, 0}, others});
     model_->set_start({{10, 0, 0}, 6}, 5);
-    choice_->sees(clearance_.view(), true);
+    choice_->sees(clearance_.view(), others);
   }
   static std::vector<float> held(float steer, float acceleration) {
     std::vector<float> inputs;
@@ -146,9 +148,35 @@ TEST_F(PlanNearAWall, PaysForTheMarginOfTheBody) {
   const PredictedCost cost = choice_->predict(*model_, straight_on, states);
   EXPECT_FALSE(cost.collided);
   EXPECT_GE(cost.collision, 100) << "the cost of a collision remains";
-  choice_->sees(clearance_.view(), false);
-  EXPECT_TRUE(choice_->predict(*model_, straight_on, states).collided)
-      << "what moves is not in the clearances";
+}
+
+/// Another car as it stands on the way, 3 m ahead and `offset` m to the left.
+struct Standing {
+  explicit Standing(double offset) : obstacles(maps::MovingObstacleOptions{}, horizon) {
+    for (auto& pose : poses) pose = {{13, offset, 0}, 0.02, 0.02};
+    predicted.length = 0.58;
+    predicted.width = 0.31;
+    predicted.interval = 0.1;
+    predicted.hypotheses = 1;
+    predicted.weights[0] = 1;
+    predicted.poses = poses;
+    obstacles.update({&predicted, 1}, {10, 0}, 0, time_step);
+  }
+  std::array<maps::PredictedPose, 3> poses;
+  maps::PredictedObstacle predicted;
+  maps::MovingObstacles obstacles;
+};
+
+TEST_F(PlanNearAWall, PaysForTheMarginOfTheBodyAmongOthersToo) {
+  const auto collides_among = [&](double offset) {
+    const Standing other(offset);
+    see_wall({2, 0.2}, {6, 0.2}, other.obstacles.view());
+    std::vector<PredictedState> states(horizon + 1);
+    EXPECT_TRUE(model_->predict(held(0, 0), states).collided);
+    return choice_->predict(*model_, held(0, 0), states).collided;
+  };
+  EXPECT_FALSE(collides_among(-0.5));
+  EXPECT_TRUE(collides_among(-0.1)) << "what moves is not in the clearances";
 }
 
 TEST_F(PlanNearAWall, CollidesWithTheBodyItself) {

@@ -1,0 +1,118 @@
+// Cars behind are expected to give way to the own car.
+#include "vehicle/planner/cars_behind.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "support/allocations.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+constexpr double wheelbase = 0.33;   // m
+constexpr maps::Pose own{10, 2, 0};  // of the rear axle
+constexpr std::size_t times = 17;    // poses of a hypothesis, 0.1 s apart
+constexpr double limit = 0.2;        // of the probability of a collision, by default
+
+/// A car whose middle is `ahead` (m) of the own rear axle, with hypotheses at these speeds (m/s) along x.
+struct Car {
+  Car(double ahead, std::vector<double> speeds, std::vector<double> weights, double yaw = 0) {
+    for (const double speed : speeds)
+      for (std::size_t k = 0; k < times; ++k)
+        poses.push_back(
+            {{own.x + ahead + 0.1 * static_cast<double>(k) * speed * std::cos(yaw), own.y, yaw}, 0.05, 0.02});
+    obstacle.length = 0.58;
+    obstacle.width = 0.31;
+    obstacle.interval = 0.1;
+    obstacle.hypotheses = static_cast<int>(speeds.size());
+    std::copy(weights.begin(), weights.end(), obstacle.weights.begin());
+    obstacle.poses = poses;
+  }
+  Car(const Car&) = delete;
+  std::vector<maps::PredictedPose> poses;
+  maps::PredictedObstacle obstacle;
+};
+
+double sum_of(const maps::PredictedObstacle& obstacle) {
+  return std::accumulate(obstacle.weights.begin(), obstacle.weights.begin() + obstacle.hypotheses, 0.0);
+}
+
+TEST(CarsBehind, BrakeAfterTheirReactionTime) {
+  const Car faster(-1, {6, 5}, {0.7, 0.3});
+  CarsBehind behind(wheelbase);
+  const auto reacting = behind.giving_way({&faster.obstacle, 1}, own);
+  ASSERT_EQ(reacting.size(), 1u);
+  const maps::PredictedObstacle& car = reacting[0];
+  ASSERT_EQ(car.hypotheses, 3);
+  ASSERT_EQ(car.times(), times);
+  const double start = own.x - 1;
+  EXPECT_NEAR(car.at(0, 0.3).pose.x, start + 1.8, 1e-9) << "it has not reacted yet";
+  EXPECT_NEAR(car.at(0, 0.8).pose.x, start + 0.8 * 6 - 0.5 * 8 * 0.5 * 0.5, 1e-9);
+  EXPECT_NEAR(car.at(0, 1.6).pose.x, start + 0.3 * 6 + 6 * 6 / 16.0, 1e-9) << "it stands";
+  EXPECT_NEAR(sum_of(car), 1, 1e-12);
+  EXPECT_NEAR(car.weights[1] / car.weights[2], 0.7 / 0.3, 1e-9);
+  EXPECT_LT(car.weights[1] + car.weights[2], limit) << "that it does not see the own car is no collision";
+  EXPECT_NEAR(car.at(1, 1.5).pose.x, start + 1.5 * 6, 1e-9);
+}
+
+TEST(CarsBehind, TheLeastLikelyHypothesisGivesItsPlace) {
+  const Car car(-1, {6, 5, 4, 3}, {0.4, 0.3, 0.1, 0.2});
+  CarsBehind behind(wheelbase);
+  const maps::PredictedObstacle reacting = behind.giving_way({&car.obstacle, 1}, own)[0];
+  ASSERT_EQ(reacting.hypotheses, 4);
+  EXPECT_NEAR(sum_of(reacting), 1, 1e-12);
+  for (int h = 1; h < 4; ++h) EXPECT_NE(reacting.at(h, 1).pose.x, car.obstacle.at(2, 1).pose.x);
+}
+
+TEST(CarsBehind, OthersStayAsTheyAre) {
+  constexpr double opposite = 3.14159;
+  CarsBehind behind(wheelbase);
+  for (const auto& [ahead, yaw] : {std::pair(2.0, 0.0), {-0.5 * wheelbase + 0.01, 0.0}, {-1.0, opposite}}) {
+    const Car car(ahead, {3}, {1}, yaw);
+    EXPECT_EQ(behind.giving_way({&car.obstacle, 1}, own).data(), &car.obstacle) << ahead << ", " << yaw;
+  }
+  const Car ahead(2, {3}, {1}), rear(-2, {3}, {1});
+  const std::vector<maps::PredictedObstacle> both{ahead.obstacle, rear.obstacle};
+  const auto reacting = behind.giving_way(both, own);
+  ASSERT_EQ(reacting.size(), 2u);
+  EXPECT_EQ(reacting[0].poses.data(), ahead.obstacle.poses.data());
+  EXPECT_EQ(reacting[1].hypotheses, 2);
+}
+
+TEST(CarsBehind, WhatCannotBeUsedStaysAsItIs) {
+  CarsBehind behind(wheelbase);
+  Car car(-1, {6}, {1});
+  const auto stays = [&] { return behind.giving_way({&car.obstacle, 1}, own).data() == &car.obstacle; };
+  EXPECT_FALSE(stays());
+  car.obstacle.hypotheses = 5;
+  EXPECT_TRUE(stays());
+  car.obstacle.hypotheses = 1;
+  car.obstacle.interval = 0;
+  EXPECT_TRUE(stays());
+  car.obstacle.interval = 0.1;
+  car.obstacle.poses = {};
+  EXPECT_TRUE(stays());
+  car.obstacle.poses = car.poses;
+  car.poses[0].pose.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(stays());
+  const std::vector<maps::PredictedPose> many(100, {{own.x - 1, own.y, 0}, 0, 0});
+  car.obstacle.poses = many;
+  EXPECT_TRUE(stays()) << "more poses than there is room for";
+}
+
+TEST(CarsBehind, NothingAllocates) {
+  const Car car(-1, {6, 5, 4, 3}, {0.4, 0.3, 0.1, 0.2});
+  const std::vector<maps::PredictedObstacle> all(32, car.obstacle);
+  CarsBehind behind(wheelbase);
+  const long before = slalom::testing::allocations();
+  EXPECT_EQ(behind.giving_way(all, own).size(), 32u);
+  EXPECT_EQ(slalom::testing::allocations(), before);
+}
+
+}  // namespace
+}  // namespace slalom::vehicle::detail
