@@ -15,6 +15,8 @@ constexpr int min_beams = 5;            // on a body in view
 constexpr double long_in_view = 0.2;    // s
 constexpr double match_distance = 0.5;  // m
 constexpr double min_speed = 0.5;       // m/s, of bodies that count without a map
+constexpr double largest_jump =
+    0.5;  // m, of the localiser from the odometry's pose, where that one fits the scan
 
 sim::WheelOdometryOptions seeded_wheels(TrackingMode mode, std::uint64_t seed) {
   sim::WheelOdometryOptions options;
@@ -80,24 +82,30 @@ tracking::TrackerInput TrackingMeter::locate(const sim::Observation& seen,
                                              const maps::LaserScanView& scan) noexcept {
   tracking::TrackerInput input{.scan = scan, .sensor = seen.sensor, .stamp = seen.time};
   if (mode_ == TrackingMode::mapless) input.sensor = compose(wheels_.pose(), mount_);
-  if (localiser_) {
-    const vehicle::LocaliserOutput& out = localiser_->update({scan, wheels_.pose(), seen.time});
-    if (out.status == vehicle::LocaliserStatus::ok) {
-      input.sensor = compose(out.pose, mount_);
-      input.position_deviation = std::sqrt(0.5 * (out.covariance[0][0] + out.covariance[1][1]));
-      input.yaw_deviation = std::sqrt(out.covariance[2][2]);
-    } else {
-      // While the localiser is in doubt, the odometry carries on the last pose that was aligned with the map.
-      const maps::Point moved = maps::inverse_transform(wheels_before_, {wheels_.pose().x, wheels_.pose().y});
-      input.sensor = compose(compose(compose(aligned_, inverse(mount_)),
-                                     {moved.x, moved.y, wheels_.pose().yaw - wheels_before_.yaw}),
-                             mount_);
-      input.position_deviation = 0.02;
-      input.yaw_deviation = 0.02;
-    }
-    wheels_before_ = wheels_.pose();
+  if (!localiser_) return input;
+  const vehicle::LocaliserOutput& out = localiser_->update({scan, wheels_.pose(), seen.time});
+  const maps::Pose localised = compose(out.pose, mount_), continued = carried_on();
+  // A localiser that was in doubt may be sure of a wrong place afterwards. What fits the scan is not left for
+  // it.
+  const bool jumps = fits_ && distance(localised, continued) > largest_jump;
+  if (out.status == vehicle::LocaliserStatus::ok && !jumps) {
+    input.sensor = localised;
+    input.position_deviation = std::sqrt(0.5 * (out.covariance[0][0] + out.covariance[1][1]));
+    input.yaw_deviation = std::sqrt(out.covariance[2][2]);
+  } else {
+    input.sensor = continued;
+    input.position_deviation = 0.02;
+    input.yaw_deviation = 0.02;
   }
+  wheels_before_ = wheels_.pose();
   return input;
+}
+
+/// The last pose of the LiDAR that was aligned with the map, carried on by the odometry.
+maps::Pose TrackingMeter::carried_on() const noexcept {
+  const maps::Point moved = maps::inverse_transform(wheels_before_, {wheels_.pose().x, wheels_.pose().y});
+  const maps::Pose turned{moved.x, moved.y, wheels_.pose().yaw - wheels_before_.yaw};
+  return compose(compose(compose(aligned_, inverse(mount_)), turned), mount_);
 }
 
 std::span<const tracking::TrackedObject> TrackingMeter::observe(const sim::World& world,
@@ -105,6 +113,7 @@ std::span<const tracking::TrackedObject> TrackingMeter::observe(const sim::World
   const sim::Observation seen = world.observe(own_);
   const tracking::TrackerOutput& output = tracker_.update(locate(seen, scan));
   aligned_ = output.sensor;
+  fits_ = output.status == tracking::TrackerStatus::ok;
   record_.update_ms.push_back(static_cast<float>(1e3 * output.update_time));
   find_in_view(world, seen.sensor);
   compare(world, output, seen.sensor);

@@ -31,6 +31,7 @@ class TrackingMeter {
 
  private:
   tracking::TrackerInput locate(const sim::Observation& seen, const maps::LaserScanView& scan) noexcept;
+  maps::Pose carried_on() const noexcept;
   void find_in_view(const sim::World& world, const maps::Pose& sensor);
   template <class InMap>
   void pair_up(const sim::World& world, const tracking::TrackerOutput& output, const InMap& in_map);
@@ -48,6 +49,7 @@ class TrackingMeter {
   std::optional<vehicle::Localiser> localiser_;
   maps::Pose aligned_;        ///< of the LiDAR, as the tracker aligned it last
   maps::Pose wheels_before_;  ///< pose of the odometry at that time
+  bool fits_ = false;         ///< the scan fitted the map from there
   tracking::ObjectTracker tracker_;
 
   std::vector<float> ranges_, body_ranges_;            ///< m, without noise: of everything, and of one body
