@@ -11,6 +11,7 @@
 #include "slalom/vehicle/model/registry.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
 #include "support/allocations.hpp"
+#include "vehicle/planner/obstacles.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -79,13 +80,14 @@ const PlannerOutput& settle(Planner& planner, Lane& lane, std::span<const maps::
   return planner.update({.scan = lane.scan(), .odometry = {{5, 0, 0}, speed}, .others = others});
 }
 
-/// How near (m) a plan comes to the middle line of another car, while it is beside it.
+/// How near (m) a plan comes to the middle line of another car that drives along x, while it is beside it.
 double distance_beside(const PlannerOutput& out, const Other& other) {
   double closest = 10;
   for (std::size_t k = 0; k < out.predicted.size(); ++k) {
     const maps::PredictedPose at = other.obstacle.at(0, 0.05 * static_cast<double>(k));
     const maps::Pose& pose = out.predicted[k].pose;
-    if (std::abs(pose.x + 0.17 - at.pose.x) < car_length) closest = std::min(closest, std::abs(pose.y));
+    if (std::abs(pose.x + 0.17 - at.pose.x) < car_length)
+      closest = std::min(closest, std::abs(pose.y - at.pose.y));
   }
   EXPECT_LT(closest, 10) << "the plan does not reach the car";
   return closest;
@@ -164,14 +166,21 @@ TEST(PlannerAmongOthers, AFasterCarBehindDoesNotMakeItBrake) {
 }
 
 TEST(PlannerAmongOthers, KeepsMoreDistanceToThemThanToWalls) {
-  Lane wide{.half_width = 1.5, .car = 1.5};
+  constexpr double deviation = 0.02;  // m, of the other car across its way
   VehicleOptions car;
-  car.body.margin = car.body.soft_margin = 0;
-  Planner planner = make_planner({}, car);
-  const Other other(5 + wide.car, 1);
-  const PlannerOutput& out = settle(planner, wide, {&other.obstacle, 1});
-  EXPECT_EQ(out.status, PlannerStatus::ok);
-  EXPECT_GT(distance_beside(out, other), car_width + 0.05);
+  car.body.margin = car.body.soft_margin = 0.01;
+  detail::Obstacles obstacles(PlannerOptions{}, make_vehicle_model(car)->traits(), 20, 10);
+  Lane wide{.half_width = 1.5};
+  const Other other(5, 1);
+  obstacles.update({.scan = wide.scan(), .odometry = {{4.5, 0, 0}, speed}, .others = {&other.obstacle, 1}},
+                   true);
+  const auto beside = [&](double gap) {
+    return obstacles.others({0, 0}).cost(5.1, car_width + deviation + gap, 0.0, 1.0, 0);
+  };
+  EXPECT_TRUE(beside(0.04).collided);
+  EXPECT_FALSE(beside(0.06).collided);
+  EXPECT_GT(beside(0.25).value, 0);
+  EXPECT_EQ(beside(0.31).value, 0);
 }
 
 TEST(PlannerAmongOthers, WithoutPredictionTheyAreWhatTheScanSees) {
