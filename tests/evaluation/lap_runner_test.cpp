@@ -258,21 +258,6 @@ TEST(LapRunner, ATrackerFindsTheOtherCars) {
   }
 }
 
-TEST(LapRunner, ATrackerKeepsItsPlaceWhereTheLocaliserJumps) {
-  // In this lap the car hits another one and a wall, after which the localiser is sure of a place 3 m away.
-  const auto driver =
-      vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / "default_kinematic.yaml", {SLALOM_CONFIGS});
-  LapSettings settings{
-      .opponents = 4, .range_noise = 0.02, .dropout = 0.02, .tracking = TrackingMode::localised};
-  settings.opponent_speed = 0.6;
-  vehicle::Configuration ignores = driver;
-  ignores.planner.predict_others = false;
-  const LapResult lap = LapRunner(wren(), ignores, "svg_mppi", settings).run(110);
-  EXPECT_GT(lap.tracking.in_view, 300);
-  EXPECT_EQ(lap.tracking.false_objects, 0);
-  EXPECT_LT(lap.tracking.position_error, 0.1);
-}
-
 TEST(LapRunner, ACarThatCannotLocaliseStops) {
   auto environment = std::make_shared<Environment>(*wren());
   environment->timeout = 2;

@@ -1,4 +1,5 @@
-// world.localised: the planner's pose and speed are estimates and it gets the IMU; servo and motor stay.
+// Estimated poses: of the planner (world.localised), which gets the IMU, too, while servo and motor stay; and
+// of the tracker (world.tracking=localised).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,6 +53,22 @@ TEST(LocalisedLap, ItsSensorsAreThoseOfTheWorld) {
   const HardwareConditions real;
   LapSettings both{.hardware = real, .localised = true};
   EXPECT_EQ(lap("default", both).time, lap("default", {.hardware = real}).time);
+}
+
+TEST(TrackedLap, ATrackerKeepsItsPlaceWhereTheLocaliserJumps) {
+  // In this lap the car hits another one and a wall, after which the localiser is sure of a place 3 m away.
+  auto driver =
+      vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / "default_kinematic.yaml", {SLALOM_CONFIGS});
+  driver.planner.predict_others = false;
+  LapSettings settings{
+      .opponents = 4, .range_noise = 0.02, .dropout = 0.02, .tracking = TrackingMode::localised};
+  settings.opponent_speed = 0.6;
+  const auto wren =
+      load_environment(fs::path(SLALOM_COURSES) / "wren", Protocol::true_physics, {SLALOM_COURSES});
+  const LapResult lap = LapRunner(wren, driver, "svg_mppi", settings).run(110);
+  EXPECT_GT(lap.tracking.in_view, 300);
+  EXPECT_EQ(lap.tracking.false_objects, 0);
+  EXPECT_LT(lap.tracking.position_error, 0.1);
 }
 
 }  // namespace
