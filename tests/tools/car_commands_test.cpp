@@ -142,6 +142,24 @@ TEST_F(IdentifyCommand, FindsTheServoOfASimulatedCar) {
   EXPECT_NEAR(ratio, 0.95 / 0.3302, 0.15);
 }
 
+TEST_F(IdentifyCommand, FindsTheFrictionOfASimulatedCarWhoseTyresSlip) {
+  ASSERT_EQ(program("drive --course fox --set samples=1000 --set world.saturating_tyres=true --set "
+                    "world.friction=0.6 --laps 2 --record lap.jsonl")
+                .status,
+            0);
+  const auto run = program("identify lap.jsonl --tyres --config default --json found.json");
+  ASSERT_EQ(run.status, 0) << run.output;
+  const json found = json::parse(content(folder_ / "found.json"));
+  EXPECT_NEAR(found["friction"]["value"], 0.6, 0.06);
+  EXPECT_NEAR(found["cornering_front"]["value"], 4.718, 0.9);
+  EXPECT_NEAR(found["cornering_rear"]["value"], 5.4562, 1.1);
+  EXPECT_NEAR(found["steering_gain"]["value"], 1, 0.08);
+  EXPECT_NEAR(found["delay"]["value"], 0.02, 0.01);
+  EXPECT_NE(run.output.find("  friction: "), std::string::npos) << run.output;
+  expect_refused("identify lap.jsonl --config default", {"--config", "--tyres"});
+  expect_refused("identify lap.jsonl --tyres --config nothing", {"nothing", "known: "});
+}
+
 TEST_F(IdentifyCommand, RejectsInvalidInput) {
   expect_refused("identify nothing.jsonl", {"nothing.jsonl", "cannot be read"});
   std::ofstream(folder_ / "text.jsonl") << "hello\n";

@@ -3,8 +3,10 @@
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/model/identification.hpp"
+#include "slalom/vehicle/model/tyre_identification.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/recorded_drives/driven_samples.hpp"
+#include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {
@@ -12,9 +14,12 @@ namespace {
 
 using vehicle::Identification;
 using vehicle::Identified;
+using vehicle::TyreIdentification;
 
 struct IdentifyArguments {
   std::string recording, json;
+  std::string config = "default";
+  bool tyres = false;
   vehicle::IdentificationOptions options;
 };
 
@@ -47,49 +52,105 @@ void advise(std::FILE* out, const Identification& found) {
   std::fprintf(out, "planner:\n  observer_time_constant: %.3f\n", found.time_constant.value);
 }
 
+Json pair_json(const Identified& value) {
+  return {{"value", value.value}, {"deviation", value.deviation}};
+}
+
+/// Steering, delay and wheelbase of a car whose tyres hardly slip.
+Json identify_steering(std::FILE* out, std::span<const vehicle::DrivenSample> samples,
+                       const vehicle::IdentificationOptions& options) {
+  const Identification found = vehicle::identify(samples, options);
+  std::fprintf(out, "%d of %zu samples; %.1f %% of the yaw rate explained, residual %.3f rad/s\n\n",
+               found.samples, samples.size(), 100 * found.explained, found.residual);
+  print(out, "steering gain", found.steering_gain, "");
+  print(out, "steering offset", found.steering_offset, "rad");
+  print(out, "delay", found.delay, "s");
+  print(out, "time constant", found.time_constant, "s");
+  print(out, "wheelbase", found.wheelbase, "m");
+  print(out, "understeer", found.understeer, "s^2/m");
+  std::fprintf(out, "%-20s %9.4f        (distance from the poses / distance from the speed)\n\n",
+               "speed scale", found.speed_scale);
+  advise(out, found);
+  return {{"samples", found.samples},
+          {"explained", found.explained},
+          {"residual", found.residual},
+          {"steering_gain", pair_json(found.steering_gain)},
+          {"steering_offset", pair_json(found.steering_offset)},
+          {"delay", pair_json(found.delay)},
+          {"time_constant", pair_json(found.time_constant)},
+          {"wheelbase", pair_json(found.wheelbase)},
+          {"understeer", pair_json(found.understeer)},
+          {"speed_scale", found.speed_scale}};
+}
+
+/// Tyres, friction and steering of a car whose tyres slip; its geometry and mass are those of a
+/// configuration.
+Json identify_tyres(std::FILE* out, std::span<const vehicle::DrivenSample> samples,
+                    const IdentifyArguments& arguments) {
+  ScenarioArguments scenario;
+  scenario.config = arguments.config;
+  const vehicle::Configuration car = load_configuration(scenario, "svg_mppi");
+  const TyreIdentification found = vehicle::identify_tyres(
+      samples, car.vehicle, car.vehicle.own_of<vehicle::SingleTrackOptions>(), arguments.options);
+  std::fprintf(
+      out,
+      "%d windows of 0.2 s; residuals %.4f rad and %.4f m sideways; up to %.0f %% of the grip used to "
+      "turn\n\n",
+      found.windows, found.yaw_residual, found.sideways_residual, 100 * found.grip_used);
+  print(out, "friction", found.friction, "");
+  print(out, "cornering, front", found.cornering_front, "1/rad");
+  print(out, "cornering, rear", found.cornering_rear, "1/rad");
+  print(out, "steering gain", found.steering_gain, "");
+  print(out, "steering offset", found.steering_offset, "rad");
+  print(out, "delay", found.delay, "s");
+  print(out, "time constant", found.time_constant, "s");
+  if (found.friction.deviation > 0.05 * found.friction.value)
+    std::fprintf(
+        out,
+        "\nThis drive determines only friction times cornering stiffness: %.2f 1/rad in front, %.2f 1/rad "
+        "behind. Drive curves closer to the limit of grip.\n",
+        found.friction.value * found.cornering_front.value,
+        found.friction.value * found.cornering_rear.value);
+  else
+    std::fprintf(out,
+                 "\nFor a configuration file (correct gain and offset in the servo driver):\n"
+                 "vehicle:\n  friction: %.3f\n  cornering_front: %.2f\n  cornering_rear: %.2f\n"
+                 "  steer_time_constant: %.3f\n  dead_time: %.3f\n",
+                 found.friction.value, found.cornering_front.value, found.cornering_rear.value,
+                 found.time_constant.value, found.delay.value);
+  return {{"windows", found.windows},
+          {"yaw_residual", found.yaw_residual},
+          {"sideways_residual", found.sideways_residual},
+          {"grip_used", found.grip_used},
+          {"friction", pair_json(found.friction)},
+          {"cornering_front", pair_json(found.cornering_front)},
+          {"cornering_rear", pair_json(found.cornering_rear)},
+          {"steering_gain", pair_json(found.steering_gain)},
+          {"steering_offset", pair_json(found.steering_offset)},
+          {"delay", pair_json(found.delay)},
+          {"time_constant", pair_json(found.time_constant)}};
+}
+
 int identify(const IdentifyArguments& arguments) {
   const auto samples = read_driven_samples(arguments.recording);
-  const Identification found = [&] {
+  std::FILE* const words = arguments.json == "-" ? stderr : stdout;
+  const Json found = [&] {
     try {
-      return vehicle::identify(samples, arguments.options);
+      return arguments.tyres ? identify_tyres(words, samples, arguments)
+                             : identify_steering(words, samples, arguments.options);
     } catch (const std::invalid_argument& error) {
       throw IoError(arguments.recording, 0, error.what());
     }
   }();
-  std::FILE* words = arguments.json == "-" ? stderr : stdout;
-  std::fprintf(words, "%d of %zu samples; %.1f %% of the yaw rate explained, residual %.3f rad/s\n\n",
-               found.samples, samples.size(), 100 * found.explained, found.residual);
-  print(words, "steering gain", found.steering_gain, "");
-  print(words, "steering offset", found.steering_offset, "rad");
-  print(words, "delay", found.delay, "s");
-  print(words, "time constant", found.time_constant, "s");
-  print(words, "wheelbase", found.wheelbase, "m");
-  print(words, "understeer", found.understeer, "s^2/m");
-  std::fprintf(words, "%-20s %9.4f        (distance from the poses / distance from the speed)\n\n",
-               "speed scale", found.speed_scale);
-  advise(words, found);
-  if (arguments.json.empty()) return 0;
-  const auto pair = [](const Identified& value) {
-    return Json{{"value", value.value}, {"deviation", value.deviation}};
-  };
-  write_json({{"samples", found.samples},
-              {"explained", found.explained},
-              {"residual", found.residual},
-              {"steering_gain", pair(found.steering_gain)},
-              {"steering_offset", pair(found.steering_offset)},
-              {"delay", pair(found.delay)},
-              {"time_constant", pair(found.time_constant)},
-              {"wheelbase", pair(found.wheelbase)},
-              {"understeer", pair(found.understeer)},
-              {"speed_scale", found.speed_scale}},
-             arguments.json);
+  if (!arguments.json.empty()) write_json(found, arguments.json);
   return 0;
 }
 
 }  // namespace
 
 void declare_identify(Subcommand& command) {
-  command.summary("Estimate steering gain, offset, delay, lag and wheelbase of a car from a recording");
+  command.summary(
+      "Estimate steering, delay and wheelbase of a car, or its tyres and friction, from a recording");
   const auto arguments = std::make_shared<IdentifyArguments>();
   command
       .option("recording", arguments->recording,
@@ -100,6 +161,14 @@ void declare_identify(Subcommand& command) {
   command.option("--least-speed", arguments->options.min_speed, "Samples below this speed are ignored, m/s")
       .range(0.01, 100.0)
       .show_default();
+  const auto tyres =
+      command.flag("--tyres", arguments->tyres,
+                   "Find friction and cornering stiffness, of a drive close to the limit of grip");
+  command
+      .option("--config", arguments->config,
+              "With --tyres: configuration with the lengths, mass and inertia of the car")
+      .show_default()
+      .needs(tyres);
   command.option("--json", arguments->json,
                  "Write the estimates as JSON to this file, or to standard output: -");
   command.action([arguments] { return identify(*arguments); });

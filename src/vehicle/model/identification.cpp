@@ -3,25 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "slalom/maps/pose.hpp"
+#include "vehicle/model/least_squares.hpp"
 
 namespace slalom::vehicle {
 namespace {
 
 constexpr int parameters = 6;  // gain, offset, delay, time constant, wheelbase, understeer
-using Parameters = std::array<double, parameters>;
-using Normal = std::array<std::array<double, parameters>, parameters>;
 
 constexpr double max_gap = 0.2;    // s
 constexpr double settling = 0.5;   // s at the beginning of a segment, while the wheels' angle is not known
 constexpr double max_delay = 0.3;  // s
 constexpr int min_samples = 200;
-constexpr double steps[parameters] = {1e-4, 1e-5, 1e-4, 1e-4, 1e-4, 1e-5};  // of the central differences
 
 /// The change of yaw from one sample to the next.
 struct Turn {
@@ -62,7 +59,7 @@ class Model {
       : samples_(samples), turns_(turns) {}
 
   /// The predicted changes of yaw minus the measured ones, one for each change that is used.
-  void residuals(const Parameters& p, std::vector<double>& out) const {
+  void residuals(std::span<const double> p, std::vector<double>& out) const {
     out.clear();
     double steer = 0;
     std::size_t acting = 0, first = 0;
@@ -99,123 +96,15 @@ class Model {
   const std::vector<Turn>& turns_;
 };
 
-double square_sum(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v * v;
-  return sum;
+/// The parameters; the wheelbase is not sought where it is given.
+std::array<detail::FitParameter, parameters> fit_parameters(bool wheelbase_given) {
+  return {{{0.05, 20, 1e-4},
+           {-0.5, 0.5, 1e-5},
+           {0, max_delay, 1e-4},
+           {2e-3, 2, 1e-4},
+           {0.02, 20, 1e-4, !wheelbase_given},
+           {-0.02, 1, 1e-5}}};
 }
-
-Parameters within_bounds(Parameters p) {
-  p[0] = std::clamp(p[0], 0.05, 20.0);
-  p[1] = std::clamp(p[1], -0.5, 0.5);
-  p[2] = std::clamp(p[2], 0.0, max_delay);
-  p[3] = std::clamp(p[3], 2e-3, 2.0);
-  p[4] = std::clamp(p[4], 0.02, 20.0);
-  p[5] = std::clamp(p[5], -0.02, 1.0);
-  return p;
-}
-
-/// Solves a x = b for the parameters sought, the others being 0; empty if a is singular.
-std::optional<Parameters> solve(Normal a, Parameters b, const std::array<bool, parameters>& sought) {
-  for (int i = 0; i < parameters; ++i) {
-    if (sought[static_cast<std::size_t>(i)]) continue;
-    for (int j = 0; j < parameters; ++j) a[i][j] = a[j][i] = i == j;
-    b[i] = 0;
-  }
-  for (int k = 0; k < parameters; ++k) {
-    int pivot = k;
-    for (int i = k + 1; i < parameters; ++i)
-      if (std::abs(a[i][k]) > std::abs(a[pivot][k])) pivot = i;
-    if (!(std::abs(a[pivot][k]) > 1e-300)) return std::nullopt;
-    std::swap(a[k], a[pivot]);
-    std::swap(b[k], b[pivot]);
-    for (int i = k + 1; i < parameters; ++i) {
-      const double factor = a[i][k] / a[k][k];
-      for (int j = k; j < parameters; ++j) a[i][j] -= factor * a[k][j];
-      b[i] -= factor * b[k];
-    }
-  }
-  for (int k = parameters - 1; k >= 0; --k) {
-    for (int j = k + 1; j < parameters; ++j) b[k] -= a[k][j] * b[j];
-    b[k] /= a[k][k];
-  }
-  return b;
-}
-
-struct Fit {
-  Parameters p{};
-  Normal normal{};  ///< J^T J
-  double sum = 0;   ///< of squared residuals
-};
-
-class Fitter {
- public:
-  Fitter(const Model& model, const std::array<bool, parameters>& sought) : model_(model), sought_(sought) {}
-
-  Fit fit(const Parameters& start) {
-    Fit best;
-    best.p = start;
-    model_.residuals(best.p, residuals_);
-    best.sum = square_sum(residuals_);
-    double damping = 1e-3;
-    for (int iteration = 0; iteration < 60; ++iteration) {
-      Parameters slope{};
-      linearise(best, slope);
-      bool better = false;
-      double gained = 0;
-      while (!better && damping < 1e12) {
-        Normal damped = best.normal;
-        for (int i = 0; i < parameters; ++i) damped[i][i] *= 1 + damping;
-        const auto step = solve(damped, slope, sought_);
-        Parameters tried = best.p;
-        for (int i = 0; step && i < parameters; ++i) tried[i] -= (*step)[i];
-        tried = within_bounds(tried);
-        model_.residuals(tried, trial_);
-        const double sum = square_sum(trial_);
-        better = step && sum < best.sum;
-        if (better) {
-          gained = best.sum - sum;
-          best.p = tried;
-          best.sum = sum;
-          residuals_ = trial_;
-        }
-        damping *= better ? 0.2 : 8;
-      }
-      if (!better || gained < 1e-10 * best.sum) break;
-    }
-    Parameters slope{};
-    linearise(best, slope);
-    return best;
-  }
-
- private:
-  void linearise(Fit& fit, Parameters& slope) {
-    std::array<std::vector<double>, parameters> columns;
-    for (std::size_t i = 0; i < parameters; ++i) {
-      if (!sought_[i]) continue;
-      Parameters low = fit.p, high = fit.p;
-      low[i] -= steps[i];
-      high[i] += steps[i];
-      model_.residuals(high, columns[i]);
-      model_.residuals(low, trial_);
-      for (std::size_t k = 0; k < trial_.size(); ++k)
-        columns[i][k] = (columns[i][k] - trial_[k]) / (2 * steps[i]);
-    }
-    for (std::size_t i = 0; i < parameters; ++i) {
-      slope[i] = 0;
-      for (std::size_t k = 0; k < columns[i].size(); ++k) slope[i] += columns[i][k] * residuals_[k];
-      for (std::size_t j = 0; j < parameters; ++j) {
-        fit.normal[i][j] = 0;
-        for (std::size_t k = 0; k < columns[i].size() && k < columns[j].size(); ++k)
-          fit.normal[i][j] += columns[i][k] * columns[j][k];
-      }
-    }
-  }
-
-  const Model& model_;
-  std::array<bool, parameters> sought_;
-  std::vector<double> residuals_, trial_;
-};
 
 void require_enough(std::span<const DrivenSample> samples, const std::vector<Turn>& turns) {
   int used = 0;
@@ -264,11 +153,15 @@ Identification identify(std::span<const DrivenSample> samples, const Identificat
   require_enough(samples, turns);
   const Model model(samples, turns);
   const bool given = options.wheelbase > 0;
-  Fitter fitter(model, {true, true, true, true, !given, true});
-  Fit best;
+  const auto sought = fit_parameters(given);
+  const auto residuals = [&](std::span<const double> p, std::vector<double>& out) {
+    model.residuals(p, out);
+  };
+  detail::Fit best;
   best.sum = INFINITY;
   for (const double delay : {0.0, 0.05, 0.1, 0.2}) {
-    const Fit fit = fitter.fit({1, 0, delay, 0.08, given ? options.wheelbase : 0.33, 0.0});
+    const detail::Fit fit =
+        detail::least_squares(residuals, sought, {1, 0, delay, 0.08, given ? options.wheelbase : 0.33, 0.0});
     if (fit.sum < best.sum) best = fit;
   }
   Identification found;
@@ -286,14 +179,8 @@ Identification identify(std::span<const DrivenSample> samples, const Identificat
   found.explained = 1 - best.sum / std::max(1e-300, rate_squares - rate * rate / n);
   Identified* const values[parameters] = {&found.steering_gain, &found.steering_offset, &found.delay,
                                           &found.time_constant, &found.wheelbase,       &found.understeer};
-  for (std::size_t i = 0; i < parameters; ++i) {
-    values[i]->value = best.p[i];
-    if (i == 4 && given) continue;
-    Parameters unit{};
-    unit[i] = 1;
-    const auto column = solve(best.normal, unit, {true, true, true, true, !given, true});
-    values[i]->deviation = column ? std::sqrt(std::max(0.0, variance * (*column)[i])) : INFINITY;
-  }
+  const std::vector<double> spread = detail::deviations(best, sought, variance);
+  for (std::size_t i = 0; i < parameters; ++i) *values[i] = {best.values[i], spread[i]};
   return found;
 }
 

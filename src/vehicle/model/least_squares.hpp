@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace slalom::vehicle::detail {
+
+/// A parameter of a least-squares fit.
+struct FitParameter {
+  double low = 0, high = 0;  ///< its range
+  double step = 0;           ///< of the central differences, > 0
+  bool sought = true;        ///< false: keeps its value
+};
+
+/// Writes the residuals of these parameters; always as many of them.
+using Residuals = std::function<void(std::span<const double> parameters, std::vector<double>& out)>;
+
+/// A minimum of the sum of squared residuals.
+struct Fit {
+  std::vector<double> values;  ///< of the parameters
+  std::vector<double> normal;  ///< J^T J, [parameter][parameter]
+  double sum = 0;              ///< of squared residuals
+};
+
+/// The minimum near `start`, by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963) with slopes from
+/// central differences. Parameters stay within their ranges.
+Fit least_squares(const Residuals& residuals, std::span<const FitParameter> parameters,
+                  std::vector<double> start);
+
+/// The standard deviations of the parameters where residuals have this variance: 0 for one that was not
+/// sought, infinite for one that the residuals do not determine.
+std::vector<double> deviations(const Fit& fit, std::span<const FitParameter> parameters, double variance);
+
+}  // namespace slalom::vehicle::detail
