@@ -57,6 +57,14 @@ TEST(LapTableColumns, IncludeThoseOfTheTrackerIfAnExperimentUsesOne) {
   EXPECT_THROW(parse_line(csv_line(r, experiments), tracking), std::invalid_argument);
 }
 
+TEST(LapTableColumns, TellWhetherALapBeganInContact) {
+  LapRow r = row(1, 0);
+  EXPECT_TRUE(began_in_contact(r, {1.24, -3.01, 0.3}));
+  EXPECT_FALSE(began_in_contact(r, {0.5, 2.125, 0})) << "the place of the second collision";
+  r.contact_points = "";
+  EXPECT_FALSE(began_in_contact(r, {0, 0, 0}));
+}
+
 class LapTable : public testing::TemporaryFolder {
  protected:
   void write(const std::string& text) const { TemporaryFolder::write("laps.csv", text); }

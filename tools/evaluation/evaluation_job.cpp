@@ -153,6 +153,14 @@ void add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
   command.option("--json", a.json, "Write the summary to this file, too, or to standard output: -");
 }
 
+std::vector<int> Evaluated::laps_begun_in_contact(int experiment) const {
+  std::vector<int> laps;
+  for (const LapRow& row : rows)
+    if (row.experiment == experiment && began_in_contact(row, evaluation.environment->start))
+      laps.push_back(row.lap);
+  return laps;
+}
+
 Json Evaluated::summary() const {
   Json list = Json::array();
   for (const ExperimentResult& r : results) {
@@ -167,6 +175,7 @@ Json Evaluated::summary() const {
                  {"timeouts", r.timeouts},
                  {"contacts", r.collisions},
                  {"impassable", r.impassable},
+                 {"began_in_contact", laps_begun_in_contact(r.experiment).size()},
                  {"ms_mean", r.ms_mean},
                  {"ms_ci", interval_json(r.ms_ci)},
                  {"state_cost_mean", r.state_cost_mean},
@@ -318,6 +327,12 @@ void print_results(const Evaluated& evaluated, std::FILE* out) {
   if (impassable > 0)
     std::fprintf(out, "a car of this width cannot pass %d of the obstacles, in laps %s\n", impassable,
                  laps.c_str());
+  if (evaluated.results.empty()) return;
+  const std::vector<int> begun = evaluated.laps_begun_in_contact(evaluated.results.front().experiment);
+  if (begun.empty()) return;
+  std::fprintf(out, "an obstacle stands where the car starts, in laps");
+  for (std::size_t i = 0; i < begun.size(); ++i) std::fprintf(out, "%s %d", i > 0 ? "," : "", begun[i]);
+  std::fprintf(out, "; no driver avoids these collisions\n");
 }
 
 }  // namespace slalom::tools

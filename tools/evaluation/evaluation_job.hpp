@@ -51,6 +51,8 @@ struct Evaluated {
   std::vector<evaluation::ExperimentResult> results;
   std::filesystem::path course_folder;
   Json summary() const;
+  /// The laps of an experiment in which an obstacle stands where the car starts.
+  std::vector<int> laps_begun_in_contact(int experiment) const;
 };
 
 /// All that is driven, with the settings that are kept beside the laps.

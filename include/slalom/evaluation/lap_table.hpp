@@ -92,6 +92,10 @@ struct LapRow {
 /// The row of a lap that has ended.
 LapRow make_row(int experiment, int lap, const LapResult& result, double wall_time);
 
+/// Whether an obstacle stood where the car starts (its centre of gravity is at `start`): the first collision
+/// is within 0.05 m of the start. No driver avoids it.
+bool began_in_contact(const LapRow& row, const maps::Pose& start);
+
 /// The header of laps.csv: `method,scenario,set,lap`, the columns of the logs of Honda et al. (ICRA 2024),
 /// then further ones, if one of the experiments tracks, those of TrackingFigures, and if one has opponents,
 /// those of OvertakingFigures.

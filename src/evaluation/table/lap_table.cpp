@@ -219,6 +219,12 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
   return r;
 }
 
+bool began_in_contact(const LapRow& row, const maps::Pose& start) {
+  double x = 0, y = 0;
+  return std::sscanf(row.contact_points.c_str(), "%lf:%lf", &x, &y) == 2 &&
+         std::hypot(x - start.x, y - start.y) < 0.05;
+}
+
 std::string csv_header(const std::vector<Experiment>& experiments) {
   std::string header = "method,scenario,set,lap";
   const LapRow row;
