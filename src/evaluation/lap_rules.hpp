@@ -38,9 +38,11 @@ class LapRules {
   /// s of simulated time per command.
   virtual double control_period(const vehicle::Configuration& configuration) const noexcept = 0;
 
-  /// Where the parked cars of a lap stand. Throws std::runtime_error if there is no room for them.
+  /// Where the parked cars of a lap, which are such cars, stand. Throws std::runtime_error if there is no
+  /// room for them.
   virtual std::vector<sim::Placement> place_obstacles(const Environment& environment, int obstacles,
-                                                      std::uint64_t seed, const maps::Point& start) const = 0;
+                                                      std::uint64_t seed, const maps::Point& start,
+                                                      const sim::CarParameters& car) const = 0;
 
   /// The scan as the planner gets it.
   virtual maps::LaserScanView scan(const sim::Observation& seen, const sim::World& world) const noexcept = 0;

@@ -18,9 +18,10 @@ constexpr double least_speed_share = 0.5;  // of vehicle.speed_share
 }  // namespace
 
 std::vector<maps::Pose> LapRunner::place_obstacles(std::uint64_t lap_seed) const try {
-  const auto placed = rules_of(environment_->protocol)
-                          .place_obstacles(*environment_, settings_.obstacles,
-                                           settings_.layout.value_or(lap_seed), {start_.x, start_.y});
+  const auto placed =
+      rules_of(environment_->protocol)
+          .place_obstacles(*environment_, settings_.obstacles, settings_.layout.value_or(lap_seed),
+                           {start_.x, start_.y}, sim::parameters_of(settings_.car));
   std::vector<maps::Pose> poses;
   for (const sim::Placement& each : placed) poses.push_back(each.pose);
   return poses;

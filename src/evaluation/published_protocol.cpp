@@ -44,7 +44,8 @@ class PublishedRules final : public LapRules {
   double control_period(const vehicle::Configuration&) const noexcept override { return control_period_s; }
 
   std::vector<sim::Placement> place_obstacles(const Environment& environment, int obstacles,
-                                              std::uint64_t seed, const maps::Point&) const override {
+                                              std::uint64_t seed, const maps::Point&,
+                                              const sim::CarParameters&) const override {
     return sim::place_at_random(environment.course.obstacle_path, obstacles, seed);
   }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "evaluation/lap_rules.hpp"
 
@@ -30,18 +31,28 @@ class StandardRules final : public LapRules {
     options.lidar.rate = 1 / period;
     options.lidar.noise = settings.range_noise;
     options.lidar.dropout = settings.dropout;
+    options.car = sim::parameters_of(settings.car);
     options.car.friction = settings.friction;
+    if (settings.car == sim::CarKind::passenger_car) {
+      options.lidar.range_max = 150;       // m
+      options.lidar.mount = {1.25, 0, 0};  // on the bonnet
+    }
     if (settings.saturating_tyres) options.plant.dynamics.model = sim::Model::saturating;
   }
-  void check(const LapSettings&) const override {}
+  void check(const LapSettings& settings) const override {
+    if (settings.car != sim::CarKind::f1tenth && (settings.hardware || settings.localised))
+      throw std::invalid_argument(
+          "world.car: must be f1tenth with sensors of a real car, which are those of a 1/10-scale car");
+  }
   double control_period(const vehicle::Configuration& configuration) const noexcept override {
     return configuration.planner.control_period;
   }
 
   std::vector<sim::Placement> place_obstacles(const Environment& environment, int obstacles,
-                                              std::uint64_t seed, const maps::Point& start) const override {
+                                              std::uint64_t seed, const maps::Point& start,
+                                              const sim::CarParameters& car) const override {
     return sim::place_apart(environment.course.obstacle_path, environment.obstacle_room, obstacles, seed,
-                            start);
+                            start, sim::placement_of(car));
   }
 
   maps::LaserScanView scan(const sim::Observation& seen, const sim::World&) const noexcept override {

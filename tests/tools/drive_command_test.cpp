@@ -31,6 +31,34 @@ class DriveCommand : public testing::ProgramTest {
   }
 };
 
+TEST_F(DriveCommand, DrivesACarOfFullSize) {
+  // Two straights of 150 m and two half circles of 45 m; the road is 14 m wide.
+  std::ofstream line(folder_ / "oval.csv");
+  constexpr double pi = 3.14159265358979, radius = 45, straight = 150;
+  for (double x = 0; x < straight; x += 5) line << x << ",0,7,7\n";
+  for (double a = -pi / 2; a < pi / 2; a += 0.1)
+    line << straight + radius * std::cos(a) << "," << radius + radius * std::sin(a) << ",7,7\n";
+  for (double x = straight; x > 0; x -= 5) line << x << "," << 2 * radius << ",7,7\n";
+  for (double a = pi / 2; a < 3 * pi / 2; a += 0.1)
+    line << radius * std::cos(a) << "," << radius + radius * std::sin(a) << ",7,7\n";
+  line.close();
+  const auto made = run_program(
+      "course oval.csv --car passenger --margin 1 --top-speed 35 --friction 0.85 --no-picture --out oval",
+      folder_.string());
+  ASSERT_EQ(made.status, 0) << made.output;
+  const std::string arguments =
+      "drive --course oval --config passenger_car --set samples=1000 --set world.car=passenger_car "
+      "--set world.saturating_tyres=true ";
+  const auto run = run_program(arguments + "--json out.json", folder_.string());
+  EXPECT_EQ(run.status, 0) << run.output;
+  const json lap = result("out.json")["laps"][0];
+  EXPECT_EQ(lap["contacts"], 0);
+  EXPECT_GT(lap["mean_speed"], 15);
+  EXPECT_LT(lap["time_s"], 35);
+  EXPECT_LT(lap["max_path_distance"], 5);
+  expect_refused(arguments + "--hardware", {"world.car", "f1tenth"});
+}
+
 TEST_F(DriveCommand, FinishesLapsAndWritesJson) {
   const auto run = drive("--obstacles 2 --laps 2 --seed 3 --json out.json");
   EXPECT_EQ(run.status, 0) << run.output;

@@ -10,6 +10,7 @@
 #include "slalom/evaluation/hardware.hpp"
 #include "slalom/evaluation/tracking_record.hpp"
 #include "slalom/maps/pose.hpp"
+#include "slalom/sim/car.hpp"
 #include "slalom/sim/racing_opponent.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 
@@ -50,10 +51,11 @@ struct LapSettings {
   double speed_scale = 1;         ///< factor of the course's speed profile
   double friction = 1.0489;       ///< coefficient between tyre and road
   bool saturating_tyres = false;  ///< limited tyre forces: sim::Model::saturating
-  double steering_gain = 1;       ///< angle of the wheels / commanded angle
-  double range_noise = 0.01;      ///< m, standard deviation of each range
-  double dropout = 0;             ///< fraction of beams without a return
-  bool localised = false;         ///< HardwareConditions::sensors, unless `hardware` is given
+  sim::CarKind car = sim::CarKind::f1tenth;   ///< of all cars, with its LiDAR
+  double steering_gain = 1;                   ///< angle of the wheels / commanded angle
+  double range_noise = 0.01;                  ///< m, standard deviation of each range
+  double dropout = 0;                         ///< fraction of beams without a return
+  bool localised = false;                     ///< HardwareConditions::sensors, unless `hardware` is given
   TrackingMode tracking = TrackingMode::off;  ///< tracks other cars for planner and figures
 };
 
@@ -87,6 +89,7 @@ void visit_options(Options& o, Visit&& visit) {
   visit(
       o.saturating_tyres,
       Declaration{.name = "saturating_tyres", .unit = "", .help = "limited tyre forces: the car can slide"});
+  visit(o.car, Declaration{.name = "car", .help = "the simulated cars and their LiDAR"});
   number(o.steering_gain, "steering_gain", "", "angle of the wheels / commanded angle", 0.1, 10);
   number(o.range_noise, "range_noise", "m", "standard deviation of each range", 0, 1);
   number(o.dropout, "dropout", "", "fraction of beams without a return", 0, 1);

@@ -25,12 +25,26 @@ struct CarParameters {
   /// Distance of the axles, m.
   double wheelbase() const { return front_length + rear_length; }
 
-  /// The full-scale car of the CommonRoad vehicle models (parameter set 1, a Ford Escort).
+  /// A passenger car: parameter set 2 (a BMW 320i) of Althoff & Wuersching, "CommonRoad: Vehicle Models"
+  /// (2020), as its single-track model uses them.
   static CarParameters full_scale();
 
   /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
   void validate() const;
 };
+
+/// The cars of which parameters and LiDAR are known by name.
+enum class CarKind {
+  f1tenth,        ///< the 1/10-scale car of f1tenth_gym
+  passenger_car,  ///< CarParameters::full_scale()
+};
+/// The names of the enumerators, in order.
+inline const char* const* enum_names(CarKind) {
+  static constexpr const char* const names[] = {"f1tenth", "passenger_car", nullptr};
+  return names;
+}
+/// The parameters of a car.
+CarParameters parameters_of(CarKind kind);
 
 /// The state of a car; its position is that of the centre of gravity.
 struct CarState {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "slalom/maps/pose.hpp"
+#include "slalom/sim/car.hpp"
 
 namespace slalom::sim {
 
@@ -32,6 +33,9 @@ struct PlacementRules {
   double passage = 0.6;     ///< m, least room to a wall on one side of a car, if `room` is given
   int attempts = 2000;      ///< largest number of draws in total
 };
+
+/// The rules for cars of this size: all lengths grow with the width.
+PlacementRules placement_of(const CarParameters& car);
 
 /// Parked cars that leave the course passable: none overlaps another or is near the start, and a passage
 /// beside each stays open. `room` gives for each waypoint the distance (m) to the nearest wall, or is

@@ -18,9 +18,13 @@ CarParameters CarParameters::full_scale() {
   car.acceleration_max = 11.5;
   car.speed_min = -13.6;
   car.speed_max = 50.8;
-  car.length = 4.298;
-  car.width = 1.674;
+  car.length = 4.508;
+  car.width = 1.610;
   return car;
+}
+
+CarParameters parameters_of(CarKind kind) {
+  return kind == CarKind::passenger_car ? CarParameters::full_scale() : CarParameters{};
 }
 
 void CarParameters::validate() const {

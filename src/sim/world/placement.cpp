@@ -41,6 +41,16 @@ std::vector<Placement> place_at_random(std::span<const maps::Point> path, int ca
   return placed;
 }
 
+PlacementRules placement_of(const CarParameters& car) {
+  PlacementRules rules;
+  const double scale = car.width / rules.width;
+  for (double* const length : {&rules.radius, &rules.gap, &rules.keep_clear, &rules.passage})
+    *length *= scale;
+  rules.length = car.length;
+  rules.width = car.width;
+  return rules;
+}
+
 std::vector<Placement> place_apart(std::span<const maps::Point> path, std::span<const double> room, int cars,
                                    std::uint64_t seed, const maps::Point& start,
                                    const PlacementRules& rules) {

@@ -18,6 +18,10 @@ double fastest(std::span<const maps::ReferencePoint> path, const PlannerOptions&
 
 }  // namespace
 
+double map_scale(const PlannerOptions& options) {
+  return options.map_resolution / PlannerOptions{}.map_resolution;
+}
+
 double stopping_time(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                      const VehicleTraits& traits) {
   if (!(traits.stopping_deceleration > 0)) return 0;
@@ -27,7 +31,8 @@ double stopping_time(std::span<const maps::ReferencePoint> path, const PlannerOp
 double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                   const VehicleTraits& traits, double duration) {
   constexpr double least = 6, most = 30;
-  return std::clamp(fastest(path, options, traits) * duration + 1.5, least, most);
+  const double scale = map_scale(options);
+  return std::clamp(fastest(path, options, traits) * duration + 1.5, scale * least, scale * most);
 }
 
 maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const VehicleTraits& traits) {
@@ -35,6 +40,9 @@ maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const 
   if (options.published.maps) {
     made = maps::published_cost_map();
   } else {
+    const double scale = map_scale(options);
+    for (double* const length : {&made.resolution, &made.length_x, &made.length_y, &made.center_x})
+      *length *= scale;
     const BodyOptions& body = traits.body;
     made.footprint = {body.front, body.rear, body.width / 2, body.width / 2};
     made.margin = body.margin;
@@ -46,9 +54,11 @@ maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const 
   return made;
 }
 
-maps::ClearanceMapOptions clearance_options(const VehicleTraits& traits, double reach) {
-  constexpr double behind = 3, widest = 8;  // m
+maps::ClearanceMapOptions clearance_options(const PlannerOptions& options, const VehicleTraits& traits,
+                                            double reach) {
+  const double scale = map_scale(options), behind = 3 * scale, widest = 8 * scale;  // m
   maps::ClearanceMapOptions made;
+  made.resolution *= scale;
   if (traits.obstacle_map == ObstacleMap::clearance) made.reach = traits.clearance_reach;
   if (traits.friction > 0) {
     made.length_x = reach + behind;
@@ -62,6 +72,8 @@ maps::ReferenceFieldOptions field_options(const PlannerOptions& options, const V
                                           double reach) {
   if (options.published.maps) return maps::published_reference_field();
   maps::ReferenceFieldOptions made;
+  made.resolution *= map_scale(options);
+  made.spacing *= map_scale(options);
   if (traits.friction > 0) {
     made.length_x = made.length_y = 2 * reach + 1;
     made.spacing = std::max(made.spacing, (reach + 1) / 200);

@@ -16,6 +16,9 @@ namespace slalom::vehicle::detail {
 std::vector<maps::ReferencePoint> limited_path(std::span<const maps::ReferencePoint> path,
                                                const PlannerOptions& options, const VehicleTraits& traits);
 
+/// By how much cells and lengths of maps are larger than those of a 1/10-scale car.
+double map_scale(const PlannerOptions& options);
+
 /// s, in which a car at the path's highest speed drives as far as it needs to stop, where plans must be able
 /// to; else 0.
 double stopping_time(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
@@ -28,7 +31,8 @@ double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptio
 maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const VehicleTraits& traits);
 
 /// As long as a plan (`reach`, m) for a car with slipping tyres, whose plans are longer.
-maps::ClearanceMapOptions clearance_options(const VehicleTraits& traits, double reach);
+maps::ClearanceMapOptions clearance_options(const PlannerOptions& options, const VehicleTraits& traits,
+                                            double reach);
 
 /// As large as a plan's reach (m) for a car with slipping tyres.
 maps::ReferenceFieldOptions field_options(const PlannerOptions& options, const VehicleTraits& traits,

@@ -16,7 +16,8 @@ namespace slalom::vehicle::detail {
 /// what it has passed: where the scan does not reach, they are obstacles still.
 class ObstacleMemory {
  public:
-  ObstacleMemory() { blind_.reserve(scans * max_points); }
+  /// With maps whose lengths are `scale` times those of a 1/10-scale car.
+  explicit ObstacleMemory(double scale) : reach_(4 * scale) { blind_.reserve(scans * max_points); }
 
   void reset() noexcept {
     for (Scan& scan : scans_) scan.count = 0;
@@ -34,7 +35,7 @@ class ObstacleMemory {
     const std::size_t stride = seen.size() / max_points + 1;
     for (std::size_t i = 0; i < seen.size() && scan.count < max_points; i += stride) {
       const maps::Point point{static_cast<double>(seen[i].x), static_cast<double>(seen[i].y)};
-      if (point.x * point.x + point.y * point.y < reach * reach)
+      if (point.x * point.x + point.y * point.y < reach_ * reach_)
         scan.points[scan.count++] = maps::transform(pose, point);
     }
   }
@@ -50,7 +51,7 @@ class ObstacleMemory {
       for (std::size_t i = 0; i < scan.count; ++i) {
         const double dx = scan.points[i].x - pose.x, dy = scan.points[i].y - pose.y;
         const maps::Point point{cosine * dx + sine * dy, cosine * dy - sine * dx};
-        const bool near = std::abs(point.x) < reach && std::abs(point.y) < reach;
+        const bool near = std::abs(point.x) < reach_ && std::abs(point.y) < reach_;
         if (near && !seen.contains(point)) blind_.push_back(point);
       }
     }
@@ -90,7 +91,6 @@ class ObstacleMemory {
 
   static constexpr std::size_t scans = 24, max_points = 160;
   static constexpr double interval = 0.2;  ///< s between scans that are kept
-  static constexpr double reach = 4;       ///< m, of points that are kept
 
   struct Scan {
     std::array<maps::Point, max_points> points;  ///< map frame
@@ -99,6 +99,7 @@ class ObstacleMemory {
   std::array<Scan, scans> scans_{};
   std::size_t next_ = 0;
   double age_ = interval;
+  double reach_;  ///< m, of points that are kept
   std::vector<maps::Point> blind_;
 };
 

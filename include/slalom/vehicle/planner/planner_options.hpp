@@ -12,17 +12,19 @@ struct PlannerOptions {
   double latency = 0;                   ///< s, from the scan to the moment when a command reaches the car
   double observer_time_constant = 0.1;  ///< s, of the lag in the steering observer
   double max_speed = 100;               ///< m/s, upper bound of the path's speeds
-  double profile_friction = 0;    ///< the path's speeds are lowered until they ask for no more than this
-                                  ///< coefficient of friction allows; 0: they stay
-  double steer_limit = 0.4189;    ///< rad, bound of the steering commands, to either side
-  double steer_resolution = 0;    ///< rad, of a steering that settles at multiples of it only: commands are
-                                  ///< such angles, with models whose tyres slip; 0: any angle
-  double laser_x = 0.275;         ///< m, of the laser ahead of the rear axle
-  double laser_y = 0;             ///< m, to the left
-  double laser_yaw = 0;           ///< rad
-  double speed_lookahead = 0;     ///< s, the commanded speed is that of the path this far ahead, or of
-                                  ///< the plan where the acceleration is an input
-  double deadline = 0;            ///< s, time limit of a solve; 0: none
+  double profile_friction = 0;   ///< the path's speeds are lowered until they ask for no more than this
+                                 ///< coefficient of friction allows; 0: they stay
+  double steer_limit = 0.4189;   ///< rad, bound of the steering commands, to either side
+  double steer_resolution = 0;   ///< rad, of a steering that settles at multiples of it only: commands are
+                                 ///< such angles, with models whose tyres slip; 0: any angle
+  double map_resolution = 0.05;  ///< m per cell of the maps of obstacles; those of the path have cells twice
+                                 ///< as large, and with tyres that slip no map reaches further than 600 cells
+  double laser_x = 0.275;        ///< m, of the laser ahead of the rear axle
+  double laser_y = 0;            ///< m, to the left
+  double laser_yaw = 0;          ///< rad
+  double speed_lookahead = 0;    ///< s, the commanded speed is that of the path this far ahead, or of
+                                 ///< the plan where the acceleration is an input
+  double deadline = 0;           ///< s, time limit of a solve; 0: none
   bool stop_when_blocked = true;  ///< brake when every plan collides
   bool verify_plan = true;  ///< if the solution collides, send the cheapest of nominal sequence, guides and
                             ///< best sample that does not
@@ -77,6 +79,13 @@ void visit_options(Options& o, Visit&& visit) {
                             "for a steering that settles at no other; 0: any angle",
                     .min = 0,
                     .max = 0.5});
+  visit(o.map_resolution,
+        Declaration{.name = "map_resolution",
+                    .unit = "m",
+                    .help = "size of a cell of the maps of obstacles; those of the path have cells twice as "
+                            "large, and with a model whose tyres slip no map reaches further than 600 cells",
+                    .min = 0.01,
+                    .max = 1});
   visit(o.laser_x, Declaration{.name = "laser_x",
                                .unit = "m",
                                .help = "position of the laser ahead of the rear axle",
