@@ -66,7 +66,17 @@ TEST_F(RacingCommand, AnyDriverDrivesEveryMap) {
   }
 }
 
+TEST_F(RacingCommand, TheRacelineIsThatOfTheCar) {
+  std::ofstream(folder_ / "slow.yaml") << "top_speed: 2\n";
+  const auto slow = drive("--driver mppi --set mppi.samples=400 --car slow.yaml");
+  EXPECT_EQ(slow["car"], "slow.yaml");
+  for (const char* map : {"aut", "mco"})
+    EXPECT_GT(slow["maps"][map]["mean_s"].get<double>(), 2 * pi * (radius - 1) / 2) << map;
+}
+
 TEST_F(RacingCommand, SaysWhatIsWrong) {
+  expect_refused("reproduce --benchmark racing --course maps --car tractor", {"tractor", "f1tenth"});
+  expect_refused("reproduce --car f1tenth --out x", {"--car", "--benchmark"});
   expect_refused("reproduce --benchmark rowing --course maps", {"--benchmark", "rowing", "racing"});
   expect_refused("reproduce --benchmark racing", {"--course", "folder"});
   expect_refused("reproduce --benchmark racing --course nowhere", {"nowhere", "aut.yaml"});

@@ -33,8 +33,7 @@ struct CourseArguments {
 };
 
 RacingCar chosen_car(const CourseArguments& arguments) {
-  RacingCar car = fs::is_regular_file(arguments.car) ? vehicle::load_racing_car(arguments.car)
-                                                     : vehicle::racing_car(arguments.car);
+  RacingCar car = vehicle::find_racing_car(arguments.car);
   if (arguments.friction) vehicle::set_friction(car, *arguments.friction);
   if (arguments.top_speed) car.limits.top_speed = *arguments.top_speed;
   if (arguments.margin) car.margin = *arguments.margin;

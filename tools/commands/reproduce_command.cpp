@@ -24,7 +24,7 @@ constexpr const char* racing_configuration = "racing_benchmark";
 
 struct ReproduceArguments {
   EvaluationArguments evaluation;
-  std::string published, benchmark, driver = "svg_mppi";
+  std::string published, benchmark, driver = "svg_mppi", car = vehicle::RacingCar{}.name;
   std::vector<std::string> sections{"baseline", "ablation", "sweep"};
   double margin = 0.12;  ///< m, in the racing benchmark
   int laps_pt = 30, laps_oa = 100, obstacles = 5;
@@ -155,13 +155,16 @@ int run_racing(ReproduceArguments arguments) {
   if (!gap) {
     summary["config"] = scenario.config;
     summary["margin_m"] = arguments.margin;
+    summary["car"] = arguments.car;
   }
+  vehicle::RacingCar car = vehicle::find_racing_car(arguments.car);
+  car.margin = arguments.margin;
   std::fprintf(words, "%-4s %10s %10s %12s\n", "map", "mean, s", "completed", "beyond grip");
   for (const char* name : racing_maps) {
     const RacingMap map = load_racing_map(scenario.course, name);
-    const auto driver = gap ? make_gap_driver()
-                            : make_planner_driver(map, load_configuration(scenario, arguments.driver),
-                                                  arguments.driver, arguments.margin);
+    const auto driver =
+        gap ? make_gap_driver()
+            : make_planner_driver(map, load_configuration(scenario, arguments.driver), arguments.driver, car);
     const auto laps = drive_benchmark_laps(map, *driver, arguments.quick ? 1 : racing_laps);
     const Json results = racing_results(laps);
     summary["maps"][name] = results;
@@ -201,6 +204,10 @@ void declare_reproduce(Subcommand& command) {
       .option("--margin", arguments->margin,
               "With --benchmark: distance that the raceline keeps between the car and walls, m")
       .show_default();
+  command
+      .option("--car", arguments->car,
+              "With --benchmark: car of the raceline: f1tenth, passenger, or a YAML file (docs/courses.md)")
+      .show_default();
   command.option("--published", arguments->published, "Folder of the authors' logs");
   command
       .option("--sections", arguments->sections, "Sections, separated by commas: baseline, ablation, sweep")
@@ -215,7 +222,7 @@ void declare_reproduce(Subcommand& command) {
     arguments->course_given = command.given("--course");
     arguments->config_given = command.given("--config");
     if (!arguments->benchmark.empty()) return run_racing(*arguments);
-    for (const char* flag : {"--driver", "--margin"})
+    for (const char* flag : {"--driver", "--margin", "--car"})
       if (command.given(flag)) throw CommandLineError(flag, "needs --benchmark");
     if (arguments->evaluation.out.empty()) throw CommandLineError("--out", "is required");
     return reproduce(*arguments);

@@ -156,10 +156,7 @@ std::optional<std::vector<maps::ReferencePoint>> path_through_finish(
 
 std::unique_ptr<RacingDriver> make_planner_driver(const RacingMap& map,
                                                   const vehicle::Configuration& configuration,
-                                                  const std::string& method, double margin) {
-  vehicle::RacingCar car;
-  car.margin = margin;
-  vehicle::set_friction(car, racing_grip / 9.81);
+                                                  const std::string& method, const vehicle::RacingCar& car) {
   const vehicle::RaceCourse course = vehicle::race_course(map.grid, car);
   std::vector<maps::ReferencePoint> path;
   for (const vehicle::RacelinePoint& point : course.raceline.points)

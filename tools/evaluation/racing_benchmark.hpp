@@ -50,12 +50,12 @@ std::optional<std::vector<maps::ReferencePoint>> path_through_finish(
     const std::vector<maps::ReferencePoint>& path, const std::vector<maps::Point>& centre_line,
     const maps::Point& start);
 
-/// A planner of this library along the minimum-time line of a map, for a car with the grip of the benchmark
-/// whose line keeps `margin` (m) between the body and walls, and leads through the end of each lap
-/// (path_through_finish). Throws std::invalid_argument where the map leaves no such line.
+/// A planner of this library along the minimum-time line of a map for `car`, which leads through the end of
+/// each lap (path_through_finish). The planner drives no faster than the car's top speed. Throws
+/// std::invalid_argument where the map leaves no such line.
 std::unique_ptr<RacingDriver> make_planner_driver(const RacingMap& map,
                                                   const vehicle::Configuration& configuration,
-                                                  const std::string& method, double margin);
+                                                  const std::string& method, const vehicle::RacingCar& car);
 
 /// A lap as it ended.
 struct BenchmarkLap {

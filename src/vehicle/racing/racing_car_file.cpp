@@ -72,4 +72,8 @@ RacingCar load_racing_car(const fs::path& file) {
   return car;
 }
 
+RacingCar find_racing_car(const std::string& name_or_file) {
+  return fs::is_regular_file(name_or_file) ? load_racing_car(name_or_file) : racing_car(name_or_file);
+}
+
 }  // namespace slalom::vehicle
