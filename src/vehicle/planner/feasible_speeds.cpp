@@ -20,7 +20,8 @@ DrivingLimits driving_limits(const VehicleTraits& traits, double friction) {
           .switch_speed = traits.switch_speed};
 }
 
-FeasibleSpeeds::FeasibleSpeeds(std::span<const maps::ReferencePoint> path) {
+FeasibleSpeeds::FeasibleSpeeds(std::span<const maps::ReferencePoint> path,
+                               std::span<const double> grip_shares) {
   std::vector<maps::Point> points;
   for (const maps::ReferencePoint& point : path) {
     points.push_back({point.x, point.y});
@@ -35,16 +36,22 @@ FeasibleSpeeds::FeasibleSpeeds(std::span<const maps::ReferencePoint> path) {
     arc += gap;
   }
   speed_ = profile_ = own_;
+  const double parts = static_cast<double>(grip_shares.size()), whole_way = arc_.back() + gap_.back();
+  for (const double arc : arc_) {
+    const double part = whole_way > 0 ? std::floor(parts * arc / whole_way) : 0;
+    share_.push_back(grip_shares[static_cast<std::size_t>(std::min(part, parts - 1))]);
+  }
 }
 
 void FeasibleSpeeds::update(const DrivingLimits& limits) noexcept {
   const std::size_t n = speed_.size();
   for (std::size_t i = 0; i < n; ++i)
-    speed_[i] = std::min(own_[i], std::sqrt(limits.grip / std::max(std::abs(curvature_[i]), 1e-6)));
+    speed_[i] =
+        std::min(own_[i], std::sqrt(limits.grip * share_[i] / std::max(std::abs(curvature_[i]), 1e-6)));
   // The tyres' force is shared between turning and accelerating.
   const auto left = [&](std::size_t i) {
-    const double turning = speed_[i] * speed_[i] * curvature_[i];
-    return std::sqrt(std::max(limits.grip * limits.grip - turning * turning, 0.0));
+    const double turning = speed_[i] * speed_[i] * curvature_[i], grip = limits.grip * share_[i];
+    return std::sqrt(std::max(grip * grip - turning * turning, 0.0));
   };
   const auto reach = [&](std::size_t from, std::size_t to, double gap, double strength, double share) {
     const double a = std::min(strength, share * left(from));

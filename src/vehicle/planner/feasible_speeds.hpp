@@ -33,7 +33,9 @@ DrivingLimits driving_limits(const VehicleTraits& traits, double friction);
 /// drives.
 class FeasibleSpeeds {
  public:
-  explicit FeasibleSpeeds(std::span<const maps::ReferencePoint> path);
+  /// `grip_shares`: of the grip in the limits, one for each of so many equal parts of the path; at least one.
+  explicit FeasibleSpeeds(std::span<const maps::ReferencePoint> path,
+                          std::span<const double> grip_shares = std::span(&whole, 1));
 
   /// Computes the speeds. Allocates nothing.
   void update(const DrivingLimits& limits) noexcept;
@@ -49,6 +51,8 @@ class FeasibleSpeeds {
   std::span<const double> speeds() const noexcept { return speed_; }
 
  private:
+  static constexpr double whole = 1;
+
   void anticipate(double delay) noexcept;
   void look_ahead(double lead) noexcept;
 
@@ -56,6 +60,7 @@ class FeasibleSpeeds {
   std::vector<double> profile_;      ///< m/s, before they are looked up ahead
   std::vector<double> arc_;          ///< m
   std::vector<double> curvature_;    ///< 1/m, positive to the left
+  std::vector<double> share_;        ///< of the grip, a point each
   std::vector<double> gap_;          ///< m, from each point to the next; 0 where the path is not joined
 };
 

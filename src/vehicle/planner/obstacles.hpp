@@ -21,6 +21,8 @@ class Obstacles {
   /// Takes the scan and what else an input says. Readings of cars whose future is known are left out of the
   /// maps. `placed`: the odometry can be used.
   maps::ScanReport update(const PlannerInput& input, bool placed) noexcept;
+  /// Adds what no scan shows, m, in the frame of the robot; after `update`.
+  void add(std::span<const maps::Point> points) noexcept { clearance_map_.add(points); }
   /// Makes plans that end behind a slower car cost the time that is lost there; after `update`. The car is
   /// at `own` in the field's frame, which begins at `origin` (m, map frame).
   void charge_time_behind(const maps::ReferenceField& field, const maps::Point& origin,

@@ -18,12 +18,11 @@
 #include "vehicle/planner/obstacles.hpp"
 #include "vehicle/planner/recovery.hpp"
 #include "vehicle/planner/sequence_choice.hpp"
+#include "vehicle/planner/sight.hpp"
 #include "vehicle/planner/ways_around.hpp"
 
 namespace slalom::vehicle {
-namespace {
 using namespace detail;
-}  // namespace
 
 struct Planner::Implementation {
   PlannerOptions options;
@@ -36,6 +35,8 @@ struct Planner::Implementation {
   Obstacles obstacles;
   maps::ReferenceField field;
   FeasibleSpeeds speeds;
+  Sight sight;
+  PathInSight seen;  ///< with `sight_deceleration`
   CarEstimator car;  ///< of models with tyres that slip; others have `history`
   CommandHistory history;
   BackUp back_up;
@@ -61,7 +62,8 @@ struct Planner::Implementation {
         reach(plan_reach(path, o, traits, traits.time_step * solver->horizon() + stopping_time)),
         obstacles(o, traits, solver->horizon(), reach),
         field(limited_path(relative(path, origin), o, traits), field_options(o, traits, reach)),
-        speeds(limited_path(relative(path, origin), o, traits)),
+        speeds(limited_path(relative(path, origin), o, traits), o.grip_shares.values()),
+        sight(relative(path, origin), speeds.length() > 0, reach, o, traits.body),
         car(o, *model),
         history(o.control_period, delay_of(o, traits), o.observer_time_constant, traits.wheelbase),
         choice(solver->horizon(), solver->inputs(), traits),
@@ -103,8 +105,7 @@ struct Planner::Implementation {
     return start;
   }
   /// Where plans take the scan from. A pose with a covariance is an estimate, and plans begin where the
-  /// filter says. The scan must be seen from there, too: otherwise plans keep a wrong distance from walls, by
-  /// as much as the filter differs from the pose.
+  /// filter says. From elsewhere, plans would keep a wrong distance from walls.
   maps::Pose pose_of_scan(const Odometry& odometry) const noexcept {
     const bool estimated = odometry.covariance[0][0] > 0;
     return estimated && model->has_dynamics() ? car.state().now().pose : odometry.pose;
@@ -142,6 +143,11 @@ struct Planner::Implementation {
     field.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? time_in_view() : 0);
     obstacles.charge_time_behind(field, origin, start.pose);
     const maps::ReferenceCell here = field.at(start.pose.x, start.pose.y);
+    if (traits.seeks_lap_time && options.sight_deceleration > 0) {
+      seen = sight.look(input.scan, pose_of_scan(odometry), field.nearest());
+      obstacles.add(sight.unknown());
+      model->set_top_speed(std::min(sight.stopping_speed(seen.way), options.max_speed));
+    }
     GridView<4> followed = field.view();
     if (model->has_dynamics() && options.back_up) followed = recover(odometry, start.pose);
     if (traits.follows_path && options.stop_when_blocked &&
@@ -205,7 +211,7 @@ struct Planner::Implementation {
       model->set_urgency(Urgency::detour);
       return detour->field_around({start.x, start.y}).view();
     }
-    const bool passes = recovery.leaving() && !recovery.reversing();
+    const bool passes = (recovery.leaving() || seen.obstacle < PathInSight::all) && !recovery.reversing();
     model->set_urgency(passes ? Urgency::passing : Urgency::usual);
     return field.view();
   }
@@ -228,8 +234,7 @@ struct Planner::Implementation {
 
   /// m/s, of commands.
   double slowest() const noexcept {
-    if (!model->has_dynamics()) return -BackUp::speed;
-    return recovery.reversing() ? -1.5 * Recovery::speed : 0;
+    return !model->has_dynamics() ? -BackUp::speed : recovery.reversing() ? -1.5 * Recovery::speed : 0;
   }
   CommandLimits limits(const Odometry& odometry) const noexcept {
     const double now = std::isfinite(odometry.speed) ? std::max(odometry.speed, 0.0) : 0;

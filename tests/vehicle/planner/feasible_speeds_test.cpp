@@ -65,6 +65,18 @@ TEST(FeasibleSpeeds, WithALeadACarThatLooksThemUpAtTheBeginOfAStepHasThemAtItsEn
   EXPECT_GT(worst_error(late), 0.3) << "a car that leaves the curve is a step late";
 }
 
+TEST(FeasibleSpeeds, EachPartOfThePathHasItsShareOfTheGrip) {
+  // The first half of the path is a straight and a half circle, the second half the others.
+  const DrivingLimits limits{.grip = grip, .acceleration = grip, .braking = grip, .switch_speed = 100};
+  const std::vector<double> shares{1, 0.5};
+  FeasibleSpeeds all(oval(7)), parts(oval(7), shares);
+  all.update(limits);
+  parts.update(limits);
+  const double middle = straight + 0.5 * M_PI * radius, half = 0.5 * all.length();
+  EXPECT_NEAR(at(parts, middle), at(all, middle), 1e-9);
+  EXPECT_NEAR(at(parts, middle + half), std::sqrt(0.5) * at(all, middle), 0.02);
+}
+
 TEST(FeasibleSpeeds, AnOpenPathKeepsItsLastSpeed) {
   auto path = oval(7);
   path.resize(90);  // the first straight, not joined

@@ -34,7 +34,13 @@ struct PlannerOptions {
   double collision_probability = 0.2;  ///< of others in a step, above which a plan collides
   double time_behind = 0;              ///< s, for how long a car whose plan ends behind a slower one is taken
                                        ///< to lose time behind it; 0: such plans cost nothing
-  EstimationOptions estimation;        ///< of state, car and ground, for models whose tyres slip
+  double sight_deceleration = 0;       ///< m/s^2, where plans seek the shortest time: they drive no faster
+                                       ///< than a car that brakes with it stops on the part of the path
+                                       ///< that the scan shows; 0: they do not expect what they cannot see
+  /// Where plans seek the shortest time: the share of `usable_grip` with which the speeds of the path are
+  /// computed; one value, or one for each of so many parts of the path, of equal length, from its first point
+  PerInput grip_shares = 1.0;
+  EstimationOptions estimation;         ///< of state, car and ground, for models whose tyres slip
   published::PlannerOptions published;  ///< to reproduce the program of proj-svg_mppi
 };
 
@@ -131,6 +137,19 @@ void visit_options(Options& o, Visit&& visit) {
                             "slower one is taken to lose time behind it; 0: such plans cost nothing",
                     .min = 0,
                     .max = 1000});
+  visit(o.sight_deceleration,
+        Declaration{.name = "sight_deceleration",
+                    .unit = "m/s^2",
+                    .help = "with objective lap_time: plans drive no faster than a car that brakes with it "
+                            "stops on the part of the path that the scan shows; 0: no such limit",
+                    .min = 0,
+                    .max = 100});
+  visit(o.grip_shares,
+        Declaration{.name = "grip_shares",
+                    .help = "with objective lap_time: share of usable_grip with which the speeds of the path "
+                            "are computed: one value, or one for each of so many equal parts of the path",
+                    .min = 0.05,
+                    .max = 1});
   visit_options(o.estimation, visit);
   visit(o.published.maps, Declaration{.name = "published_maps",
                                       .help = "cost map and reference field as in the paper's program"});

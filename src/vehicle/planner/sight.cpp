@@ -1,0 +1,121 @@
+#include "vehicle/planner/sight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace slalom::vehicle::detail {
+
+namespace {
+
+constexpr double too_near = 0.4;      // m, from the laser: no beam needs to reach it
+constexpr double leeway = 0.45;       // m, from the path: that far the car may leave it unseen
+constexpr double range_error = 0.15;  // m, of a reading on a wall that a beam meets at a small angle
+constexpr double hit_error = 0.03;    // m, of a reading on a body
+constexpr double gap = 0.1;           // m, from the car to what it stops before
+constexpr double least_speed = 1;     // m/s: at this speed a car sees around any corner in time
+
+/// The longest of the reading in a direction (rad, frame of the laser) and its neighbours, since a point is
+/// in sight if one of them passes it; infinite where there is no reading, 0 outside of the scan.
+double reading(const maps::LaserScanView& scan, double bearing) noexcept {
+  constexpr double round = 2 * std::numbers::pi;
+  double turn = std::fmod(bearing - scan.angle_min, round);
+  if (turn * scan.angle_increment < 0) turn += std::copysign(round, scan.angle_increment);
+  const double beam = std::round(turn / scan.angle_increment);
+  const auto count = static_cast<double>(scan.ranges.size());
+  if (!(beam >= 0 && beam < count)) return 0;
+  double longest = 0;
+  for (double k = std::max(beam - 1, 0.0); k <= std::min(beam + 1, count - 1); ++k) {
+    const double range = scan.ranges[static_cast<std::size_t>(k)];
+    if (!(range >= scan.range_min && range < scan.range_max)) return PathInSight::all;
+    longest = std::max(longest, range);
+  }
+  return longest;
+}
+
+/// What hides a place (m, frame of the car) from the laser; none where it is in sight. The laser itself where
+/// no beam points there.
+std::optional<maps::Point> hidden_by(const maps::LaserScanView& scan, const maps::Pose& laser,
+                                     const maps::Point& place) noexcept {
+  const maps::Point local = maps::inverse_transform(laser, place);
+  const double away = std::hypot(local.x, local.y), bearing = std::atan2(local.y, local.x);
+  if (away < too_near) return std::nullopt;
+  const double range = reading(scan, bearing);
+  if (range + range_error >= away) return std::nullopt;
+  if (range == 0) return maps::Point{laser.x, laser.y};
+  return maps::transform(laser, {range * std::cos(bearing), range * std::sin(bearing)});
+}
+
+}  // namespace
+
+Sight::Sight(std::span<const maps::ReferencePoint> path, bool closed, double reach,
+             const PlannerOptions& options, const BodyOptions& body)
+    : path_(path.begin(), path.end()),
+      closed_(closed),
+      reach_(reach),
+      half_width_(0.5 * body.width + hit_error),
+      front_(body.front),
+      deceleration_(options.sight_deceleration),
+      delay_(2 * options.control_period),
+      laser_{options.laser_x, options.laser_y, options.laser_yaw},
+      unknown_(2 * path.size()) {}
+
+PathInSight Sight::look(const maps::LaserScanView& scan, const maps::Pose& pose, int nearest) noexcept {
+  PathInSight seen;
+  unknown_count_ = 0;
+  if (scan.ranges.empty() || scan.angle_increment == 0) return seen;
+  const auto first = static_cast<std::size_t>(nearest);
+  std::size_t next = first;
+  for (double way = 0; way < reach_;) {
+    const std::size_t before = next;
+    if (!advance(next) || next == first) break;
+    way += std::hypot(path_[next].x - path_[before].x, path_[next].y - path_[before].y);
+    if (seen.way < PathInSight::all) {
+      add_unknown(scan, pose, next);
+      continue;
+    }
+    const auto hit = hidden_by(scan, laser_, maps::inverse_transform(pose, {path_[next].x, path_[next].y}));
+    if (!hit) continue;
+    const bool beside_scan = hit->x == laser_.x && hit->y == laser_.y;
+    if (!beside_scan && on_path(maps::transform(pose, *hit), first, next)) {
+      seen.obstacle = std::min(seen.obstacle, way);
+    } else {
+      seen.way = way;
+    }
+  }
+  return seen;
+}
+
+/// The places to both sides of a point of the path that the scan does not show.
+void Sight::add_unknown(const maps::LaserScanView& scan, const maps::Pose& pose, std::size_t at) noexcept {
+  const maps::ReferencePoint& point = path_[at];
+  for (const double side : {-leeway, leeway}) {
+    const maps::Point place = maps::inverse_transform(
+        pose, {point.x - side * std::sin(point.yaw), point.y + side * std::cos(point.yaw)});
+    if (hidden_by(scan, laser_, place)) unknown_[unknown_count_++] = place;
+  }
+}
+
+/// Whether a place is on the path, from one of its points to another.
+bool Sight::on_path(const maps::Point& point, std::size_t from, std::size_t to) const noexcept {
+  for (std::size_t i = from; i != to;) {
+    if (std::hypot(path_[i].x - point.x, path_[i].y - point.y) < half_width_) return true;
+    if (!advance(i)) break;
+  }
+  return false;
+}
+
+/// Moves to the next point of the path; false at the end of one that is not closed.
+bool Sight::advance(std::size_t& at) const noexcept {
+  if (!closed_ && at + 1 == path_.size()) return false;
+  at = (at + 1) % path_.size();
+  return true;
+}
+
+double Sight::stopping_speed(double way) const noexcept {
+  const double left = std::max(way - front_ - gap, 0.0), reaction = deceleration_ * delay_;
+  return std::max(std::sqrt(reaction * reaction + 2 * deceleration_ * left) - reaction, least_speed);
+}
+
+}  // namespace slalom::vehicle::detail

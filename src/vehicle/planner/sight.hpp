@@ -1,0 +1,56 @@
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "slalom/maps/laser_scan.hpp"
+#include "slalom/maps/pose.hpp"
+#include "slalom/maps/reference_path.hpp"
+#include "slalom/vehicle/model/path_tracking_options.hpp"
+#include "slalom/vehicle/planner/planner_options.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// What a scan shows of the path ahead.
+struct PathInSight {
+  static constexpr double all = std::numeric_limits<double>::infinity();
+  double way = all;       ///< m along the path, to the first place that something beside the path hides
+  double obstacle = all;  ///< m along the path, to the first thing that stands on it
+};
+
+/// How far the path ahead is in sight. A car that drives faster than it can stop within this way cannot avoid
+/// what stands behind the next corner.
+class Sight {
+ public:
+  /// Along this path, up to `reach` (m) ahead, for a car with this body and a laser as in the options. What
+  /// its body would meet on the path stands on it.
+  Sight(std::span<const maps::ReferencePoint> path, bool closed, double reach, const PlannerOptions& options,
+        const BodyOptions& body);
+
+  /// From a pose in the frame of the path, with its nearest point. A beam without a reading shows all. What
+  /// stands on the path hides nothing: plans that pass it see what is behind it on their way.
+  PathInSight look(const maps::LaserScanView& scan, const maps::Pose& pose, int nearest) noexcept;
+  /// m, in the frame of the car: points beside the part of the path that the last scan did not show, where it
+  /// showed nothing either. There only the path is known to be free, and a car that leaves it for a shorter
+  /// way may meet a wall.
+  std::span<const maps::Point> unknown() const noexcept { return {unknown_.data(), unknown_count_}; }
+
+  /// The highest speed (m/s, > 0) at which the car stops within `way` (m) with `sight_deceleration`.
+  double stopping_speed(double way) const noexcept;
+
+ private:
+  void add_unknown(const maps::LaserScanView& scan, const maps::Pose& pose, std::size_t at) noexcept;
+  bool on_path(const maps::Point& point, std::size_t from, std::size_t to) const noexcept;
+  bool advance(std::size_t& at) const noexcept;
+
+  std::vector<maps::ReferencePoint> path_;
+  bool closed_;
+  double reach_, half_width_;            ///< m
+  double front_, deceleration_, delay_;  ///< m, m/s^2, s
+  maps::Pose laser_;
+  std::vector<maps::Point> unknown_;
+  std::size_t unknown_count_ = 0;
+};
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,156 @@
+// What a scan shows of the path, and the speed from which a car stops on it.
+#include "vehicle/planner/sight.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "support/allocations.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+constexpr double laser_x = 0.275, front = 0.46, corner = 5;  // m
+constexpr double period = 0.025;                             // s
+constexpr int beams = 1081;
+constexpr double field_of_view = 1.5 * std::numbers::pi;
+
+/// m, an axis-parallel box.
+struct Box {
+  double left, right, bottom, top;
+};
+
+/// Along x to (5, 0), then along y to (5, 10), points 0.1 m apart.
+std::vector<maps::ReferencePoint> left_turn() {
+  std::vector<maps::ReferencePoint> path;
+  for (int i = 0; i < 50; ++i) path.push_back({0.1 * i, 0, 0, 8});
+  for (int i = 0; i <= 100; ++i) path.push_back({corner, 0.1 * i, std::numbers::pi / 2, 8});
+  return path;
+}
+
+/// What a laser at (laser_x, 0) reads among boxes: the least distance at which a beam enters one.
+class Scan {
+ public:
+  explicit Scan(const std::vector<Box>& boxes, double angle_min = -field_of_view / 2)
+      : angle_min_(angle_min), ranges_(beams) {
+    for (int i = 0; i < beams; ++i) {
+      const double angle = angle_min + i * increment(), c = std::cos(angle), s = std::sin(angle);
+      double range = 30;
+      for (const Box& box : boxes) {
+        const double x1 = (box.left - laser_x) / c, x2 = (box.right - laser_x) / c;
+        const double y1 = box.bottom / s, y2 = box.top / s;
+        const double enters = std::max(std::min(x1, x2), std::min(y1, y2));
+        const double leaves = std::min(std::max(x1, x2), std::max(y1, y2));
+        if (enters > 0 && enters < leaves) range = std::min(range, enters);
+      }
+      ranges_[static_cast<std::size_t>(i)] = static_cast<float>(range);
+    }
+  }
+  static double increment() { return field_of_view / (beams - 1); }
+  std::vector<float>& ranges() { return ranges_; }
+  maps::LaserScanView view() const { return {ranges_, angle_min_, increment(), 0, 30}; }
+
+ private:
+  double angle_min_;
+  std::vector<float> ranges_;
+};
+
+Sight sight(double reach = 12) {
+  PlannerOptions options;
+  options.laser_x = laser_x;
+  options.control_period = period;
+  options.sight_deceleration = 6;
+  BodyOptions body;
+  body.front = front;
+  return {left_turn(), false, reach, options, body};
+}
+
+const Box inner_wall{-20, 4.5, 0.5, 20};
+const Box parked{2.7, 3.3, -0.15, 0.15};
+
+TEST(Sight, OfAFreePathAllIsInSight) {
+  const PathInSight seen = sight().look(Scan({}).view(), {}, 0);
+  EXPECT_EQ(seen.way, PathInSight::all);
+  EXPECT_EQ(seen.obstacle, PathInSight::all);
+}
+
+TEST(Sight, TheInnerWallHidesThePathBehindTheCorner) {
+  // The beam past the wall's corner (4.5, 0.5) meets x = 5 at y = 0.5 (5 - 0.275) / (4.5 - 0.275) = 0.56.
+  const PathInSight seen = sight().look(Scan({inner_wall}).view(), {}, 0);
+  EXPECT_NEAR(seen.way, corner + 0.56, 0.25);
+  EXPECT_EQ(seen.obstacle, PathInSight::all);
+  EXPECT_EQ(sight(5).look(Scan({inner_wall}).view(), {}, 0).way, PathInSight::all) << "beyond the reach";
+  const PathInSight nearer = sight().look(Scan({inner_wall}).view(), {}, 20);
+  EXPECT_NEAR(nearer.way, seen.way - 2, 1e-9) << "from the nearest point on";
+}
+
+TEST(Sight, WhatStandsOnThePathHidesNothing) {
+  const PathInSight alone = sight().look(Scan({parked}).view(), {}, 0);
+  EXPECT_EQ(alone.way, PathInSight::all);
+  EXPECT_NEAR(alone.obstacle, 2.9, 0.25);
+  const PathInSight both = sight().look(Scan({parked, inner_wall}).view(), {}, 0);
+  EXPECT_NEAR(both.way, corner + 0.56, 0.25);
+  EXPECT_EQ(both.obstacle, alone.obstacle);
+  const Box beside{2.7, 3.3, 0.25, 0.4};
+  EXPECT_EQ(sight().look(Scan({beside}).view(), {}, 0).obstacle, PathInSight::all);
+}
+
+TEST(Sight, BesideThePathThatIsHiddenNothingIsKnown) {
+  Sight made = sight();
+  made.look(Scan({parked}).view(), {}, 0);
+  EXPECT_TRUE(made.unknown().empty());
+  const PathInSight seen = made.look(Scan({inner_wall}).view(), {1, 0, 0}, 10);
+  ASSERT_FALSE(made.unknown().empty());
+  int inside = 0;
+  for (const maps::Point& place : made.unknown()) {  // in the frame of the car at x = 1
+    const double x = place.x + 1, y = place.y;
+    EXPECT_NEAR(std::abs(x - corner), 0.45, 1e-6) << x << ' ' << y;
+    EXPECT_GT(y, seen.way - 4.1) << "behind what is in sight";
+    EXPECT_GT(y / (x - 1 - laser_x), 0.5 / (4.5 - laser_x) * 0.9) << "the outer side is in sight for longer";
+    inside += x < corner;
+  }
+  EXPECT_GT(inside, 50);
+}
+
+TEST(Sight, ABeamWithoutAReadingShowsAll) {
+  Scan scan({inner_wall});
+  std::fill(scan.ranges().begin(), scan.ranges().end(), std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(sight().look(scan.view(), {}, 0).way, PathInSight::all);
+  EXPECT_EQ(sight().look({}, {}, 0).way, PathInSight::all) << "an empty scan";
+}
+
+TEST(Sight, TheFirstBeamMayPointAnyWay) {
+  const PathInSight seen = sight().look(Scan({inner_wall}).view(), {}, 0);
+  EXPECT_EQ(sight().look(Scan({inner_wall}, 1.25 * std::numbers::pi).view(), {}, 0).way, seen.way);
+}
+
+TEST(Sight, WhatIsBesideTheScanIsNotInSight) {
+  const Scan left({}, 0);  // from straight ahead to the left, and not to the right
+  EXPECT_EQ(sight().look(left.view(), {0, 0, -0.5}, 0).way, PathInSight::all);
+  EXPECT_LT(sight().look(left.view(), {0, 0, 0.5}, 0).way, 1);
+}
+
+TEST(Sight, AllocatesNothing) {
+  Sight made = sight();
+  const Scan scan({parked, inner_wall});
+  const long before = testing::allocations();
+  EXPECT_LT(made.look(scan.view(), {}, 0).way, 12);
+  EXPECT_EQ(testing::allocations(), before);
+}
+
+TEST(Sight, ACarStopsFromTheStoppingSpeed) {
+  const Sight made = sight();
+  for (const double way : {2.0, 5.0, 12.0}) {
+    const double speed = made.stopping_speed(way);
+    EXPECT_NEAR(speed * 2 * period + speed * speed / 12, way - front - 0.1, 1e-9) << way;
+  }
+  EXPECT_GT(made.stopping_speed(0), 0) << "it looks around the corner";
+  EXPECT_TRUE(std::isinf(made.stopping_speed(PathInSight::all)));
+}
+
+}  // namespace
+}  // namespace slalom::vehicle::detail
