@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "slalom/evaluation/closed_loop.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 
 namespace slalom::evaluation {
@@ -123,6 +124,20 @@ TEST(Race, StandingStartsAreToldFromFlyingLaps) {
   const LapResult single = alone.run(3);
   EXPECT_NEAR(laps[0].time(), single.time, 1e-3);
   EXPECT_GT(steps, 3 * single.steps / 2);
+}
+
+TEST(Race, TheSimulatedCarMayBeOfFullScale) {
+  const auto world_of = [](SimulatedCar car) {
+    const ClosedLoop loop(runner(environment_of("stag"), {.car = car}), 1);
+    return loop.world().options();
+  };
+  EXPECT_EQ(world_of(SimulatedCar::f1tenth).car.mass, sim::CarParameters{}.mass);
+  const sim::WorldOptions full = world_of(SimulatedCar::full_scale);
+  EXPECT_EQ(full.car.mass, sim::CarParameters::full_scale().mass);
+  EXPECT_EQ(full.lidar.range_max, 200);
+  LapSettings settings;
+  EXPECT_TRUE(set_world_option(settings, "world.car", "full_scale"));
+  EXPECT_EQ(settings.car, SimulatedCar::full_scale);
 }
 
 TEST(Race, AccelerationsAreThoseOfTheSpeedsAndTheCurve) {

@@ -75,6 +75,20 @@ TEST_F(RaceCommand, TyresSaturateUnlessTheirOptionSaysOtherwise) {
   EXPECT_EQ(saturate("--set world.saturating_tyres=false"), false);
 }
 
+TEST_F(RaceCommand, LearnsTheGripFromLapToLap) {
+  const auto run = program(
+      "race --course wren --set samples=512 --set vehicle.usable_grip=0.6 --learn --laps 3 --json r.json");
+  EXPECT_EQ(run.status, 0) << run.output;
+  EXPECT_TRUE(says(run, "--set planner.grip_shares=[")) << run.output;
+  const json r = result("r.json");
+  ASSERT_EQ(r["laps"].size(), 3u);
+  for (const json& lap : r["laps"]) EXPECT_EQ(lap["start"], "standing");
+  EXPECT_LT(r["laps"][2]["time_s"], r["laps"][0]["time_s"]);
+  EXPECT_GT(r["learned"]["usable_grip"], 0.6);
+  EXPECT_EQ(r["learned"]["grip_shares"].size(), static_cast<std::size_t>(r["length_m"].get<double>() / 6));
+  EXPECT_NE(race("--learn --laps 1").status, 0) << "the configuration default does not seek the lap time";
+}
+
 TEST_F(RaceCommand, ComparesTwoRunsAlongTheLap) {
   ASSERT_EQ(race("--laps 2 --json slow.json --set planner.max_speed=2").status, 0);
   const auto run = race("--laps 2 --json fast.json --compare slow.json --plot both.png");

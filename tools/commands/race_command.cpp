@@ -5,6 +5,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
+#include "slalom/evaluation/grip_learning.hpp"
 #include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/race.hpp"
 #include "slalom/vehicle/racing/racing_car.hpp"
@@ -29,9 +30,14 @@ struct RaceArguments {
   std::string method = "svg_mppi", compare, json, plot;
   std::uint64_t seed = 0;
   int laps = 5;
-  bool standing = false;
+  bool standing = false, learn = false;
   double friction = 0.9;
 };
+
+/// m, length of the parts of a course whose grip is learned.
+constexpr double part_length = 6;
+/// Laps in a row that gain nothing, after which learning ends.
+constexpr int patience = 5;
 
 /// The acceleration (m/s^2) of a friction coefficient.
 double acceleration_of(double friction) {
@@ -54,11 +60,15 @@ class RaceJob {
     settings_["laps"] = arguments.laps;
     settings_["standing"] = arguments.standing;
     settings_["friction"] = arguments.friction;
+    settings_["learn"] = arguments.learn;
     settings_["timeout_s"] = runner_->timeout();
     settings_["control_period_s"] = runner_->control_period();
     race_.length = runner_->lap_length();
     race_.grip = acceleration_of(arguments.friction);
     race_.profile = evaluation::profile_lap(*runner_, false, race_.grip);
+    if (arguments.learn &&
+        !vehicle::make_vehicle_model(scenario_.configuration.vehicle)->traits().seeks_lap_time)
+      throw CommandLineError("--learn", "needs a configuration with vehicle.objective: lap_time");
     race_.profile_from_rest = evaluation::profile_lap(*runner_, true, race_.grip);
     if (!arguments.compare.empty()) other_ = read_run(arguments.compare, settings_, race_.length);
   }
@@ -77,6 +87,8 @@ class RaceJob {
     if (race_.laps.empty()) return 1;
     write_results();
     const auto flying = race_statistics(race_, false), standing = race_statistics(race_, true);
+    if (learned_)
+      return learned_->best().empty() ? 1 : 0;  // a lap that asks for too much is part of learning
     return flying.completed + standing.completed == arguments_.laps ? 0 : 1;
   }
 
@@ -94,9 +106,36 @@ class RaceJob {
       const std::string label = std::to_string(race_.laps.size()) + (lap.standing ? " standing" : " flying");
       print_lap(words_, label, lap, race_.grip);
     };
+    if (arguments_.learn) return drive_and_learn(on_step, on_lap, interrupt.raised());
     evaluation::drive_race(
         runner_, {.laps = arguments_.laps, .seed = arguments_.seed, .standing = arguments_.standing},
         {.on_step = on_step, .on_lap = on_lap}, &interrupt.raised());
+  }
+
+  /// Standing starts, each with the grip that the laps before have shown, until `patience` of them in a row
+  /// have gained nothing.
+  template <class OnStep, class OnLap>
+  void drive_and_learn(const OnStep& on_step, const OnLap& on_lap, const std::atomic<bool>& cancel) {
+    const auto& own = scenario_.configuration.vehicle.own_of<vehicle::SingleTrackOptions>();
+    const maps::Pose& start = runner_->start();
+    learned_.emplace(race_.length, scenario_.environment->track->lap_path()->project({start.x, start.y}).arc,
+                     std::max(static_cast<int>(race_.length / part_length), 1), own.usable_grip, race_.grip);
+    for (int lap = 0; lap < arguments_.laps && learned_->without_gain() < patience; ++lap) {
+      const auto runner = std::make_shared<evaluation::LapRunner>(
+          scenario_.environment, evaluation::with_belief(scenario_.configuration, learned_->next()),
+          arguments_.method, scenario_.lap);
+      const auto seed = evaluation::lap_seed(arguments_.seed, lap, scenario_.lap.obstacles);
+      const auto on_step_of_lap = [&](int, const evaluation::ControlStep& step) { on_step(lap, step); };
+      const auto driven = evaluation::drive_race(runner, {.laps = 1, .seed = seed, .standing = true},
+                                                 {.on_step = on_step_of_lap, .on_lap = on_lap}, &cancel);
+      if (driven.empty()) return;
+      learned_->learn(driven[0]);
+    }
+  }
+
+  /// The options with which the fastest lap was driven.
+  vehicle::Configuration learned_configuration() const {
+    return evaluation::with_belief(scenario_.configuration, learned_->best());
   }
 
   /// The lap of the other run with which a lap is compared: one with the same kind of start.
@@ -114,6 +153,7 @@ class RaceJob {
       std::fprintf(words_, "note: %s has no completed %s to compare with\n", other_->file.c_str(),
                    best->standing ? "standing start" : "flying lap");
     if (best) print_along(words_, race_, *best, theirs, arguments_.compare);
+    if (learned_ && !learned_->best().empty()) print_learned();
     if (!arguments_.json.empty()) write_json(results(best, theirs), arguments_.json);
     if (arguments_.plot.empty()) return;
     if (!best) {
@@ -122,6 +162,19 @@ class RaceJob {
     }
     plot(*best, theirs);
     std::fprintf(words_, "picture: %s\n", arguments_.plot.c_str());
+  }
+
+  /// The options that drive as the fastest lap did.
+  void print_learned() const {
+    const vehicle::Configuration learned = learned_configuration();
+    std::string shares;
+    for (const double share : learned.planner.grip_shares.values()) {
+      char text[16];
+      std::snprintf(text, sizeof text, "%s%.3f", shares.empty() ? "" : ",", share);
+      shares += text;
+    }
+    std::fprintf(words_, "learned: --set vehicle.usable_grip=%.3f --set planner.grip_shares=[%s]\n",
+                 learned.vehicle.own_of<vehicle::SingleTrackOptions>().usable_grip, shares.c_str());
   }
 
   Json results(const RacingLap* best, const RacingLap* theirs) const {
@@ -135,6 +188,11 @@ class RaceJob {
                           {"other_lap_s", theirs->time()},
                           {"difference_s", best->time() - theirs->time()}};
     json["solve_ms"] = times_json(solve_ms_);
+    if (learned_ && !learned_->best().empty()) {
+      const vehicle::Configuration learned = learned_configuration();
+      json["learned"] = {{"usable_grip", learned.vehicle.own_of<vehicle::SingleTrackOptions>().usable_grip},
+                         {"grip_shares", learned.planner.grip_shares.values()}};
+    }
     return json;
   }
 
@@ -167,6 +225,7 @@ class RaceJob {
   Json settings_;
   RaceResult race_;
   std::optional<OtherRun> other_;
+  std::optional<evaluation::GripLearning> learned_;
   std::vector<float> solve_ms_;
 };
 
@@ -175,7 +234,7 @@ int run_race(const Subcommand& command, const RaceArguments& arguments, const Gr
   const bool grid = command.given("--cars") || command.given("--against");
   for (const char* name : {"--races", "--jobs"})
     if (!grid && command.given(name)) throw CommandLineError(name, "needs --cars or --against");
-  for (const char* name : {"--standing", "--friction", "--compare", "--plot"})
+  for (const char* name : {"--standing", "--learn", "--friction", "--compare", "--plot"})
     if (grid && command.given(name))
       throw CommandLineError(name, "is for laps against the clock, without --cars and --against");
   if (!grid) return RaceJob(arguments).run();
@@ -235,6 +294,9 @@ void declare_race(Subcommand& command) {
       .show_default();
   add_grid_options(command, *several);
   command.flag("--standing", arguments->standing, "Begin every lap with a standing start");
+  command.flag("--learn", arguments->learn,
+               "After each lap, a standing start, use more grip where the lap stayed inside the friction "
+               "circle, and less where it left it, until nothing is gained");
   command
       .option("--friction", arguments->friction,
               "Radius of the friction circle with which accelerations are compared, in g")
