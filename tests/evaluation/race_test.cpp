@@ -126,18 +126,18 @@ TEST(Race, StandingStartsAreToldFromFlyingLaps) {
   EXPECT_GT(steps, 3 * single.steps / 2);
 }
 
-TEST(Race, TheSimulatedCarMayBeOfFullScale) {
-  const auto world_of = [](SimulatedCar car) {
+TEST(Race, TheSimulatedCarMayBeAPassengerCar) {
+  const auto world_of = [](sim::CarKind car) {
     const ClosedLoop loop(runner(environment_of("stag"), {.car = car}), 1);
     return loop.world().options();
   };
-  EXPECT_EQ(world_of(SimulatedCar::f1tenth).car.mass, sim::CarParameters{}.mass);
-  const sim::WorldOptions full = world_of(SimulatedCar::full_scale);
+  EXPECT_EQ(world_of(sim::CarKind::f1tenth).car.mass, sim::CarParameters{}.mass);
+  const sim::WorldOptions full = world_of(sim::CarKind::passenger_car);
   EXPECT_EQ(full.car.mass, sim::CarParameters::full_scale().mass);
-  EXPECT_EQ(full.lidar.range_max, 200);
+  EXPECT_EQ(full.lidar.range_max, 150);
   LapSettings settings;
-  EXPECT_TRUE(set_world_option(settings, "world.car", "full_scale"));
-  EXPECT_EQ(settings.car, SimulatedCar::full_scale);
+  EXPECT_TRUE(set_world_option(settings, "world.car", "passenger_car"));
+  EXPECT_EQ(settings.car, sim::CarKind::passenger_car);
 }
 
 TEST(Race, AccelerationsAreThoseOfTheSpeedsAndTheCurve) {

@@ -113,8 +113,7 @@ struct Planner::Implementation {
   double steer_estimate() const noexcept {
     return model->has_dynamics() ? car.state().now().steer : history.steer();
   }
-  /// Records the command that is sent; with the steering gain of the car where that is known. What is
-  /// recorded must be valid, too.
+  /// Checks, records and sends the command, with the steering gain of the car where that is known.
   void send(const Odometry& odometry) noexcept {
     output.corrections = check_command(output.command, limits(odometry), steer_estimate());
     history.send(observed_steer(output.command));
