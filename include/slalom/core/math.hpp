@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "slalom/core/pack_pair.hpp"
+#include "slalom/core/pack/pair.hpp"
 
 /// Mathematics that a problem may use, written once for `float`, `double` and packs of SIMD lanes: call these
 /// by their unqualified or `slalom::` names instead of those in `std`.

@@ -32,9 +32,8 @@
 ///  - a member `input_rate_max`, of the same kind, in 1/s: inputs move no faster, in rollouts as in plans;
 ///  - `void sample(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept`: noise of its
 ///    own in place of independent standard normal values (see `Sampler`);
-///  - `static constexpr bool long_steps = true`: a step is so long, several hundred instructions, that
-///  rollouts
-///    are faster if every operation of it is that of two packs. It changes no result (see pack_pair.hpp).
+///  - `static constexpr bool long_steps = true`: a step is several hundred instructions long, so that
+///    rollouts are faster if each of them takes two packs. It changes no result (see pack/pair.hpp).
 namespace slalom {
 
 /// The `M` inputs of one step.

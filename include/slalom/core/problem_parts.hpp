@@ -113,7 +113,7 @@ inline constexpr bool limits_rates = requires(const P& p) {
   p.input_rate_max;
 };
 
-/// Whether rollouts of a problem take packs in pairs (pack_pair.hpp).
+/// Whether rollouts of a problem take packs in pairs (pack/pair.hpp).
 template <class P>
 inline constexpr bool has_long_steps = requires {
   requires P::long_steps;

@@ -6,9 +6,9 @@
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
-#include "vehicle/planner/cars_behind.hpp"
 #include "vehicle/planner/obstacle_memory.hpp"
-#include "vehicle/planner/pace_of_others.hpp"
+#include "vehicle/planner/others/cars_behind.hpp"
+#include "vehicle/planner/others/pace_of_others.hpp"
 
 namespace slalom::vehicle::detail {
 

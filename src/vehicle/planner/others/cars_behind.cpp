@@ -1,4 +1,4 @@
-#include "vehicle/planner/cars_behind.hpp"
+#include "vehicle/planner/others/cars_behind.hpp"
 
 #include <algorithm>
 #include <cmath>

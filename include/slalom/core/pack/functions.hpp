@@ -1,9 +1,9 @@
 #pragma once
 
-#include "slalom/core/pack_math.hpp"
+#include "slalom/core/pack/math.hpp"
 
-/// Further mathematics on packs, made of the functions of pack_math.hpp. Accuracy: math.hpp. Polynomials of
-/// tanh, sinh and asin: S. L. Moshier's Cephes library (tanhf, sinhf, asinf).
+/// Further mathematics on packs, made of the functions of pack/math.hpp. Accuracy: core/math.hpp. Polynomials
+/// of tanh, sinh and asin: S. L. Moshier's Cephes library (tanhf, sinhf, asinf).
 namespace slalom {
 
 /// Whether all lanes are set.

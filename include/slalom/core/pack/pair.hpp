@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slalom/core/pack_functions.hpp"
+#include "slalom/core/pack/functions.hpp"
 
 /// Two packs that take part in each operation together. A step of several hundred instructions is longer than
 /// what a processor looks ahead, so the next pack's step cannot hide the latencies of this one; the other
