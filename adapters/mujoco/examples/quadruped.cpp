@@ -58,11 +58,11 @@ int main(int argc, char** argv) {
   for (std::uint64_t seed = 0; seed < seeds_of(argc, argv, "5"); ++seed) {
     slalom::Controller controller{
         slalom::mujoco::Evaluator{model, StandUp{}, {.physics_steps = physics_steps}},
-        slalom::MppiOptions{.horizon = 25,
+        slalom::MppiOptions{.horizon = 20,
                             .samples = 64,
                             .temperature = 0.1,
-                            .variance = 0.1,
-                            .noise = {.knots = 5},
+                            .variance = 0.05,
+                            .noise = {.knots = 3},
                             .control_cost_discount = 1,
                             .seed = seed}};
     World world(model);
