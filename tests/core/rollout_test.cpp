@@ -122,8 +122,9 @@ TEST_P(RolloutOn, TakesPacksInPairsWithTheSameResults) {
         EXPECT_EQ(hits[k], expected_hits[k]) << first << " + " << count << ": " << k;
       }
       for (std::size_t k = 0; k < costs.size(); ++k)
-        if (k < at || k >= static_cast<std::size_t>(padded(first + count)))
+        if (k < at || k >= static_cast<std::size_t>(padded(first + count))) {
           EXPECT_EQ(costs[k], -1.0f) << k << " was not asked for";
+        }
     }
 }
 
