@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 
 namespace slalom::evaluation {
@@ -86,7 +87,8 @@ TEST(GripLearning, PartsBeginAtTheFirstPointOfTheCourse) {
 }
 
 TEST(GripLearning, TheBeliefIsWhatPlansUse) {
-  const vehicle::Configuration made = with_belief({}, {0.6, 0.8, 0.4});
+  const auto plain = std::make_unique<vehicle::Configuration>();
+  const vehicle::Configuration made = with_belief(*plain, {0.6, 0.8, 0.4});
   EXPECT_EQ(made.vehicle.own_of<vehicle::SingleTrackOptions>().usable_grip, 0.8);
   const auto& shares = made.planner.grip_shares.values();
   ASSERT_EQ(shares.size(), 3u);

@@ -127,17 +127,14 @@ TEST(Race, StandingStartsAreToldFromFlyingLaps) {
 }
 
 TEST(Race, TheSimulatedCarMayBeAPassengerCar) {
-  const auto world_of = [](sim::CarKind car) {
-    const ClosedLoop loop(runner(environment_of("stag"), {.car = car}), 1);
-    return loop.world().options();
-  };
-  EXPECT_EQ(world_of(sim::CarKind::f1tenth).car.mass, sim::CarParameters{}.mass);
-  const sim::WorldOptions full = world_of(sim::CarKind::passenger_car);
-  EXPECT_EQ(full.car.mass, sim::CarParameters::full_scale().mass);
-  EXPECT_EQ(full.lidar.range_max, 150);
   LapSettings settings;
   EXPECT_TRUE(set_world_option(settings, "world.car", "passenger_car"));
   EXPECT_EQ(settings.car, sim::CarKind::passenger_car);
+  const auto environment = environment_of("stag");
+  const ClosedLoop small(runner(environment), 1);
+  EXPECT_EQ(small.world().options().car.mass, sim::CarParameters{}.mass);
+  EXPECT_THROW(ClosedLoop(runner(environment, settings), 1), std::invalid_argument)
+      << "on a course of scale 1/10 it lies in a wall";
 }
 
 TEST(Race, AccelerationsAreThoseOfTheSpeedsAndTheCurve) {
