@@ -10,7 +10,8 @@ namespace {
 std::vector<std::string> seeds() {
   std::vector<std::string> seeds{
       "samples=100\nsvg_mppi.variance=[0.1]\nworld.friction=0.5\nplanner.max_speed=8\n"};
-  for (const vehicle::Section& section : vehicle::list_sections({})) {
+  const vehicle::Configuration defaults;
+  for (const vehicle::Section& section : vehicle::list_sections(defaults)) {
     std::string all;
     for (const OptionEntry& option : section.options)
       all += section.name + "." + option.declaration.name + "=" + to_text(option.value) + "\n";
