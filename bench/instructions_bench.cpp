@@ -2,7 +2,10 @@
 // batch, and its parent lets it run from one instruction to the next. Counts do not depend on the load of the
 // machine and need no performance counters. Prints "address count" for each instruction that ran, relative to
 // the program's file; script/instructions-per-step makes a table of them.
-//   slalom_instructions_bench reference|published|single_track avx512|avx2|sse4|generic
+//   slalom_instructions_bench reference|published|single_track avx512|avx2|sse4|generic|neon
+// With "attached" as a third argument, it evaluates the batch in its own process, between two signals for a
+// debugger that counts (an emulator has no single steps of its own), and prints the address of the program's
+// file.
 
 #include <elf.h>
 #include <link.h>
@@ -43,14 +46,13 @@ simd::Target target_of(const std::string& wanted) {
   throw std::invalid_argument(wanted + ": not an instruction set of this processor");
 }
 
-/// Evaluates the batch between two signals to the parent.
-void evaluate(const BatchEvaluator& evaluator, const SequenceBatch& batch) {
+/// Evaluates the batch between two signals to the process that counts, and ends this one.
+[[noreturn]] void evaluate(const BatchEvaluator& evaluator, const SequenceBatch& batch) {
   AlignedBuffer costs(static_cast<std::size_t>(batch.stride()));
   std::vector<std::uint8_t> collided(static_cast<std::size_t>(batch.stride()));
-  ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
-  raise(SIGSTOP);
+  raise(SIGUSR1);
   evaluator.evaluate(batch, 0, samples, costs.data(), collided.data());
-  raise(SIGSTOP);
+  raise(SIGUSR1);
   _exit(costs[0] > 0 ? 0 : 1);
 }
 
@@ -83,7 +85,7 @@ std::map<std::uint64_t, long> count(pid_t child, std::uint64_t base) {
   return counts;
 }
 
-int run(const std::string& problem, const std::string& target) {
+int run(const std::string& problem, const std::string& target, bool attached) {
   const ReferenceWorkload workload;
   const auto model = workload.model(problem_of(problem), target_of(target));
   const SequenceBatch batch = workload.sequences(samples, steps, model->inputs());
@@ -94,9 +96,18 @@ int run(const std::string& problem, const std::string& target) {
         return 1;  // the program is the first
       },
       &base);
-  const pid_t child = fork();
-  if (child == 0) evaluate(model->evaluator(), batch);
   std::printf("rollout steps %d\n", samples * steps);
+  if (attached) {
+    std::printf("loaded at %llx\n", static_cast<unsigned long long>(base));
+    std::fflush(stdout);
+    evaluate(model->evaluator(), batch);
+  }
+  std::fflush(stdout);  // or the child would print it again
+  const pid_t child = fork();
+  if (child == 0) {
+    ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
+    evaluate(model->evaluator(), batch);
+  }
   for (const auto& [address, times] : count(child, base))
     std::printf("%llx %ld\n", static_cast<unsigned long long>(address), times);
   return 0;
@@ -106,8 +117,10 @@ int run(const std::string& problem, const std::string& target) {
 }  // namespace slalom::workload
 
 int main(int count, char** arguments) try {
-  if (count != 3) throw std::invalid_argument("usage: slalom_instructions_bench PROBLEM INSTRUCTION_SET");
-  return slalom::workload::run(arguments[1], arguments[2]);
+  const bool attached = count == 4 && std::string(arguments[3]) == "attached";
+  if (count != 3 && !attached)
+    throw std::invalid_argument("usage: slalom_instructions_bench PROBLEM INSTRUCTION_SET [attached]");
+  return slalom::workload::run(arguments[1], arguments[2], attached);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "slalom_instructions_bench: %s\n", error.what());
   return 1;
