@@ -123,10 +123,15 @@ void MapPicture::legend(const std::string& title, const std::string& facts, doub
   // A lap of an evaluation is named by all that was set for it.
   pen_.text(margin, base + 64, fitting_size(title, 40, 14, bar_left - 3 * margin), title, ink, 0, true);
 
-  const auto lines = wrapped(facts, 22, bar_left - 2 * margin);
+  double size = 22, spacing = 30, first = 100;
+  auto lines = wrapped(facts, size, bar_left - 2 * margin);
+  if (lines.size() == 1) first = 108;
+  if (lines.size() > 2) {  // a narrow picture: three lines fit into the band
+    size = 18, spacing = 23, first = 98;
+    lines = wrapped(facts, size, bar_left - 2 * margin);
+  }
   for (std::size_t i = 0; i < lines.size(); ++i)
-    pen_.text(margin, base + (lines.size() == 1 ? 108 : 100) + 30 * static_cast<double>(i), 22, lines[i],
-              faint_ink);
+    pen_.text(margin, base + first + spacing * static_cast<double>(i), size, lines[i], faint_ink);
   for (int k = 0; k < static_cast<int>(bar_width); ++k) {
     pen_.rectangle(bar_left + k, bar_top, 1.5, 14, speed_colour(k / (bar_width - 1)));
   }
