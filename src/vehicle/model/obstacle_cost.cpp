@@ -13,11 +13,12 @@ double disc_radius(const BodyOptions& options) {
 
 }  // namespace
 
-ObstacleCost::ObstacleCost(const BodyOptions& options) : discs_(options.model == BodyModel::discs) {
+ObstacleCost::ObstacleCost(const BodyOptions& options)
+    : discs_(options.model == BodyModel::discs), radius_(disc_radius(options)), margin_(options.margin) {
   const double length = options.front + options.rear;
   for (int i = 0; i < 3; ++i) disc_[i] = -options.rear + length * (2 * i + 1) / 6;
-  collision_clearance_ = disc_radius(options) + options.margin;
-  soft_end_ = disc_radius(options) + options.margin + options.soft_margin;
+  collision_clearance_ = radius_ + margin_;
+  soft_end_ = radius_ + margin_ + options.soft_margin;
   inverse_soft_margin_ = options.soft_margin > 0 ? 1 / options.soft_margin : 0;
   soft_cost_ = options.soft_margin > 0 ? options.soft_cost : 0;
 }

@@ -93,6 +93,7 @@ void VehicleModel::set_friction(double) noexcept {}
 void VehicleModel::set_reverse(double) noexcept {}
 void VehicleModel::set_top_speed(double) noexcept {}
 void VehicleModel::set_urgency(Urgency) noexcept {}
+void VehicleModel::set_margin_share(double) noexcept {}
 
 std::unique_ptr<VehicleModel> make_vehicle_model(const VehicleOptions& options, simd::Target target) {
   validate_options(options, "vehicle");

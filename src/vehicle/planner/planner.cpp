@@ -24,6 +24,13 @@
 namespace slalom::vehicle {
 using namespace detail;
 
+namespace {
+
+/// Of the margin around the body, what a car keeps that stands too near to obstacles to move.
+constexpr double confined_margin = 0.2;
+
+}  // namespace
+
 struct Planner::Implementation {
   PlannerOptions options;
   maps::Point origin;  ///< of the frame that all below works in, in the map frame
@@ -206,6 +213,7 @@ struct Planner::Implementation {
                     obstacles.one_drives_ahead(odometry.pose, origin));
     detour->note(recovery, odometry.pose);
     model->set_reverse(recovery.reversing() ? Recovery::speed : 0);
+    model->set_margin_share(recovery.confined() ? confined_margin : 1);
     if (recovery.tries_again() && detour->search(obstacles.clearance_map(), odometry.pose, nearest)) {
       model->set_urgency(Urgency::detour);
       return detour->field_around({start.x, start.y}).view();

@@ -23,6 +23,11 @@ class Recovery {
   /// Whether it drives on after it had to reverse, and is not yet well past the place where that was.
   bool tries_again() const noexcept { return trying_again_ && !reversing_; }
 
+  /// Whether the car stood too near to obstacles to reverse at all, until it is well past that place. A car
+  /// just outside of its margin finds no way that does not touch it, in either direction, though there is
+  /// room.
+  bool confined() const noexcept { return confined_; }
+
   /// Advances by one control period (s), with where the car is along the course (m) of this length (m), 0
   /// where it is not closed, its speed (m/s) and the one at which it would drive if the path were free.
   /// `waits`: a car that drives is close ahead; what blocks the way then drives off, so that the car is not
@@ -48,6 +53,7 @@ class Recovery {
   static constexpr double hesitation = 0.5;               ///< s of crawling
   static constexpr double stand_still = 0.7;              ///< s of standing
   static constexpr double shortest = 0.8, longest = 3.0;  ///< m to reverse
+  static constexpr double moved = 0.1;                    ///< m, a car that reverses less is confined
   static constexpr double slowest_try = 10;               ///< s of reversing at most
   static constexpr double relief = 4;                     ///< m of progress after which the dead end is left
 
@@ -60,7 +66,7 @@ class Recovery {
     if (std::abs(ahead) > 10) {  // put somewhere else
       furthest_ = arc;
       ahead = since_progress_ = 0;
-      leaving_ = trying_again_ = false;
+      leaving_ = trying_again_ = confined_ = false;
     }
     since_progress_ += period;
     standing_for_ = std::abs(speed_now) < standing && period > 0 ? standing_for_ + period : 0;
@@ -69,7 +75,7 @@ class Recovery {
       since_progress_ = 0;
     }
     if (leaving_ && way(stuck_, arc, length) > relief) {
-      leaving_ = false;
+      leaving_ = confined_ = false;
       distance_ = shortest;
     }
     if (way(reversed_at_, arc, length) > relief) trying_again_ = false;
@@ -89,12 +95,13 @@ class Recovery {
     standing_for_ = std::abs(speed_now) < standing ? standing_for_ + period : 0;
     if (driven_ < distance_ && standing_for_ < stand_still && reversing_for_ < slowest_try) return;
     reversing_ = false;
+    confined_ |= driven_ < moved;
     since_progress_ = standing_for_ = 0;
     furthest_ = arc;
     distance_ = std::min(1.6 * distance_, longest);
   }
 
-  bool started_ = false, reversing_ = false, leaving_ = false, trying_again_ = false;
+  bool started_ = false, reversing_ = false, leaving_ = false, trying_again_ = false, confined_ = false;
   double furthest_ = 0, stuck_ = 0, reversed_at_ = 0;                 ///< m along the course
   double since_progress_ = 0, standing_for_ = 0, reversing_for_ = 0;  ///< s
   double crawling_for_ = 0;                                           ///< s

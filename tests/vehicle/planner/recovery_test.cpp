@@ -65,6 +65,27 @@ TEST(Recovery, ReversesFurtherEachTimeUntilTheCarGetsOn) {
   EXPECT_NEAR(way, first, 0.05);
 }
 
+TEST(Recovery, ACarThatCannotReverseIsConfinedUntilItIsPastThePlace) {
+  Recovery recovery;
+  while (!recovery.update(7, length, 0, 2, period)) EXPECT_FALSE(recovery.confined());
+  EXPECT_FALSE(recovery.confined()) << "it reverses first";
+  while (recovery.update(7, length, 0, 2, period)) {
+  }
+  EXPECT_TRUE(recovery.confined());
+  double arc = 7;
+  for (; recovery.confined(); arc += 0.05) EXPECT_FALSE(recovery.update(arc, length, 2, 2, period));
+  EXPECT_NEAR(arc, 11, 0.1);
+}
+
+TEST(Recovery, ACarThatReversedIsNotConfined) {
+  Recovery recovery;
+  double arc = 7;
+  while (!recovery.update(arc, length, 0, 2, period)) {
+  }
+  while (recovery.update(arc, length, -1, 2, period)) arc -= period;
+  EXPECT_FALSE(recovery.confined());
+}
+
 TEST(Recovery, LeavesThePathUntilTheCarIsPastThePlaceWhereItStood) {
   Recovery recovery;
   for (int k = 0; k < 40; ++k) recovery.update(6 + 0.025 * k, length, 1, 2, period);

@@ -112,6 +112,9 @@ class PathTracking {
   /// See VehicleModel.
   void set_urgency(Urgency urgency) noexcept { cost_.set_urgency(urgency); }
 
+  /// See VehicleModel.
+  void set_margin_share(double share) noexcept { obstacles_.set_margin_share(share); }
+
   /// The state at the start; `reference_speed` (m/s) is the path's there.
   State<double> start(const VehicleStart& start, double reference_speed) noexcept {
     return motion_.start(start, reference_speed);

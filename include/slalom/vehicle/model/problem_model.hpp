@@ -101,6 +101,10 @@ class ProblemModel final : public VehicleModel {
     if constexpr (dynamic) evaluator_.problem().set_urgency(urgency);
   }
 
+  void set_margin_share([[maybe_unused]] double share) noexcept override {
+    if constexpr (dynamic) evaluator_.problem().set_margin_share(share);
+  }
+
   PredictedCost predict(std::span<const float> inputs,
                         std::span<PredictedState> states) const noexcept override {
     const P& problem = evaluator_.problem();

@@ -56,6 +56,8 @@ class VehicleModel {
   virtual void set_top_speed(double speed) noexcept;
   /// The urgency of predictions from now on.
   virtual void set_urgency(Urgency urgency) noexcept;
+  /// The share (0 to 1) of the margin around the body within which predictions from now on collide.
+  virtual void set_margin_share(double share) noexcept;
 
   /// The states (one more than steps) of one control sequence, [step][input], and its cost. A car that
   /// collides at the start must be able to leave, so the states before the first free one do not count as a
