@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <stdexcept>
 
 #include "slalom/maps/reference_field.hpp"
 #include "vehicle/planner/back_up.hpp"
@@ -23,13 +22,6 @@
 
 namespace slalom::vehicle {
 using namespace detail;
-
-namespace {
-
-/// Of the margin around the body, what a car keeps that stands too near to obstacles to move.
-constexpr double confined_margin = 0.2;
-
-}  // namespace
 
 struct Planner::Implementation {
   PlannerOptions options;
@@ -213,7 +205,7 @@ struct Planner::Implementation {
                     obstacles.one_drives_ahead(odometry.pose, origin));
     detour->note(recovery, odometry.pose);
     model->set_reverse(recovery.reversing() ? Recovery::speed : 0);
-    model->set_margin_share(recovery.confined() ? confined_margin : 1);
+    model->set_margin_share(recovery.margin_share());
     if (recovery.tries_again() && detour->search(obstacles.clearance_map(), odometry.pose, nearest)) {
       model->set_urgency(Urgency::detour);
       return detour->field_around({start.x, start.y}).view();
@@ -285,19 +277,7 @@ struct Planner::Implementation {
 
 Planner::Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
                  std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver) {
-  validate_options(options, "planner");
-  if (!model) throw std::invalid_argument("planner: model must not be null");
-  if (!solver) throw std::invalid_argument("planner: solver must not be null");
-  if (delay_of(options, model->traits()) > 32 * options.control_period) {
-    throw std::invalid_argument(
-        "planner.latency: together with vehicle.dead_time must be at most 32 control periods");
-  }
-  if (solver->inputs() != model->inputs()) {
-    throw std::invalid_argument("planner: solver has " + std::to_string(solver->inputs()) +
-                                " inputs per step, must have " + std::to_string(model->inputs()) +
-                                ", like the vehicle model");
-  }
-  maps::check_reference_path(path);
+  check_parts(options, model.get(), path, solver.get());
   implementation_ = std::make_unique<Implementation>(options, std::move(model), path, std::move(solver));
 }
 

@@ -27,6 +27,8 @@ class Recovery {
   /// just outside of its margin finds no way that does not touch it, in either direction, though there is
   /// room.
   bool confined() const noexcept { return confined_; }
+  /// The share of the margin around the body that plans keep.
+  double margin_share() const noexcept { return confined_ ? confined_margin : 1; }
 
   /// Advances by one control period (s), with where the car is along the course (m) of this length (m), 0
   /// where it is not closed, its speed (m/s) and the one at which it would drive if the path were free.
@@ -54,6 +56,7 @@ class Recovery {
   static constexpr double stand_still = 0.7;              ///< s of standing
   static constexpr double shortest = 0.8, longest = 3.0;  ///< m to reverse
   static constexpr double moved = 0.1;                    ///< m, a car that reverses less is confined
+  static constexpr double confined_margin = 0.2;          ///< share of the margin that it keeps then
   static constexpr double slowest_try = 10;               ///< s of reversing at most
   static constexpr double relief = 4;                     ///< m of progress after which the dead end is left
 
