@@ -54,22 +54,22 @@ struct ThreadPool::Shared {
    public:
     static constexpr std::uint32_t most = 0xffff;  ///< tasks
 
-    void open(std::uint32_t round, std::uint32_t tasks) noexcept {
-      word_.store(static_cast<std::uint64_t>(round) << 32 | tasks, std::memory_order_release);
+    void open(std::uint32_t of_round, std::uint32_t count) noexcept {
+      word_.store(static_cast<std::uint64_t>(of_round) << 32 | count, std::memory_order_release);
     }
     /// Takes the first task if there is one in this round, as the thread itself does.
-    bool take_first(std::uint32_t round, std::uint32_t& task) noexcept {
+    bool take_first(std::uint32_t of_round, std::uint32_t& task) noexcept {
       std::uint64_t word = word_.load(std::memory_order_acquire);
-      while (left(word, round) > 0) {
+      while (left(word, of_round) > 0) {
         task = begin(word);
         if (exchange(word, word + (1u << 16))) return true;
       }
       return false;
     }
     /// Takes the last task, as other threads do. To a thread that has begun they leave its last `few` ones.
-    bool take_last(std::uint32_t round, std::uint32_t few, std::uint32_t& task) noexcept {
+    bool take_last(std::uint32_t of_round, std::uint32_t few, std::uint32_t& task) noexcept {
       std::uint64_t word = word_.load(std::memory_order_acquire);
-      while (left(word, round) > (begin(word) > 0 ? few : 0)) {
+      while (left(word, of_round) > (begin(word) > 0 ? few : 0)) {
         task = end(word) - 1;
         if (exchange(word, word - 1)) return true;
       }
@@ -79,8 +79,8 @@ struct ThreadPool::Shared {
    private:
     static std::uint32_t begin(std::uint64_t word) noexcept { return static_cast<std::uint32_t>(word) >> 16; }
     static std::uint32_t end(std::uint64_t word) noexcept { return static_cast<std::uint32_t>(word) & most; }
-    static std::uint32_t left(std::uint64_t word, std::uint32_t round) noexcept {
-      return word >> 32 == round ? end(word) - begin(word) : 0;
+    static std::uint32_t left(std::uint64_t word, std::uint32_t of_round) noexcept {
+      return word >> 32 == of_round ? end(word) - begin(word) : 0;
     }
     bool exchange(std::uint64_t& expected, std::uint64_t next) noexcept {
       return word_.compare_exchange_weak(expected, next, std::memory_order_acq_rel,
