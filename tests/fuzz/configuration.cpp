@@ -8,8 +8,7 @@ namespace slalom::fuzz {
 namespace {
 
 std::vector<std::string> seeds() {
-  const vehicle::Configuration defaults;
-  return {vehicle::to_yaml(defaults),
+  return {vehicle::to_yaml({}),
           "base: other\nsvg_mppi:\n  samples: 4000\n  variance: [0.1]\nvehicle:\n  max_speed: 6\n  model: "
           "kinematic\n",
           "mppi: {temperature: 0.5, input_min: -.inf}\nplanner: {stop_when_blocked: true}\n"};

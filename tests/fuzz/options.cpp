@@ -10,8 +10,7 @@ namespace {
 std::vector<std::string> seeds() {
   std::vector<std::string> seeds{
       "samples=100\nsvg_mppi.variance=[0.1]\nworld.friction=0.5\nplanner.max_speed=8\n"};
-  const vehicle::Configuration defaults;
-  for (const vehicle::Section& section : vehicle::list_sections(defaults)) {
+  for (const vehicle::Section& section : vehicle::list_sections({})) {
     std::string all;
     for (const OptionEntry& option : section.options)
       all += section.name + "." + option.declaration.name + "=" + to_text(option.value) + "\n";

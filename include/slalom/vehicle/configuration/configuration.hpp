@@ -18,9 +18,11 @@ namespace slalom::vehicle {
 
 /// The sections of a configuration. An option that a file does not set has the default of its aggregate.
 struct Configuration {
+  // The methods come first: with a member before them, g++ 12 reports its list as maybe uninitialised
+  // wherever a temporary is made and every_method() could throw.
+  std::vector<SolverOptions> methods = every_method();  ///< one of each, in the order of solver_names()
   VehicleOptions vehicle;                               ///< options of the car model and its costs
   PlannerOptions planner;                               ///< options of the planner
-  std::vector<SolverOptions> methods = every_method();  ///< one of each, in the order of solver_names()
 
   /// The default options of every method, in the order of solver_names().
   static std::vector<SolverOptions> every_method();
