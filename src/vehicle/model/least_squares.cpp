@@ -16,13 +16,14 @@ double square_sum(const std::vector<double>& values) {
   return sum;
 }
 
-/// Solves a x = b for the parameters sought, the others being 0; empty if a is singular.
+/// Solves a x = b for the parameters that are sought and that the residuals depend on, the others being 0;
+/// empty if a is singular without them.
 std::optional<std::vector<double>> solve(std::vector<double> a, std::vector<double> b,
                                          std::span<const FitParameter> parameters) {
   const std::size_t n = b.size();
   const auto at = [&](std::size_t i, std::size_t j) -> double& { return a[i * n + j]; };
   for (std::size_t i = 0; i < n; ++i) {
-    if (parameters[i].sought) continue;
+    if (parameters[i].sought && at(i, i) > 0) continue;
     for (std::size_t j = 0; j < n; ++j) at(i, j) = at(j, i) = i == j;
     b[i] = 0;
   }
@@ -54,6 +55,7 @@ class Fitter {
   Fit fit(std::vector<double> start) {
     Fit best;
     best.values = std::move(start);
+    limit(best.values);
     of_(best.values, residuals_);
     best.sum = square_sum(residuals_);
     double damping = 1e-3;
@@ -74,6 +76,12 @@ class Fitter {
   }
 
  private:
+  /// Clamps the parameters that are sought to their ranges.
+  void limit(std::vector<double>& values) const {
+    for (std::size_t i = 0; i < parameters_.size(); ++i)
+      if (parameters_[i].sought) values[i] = std::clamp(values[i], parameters_[i].low, parameters_[i].high);
+  }
+
   /// Moves `best` where a damped step lowers the sum.
   bool step(Fit& best, const std::vector<double>& slope, double damping) {
     const std::size_t n = parameters_.size();
@@ -82,8 +90,8 @@ class Fitter {
     const auto move = solve(std::move(damped), slope, parameters_);
     if (!move) return false;
     std::vector<double> tried = best.values;
-    for (std::size_t i = 0; i < n; ++i)
-      tried[i] = std::clamp(tried[i] - (*move)[i], parameters_[i].low, parameters_[i].high);
+    for (std::size_t i = 0; i < n; ++i) tried[i] -= (*move)[i];
+    limit(tried);
     of_(tried, trial_);
     const double sum = square_sum(trial_);
     if (!(sum < best.sum)) return false;
@@ -137,7 +145,8 @@ std::vector<double> deviations(const Fit& fit, std::span<const FitParameter> par
     if (!parameters[i].sought) continue;
     std::vector<double> unit(n);
     unit[i] = 1;
-    const auto column = solve(fit.normal, unit, parameters);
+    const bool determined = fit.normal[i * n + i] > 0;
+    const auto column = determined ? solve(fit.normal, unit, parameters) : std::nullopt;
     found[i] = column ? std::sqrt(std::max(0.0, variance * (*column)[i])) : INFINITY;
   }
   return found;

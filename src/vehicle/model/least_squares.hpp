@@ -24,7 +24,7 @@ struct Fit {
 };
 
 /// The minimum near `start`, by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963) with slopes from
-/// central differences. Parameters stay within their ranges.
+/// central differences. Those that are sought stay within their ranges, also if `start` is outside.
 Fit least_squares(const Residuals& residuals, std::span<const FitParameter> parameters,
                   std::vector<double> start);
 
