@@ -70,6 +70,15 @@ TEST(GripLearning, AfterACollisionItReturnsToTheFastestLapWithLessWhereTheLapEnd
   EXPECT_LT(learning.next()[2], belief);
 }
 
+TEST(GripLearning, LapsThatNeverSucceedLeadToTheLeastBelief) {
+  GripLearning learning(length, 0, parts, belief, circle);
+  for (int k = 0; k < 30; ++k)
+    learning.learn(lap_of(
+        5, [](double) { return 9.0; }, 50));
+  EXPECT_EQ(learning.next()[2], GripLearning::least);
+  EXPECT_EQ(learning.next()[3], belief) << "where no lap came";
+}
+
 TEST(GripLearning, CountsLapsThatGainNothing) {
   GripLearning learning(length, 0, 1, belief, circle);
   for (const auto& [time, without] : {std::pair(10.0, 0), {9.5, 0}, {9.4999, 1}, {9.6, 2}, {9.3, 0}}) {

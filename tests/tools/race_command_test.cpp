@@ -87,6 +87,9 @@ TEST_F(RaceCommand, LearnsTheGripFromLapToLap) {
   EXPECT_GT(r["learned"]["usable_grip"], 0.6);
   EXPECT_EQ(r["learned"]["grip_shares"].size(), static_cast<std::size_t>(r["length_m"].get<double>() / 6));
   EXPECT_NE(race("--learn --laps 1").status, 0) << "the configuration default does not seek the lap time";
+  const auto careful = program("race --course wren --set vehicle.usable_grip=0.2 --learn --laps 1");
+  EXPECT_EQ(careful.status, 2);
+  EXPECT_TRUE(says(careful, "usable_grip of at least 0.3")) << careful.output;
 }
 
 TEST_F(RaceCommand, ComparesTwoRunsAlongTheLap) {

@@ -56,6 +56,7 @@ class RaceJob {
         runner_(std::make_shared<evaluation::LapRunner>(scenario_.environment, scenario_.configuration,
                                                         arguments.method, scenario_.lap)),
         settings_(settings_json(arguments.scenario, scenario_, arguments.method)) {
+    if (arguments.learn) check_learning();
     settings_["seed"] = arguments.seed;
     settings_["laps"] = arguments.laps;
     settings_["standing"] = arguments.standing;
@@ -66,9 +67,6 @@ class RaceJob {
     race_.length = runner_->lap_length();
     race_.grip = acceleration_of(arguments.friction);
     race_.profile = evaluation::profile_lap(*runner_, false, race_.grip);
-    if (arguments.learn &&
-        !vehicle::make_vehicle_model(scenario_.configuration.vehicle)->traits().seeks_lap_time)
-      throw CommandLineError("--learn", "needs a configuration with vehicle.objective: lap_time");
     race_.profile_from_rest = evaluation::profile_lap(*runner_, true, race_.grip);
     if (!arguments.compare.empty()) other_ = read_run(arguments.compare, settings_, race_.length);
   }
@@ -110,6 +108,15 @@ class RaceJob {
     evaluation::drive_race(
         runner_, {.laps = arguments_.laps, .seed = arguments_.seed, .standing = arguments_.standing},
         {.on_step = on_step, .on_lap = on_lap}, &interrupt.raised());
+  }
+
+  /// Throws CommandLineError where this configuration cannot learn.
+  void check_learning() const {
+    const vehicle::VehicleOptions& options = scenario_.configuration.vehicle;
+    if (!vehicle::make_vehicle_model(options)->traits().seeks_lap_time)
+      throw CommandLineError("--learn", "needs a configuration with vehicle.objective: lap_time");
+    if (options.own_of<vehicle::SingleTrackOptions>().usable_grip < evaluation::GripLearning::least)
+      throw CommandLineError("--learn", "needs a vehicle.usable_grip of at least 0.3, where it starts");
   }
 
   /// Standing starts, each with the grip that the laps before have shown, until `patience` of them in a row

@@ -19,17 +19,20 @@ vehicle::Configuration with_belief(const vehicle::Configuration& configuration, 
 /// Learns the usable grip of each part of a course from lap to lap: more where the lap stayed inside the
 /// friction circle, less where it went beyond, so that each part uses what the circle allows. After a lap
 /// that was not completed, the next belief is that of the fastest lap, with less grip where the lap ended.
-/// Once a lap has ended so, or a part has gone beyond the circle, that part is never given as much again.
+/// Once a lap has ended so, or a part has gone beyond the circle, that part is never given as much again,
+/// unless that is the least belief.
 class GripLearning {
  public:
+  static constexpr double least = 0.3, most = 1;  ///< of the belief in a part
+
   /// A course of `length` (m > 0) on which laps begin `start` (m, >= 0) after its first point, with the
-  /// belief before the first lap, which is the same for all of `parts` (>= 1) parts, and the radius of the
-  /// circle (m/s^2, > 0). Throws std::invalid_argument where these rules are broken.
+  /// belief before the first lap, which is the same for all of `parts` (>= 1) parts and in [least, most], and
+  /// the radius of the circle (m/s^2, > 0). Throws std::invalid_argument where these rules are broken.
   GripLearning(double length, double start, int parts, double belief, double circle);
 
   /// The belief for the next lap.
   const GripBelief& next() const noexcept { return next_; }
-  /// Learns from a lap that was driven with `next()`.
+  /// Learns from a lap that was driven with `next()`; it must have samples.
   void learn(const RacingLap& lap);
 
   /// The number of laps in a row, up to the last, that were not at least 0.1 % faster than the fastest before

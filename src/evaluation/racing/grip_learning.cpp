@@ -9,7 +9,6 @@
 namespace slalom::evaluation {
 namespace {
 
-constexpr double least = 0.3, most = 1;   // of the belief in a part
 constexpr double raised = 1.03;           // at most, from one lap to the next
 constexpr double lowered = 0.94;          // at least, where a lap went beyond the circle
 constexpr double after_collision = 0.92;  // where a lap ended early, and in the part before
@@ -88,7 +87,7 @@ void GripLearning::learn(const RacingLap& lap) {
       if (used[i] > limited * circle_) next_[i] *= std::clamp(circle_ / used[i], lowered, raised);
     }
   }
-  for (std::size_t i = 0; i < next_.size(); ++i) next_[i] = std::clamp(next_[i], least, most_[i]);
+  for (std::size_t i = 0; i < next_.size(); ++i) next_[i] = std::max(std::min(next_[i], most_[i]), least);
 }
 
 }  // namespace slalom::evaluation
