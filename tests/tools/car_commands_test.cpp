@@ -157,6 +157,7 @@ TEST_F(IdentifyCommand, FindsTheFrictionOfASimulatedCarWhoseTyresSlip) {
   EXPECT_NEAR(found["delay"]["value"], 0.02, 0.01);
   EXPECT_NE(run.output.find("  friction: "), std::string::npos) << run.output;
   expect_refused("identify lap.jsonl --config default", {"--config", "--tyres"});
+  expect_refused("identify lap.jsonl --tyres --wheelbase 0.33", {"--wheelbase", "--tyres"});
   expect_refused("identify lap.jsonl --tyres --config nothing", {"nothing", "known: "});
 }
 

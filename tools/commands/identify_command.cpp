@@ -156,14 +156,15 @@ void declare_identify(Subcommand& command) {
       .option("recording", arguments->recording,
               "Recording of slalom drive --record in JSON lines, or a ROS 1 bag")
       .required();
-  command.option("--wheelbase", arguments->options.wheelbase, "Measured wheelbase, m [estimated]")
-      .range(0.01, 20.0);
   command.option("--least-speed", arguments->options.min_speed, "Samples below this speed are ignored, m/s")
       .range(0.01, 100.0)
       .show_default();
   const auto tyres =
       command.flag("--tyres", arguments->tyres,
                    "Find friction and cornering stiffness, of a drive close to the limit of grip");
+  command.option("--wheelbase", arguments->options.wheelbase, "Measured wheelbase, m [estimated]")
+      .range(0.01, 20.0)
+      .excludes(tyres);
   command
       .option("--config", arguments->config,
               "With --tyres: configuration with the lengths, mass and inertia of the car")

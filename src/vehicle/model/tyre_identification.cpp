@@ -127,7 +127,8 @@ class Drive {
 
   std::vector<Window>& windows() { return windows_; }
 
-  /// The predicted turn and way sideways of every window minus the measured ones, over these deviations.
+  /// The predicted change of yaw and sideways displacement of every window minus the measured ones, over
+  /// these deviations.
   void residuals(std::span<const double> p, double yaw_deviation, double sideways_deviation,
                  std::vector<double>& out) const {
     SingleTrackOptions own = own_;
@@ -245,7 +246,6 @@ detail::Fit best_fit(const Drive& drive, const Deviations& deviations,
     throw std::invalid_argument(
         "identify: no prediction of this drive is finite; check mass, inertia and lengths "
         "of the car");
-
   return best;
 }
 
