@@ -220,9 +220,12 @@ LapRow make_row(int experiment, int lap, const LapResult& result, double wall_ti
 }
 
 bool began_in_contact(const LapRow& row, const maps::Pose& start) {
-  double x = 0, y = 0;
-  return std::sscanf(row.contact_points.c_str(), "%lf:%lf", &x, &y) == 2 &&
-         std::hypot(x - start.x, y - start.y) < 0.05;
+  const char *const begin = row.contact_points.data(), *const end = begin + row.contact_points.size();
+  maps::Point first;
+  const auto x = std::from_chars(begin, end, first.x);
+  if (x.ec != std::errc() || x.ptr == end || *x.ptr != ':') return false;
+  const auto y = std::from_chars(x.ptr + 1, end, first.y);
+  return y.ec == std::errc() && std::hypot(first.x - start.x, first.y - start.y) < 0.05;
 }
 
 std::string csv_header(const std::vector<Experiment>& experiments) {
