@@ -17,7 +17,7 @@ void handle_error(const char* message) {
   if (failed_call) std::longjmp(*failed_call, 1);
   if (previous_handler) return previous_handler(message);
   mju_user_error = nullptr;
-  mju_error(message);
+  mju_error_s("%s", message);  // from 2.3 on, mju_error takes its first argument as a format
 }
 
 void install_handler() {

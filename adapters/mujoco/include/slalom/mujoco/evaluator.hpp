@@ -36,12 +36,7 @@ namespace slalom::mujoco {
 /// A model with activations has `static constexpr int activations` beside them, its na.
 template <class T>
 concept Task = requires(const T& task, const mjModel& model, const mjData& data) {
-  requires T::positions >
-  0;
-  requires T::velocities >
-  0;
-  requires T::inputs >
-  0;
+  requires(T::positions > 0 && T::velocities > 0 && T::inputs > 0);
   task.stage_cost(model, data);
   task.terminal_cost(model, data);
 };
