@@ -89,9 +89,9 @@ RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::
   return {stick.statistics(), rollouts.statistics()};
 }
 
-std::vector<TimeStatistics> measure_by_turns(const ReferenceWorkload& workload,
-                                             std::span<const vehicle::VehicleOptions> problems, int samples,
-                                             int steps, simd::Target target, double seconds) {
+std::vector<TimeStatistics> measure_alternately(const ReferenceWorkload& workload,
+                                                std::span<const vehicle::VehicleOptions> problems,
+                                                int samples, int steps, simd::Target target, double seconds) {
   std::vector<Rollouts> all;
   for (const vehicle::VehicleOptions& problem : problems)
     all.emplace_back(workload, problem, samples, steps, target);

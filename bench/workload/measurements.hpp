@@ -20,11 +20,11 @@ struct RolloutSpeed {
 RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
                               int samples, int steps, simd::Target target, double seconds);
 
-/// Measures the rollouts of several problems by turns, so that all run at the same clock frequency: ns per
+/// Measures the rollouts of several problems alternately, so that all run at the same clock frequency: ns per
 /// step with its cost, in the order of `problems`.
-std::vector<TimeStatistics> measure_by_turns(const ReferenceWorkload& workload,
-                                             std::span<const vehicle::VehicleOptions> problems, int samples,
-                                             int steps, simd::Target target, double seconds);
+std::vector<TimeStatistics> measure_alternately(const ReferenceWorkload& workload,
+                                                std::span<const vehicle::VehicleOptions> problems,
+                                                int samples, int steps, simd::Target target, double seconds);
 
 struct SolveSpeed {
   std::string method;

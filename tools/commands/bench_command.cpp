@@ -164,15 +164,15 @@ class Bench {
     std::fprintf(words_, "; %.0f GFLOP/s, %.0f %% of this core's %.0f", rate, 100 * rate / peak, peak);
   }
 
-  /// Rollouts of each vehicle model over plans as long as those of the configuration `default`, by turns.
+  /// Rollouts of each vehicle model over plans as long as those of the configuration `default`, alternately.
   void vehicle_models() {
     constexpr int samples = 2000, steps = 20;
     const std::vector<ComparedModel> compared = compared_models();
     std::vector<vehicle::VehicleOptions> options;
     for (const ComparedModel& each : compared) options.push_back(each.options);
     const auto times =
-        workload::measure_by_turns(workload_, options, samples, steps, target_, arguments_.seconds);
-    std::fprintf(words_, "vehicle models by turns, ns a step (times the first):");
+        workload::measure_alternately(workload_, options, samples, steps, target_, arguments_.seconds);
+    std::fprintf(words_, "vehicle models, measured alternately, ns a step (times the first):");
     for (std::size_t i = 0; i < times.size(); ++i) {
       const double ratio = times[i].p50 / times.front().p50;
       json_["vehicle_models"].push_back(

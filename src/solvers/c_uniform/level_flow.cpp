@@ -45,7 +45,7 @@ void LevelFlow::pour(int cell) {
 int LevelFlow::level_out(int sweeps, double tolerance) {
   for (int done = 0; done < sweeps; ++done) {
     if (gap() <= tolerance * std::inner_product(mass.begin(), mass.end(), mass.begin(), 0.0)) return done;
-    // Forwards and backwards by turns, so that mass moves far in either direction.
+    // Forwards and backwards alternately, so that mass moves far in either direction.
     const int cells = static_cast<int>(supply.size());
     for (int i = 0; i < cells; ++i) pour(done % 2 == 0 ? i : cells - 1 - i);
   }
