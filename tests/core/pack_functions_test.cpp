@@ -221,7 +221,9 @@ struct AllOperations {
     sum *= select((x < y) & !(x >= 0.7), -x, y) + select((x > 0.2) | (x == y), T(1), T(2));
     sum /= select((x <= y) && (x != y), square(x) + 1, clamp(y, 0.25, 0.75)) +
            select((x < 0.1) || (y < 0.1), T(0.5), T(0));
-    return sum + (any(x < 0) ? T(1000) : T(0));
+    sum += pow(x, y) + fmod(3 * x, y) + fma(x, y, x) + lerp(x, y, T(0.3)) + cbrt(x - y) * sign(x - y);
+    sum -= asin(x) * acos(y) + sinh(x) * cosh(y) + exp2(x) * log1p(y);
+    return sum + (any(x < 0) ? T(1000) : T(0)) + (all(x > 0) ? T(0) : T(1000));
   }
 };
 

@@ -143,16 +143,24 @@ using PackPair = Pack<simd::Pair<T>>;
 SLALOM_PAIR_FUNCTION(sqrt)
 SLALOM_PAIR_FUNCTION(reciprocal_sqrt)
 SLALOM_PAIR_FUNCTION(round)
+SLALOM_PAIR_FUNCTION(floor)
+SLALOM_PAIR_FUNCTION(ceil)
 SLALOM_PAIR_FUNCTION(abs)
+SLALOM_PAIR_FUNCTION(sign)
 SLALOM_PAIR_FUNCTION(sin)
 SLALOM_PAIR_FUNCTION(cos)
 SLALOM_PAIR_FUNCTION(tan)
-SLALOM_PAIR_FUNCTION(exp)
-SLALOM_PAIR_FUNCTION(log)
+SLALOM_PAIR_FUNCTION(asin)
+SLALOM_PAIR_FUNCTION(acos)
 SLALOM_PAIR_FUNCTION(atan)
-SLALOM_PAIR_FUNCTION(floor)
-SLALOM_PAIR_FUNCTION(ceil)
+SLALOM_PAIR_FUNCTION(sinh)
+SLALOM_PAIR_FUNCTION(cosh)
 SLALOM_PAIR_FUNCTION(tanh)
+SLALOM_PAIR_FUNCTION(exp)
+SLALOM_PAIR_FUNCTION(exp2)
+SLALOM_PAIR_FUNCTION(log)
+SLALOM_PAIR_FUNCTION(log1p)
+SLALOM_PAIR_FUNCTION(cbrt)
 #undef SLALOM_PAIR_FUNCTION
 
 /// Functions of two pairs.
@@ -164,6 +172,8 @@ SLALOM_PAIR_FUNCTION(tanh)
 SLALOM_PAIR_FUNCTION(min)
 SLALOM_PAIR_FUNCTION(max)
 SLALOM_PAIR_FUNCTION(copysign)
+SLALOM_PAIR_FUNCTION(fmod)
+SLALOM_PAIR_FUNCTION(pow)
 SLALOM_PAIR_FUNCTION(hypot)
 SLALOM_PAIR_FUNCTION(atan2)
 #undef SLALOM_PAIR_FUNCTION
@@ -178,6 +188,11 @@ SLALOM_INLINE_CALLS PackPair<T> select(const simd::Mask<simd::Pair<T>>& conditio
 template <class T>
 SLALOM_INLINE_CALLS bool any(const simd::Mask<simd::Pair<T>>& mask) {
   return any(mask.low | mask.high);
+}
+/// Whether all lanes are set.
+template <class T>
+SLALOM_INLINE_CALLS bool all(const simd::Mask<simd::Pair<T>>& mask) {
+  return !any(!mask);
 }
 /// Sine and cosine together.
 template <class T>
