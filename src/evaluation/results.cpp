@@ -55,6 +55,7 @@ OvertakingFigures summarise_overtaking(const std::vector<const LapRow*>& rows) {
     total.duration += lap.overtaken * lap.duration;
     total.contacts += lap.contacts;
     total.caused += lap.caused;
+    total.side_changes += lap.side_changes;
   }
   total.duration /= std::max(total.overtaken, 1);
   return total;

@@ -37,13 +37,15 @@ struct Drive {
   double left = 0;      ///< m
   double speed = 0;     ///< m/s
   double sideways = 0;  ///< m/s, to the left
+  double weaving = 0;   ///< m to the left, then as far to the right, in 2 s
 };
 
 /// What is recorded of two cars that drive like this for so long (s), or until the lap times out then.
 OvertakingRecord record_of(const Drive& own, const Drive& other, double time, bool timed_out = false) {
   sim::World world({}, testing::ring_track());
   const auto at = [](const Drive& drive, double t) {
-    return on_ring(drive.from + drive.speed * t, drive.left + drive.sideways * t, drive.speed,
+    const double woven = drive.weaving * std::sin(half_turn * t);
+    return on_ring(drive.from + drive.speed * t, drive.left + drive.sideways * t + woven, drive.speed,
                    drive.sideways);
   };
   const auto start = [&](const Drive& drive) {
@@ -89,6 +91,24 @@ TEST(Overtaking, AnOpponentThatIsLappedIsMetAgain) {
       record_of({.left = 0.5, .speed = 8}, {.from = 6, .left = -0.5, .speed = 2}, 8);
   ASSERT_EQ(record.encounters.size(), 2U);
   EXPECT_EQ(record.encounters[1].end, EncounterEnd::overtaken);
+}
+
+TEST(Overtaking, ChangesOfSideAreCountedBehindAndBesideTheOpponent) {
+  const auto changes = [](const Drive& own, const Drive& other, double time) {
+    return record_of(own, other, time).encounters.at(0).side_changes;
+  };
+  const Drive ahead{.from = 2, .speed = 3};
+  EXPECT_EQ(changes({.speed = 3, .weaving = 0.5}, ahead, 4), 3) << "left, right, left, right";
+  EXPECT_EQ(changes(ahead, {.from = 4, .speed = 3, .weaving = 0.5}, 4), 3) << "if the opponent does it, too";
+  EXPECT_EQ(changes({.speed = 3, .weaving = 0.25}, ahead, 4), 0) << "less than a car's width";
+  EXPECT_EQ(changes({.left = 0.5, .speed = 3, .weaving = 0.7}, ahead, 4), 0) << "behind it and back";
+}
+
+TEST(Overtaking, ChangesOfSideDoNotCountFarBehind) {
+  const Drive own{.left = -0.5, .speed = 2, .sideways = 0.5};
+  EXPECT_EQ(record_of(own, {.from = 3, .speed = 2}, 2).encounters.at(0).side_changes, 1);
+  EXPECT_EQ(record_of(own, {.from = 3, .speed = 4}, 2).encounters.at(0).side_changes, 0)
+      << "6.2 m behind when it is on the left";
 }
 
 TEST(Overtaking, TheCarBehindIsAtFault) {
@@ -257,8 +277,8 @@ TEST(Overtaking, SettingsThatDoNotFitAreRefused) {
 TEST(OvertakingColumns, CountTheEncountersOfALap) {
   LapResult lap;
   lap.overtaking.encounters = {{.duration = 3, .end = EncounterEnd::overtaken},
-                               {.duration = 8, .end = EncounterEnd::not_overtaken},
-                               {.duration = 6, .end = EncounterEnd::overtaken},
+                               {.duration = 8, .end = EncounterEnd::not_overtaken, .side_changes = 3},
+                               {.duration = 6, .end = EncounterEnd::overtaken, .side_changes = 1},
                                {.duration = 1, .end = EncounterEnd::open}};
   lap.overtaking.contacts = 5;
   lap.overtaking.caused = 2;
@@ -269,6 +289,7 @@ TEST(OvertakingColumns, CountTheEncountersOfALap) {
   EXPECT_DOUBLE_EQ(figures.duration, 4.5);
   EXPECT_EQ(figures.contacts, 5);
   EXPECT_EQ(figures.caused, 2);
+  EXPECT_EQ(figures.side_changes, 4);
 }
 
 TEST(OvertakingColumns, AreThereIfAnExperimentHasOpponents) {
@@ -278,10 +299,10 @@ TEST(OvertakingColumns, AreThereIfAnExperimentHasOpponents) {
   EXPECT_TRUE(experiments[0].has_opponents());
   EXPECT_EQ(csv_header(experiments), csv_header() +
                                          ",opponents_met,overtaken,not_overtaken,overtaking_time,"
-                                         "opponent_contacts,contacts_caused");
+                                         "opponent_contacts,contacts_caused,side_changes");
   LapRow row;
   row.minimum_clearance = 0.1;
-  row.overtaking = {5, 3, 1, 4.25, 2, 1};
+  row.overtaking = {5, 3, 1, 4.25, 2, 1, 7};
   const LapRow back = parse_line(csv_line(row, experiments), experiments);
   EXPECT_EQ(back.overtaking.met, 5);
   EXPECT_EQ(back.overtaking.overtaken, 3);
@@ -289,6 +310,7 @@ TEST(OvertakingColumns, AreThereIfAnExperimentHasOpponents) {
   EXPECT_EQ(back.overtaking.duration, 4.25);
   EXPECT_EQ(back.overtaking.contacts, 2);
   EXPECT_EQ(back.overtaking.caused, 1);
+  EXPECT_EQ(back.overtaking.side_changes, 7);
 }
 
 }  // namespace

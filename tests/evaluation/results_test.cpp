@@ -59,9 +59,9 @@ TEST(Results, EveryLapCountsWhetherItFinishedOrNot) {
 TEST(Results, TheTimeToOvertakeIsTheMeanOverAllOpponentsOvertaken) {
   const std::vector<Experiment> with{{"mppi", {{"world.opponents", "3"}}, "pt", 0, 3}};
   std::vector<LapRow> rows{row(0, 0, 1, 0, 0, true), row(0, 1, 1, 0, 0, true), row(0, 2, 1, 0, 0, true)};
-  rows[0].overtaking = {4, 3, 1, 2, 2, 1};
-  rows[1].overtaking = {2, 1, 0, 10, 3, 2};
-  rows[2].overtaking = {1, 0, 1, 0, 0, 0};
+  rows[0].overtaking = {4, 3, 1, 2, 2, 1, 5};
+  rows[1].overtaking = {2, 1, 0, 10, 3, 2, 1};
+  rows[2].overtaking = {1, 0, 1, 0, 0, 0, 2};
   const auto results = summarise(rows, with);
   ASSERT_TRUE(results[0].overtaking);
   EXPECT_EQ(results[0].overtaking->met, 7);
@@ -70,6 +70,7 @@ TEST(Results, TheTimeToOvertakeIsTheMeanOverAllOpponentsOvertaken) {
   EXPECT_DOUBLE_EQ(results[0].overtaking->duration, (3 * 2.0 + 10) / 4);
   EXPECT_EQ(results[0].overtaking->contacts, 5);
   EXPECT_EQ(results[0].overtaking->caused, 3);
+  EXPECT_EQ(results[0].overtaking->side_changes, 8);
   EXPECT_FALSE(summarise(laps(), experiments)[0].overtaking) << "without opponents";
 }
 

@@ -279,6 +279,7 @@ TEST_F(EvalCommand, EveryExperimentMeetsTheSameOpponentsWithPlanners) {
   EXPECT_EQ(summary.at("settings").at("options").at("svg_mppi").at("samples"), 8000)
       << "options of a method that drives opponents only are kept for replays";
   EXPECT_GT(summary.at("results").at(0).at("overtaking").at("met"), 0);
+  EXPECT_TRUE(summary.at("results").at(0).at("overtaking").at("side_changes").is_number_integer());
   const ProgramRun lap = run("replay one --lap 0");
   EXPECT_EQ(lap.status, 0) << lap.output;
   EXPECT_TRUE(contains(lap.output, "bit for bit")) << lap.output;

@@ -90,7 +90,8 @@ Json overtaking_json(const OvertakingFigures& o) {
            decided > 0 ? interval_json(evaluation::wilson_interval(o.overtaken, decided)) : Json(nullptr)},
           {"overtaking_time_s", o.overtaken > 0 ? Json(o.duration) : Json(nullptr)},
           {"contacts", o.contacts},
-          {"contacts_caused", o.caused}};
+          {"contacts_caused", o.caused},
+          {"side_changes", o.side_changes}};
 }
 template <class Value, class Make>
 Json optional_json(const std::optional<Value>& value, Make&& make) {
@@ -311,9 +312,9 @@ void print_results(const Evaluated& evaluated, std::FILE* out) {
     const OvertakingFigures& o = *r.overtaking;
     std::fprintf(out,
                  "%s: opponents: %d met, %d overtaken (mean time %.1f s), %d not overtaken; %d contacts, %d "
-                 "caused by the car\n",
+                 "caused by the car; %d changes of side\n",
                  evaluated.evaluation.experiments[static_cast<std::size_t>(r.experiment)].label().c_str(),
-                 o.met, o.overtaken, o.duration, o.not_overtaken, o.contacts, o.caused);
+                 o.met, o.overtaken, o.duration, o.not_overtaken, o.contacts, o.caused, o.side_changes);
   }
   // Laps of the same number have the same obstacles: those of the first experiment speak for all.
   std::string laps;

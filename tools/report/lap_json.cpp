@@ -40,7 +40,8 @@ Json overtaking_json(const evaluation::OvertakingRecord& record) {
                           {"duration_s", each.duration},
                           {"end", evaluation::name(each.end)},
                           {"contacts", each.contacts},
-                          {"contacts_caused", each.caused}});
+                          {"contacts_caused", each.caused},
+                          {"side_changes", each.side_changes}});
   return {{"contacts", record.contacts}, {"contacts_caused", record.caused}, {"encounters", encounters}};
 }
 

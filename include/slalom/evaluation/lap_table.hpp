@@ -53,6 +53,7 @@ struct OvertakingFigures {
   double duration = 0;    ///< s, mean until opponents were overtaken, 0 without any; `overtaking_time`
   int contacts = 0;       ///< with opponents; column `opponent_contacts`
   int caused = 0;         ///< those of them at which the car is at fault; column `contacts_caused`
+  int side_changes = 0;   ///< of Encounter, in all encounters; column of the same name
 };
 
 /// A row of `laps.csv`: one lap of one experiment. Columns whose names contain `calculation_time`, or begin

@@ -23,6 +23,10 @@ struct Encounter {
   EncounterEnd end = EncounterEnd::open;  ///< how it ended
   int contacts = 0;                       ///< with this opponent while it lasted
   int caused = 0;                         ///< those of them at which the car is at fault
+  /// How often the car has moved from one side of the opponent to the other while it was between 4 m behind
+  /// and 1 m ahead. It is on a side if it is a car's width or more to the left or right, from middle to
+  /// middle; between, it is still on the side on which it was.
+  int side_changes = 0;
 };
 
 /// The opponents of a lap. A contact begins where the cars collide and have not collided for 0.5 s.

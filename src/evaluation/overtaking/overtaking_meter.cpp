@@ -10,7 +10,8 @@ constexpr double rounds_to_overtake = 2;          // times around the course
 
 }  // namespace
 
-OvertakingMeter::OvertakingMeter(const sim::World& world) : judge_(world), opponents_(world.cars() - 1) {
+OvertakingMeter::OvertakingMeter(const sim::World& world)
+    : judge_(world), opponents_(world.cars() - 1), width_(world.options().car.width) {
   const double length = world.track().lap_path()->length();
   for (std::size_t i = 0; i < opponents_.size(); ++i) {
     const double ahead = world.laps(i + 1)->arc() - world.laps(0)->arc();
@@ -43,14 +44,26 @@ void OvertakingMeter::meet(const sim::World& world, std::size_t car) {
     opponent.encounter = static_cast<int>(record_.encounters.size());
     opponent.met_gap = turns;
     opponent.met_progress = progress;
+    opponent.side = 0;
     record_.encounters.push_back({.opponent = static_cast<int>(car) - 1, .time = world.time()});
   }
   Encounter& encounter = record_.encounters[static_cast<std::size_t>(opponent.encounter)];
   encounter.duration = world.time() - encounter.time;
+  if (apart - opponent.met_gap <= meeting_gap) note_side(world, car, encounter);
   const bool ahead = apart - opponent.met_gap <= -ahead_gap;
   if (!ahead && progress - opponent.met_progress < rounds_to_overtake * length) return;
   encounter.end = ahead ? EncounterEnd::overtaken : EncounterEnd::not_overtaken;
   opponent.encounter = -1;
+}
+
+/// Counts a change of the side on which the first car is near an opponent.
+void OvertakingMeter::note_side(const sim::World& world, std::size_t car, Encounter& encounter) {
+  const double left = world.laps(0)->lateral() - world.laps(car)->lateral();
+  if (std::abs(left) < width_) return;
+  int& side = opponents_[car - 1].side;
+  const int now = left > 0 ? 1 : -1;
+  encounter.side_changes += side == -now;
+  side = now;
 }
 
 void OvertakingMeter::collide(const sim::World& world, std::size_t car) {

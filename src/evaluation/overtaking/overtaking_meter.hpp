@@ -28,14 +28,17 @@ class OvertakingMeter {
     int encounter = -1;       ///< that is not over, -1 for none
     double met_gap = 0;       ///< m, whole turns between the cars when they met
     double met_progress = 0;  ///< m, of the first car
+    int side = 0;             ///< of it on which the first car was last: 1 left, -1 right, 0 none yet
   };
 
   double gap(const sim::World& world, std::size_t car) const;
   void meet(const sim::World& world, std::size_t car);
+  void note_side(const sim::World& world, std::size_t car, Encounter& encounter);
   void collide(const sim::World& world, std::size_t car);
 
   FaultJudge judge_;
   std::vector<Opponent> opponents_;
+  double width_;  ///< m, of a car
   OvertakingRecord record_;
 };
 

@@ -21,6 +21,7 @@ OvertakingFigures figures_of(const OvertakingRecord& record) {
                             .contacts = record.contacts,
                             .caused = record.caused};
   for (const Encounter& each : record.encounters) {
+    figures.side_changes += each.side_changes;
     figures.not_overtaken += each.end == EncounterEnd::not_overtaken;
     if (each.end != EncounterEnd::overtaken) continue;
     ++figures.overtaken;

@@ -71,6 +71,7 @@ void visit_columns(Row& r, const std::vector<Experiment>& experiments, Visit&& v
   visit("overtaking_time", r.overtaking.duration);
   visit("opponent_contacts", r.overtaking.contacts);
   visit("contacts_caused", r.overtaking.caused);
+  visit("side_changes", r.overtaking.side_changes);
 }
 
 constexpr const char* checksum_column = "checksum";
