@@ -9,7 +9,7 @@
 namespace slalom::vehicle {
 namespace {
 
-constexpr double max_points = 1e5;
+constexpr double max_corridor_points = 1e5;
 
 }  // namespace
 
@@ -26,10 +26,10 @@ Corridor corridor_from_widths(const std::vector<maps::Point>& points, const std:
         !std::isfinite(right[i]))
       throw std::invalid_argument("centre_line: point " + std::to_string(i) + " must be finite");
   const double length = detail::line_length(points, closed);
-  if (!(length > 0) || length / step > max_points)
+  if (!(length > 0) || length / step > max_corridor_points)
     throw std::invalid_argument(
         "centre_line: " + std::to_string(length) + " m long; must be above 0 m and at most " +
-        std::to_string(max_points * step) + " m in steps of " + std::to_string(step) + " m");
+        std::to_string(max_corridor_points * step) + " m in steps of " + std::to_string(step) + " m");
   const detail::Resampling places = detail::equal_steps(points, closed, step);
   Corridor corridor;
   corridor.closed = closed;

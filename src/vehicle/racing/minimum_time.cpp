@@ -18,7 +18,7 @@ using detail::RacelineState;
 constexpr double weight_factor = 0.3;    // of the barrier, from one stage to the next
 constexpr double last_gap = 1e-4;        // of the time: constraints times weight in the last stage
 constexpr double stage_accuracy = 5e-6;  // share of the value that a step must promise in a stage
-constexpr int max_steps = 60;            // of Newton's method in a stage
+constexpr int max_newton_steps = 60;     // of Newton's method in a stage
 constexpr double curvature_room = 1.05;  // of a line that is tighter than the car turns, to be tightened
 constexpr double start_share = 0.4;      // of the fastest squared speeds along the first line
 constexpr double start_room = 0.1;       // of the width, from the bounds of the first line
@@ -114,7 +114,7 @@ class BarrierMethod {
   /// Newton's method with a line search.
   void minimise(RacelineState& state, double weight) {
     double value = program_.value(state, weight);
-    for (int step = 0; step < max_steps; ++step) {
+    for (int step = 0; step < max_newton_steps; ++step) {
       tighten(state, weight, value);
       const double decrease = direction(state, weight);
       if (decrease < stage_accuracy * value) return;

@@ -15,12 +15,12 @@
 namespace slalom::vehicle {
 namespace {
 
-constexpr double widest = 25;        // of half the car's width: the reach of a corridor to one side
-constexpr double max_points = 3000;  // of a centre line
-constexpr int max_rounds = 4;        // of improving a line along its own normals
-constexpr double min_gain = 5e-4;    // share of the time, by which a round must improve it
-constexpr double min_room = 1e-3;    // m, between the bounds of a line
-constexpr double max_yaw = 0.6;      // rad, of the way from the x axis at a start that is found
+constexpr double widest = 25;             // of half the car's width: the reach of a corridor to one side
+constexpr double max_line_points = 3000;  // of a centre line
+constexpr int max_rounds = 4;             // of improving a line along its own normals
+constexpr double min_gain = 5e-4;         // share of the time, by which a round must improve it
+constexpr double min_room = 1e-3;         // m, between the bounds of a line
+constexpr double max_yaw = 0.6;           // rad, of the way from the x axis at a start that is found
 constexpr double half_turn = 3.14159265358979323846;  // rad
 
 std::string text_of(const maps::Point& point) {
@@ -174,7 +174,7 @@ void check_finite(const GuideLine& guide) {
 }  // namespace
 
 double centre_line_step(const RacingCar& car, double length) {
-  return std::max(0.5 * car.wheelbase, length / max_points);
+  return std::max(0.5 * car.wheelbase, length / max_line_points);
 }
 
 RaceCourse race_course(const maps::OccupancyGrid& map, const RacingCar& car, const RaceCourseOptions& options,
