@@ -33,13 +33,22 @@ void LocaliserCore::use_map(const Grid& map) {
   begin();
 }
 
-/// Starts at the last pose, at the one that was told, at the start of the course, or everywhere.
+/// Starts at the last pose, at that of an earlier node, at the one that was told, at the start of the course,
+/// or everywhere.
 void LocaliserCore::begin() {
-  if (known_) return localiser_.start_at(*known_);
+  if (known_) return localiser_.start_at(known_->map);
+  if (settings_.earlier) return continue_from(*settings_.earlier);
   if (settings_.everywhere) return localiser_.start_everywhere();
   if (settings_.start) return hear_start(*settings_.start);
   if (course_start_) return localiser_.start_at(*course_start_);
   localiser_.start_everywhere();
+}
+
+/// The car moves until it stands without a localiser, so where it is now follows from the odometry.
+void LocaliserCore::continue_from(const KnownPlace& earlier) {
+  const KnownPlace rear{moved_ahead(earlier.map, settings_.rear_axle),
+                        moved_ahead(earlier.odometry, settings_.rear_axle)};
+  localiser_.start_at(count_ == 0 ? rear.map : place_now(rear, odometry(count_ - 1).pose));
 }
 
 void LocaliserCore::hear_map(const Grid& map) {
@@ -52,6 +61,7 @@ void LocaliserCore::hear_map(const Grid& map) {
 }
 
 void LocaliserCore::hear_start(const Pose& base) {
+  settings_.earlier.reset();
   localiser_.start_at(moved_ahead(base, settings_.rear_axle));
 }
 
@@ -66,6 +76,7 @@ void LocaliserCore::hear_odometry(const OdometrySample& sample) {
   OdometrySample& newest = odometry_[(oldest_ + count_ - 1) % odometry_.size()];
   newest = sample;
   newest.pose = moved_ahead(sample.pose, settings_.rear_axle);
+  if (count_ == 1 && !known_ && settings_.earlier) continue_from(*settings_.earlier);
 }
 
 void LocaliserCore::hear_scan(Stamp stamp, const std::string& frame, const Scan& scan, double angle_max) {
@@ -81,7 +92,7 @@ void LocaliserCore::hear_scan(Stamp stamp, const std::string& frame, const Scan&
   slowest_ = std::max(slowest_, estimate_.update_time);
   if (!trust_.update(estimate_))
     return localisation_warning(trust_.doubt() + ", health " + std::to_string(estimate_.health));
-  known_ = estimate_.pose;
+  known_ = {estimate_.pose, at};
   outputs_.pose(moved_ahead(estimate_.pose, -settings_.rear_axle), estimate_, stamp);
   // In the future, so that it is valid until the next scan has been processed.
   outputs_.transform(estimate_.odometry_frame, stamp + stamp_of(settings_.transform_tolerance));
@@ -131,15 +142,16 @@ void LocaliserCore::tick() {
     frames_.forget();
     count_ = 0;
     last_scan_ = 0;
-    if (known_) localiser_.start_at(*known_);
+    if (known_) localiser_.start_at(known_->map);
     log_(watch_.fault());
   }
   log_.flush();
 }
 
-std::optional<Pose> LocaliserCore::reliable() const {
+std::optional<KnownPlace> LocaliserCore::reliable() const {
   if (!known_ || !trust_.holds()) return std::nullopt;
-  return moved_ahead(*known_, -settings_.rear_axle);
+  return KnownPlace{moved_ahead(known_->map, -settings_.rear_axle),
+                    moved_ahead(known_->odometry, -settings_.rear_axle)};
 }
 
 Report LocaliserCore::report() {

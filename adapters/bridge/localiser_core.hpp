@@ -9,6 +9,7 @@
 #include "bridge/bridge.hpp"
 #include "bridge/frames.hpp"
 #include "bridge/input_watch.hpp"
+#include "bridge/known_place.hpp"
 #include "bridge/pose_trust.hpp"
 #include "bridge/report.hpp"
 #include "bridge/throttled_log.hpp"
@@ -31,10 +32,11 @@ class LocaliserCore {
     std::string course;         ///< a name or a folder, whose map is used; empty: the map is a message
     bool everywhere = false;    ///< search the whole map at the start
     std::optional<Pose> start;  ///< of the base frame; otherwise the start of the course, or everywhere
-    int trust_scans = 10;       ///< see PoseTrust
-    double trust_health = 0.7;  ///< likewise
-    double transform_tolerance = 0.1;  ///< s, how far the stamps of transforms are in the future
-    double rear_axle = 0;              ///< m, x of the middle of the rear axle in the base frame
+    std::optional<KnownPlace> earlier;  ///< where an earlier node knew the base frame to be; comes first
+    int trust_scans = 10;               ///< see PoseTrust
+    double trust_health = 0.7;          ///< likewise
+    double transform_tolerance = 0.1;   ///< s, how far the stamps of transforms are in the future
+    double rear_axle = 0;               ///< m, x of the middle of the rear axle in the base frame
     WatchLimits limits;
   };
   /// What the node sends; called from within the functions below.
@@ -70,14 +72,15 @@ class LocaliserCore {
 
   /// What happened since the last report.
   Report report();
-  /// The last pose of the base frame that could be relied on, as long as it can.
-  std::optional<Pose> reliable() const;
+  /// The last place of the base frame that could be relied on, as long as it can.
+  std::optional<KnownPlace> reliable() const;
   /// Poses of at most `most` particles.
   std::vector<Pose> particles(int most) const { return localiser_.particles(most); }
 
  private:
   void use_map(const Grid& map);
   void begin();
+  void continue_from(const KnownPlace& earlier);
   bool odometry_at(Stamp stamp, Pose& rear) const;
   void place_laser(const std::string& frame);
   /// The `i`-th odometry of those kept, the oldest first.
@@ -95,7 +98,8 @@ class LocaliserCore {
   std::array<OdometrySample, 50> odometry_;  ///< a ring
   std::size_t oldest_ = 0, count_ = 0;       ///< of `odometry_`
   Stamp last_scan_ = 0;
-  std::optional<Pose> course_start_, known_;  ///< of the rear axle
+  std::optional<Pose> course_start_;  ///< of the rear axle
+  std::optional<KnownPlace> known_;   ///< likewise
   Estimate estimate_;
   double slowest_ = 0;  ///< s, since the last report
 };

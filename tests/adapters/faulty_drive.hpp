@@ -42,7 +42,7 @@ class Drive {
  public:
   template <class... Options>
   explicit Drive(Options... options)
-      : car_(SLALOM_COURSES "/wren", 1, 0),
+      : car_(SLALOM_COURSES "/wren", 1, 3),
         computer_({[this] { return time_ + ahead_; }, [this] { return time_; }},
                   {[this](double steer, double speed) {
                      commands_.push_back({time_, steer, speed});

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "bridge/pose_file.hpp"
+#include "bridge/known_place.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace slalom_bridge {
@@ -48,21 +48,42 @@ TEST(FramesStamp, SurvivesTheWayThroughSeconds) {
   EXPECT_EQ(stamp_of(-0.5), -500'000'000);
 }
 
-TEST(PoseFile, IsReadWhileItIsYoung) {
+TEST(KnownPlaceTest, MovesAsTheOdometryDoes) {
+  const KnownPlace known{{10, 20, 1 + quarter}, {3, 4, 1}};
+  const Pose moved = place_now(known, {4, 4, 1.5});
+  EXPECT_NEAR(moved.x, 10, 1e-12);
+  EXPECT_NEAR(moved.y, 21, 1e-12);
+  EXPECT_NEAR(moved.yaw, 1.5 + quarter, 1e-12);
+}
+
+TEST(KnownPlaceTest, IsKeptWhereTheOdometryHasStartedAgain) {
+  const KnownPlace known{{10, 20, 1}, {30, 40, 2}};
+  const Pose same = place_now(known, {0.1, 0, 0});
+  EXPECT_EQ(same.x, 10);
+  EXPECT_EQ(same.y, 20);
+  EXPECT_EQ(same.yaw, 1);
+}
+
+TEST(KnownPlaceTest, IsReadFromAFileWhileItIsYoung) {
   const slalom::testing::ScopedFolder folder;
-  const std::string file = folder.path() / "pose";
-  EXPECT_FALSE(read_pose(file, 1000, 10)) << "there is none yet";
-  ASSERT_TRUE(write_pose(file, {1.25, -3.5, 0.1}, 1000));
-  const auto pose = read_pose(file, 1009, 10);
-  ASSERT_TRUE(pose);
-  EXPECT_EQ(pose->x, 1.25);
-  EXPECT_EQ(pose->y, -3.5);
-  EXPECT_EQ(pose->yaw, 0.1);
-  EXPECT_FALSE(read_pose(file, 1011, 10)) << "too old";
-  EXPECT_FALSE(read_pose(file, 999, 10)) << "from the future";
+  const std::string file = folder.path() / "place";
+  EXPECT_FALSE(read_place(file, 1000)) << "there is none yet";
+  ASSERT_TRUE(write_place(file, {{1.25, -3.5, 0.1}, {7, 8, 0.9}}, 1000));
+  const auto place = read_place(file, 1009);
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->map.x, 1.25);
+  EXPECT_EQ(place->map.y, -3.5);
+  EXPECT_EQ(place->map.yaw, 0.1);
+  EXPECT_EQ(place->odometry.x, 7);
+  EXPECT_EQ(place->odometry.y, 8);
+  EXPECT_EQ(place->odometry.yaw, 0.9);
+  EXPECT_FALSE(read_place(file, 1011)) << "too old";
+  EXPECT_FALSE(read_place(file, 999)) << "from the future";
   std::ofstream(file) << "1.25 -3.5";
-  EXPECT_FALSE(read_pose(file, 1001, 10)) << "cut";
-  EXPECT_FALSE(write_pose(folder.path() / "none" / "pose", {}, 1000));
+  EXPECT_FALSE(read_place(file, 1001)) << "cut";
+  std::ofstream(file) << "1.25 -3.5 nan 0 0 0 1000";
+  EXPECT_FALSE(read_place(file, 1001)) << "not finite";
+  EXPECT_FALSE(write_place(folder.path() / "none" / "place", {}, 1000));
 }
 
 }  // namespace

@@ -24,16 +24,17 @@ class NodeComputer {
   void begin(const Fault& fault) {
     fault_ = fault;
     if (!has("localiser", "dies")) return;
-    last_pose_ = localiser_->reliable();
     localiser_.reset();
   }
   void end() {
-    if (has("localiser", "dies")) start_localiser(last_pose_);
+    if (has("localiser", "dies")) start_localiser(kept_);
     fault_.reset();
   }
 
   void tick() {
     if (localiser_) localiser_->tick();
+    // The nodes keep it with each report.
+    if (localiser_ && ++ticks_ % std::lround(1 / period) == 0) kept_ = localiser_->reliable();
     count_allocations([this] { planner_.tick(); });
   }
   void hear_map(const Grid& map) { localiser_->hear_map(map); }
@@ -103,10 +104,10 @@ class NodeComputer {
              [](const Command&, Stamp) {}, [](const std::vector<Waypoint>&, bool) {}, log, log}};
   }
 
-  void start_localiser(const std::optional<Pose>& start) {
+  void start_localiser(const std::optional<KnownPlace>& earlier) {
     LocaliserCore::Settings settings;
     settings.course = wren;
-    settings.start = start;
+    settings.earlier = earlier;
     const auto log = [this](const std::string& line) { outputs_.log("localiser", line); };
     localiser_.emplace(
         settings, clocks_, frames(),
@@ -121,7 +122,8 @@ class NodeComputer {
   Pose laser_;
   TransformHistory map_to_odometry_, odometry_to_base_;
   std::optional<Fault> fault_;
-  std::optional<Pose> last_pose_;
+  std::optional<KnownPlace> kept_;
+  long ticks_ = 0;
   long allocations_ = 0, allocations_of_outputs_ = 0;
   PlannerCore planner_;
   std::optional<LocaliserCore> localiser_;
@@ -171,6 +173,17 @@ TEST_F(NodeDrive, EndsAfterTheNumberOfLaps) {
   EXPECT_TRUE(drive_.run_until(5, [&] { return drive_.car_stands(); }));
   planner().drive_laps(0);
   EXPECT_TRUE(drive_.run_until(10, [&] { return drive_.drives(); })) << drive_.log();
+}
+
+/// The car stops metres from the place that was kept, and parked cars hide walls there.
+TEST_F(NodeDrive, ALocaliserThatIsRestartedContinuesWhereverTheCarStops) {
+  for (int k = 0; k < 8; ++k) {
+    drive_.run(1.1 + 0.07 * k);
+    drive_.begin({.name = "localiser dies", .of = "localiser", .change = "dies", .value = 0, .reason = "tf"});
+    ASSERT_TRUE(drive_.run_until(5, [&] { return drive_.car_stands(); })) << drive_.log();
+    drive_.end();
+    ASSERT_TRUE(drive_.run_until(3, [&] { return drive_.drives(); })) << k << ": " << drive_.log();
+  }
 }
 
 TEST_F(NodeDrive, AGoalSpeedOfZeroStopsTheCarAndALowOneSlowsIt) {

@@ -1,6 +1,11 @@
 // Localisation: computes the transform from map to odom, `pf/pose/odom` and `particlecloud` from `scan`,
 // `odom` and a map. The core of the bridge does the work. docs/on-the-car.md has topics, frames, parameters
 // and faults.
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include <geometry_msgs/PoseArray.h>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <nav_msgs/Odometry.h>
@@ -24,7 +29,10 @@ using slalom_bridge::Stamp;
 
 const ros::TransportHints at_once = ros::TransportHints().tcpNoDelay();
 
-/// Starts at the last pose of an earlier node unless the launch file says otherwise.
+/// The parameter from which a node continues that is restarted.
+const std::string kept_place = "kept_place";
+
+/// Starts where an earlier node was, if that was no more than 10 s ago; otherwise as the launch file says.
 LocaliserCore::Settings settings_from(ros::NodeHandle& own) {
   LocaliserCore::Settings s;
   s.course = own.param<std::string>("course", s.course);
@@ -36,6 +44,12 @@ LocaliserCore::Settings settings_from(ros::NodeHandle& own) {
   if (own.getParam("initial_pose/x", p.x) && own.getParam("initial_pose/y", p.y) &&
       own.getParam("initial_pose/yaw", p.yaw))
     s.start = p;
+  std::vector<double> kept;
+  slalom_bridge::KnownPlaceNumbers numbers;
+  if (own.getParam(kept_place, kept) && kept.size() == numbers.size()) {
+    std::copy(kept.begin(), kept.end(), numbers.begin());
+    s.earlier = slalom_bridge::recent_place(numbers, ros::WallTime::now().toSec());
+  }
   return s;
 }
 
@@ -113,10 +127,9 @@ class LocaliserNode {
 
   void report() {
     diagnostics_.send(core_.report());
-    if (const auto pose = core_.reliable()) {  // for a node that is restarted
-      own_.setParam("initial_pose/x", pose->x);
-      own_.setParam("initial_pose/y", pose->y);
-      own_.setParam("initial_pose/yaw", pose->yaw);
+    if (const auto place = core_.reliable()) {
+      const auto numbers = slalom_bridge::numbers_of(*place, ros::WallTime::now().toSec());
+      own_.setParam(kept_place, std::vector<double>(numbers.begin(), numbers.end()));
     }
     geometry_msgs::PoseArray cloud;
     cloud.header.frame_id = "map";

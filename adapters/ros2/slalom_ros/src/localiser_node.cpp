@@ -13,8 +13,8 @@
 #include <tf2_msgs/msg/tf_message.hpp>
 #include <tf2_ros/qos.hpp>
 
+#include "bridge/known_place.hpp"
 #include "bridge/localiser_core.hpp"
-#include "bridge/pose_file.hpp"
 #include "conversions.hpp"
 #include "managed_node.hpp"
 #include "option_parameters.hpp"
@@ -69,11 +69,7 @@ class LocaliserNode : public ManagedNode {
     tf_out_ = create_publisher<TFMessage>("/tf", tf2_ros::DynamicBroadcasterQoS());
     LocaliserCore::Settings settings = settings_;
     settings.start = told_;
-    constexpr double long_ago = 10;  // s
-    if (const auto kept = slalom_bridge::read_pose(pose_file_, wall_time(), long_ago); kept) {
-      settings.start = kept;
-      settings.everywhere = false;
-    }
+    settings.earlier = slalom_bridge::read_place(pose_file_, wall_time());
     core_.emplace(
         settings, clocks(), frames_of(buffer_, map_, base_),
         LocaliserCore::Outputs{
@@ -136,8 +132,8 @@ class LocaliserNode : public ManagedNode {
 
   slalom_bridge::Report report() override {
     parameters_->refresh();
-    if (const auto pose = core_->reliable();
-        pose && !pose_file_.empty() && !slalom_bridge::write_pose(pose_file_, *pose, wall_time()))
+    if (const auto place = core_->reliable();
+        place && !pose_file_.empty() && !slalom_bridge::write_place(pose_file_, *place, wall_time()))
       RCLCPP_WARN_ONCE(get_logger(), "pose_file: %s cannot be written", pose_file_.c_str());
     if (cloud_out_->get_subscription_count() > 0) {
       PoseArray cloud;
