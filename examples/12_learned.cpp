@@ -47,8 +47,8 @@ struct Boat {
 /// Speeds after a step, where the water does nothing.
 struct NoWater {
   template <class T>
-  std::array<T, 2> operator()(const T& speed_x, const T& speed_y, const T&, const T& u_x,
-                              const T& u_y) const {
+  SLALOM_INLINE_CALLS std::array<T, 2> operator()(const T& speed_x, const T& speed_y, const T&, const T& u_x,
+                                                  const T& u_y) const {
     return {speed_x + T(0.1) * u_x, speed_y + T(0.1) * u_y};
   }
 };

@@ -16,7 +16,7 @@ struct Wind {
   double rate = 2;                          // rad/s
 
   template <class T>
-  T at(const T& time) const {
+  SLALOM_INLINE_CALLS T at(const T& time) const {
     T s, c;
     slalom::sin_cos(T(rate) * time, s, c);
     return T(steady) + T(sine) * s + T(cosine) * c;

@@ -34,7 +34,8 @@ using Speeds = std::array<T, 3>;
 /// The speeds after a step, if no wheel slips sideways.
 struct WithoutSlip {
   template <class T>
-  Speeds<T> operator()(const CarState<T>& x, const T& steer, const T& commanded_speed) const {
+  SLALOM_INLINE_CALLS Speeds<T> operator()(const CarState<T>& x, const T& steer,
+                                           const T& commanded_speed) const {
     const T gain = slalom::select(commanded_speed > x.ahead, T(4.755), T(19.02));  // 1/s
     const T ahead = x.ahead + T(dt) * slalom::clamp(gain * (commanded_speed - x.ahead), T(-9.51), T(9.51));
     const T yaw_rate = ahead * slalom::tan(steer) * T(1 / wheelbase);
@@ -47,7 +48,8 @@ struct Learned {
   slalom::Mlp<6, 3> network;
 
   template <class T>
-  Speeds<T> operator()(const CarState<T>& x, const T& steer, const T& commanded_speed) const {
+  SLALOM_INLINE_CALLS Speeds<T> operator()(const CarState<T>& x, const T& steer,
+                                           const T& commanded_speed) const {
     const auto speeds = network(x.ahead, x.left, x.yaw_rate, x.steer, steer, commanded_speed);
     return {speeds[0], speeds[1], speeds[2]};
   }
