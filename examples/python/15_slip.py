@@ -1,7 +1,8 @@
 """A car's slip on a slippery floor is learned from laps that it has driven with a model without slip.
 
-The network learns from the poses and commands of three laps of one course; the car then drives another course. With a
-second argument, writes the network to that file: examples/learned/car.npz, which 15_slip.cpp reads.
+The network learns from the poses and commands of five laps of one course; the car then drives another course. Random
+changes of the recorded commands and the mirror image of each step show the network the states and commands that a plan
+samples. With a second argument, writes the network to that file: examples/learned/car.npz, which 15_slip.cpp reads.
 """
 
 import sys
@@ -94,16 +95,22 @@ def observed(world, before):
     return np.array([x, y, yaw, way_x * cosine + way_y * sine, way_y * cosine - way_x * sine, now["yaw_rate"], now["steer"]])
 
 
-def drive(line, network, pace, seed):
+def drive(line, network, pace, seed, excitation=(0, 0)):
     """A lap: whether it is finished in time without touching a wall, the root mean square of the distance to the line
-    after the first second (m), and the recording: states, inputs and the states after them."""
+    after the first second (m), and the recording: states, inputs and the states after them.
+
+    excitation: standard deviations of what is added to the inputs (rad, m/s), drawn every four steps
+    """
     world = slalom.World(line.course, friction=FRICTION, wall_response="count_only", beams=2, scan_rate=1)
     world.reset(seed, [line.course.start])
     controller = slalom.Mppi(problem(line, network, pace), horizon=15, samples=256, temperature=0.05,
                              variance=[0.015, 0.5], control_cost_discount=1, seed=seed)
+    random, added = np.random.default_rng(seed), 0
     s, touched, recording = np.array([*line.course.start, 0, 0, 0, 0]), False, []
     while world.observe()["laps"] < 1 and world.time < line.course.length / (2.6 * pace):
-        u = controller.solve(s, elapsed=DT).inputs[0].astype(float)
+        if len(recording) % 4 == 0:
+            added = random.normal(0, excitation)
+        u = np.clip(controller.solve(s, elapsed=DT).inputs[0] + added, [-STEER_MAX, 0], [STEER_MAX, 8])
         world.step([tuple(u)], STEPS - 1)
         before = world.observe()["pose"]
         world.step([tuple(u)])
@@ -116,11 +123,13 @@ def drive(line, network, pace, seed):
 
 
 known = Line("wren")
-laps = [drive(known, None, pace, seed)[2] for seed, pace in enumerate((0.7, 0.9, 1.1))]
+laps = [drive(known, None, pace, seed, (0.1, 1.5))[2] for seed, pace in enumerate((0.7, 0.8, 0.9, 1.0, 1.1))]
 states, inputs, following = (np.concatenate(column) for column in zip(*laps))
-steer = steered(states, inputs)
-network = train_mlp(features(states, inputs, steer), following[:, 3:6], hidden=(24, 24), residual=True, epochs=400,
-                    batch=128)
+before, after = features(states, inputs, steered(states, inputs)), following[:, 3:6]
+# The mirror image of a step is a step, too.
+before = np.concatenate([before, before * [1, -1, -1, -1, -1, 1]])
+after = np.concatenate([after, after * [1, -1, -1]])
+network = train_mlp(before, after, hidden=(24, 24), residual=True, epochs=400, batch=128)
 if len(sys.argv) > 2:
     network.save(sys.argv[2])
 
