@@ -99,6 +99,7 @@ export default async function (h) {
   await h.test("the charts are saved as CSV", async () => {
     await h.until(() => slalom.frame && slalom.scalar("tick") > 20);
     await h.pause();
+    await h.until(() => !slalom.past.missing(slalom.past.oldest, slalom.past.newest, 1)); // the cells of a step are empty until they arrive
     const [file] = await Promise.all([page.waitForEvent("download"), page.click("#csv")]);
     const { readFileSync } = await import("node:fs"), rows = readFileSync(await file.path(), "utf8").trim().split("\n").map((row) => row.split(","));
     assert.deepEqual(rows[0].slice(0, 3), ["tick", "time", "distance_cost"]);
