@@ -9,11 +9,10 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <cstring>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace slalom::testing {
 
@@ -31,7 +30,7 @@ class WebClient {
     address.sin_port = htons(port);
     inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
     if (connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 && !connected())
-      throw std::runtime_error(std::string("no connection: ") + std::strerror(errno));
+      throw std::system_error(errno, std::generic_category(), "no connection");
   }
   ~WebClient() { close(socket_); }
   WebClient(const WebClient&) = delete;
