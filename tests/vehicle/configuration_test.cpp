@@ -127,6 +127,24 @@ TEST_F(ConfigurationFile, IsWrittenAsItIsRead) {
   EXPECT_EQ(back.planner.max_speed, c.planner.max_speed);
 }
 
+// What `slalom race --learn` prints: shares of the grip for parts of the path, however many inputs the model
+// has.
+TEST_F(ConfigurationFile, HasAnyNumberOfGripShares) {
+  const std::vector<double> shares{0.9, 0.8, 0.7, 1};
+  for (const char* model : {"kinematic", "single_track"}) {
+    Configuration c;
+    c.vehicle.model = vehicle_model(model);
+    set_option(c, "planner.grip_shares", "[0.9, 0.8, 0.7, 1]");
+    EXPECT_EQ(c.planner.grip_shares.values(), shares);
+    const auto file = write("learned.yaml", to_yaml(c));
+    EXPECT_EQ(load_configuration(file).planner.grip_shares.values(), shares);
+    const auto based = load_configuration(write("based.yaml", "base: learned.yaml\n"));
+    EXPECT_EQ(based.planner.grip_shares.values(), shares);
+  }
+  EXPECT_EQ(refusal("planner:\n  grip_shares: [0.9, 2]\n"),
+            "x.yaml:2: key planner.grip_shares: '2' must be in [0.05, 1]");
+}
+
 TEST_F(ConfigurationFile, IsFoundByName) {
   write("mine.yaml", "");
   EXPECT_EQ(find_configuration("mine", {folder_}), folder_ / "mine.yaml");

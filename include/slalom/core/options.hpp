@@ -12,8 +12,7 @@
 /// Declarations of options, from which the command line, the configuration files, the bindings and the view's
 /// sliders are all derived.
 ///
-/// An options type is a flat aggregate whose fields carry their defaults. Beside it stands one function
-/// template
+/// An options type is a flat aggregate whose fields carry their defaults. A function template beside it
 ///
 ///     template <class Options, class Visit>
 ///       requires is_options_of<Options, MppiOptions>
@@ -34,6 +33,7 @@ struct Declaration {
   double min = -std::numeric_limits<double>::infinity();  ///< inclusive, per entry
   double max = std::numeric_limits<double>::infinity();   ///< inclusive, per entry
   const char* formerly = "";  ///< a name that the option had before, to tell whoever still uses it
+  bool any_count = false;     ///< of a PerInput: it takes any number of values, not one for each input
 };
 
 /// A reference to an enumeration of any type, for code that is compiled once for all options. It stands where
@@ -67,7 +67,7 @@ class Choice {
 template <class Options, class Of>
 concept is_options_of = std::is_same_v<std::remove_const_t<Options>, Of>;
 
-/// One value per input, or one for all inputs.
+/// One value per input, or one for all inputs. With `Declaration::any_count` it is a list of any length.
 class PerInput {
  public:
   /// One value for all inputs.
@@ -108,13 +108,13 @@ inline void check(std::string_view where, const Declaration& d, double value) {
 }  // namespace detail
 
 /// Checks every option against its declared range and every per-input option against the number of inputs (0:
-/// any). Throws std::invalid_argument, for instance "svg_mppi.samples: 0 must be in [1, 1000000]".
+/// any). Throws std::invalid_argument, for instance "svg_mppi.samples: 0 must be in [1, 4194304]".
 template <class Options>
 void validate_options(const Options& options, std::string_view where, int inputs = 0) {
   visit_options(options, [&](const auto& field, const Declaration& declaration) {
     using Field = std::remove_cvref_t<decltype(field)>;
     if constexpr (std::is_same_v<Field, PerInput>) {
-      if (inputs > 0 && !field.fits(inputs))
+      if (inputs > 0 && !declaration.any_count && !field.fits(inputs))
         detail::throw_wrong_count(where, declaration, field.values().size(), inputs);
       if (field.values().empty()) detail::throw_wrong_count(where, declaration, 0, inputs);
       for (const double value : field.values()) detail::check(where, declaration, value);

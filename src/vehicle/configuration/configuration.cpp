@@ -51,7 +51,7 @@ void check_count(const Options& options, std::string_view name, std::string_view
   const int inputs = input_count(vehicle);
   for (const OptionEntry& entry : list_options(options)) {
     const auto* values = std::get_if<std::vector<double>>(&entry.value);
-    if (name != entry.declaration.name || !values) continue;
+    if (name != entry.declaration.name || !values || entry.declaration.any_count) continue;
     if (values->size() == 1 || static_cast<int>(values->size()) == inputs) continue;
     throw std::invalid_argument(
         "'" + std::string(text) + "' has " + std::to_string(values->size()) + " values, must have 1" +

@@ -95,7 +95,7 @@ void check_together(const Configuration& configuration, const fs::path& file, Li
   for (const Section& section : list_sections(configuration)) {
     for (const OptionEntry& entry : section.options) {
       const auto* values = std::get_if<std::vector<double>>(&entry.value);
-      if (!values || static_cast<int>(values->size()) <= inputs) continue;
+      if (!values || entry.declaration.any_count || static_cast<int>(values->size()) <= inputs) continue;
       // Only possible where the base has a model of more inputs.
       throw IoError(file.string(), lines["vehicle.model"],
                     "key vehicle.model: the model has only the input " + input_names(configuration.vehicle) +

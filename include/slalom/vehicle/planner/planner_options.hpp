@@ -10,7 +10,8 @@ namespace slalom::vehicle {
 struct PlannerOptions {
   double control_period = 0.025;        ///< s, from one update to the next
   double latency = 0;                   ///< s, from the scan to the moment when a command reaches the car
-  double observer_time_constant = 0.1;  ///< s, of the lag in the steering observer
+  double observer_time_constant = 0.1;  ///< s, of the lag in the steering observer; of models
+                                        ///< whose tyres do not slip
   double max_speed = 100;               ///< m/s, upper bound of the path's speeds
   double profile_friction = 0;   ///< the path's speeds are lowered until they ask for no more than this
                                  ///< coefficient of friction allows; 0: they stay
@@ -22,21 +23,28 @@ struct PlannerOptions {
   double laser_x = 0.275;        ///< m, of the laser ahead of the rear axle
   double laser_y = 0;            ///< m, to the left
   double laser_yaw = 0;          ///< rad
-  double speed_lookahead = 0;    ///< s, the commanded speed is that of the path this far ahead, or of
-                                 ///< the plan where the acceleration is an input
+  double speed_lookahead = 0;    ///< s, of models whose tyres do not slip: the commanded speed is that of
+                                 ///< the path this far ahead, or of the plan where the acceleration is an
+                                 ///< input
   double deadline = 0;           ///< s, time limit of a solve; 0: none
-  bool stop_when_blocked = true;  ///< brake when every plan collides
-  bool verify_plan = true;  ///< if the solution collides, send the cheapest of nominal sequence, guides and
-                            ///< best sample that does not
-  bool back_up = true;  ///< with `stop_when_blocked` and `verify_plan`: where the car stands and every plan
-                        ///< collides, it reverses a little and tries again
+  /// Brake off the course and, with `verify_plan` and a model whose tyres do not slip, when every plan
+  /// collides. A model whose tyres slip plans the braking itself.
+  bool stop_when_blocked = true;
+  /// If the solution collides, send the cheapest of nominal sequence, guides and best sample that does not.
+  /// With a model whose tyres slip, the solution also competes with slower sequences and with ways around
+  /// obstacles.
+  bool verify_plan = true;
+  /// Reverse a little and try again where the car stands and every plan collides. Without tyre slip this
+  /// needs `stop_when_blocked` and `verify_plan`; with it, detours and smaller margins are part of it.
+  bool back_up = true;
   bool predict_others = true;          ///< plans meet `PlannerInput::others` where they will be
   double collision_probability = 0.2;  ///< of others in a step, above which a plan collides
-  double time_behind = 0;              ///< s, for how long a car whose plan ends behind a slower one is taken
-                                       ///< to lose time behind it; 0: such plans cost nothing
-  double sight_deceleration = 0;       ///< m/s^2, where plans seek the shortest time: they drive no faster
-                                       ///< than a car that brakes with it stops on the part of the path
-                                       ///< that the scan shows; 0: they do not expect what they cannot see
+  /// s, with a model whose tyres slip: a plan that ends behind a slower car costs the time that is lost by
+  /// following that car for so long; 0: such plans cost nothing
+  double time_behind = 0;
+  /// m/s^2, where plans seek the shortest time: the speed stays so low that a car that brakes with this
+  /// deceleration stops within the part of the path that the scan shows; 0: no such limit
+  double sight_deceleration = 0;
   /// Where plans seek the shortest time: the share of `usable_grip` with which the speeds of the path are
   /// computed; one value, or one for each of so many parts of the path, of equal length, from its first point
   PerInput grip_shares = 1.0;
@@ -149,7 +157,8 @@ void visit_options(Options& o, Visit&& visit) {
                     .help = "with objective lap_time: share of usable_grip with which the speeds of the path "
                             "are computed: one value, or one for each of so many equal parts of the path",
                     .min = 0.05,
-                    .max = 1});
+                    .max = 1,
+                    .any_count = true});
   visit_options(o.estimation, visit);
   visit(o.published.maps, Declaration{.name = "published_maps",
                                       .help = "cost map and reference field as in the paper's program"});
