@@ -18,8 +18,9 @@ std::size_t draw_index(RandomStream& random, std::size_t count) {
   return std::min(count - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(count)));
 }
 
-/// The 2.5 and 97.5 percentiles, by linear interpolation.
+/// The 2.5 and 97.5 percentiles, by linear interpolation. NaN without values.
 Interval percentile_interval(std::vector<double>& values) {
+  if (values.empty()) return {not_a_number, not_a_number};
   std::sort(values.begin(), values.end());
   const auto at = [&](double share) {
     const double position = share * static_cast<double>(values.size() - 1);

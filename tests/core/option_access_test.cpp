@@ -85,6 +85,17 @@ TEST(OptionAccess, WritesWholeLimitsOut) {
   EXPECT_EQ(range_rule({.name = "step", .min = 1e-6, .max = 0.5}), "must be in [1e-06, 0.5]");
 }
 
+TEST(OptionAccess, ValidationWritesWholeLimitsOut) {
+  SampleOptions o;
+  o.count = 4194304;
+  try {
+    validate_options(o, "sample");
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "sample.count: 4194304 must be in [1, 10]");
+  }
+}
+
 TEST(OptionAccess, ListsValuesThatReadBack) {
   SampleOptions o;
   o.gain = 0.1 + 0.2;

@@ -41,6 +41,15 @@ TEST(Bootstrap, IsDeterministicAndAcceptsNoValues) {
   EXPECT_EQ(bootstrap_mean(values).low, bootstrap_mean(values).low);
   EXPECT_TRUE(std::isnan(bootstrap_mean({}).low));
   EXPECT_TRUE(std::isnan(bootstrap_ratio(values, std::vector<double>{0, 0, 0, 0}).low));
+  EXPECT_TRUE(std::isnan(bootstrap_mean(values, 1, 0).low));
+  // One resample of many laps of which one has obstacles: for some seeds it does not draw this lap.
+  std::vector<double> laps(100, 1.0), obstacles(100, 0.0);
+  obstacles[0] = 5;
+  int without = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    without += std::isnan(bootstrap_ratio(laps, obstacles, seed, 1).low);
+  EXPECT_GT(without, 0);
+  EXPECT_LT(without, 20);
 }
 
 TEST(Bootstrap, DetectsADifference) {

@@ -62,6 +62,33 @@ TEST(Controller, RejectsASolverForAnotherNumberOfInputs) {
   EXPECT_THROW(Mppi(DoubleIntegrator{}, {.input_min = {-1, -2}}), std::invalid_argument);
 }
 
+/// Options of a method that lack the bounds of its inputs.
+struct UnboundedOptions {
+  static constexpr const char* method = "unbounded";
+  int horizon = 5;
+};
+
+template <class Options, class Visit>
+requires is_options_of<Options, UnboundedOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.horizon, Declaration{.name = "horizon", .min = 1});
+}
+
+std::unique_ptr<Solver> make_solver(const UnboundedOptions& options, int inputs,
+                                    std::shared_ptr<ThreadPool>) {
+  return slalom::make_solver(MppiOptions{.horizon = options.horizon}, inputs);
+}
+
+TEST(Controller, NamesTheBoundThatOptionsLack) {
+  try {
+    const Controller controller(DoubleIntegrator{}, SolverOptions(UnboundedOptions{}));
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "unbounded.input_min: missing; the options of a method must have this PerInput");
+  }
+}
+
 /// A problem that wants all samples of a batch at once.
 class WholeBatches final : public BatchEvaluator {
  public:

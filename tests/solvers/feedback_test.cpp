@@ -250,6 +250,19 @@ TEST(FeedbackGains, TakesOnlySizesThatExist) {
   EXPECT_THROW(FeedbackGains(1, 2, 1, InputBounds(1)), std::invalid_argument);
 }
 
+TEST(FeedbackGains, RejectsBoundsInTheWrongOrder) {
+  InputBounds bounds(2);
+  bounds.low[1] = 2;
+  bounds.high[1] = -1;
+  try {
+    const FeedbackGains gains(3, 2, 5, bounds);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "feedback: bounds: the lower bound of input 1, 2, must be at most the upper bound, -1");
+  }
+}
+
 TEST(FeedbackGains, AnIndefiniteHessianCountsAsTheNearestSemidefiniteOne) {
   // Eigenvalues 3 and -1 along (1, 1) and (1, -1): what remains is 1.5 everywhere.
   FeedbackGains given(1, 1, 1, InputBounds(1)), nearest(1, 1, 1, InputBounds(1));

@@ -28,11 +28,12 @@ double percentile(std::span<const double> sorted, double share);
 /// The same.
 double percentile(std::span<const float> sorted, double share);
 
-/// Percentile bootstrap of the mean (Efron & Tibshirani 1993, chapter 13). NaN without values.
+/// Percentile bootstrap of the mean (Efron & Tibshirani 1993, chapter 13). NaN without values or resamples.
 Interval bootstrap_mean(std::span<const double> values, std::uint64_t seed = 1, int resamples = 10000);
 
 /// Percentile bootstrap of sum(numerator) / sum(denominator) over paired entries, for instance collisions
-/// over obstacles per lap: laps are resampled as a whole. NaN where the denominators sum to 0.
+/// over obstacles per lap: laps are resampled as a whole. Resamples whose denominators sum to 0
+/// are left out. NaN where all denominators sum to 0 and where no resample is left.
 Interval bootstrap_ratio(std::span<const double> numerator, std::span<const double> denominator,
                          std::uint64_t seed = 1, int resamples = 10000);
 

@@ -176,12 +176,14 @@ class Controller {
   /// The bounds of the inputs: those that the problem stated at construction, narrowed by the options.
   const InputBounds& bounds() const noexcept { return bounds_; }
 
-  /// Returns to the state after construction, with random numbers from `seed`.
+  /// Resets the solver, with random numbers from `seed`, and the inputs to those before the first solve.
+  /// States and cost of the last plan remain until a solve from a finite state; the problem is not changed.
   void reset(std::uint64_t seed) noexcept {
     solver_->reset(seed);
     rest();
   }
-  /// Draws the noise of the next solve ahead, outside its deadline.
+  /// Draws the noise of the next solve ahead, outside its deadline. Has an effect with `mppi`, `svg_mppi` and
+  /// `dial_mpc` only (see Solver::prepare).
   void prepare() noexcept { solver_->prepare(); }
 
  private:
@@ -203,14 +205,19 @@ class Controller {
       bounds = InputBounds(input_count);
     }
     if (!options) return bounds;
-    const PerInput &low = *options->find<PerInput>("input_min"),
-                   &high = *options->find<PerInput>("input_max");
+    const PerInput &low = bound(*options, "input_min"), &high = bound(*options, "input_max");
     for (int i = 0; i < input_count; ++i) {  // what does not fit, the solver's own check reports
       const auto at = static_cast<std::size_t>(i);
       if (low.fits(input_count)) bounds.low[at] = std::max(low[i], bounds.low[at]);
       if (high.fits(input_count)) bounds.high[at] = std::min(high[i], bounds.high[at]);
     }
     return bounds;
+  }
+
+  static const PerInput& bound(const SolverOptions& options, const char* name) {
+    if (const PerInput* found = options.find<PerInput>(name)) return *found;
+    throw std::invalid_argument(std::string(options.method()) + "." + name +
+                                ": missing; the options of a method must have this PerInput");
   }
 
   /// The options with their bounds narrowed to the problem's.

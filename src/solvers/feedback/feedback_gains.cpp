@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/option_access.hpp"
 #include "slalom/solvers/differentiable_problem.hpp"
 #include "solvers/all_finite.hpp"
 #include "solvers/feedback/symmetric_matrix.hpp"
@@ -41,6 +42,11 @@ FeedbackGains::FeedbackGains(int states, int inputs, int steps, const InputBound
   if (bounds.low.size() != count(inputs) || bounds.high.size() != count(inputs))
     throw std::invalid_argument("feedback: bounds: must be given for each of " + std::to_string(inputs) +
                                 " inputs");
+  for (std::size_t i = 0; i < count(inputs); ++i)
+    if (!(bounds.low[i] <= bounds.high[i]))
+      throw std::invalid_argument("feedback: bounds: the lower bound of input " + std::to_string(i) + ", " +
+                                  to_text(bounds.low[i]) + ", must be at most the upper bound, " +
+                                  to_text(bounds.high[i]));
   const int all = states + inputs;
   plan_states_.resize(count(steps + 1, states));
   plan_inputs_.resize(count(steps, inputs));

@@ -48,6 +48,7 @@ struct Planner::Implementation {
   SequenceChoice choice;
   WaysAround ways;  ///< of models with tyres that slip
   std::vector<PredictedState> states;
+  bool has_maps = false;  ///< an update has given the model its maps
   PlannerOutput output;
 
   Implementation(const PlannerOptions& o, std::unique_ptr<VehicleModel> m,
@@ -154,6 +155,7 @@ struct Planner::Implementation {
     }
     model->set_maps(obstacles.seen_from(pose_of_scan(odometry), followed, origin));
     model->set_start(start, traits.follows_path ? here.speed : traits.reference_speed);
+    has_maps = true;
     choice.sees(obstacles.clearance_map().view(), obstacles.others(origin));
     SolveRequest request{.elapsed = options.control_period};
     if (options.deadline > 0) request.deadline = options.deadline;
@@ -322,6 +324,7 @@ void Planner::reset(std::uint64_t seed) noexcept {
 
 PredictedCost Planner::predict(std::span<const float> inputs,
                                std::span<PredictedState> states) const noexcept {
+  if (!implementation_->has_maps) return {};
   const PredictedCost cost = implementation_->model->predict(inputs, states);
   const auto steps = inputs.size() / static_cast<std::size_t>(implementation_->model->inputs());
   detail::shift(states.first(steps + 1), implementation_->origin);

@@ -40,7 +40,8 @@ struct Odometry {
 /// The reason for a command.
 enum class PlannerStatus {
   ok,
-  blocked,            ///< every plan collides: braking or reversing; or reversing is not finished yet
+  blocked,            ///< every plan collides, or reversing is not finished yet; without tyre slip only with
+                      ///< `verify_plan` and `stop_when_blocked`, else such a plan is sent as `ok`
   fallback_plan,      ///< the solution collided; another sequence, which does not, was sent
   bad_scan,           ///< empty, or of an invalid geometry: braking
   bad_odometry,       ///< not finite, or larger than `Odometry` allows: braking
@@ -71,7 +72,7 @@ constexpr const char* name(PlannerStatus status) noexcept {
 
 /// What a planner is given.
 struct PlannerInput {
-  maps::LaserScanView scan;                  ///< the scan, body frame
+  maps::LaserScanView scan;                  ///< the scan, in the frame of the laser
   Odometry odometry;                         ///< at the time of the scan
   std::span<const maps::Point> obstacles{};  ///< further obstacle points, robot frame, m
   std::optional<ImuReading> imu{};  ///< mean since the last update, where there is a unit; it is used
@@ -127,7 +128,8 @@ class Planner {
   void reset(std::uint64_t seed) noexcept;
 
   /// The states (one more than steps) and costs of any control sequence, [step][input], from where the last
-  /// update that made a plan began, over its maps. For viewers; it may be called between updates.
+  /// update that made a plan began, over its maps. For viewers; it may be called between updates. Before the
+  /// first such update, the cost is 0 and the states are not set.
   PredictedCost predict(std::span<const float> inputs, std::span<PredictedState> states) const noexcept;
 
   /// The solver in use.
