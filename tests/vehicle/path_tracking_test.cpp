@@ -34,6 +34,15 @@ struct Maps {
 
 using Car = PathTracking<Kinematic>;
 
+// The cost map of a box holds the whole body, seen from the rear axle; the map of clearances holds a point.
+TEST(ObstacleCost, LooksAheadOfTheRearAxleWithDiscsOnly) {
+  BodyOptions body;
+  body.model = BodyModel::discs;
+  EXPECT_NEAR(ObstacleCost(body).foremost(), 0.461 - 0.58 / 6, 1e-6);
+  body.model = BodyModel::box;
+  EXPECT_EQ(ObstacleCost(body).foremost(), 0);
+}
+
 TEST(PathTracking, RearAxleDrivesTheCircleOfItsSteeringAngle) {
   PathTrackingOptions options;
   options.time_step = 0.001;

@@ -61,14 +61,6 @@ void StateObserver::send(const Command& command) noexcept {
   ++sent_since_;
 }
 
-double StateObserver::yaw_rate_deviation() const noexcept {
-  return std::sqrt(covariance_[yaw_rate][yaw_rate]);
-}
-
-double StateObserver::lateral_deviation() const noexcept {
-  return std::sqrt(covariance_[lateral][lateral]);
-}
-
 /// The command that acts with this delay at a time, s after the last measurements; the newest was sent one
 /// period before it.
 const Command& StateObserver::acting(double time, double delay) const noexcept {

@@ -46,10 +46,6 @@ class StateObserver {
 
   /// The state at the time of the measurements.
   const VehicleStart& now() const noexcept { return now_; }
-  /// The standard deviation of yaw rate (rad/s) and sideways velocity (m/s), as the filter has it.
-  double yaw_rate_deviation() const noexcept;
-  /// The standard deviation of the sideways velocity (m/s), as the filter has it.
-  double lateral_deviation() const noexcept;
 
   /// The state when the next command takes effect on the steering.
   VehicleStart ahead(const VehicleModel& model) const noexcept;

@@ -50,11 +50,13 @@ class ObstacleCost {
     }
   }
 
-  /// m ahead of the rear axle, of the foremost disc's centre.
-  double foremost() const noexcept { return double(disc_[2]); }
+  /// m ahead of the rear axle, of the point for which `blocked` is asked: the centre of the foremost disc, or
+  /// with a box the rear axle, 0.
+  double foremost() const noexcept { return discs_ ? double(disc_[2]) : 0; }
 
-  /// Whether the foremost disc of the body would collide with its centre at a position in the map frame, m.
-  /// Off the map nothing is known, and nothing collides.
+  /// Whether the body collides with the point of `foremost` at a position in the map frame, m: with discs the
+  /// foremost one, with a box the whole body in its heading at the time of the scan. Off the map nothing is
+  /// known, and nothing collides.
   template <class T>
   SLALOM_INLINE mask_t<T> blocked(const T& x, const T& y) const {
     const T value = slalom::look_up(obstacles_, T(to_local_[0]) * x + (T(to_local_[1]) * y + T(to_local_[2])),
