@@ -10,9 +10,10 @@ namespace slalom {
 class CostGradient;
 
 /// Source of a problem's own noise, used instead of independent standard normal values: for example smooth or
-/// one-sided noise. `mppi`, `svg_mppi` and `cem` scale it by their standard deviations, shift it by their
-/// means and clamp it to the bounds; their formulas assume a normal distribution with mean 0 and variance 1.
-/// `reverse_mppi`, `sv_mpc` and the guides of `svg_mppi` need the normal density and draw normal values.
+/// one-sided noise. `mppi`, `svg_mppi`, `cem`, `icem` and `dial_mpc` scale it by their standard deviations,
+/// shift it by their means and clamp it to the bounds; their formulas assume a normal distribution with mean
+/// 0 and variance 1. `reverse_mppi`, `sv_mpc` and the guides of `svg_mppi` need the normal density and draw
+/// normal values.
 class Sampler {
  public:
   virtual ~Sampler() = default;

@@ -20,11 +20,10 @@
 /// `State<T>` is an aggregate of `T` (nested arrays are fine). Optional:
 ///  - `step` and `stage_cost` may take the step index `int k` (0 ... horizon - 1) as their last argument;
 ///  - `template <class T> auto look_up(const State<T>& x) const`: whatever is read from maps at a state. It
-///  is evaluated
-///    once a state and handed, after the state, to `step`, `stage_cost` and `terminal_cost`;
-///  - a cost may be returned as `Cost<T>`, which also says whether the state collides, or as `CostTerms<T,
-///  N>`
-///    whose terms `static constexpr std::array cost_names{"distance", "effort"}` names: plans tell each;
+///    is evaluated once a state and handed, after the state, to `step`, `stage_cost` and `terminal_cost`;
+///  - a cost may be returned as `Cost<T>`, which also says whether the state collides, or as
+///    `CostTerms<T, N>`, whose terms `static constexpr std::array cost_names{"distance", "effort"}` names:
+///    plans tell each;
 ///  - a member `dt` or a function `time_step()`: the duration of a step, s. With it solvers shift their last
 ///    solution by the time that has passed;
 ///  - members `input_min` and `input_max`, a `double` or a `std::array<double, inputs>`: bounds that hold

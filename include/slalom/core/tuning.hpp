@@ -8,8 +8,9 @@
 /// at most once, and the bits of results do not depend on them.
 ///
 /// `active_target()` makes the choices of its instruction set when it is first called, in less than 0.2 ms.
-/// The environment variable `SLALOM_TUNE` overrides them: loads, gathers, two, four, or measure. Then it
-/// prints the choice to standard error. It throws std::invalid_argument if the variable is none of these.
+/// The environment variable `SLALOM_TUNE` overrides them: loads, gathers, two, four, or measure. If it is
+/// set, `active_target()` prints the choices to standard error, and throws std::invalid_argument if it is set
+/// to none of these.
 namespace slalom::simd {
 
 /// How the four values of a cell are read with AVX-512. Which is faster depends on the processor: on some,

@@ -38,7 +38,7 @@ enum class CarEnd {
   finished,   ///< it drove all laps
   wall,       ///< it hit a wall
   timeout,    ///< it did not drive all laps in time
-  cancelled,  ///< the race was ended by the caller
+  cancelled,  ///< the race was ended by the caller; in results "interrupted"
 };
 /// The name of an end in results.
 std::string_view name(CarEnd end) noexcept;
@@ -51,8 +51,9 @@ struct CarContact {
   maps::Pose pose{};          ///< of the centre of gravity of the first
 };
 
-/// A car is 1 m ahead of another along the course, from middle to middle, that was 1 m ahead of it: for a
-/// place in the race, so not where it laps the other, and not where that one has left the track.
+/// A car overtakes another when it comes to be 1 m ahead of it, from middle to middle, and the other was 1 m
+/// ahead before, or in front of it on the grid. What counts is the progress over all laps: to lap a car, or
+/// to pass one that has left the track, is not to overtake it.
 struct Overtake {
   double time = 0;    ///< s
   int car = 0;        ///< index of its entry

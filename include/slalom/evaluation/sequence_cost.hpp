@@ -44,14 +44,15 @@ class SequenceCostMeter {
 
   /// The cost of the states that the planner's model predicts for its control sequence, interpolated to 0.05
   /// s and cut at 15 states; a shorter sequence is extended by its last input. Without a sequence: present().
+  /// Only after `observe`.
   Cost planned(const vehicle::PlannerOutput& output) noexcept;
 
   /// The cost of the states that the model of the paper's program predicts for the steering of that sequence,
-  /// resampled to 0.05 s. Without a sequence: present().
+  /// resampled to 0.05 s. Without a sequence: present(). Only after `observe`.
   Cost paper_model(const vehicle::PlannerOutput& output) noexcept;
 
   /// 15 times the stage cost of the pose given to `observe`. Its mean over a lap is the cost of the driven
-  /// trajectory.
+  /// trajectory. Only after `observe`.
   Cost present() const noexcept;
 
   /// m, from the cell of the reference field with the rear axle to the nearest point of the path.

@@ -60,7 +60,8 @@ class CourseField {
   /// The cells.
   const CellGrid<4>& cells() const noexcept { return cells_; }
 
-  /// The cells {distance, yaw, speed, 0}, in the map frame, for the look-ups of rollouts.
+  /// The cells {distance, yaw, speed, 0}, in the map frame, for the look-ups of rollouts. Those off the
+  /// corridor hold the values of CourseFieldOptions::outside, and 1 in the last place.
   GridView<4> view() const noexcept { return cells_.view(geometry_); }
 
  private:

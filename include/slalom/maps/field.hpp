@@ -92,7 +92,8 @@ class Field {
             by_column * T(column_.by_y) + by_row * T(row_.by_y)};
   }
 
-  /// Values and, unless `dx` is null, gradients at `count` positions, at the full width of the processor.
+  /// Values and, unless `dx` and `dy` are null, gradients at `count` positions, at the full width of the
+  /// processor. `dx` and `dy` must be both null or both not.
   void evaluate(const float* x, const float* y, std::size_t count, float* value, float* dx = nullptr,
                 float* dy = nullptr) const;
 

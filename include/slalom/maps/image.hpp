@@ -28,7 +28,8 @@ inline constexpr std::int64_t max_image_pixels = std::int64_t{1} << 26;  ///< la
 /// their first bytes. Colours are averaged, as map_server does. Throws IoError.
 GreyImage load_image(const std::filesystem::path& path);
 
-/// Writes the grey part as an 8 bit PNG. Throws IoError, std::invalid_argument if the sizes disagree.
+/// Writes the grey part as an 8 bit PNG. Throws IoError if the file cannot be written or the image has no or
+/// too many pixels, and std::invalid_argument unless `grey` has width x height values.
 void save_png(const GreyImage& image, const std::filesystem::path& path);
 
 }  // namespace slalom::maps

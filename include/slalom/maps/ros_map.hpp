@@ -9,13 +9,12 @@ namespace slalom::maps {
 
 /// How grey becomes occupancy.
 enum class MapRule {
-  /// As ROS map_server: p = (255 - grey) / 255 (grey / 255 with `negate`), occupied where p >
-  /// occupied_thresh, free
-  /// where p < free_thresh, else unknown. In mode `raw` the grey value itself is the occupancy in percent.
+  /// As ROS map_server: with p = (255 - grey) / 255 (grey / 255 with `negate`) a cell is occupied where
+  /// p > occupied_thresh, free where p < free_thresh, else unknown. In mode `raw` the grey value itself is
+  /// the occupancy in percent.
   map_server,
   /// As f1tenth_gym: a grey of at most `grey_threshold` is an obstacle, all else free, unknown cells too;
-  /// `negate`,
-  /// `mode` and the thresholds of the yaml file are neither used nor needed.
+  /// `negate`, `mode` and the thresholds of the yaml file are neither used nor needed.
   grey_threshold,
 };
 
@@ -31,11 +30,13 @@ struct MapReading {
 /// `origin` [x, y, yaw] of the lower left corner (m, m, rad), `negate`, `occupied_thresh`, `free_thresh` and,
 /// if present, `mode` (trinary, scale, raw). The grid keeps three states: what `scale` and `raw` put between
 /// free (0) and occupied (100) is unknown, as AMCL reads it, and so are, with MapRule::map_server, pixels
-/// less than half opaque. Throws IoError, std::invalid_argument if `grey_threshold` is outside [0, 255].
+/// less than half opaque. Throws IoError if a file cannot be read or breaks a rule, and std::invalid_argument
+/// if `grey_threshold` is outside [0, 255].
 OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, const MapReading& reading = {});
 
 /// Writes `yaml_file` and, beside it, a PNG of the same name, with the greys and thresholds of map_saver.
-/// Throws IoError, std::invalid_argument if the grid's sizes disagree.
+/// Throws IoError if a file cannot be written or the grid is too large for an image (image.hpp), and
+/// std::invalid_argument unless it has width x height cells, at least one.
 void save_ros_map(const OccupancyGrid& grid, const std::filesystem::path& yaml_file);
 
 }  // namespace slalom::maps

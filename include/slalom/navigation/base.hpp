@@ -40,6 +40,7 @@ struct BaseOptions {
   double min_turning_radius = 0.2;         ///< m, of Ackermann bases
 };
 
+/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, BaseOptions>
 void visit_options(Options& o, Visit&& visit) {
@@ -83,7 +84,7 @@ struct Motion {
 /// The inputs of a differential base: speed (m/s) and yaw rate (rad/s).
 struct DifferentialBase {
   static constexpr int inputs = 2;  ///< of a step
-  /// Takes nothing from the limits but what bounds the inputs.
+  /// Does not use the limits: the problem takes them as bounds of the inputs.
   explicit DifferentialBase(const BaseOptions&) {}
   /// The motion of an input.
   template <class T>
@@ -99,7 +100,7 @@ struct DifferentialBase {
 /// The inputs of an omnidirectional base: speeds forward and to the left (m/s) and yaw rate (rad/s).
 struct OmnidirectionalBase {
   static constexpr int inputs = 3;  ///< of a step
-  /// Takes nothing from the limits but what bounds the inputs.
+  /// Does not use the limits: the problem takes them as bounds of the inputs.
   explicit OmnidirectionalBase(const BaseOptions&) {}
   /// The motion of an input.
   template <class T>

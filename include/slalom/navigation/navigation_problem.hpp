@@ -17,11 +17,11 @@
 namespace slalom::navigation {
 
 /// A body as rollouts check it against the distances of a costmap. The parts of the footprint decide first:
-/// no obstacle is near a part, or one is inside. Only where neither is sure for a lane are the points of the
-/// outline of that part looked up, one for each edge of a cell; the body collides where one of them is in an
-/// obstacle cell. So no overlap is missed that is deeper than half a cell, but for that with a single cell
-/// which lies within the body without touching its outline: a body meets it with its outline first, as long
-/// as a step is shorter than a cell.
+/// no obstacle is near a part, or one is inside. Where neither is sure for a lane, the points of the outline
+/// of that part are looked up, which are at most the edge of a cell apart; the body collides where one of
+/// them is in an obstacle cell. So every overlap deeper than half a cell is found, with one exception: a
+/// single cell that lies within the body and does not touch its outline. As long as a step is shorter than a
+/// cell, a body meets such a cell with its outline first.
 class BodyCheck {
  public:
   static constexpr std::size_t max_points = 512;  ///< of an outline

@@ -14,8 +14,8 @@
 
 namespace slalom::navigation {
 
-/// The options of `svg_mppi` for a base with these limits: 2000 samples of 56 steps, in whose variances the
-/// limits are the scale.
+/// The options of `svg_mppi` for a base with these limits: 2000 samples of 56 steps, with standard deviations
+/// in proportion to the largest speeds of the base.
 SvgMppiOptions svg_mppi_options(const BaseOptions& base);
 /// The same for `mppi`.
 MppiOptions mppi_options(const BaseOptions& base);
@@ -84,8 +84,8 @@ enum class NavigationStatus {
   blocked,       ///< the path is blocked and there is no way round: the robot stands
   goal_reached,  ///< the robot stands at the goal
   no_path,       ///< no path was set, or the robot is off the costmap: the robot stands
-  bad_input,     ///< a pose, velocity or time is not finite or absurdly large, or the costmap has another
-                 ///< size: it brakes, or stands
+  bad_input,     ///< a pose or velocity is not finite or absurdly large, a time is negative or not finite, or
+                 ///< the costmap has another size or resolution: it brakes, or stands
 };
 /// The name of a status, as it is written in results.
 constexpr const char* name(NavigationStatus status) noexcept {
@@ -111,10 +111,14 @@ constexpr const char* name(NavigationStatus status) noexcept {
 /// The answer of a navigator.
 struct NavigationResult {
   NavigationStatus status = NavigationStatus::no_path;  ///< whether it drives, and if not, why
-  Velocity command;                                     ///< finite, within the limits of the base
-  int corrections = 0;                                  ///< values of it that the final check changed
-  double remaining = 0;                                 ///< m of path to the goal
-  std::span<const maps::Pose> plan;  ///< predicted poses, map frame; the first is now. Empty unless it drives
+  /// Finite, within the largest speeds of the base. Braking reduces speed and turn each by itself, so that an
+  /// Ackermann base may then be told to turn more tightly than it can.
+  Velocity command;
+  int corrections = 0;   ///< values of it that the final check changed
+  double remaining = 0;  ///< m of path to the goal
+  /// Predicted poses, map frame; the first is now. Empty unless the status is `following`, `detour` or
+  /// `braking`; with `braking` the plan is not followed.
+  std::span<const maps::Pose> plan;
   std::span<const maps::Pose> path;  ///< what is followed, with the present detour
 };
 

@@ -22,7 +22,8 @@ class ScanMap {
   /// On this map, whose origin must not be turned; throws std::invalid_argument if it is, or has no cells.
   explicit ScanMap(maps::OccupancyGrid known);
 
-  /// Adds a scan. Beams whose range is not finite or below 0 are dropped; one from off the map is too.
+  /// Adds a scan. Beams whose range is not finite or below 0 are dropped. A beam from off the map clears and
+  /// marks the cells of the map that it crosses.
   void add(const RangeScan& scan) noexcept;
 
   /// The map and what was seen.

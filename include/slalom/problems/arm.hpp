@@ -119,6 +119,7 @@ struct Arm {
   }
 };
 
+/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, Arm>
 void visit_options(Parameters& p, Visit&& visit) {

@@ -60,6 +60,7 @@ struct Car {
   }
 };
 
+/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, Car>
 void visit_options(Parameters& p, Visit&& visit) {

@@ -43,6 +43,7 @@ struct CartPole {
   }
 };
 
+/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, CartPole>
 void visit_options(Parameters& p, Visit&& visit) {

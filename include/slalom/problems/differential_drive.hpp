@@ -64,6 +64,7 @@ struct DifferentialDrive {
   }
 };
 
+/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, DifferentialDrive>
 void visit_options(Parameters& p, Visit&& visit) {

@@ -50,6 +50,7 @@ struct PassingPoint {
   }
 };
 
+/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, PassingPoint>
 void visit_options(Parameters& p, Visit&& visit) {

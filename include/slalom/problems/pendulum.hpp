@@ -37,6 +37,7 @@ struct Pendulum {
   }
 };
 
+/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, Pendulum>
 void visit_options(Parameters& p, Visit&& visit) {

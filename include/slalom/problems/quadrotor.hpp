@@ -60,6 +60,7 @@ struct Quadrotor {
   }
 };
 
+/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, Quadrotor>
 void visit_options(Parameters& p, Visit&& visit) {

@@ -5,8 +5,8 @@ namespace slalom::sim {
 /// What a car is made of. The defaults are the 1/10-scale car of f1tenth_gym.
 struct CarParameters {
   double friction = 1.0489;        ///< mu, between tyre and road
-  double cornering_front = 4.718;  ///< C_Sf, 1/rad, cornering stiffness over axle load
-  double cornering_rear = 5.4562;  ///< C_Sr, 1/rad
+  double cornering_front = 4.718;  ///< C_Sf, 1/rad, cornering stiffness over friction and axle load
+  double cornering_rear = 5.4562;  ///< C_Sr, 1/rad, the same
   double front_length = 0.15875;   ///< l_f, m, from the centre of gravity to the front axle
   double rear_length = 0.17145;    ///< l_r, m
   double gravity_height = 0.074;   ///< h, m, of the centre of gravity

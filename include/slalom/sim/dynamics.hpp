@@ -7,13 +7,12 @@ namespace slalom::sim {
 
 /// How a car moves: single-track ("bicycle") models, with front and rear wheels merged into one each.
 ///
-/// - `kinematic`: no wheel slips sideways; slip = atan(l_r / L tan(steer)), yaw rate = v cos(slip) tan(steer)
-/// / L.
+/// - `kinematic`: no wheel slips sideways;
+///   slip = atan(l_r / L tan(steer)), yaw rate = v cos(slip) tan(steer) / L.
 /// - `single_track`: linear tyres with load transfer, the STM of Althoff & Wuersching, "CommonRoad: Vehicle
-/// Models"
-///   (2020), section 6; below 0.5 m/s the kinematic model. There F_y = mu C_S F_z alpha without bound. With
-///   speed < 0 the slip angle is measured against |v|, which the source does not do (its tyres then push the
-///   wrong way and the state explodes).
+///   Models" (2020), section 6; below 0.5 m/s the kinematic model. There F_y = mu C_S F_z alpha without
+///   bound. With speed < 0 the slip angle is measured against |v|, which the source does not do (its tyres
+///   then push the wrong way and the state explodes).
 /// - `saturating`: the same car with tyres after Pacejka, "Tire and Vehicle Dynamics", eq. 1.5 with E = 0,
 ///   F_y = mu F_z sin(C atan(B alpha)), C = 1.5, B = C_S / C: the same slope at 0, but grip can be exceeded.
 ///   What drives or brakes takes its share of mu F_z from what is left sideways (friction ellipse).

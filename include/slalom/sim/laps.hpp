@@ -87,9 +87,9 @@ class LapTimer {
   std::vector<double> splits_;
 };
 
-/// Laps as f1tenth_gym counts them: a zone 4 m wide and 0.316 m deep round the car's own start, turned as the
-/// first car's start is. Each crossing of the zone's border counts as half a lap, in either direction, and
-/// after two laps the time stops.
+/// Laps as f1tenth_gym counts them: the zone round the car's own start is what lies within 0.316 m of a line
+/// 4 m long, across the heading of the first car's start. Each crossing of the zone's border counts as half a
+/// lap, in either direction, and after two laps the time stops.
 class StartZoneLaps {
  public:
   /// `own` is the car's start, `heading` (rad) the first car's yaw there.

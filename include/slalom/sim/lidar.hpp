@@ -19,7 +19,7 @@ struct LidarOptions {
   int beams = 1080;  ///< 1 to 100000
   double field_of_view =
       4.7;                ///< rad, from the first beam to the last, which lie evenly about the sensor's axis
-  double range_max = 30;  ///< m; what is farther, or nothing, reads range_max
+  double range_max = 30;  ///< m; the range of a beam that meets nothing nearer
   double noise = 0.01;    ///< m, standard deviation of each range
   double rate = 0;        ///< Hz, rounded to whole time steps; 0 scans in every step
   maps::Pose mount{0.10355, 0, 0};  ///< of the sensor on the car, from the centre of gravity

@@ -55,8 +55,7 @@ struct RacingObservation {
 /// differ:
 ///
 ///  - The car of f1tenth_gym with linear tyres, by one Euler step of 0.01 s; steering commands take effect
-///  two
-///    steps later. The control period is four steps.
+///    two steps later. The control period is four steps.
 ///  - The first lap starts at the pose (0, 0, 0), later ones at random places of the centre line, from
 ///    standstill. A reset makes one control period with zero commands.
 ///  - Once a control period, a lap ends in a collision if one of the four corners of the body is in a wall or

@@ -36,8 +36,8 @@ enum class CollisionResponse {
   stop,        ///< it returns to where it was before the step, at rest
   slide,       ///< it loses the speed into the obstacle and keeps the speed along it
   count_only,  ///< nothing: it drives through, and the collision is counted
-  /// As `slide`; but where a driven car drives into another, the other one keeps its motion. With `slide`
-  /// both lose speed, so that a car that is hit from behind may stop.
+  /// As `slide`, but a car that touches nothing but cars that drive into it keeps its motion: only they lose
+  /// speed. With `slide` both lose speed, so that a car that is hit from behind may stop.
   slide_unless_struck,
 };
 
@@ -121,22 +121,23 @@ class World {
   StepStatus step(std::span<const Command> commands) noexcept;
 
   /// Moves by one time step, at whose end the driven cars are in these states, as somebody saw them: for
-  /// replays. Collisions and laps are found, and nothing responds. Throws std::invalid_argument on states
-  /// that are not finite or not as many as driven cars.
+  /// replays. Collisions and laps are found, and nothing responds; with `gym.wall_collision` collisions with
+  /// walls are not found. A car that was taken away is moved, too, and stays off the track. Throws
+  /// std::invalid_argument on states that are not finite or not as many as driven cars.
   void follow(std::span<const CarState> states);
 
   /// Takes a driven car off the track, until the next reset: it stands still, collides with nothing, does not
   /// scan, and is in no scan of the others. Its number, state and laps stay. Throws std::out_of_range on a
   /// car that does not exist.
   void take_away(std::size_t car);
-  /// Whether a driven car has not been taken away.
+  /// Whether a driven car has not been taken away; `car` must be less than `cars()`.
   bool on_track(std::size_t car) const noexcept { return !cars_[car].away; }
 
   /// Whether a car scans: a new car does, and a car keeps the setting over a reset. Throws std::out_of_range
   /// on a car that does not exist.
   void set_scanning(std::size_t car, bool scans);
 
-  /// Scan and state of a car.
+  /// Scan and state of a car. Here and in the three functions below, `car` must be less than `cars()`.
   Observation observe(std::size_t car) const noexcept;
   /// State of a car.
   const CarState& state(std::size_t car) const noexcept { return cars_[car].plant.state(); }

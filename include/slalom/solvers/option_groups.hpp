@@ -6,7 +6,9 @@
 /// default, what is set rarely in the groups below; what is declared of both stands here once.
 namespace slalom {
 
-/// The shape of the samples' noise.
+/// The shape of the samples' noise. For one solver either `exponent` or `knots` may be above 0, not both, and
+/// with a horizon above 2048 steps neither: otherwise `make_solver` throws std::invalid_argument. `icem` has
+/// an exponent of 2 by default.
 struct NoiseOptions {
   PerInput exponent = 0;           ///< beta of the noise's spectrum 1/f^beta, 0 ... 4; 0: white
   PerInput log_normal_spread = 0;  ///< sigma_ln of a log-normal factor of the noise, 0 ... 2; 0: none
@@ -34,6 +36,8 @@ namespace slalom::detail {
 /// Largest finite value of an option that has no natural bound.
 inline constexpr double finite = 1e12;
 
+/// Declares the options of sampling that the methods have in their own aggregates. A horizon above 2048 steps
+/// needs uncorrelated noise (NoiseOptions).
 template <class Options, class Visit>
 void visit_sampling_options(Options& o, Visit&& visit) {
   visit(o.horizon, Declaration{.name = "horizon",

@@ -22,7 +22,9 @@ struct SequenceList {
 struct SolveRequest {
   /// Time since the last solve, s; the warm start is shifted by it where the solver shifts.
   double elapsed = 0;
-  /// Time the solve may take, s of wall clock from the call; what is best so far is returned by then.
+  /// Time the solve may take, s of wall clock from the call; from 1e6 s on there is no limit. After it no new
+  /// part of the samples is begun, and what is best so far is returned. What is under way then (with an
+  /// evaluator of `whole_batches` a whole batch), and the last update and check, may take longer.
   double deadline = std::numeric_limits<double>::infinity();
   /// Control sequences of other controllers that compete with the samples of this solve (proposals.hpp), over
   /// the solver's horizon. Values outside the bounds are moved into them. Only for a solver that
@@ -55,7 +57,9 @@ struct SolveResult {
   const SequenceBatch* samples = nullptr;  ///< what was drawn last
   std::span<const float> costs;            ///< of the samples
   std::span<const std::uint8_t> collided;  ///< 1 where a sample collides
-  std::span<const float> weights;          ///< of the samples; they sum to 1
+  /// Of the samples. They sum to 1, or to less with a `normaliser_offset`. Without a sample of finite cost
+  /// all are 0 (`cem`, `icem`, `reverse_mppi`: those of the last update).
+  std::span<const float> weights;
 
   SequenceList guides;               ///< where the guide particles ended (empty without guides)
   SequenceList guide_path;           ///< all guides after each transport step, [iteration x guide]
@@ -64,7 +68,7 @@ struct SolveResult {
   double effective_sample_size = 0;  ///< 1 / sum of squared weights
   int few_samples_solves = 0;        ///< solves in a row, with this one, below `few_samples`
   double collided_share = 0;         ///< of the samples, 0 ... 1
-  double temperature = 0;            ///< lambda in use
+  double temperature = 0;            ///< lambda in use; 0 with `cem` and `icem`, which have none
   int iterations = 0;                ///< guide or distribution updates made
   StageTimes times;                  ///< times of the stages
   int gradient_kinks = 0;            ///< exact gradients of guides that were taken at a kink, or not finite
@@ -101,7 +105,8 @@ class Solver {
   virtual void reset(std::uint64_t seed) noexcept = 0;
 
   /// Draws the noise of the next solve ahead, so that it costs nothing inside the deadline; the results do
-  /// not change.
+  /// not change. `mppi`, `svg_mppi` and `dial_mpc` (for its first update) do so; with the other methods, and
+  /// where the evaluator has a `Sampler`, it has no effect.
   virtual void prepare() noexcept {}
 
   /// Asks an evaluator for what the options need besides costs. To be called before the first solve with it;

@@ -84,7 +84,7 @@ struct SvgMppiOptions {
       true;  ///< use the best guide as the nominal sequence (NS), equation (12); otherwise zero is
   bool adapt_covariance = true;  ///< fit the variances to the best guide's path (AC), equation (13)
   PerInput variance_min = 0.01;  ///< least adapted variance, input^2
-  PerInput variance_max = 1;     ///< largest adapted variance, input^2
+  PerInput variance_max = 1;     ///< largest adapted variance, input^2; variance_min where it is less
 
   NoiseOptions noise{};              ///< shape of the noise; white and normal
   WeightingOptions weighting{};      ///< how costs become weights; exponentially

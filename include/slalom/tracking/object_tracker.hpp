@@ -26,8 +26,7 @@
 /// 3. Each reading goes to the object in whose gate it is most likely, so that cars side by side share one
 ///    cluster and a car behind another may have several.
 /// 4. Boxes are fitted by the search of X. Zhang, W. Xu, C. Dong & J. M. Dolan, "Efficient L-shape fitting
-/// for
-///    vehicle detection using laser scanners", IEEE IV 2017, algorithms 2 and 4 (closeness). The centre
+///    for vehicle detection using laser scanners", IEEE IV 2017, algorithms 2 and 4 (closeness). The centre
 ///    follows from the sides in view; an end that something hides says nothing.
 /// 5. An extended Kalman filter for constant turn rate and speed predicts and corrects each object
 ///    (R. Schubert, E. Richter & G. Wanielik, "Comparison and evaluation of advanced motion models for
@@ -48,7 +47,7 @@ enum class TrackerStatus {
 
 /// The input of an update.
 struct TrackerInput {
-  maps::LaserScanView scan;  ///< in the frame of `sensor`
+  maps::LaserScanView scan;  ///< in the frame of the LiDAR
   maps::Pose sensor;         ///< of the LiDAR: in the map frame; without a map in any frame that is at rest
   double stamp = 0;          ///< s, of the scan
   double position_deviation =
@@ -56,8 +55,8 @@ struct TrackerInput {
   double yaw_deviation = 0;  ///< rad
 };
 
-/// An object: its centre in the frame of TrackerInput::sensor. The order of the state in `covariance` is x,
-/// y, yaw, speed, yaw rate.
+/// An object. Its pose is in the frame in which TrackerInput::sensor is given (with a map, the map's frame).
+/// The order of the state in `covariance` is x, y, yaw, speed, yaw rate.
 struct TrackedObject {
   int id = 0;                    ///< stays with the object; from 1
   maps::Pose pose;               ///< of the middle of its box
@@ -75,9 +74,10 @@ struct TrackedObject {
 struct TrackerOutput {
   TrackerStatus status = TrackerStatus::ok;  ///< how the update ended
   std::span<const TrackedObject> objects;    ///< confirmed objects, ascending by id
-  maps::Pose sensor;                         ///< the pose that was used, aligned with the map
-  int clusters = 0;                          ///< of this scan
-  double update_time = 0;                    ///< s of wall clock
+  /// Of the LiDAR at the last scan that was used (status `ok` or `misfit`), aligned with the map.
+  maps::Pose sensor;
+  int clusters = 0;        ///< of this scan
+  double update_time = 0;  ///< s of wall clock
 };
 
 /// Detects and follows objects. After construction nothing allocates or throws. The time of an update is
@@ -87,8 +87,8 @@ class ObjectTracker {
   /// Without a map: objects are what moves. Throws std::invalid_argument on options out of range.
   explicit ObjectTracker(const TrackerOptions& options = {});
   /// With a map, of which it copies what it needs: objects are what is not on it. Unknown cells hide objects.
-  /// Throws std::invalid_argument on options out of range and on a map without cells or with an origin or
-  /// resolution that is not finite and positive.
+  /// Throws std::invalid_argument on options out of range, and on a map that has not width x height cells, at
+  /// least one, whose origin is not finite, or whose resolution is not finite and above 0.
   explicit ObjectTracker(const maps::OccupancyGrid& map, const TrackerOptions& options = {});
   ~ObjectTracker();
   /// Moves.

@@ -13,8 +13,8 @@
 ///     Predictor predictor(path);
 ///     while (driving) {
 ///       const TrackerOutput& seen = tracker.update({scan, sensor_pose, stamp});
-///       planner.update({.scan = scan, .odometry = odometry, .others = predictor.update(seen.objects,
-///       stamp)});
+///       const auto others = predictor.update(seen.objects, stamp);
+///       planner.update({.scan = scan, .odometry = odometry, .others = others});
 ///     }
 ///
 /// Along a course an object with offset d from it and speed v
@@ -48,8 +48,9 @@ class Predictor {
   Predictor& operator=(Predictor&&) noexcept;
 
   /// Predictions of the objects that move, as they are at `stamp` (s), in their frame, which is that of the
-  /// course. Objects with numbers that are not finite or absurdly large are left out. Valid until the next
-  /// call.
+  /// course. An object moves if its speed is at least `min_speed` and above three of its standard deviations.
+  /// Of more than `max_objects` those that come later are left out, and so are objects with numbers that are
+  /// not finite or absurdly large. Valid until the next call.
   std::span<const maps::PredictedObstacle> update(std::span<const TrackedObject> objects,
                                                   double stamp) noexcept;
   /// Forgets what objects did.

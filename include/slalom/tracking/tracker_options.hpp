@@ -28,9 +28,15 @@ struct TrackerOptions {
   double yaw_acceleration_deviation = 10;  ///< rad/s^2
   double gate = 3.5;  ///< standard deviations from the predicted outline to readings of an object
 
-  int confirming_scans = 2;      ///< with readings of an object, before it is reported
-  int max_misses = 3;            ///< scans that see through the place of an object, before it is dropped
-  double max_unseen_time = 1.5;  ///< s, before an object that is out of view is dropped
+  /// Scans with readings of an object, before it is reported. Without a map (and with `min_speed` above 0)
+  /// twice as many must show that it moves, and its speed must be at least twice its standard deviation.
+  int confirming_scans = 2;
+  /// Scans in a row that may see through the place of an object: one more drops it. An object that is not yet
+  /// confirmed is dropped by the first.
+  int max_misses = 3;
+  /// s, after which an unseen object is dropped; a fifth of it while the object is not yet confirmed. An
+  /// unseen object is also dropped once the standard deviation of its position is above 0.8 m.
+  double max_unseen_time = 1.5;
 
   double free_margin = 0.15;  ///< m, without a map: what counts as moved into or out of free space
   double min_speed = 0.5;     ///< m/s, without a map: of an object when it is confirmed

@@ -65,7 +65,7 @@ class RiskEvaluator final : public BatchEvaluator, private Sampler {
     }
   }
 
-  /// What was applied before the next rollouts. Ignored unless the problem has `input_rate_max`.
+  /// What was applied before the next rollouts. Only for problems with `input_rate_max`.
   void set_previous_input(const Input<double, P::inputs>& u) noexcept requires detail::limits_rates<P> {
     for (ProblemEvaluator<P>& variant : variants_) variant.set_previous_input(u);
   }
@@ -82,7 +82,8 @@ class RiskEvaluator final : public BatchEvaluator, private Sampler {
       evaluate_part(batch, first + done, std::min(count - done, VariantCosts::capacity), costs, collided);
   }
 
-  /// The states of the problem itself, and the cost as of `evaluate`, in double.
+  /// The states of the problem itself, in double, and the cost as of `evaluate`: the rollouts are in double,
+  /// but each variant's cost is rounded to float32, and so is their risk.
   Cost<double> predict(const State& state, const Input<double, P::inputs>* u, int steps,
                        State* x) const noexcept {
     VariantCosts costs;

@@ -21,7 +21,7 @@ inline const char* const* enum_names(RiskMeasure) {
 
 /// Options of rollouts in several variants of the world.
 struct RiskOptions {
-  int variants = 1;                         ///< of the world for every sample; 1: the problem as it is
+  int variants = 1;  ///< of the world, in which every sample is rolled out, 1 ... 32; 1: the problem alone
   RiskMeasure measure = RiskMeasure::mean;  ///< what of their costs counts
   double tail = 0.25;                       ///< measure `cvar`: share of the variants that counts
   double aversion = 0.1;                    ///< measure `exponential`, over a unit of cost

@@ -12,7 +12,7 @@ namespace slalom::evaluation {
 /// How a drive in a room ended.
 enum class RoomOutcome {
   reached,    ///< the robot stands at the goal
-  blocked,    ///< it said that there is no way, and stands
+  blocked,    ///< it said that there is no way, and stands; if the scenario has one, the drive goes on
   collision,  ///< its body overlapped a wall, an obstacle or a person
   struck,     ///< the same, while it drove and turned slower than 0.03 m/s and rad/s: somebody walked into it
   timeout,    ///< neither within the time

@@ -46,8 +46,9 @@ void visit_sections(AnyConfiguration& configuration, Visit&& visit) {
 ///     vehicle:
 ///       max_speed: 6             # another name of planner.max_speed
 ///
-/// Throws IoError with file, line, key, value and rule for a key that is unknown or duplicate, a value of the
-/// wrong type or out of range, keys that contradict each other, and a second document.
+/// `base` is a file beside this one, or a configuration that is found by its name in `roots`. Throws IoError
+/// with file, line, key, value and rule for a key that is unknown or duplicate, a value of the wrong type or
+/// out of range, keys that contradict each other, and a second document.
 Configuration load_configuration(const std::filesystem::path& file,
                                  const std::vector<std::filesystem::path>& roots = {});
 

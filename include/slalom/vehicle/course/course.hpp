@@ -58,9 +58,9 @@ Course load_course(const std::filesystem::path& folder, const maps::MapReading& 
 /// on fewer than 3 points.
 void complete_course(Course& course, std::optional<bool> closed = {});
 
-/// Makes the coordinates relative to `origin`: to the nearest point of the map frame whose coordinates are
-/// multiples of 100 km, so that those of a course near the map frame's origin stay. In UTM coordinates, which
-/// reach 1e7 m, double resolves 1e-9 m only, and a simulated lap would not be that of the same course
+/// Makes the coordinates relative to `origin`, the point of a 100 km grid of the map frame that is nearest to
+/// the map's corner. So a course near the origin of the map frame does not change. In UTM coordinates, which
+/// reach 1e7 m, double resolves only 1e-9 m, and a simulated lap would differ from a lap of the same course
 /// elsewhere. The new coordinates are rounded to 1e-8 m, which restores those of files with up to 8 decimals.
 void move_to_local_origin(Course& course);
 

@@ -14,10 +14,11 @@ struct CourseCheckOptions {
   double half_width = 0.155;  ///< m, of the body
   double margin = 0.06;       ///< m, that the body keeps from walls
   SpeedLimits limits;         ///< what tyres, motor and brakes allow
-  double tolerance = 0.05;    ///< share by which a profile may exceed the limits, since files are rounded
+  double tolerance = 0.05;    ///< share by which a profile may exceed the accelerations, since files are
+                              ///< rounded; there is none for the top speed
 };
 
-/// A part of a course where it breaks a rule, but for gaps of less than 1 m.
+/// A part of a course where it breaks a rule. Parts with a gap of less than 1 m between them count as one.
 struct CourseStretch {
   double begin = 0, end = 0;  ///< m along the waypoints
   maps::Point worst;          ///< the place where the rule is broken most, map frame
@@ -34,8 +35,8 @@ struct CourseFinding {
 struct CourseCheck {
   CourseFinding walls;  ///< nearer to a wall than half the width and the margin; value: m from line to wall
   CourseFinding grip;   ///< asks for more than the limits; value: the acceleration asked for, m/s^2
-  double min_distance =
-      0;  ///< m from the line to a wall: the least, where it is below the reach of the check
+  /// m, smallest distance from the line to a wall, at most half the width plus the margin
+  double min_distance = 0;
   double max_acceleration = 0;  ///< m/s^2, the most that the profile asks for, along and across together
 };
 

@@ -25,8 +25,8 @@ struct TrackGeneratorOptions {
   double length = 60.0;    ///< of the centre line, m, 20..1000, and at least 16 (width / 2 + wall)
   double width = 2.2;      ///< from wall to wall, m, 1.2..10
   TrackCharacter character = TrackCharacter::balanced;  ///< style of its corners
-  double wall = 0.2;                                    ///< thickness of the walls, m, 0.1..1
-  double resolution = 0.05;                             ///< of the map, m, 0.02..0.1
+  double wall = 0.2;          ///< thickness of the walls, m, 0.1..1, at least 2 cells
+  double resolution = 0.05;   ///< of the map, m, 0.02..0.1
   double wall_margin = 0.45;  ///< the raceline keeps this far from the walls, m, 0.3.. width / 2 - 0.1
   SpeedLimits limits;         ///< for the speed profile
 };

@@ -42,7 +42,7 @@ struct EstimationOptions {
   double gain_spread = 0.05;       ///< standard deviation of the steering gain around 1, in advance
   double delay_spread = 0.06;      ///< s, standard deviation of the delay, in advance
   double memory = 2.0;             ///< s of turning after which what was learned is forgotten
-  double window = 0.4;             ///< s of driving that each hypothesis predicts
+  double window = 0.4;             ///< s of driving that each hypothesis predicts; at most 40 control periods
   double lateral_noise = 0.02;     ///< m, deviation of a predicted position, sideways
   double yaw_noise = 0.02;         ///< rad, deviation of a predicted heading
   ObserverOptions observer;        ///< of the state

@@ -39,7 +39,7 @@ enum class LocaliserStatus {
   bad_scan,       ///< empty, of invalid geometry or with too few readings: moved by odometry alone
   bad_odometry,   ///< pose or stamp not finite, or larger than `LocaliserInput` allows: ignored
   odometry_jump,  ///< moved further than the car can: the last motion is continued, the scan is used
-  stale,          ///< not later than the last update: ignored
+  stale,  ///< not later than the last update, by less than 1 s: ignored; by more, the clock was set back
 };
 /// The name of a status, as results have it.
 constexpr const char* name(LocaliserStatus status) noexcept {
@@ -66,7 +66,7 @@ struct LocaliserInput {
   static constexpr double max_yaw = 1e6;   ///< rad, largest magnitude of a yaw
   static constexpr double latest = 1e12;   ///< s, largest magnitude of a stamp
 
-  maps::LaserScanView scan;  ///< the scan, body frame
+  maps::LaserScanView scan;  ///< the scan, in the frame of the laser
   maps::Pose odometry;       ///< of the rear axle at the time of the scan, in a frame that may drift
   double stamp = 0;          ///< s, of the scan
 };
@@ -99,8 +99,9 @@ struct Particle {
 class Localiser {
  public:
   /// Copies what it needs of `map` into tables, and starts everywhere. Throws std::invalid_argument on
-  /// options out of range and on a map without free or without occupied cells, with sizes that disagree or an
-  /// origin or resolution that is not finite and positive.
+  /// options out of range; on a map without free or without occupied cells, with more than 32766 cells to a
+  /// side, with sizes that disagree, with an origin that is not finite or a resolution that is not finite and
+  /// positive; and if the table of ranges would have more than 2^27 entries.
   explicit Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options = {});
   ~Localiser();
   /// Moves.

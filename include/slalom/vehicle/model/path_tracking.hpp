@@ -45,8 +45,9 @@ concept MotionModel = std::constructible_from<M, const PathTrackingOptions&, con
 ///
 /// with d the distance to the path, e the yaw error, c the value of the cost map (Honda et al., ICRA 2024,
 /// section V-A, in the text, without a number). Steering is the only input there, and the speed is the
-/// path's. Where the acceleration is an input too, `speed_weight` times the square of the speed below the
-/// path's is added.
+/// path's. Where the acceleration is an input too, a cost of the speed is added: `speed_weight` times the
+/// square of the speed below the path's or, with `single_track`, times the share of a time step that is lost
+/// against the path's speed, and then a cost of the grip.
 template <MotionModel Motion>
 class PathTracking {
  public:

@@ -45,10 +45,10 @@ struct TrackingCostOptions {
   double yaw_weight = 0.01;             ///< 1/rad^2
   double terminal_distance_weight = 1;  ///< 1/m^2, at the last state
   double terminal_yaw_weight = 0.01;    ///< 1/rad^2, at the last state
-  double speed_weight = 1;              ///< s^2/m^2, where the acceleration is an input
-  double collision_weight = 1;          ///< factor of the cost map's values; 100 is occupied
-  double outside_cost = 100;            ///< cost map value off the local map
-  double outside_terminal_cost = 100;   ///< cost map value off the local map, at the last state
+  double speed_weight = 1;      ///< of models with acceleration: s^2/m^2; with `single_track` per lost step
+  double collision_weight = 1;  ///< factor of the cost map's values; 100 is occupied
+  double outside_cost = 100;    ///< cost map value off the local map
+  double outside_terminal_cost = 100;  ///< cost map value off the local map, at the last state
 };
 
 /// Options of the vehicle problem that every vehicle model shares.
@@ -62,8 +62,8 @@ struct PathTrackingOptions {
   double reference_speed = 1.5;              ///< m/s, where no speed profile is used
   double max_acceleration = 5;               ///< m/s^2, of the predicted speed, >= 0
   double max_deceleration = 3;               ///< m/s^2, of the predicted speed, >= 0
-  bool limit_acceleration = true;  ///< whether the predicted speed keeps to the two limits; if not, it is at
-                                   ///< once that of the reference field
+  bool limit_acceleration = true;  ///< with `SpeedModel::reference`: whether the predicted speed keeps to the
+                                   ///< two limits; if not, it is at once that of the reference field
   /// Models the dead time in the rollout: in its first ceil(dead_time / time_step) + 1 steps the sequence's
   /// first input acts, and commands sent before are not known. Otherwise the planner predicts the start by
   /// the dead time, with the commands sent, and the rollout has no dead time.
@@ -93,8 +93,8 @@ void visit_tracking_cost(Options& o, Visit&& visit) {
       Declaration{.name = "terminal_yaw_weight", .help = "yaw_weight of the last state, 1/rad^2", .min = 0});
   visit(o.speed_weight,
         Declaration{.name = "speed_weight",
-                    .help = "weight of the squared speed below the path's, s^2/m^2, where the acceleration "
-                            "is an input",
+                    .help = "where the acceleration is an input: weight of the squared speed below the "
+                            "path's, s^2/m^2; with model `single_track`, of the share of a step that is lost",
                     .min = 0});
   visit(o.collision_weight, Declaration{.name = "collision_weight",
                                         .help = "factor of the cost map's value, which is 100 where occupied",

@@ -31,11 +31,12 @@ struct SingleTrackOptions {
   Objective objective = Objective::path_speed;  ///< what plans seek
   TyreModel tyres = TyreModel::saturating;      ///< sideways force over slip angle
   double friction = 1.0489;                     ///< mu, between tyre and road
-  double cornering_front = 4.718;   ///< C_Sf, 1/rad, cornering stiffness over friction and axle load
-  double cornering_rear = 5.4562;   ///< C_Sr, 1/rad
-  double gravity_height = 0.074;    ///< h, m, of the centre of gravity
-  double mass = 3.74;               ///< m, kg
-  double inertia = 0.04712;         ///< I_z, kg m^2, about the vertical axis
+  double cornering_front = 4.718;  ///< C_Sf, 1/rad, cornering stiffness over friction and axle load
+  double cornering_rear = 5.4562;  ///< C_Sr, 1/rad
+  double gravity_height = 0.074;   ///< h, m, of the centre of gravity
+  double mass = 3.74;              ///< m, kg
+  /// I_z, kg m^2, about the vertical axis; sqrt(inertia / mass) must be 0.1 to 1 wheelbase
+  double inertia = 0.04712;
   double steer_rate = 3.2;          ///< rad/s, at which the wheels turn at most
   double half_steer_speed = 5;      ///< m/s, at which the input steers half as much as at a standstill
   double switch_speed = 7.319;      ///< m/s, above it the motor's power limits the acceleration

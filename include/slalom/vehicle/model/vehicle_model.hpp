@@ -36,8 +36,8 @@ class VehicleModel {
   virtual const BatchEvaluator& evaluator() const noexcept = 0;
   /// Whether the start itself collides.
   virtual bool start_collides() const noexcept = 0;
-  /// Whether the model predicts the car by its tyres and speed control: whether the next four functions mean
-  /// anything.
+  /// Whether the model predicts the car by its tyres and speed control. If not, the functions from here to
+  /// `set_margin_share` have no effect.
   virtual bool has_dynamics() const noexcept { return false; }
   /// The dynamics of a car whose tyres slip; null where they do not.
   virtual const SingleTrackDynamics* dynamics() const noexcept { return nullptr; }
@@ -49,8 +49,8 @@ class VehicleModel {
   virtual Command command(std::span<const float> inputs, double speed, double period) const noexcept;
   /// The friction that predictions assume from now on.
   virtual void set_friction(double friction) noexcept;
-  /// Predictions from now on drive forwards, or backwards at most at this speed (m/s, > 0) and away from
-  /// where the path leads.
+  /// With 0, predictions from now on drive forwards. With a speed above 0 (m/s), they drive backwards, at
+  /// most at this speed and against the direction of the path.
   virtual void set_reverse(double speed) noexcept;
   /// The highest speed (m/s) of predictions from now on.
   virtual void set_top_speed(double speed) noexcept;

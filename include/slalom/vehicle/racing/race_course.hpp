@@ -17,8 +17,9 @@ namespace slalom::vehicle {
 
 /// Where a course begins and which way round it is driven.
 struct RaceCourseOptions {
-  /// Start pose of the car. Without one, the origin of the map frame if it is in the corridor, along +x:
-  /// there a mapping program was started. Else the middle of the fastest part, driven counter-clockwise.
+  /// Start pose of the car. Without one, a course that is found in a map starts at the origin of the map
+  /// frame, along +x, if the origin is in the corridor: there a mapping program was started. Other courses
+  /// start in the middle of the fastest part, driven counter-clockwise.
   std::optional<maps::Pose> start;
   bool reverse = false;  ///< the other way round; not with a start
 };

@@ -61,8 +61,8 @@ RacingCar load_racing_car(const std::filesystem::path& file);
 /// The car of a YAML file (load_racing_car) or, where no such file exists, of a name (racing_car).
 RacingCar find_racing_car(const std::string& name_or_file);
 
-/// Sets the accelerations to those of a friction coefficient: `friction` g in every direction. Throws
-/// std::invalid_argument unless it is finite and above 0.
+/// Sets the accelerations to those of a friction coefficient, `friction` g in every direction, and removes
+/// the rows of `grip`. Throws std::invalid_argument unless `friction` is finite and above 0.
 void set_friction(RacingCar& car, double friction);
 
 /// m that the centre of the car keeps from walls: half the width and the margin.
