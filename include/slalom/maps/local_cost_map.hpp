@@ -161,12 +161,11 @@ class LocalCostMap {
   /// Marks all cells free.
   void clear() noexcept;
 
-  /// Adds what a scan, points in the robot's frame (m) or the occupied cells of a grid say; the grid's origin
-  /// and the robot's pose are given in the same frame. Points that are not finite are ignored.
+  /// Adds the readings of a scan. Those that are not finite are ignored.
   ScanReport add_scan(const LaserScanView& scan) noexcept;
-  /// Adds obstacle points in the robot's frame, m.
+  /// Adds obstacle points in the robot's frame, m. Points that are not finite are ignored.
   void add_points(std::span<const Point> points) noexcept;
-  /// Adds the occupied cells of a map, seen from `robot`.
+  /// Adds the occupied cells of a map. `robot` is the robot's pose in the frame of the map's origin.
   void add_grid(const OccupancyGrid& obstacles, const Pose& robot) noexcept;
 
   /// The value at a position in the robot's frame, m.

@@ -32,8 +32,8 @@ struct PredictedPose {
   double across_deviation = 0;  ///< m
 };
 
-/// A rectangular obstacle that moves, with hypotheses of what it will do. Poses are valid as long as what
-/// they are a view of.
+/// A rectangular obstacle that moves, with hypotheses of what it will do. It does not own `poses`: the array
+/// that they view must outlive it.
 struct PredictedObstacle {
   static constexpr int max_hypotheses = 4;  ///< of an obstacle
 
@@ -142,9 +142,10 @@ class MovingObstaclesView {
     return sum;
   }
 
-  /// The sum of what MovingObstacles::set_following_costs made the obstacles cost a body whose reference
-  /// point is at (x, y) (m) at the last step: for each its whole cost from 4 m behind it on, nothing from 1 m
-  /// ahead of it on, linear between, along the heading of its likeliest hypothesis.
+  /// The cost of being behind obstacles at the last step, for a body whose reference point is at (x, y) (m):
+  /// the sum over those with a cost of MovingObstacles::set_following_costs. Such a cost counts in full where
+  /// the body is 4 m or more behind the obstacle, and not at all where it is 1 m or more ahead, along the
+  /// heading of the obstacle's likeliest hypothesis. Between these two it is linear.
   template <class T>
   SLALOM_INLINE_CALLS T following_cost(const T& x, const T& y) const {
     constexpr double ahead = 1, behind = 4;  // m
@@ -228,8 +229,8 @@ class MovingObstacles {
   void update(std::span<const PredictedObstacle> predicted, const Point& origin, double first,
               double time_step) noexcept;
 
-  /// Sets what it costs to end behind each of those that `taken` returns (see
-  /// MovingObstaclesView::following_cost), until the next update, after which it costs nothing.
+  /// Sets, for each obstacle that `taken` returns, the cost of ending behind it (see
+  /// MovingObstaclesView::following_cost). The next update sets these costs to 0.
   void set_following_costs(std::span<const double> costs) noexcept;
 
   /// Those of the last update that count.

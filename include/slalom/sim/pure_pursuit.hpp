@@ -21,8 +21,8 @@ struct PathPoint {
 struct PurePursuitOptions {
   double lookahead = 1.0;     ///< m, distance of the point that is aimed at
   double wheelbase = 0.3302;  ///< m
-  /// m, farther from the path than this the car is lost; so it is nearer where no point of the path lies at
-  /// lookahead distance
+  /// m. Where no point of the path is at lookahead distance, the car aims at the nearest point of the path if
+  /// that is nearer than this; else the car is lost.
   double reacquire = 10.0;
   double lost_speed = 0.5;    ///< m/s, straight ahead while lost
   double steer_max = 0.4189;  ///< rad, largest steering angle of a command, either way

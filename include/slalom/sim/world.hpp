@@ -151,7 +151,8 @@ class World {
   /// Per body, whether it collides with another body in this step, and for driven cars also with a wall:
   /// f1tenth_gym's collision flags. Parked bodies that overlap each other stay flagged.
   std::span<const std::uint8_t> flags() const noexcept { return flags_; }
-  /// Per body, the last of the bodies it collides with, -1 if none: f1tenth_gym's collision_idx.
+  /// Of a body, the last of the bodies it collides with, -1 if none: f1tenth_gym's collision_idx. Here and in
+  /// `outline` and `disc`, `body` must be less than `bodies()`.
   int last_partner(std::size_t body) const noexcept { return partners_[body]; }
 
   double time() const noexcept { return time_; }  ///< s since the reset
