@@ -103,6 +103,12 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 
 namespace detail {
 
+void throw_out_of_range(std::string_view where, const Declaration& d, double value) {
+  std::string option(where);
+  if (!option.empty()) option += ".";
+  throw std::invalid_argument(option + d.name + ": " + shown(value) + " " + range_rule(d));
+}
+
 bool parse_flag(std::string_view text) {
   if (text == "true") return true;
   if (text == "false") return false;
@@ -141,7 +147,7 @@ double parse_number(std::string_view text) {
 std::vector<double> parse_numbers(std::string_view text) {
   const std::string_view all = trimmed(text);
   if (all.empty() || all.front() != '[') return {parse_number(all)};
-  if (all.back() != ']') refuse(text, "must be a number or a list [a, b] of one number per input");
+  if (all.back() != ']') refuse(text, "must be a number or a list of numbers, [a, b]");
   std::vector<double> values;
   std::string_view rest = all.substr(1, all.size() - 2);
   while (true) {

@@ -76,7 +76,7 @@ TEST(OptionAccess, ErrorsNameValueAndRule) {
   EXPECT_EQ(refusal("gain", "-0.5"), "'-0.5' must be at least 0");
   EXPECT_EQ(refusal("spread", "[0.1, 2]"), "'2' must be in [0, 1]");
   EXPECT_EQ(refusal("spread", "[]"), "'' must be a number");
-  EXPECT_EQ(refusal("spread", "[1, 2"), "'[1, 2' must be a number or a list [a, b] of one number per input");
+  EXPECT_EQ(refusal("spread", "[1, 2"), "'[1, 2' must be a number or a list of numbers, [a, b]");
   EXPECT_EQ(refusal("mood", "tired"), "'tired' must be one of calm, wild");
 }
 
@@ -85,15 +85,42 @@ TEST(OptionAccess, WritesWholeLimitsOut) {
   EXPECT_EQ(range_rule({.name = "step", .min = 1e-6, .max = 0.5}), "must be in [1e-06, 0.5]");
 }
 
-TEST(OptionAccess, ValidationWritesWholeLimitsOut) {
-  SampleOptions o;
-  o.count = 4194304;
+/// What validation says of options; empty if they are valid.
+template <class Options>
+std::string validation_error(const Options& options, int inputs) {
   try {
-    validate_options(o, "sample");
-    FAIL();
+    validate_options(options, "sample", inputs);
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "sample.count: 4194304 must be in [1, 10]");
+    return error.what();
   }
+  return {};
+}
+
+struct ListOptions {
+  int samples = 5000000;
+  PerInput shares = {0.1, 0.2, 0.3};
+};
+
+template <class Options, class Visit>
+requires is_options_of<Options, ListOptions>
+void visit_options(Options& o, Visit&& visit) {
+  visit(o.samples, Declaration{.name = "samples", .min = 1, .max = 4194304});
+  visit(o.shares, Declaration{.name = "shares", .min = 0, .max = 1, .any_count = true});
+}
+
+TEST(OptionAccess, ValidationWritesWholeNumbersOut) {
+  EXPECT_EQ(validation_error(ListOptions{}, 0), "sample.samples: 5000000 must be in [1, 4194304]");
+}
+
+TEST(OptionAccess, AListMayHaveAnyCount) {
+  ListOptions o{.samples = 1};
+  EXPECT_EQ(validation_error(o, 2), "");
+  o.shares = std::vector<double>{};
+  EXPECT_EQ(validation_error(o, 2), "sample.shares: has 0 values, must have one or more");
+  SampleOptions per_input;
+  per_input.spread = {0.1, 0.2, 0.3};
+  EXPECT_EQ(validation_error(per_input, 2),
+            "sample.spread: has 3 values, must have one for all inputs, or one for each of the 2");
 }
 
 TEST(OptionAccess, ListsValuesThatReadBack) {

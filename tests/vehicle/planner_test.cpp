@@ -301,16 +301,6 @@ TEST(Planner, ResetMakesItNew) {
   EXPECT_EQ(drive(), drive());
 }
 
-TEST(Planner, PredictsNothingBeforeItsFirstPlan) {
-  const Planner planner = make_planner();
-  const std::vector<float> straight(20, 0.0f);
-  std::vector<PredictedState> states(21);
-  const PredictedCost cost = planner.predict(straight, states);
-  EXPECT_EQ(cost.state, 0);
-  EXPECT_EQ(cost.collision, 0);
-  EXPECT_FALSE(cost.collided);
-}
-
 TEST(Planner, AnUpdateAllocatesNothing) {
   Corridor corridor{.wall = 3, .gap = 0.1};
   Planner planner = make_planner();

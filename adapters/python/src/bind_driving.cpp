@@ -12,7 +12,11 @@ using evaluation::Environment;
 /// An option's value as a configuration file has it.
 std::string text_of(const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
-  return py::str(value).cast<std::string>();
+  if (py::isinstance<py::str>(value) || !py::isinstance<py::sequence>(value))
+    return py::str(value).cast<std::string>();
+  std::string text;
+  for (const py::handle& each : value) text.append(text.empty() ? "[" : ", ").append(text_of(each));
+  return text.empty() ? "[]" : text + "]";
 }
 
 /// `config`, a name or a file, or the classes' defaults where it is empty; then `{"section.option": value}`

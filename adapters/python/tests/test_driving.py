@@ -55,6 +55,14 @@ def test_a_configuration_drives_a_lap():
         slalom.drive_lap(slalom.Course("wren"), "svg_mppi", config="no_such_configuration")
 
 
+def test_options_that_are_lists_may_be_any_sequence():
+    course = slalom.Course("wren")
+    for low in ([-0.4, -5], (-0.4, -5), np.array([-0.4, -5.0])):
+        slalom.Planner(course, "svg_mppi", config="default", options={"input_min": low, "planner.grip_shares": (0.9, 0.8, 1)})
+    with pytest.raises(ValueError, match=r"'\[-0.4, -5, 1\]' has 3 values, must have 1 or 2"):
+        slalom.Planner(course, "svg_mppi", config="default", options={"input_min": (-0.4, -5, 1)})
+
+
 def test_errors_name_the_mistake():
     with pytest.raises(slalom.IoError, match="nowhere_to_be_found"):
         slalom.Course("nowhere_to_be_found")

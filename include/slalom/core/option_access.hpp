@@ -26,7 +26,7 @@ struct OptionEntry {
   bool operator==(const OptionEntry& other) const { return value == other.value; }
 };
 
-/// "flag", "integer", "number", "numbers" (one per input) or "choice".
+/// "flag", "integer", "number", "numbers" (a PerInput) or "choice".
 const char* type_name(const OptionEntry& entry);
 
 /// A value as a configuration file has it: `true`, `12`, `0.05`, `[0.1, 0.2]`, `.inf`, `narrow`.

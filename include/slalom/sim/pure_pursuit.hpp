@@ -21,8 +21,8 @@ struct PathPoint {
 struct PurePursuitOptions {
   double lookahead = 1.0;     ///< m, distance of the point that is aimed at
   double wheelbase = 0.3302;  ///< m
-  /// m. Where no point of the path is at lookahead distance, the car aims at the nearest point of the path if
-  /// that is nearer than this; else the car is lost.
+  /// m. If the path is farther away than `lookahead` but nearer than this, the car aims at the first point of
+  /// its nearest segment. Without such a point, and without one at lookahead distance, the car is lost.
   double reacquire = 10.0;
   double lost_speed = 0.5;    ///< m/s, straight ahead while lost
   double steer_max = 0.4189;  ///< rad, largest steering angle of a command, either way

@@ -39,7 +39,8 @@ class FeedbackGains {
     std::span<double> hessian;   ///< [states][states]
   };
 
-  /// Throws std::invalid_argument unless all numbers are at least 1 and there are bounds for each input.
+  /// Throws std::invalid_argument unless all numbers are at least 1 and there are bounds for each input, the
+  /// lower ones at most the upper ones.
   FeedbackGains(int states, int inputs, int steps, const InputBounds& bounds);
 
   int states() const noexcept { return states_; }  ///< scalars of a state

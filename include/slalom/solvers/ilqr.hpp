@@ -46,8 +46,8 @@ void visit_options(Options& o, Visit&& visit) {
 /// what the problem throws.
 class IterativeLqr {
  public:
-  /// Throws std::invalid_argument unless all numbers are at least 1, there are bounds for each input, and the
-  /// options are in their ranges.
+  /// Throws std::invalid_argument unless all numbers are at least 1, there are bounds for each input, the
+  /// lower ones at most the upper ones, and the options are in their ranges.
   IterativeLqr(int states, int inputs, int steps, const InputBounds& bounds, const IlqrOptions& options = {});
 
   /// Sets the sequence [steps][inputs] that is improved next, moved into the bounds. If it is shorter than

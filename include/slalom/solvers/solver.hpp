@@ -57,9 +57,8 @@ struct SolveResult {
   const SequenceBatch* samples = nullptr;  ///< what was drawn last
   std::span<const float> costs;            ///< of the samples
   std::span<const std::uint8_t> collided;  ///< 1 where a sample collides
-  std::span<const float> weights;          ///< of the samples; they sum to 1, to less with a
-                                           ///< `normaliser_offset`, and are 0 without a finite cost (with
-                                           ///< `cem`, `icem`, `reverse_mppi`: those of the last update)
+  std::span<const float> weights;          ///< of the samples; the sum is 1, or less with a
+                                           ///< `normaliser_offset`. If no cost is finite they mean nothing
 
   SequenceList guides;               ///< where the guide particles ended (empty without guides)
   SequenceList guide_path;           ///< all guides after each transport step, [iteration x guide]

@@ -31,8 +31,8 @@ struct TrackerOptions {
   /// Scans with readings of an object, before it is reported. Without a map (and with `min_speed` above 0)
   /// twice as many must show that it moves, and its speed must be at least twice its standard deviation.
   int confirming_scans = 2;
-  /// Scans in a row that may see through the place of an object: one more drops it. An object that is not yet
-  /// confirmed is dropped by the first.
+  /// Scans since its last reading that may see through the place of an object: one more drops it. An object
+  /// that is not yet confirmed is dropped by the first.
   int max_misses = 3;
   /// s, after which an unseen object is dropped; a fifth of it while the object is not yet confirmed. An
   /// unseen object is also dropped once the standard deviation of its position is above 0.8 m.

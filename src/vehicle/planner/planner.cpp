@@ -319,6 +319,7 @@ void Planner::reset(std::uint64_t seed) noexcept {
   implementation_->choice.reset();
   implementation_->solver->reset(seed);
   implementation_->obstacles.reset();
+  implementation_->has_maps = false;
   implementation_->output = {};
 }
 

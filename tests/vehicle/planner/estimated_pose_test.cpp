@@ -1,4 +1,4 @@
-// A planner whose pose is an estimate with a covariance.
+// A planner whose pose is an estimate with a covariance, and what it predicts of other sequences.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,6 +58,17 @@ TEST(EstimatedPose, DoesNotMoveTheWallsThatTheCarSees) {
   const double right = cost_beside_the_wall(0);
   EXPECT_LT(right, 1) << "the wall is far enough";
   EXPECT_NEAR(cost_beside_the_wall(position_error), right, 5);
+}
+
+TEST(PlannerPrediction, CostsNothingBeforeAPlanAndAfterAReset) {
+  Planner planner = make_planner();
+  const std::vector<float> ranges = beside_a_wall();
+  std::vector<PredictedState> states(straight_on.size() / 2 + 1);
+  EXPECT_EQ(planner.predict(straight_on, states).state, 0);
+  planner.update({{ranges, -2.35, spacing, 0.05, 30}, {{5, 0.2, 0}, speed}});
+  EXPECT_GT(planner.predict(straight_on, states).state, 0);
+  planner.reset(1);
+  EXPECT_EQ(planner.predict(straight_on, states).state, 0);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ void visit_sections(AnyConfiguration& configuration, Visit&& visit) {
 
 /// Reads a configuration file: YAML with a map of options for each section,
 ///
-///     base: published            # optional: another configuration to start from
+///     base: default              # optional: another configuration to start from
 ///     svg_mppi:
 ///       samples: 4000
 ///       variance: 0.1            # a list of one value per input, [0.1], says the same

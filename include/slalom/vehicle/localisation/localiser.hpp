@@ -39,7 +39,9 @@ enum class LocaliserStatus {
   bad_scan,       ///< empty, of invalid geometry or with too few readings: moved by odometry alone
   bad_odometry,   ///< pose or stamp not finite, or larger than `LocaliserInput` allows: ignored
   odometry_jump,  ///< moved further than the car can: the last motion is continued, the scan is used
-  stale,  ///< not later than the last update, by less than 1 s: ignored; by more, the clock was set back
+  /// less than 1 s before the last update, or of the same time: ignored. A stamp that is earlier still means
+  /// that the clock was set back, and is used
+  stale,
 };
 /// The name of a status, as results have it.
 constexpr const char* name(LocaliserStatus status) noexcept {

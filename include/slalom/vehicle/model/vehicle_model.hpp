@@ -36,8 +36,8 @@ class VehicleModel {
   virtual const BatchEvaluator& evaluator() const noexcept = 0;
   /// Whether the start itself collides.
   virtual bool start_collides() const noexcept = 0;
-  /// Whether the model predicts the car by its tyres and speed control. If not, the functions from here to
-  /// `set_margin_share` have no effect.
+  /// Whether the model predicts the car by its tyres and speed control. If not, the setters below have no
+  /// effect, `advance` returns the start, and `command` the first steering angle with the given speed.
   virtual bool has_dynamics() const noexcept { return false; }
   /// The dynamics of a car whose tyres slip; null where they do not.
   virtual const SingleTrackDynamics* dynamics() const noexcept { return nullptr; }

@@ -40,8 +40,8 @@ struct Odometry {
 /// The reason for a command.
 enum class PlannerStatus {
   ok,
-  blocked,            ///< every plan collides, or reversing is not finished yet; without tyre slip only with
-                      ///< `verify_plan` and `stop_when_blocked`, else such a plan is sent as `ok`
+  blocked,            ///< every plan collides; with tyre slip also while the car reverses. Without tyre slip
+                      ///< only with `verify_plan` and `stop_when_blocked`: else such a plan is sent as `ok`
   fallback_plan,      ///< the solution collided; another sequence, which does not, was sent
   bad_scan,           ///< empty, or of an invalid geometry: braking
   bad_odometry,       ///< not finite, or larger than `Odometry` allows: braking
@@ -129,7 +129,7 @@ class Planner {
 
   /// The states (one more than steps) and costs of any control sequence, [step][input], from where the last
   /// update that made a plan began, over its maps. For viewers; it may be called between updates. Before the
-  /// first such update, the cost is 0 and the states are not set.
+  /// first such update, and after `reset`, the cost is 0 and the states are not set.
   PredictedCost predict(std::span<const float> inputs, std::span<PredictedState> states) const noexcept;
 
   /// The solver in use.

@@ -34,8 +34,9 @@ struct PlannerOptions {
   /// With a model whose tyres slip, the solution also competes with slower sequences and with ways around
   /// obstacles.
   bool verify_plan = true;
-  /// Reverse a little and try again where the car stands and every plan collides. Without tyre slip this
-  /// needs `stop_when_blocked` and `verify_plan`; with it, detours and smaller margins are part of it.
+  /// Reverse a little and try again where the car stands and every plan collides. With a model whose tyres
+  /// slip, this includes detours and smaller margins. Other models need `stop_when_blocked` and
+  /// `verify_plan`.
   bool back_up = true;
   bool predict_others = true;          ///< plans meet `PlannerInput::others` where they will be
   double collision_probability = 0.2;  ///< of others in a step, above which a plan collides

@@ -17,9 +17,10 @@ namespace slalom::vehicle {
 
 /// Where a course begins and which way round it is driven.
 struct RaceCourseOptions {
-  /// Start pose of the car. Without one, a course that is found in a map starts at the origin of the map
-  /// frame, along +x, if the origin is in the corridor: there a mapping program was started. Other courses
-  /// start in the middle of the fastest part, driven counter-clockwise.
+  /// Start pose of the car, for closed courses. Without one, a course that is found in a map starts at the
+  /// origin of the map frame, where mapping programs start, if it passes there within 0.6 rad of +x; else it
+  /// is driven counter-clockwise. All other closed courses keep the direction of their line. Except at the
+  /// origin, a course without a start begins in the middle of its fastest part.
   std::optional<maps::Pose> start;
   bool reverse = false;  ///< the other way round; not with a start
 };
