@@ -77,8 +77,8 @@ struct LapRow {
   double mean_speed = 0;         ///< m/s
   double mean_path_distance = 0, max_path_distance = 0;  ///< m
   double mean_variance = 0, mean_effective_samples = 0;  ///< of the solver, means over its solves
-  /// LapResult::paper_model_cost (column `ms_published_model`), LapResult::driven_cost
-  double ms_paper_model = 0, ms_driven = 0;
+  double ms_paper_model = 0;   ///< LapResult::paper_model_cost; column `ms_published_model`
+  double ms_driven = 0;        ///< LapResult::driven_cost
   int blocked_steps = 0;       ///< control steps in which every plan collided
   int degenerate_steps = 0;    ///< control steps without usable weights
   std::string contact_points;  ///< "x:y" in m, the car's position at its first collision with each body
