@@ -36,6 +36,11 @@ std::string shown(double value) {
   return whole ? std::to_string(static_cast<std::int64_t>(value)) : number_text(value);
 }
 
+/// "section.option", or the option alone.
+std::string full_name(std::string_view where, const Declaration& d) {
+  return std::string(where) + (where.empty() ? "" : ".") + d.name;
+}
+
 /// How many single-letter changes lead from one word to the other.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -104,9 +109,19 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 namespace detail {
 
 void throw_out_of_range(std::string_view where, const Declaration& d, double value) {
-  std::string option(where);
-  if (!option.empty()) option += ".";
-  throw std::invalid_argument(option + d.name + ": " + shown(value) + " " + range_rule(d));
+  throw std::invalid_argument(full_name(where, d) + ": " + shown(value) + " " + range_rule(d));
+}
+
+void throw_wrong_count(std::string_view where, const Declaration& d, std::size_t count, int inputs) {
+  std::string rule = "one";
+  if (d.any_count) {
+    rule += " or more";
+  } else {
+    if (inputs != 1) rule += " for all inputs";
+    if (inputs > 1) rule += ", or one for each of the " + std::to_string(inputs);
+  }
+  throw std::invalid_argument(full_name(where, d) + ": has " + std::to_string(count) + " values, must have " +
+                              rule);
 }
 
 bool parse_flag(std::string_view text) {

@@ -13,6 +13,7 @@
 /// sliders are all derived.
 ///
 /// An options type is a flat aggregate whose fields carry their defaults. A function template beside it
+/// names every field:
 ///
 ///     template <class Options, class Visit>
 ///       requires is_options_of<Options, MppiOptions>
@@ -20,8 +21,8 @@
 ///       visit(options.temperature, Declaration{.name = "temperature", .symbol = "lambda", .min = 1e-6});
 ///     }
 ///
-/// that names every field. Fields are `bool`, `int`, `std::uint64_t`, `double`, `PerInput` or an enumeration
-/// with an `enum_names(E)` function (or a `Choice`, a reference to one).
+/// Fields are `bool`, `int`, `std::uint64_t`, `double`, `PerInput` or an enumeration with an `enum_names(E)`
+/// function (or a `Choice`, a reference to one).
 namespace slalom {
 
 /// What is said of an option besides its type and default.
