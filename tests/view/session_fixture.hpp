@@ -10,6 +10,7 @@
 #include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "view/session/session.hpp"
 #include "view/web_client.hpp"
@@ -74,28 +75,39 @@ class ViewSession : public ::testing::Test {
   /// Sends a command and lets the session handle it.
   void tell(const json& command) { say(command.dump()); }
   void say(const std::string& text) {
+    skipped_.clear();
     client_.send_message(text);
     server_.wait(std::chrono::seconds(5));
     do session_.turn();
     while (session_.is_busy());
   }
   /// Reads until a message of JSON of this type comes.
-  json next(const std::string& type) { return next(client_, type); }
-  static json next(testing::WebClient& client, const std::string& type) {
+  json next(const std::string& type) { return next(client_, type, &skipped_); }
+  static json next(testing::WebClient& client, const std::string& type,
+                   std::vector<std::string>* skipped = nullptr) {
     for (;;) {
-      const std::string message = client.next_message();
+      std::string message = client.next_message();
       if (message.empty()) return nullptr;
-      if (message.rfind("SLV1", 0) == 0) continue;
+      if (message.rfind("SLV1", 0) == 0) {
+        if (skipped) skipped->push_back(std::move(message));
+        continue;
+      }
       json parsed = json::parse(message);
       if (parsed["type"] == type) return parsed;
     }
   }
-  /// Reads until the frame of a tick comes.
+  /// Reads until the frame of a tick comes. The server sends frames and JSON in either order, so the frame
+  /// may be one that `next` has read since the last command. It must be the newest tick: a client that does
+  /// not read fast enough gets only the newest frame. The setup drives tick 0.
   std::string frame(int tick) {
+    const auto is_wanted = [&](const std::string& message) {
+      return message.rfind("SLV1", 0) == 0 && message[4] == 1 && scalar(message, "tick") == tick;
+    };
+    const auto found = std::find_if(skipped_.rbegin(), skipped_.rend(), is_wanted);
+    if (found != skipped_.rend()) return *found;
     for (;;) {
-      const std::string message = client_.next_message();
-      if (message.empty()) return message;
-      if (message.rfind("SLV1", 0) == 0 && message[4] == 1 && scalar(message, "tick") == tick) return message;
+      std::string message = client_.next_message();
+      if (message.empty() || is_wanted(message)) return message;
     }
   }
   std::string step_to(int tick) {
@@ -121,6 +133,7 @@ class ViewSession : public ::testing::Test {
   Server server_{{.messages_per_second = 1e6, .burst = 1e6}, {}};
   testing::WebClient client_{server_.port()};
   Session session_;
+  std::vector<std::string> skipped_;  ///< frames that `next` has read since the last command
 };
 
 }  // namespace slalom::view
