@@ -115,10 +115,11 @@ TEST(PlannerAmongOthers, PassesACarThatIsSlower) {
   EXPECT_GT(distance_beside(out, other), car_width);
 }
 
-/// How far (m) a plan of one second leads. The car, 0.25 m beside the path, has followed another for 5 s at
-/// 0.8 of the path's speed.
+/// How far (m) a plan of one second leads, the mean over 1 s. The car, 0.25 m beside the path, has followed
+/// another for 4 s at 0.8 of the path's speed.
 double lead_after_following(double time_behind, std::uint64_t seed) {
   constexpr double followed = 0.8 * speed, gap = 1;  // m/s, m
+  constexpr int updates = 200, counted = 40;
   std::vector<maps::ReferencePoint> path;
   for (int i = 0; i < 600; ++i) path.push_back({0.1 * i, 0, 0, speed});
   MppiOptions method;
@@ -134,25 +135,26 @@ double lead_after_following(double time_behind, std::uint64_t seed) {
   options.time_behind = time_behind;
   Planner planner(options, make_vehicle_model(car), path, make_solver(method, 2));
   planner.reset(seed);
-  double lead = 0;
-  for (int i = 0; i < 200; ++i) {
+  double sum = 0;  // m
+  for (int i = 0; i < updates; ++i) {
     const double x = 5 + followed * options.control_period * i;
     Lane wide{.half_width = 1.5, .car = 0.461 + gap};
     const Other other(x + wide.car, followed);
     const PlannerOutput& out = planner.update(
         {.scan = wide.scan(), .odometry = {{x, 0.25, 0}, followed}, .others = {&other.obstacle, 1}});
-    lead = out.predicted.back().pose.x - x;
+    if (i >= updates - counted) sum += out.predicted.back().pose.x - x;
   }
-  return lead;
+  return sum / counted;
 }
 
 TEST(PlannerAmongOthers, GoesAheadToPassACarBehindWhichItLosesTime) {
-  // The mean over seeds, since a single plan stays behind now and then.
-  constexpr std::uint64_t seeds = 8;
+  // The mean over seeds and updates, since a single plan stays behind now and then: over 64 seeds the gain is
+  // 0.19 m, with a standard deviation of 0.03 m.
+  constexpr std::uint64_t seeds = 4;
   double gain = 0;  // m
   for (std::uint64_t seed = 0; seed < seeds; ++seed)
     gain += lead_after_following(100, seed) - lead_after_following(0, seed);
-  EXPECT_GT(gain / seeds, 0.15);
+  EXPECT_GT(gain / seeds, 0.1);
 }
 
 TEST(PlannerAmongOthers, AvoidsWhatIsNotInTheWayYet) {
