@@ -150,11 +150,11 @@ double lead_after_following(double time_behind, std::uint64_t seed) {
 TEST(PlannerAmongOthers, GoesAheadToPassACarBehindWhichItLosesTime) {
   // The mean over seeds and updates, since a single plan stays behind now and then: over 64 seeds the gain is
   // 0.19 m, with a standard deviation of 0.03 m.
-  constexpr std::uint64_t seeds = 4;
+  constexpr std::uint64_t seeds = 8;
   double gain = 0;  // m
   for (std::uint64_t seed = 0; seed < seeds; ++seed)
     gain += lead_after_following(100, seed) - lead_after_following(0, seed);
-  EXPECT_GT(gain / seeds, 0.1);
+  EXPECT_GT(gain / seeds, 0.15);
 }
 
 TEST(PlannerAmongOthers, AvoidsWhatIsNotInTheWayYet) {
