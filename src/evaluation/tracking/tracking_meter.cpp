@@ -71,6 +71,7 @@ TrackingMeter::TrackingMeter(TrackingMode mode, const maps::OccupancyGrid& map, 
       mount_(compose({car_.rear_length, 0, 0}, world.options().lidar.mount)),
       wheels_(car_, seeded_wheels(mode, seed)),
       localiser_(make_localiser(mode, map, mount_, sim::rear_axle(car_, world.state(own)), seed)),
+      aligned_(compose(sim::rear_axle(car_, world.state(own)), mount_)),
       tracker_(make_tracker(mode, map, world.options().lidar.noise)),
       ranges_(world.lidar().padded_beams()),
       body_ranges_(ranges_.size()) {
