@@ -37,7 +37,10 @@ function(slalom_compile_options target)
     # With sanitizers, g++ takes initialised members for uninitialised ones, for instance those of <regex>, and warns of
     # the memory fences of Boost.Asio, which the thread sanitizer does not see.
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-      target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized $<$<STREQUAL:${SLALOM_SANITIZE},thread>:-Wno-tsan>)
+      target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
+      if(SLALOM_SANITIZE STREQUAL "thread")
+        target_compile_options(${target} PRIVATE -Wno-tsan)
+      endif()
     endif()
   else()
     slalom_harden(${target})
