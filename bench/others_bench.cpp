@@ -51,6 +51,10 @@ class TimedSolver final : public Solver {
   int inputs() const noexcept override { return timed_->inputs(); }
   bool keeps_bounds() const noexcept override { return timed_->keeps_bounds(); }
   bool takes_proposals() const noexcept override { return timed_->takes_proposals(); }
+  std::unique_ptr<Solver> clone() const override {
+    return std::make_unique<TimedSolver>(timed_->clone(), times_);
+  }
+  const SolveResult& result() const noexcept override { return timed_->result(); }
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
     const double begin = cpu_time();
     const SolveResult& result = timed_->solve(evaluator, request);

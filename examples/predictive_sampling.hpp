@@ -57,6 +57,11 @@ class PredictiveSampling final : public slalom::SolverBase {
     PredictiveSampling::reset(options.seed);
   }
   const char* name() const noexcept override { return PredictiveSamplingOptions::method; }
+  std::unique_ptr<slalom::Solver> clone() const override {
+    auto copy = std::make_unique<PredictiveSampling>(*this);
+    copy->result_.inputs = copy->result_.mean = copy->plan_;
+    return copy;
+  }
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
@@ -98,7 +103,6 @@ class PredictiveSampling final : public slalom::SolverBase {
   slalom::AlignedBuffer costs_;
   std::vector<std::uint8_t> collided_;
   std::vector<float> plan_, shifted_, deviation_;  // [step][input]
-  slalom::SolveResult result_;
 };
 
 inline std::unique_ptr<slalom::Solver> make_solver(const PredictiveSamplingOptions& options, int inputs,

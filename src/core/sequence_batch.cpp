@@ -15,6 +15,12 @@ AlignedBuffer::AlignedBuffer(std::ptrdiff_t size)
   std::fill_n(data_.get(), size, 0.0f);
 }
 
+AlignedBuffer::AlignedBuffer(const AlignedBuffer& other) {
+  if (!other.data_) return;
+  *this = AlignedBuffer(other.size_);
+  std::copy_n(other.data_.get(), size_, data_.get());
+}
+
 void AlignedBuffer::Free::operator()(float* p) const noexcept {
   ::operator delete(p, alignment);
 }

@@ -99,6 +99,7 @@ struct ThreadPool::Shared {
   void* context = nullptr;
   std::uint32_t first = 0, tasks = 0;
   std::vector<TaskRange> ranges;  ///< of each thread, the caller's first
+  std::atomic<bool> busy{false};  ///< whether the workers serve a caller
   std::atomic<bool> quit{false};
   std::vector<std::thread> workers;
 
@@ -186,7 +187,7 @@ ThreadPool::~ThreadPool() {
 }
 
 void ThreadPool::run_erased(int count, Call call, void* context) noexcept {
-  if (!shared_ || count <= 1) {
+  if (!shared_ || count <= 1 || shared_->busy.exchange(true, std::memory_order_acquire)) {
     for (int i = 0; i < count; ++i) call(context, i);
     return;
   }
@@ -195,6 +196,7 @@ void ThreadPool::run_erased(int count, Call call, void* context) noexcept {
   for (int first = 0; first < count; first += static_cast<int>(Shared::TaskRange::most))
     shared_->run(static_cast<std::uint32_t>(first),
                  static_cast<std::uint32_t>(std::min<int>(count - first, Shared::TaskRange::most)));
+  shared_->busy.store(false, std::memory_order_release);
 }
 
 }  // namespace slalom

@@ -48,6 +48,22 @@ TEST(ThreadPool, AThreadTakesTasksOfAnotherOneThatIsBusy) {
   EXPECT_EQ(ended.load(), count);
 }
 
+TEST(ThreadPool, ServesSeveralCallersAtOnce) {
+  ThreadPool pool(3);
+  std::vector<std::thread> callers;
+  std::atomic<int> wrong{0};
+  for (int caller = 0; caller < 4; ++caller)
+    callers.emplace_back([&] {
+      for (int round = 0; round < 500; ++round) {
+        std::atomic<int> sum{0};
+        pool.run(9, [&](int i) { pool.run(2, [&](int) { sum += i; }); });  // a task may call, too
+        wrong += sum.load() != 72;
+      }
+    });
+  for (std::thread& caller : callers) caller.join();
+  EXPECT_EQ(wrong.load(), 0);
+}
+
 TEST(ThreadPool, SleepingWorkersWake) {
   ThreadPool pool(3);
   for (int round = 0; round < 20; ++round) {

@@ -56,6 +56,36 @@ TEST(Controller, TakesParametersThatChangeBetweenSolves) {
   EXPECT_DOUBLE_EQ(plan.states[1].position, 0.7);
 }
 
+/// The problem of the copy is its own: the original's changes do not reach it, and both go on with the same
+/// bits as controllers that were never copied.
+template <class Make>
+void expect_independent_copy(Make make) {
+  const typename decltype(make())::State start{0.5, 0.1};
+  auto original = make(), other = make();
+  original.solve(start, {.elapsed = 0.1});
+  other.solve(start, {.elapsed = 0.1});
+  auto copy = original;
+  original.problem().dt = 0.3;
+  const auto unchanged = other.solve(start, {.elapsed = 0.1}), of_copy = copy.solve(start, {.elapsed = 0.1});
+  const auto changed = original.solve(start, {.elapsed = 0.1});
+  EXPECT_EQ(of_copy.cost, unchanged.cost);
+  EXPECT_NE(of_copy.cost, changed.cost);
+  EXPECT_NE(of_copy.stats.costs.data(), changed.stats.costs.data());
+  for (std::size_t k = 0; k < of_copy.inputs.size(); ++k)
+    EXPECT_EQ(of_copy.inputs[k][0], unchanged.inputs[k][0]) << k;
+  original = other;  // and by assignment
+  EXPECT_EQ(original.solve(start).cost, other.solve(start).cost);
+}
+
+TEST(Controller, ACopyHasAProblemOfItsOwn) {
+  const SvgMppiOptions options{.horizon = 12, .samples = 256, .input_min = -2, .input_max = 2, .threads = 2};
+  expect_independent_copy([&] { return SvgMppi{DoubleIntegrator{}, options}; });
+  expect_independent_copy([&] { return Controller{DoubleIntegrator{}, SolverOptions(MppiOptions{})}; });
+  SvgMppiOptions exact = options;
+  exact.guides.gradient = GuideGradient::exact;
+  expect_independent_copy([&] { return Controller{GradientEvaluator{DoubleIntegrator{}}, exact}; });
+}
+
 TEST(Controller, RejectsASolverForAnotherNumberOfInputs) {
   EXPECT_THROW(Controller(DoubleIntegrator{}, make_solver(MppiOptions{}, 2)), std::invalid_argument);
   EXPECT_THROW(Controller(DoubleIntegrator{}, nullptr), std::invalid_argument);

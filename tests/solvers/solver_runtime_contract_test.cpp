@@ -54,6 +54,42 @@ TEST_P(SolverRuntimeContract, ResetRepeatsAndSeedsDiffer) {
   EXPECT_NE(first, other);
 }
 
+TEST_P(SolverRuntimeContract, ACopyGoesOnWithTheSameBits) {
+  const std::vector<float> proposals(2 * 10, 0.5f);
+  ProblemEvaluator evaluator(DoubleIntegrator{});
+  const auto solve = [&](Solver& solver, int i) {
+    evaluator.set_state({0.4 - 0.05 * i, 0.1});
+    solver.solve(evaluator, {.elapsed = 0.03, .proposals = {proposals, i % 3}});
+  };
+  const auto bits = [](const Solver& solver) {
+    const SolveResult& r = solver.result();
+    std::vector<float> all;
+    for (const auto& part :
+         {r.inputs, r.nominal, r.mean, r.variances, r.costs, r.weights, r.guides.values, r.guide_path.values})
+      all.insert(all.end(), part.begin(), part.end());
+    for (int row = 0; r.samples && row < r.samples->rows(); ++row)
+      all.insert(all.end(), (*r.samples)[row].begin(), (*r.samples)[row].end());
+    all.push_back(static_cast<float>(r.few_samples_solves));
+    return all;
+  };
+  auto original = make(1, small);
+  EXPECT_EQ(bits(*original->clone()), bits(*original));
+  for (int i = 0; i < 3; ++i) solve(*original, i);
+  if (GetParam().name.size() % 2 == 0) original->prepare();
+  const auto copy = original->clone();
+  EXPECT_EQ(bits(*copy), bits(*original));
+  std::vector<std::vector<float>> expected;
+  for (int i = 3; i < 6; ++i) {
+    solve(*original, i);
+    expected.push_back(bits(*original));
+  }
+  original.reset();  // the copy does not need it
+  for (int i = 3; i < 6; ++i) {
+    solve(*copy, i);
+    EXPECT_EQ(bits(*copy), expected[static_cast<std::size_t>(i - 3)]) << i;
+  }
+}
+
 TEST_P(SolverRuntimeContract, PreparedNoiseChangesNothing) {
   const auto plain = make(1, small), prepared = make(1, small);
   ProblemEvaluator evaluator(DoubleIntegrator{});

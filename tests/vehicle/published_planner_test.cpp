@@ -13,14 +13,19 @@ namespace {
 /// Returns the same sequence in every solve, whatever the bounds.
 class ConstantSolver final : public Solver {
  public:
-  explicit ConstantSolver(float input) : inputs_(20, input) { result_.inputs = result_.mean = inputs_; }
+  explicit ConstantSolver(float input) : input_(input), inputs_(20, input) {
+    result_.inputs = result_.mean = inputs_;
+  }
   const char* name() const noexcept override { return "constant"; }
   int horizon() const noexcept override { return 20; }
   int inputs() const noexcept override { return 1; }
+  std::unique_ptr<Solver> clone() const override { return std::make_unique<ConstantSolver>(input_); }
+  const SolveResult& result() const noexcept override { return result_; }
   const SolveResult& solve(const BatchEvaluator&, const SolveRequest&) noexcept override { return result_; }
   void reset(std::uint64_t) noexcept override {}
 
  private:
+  float input_;
   std::vector<float> inputs_;
   SolveResult result_;
 };

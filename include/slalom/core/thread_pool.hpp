@@ -23,7 +23,8 @@ class ThreadPool {
   int threads() const noexcept { return threads_; }
 
   /// Calls `task(i)` for every i in [0, count) and returns when all have ended. No allocation; tasks may not
-  /// throw. Workers wait 50 us before they sleep on a futex; a pool serves one caller at a time.
+  /// throw. Workers wait 50 us before they sleep on a futex. While the workers serve one caller, another caller
+  /// runs its tasks alone.
   template <class Task>
   void run(int count, Task&& task) noexcept {
     using Plain = std::remove_reference_t<Task>;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "slalom/core/final_check.hpp"
+#include "slalom/core/polymorphic.hpp"
 #include "slalom/core/problem_check.hpp"
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/solvers/registry.hpp"
@@ -104,6 +105,9 @@ struct Plan {
 /// Construction allocates and may throw std::invalid_argument; `solve` does neither. Whatever enters, the
 /// inputs of a plan are finite, within the bounds and within the rates, and its cost and states are finite
 /// (final_check.hpp).
+///
+/// A copy goes on with the same bits. It has a problem and a solver of its own and shares the threads; the
+/// two may be used at the same time (ThreadPool).
 template <class P>
 class Controller {
   using Controlled = detail::Controlled<P>;
@@ -143,15 +147,15 @@ class Controller {
       recall_input(request.elapsed);
       evaluator_.set_previous_input(previous_);
     }
-    result_ = &solver_->solve(evaluator_, request);
-    const float* value = result_->inputs.data();
+    const SolveResult& result = solver_->solve(evaluator_, request);
+    const float* value = result.inputs.data();
     for (Inputs& input : inputs_)
       for (int i = 0; i < input_count; ++i) input[i] = static_cast<double>(*value++);
     if constexpr (Controlled::has_problem && Controlled::uses_previous_input)
       hold_input_rates(evaluator_.problem(), previous_, inputs_.data(), solver_->horizon());
     check_plan_inputs();
     predict_plan(x);
-    return plan(check_prediction(x) ? result_->status : Status::degenerate);
+    return plan(check_prediction(x) ? result.status : Status::degenerate);
   }
 
   /// What was applied before the next solve, for a problem with `input_rate_max`. Without this call it is
@@ -301,9 +305,7 @@ class Controller {
   }
 
   Plan<P> plan(Status status) const noexcept {
-    static const SolveResult nothing{};
-    const SolveResult& stats = result_ ? *result_ : nothing;
-    return {status, inputs_, states_, cost_.value, cost_.collided, terms_, stats, corrections_};
+    return {status, inputs_, states_, cost_.value, cost_.collided, terms_, solver_->result(), corrections_};
   }
 
   /// What is being applied: what was told, or the input that the last plan had for `elapsed` (s) after it
@@ -329,7 +331,7 @@ class Controller {
 
   Evaluator evaluator_;
   InputBounds bounds_;
-  std::unique_ptr<Solver> solver_;
+  Polymorphic<Solver> solver_;
   std::vector<Inputs> inputs_;
   std::vector<State> states_;
   Cost<double> cost_{0.0, false};
@@ -338,7 +340,6 @@ class Controller {
   Inputs given_{};       ///< by set_previous_input
   bool told_ = true;     ///< what was applied before the next solve is in `given_`
   int corrections_ = 0;  ///< of the final check, in the last solve
-  const SolveResult* result_ = nullptr;
   SequenceBatch alone_;  ///< the plan as a batch of one, for an evaluator that does not predict
   AlignedBuffer alone_cost_;
   std::vector<std::uint8_t> alone_collided_;

@@ -96,6 +96,13 @@ class Solver {
   /// Whether `solve` uses the proposals of a request.
   virtual bool takes_proposals() const noexcept { return false; }
 
+  /// A copy that goes on with the same bits: with the same requests from the same states both give the same
+  /// results. Its last result points into the copy. The two share their threads; see ThreadPool.
+  virtual std::unique_ptr<Solver> clone() const = 0;
+
+  /// The result of the last solve, or the state after the last reset.
+  virtual const SolveResult& result() const noexcept = 0;
+
   /// Solves from the evaluator's current state. Whatever happens, the result's inputs are finite and, if the
   /// solver `keeps_bounds`, within the bounds.
   virtual const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept = 0;
@@ -108,9 +115,10 @@ class Solver {
   /// where the evaluator has a `Sampler`, it has no effect.
   virtual void prepare() noexcept {}
 
-  /// Asks an evaluator for what the options need besides costs. To be called before the first solve with it;
-  /// a controller does so when it is made. Allocates. Throws std::invalid_argument that names the option if
-  /// the evaluator does not have it.
+  /// Allocates the memory that an evaluator needs besides that for costs, for instance for exact gradients.
+  /// To be called before the first solve with it; a controller does so when it is made. The solver must not
+  /// keep a reference to the evaluator. Throws std::invalid_argument that names an option that the evaluator
+  /// cannot fulfil.
   virtual void connect(const BatchEvaluator& /*evaluator*/) {}
 };
 

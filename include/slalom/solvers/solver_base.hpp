@@ -48,6 +48,7 @@ class SolverBase : public Solver {
  public:
   int horizon() const noexcept override { return horizon_; }
   int inputs() const noexcept override { return inputs_; }
+  const SolveResult& result() const noexcept override { return result_; }
 
  protected:
   /// `Options` has the fields `horizon`, `input_min`, `input_max`, `seed` and `threads`. The solver has
@@ -91,6 +92,8 @@ class SolverBase : public Solver {
   static int zero_mean_from(int samples, double share) noexcept {
     return static_cast<int>((1.0 - share) * static_cast<double>(samples));
   }
+
+  SolveResult result_;  ///< the last result; `clone` lets its spans point into the copy
 
  private:
   SolverBase(int horizon, int inputs, const PerInput& input_min, const PerInput& input_max,

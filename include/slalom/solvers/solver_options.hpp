@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "slalom/core/options.hpp"
+#include "slalom/core/polymorphic.hpp"
 #include "slalom/solvers/solver.hpp"
 
 namespace slalom {
@@ -41,19 +42,8 @@ class SolverOptions {
 
   /// From the options of a method.
   template <MethodOptions Options>
-  SolverOptions(Options options) : held_(std::make_unique<Held<Options>>(std::move(options))) {}
-  /// Copies.
-  SolverOptions(const SolverOptions& other) : held_(other.held_->clone()) {}
-  /// Moves.
-  SolverOptions(SolverOptions&&) noexcept = default;
-  /// Copies.
-  SolverOptions& operator=(const SolverOptions& other) {
-    held_ = other.held_->clone();
-    return *this;
-  }
-  /// Moves.
-  SolverOptions& operator=(SolverOptions&&) noexcept = default;
-  ~SolverOptions() = default;
+  SolverOptions(Options options)
+      : held_(std::unique_ptr<Base>(std::make_unique<Held<Options>>(std::move(options)))) {}
 
   /// The name of the method.
   const char* method() const noexcept { return held_->method(); }
@@ -90,7 +80,7 @@ class SolverOptions {
   }
 
   /// Calls `visit` with every option in the order of the declarations.
-  void for_each(const FieldVisitor& visit) const { held_->for_each(visit); }
+  void for_each(const FieldVisitor& visit) const { const_cast<Base&>(*held_).for_each(visit); }
 
   /// Checks all options and makes the solver. Throws std::invalid_argument that names the option, its value
   /// and the rule.
@@ -127,7 +117,7 @@ class SolverOptions {
     Options options;
   };
 
-  std::unique_ptr<Base> held_;
+  Polymorphic<Base> held_;
 };
 
 /// Declares the options above.

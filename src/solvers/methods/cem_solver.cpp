@@ -63,6 +63,11 @@ class CemSolver final : public SolverBase {
   }
 
   const char* name() const noexcept override { return name_; }
+  std::unique_ptr<Solver> clone() const override {
+    auto copy = std::make_unique<CemSolver>(*this);
+    copy->bind_result();
+    return copy;
+  }
 
   bool takes_proposals() const noexcept override { return true; }
 
@@ -74,10 +79,7 @@ class CemSolver final : public SolverBase {
     std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
     kept_count_ = 0;
     result_ = {};
-    result_.mean = mean_;
-    result_.inputs = options_.send_best ? best_ : mean_;
-    result_.nominal = zero_;
-    result_.variances = variance_;
+    bind_result();
   }
 
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
@@ -87,31 +89,33 @@ class CemSolver final : public SolverBase {
     if (options_.shift_warm_start) shift(warm_start_shift(evaluator, request));
     std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
 
-    detail::SampleSet* batch = &batches_.front();
     detail::BatchStatistics statistics;
     Status status = Status::deadline;
     float best_cost = std::numeric_limits<float>::infinity();
     int iteration = 0;
+    last_batch_ = 0;
     for (; iteration < options_.iterations && !deadline.passed(); ++iteration) {
-      batch = &batches_[std::min(static_cast<std::size_t>(iteration), batches_.size() - 1)];
-      batch->propose(iteration == 0 ? request.proposals : SequenceList{});
-      statistics = sample(*batch, evaluator, iteration, deadline);
+      last_batch_ = std::min(static_cast<std::size_t>(iteration), batches_.size() - 1);
+      detail::SampleSet& batch = batches_[last_batch_];
+      batch.propose(iteration == 0 ? request.proposals : SequenceList{});
+      statistics = sample(batch, evaluator, iteration, deadline);
       result_.times.draw += statistics.draw_time;
       result_.times.evaluate += statistics.evaluate_time;
       status = statistics.finite == 0 ? Status::degenerate : Status::ok;
       if (status != Status::ok || statistics.evaluated == 0) break;
-      refit(*batch, best_cost);
+      refit(batch, best_cost);
     }
-    if (status == Status::ok && (iteration < options_.iterations || statistics.evaluated < batch->samples()))
+    const detail::SampleSet& batch = batches_[last_batch_];
+    if (status == Status::ok && (iteration < options_.iterations || statistics.evaluated < batch.samples()))
       status = Status::deadline;
     if (statistics.evaluated == 0) status = Status::deadline;
-    if (status == Status::ok && statistics.collided == batch->samples()) status = Status::all_collided;
+    if (status == Status::ok && statistics.collided == batch.samples()) status = Status::all_collided;
     if (!(best_cost < std::numeric_limits<float>::infinity()))
       std::copy(mean_.begin(), mean_.end(), best_.begin());
     result_.status = status;
     result_.iterations = iteration;
     const StageTimes times = result_.times;
-    detail::report_samples(*batch, statistics, batch->sum_weights(), result_);
+    detail::report_samples(batch, statistics, batch.sum_weights(), result_);
     result_.times = times;
     next_solve();
     result_.times.total = detail::seconds(begin, detail::Clock::now());
@@ -119,6 +123,15 @@ class CemSolver final : public SolverBase {
   }
 
  private:
+  /// Lets the result point to this solver's values.
+  void bind_result() noexcept {
+    result_.mean = mean_;
+    result_.inputs = options_.send_best ? best_ : mean_;
+    result_.nominal = zero_;
+    result_.variances = variance_;
+    if (result_.samples) detail::bind_samples(batches_[last_batch_], result_);
+  }
+
   void shift(double steps) noexcept {
     if (!(steps > 0)) return;
     const auto move = [&](float* sequence) {
@@ -199,6 +212,7 @@ class CemSolver final : public SolverBase {
   CemOptions options_;
   Memory memory_;
   std::vector<detail::SampleSet> batches_;  ///< of the iterations; the last one also of all later ones
+  std::size_t last_batch_ = 0;              ///< of the last iteration made
   int elites_;
   int max_kept_;
   int kept_count_ = 0;
@@ -207,7 +221,6 @@ class CemSolver final : public SolverBase {
   std::vector<float> mean_, variance_, first_variance_, min_variance_, deviation_, zero_, elite_mean_,
       best_;                  ///< [row]
   std::vector<double> sums_;  ///< [row]
-  SolveResult result_;
 };
 
 }  // namespace

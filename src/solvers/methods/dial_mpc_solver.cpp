@@ -43,6 +43,11 @@ class DialMpcSolver final : public SolverBase {
   }
 
   const char* name() const noexcept override { return DialMpcOptions::method; }
+  std::unique_ptr<Solver> clone() const override {
+    auto copy = std::make_unique<DialMpcSolver>(*this);
+    copy->bind_result();
+    return copy;
+  }
 
   bool takes_proposals() const noexcept override { return true; }
 
@@ -54,9 +59,7 @@ class DialMpcSolver final : public SolverBase {
     clamp(mean_.data());
     std::copy(first_variance_.begin(), first_variance_.end(), variance_.begin());
     result_ = {};
-    result_.inputs = result_.mean = mean_;
-    result_.nominal = zero_;
-    result_.variances = variance_;
+    bind_result();
   }
 
   void prepare() noexcept override { update_.samples().prepare(key(0), pool()); }
@@ -78,6 +81,14 @@ class DialMpcSolver final : public SolverBase {
   }
 
  private:
+  /// Lets the result point to this solver's values.
+  void bind_result() noexcept {
+    result_.inputs = result_.mean = mean_;
+    result_.nominal = zero_;
+    result_.variances = variance_;
+    if (result_.samples) detail::bind_samples(update_.samples(), result_);
+  }
+
   void make_updates(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
     const int wanted = has_solution_ ? options_.iterations : options_.first_iterations;
     const int few_samples_before = result_.few_samples_solves;
@@ -99,7 +110,6 @@ class DialMpcSolver final : public SolverBase {
   std::vector<float> mean_, shifted_, zero_;      ///< [row]
   std::vector<float> first_variance_, variance_;  ///< [row]
   bool has_solution_ = false;
-  SolveResult result_;
 };
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace slalom::detail {
 /// (equations (12) and (13)).
 class Guides {
  public:
-  /// `low` and `high` are the bounds [row]. They must outlive this object.
+  /// `low` and `high` are the bounds [row].
   Guides(const SvgMppiOptions& options, int inputs, std::span<const float> low, std::span<const float> high);
 
   /// Gets the working memory for exact gradients of this evaluator, if guides follow them. Throws
@@ -95,7 +95,7 @@ class Guides {
   int gradient_samples_;  ///< of a guide; 0 with exact gradients
   int block_;             ///< samples of a guide's block: its gradient samples, the guide itself, padding
   int rows_;              ///< values of a control sequence
-  std::span<const float> low_, high_;
+  std::vector<float> low_, high_;  ///< bounds [row]
 
   Matrix<double> theta_, shifted_;  ///< [guide][row]
   Matrix<float> guides_;            ///< theta as float32

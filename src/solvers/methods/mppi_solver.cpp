@@ -32,6 +32,11 @@ class MppiSolver final : public SolverBase {
   }
 
   const char* name() const noexcept override { return MppiOptions::method; }
+  std::unique_ptr<Solver> clone() const override {
+    auto copy = std::make_unique<MppiSolver>(*this);
+    copy->bind_result();
+    return copy;
+  }
 
   bool takes_proposals() const noexcept override { return true; }
 
@@ -42,9 +47,7 @@ class MppiSolver final : public SolverBase {
     std::fill(nominal_.begin(), nominal_.end(), 0.0f);
     clamp(mean_.data());
     result_ = {};
-    result_.inputs = result_.mean = mean_;
-    result_.nominal = nominal_;
-    result_.variances = variance_;
+    bind_result();
   }
 
   void prepare() noexcept override { update_.samples().prepare(key(0), pool()); }
@@ -74,6 +77,14 @@ class MppiSolver final : public SolverBase {
   }
 
  private:
+  /// Lets the result point to this solver's values.
+  void bind_result() noexcept {
+    result_.inputs = result_.mean = mean_;
+    result_.nominal = nominal_;
+    result_.variances = variance_;
+    if (result_.samples) detail::bind_samples(update_.samples(), result_);
+  }
+
   /// Makes the best of the proposals and the last solution the mean of the samples and the nominal sequence.
   void choose_nominal(const BatchEvaluator& evaluator, const SequenceList& proposals,
                       const Deadline& deadline) noexcept {
@@ -118,7 +129,6 @@ class MppiSolver final : public SolverBase {
   SequenceBatch candidates_;  ///< proposals, after the best sequence so far; empty without the option
   AlignedBuffer candidate_costs_;
   std::vector<std::uint8_t> candidate_collided_;
-  SolveResult result_;
 };
 
 }  // namespace

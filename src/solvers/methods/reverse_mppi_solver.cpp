@@ -55,6 +55,11 @@ class ReverseMppiSolver final : public SolverBase {
   }
 
   const char* name() const noexcept override { return ReverseMppiOptions::method; }
+  std::unique_ptr<Solver> clone() const override {
+    auto copy = std::make_unique<ReverseMppiSolver>(*this);
+    copy->bind_result();
+    return copy;
+  }
 
   void reset(std::uint64_t seed) noexcept override {
     restart(seed);
@@ -64,9 +69,7 @@ class ReverseMppiSolver final : public SolverBase {
       std::copy(first_variance_.begin(), first_variance_.end(), g->variance.begin());
     }
     result_ = {};
-    result_.inputs = result_.mean = now_.mean;
-    result_.nominal = zero_;
-    result_.variances = now_.variance;
+    bind_result();
   }
 
   const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept override {
@@ -101,6 +104,14 @@ class ReverseMppiSolver final : public SolverBase {
  private:
   /// The departures of the program of proj-svg_mppi from the paper, all off by default.
   const PublishedReverseMppi& reproduction() const noexcept { return options_.published; }
+  /// Lets the result point to this solver's values.
+  void bind_result() noexcept {
+    result_.inputs = result_.mean = now_.mean;
+    result_.nominal = zero_;
+    result_.variances = now_.variance;
+    if (result_.samples) detail::bind_samples(samples_, result_);
+  }
+
   static void copy(const Gaussian& from, Gaussian& to) noexcept {
     std::copy(from.mean.begin(), from.mean.end(), to.mean.begin());
     std::copy(from.variance.begin(), from.variance.end(), to.variance.begin());
@@ -258,7 +269,6 @@ class ReverseMppiSolver final : public SolverBase {
   detail::Resampler resampler_;
   std::vector<int> picked_;                  ///< [sample]
   std::vector<float> evaluated_, rejected_;  ///< weights [sample]
-  SolveResult result_;
 };
 
 }  // namespace

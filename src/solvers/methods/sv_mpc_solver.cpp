@@ -62,6 +62,11 @@ class SvMpcSolver final : public SolverBase {
 
   int horizon() const noexcept override { return options_.horizon; }
   const char* name() const noexcept override { return SvMpcOptions::method; }
+  std::unique_ptr<Solver> clone() const override {
+    auto copy = std::make_unique<SvMpcSolver>(*this);
+    copy->bind_result();
+    return copy;
+  }
   bool keeps_bounds() const noexcept override { return reproduction().clamp_solution; }
 
   void reset(std::uint64_t seed) noexcept override {
@@ -71,11 +76,7 @@ class SvMpcSolver final : public SolverBase {
     clamp(solution_.data());
     expand_solution();
     result_ = {};
-    result_.inputs = solution_;
-    result_.mean = mean_;
-    result_.nominal = zero_;
-    result_.variances = variance_;
-    expand_result();
+    bind_result();
   }
 
   const SolveResult& solve(const BatchEvaluator& problem, const SolveRequest& request) noexcept override {
@@ -126,6 +127,16 @@ class SvMpcSolver final : public SolverBase {
   static constexpr int tile = 128;  ///< particles per task
   /// The departures of the program of proj-svg_mppi from the paper, all off by default.
   const PublishedSvMpc& reproduction() const noexcept { return options_.published; }
+  /// Lets the result point to this solver's values.
+  void bind_result() noexcept {
+    result_.inputs = solution_;
+    result_.mean = mean_;
+    result_.nominal = zero_;
+    result_.variances = variance_;
+    if (result_.samples) detail::bind_samples(particles_, result_);
+    expand_result();
+  }
+
   int tiles() const noexcept { return (particles_.stride() + tile - 1) / tile; }
   detail::Range range(int t) const noexcept {
     return {t * tile, std::min(tile, particles_.stride() - t * tile)};
@@ -324,7 +335,6 @@ class SvMpcSolver final : public SolverBase {
   std::vector<float> solution_, mean_, variance_, first_variance_, min_variance_, deviation_, inverse_,
       prior_inverse_, linear_, control_, step_, limited_step_, zero_, particle_, shifted_;  ///< [row]
   std::vector<double> sums_;                                                                ///< [row]
-  SolveResult result_;
 };
 
 }  // namespace

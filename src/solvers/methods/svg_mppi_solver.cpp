@@ -35,6 +35,11 @@ class SvgMppiSolver final : public SolverBase {
   }
 
   const char* name() const noexcept override { return SvgMppiOptions::method; }
+  std::unique_ptr<Solver> clone() const override {
+    auto copy = std::make_unique<SvgMppiSolver>(*this);
+    copy->bind_result();
+    return copy;
+  }
 
   bool takes_proposals() const noexcept override { return true; }
 
@@ -47,9 +52,7 @@ class SvgMppiSolver final : public SolverBase {
     clamp(mean_.data());
     variance_ = fixed_variance_;
     result_ = {};
-    result_.inputs = result_.mean = mean_;
-    result_.nominal = nominal_;
-    result_.variances = variance_;
+    bind_result();
   }
 
   void connect(const BatchEvaluator& evaluator) override { guides_.connect(evaluator); }
@@ -88,6 +91,17 @@ class SvgMppiSolver final : public SolverBase {
  private:
   /// The random streams of a solve.
   enum Stage { first_guides, samples, gradients, restarts = 65535 };
+
+  /// Lets the result point to this solver's values.
+  void bind_result() noexcept {
+    result_.inputs = result_.mean = mean_;
+    result_.nominal = nominal_;
+    result_.variances = variance_;
+    if (!result_.samples) return;
+    detail::bind_samples(update_.samples(), result_);
+    result_.guides = guides_.sequences();
+    result_.guide_path = guides_.path();
+  }
 
   /// Offers proposals as guides; without a nominal sequence, as samples.
   void take_in(const BatchEvaluator& evaluator, const SequenceList& proposals) noexcept {
@@ -140,7 +154,6 @@ class SvgMppiSolver final : public SolverBase {
   detail::Guides guides_;
   detail::MppiUpdate update_;
   std::vector<float> mean_, shifted_, nominal_, variance_, fixed_variance_;  ///< [row]
-  SolveResult result_;
 };
 
 }  // namespace

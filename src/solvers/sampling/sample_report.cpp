@@ -4,12 +4,16 @@
 
 namespace slalom::detail {
 
-void report_samples(const SampleSet& set, const BatchStatistics& statistics, const WeightSums<double>& sums,
-                    SolveResult& result) noexcept {
+void bind_samples(const SampleSet& set, SolveResult& result) noexcept {
   result.samples = &set.values();
   result.costs = set.costs();
   result.collided = set.collided();
   result.weights = set.weights();
+}
+
+void report_samples(const SampleSet& set, const BatchStatistics& statistics, const WeightSums<double>& sums,
+                    SolveResult& result) noexcept {
+  bind_samples(set, result);
   result.minimum_cost = statistics.minimum_cost;
   result.expected_cost = sums.weight > 0 ? sums.cost / sums.weight : 0;
   result.effective_sample_size = sums.squared > 0 ? sums.weight * sums.weight / sums.squared : 0;
