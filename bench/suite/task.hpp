@@ -20,6 +20,7 @@ enum class Verdict { running, failed, solved };
 struct Outcome {
   int solved = 0;                              ///< runs
   std::vector<double> effective_sample_sizes;  ///< of every solve
+  std::vector<float> plan;                     ///< inputs of the last solve, [step][input]
 };
 
 /// Closed-loop runs of a task.
@@ -29,6 +30,7 @@ struct Runs {
   int count = 0;            ///< number
   int ilqr_iterations = 0;  ///< of a proposal by iterative LQR in every solve; 0: none
   int c_uniform = 0;        ///< C-Uniform proposals in every solve, for a task that has a law; 0: none
+  int steps = 0;            ///< most steps of a run; 0: those of the task
 };
 
 /// A task: a problem, what is known of its inputs, and closed-loop runs.
@@ -60,11 +62,13 @@ auto closed_loop(const P& problem, const typename P::template State<double>& sta
       controller.problem() = problem;
       auto x = start;
       Verdict verdict = Verdict::running;
-      for (int k = 0; k < steps && verdict == Verdict::running; ++k) {
+      const int most = runs.steps > 0 ? std::min(runs.steps, steps) : steps;
+      for (int k = 0; k < most && verdict == Verdict::running; ++k) {
         if constexpr (!std::is_same_v<Change, std::nullptr_t>) change(controller.problem(), x, k);
         const auto plan = controller.solve(
             x, {.elapsed = problem.dt, .proposals = source.propose(controller, x, problem.dt)});
         source.learn(plan.inputs);
+        outcome.plan.assign(plan.stats.inputs.begin(), plan.stats.inputs.end());
         outcome.effective_sample_sizes.push_back(plan.stats.effective_sample_size);
         x = slalom::detail::step<P, double>(controller.problem(), x, NoLookUp{}, plan.inputs[0], 0);
         verdict = judge(controller.problem(), x, k);

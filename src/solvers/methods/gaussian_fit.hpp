@@ -18,6 +18,61 @@ struct GaussianFit {
   bool determined = false;  ///< whether the points determine the curvature
 };
 
+/// The squares and logarithms of the densities of `count` points. Densities below 1e-10 count as 1e-10.
+inline void fit_weights(const double* density, int count, double* square, double* logarithm) {
+  for (int k = 0; k < count; ++k) {
+    const double y = std::max(density[k], 1e-10);
+    square[k] = y * y;
+    logarithm[k] = std::log(y);
+  }
+}
+
+/// Fits `count` points, given their abscissas and the results of `fit_weights`. With t the centred and scaled
+/// abscissas, z2 is the coefficient of p = t^2 - skewness t - 1, which is orthogonal to 1 and t. The fit is
+/// undetermined if `error`, of the logarithms, and the rounding of the abscissas to float32 may change z2 by
+/// a tenth.
+inline GaussianFit fit_gaussian(const double* x, const double* square, const double* logarithm, int count,
+                                double error) {
+  constexpr double rounding = std::numeric_limits<float>::epsilon();
+  const auto sum = [&](auto&& value) {
+    double total = 0;
+    for (int k = 0; k < count; ++k) total += square[k] * value(k);
+    return total;
+  };
+  // Relative to the densest point, whose weight may exceed that of the others by 20 orders of magnitude.
+  int densest = 0;
+  for (int k = 1; k < count; ++k)
+    if (square[k] > square[densest]) densest = k;
+  const auto from_densest = [&](int k) { return x[k] - x[densest]; };
+  const auto log_ratio = [&](int k) { return logarithm[k] - logarithm[densest]; };
+  const double weight = sum([](int) { return 1.0; });
+  const double mean = sum(from_densest) / weight;
+  const auto squared = [](double d) { return d * d; };
+  const double variance = sum([&](int k) { return squared(from_densest(k) - mean); }) / weight;
+  if (!(variance > 0)) return {};
+  const double scale = std::sqrt(variance), inverse = 1 / scale;
+  const auto t = [&](int k) { return (from_densest(k) - mean) * inverse; };
+  const double skewness = sum([&](int k) { return t(k) * t(k) * t(k); }) / weight;
+  const double slope = sum([&](int k) { return t(k) * log_ratio(k); }) / weight;
+  const auto p = [&](int k) { return t(k) * t(k) - skewness * t(k) - 1; };
+  const double norm = sum([&](int k) { return squared(p(k)); });
+  const double bend = sum([&](int k) { return p(k) * log_ratio(k); });
+  const double bend_error = sum([&](int k) {
+    const double derivative = slope + (2 * t(k) - skewness) * bend / norm;
+    return std::abs(p(k)) * (error + std::abs(derivative * inverse * x[k]) * rounding);
+  });
+  if (!(norm > 0) || !(bend_error < 0.1 * std::abs(bend))) return {};
+  return {bend / norm / variance, true};
+}
+
+/// The variance -1 / (2 z2) of a fit. Infinite if the fit is undetermined, or if it is convex and
+/// `absolute_curvature` is false.
+inline double fitted_variance(const GaussianFit& fit, bool absolute_curvature) {
+  const double curvature = absolute_curvature ? -std::abs(fit.curvature) : fit.curvature;
+  if (!fit.determined || !(curvature < 0)) return std::numeric_limits<double>::infinity();
+  return -0.5 / curvature;
+}
+
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 /// Solves the normal equations A z = b for z2 by QR with column pivoting. A column counts as dependent, with
@@ -95,17 +150,10 @@ inline GaussianFit solve_normal_equations(Matrix3 a, std::array<double, 3> b) {
   return {};
 }
 
-/// The squares and logarithms of the densities of `count` points. Densities below 1e-10 count as 1e-10.
-inline void fit_weights(const double* density, int count, double* square, double* logarithm) {
-  for (int k = 0; k < count; ++k) {
-    const double y = std::max(density[k], 1e-10);
-    square[k] = y * y;
-    logarithm[k] = std::log(y);
-  }
-}
-
-/// Fits `count` points, given their abscissas and the results of `fit_weights`.
-inline GaussianFit fit_gaussian(const double* x, const double* square, const double* logarithm, int count) {
+/// Fits as the paper's program does: by normal equations of the abscissas as they are. Where these are nearly
+/// dependent, rounding decides the result.
+inline GaussianFit fit_gaussian_as_published(const double* x, const double* square, const double* logarithm,
+                                             int count) {
   Matrix3 a{};
   std::array<double, 3> b{};
   for (int k = 0; k < count; ++k) {
@@ -122,20 +170,13 @@ inline GaussianFit fit_gaussian(const double* x, const double* square, const dou
   return solve_normal_equations(a, b);
 }
 
-/// Fits points, given their abscissas and densities.
-inline GaussianFit fit_gaussian(const std::vector<double>& x, const std::vector<double>& density) {
+/// The same, given abscissas and densities.
+inline GaussianFit fit_gaussian_as_published(const std::vector<double>& x,
+                                             const std::vector<double>& density) {
   std::vector<double> square(x.size()), logarithm(x.size());
   const auto count = static_cast<int>(x.size());
   fit_weights(density.data(), count, square.data(), logarithm.data());
-  return fit_gaussian(x.data(), square.data(), logarithm.data(), count);
-}
-
-/// The variance -1 / (2 z2) of a fit. Infinite if the fit is undetermined, or if it is convex and
-/// `absolute_curvature` is false.
-inline double fitted_variance(const GaussianFit& fit, bool absolute_curvature) {
-  const double curvature = absolute_curvature ? -std::abs(fit.curvature) : fit.curvature;
-  if (!fit.determined || !(curvature < 0)) return std::numeric_limits<double>::infinity();
-  return -0.5 / curvature;
+  return fit_gaussian_as_published(x.data(), square.data(), logarithm.data(), count);
 }
 
 }  // namespace slalom::detail

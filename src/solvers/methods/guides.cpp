@@ -266,9 +266,11 @@ void Guides::densities(std::span<const int> points) noexcept {
   const bool with_prior = reproduction().fit_target == FitTarget::optimal_density;
   const double temperature = with_prior ? options_.temperature : reproduction().fit_temperature;
   double largest = -std::numeric_limits<double>::infinity();
+  log_error_ = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double* theta = path_[points[i]];
     double logarithm = -path_costs_[points[i]] / temperature;
+    log_error_ = std::max(log_error_, std::abs(logarithm) * std::numeric_limits<float>::epsilon());
     if (with_prior) {
       for (int r = 0; r < rows_; ++r) {
         const double difference = theta[r] - theta_[best_][r];
@@ -301,8 +303,11 @@ void Guides::fit_variance(float* variance) noexcept {
     double fitted = std::numeric_limits<double>::infinity();
     if (known) {
       for (int i = 0; i < count; ++i) abscissa_[i] = path_[points[i]][r];
-      const GaussianFit fit = fit_gaussian(abscissa_.data(), square_.data(), logarithm_.data(), count);
-      fitted = fitted_variance(fit, reproduction().fit_absolute_curvature);
+      const bool published = reproduction().fit_absolute_curvature;
+      const GaussianFit fit =
+          published ? fit_gaussian_as_published(abscissa_.data(), square_.data(), logarithm_.data(), count)
+                    : fit_gaussian(abscissa_.data(), square_.data(), logarithm_.data(), count, log_error_);
+      fitted = fitted_variance(fit, published);
       if (reproduction().fit_standard_deviation) fitted = std::sqrt(fitted);
     }
     variance[r] = static_cast<float>(std::clamp(fitted, least, std::max(least, most)));

@@ -115,9 +115,10 @@ class Guides {
   Matrix<double> taken_;            ///< with exact gradients: the best point of a guide [guide][row]
   std::vector<double> part_;        ///< of a step that a guide makes from there [guide]
   std::vector<float> taken_costs_;  ///< [guide]
-  std::vector<std::uint8_t> taken_collided_;                     ///< [guide]
-  std::vector<int> made_;                                        ///< iterations made [share]
-  std::vector<int> fit_points_;                                  ///< indices of the fitted points
+  std::vector<std::uint8_t> taken_collided_;  ///< [guide]
+  std::vector<int> made_;                     ///< iterations made [share]
+  std::vector<int> fit_points_;               ///< indices of the fitted points
+  double log_error_ = 0;  ///< of the logarithms of the densities, from the rounding of the costs
   std::vector<double> density_, square_, logarithm_, abscissa_;  ///< [fitted point]
   int shares_ = 1;
   int iterations_ = 0;

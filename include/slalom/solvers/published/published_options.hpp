@@ -41,8 +41,8 @@ struct PublishedSvgMppi {
   /// Take the fitted Gaussian's standard deviation for its variance. Program: true, as the paper's equation
   /// (13) can be read, though Sigma is a variance everywhere else.
   bool fit_standard_deviation = false;
-  /// Where the fit is convex, take the curvature's absolute value. Program: true; otherwise such a fit
-  /// determines nothing and the variance is `variance_max`.
+  /// Where the fit is convex, take the curvature's absolute value, and solve its normal equations as they are.
+  /// Program: true; otherwise such a fit determines nothing and the variance is `variance_max`.
   bool fit_absolute_curvature = false;
 };
 
