@@ -140,34 +140,28 @@ constexpr int park_steps = 120, corridor_steps = 100;
 }  // namespace
 
 void add_narrow_tasks(std::vector<Task>& tasks) {
-  tasks.push_back({"parking",
-                   false,
-                   40,
-                   {0.8, 0.1},
-                   {-2, -0.2},
-                   {2, 0.2},
-                   closed_loop(
-                       Parking{}, {6.5, 0.9, 0}, park_steps,
-                       [](const Parking& p, const auto& s, int) {
-                         if (p.collides(s)) return Verdict::failed;
-                         return p.offset(s) < 0.25 ? Verdict::solved : Verdict::running;
-                       },
-                       nullptr, pose_law(0.4, 0.3, {.input_steps = 5, .input_values = 3})),
-                   true});
-  tasks.push_back({"corridor",
-                   false,
-                   30,
-                   {1, 1},
-                   {-2, -2},
-                   {2, 2},
-                   closed_loop(
-                       Corridor{}, {0, 0, 0, 0}, corridor_steps,
-                       [](const Corridor& p, const auto& s, int) {
-                         if (p.collides(s)) return Verdict::failed;
-                         return p.way_left(s) < 0.3 ? Verdict::solved : Verdict::running;
-                       },
-                       nullptr, point_law(0.5, 1, {.input_steps = 5, .input_values = 3})),
-                   true});
+  tasks.push_back(
+      {"parking",
+       false,
+       40,
+       {0.8, 0.1},
+       {-2, -0.2},
+       {2, 0.2},
+       closed_loop(Parking{}, {6.5, 0.9, 0}, park_steps, [](const Parking& p, const auto& s, int) {
+         if (p.collides(s)) return Verdict::failed;
+         return p.offset(s) < 0.25 ? Verdict::solved : Verdict::running;
+       })});
+  tasks.push_back(
+      {"corridor",
+       false,
+       30,
+       {1, 1},
+       {-2, -2},
+       {2, 2},
+       closed_loop(Corridor{}, {0, 0, 0, 0}, corridor_steps, [](const Corridor& p, const auto& s, int) {
+         if (p.collides(s)) return Verdict::failed;
+         return p.way_left(s) < 0.3 ? Verdict::solved : Verdict::running;
+       })});
   problems::Arm::State<double> start;
   std::copy(problems::Arm::start.begin(), problems::Arm::start.end(), start.angle);
   constexpr int joints = problems::Arm::joints;

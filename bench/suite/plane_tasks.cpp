@@ -230,24 +230,18 @@ void add_plane_tasks(std::vector<Task>& tasks) {
                          if ((k + 1) % half == half / 8 && p.distance(s, p.dt) > 0.5) return Verdict::failed;
                          return k + 1 < chase_steps ? Verdict::running : Verdict::solved;
                        },
-                       [](Chase& p, const auto&, int k) { move_goal(p, k * p.dt); },
-                       point_law(1, 2, {.input_steps = 5, .input_values = 3})),
-                   true});
+                       [](Chase& p, const auto&, int k) { move_goal(p, k * p.dt); })});
   tasks.push_back({"steps_of_cost",
                    true,
                    30,
                    {1, 1},
                    {-2, -2},
                    {2, 2},
-                   closed_loop(
-                       Rings{}, {0, 0, 0, 0}, ring_steps,
-                       [](const Rings& p, const auto& s, int k) {
-                         if (p.on_bad_ground(s)) return Verdict::failed;
-                         if (k + 1 < ring_steps) return Verdict::running;
-                         return p.square_distance(s) < 0.25 ? Verdict::solved : Verdict::failed;
-                       },
-                       nullptr, point_law(0.5, 1, {.input_steps = 5, .input_values = 3})),
-                   true});
+                   closed_loop(Rings{}, {0, 0, 0, 0}, ring_steps, [](const Rings& p, const auto& s, int k) {
+                     if (p.on_bad_ground(s)) return Verdict::failed;
+                     if (k + 1 < ring_steps) return Verdict::running;
+                     return p.square_distance(s) < 0.25 ? Verdict::solved : Verdict::failed;
+                   })});
 }
 
 }  // namespace slalom::suite

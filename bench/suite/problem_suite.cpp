@@ -16,18 +16,13 @@ namespace slalom::suite {
 constexpr const char* usage =
     "usage: slalom_problem_suite [--seeds 40] [--first-seed 0] [--tasks NAME,...] [--ilqr ITERATIONS]\n"
     "                            [--methods METHOD[:OPTION=VALUE]...,...] [--temperatures NUMBER,...]\n\n"
-    "--ilqr adds a proposal by iterative LQR to every solve. The method cu_mppi is mppi with the best\n"
-    "C-Uniform proposal as nominal sequence; tasks without a C-Uniform law have no lines of it.\n";
+    "--ilqr adds a proposal by iterative LQR to every solve.\n";
 
 namespace {
 
 /// Rollouts of a solve: as many for every method, those of guides included.
 constexpr int rollouts = 1024;
 constexpr int guides = 4, guide_iterations = 10, gradient_samples = 12;
-
-/// CU-MPPI: `mppi` with half of the rollouts for C-Uniform proposals.
-constexpr const char* cu_mppi = "cu_mppi";
-constexpr int c_uniform_proposals = rollouts / 2;
 
 PerInput scaled_squares(const std::vector<double>& values, double factor) {
   std::vector<double> squares;
@@ -60,17 +55,13 @@ int samples_of_iteration(const SolverOptions& options) {
 
 /// Options of a method, by the same rule for every task: those of docs/writing-a-problem.md, "Units".
 SolverOptions method_options(const std::string& method, const Task& task, double temperature) {
-  SolverOptions options = solver_options(method == cu_mppi ? MppiOptions::method : method);
+  SolverOptions options = solver_options(method);
   if (method == SvgMppiOptions::method) {
     options = svg_mppi_options(task, temperature);
   } else {
     *options.find<int>("samples") = samples_of_iteration(options);
     *options.find<PerInput>("variance") = scaled_squares(task.deviation, 1);
     if (double* const option = options.find<double>("temperature")) *option = temperature;
-  }
-  if (method == cu_mppi) {
-    *options.find<int>("samples") = rollouts - c_uniform_proposals - 1;  // the last solution is one rollout
-    *options.find<bool>("nominal_from_proposals") = true;
   }
   *options.find<int>("horizon") = task.horizon;
   *options.find<PerInput>("input_min") = PerInput(task.low);
@@ -163,13 +154,11 @@ void run(const Arguments& a) {
       std::optional<Outcome> of_any_temperature;  // of a method without one
       for (const std::string& temperature : a.temperatures) {
         const std::vector<std::string> parts = split(method, ':');
-        const int c_uniform = parts[0] == cu_mppi ? c_uniform_proposals : 0;
-        if (c_uniform > 0 && !task.has_law) break;
         SolverOptions options = method_options(parts[0], task, std::stod(temperature));
         set_options(options, parts);
-        const Outcome outcome =
-            of_any_temperature ? *of_any_temperature
-                               : task.run({options, a.first_seed, a.seeds, a.ilqr_iterations, c_uniform});
+        const Outcome outcome = of_any_temperature
+                                    ? *of_any_temperature
+                                    : task.run({options, a.first_seed, a.seeds, a.ilqr_iterations});
         if (!options.find<double>("temperature")) of_any_temperature = outcome;
         std::printf("%s,%d,%s,%s,%d,%d,%.4g\n", task.name.c_str(), task.several_ways, method.c_str(),
                     temperature.c_str(), a.seeds, outcome.solved, median(outcome.effective_sample_sizes));

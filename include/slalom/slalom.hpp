@@ -16,7 +16,6 @@
 #include "slalom/core/risk/risk_evaluator.hpp"
 #include "slalom/core/status.hpp"
 #include "slalom/core/version.hpp"
-#include "slalom/solvers/c_uniform/c_uniform.hpp"
 #include "slalom/solvers/cem.hpp"
 #include "slalom/solvers/controller.hpp"
 #include "slalom/solvers/dial_mpc.hpp"

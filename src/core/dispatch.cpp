@@ -4,8 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/tuning.hpp"
-
 namespace slalom::simd {
 
 const char* name(Target target) noexcept {
@@ -67,11 +65,7 @@ Target choose() {
 }  // namespace
 
 Target active_target() {
-  static const Target target = [] {
-    const Target chosen = choose();
-    detail::choose(chosen);
-    return chosen;
-  }();
+  static const Target target = choose();
   return target;
 }
 

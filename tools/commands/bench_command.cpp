@@ -6,7 +6,6 @@
 
 #include "bench/workload/measurements.hpp"
 #include "bench/workload/peak.hpp"
-#include "slalom/core/tuning.hpp"
 #include "slalom/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/bench_plot.hpp"
@@ -99,8 +98,6 @@ class Bench {
     json_["config"] = arguments_.config.empty() ? "reference" : arguments_.config;
     std::fprintf(words_, "%s, %s, %s; workload %s\n", processor().c_str(), simd::name(target_), __VERSION__,
                  json_["config"].get<std::string>().c_str());
-    cell_access();
-    packs_in_flight();
     rollouts();
     vehicle_models();
     std::fprintf(words_, "%-14s %8s %8s %8s %10s %9s | %s\n", "ms", "p50", "p99", "max", "yardstick",
@@ -117,28 +114,6 @@ class Bench {
   }
 
  private:
-  void cell_access() {
-    const simd::CellAccess used = simd::active_cell_access().access;
-    const simd::CellAccessChoice measured = simd::measure_cell_access();
-    json_["cell_access"] = simd::name(used);
-    if (target_ != simd::Target::avx512) return;
-    json_["cell_loads_ns"] = measured.loads_ns;
-    json_["cell_gathers_ns"] = measured.gathers_ns;
-    std::fprintf(words_, "cells are read by %s; a step of 16 rollouts: loads %.1f ns, gathers %.1f ns\n",
-                 simd::name(used), measured.loads_ns, measured.gathers_ns);
-  }
-
-  void packs_in_flight() {
-    const simd::PacksInFlight used = simd::active_packs_in_flight().packs;
-    const simd::PacksInFlightChoice measured = simd::measure_packs_in_flight(target_);
-    if (measured.two_ns == 0) return;  // this instruction set has no choice
-    json_["packs_in_flight"] = simd::name(used);
-    json_["two_packs_ns"] = measured.two_ns;
-    json_["four_packs_ns"] = measured.four_ns;
-    std::fprintf(words_, "packs in flight: %s; a step of 16 rollouts: two %.1f ns, four %.1f ns\n",
-                 simd::name(used), measured.two_ns, measured.four_ns);
-  }
-
   void rollouts() {
     const workload::RolloutSpeed speed =
         workload::measure_rollouts(workload_, configuration_.vehicle, 8000,

@@ -32,7 +32,6 @@ def install(solvers: ModuleType, driving: Optional[ModuleType]) -> None:
     _add(solvers.TerminalExpansion, lambda e: _expansion_text(e, "TerminalExpansion"), _expansion_rows)
     _add(solvers.Feedback, lambda f: f"<slalom.Feedback: gains [{', '.join(map(str, f.gains.shape))}]>")
     _add(solvers.Ilqr, lambda i: f"<slalom.Ilqr: cost {i.cost:.6g}, {i.iterations} iterations>")
-    _add(solvers.CUniform, lambda c: f"<slalom.CUniform: {c.levels} levels, {len(c.masses(c.levels))} cells in the last>")
     _add(solvers.OccupancyGrid, _grid_text)
     if driving:
         _add(driving.Course, lambda c: f"<slalom.Course {c.name!r}: {c.length:.2f} m, {len(c.waypoints)} waypoints>")

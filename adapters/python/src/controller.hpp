@@ -58,7 +58,6 @@ class Controller {
   std::atomic<bool> busy_ = false;
 };
 
-void bind_c_uniform(py::module_& module);
 void bind_controllers(py::module_& module);
 void bind_feedback(py::module_& module);
 void bind_ilqr(py::module_& module);

@@ -10,7 +10,6 @@ PYBIND11_MODULE(_slalom, module) {
   slalom::python::bind_controllers(module);
   slalom::python::bind_linearization(module);
   slalom::python::bind_ilqr(module);
-  slalom::python::bind_c_uniform(module);
   slalom::python::bind_feedback(module);
   slalom::python::bind_maps(module);
   module.attr("__version__") = slalom::version();

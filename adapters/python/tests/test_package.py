@@ -73,8 +73,6 @@ def test_everything_public_prints_its_name():
     controller.solve([1, 0])
     shown = [slalom.linearize(slalom.Pendulum(), [1, 0], [0]), slalom.expand_terminal_cost(slalom.Pendulum(), [1, 0]),
              slalom.Feedback(controller), slalom.Ilqr(controller), slalom.OccupancyGrid(np.zeros((2, 3), bool), 0.1)]
-    bounded = slalom.Mppi(slalom.DifferentialDrive(), horizon=4, input_min=[0, -2], input_max=[1.5, 2])
-    shown.append(slalom.CUniform(bounded, [0, 0, 0], sizes=[0.2, 0.2, 0.4]))
     if course:
         shown += [course, slalom.World(course), slalom.RacingCar()]
     for each in shown:

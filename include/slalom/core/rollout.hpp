@@ -64,12 +64,6 @@ struct InputRows {
   int steps;
 };
 
-/// Whether an instruction set has two ways to interleave packs, between which `packs_in_flight` decides.
-/// Without fused multiply-adds every operation is rounded for itself, so both have the same bits whatever a
-/// compiler does.
-template <class Target>
-inline constexpr bool chooses_packs = Target::lanes == 4 && !Target::fused;
-
 #if defined(__clang__)
 /// Unrolls the next loop.
 #define SLALOM_UNROLL _Pragma("clang loop unroll(full)")
@@ -161,12 +155,6 @@ SLALOM_INLINE_CALLS void roll_out_range(const P& problem, const float* initial, 
     for (; sample + F::lanes < end; sample += 2 * F::lanes)
       roll_out<1, 0>(problem, both, rows, sample, costs, collided);
     roll_out_all<1, 0>(problem, start, rows, sample, end, costs, collided);
-  } else if constexpr (chooses_packs<Target>) {
-    if (simd::detail::four_packs_in_flight()) {
-      roll_out_all<4, 1>(problem, start, rows, first, end, costs, collided);
-    } else {
-      roll_out_all<2, 0>(problem, start, rows, first, end, costs, collided);
-    }
   } else if constexpr (Target::lanes == 4) {
     roll_out_all<2, 0>(problem, start, rows, first, end, costs, collided);
   } else {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "slalom/core/simd.hpp"
-#include "slalom/core/tuning.hpp"
 
 #if defined(__aarch64__)
 #include <arm_neon.h>
@@ -277,37 +276,8 @@ struct Operations<Avx512> : PortableOperations<Avx512> {
                                                      reinterpret_cast<const int*>(from), 2);
     r = (I)_mm512_maskz_srai_epi32(all, _mm512_maskz_slli_epi32(all, both, 16), 16);
   }
-  SLALOM_ISA_AVX512 static void gather_cells(const float* from, const I& index, F& r0, F& r1, F& r2, F& r3) {
-    if (__atomic_load_n(&detail::cell_access, __ATOMIC_RELAXED) ==
-        static_cast<std::uint8_t>(CellAccess::gathers)) {
-      gather_halves(from, index, r0, r1, r2, r3);
-    } else {
-      load_cells(from, index, r0, r1, r2, r3);
-    }
-  }
-
- private:
-  /// Two values of a cell at a time by gathers of 64 bits.
-  SLALOM_ISA_AVX512 SLALOM_INLINE static void gather_halves(const float* from, const I& index, F& r0, F& r1,
-                                                            F& r2, F& r3) {
-    constexpr __mmask8 half = 0xff;
-    const __m512i at = (__m512i)(index << 1);
-    const __m256i low = _mm512_maskz_extracti64x4_epi64(half, at, 0);
-    const __m256i high = _mm512_maskz_extracti64x4_epi64(half, at, 1);
-    const __m512d zero = _mm512_setzero_pd();
-    const F a = (F)_mm512_mask_i32gather_pd(zero, half, low, from, 8);
-    const F b = (F)_mm512_mask_i32gather_pd(zero, half, high, from, 8);
-    const F c = (F)_mm512_mask_i32gather_pd(zero, half, low, from + 2, 8);
-    const F d = (F)_mm512_mask_i32gather_pd(zero, half, high, from + 2, 8);
-    r0 = SLALOM_SHUFFLE(a, b, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-    r1 = SLALOM_SHUFFLE(a, b, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
-    r2 = SLALOM_SHUFFLE(c, d, 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-    r3 = SLALOM_SHUFFLE(c, d, 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31);
-  }
-
   /// Four 128-bit loads a register, then a 4 x 4 transpose in every 128-bit block.
-  SLALOM_ISA_AVX512 SLALOM_INLINE static void load_cells(const float* from, const I& index, F& r0, F& r1,
-                                                         F& r2, F& r3) {
+  SLALOM_ISA_AVX512 static void gather_cells(const float* from, const I& index, F& r0, F& r1, F& r2, F& r3) {
     // Stored in halves: a store of 512 bits is forwarded slowly to loads of single values.
     alignas(64) std::int32_t at[16];
     const __m512i scaled = (__m512i)(index << 2);
