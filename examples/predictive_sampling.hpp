@@ -12,13 +12,14 @@
 #include <slalom/solvers/option_groups.hpp>
 #include <slalom/solvers/solver_base.hpp>
 
-/// The options of the method, by which configurations, command line and Python know it.
+/// The options of the method. `visit_options` below describes the fields for configurations, command line and
+/// Python.
 struct PredictiveSamplingOptions {
   static constexpr const char* method = "predictive_sampling";
 
-  int horizon = 20;               // steps
-  int samples = 512;              // disturbed plans; the first is the plan as it was
-  slalom::PerInput variance = 1;  // of the disturbances, input^2
+  int horizon = 20;
+  int samples = 512;
+  slalom::PerInput variance = 1;
   slalom::PerInput input_min = -std::numeric_limits<double>::infinity();
   slalom::PerInput input_max = std::numeric_limits<double>::infinity();
   std::uint64_t seed = 0;
@@ -28,16 +29,11 @@ struct PredictiveSamplingOptions {
 template <class Options, class Visit>
 requires slalom::is_options_of<Options, PredictiveSamplingOptions>
 void visit_options(Options& o, Visit&& visit) {
-  using slalom::Declaration;
-  visit(o.horizon, Declaration{.name = "horizon", .unit = "steps", .min = 1, .max = 10000});
-  visit(o.samples, Declaration{.name = "samples", .help = "disturbed plans", .min = 1, .max = 4194304});
-  visit(o.variance, Declaration{.name = "variance",
-                                .unit = "input^2",
-                                .help = "variance of the disturbances",
-                                .min = 0,
-                                .max = 1e12});
-  visit(o.input_min, Declaration{.name = "input_min", .unit = "input", .help = "lower bound of the inputs"});
-  visit(o.input_max, Declaration{.name = "input_max", .unit = "input", .help = "upper bound of the inputs"});
+  visit(o.horizon, {"horizon", "steps", "inputs of a plan", 1, 10000});
+  visit(o.samples, {"samples", "", "disturbed plans; the first is the last plan itself", 1, 4194304});
+  visit(o.variance, {"variance", "input^2", "variance of the disturbances", 0, 1e12});
+  visit(o.input_min, {"input_min", "input", "lower bound of the inputs"});
+  visit(o.input_max, {"input_max", "input", "upper bound of the inputs"});
   slalom::visit_run_options(o, visit);  // seed and threads
 }
 

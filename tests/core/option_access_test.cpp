@@ -24,12 +24,12 @@ struct SampleOptions {
 template <class Options, class Visit>
 requires is_options_of<Options, SampleOptions>
 void visit_options(Options& o, Visit&& visit) {
-  visit(o.loud, Declaration{.name = "loud"});
-  visit(o.count, Declaration{.name = "count", .min = 1, .max = 10});
-  visit(o.seed, Declaration{.name = "seed"});
-  visit(o.gain, Declaration{.name = "gain", .unit = "m", .min = 0});
-  visit(o.spread, Declaration{.name = "spread", .min = 0, .max = 1});
-  visit(o.mood, Declaration{.name = "mood"});
+  visit(o.loud, {"loud", "", ""});
+  visit(o.count, {"count", "", "", 1, 10});
+  visit(o.seed, {"seed", "", ""});
+  visit(o.gain, {"gain", "m", "", 0});
+  visit(o.spread, {"spread", "", "", 0, 1});
+  visit(o.mood, {"mood", "", ""});
 }
 
 std::string refusal(const char* name, const char* text) {
@@ -104,8 +104,8 @@ struct ListOptions {
 template <class Options, class Visit>
 requires is_options_of<Options, ListOptions>
 void visit_options(Options& o, Visit&& visit) {
-  visit(o.samples, Declaration{.name = "samples", .min = 1, .max = 4194304});
-  visit(o.shares, Declaration{.name = "shares", .min = 0, .max = 1, .any_count = true});
+  visit(o.samples, {"samples", "", "", 1, 4194304});
+  visit(o.shares, {"shares", "", "", 0, 1, "", true});
 }
 
 TEST(OptionAccess, ValidationWritesWholeNumbersOut) {

@@ -19,7 +19,7 @@ struct SeedlessOptions {
 template <class Options, class Visit>
 requires is_options_of<Options, SeedlessOptions>
 void visit_options(Options& o, Visit&& visit) {
-  visit(o.horizon, Declaration{.name = "horizon"});
+  visit(o.horizon, {"horizon", "", ""});
 }
 std::unique_ptr<Solver> make_solver(const SeedlessOptions&, int, std::shared_ptr<ThreadPool>) {
   return nullptr;

@@ -101,7 +101,7 @@ struct UnboundedOptions {
 template <class Options, class Visit>
 requires is_options_of<Options, UnboundedOptions>
 void visit_options(Options& o, Visit&& visit) {
-  visit(o.horizon, Declaration{.name = "horizon", .min = 1});
+  visit(o.horizon, {"horizon", "", "", 1});
 }
 
 std::unique_ptr<Solver> make_solver(const UnboundedOptions& options, int inputs,

@@ -19,49 +19,35 @@ inline const char* const* enum_names(MotionModel) {
 }
 
 /// What nav2's MPPI controller has and the navigation layer has not, or has in another form.
+/// `visit_options` below describes the fields.
 struct FollowerOptions {
-  MotionModel motion_model = MotionModel::DiffDrive;  ///< how the base moves
-  double vx_min = -0.35;                              ///< m/s, speed forward; negative: it may reverse
-  double vx_std = 0;                                  ///< m/s, of the samples; 0: 0.4 vx_max
-  double vy_std = 0;                                  ///< m/s, the same
-  double wz_std = 0;                                  ///< rad/s, the same
-  bool open_loop = false;                             ///< plan from the last command, not the odometry
-  slalom::navigation::UnknownCells unknown_cells =
-      slalom::navigation::UnknownCells::priced;  ///< what the robot may do there
-  bool visualize = false;                        ///< for the node: publish what is planned and followed
-  double transform_tolerance = 0.1;              ///< s, for the node
+  MotionModel motion_model = MotionModel::DiffDrive;
+  double vx_min = -0.35;
+  double vx_std = 0;
+  double vy_std = 0;
+  double wz_std = 0;
+  bool open_loop = false;
+  slalom::navigation::UnknownCells unknown_cells = slalom::navigation::UnknownCells::priced;
+  bool visualize = false;
+  double transform_tolerance = 0.1;
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires slalom::is_options_of<Options, FollowerOptions>
 void visit_options(Options& o, Visit&& visit) {
-  using slalom::Declaration;
-  const auto deviation = [&](auto& field, const char* name, const char* unit, const char* help) {
-    visit(field, Declaration{.name = name, .unit = unit, .help = help, .min = 0, .max = 100});
-  };
-  visit(o.motion_model, Declaration{.name = "motion_model", .help = "how the base can move"});
-  visit(o.vx_min, Declaration{.name = "vx_min",
-                              .unit = "m/s",
-                              .help = "lowest speed forward; below 0 the base may reverse",
-                              .min = -20,
-                              .max = 0});
-  deviation(o.vx_std, "vx_std", "m/s", "standard deviation of the sampled speeds forward; 0: 0.4 vx_max");
-  deviation(o.vy_std, "vy_std", "m/s", "standard deviation of the sampled speeds sideways; 0: 0.4 vy_max");
-  deviation(o.wz_std, "wz_std", "rad/s", "standard deviation of the sampled yaw rates; 0: 0.4 wz_max");
-  visit(o.open_loop, Declaration{.name = "open_loop",
-                                 .help = "plan from the last command instead of the measured velocity"});
-  visit(o.unknown_cells,
-        Declaration{.name = "unknown_cells",
-                    .help = "whether unknown cells and what lies off the costmap are obstacles or have a "
-                            "price"});
-  visit(o.visualize,
-        Declaration{.name = "visualize", .help = "publish local_plan and transformed_global_plan"});
-  visit(o.transform_tolerance, Declaration{.name = "transform_tolerance",
-                                           .unit = "s",
-                                           .help = "time to wait for a transform at the time of a pose",
-                                           .min = 0,
-                                           .max = 60});
+  visit(o.motion_model, {"motion_model", "", "how the base can move"});
+  visit(o.vx_min, {"vx_min", "m/s", "lowest speed forward; below 0 the base may reverse", -20, 0});
+  visit(o.vx_std,
+        {"vx_std", "m/s", "standard deviation of the sampled speeds forward; 0: 0.4 vx_max", 0, 100});
+  visit(o.vy_std,
+        {"vy_std", "m/s", "standard deviation of the sampled speeds sideways; 0: 0.4 vy_max", 0, 100});
+  visit(o.wz_std, {"wz_std", "rad/s", "standard deviation of the sampled yaw rates; 0: 0.4 wz_max", 0, 100});
+  visit(o.open_loop, {"open_loop", "", "plan from the last command instead of the measured velocity"});
+  visit(o.unknown_cells, {"unknown_cells", "",
+                          "unknown cells and what lies off the costmap: obstacles, or places with a price"});
+  visit(o.visualize, {"visualize", "", "publish local_plan and transformed_global_plan"});
+  visit(o.transform_tolerance,
+        {"transform_tolerance", "s", "time to wait for a transform at the time of a pose", 0, 60});
 }
 
 /// The options of a path follower under the names of nav2's MPPI controller where they mean the same, and

@@ -66,8 +66,6 @@ void set_from_keywords(Options& options, const py::kwargs& keywords, const std::
     bool found = false;
     visit_options(options, [&](auto& field, const Declaration& declaration) {
       names.emplace_back(declaration.name);
-      if (*declaration.formerly && name == declaration.formerly)
-        throw py::type_error(where + ": the option '" + name + "' is now called '" + declaration.name + "'");
       if (name != declaration.name) return;
       found = true;
       set_field(field, where + "." + name, value);

@@ -9,32 +9,34 @@
 #include <type_traits>
 #include <vector>
 
-/// Declarations of options, from which the command line, the configuration files, the bindings and the view's
-/// sliders are all derived.
+/// Declarations of options: the command line, the configuration files, the bindings and the view's sliders
+/// are derived from them.
 ///
-/// An options type is a flat aggregate whose fields carry their defaults. A function template beside it
-/// names every field:
+/// An options type is a flat aggregate whose fields carry their defaults. A function template below it
+/// describes every field once, in the order name, unit, help, least value, largest value, symbol:
 ///
 ///     template <class Options, class Visit>
 ///       requires is_options_of<Options, MppiOptions>
-///     void visit_options(Options& options, Visit&& visit) {
-///       visit(options.temperature, Declaration{.name = "temperature", .symbol = "lambda", .min = 1e-6});
+///     void visit_options(Options& o, Visit&& visit) {
+///       visit(o.temperature, {"temperature", "", "cost difference at which ...", 1e-6, no_limit, "lambda"});
 ///     }
 ///
 /// Fields are `bool`, `int`, `std::uint64_t`, `double`, `PerInput` or an enumeration with an `enum_names(E)`
 /// function (or a `Choice`, a reference to one).
 namespace slalom {
 
-/// What is said of an option besides its type and default.
+/// The bound of an option that has none.
+inline constexpr double no_limit = std::numeric_limits<double>::infinity();
+
+/// The description of an option. Its type and its default are those of the field.
 struct Declaration {
   const char* name = "";    ///< name in configurations
-  const char* symbol = "";  ///< the paper's
   const char* unit = "";    ///< unit of the values; "input" is the unit of an input
   const char* help = "";    ///< effect, in one line
-  double min = -std::numeric_limits<double>::infinity();  ///< inclusive, per entry
-  double max = std::numeric_limits<double>::infinity();   ///< inclusive, per entry
-  const char* formerly = "";  ///< a name that the option had before, to tell whoever still uses it
-  bool any_count = false;     ///< of a PerInput: it takes any number of values, not one for each input
+  double min = -no_limit;   ///< least value, of each entry
+  double max = no_limit;    ///< largest value, of each entry
+  const char* symbol = "";  ///< symbol in the paper
+  bool any_count = false;   ///< a PerInput takes any number of values, not one for each input
 };
 
 /// A reference to an enumeration of any type, for code that is compiled once for all options. It stands where

@@ -15,18 +15,18 @@ namespace slalom::evaluation {
 /// Conditions after the experiment on a car in Honda et al. (ICRA 2024), section V-C, as far as it is
 /// described: a Hokuyo UTM-30LX, localisation by a particle filter. Compared with the vehicle problem (0.025
 /// s, 0.1 s) the servo has a longer dead time, a shorter time constant, a wrong gain and an offset.
+/// `visit_options` below describes the fields.
 struct HardwareConditions {
-  double range_noise = 0.02;             ///< m, standard deviation of each range
-  double dropout = 0.01;                 ///< fraction of beams without a return
-  double steering_dead_time = 0.045;     ///< s
-  double steering_time_constant = 0.07;  ///< s, of the servo's first-order lag
-  double steering_gain = 0.95;           ///< angle of the wheels / commanded angle
-  double steering_offset = 0.01;         ///< rad, to the left
-  double speed_gain = 3.0;               ///< 1/s, acceleration / speed error
-  double acceleration_max = 6.0;         ///< m/s^2, also of braking
-  double max_blind_time =
-      0.1;          ///< s without localisation for which odometry alone is used; then the car stops
-  bool imu = true;  ///< the planner gets the readings of an inertial measurement unit
+  double range_noise = 0.02;
+  double dropout = 0.01;
+  double steering_dead_time = 0.045;
+  double steering_time_constant = 0.07;
+  double steering_gain = 0.95;
+  double steering_offset = 0.01;
+  double speed_gain = 3.0;
+  double acceleration_max = 6.0;
+  double max_blind_time = 0.1;
+  bool imu = true;
   sim::WheelOdometryOptions wheels;  ///< errors of the wheel odometry; its seed is that of the lap
   sim::ImuOptions inertial;          ///< errors of the inertial measurement unit; its seed is that of the lap
   vehicle::LocaliserOptions localiser;  ///< its seed is that of the lap
@@ -41,21 +41,19 @@ struct HardwareConditions {
 template <class Options, class Visit>
 requires is_options_of<Options, HardwareConditions>
 void visit_options(Options& o, Visit&& visit) {
-  visit(o.range_noise, Declaration{"range_noise", "", "m", "standard deviation of each range", 0, 1});
-  visit(o.dropout, Declaration{"dropout", "", "", "fraction of beams without a return", 0, 1});
-  visit(o.steering_dead_time, Declaration{"steering_dead_time", "", "s", "dead time of the servo", 0, 1});
+  visit(o.range_noise, {"range_noise", "m", "standard deviation of each range", 0, 1});
+  visit(o.dropout, {"dropout", "", "fraction of beams without a return", 0, 1});
+  visit(o.steering_dead_time, {"steering_dead_time", "s", "dead time of the servo", 0, 1});
   visit(o.steering_time_constant,
-        Declaration{"steering_time_constant", "", "s", "time constant of the servo", 0, 10});
-  visit(o.steering_gain,
-        Declaration{"steering_gain", "", "", "angle of the wheels / commanded angle", 0.1, 10});
-  visit(o.steering_offset, Declaration{"steering_offset", "", "rad",
-                                       "added to the angle of the wheels, positive to the left", -0.4, 0.4});
-  visit(o.speed_gain, Declaration{"speed_gain", "", "1/s", "acceleration / speed error", 0.1, 100});
-  visit(o.acceleration_max,
-        Declaration{"acceleration_max", "", "m/s^2", "largest acceleration, also of braking", 0.1, 100});
+        {"steering_time_constant", "s", "time constant of the servo's first-order lag", 0, 10});
+  visit(o.steering_gain, {"steering_gain", "", "angle of the wheels / commanded angle", 0.1, 10});
+  visit(o.steering_offset,
+        {"steering_offset", "rad", "added to the angle of the wheels, positive to the left", -0.4, 0.4});
+  visit(o.speed_gain, {"speed_gain", "1/s", "acceleration / speed error", 0.1, 100});
+  visit(o.acceleration_max, {"acceleration_max", "m/s^2", "largest acceleration, also of braking", 0.1, 100});
   visit(o.max_blind_time,
-        Declaration{"max_blind_time", "", "s", "without localisation before the car stops", 0, 10});
-  visit(o.imu, Declaration{.name = "imu", .help = "an inertial measurement unit for the planner"});
+        {"max_blind_time", "s", "time without localisation, on odometry alone, before the car stops", 0, 10});
+  visit(o.imu, {"imu", "", "the planner gets the readings of an inertial measurement unit"});
 }
 
 /// Errors of the localisation in a lap.

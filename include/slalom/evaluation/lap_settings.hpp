@@ -26,6 +26,7 @@ struct OpponentPlanner {
 };
 
 /// The settings of a lap besides environment, configuration and method.
+/// `visit_options` below describes the fields.
 struct LapSettings {
   int obstacles = 0;                             ///< parked cars, 0 ... 1000
   std::optional<maps::Pose> start{};             ///< of the centre of gravity; default: the environment's
@@ -39,68 +40,59 @@ struct LapSettings {
 
   // Changes of the world, for Protocol::true_physics only. visit_options declares them, so that evaluations
   // can vary them by name.
-  double latency = 0;             ///< s from a scan until its command takes effect
-  int opponents = 0;              ///< cars that drive along the path; closed courses only
-  PerInput opponent_speed = 0.5;  ///< fraction of the path's speed, one or one for each opponent
-  sim::OpponentDriver opponent_driver = sim::OpponentDriver::pursuit;  ///< of all but the next three
-  int blocking_opponents = 0;     ///< of the opponents, the nearest ahead of the start block
-  int erratic_opponents = 0;      ///< those after the blocking ones are erratic
-  int planning_opponents = 0;     ///< those after the erratic ones have a LiDAR and a planner
-  double opponent_gap = 0;        ///< m from one car to the next at the start; 0: around the course
-  int rounds = 1;                 ///< times around the course until a lap is finished
-  double speed_scale = 1;         ///< factor of the course's speed profile
-  double friction = 1.0489;       ///< coefficient between tyre and road
-  bool saturating_tyres = false;  ///< limited tyre forces: sim::Model::saturating
-  sim::CarKind car = sim::CarKind::f1tenth;   ///< of all cars, with its LiDAR
-  double steering_gain = 1;                   ///< angle of the wheels / commanded angle
-  double range_noise = 0.01;                  ///< m, standard deviation of each range
-  double dropout = 0;                         ///< fraction of beams without a return
-  bool localised = false;                     ///< HardwareConditions::sensors, unless `hardware` is given
-  TrackingMode tracking = TrackingMode::off;  ///< tracks other cars for planner and figures
+  double latency = 0;
+  int opponents = 0;
+  PerInput opponent_speed = 0.5;
+  sim::OpponentDriver opponent_driver = sim::OpponentDriver::pursuit;
+  int blocking_opponents = 0;
+  int erratic_opponents = 0;
+  int planning_opponents = 0;
+  double opponent_gap = 0;
+  int rounds = 1;
+  double speed_scale = 1;
+  double friction = 1.0489;
+  bool saturating_tyres = false;
+  sim::CarKind car = sim::CarKind::f1tenth;
+  double steering_gain = 1;
+  double range_noise = 0.01;
+  double dropout = 0;
+  bool localised = false;
+  TrackingMode tracking = TrackingMode::off;
 };
 
 /// Declares the options of the world, in the section `world`.
 template <class Options, class Visit>
 requires is_options_of<Options, LapSettings>
 void visit_options(Options& o, Visit&& visit) {
-  const auto number = [&](auto& field, const char* name, const char* unit, const char* help, double min,
-                          double max) {
-    visit(field, Declaration{.name = name, .unit = unit, .help = help, .min = min, .max = max});
-  };
-  number(o.latency, "latency", "s", "from a scan until its command takes effect", 0, 1);
-  number(o.opponents, "opponents", "", "cars that drive along the path", 0, 16);
-  number(o.opponent_speed, "opponent_speed", "",
-         "fraction of the path's speed: one value, or one for each opponent", 0.01, 1);
+  visit(o.latency, {"latency", "s", "time from a scan until its command takes effect", 0, 1});
+  visit(o.opponents, {"opponents", "", "cars that drive along the path; closed courses only", 0, 16});
+  visit(o.opponent_speed,
+        {"opponent_speed", "", "fraction of the path's speed: one value, or one for each opponent", 0.01, 1});
   visit(o.opponent_driver,
-        Declaration{.name = "opponent_driver",
-                    .help = "driver of the opponents that are neither blocking, erratic nor planning"});
-  number(o.blocking_opponents, "blocking_opponents", "",
-         "number of opponents that block, from the first ahead of the car on", 0, 16);
-  number(o.erratic_opponents, "erratic_opponents", "", "number of erratic opponents, after the blocking ones",
-         0, 16);
-  number(o.planning_opponents, "planning_opponents", "",
-         "number of opponents with a planner of their own, after the erratic ones", 0,
-         most_planning_opponents);
-  number(o.opponent_gap, "opponent_gap", "m",
-         "distance between cars at the start; 0: equal distances around the course", 0, 100);
-  number(o.rounds, "rounds", "", "number of times around the course in a lap", 1, 100);
-  number(o.speed_scale, "speed_scale", "", "factor of the course's speed profile", 0.1, 3);
-  number(o.friction, "friction", "", "coefficient between tyre and road", 0.1, 3);
-  visit(
-      o.saturating_tyres,
-      Declaration{.name = "saturating_tyres", .unit = "", .help = "limited tyre forces: the car can slide"});
-  visit(o.car, Declaration{.name = "car", .help = "the simulated cars and their LiDAR"});
-  number(o.steering_gain, "steering_gain", "", "angle of the wheels / commanded angle", 0.1, 10);
-  number(o.range_noise, "range_noise", "m", "standard deviation of each range", 0, 1);
-  number(o.dropout, "dropout", "", "fraction of beams without a return", 0, 1);
-  visit(o.localised, Declaration{.name = "localised",
-                                 .help = "the planner's pose and speed are estimated from LiDAR, wheels and "
-                                         "gyro, and it gets the IMU"});
+        {"opponent_driver", "", "driver of the opponents that are neither blocking, erratic nor planning"});
+  visit(o.blocking_opponents, {"blocking_opponents", "",
+                               "number of opponents that block, from the first ahead of the car on", 0, 16});
+  visit(o.erratic_opponents,
+        {"erratic_opponents", "", "number of erratic opponents, after the blocking ones", 0, 16});
+  visit(o.planning_opponents,
+        {"planning_opponents", "", "number of opponents with a planner of their own, after the erratic ones",
+         0, most_planning_opponents});
+  visit(o.opponent_gap, {"opponent_gap", "m",
+                         "distance between cars at the start; 0: equal distances around the course", 0, 100});
+  visit(o.rounds, {"rounds", "", "number of times around the course in a lap", 1, 100});
+  visit(o.speed_scale, {"speed_scale", "", "factor of the course's speed profile", 0.1, 3});
+  visit(o.friction, {"friction", "", "coefficient between tyre and road", 0.1, 3});
+  visit(o.saturating_tyres, {"saturating_tyres", "", "limited tyre forces: the car can slide"});
+  visit(o.car, {"car", "", "the simulated cars and their LiDAR"});
+  visit(o.steering_gain, {"steering_gain", "", "angle of the wheels / commanded angle", 0.1, 10});
+  visit(o.range_noise, {"range_noise", "m", "standard deviation of each range", 0, 1});
+  visit(o.dropout, {"dropout", "", "fraction of beams without a return", 0, 1});
+  visit(o.localised,
+        {"localised", "",
+         "estimate the planner's pose and speed from LiDAR, wheels and gyro, and give it the IMU"});
   visit(o.tracking,
-        Declaration{
-            .name = "tracking",
-            .help =
-                "track other cars with this pose: measures the tracker, and planner.predict_others uses it"});
+        {"tracking", "",
+         "pose with which other cars are tracked, for planner.predict_others and to measure the tracker"});
 }
 
 /// Whether opponent `index` (from 0, in the order in which they start ahead of the car) has a planner.

@@ -11,36 +11,25 @@
 namespace slalom::maps {
 
 /// Options of ClearanceMap.
+/// `visit_options` below describes the fields.
 struct ClearanceMapOptions {
-  double length_x = 10;      ///< m
-  double length_y = 10;      ///< m
-  double resolution = 0.05;  ///< m per cell
-  double center_x = 3;       ///< m, the map's centre in the robot's frame
-  double center_y = 0;       ///< m
-  double reach = 0.5;        ///< m, distances are known up to here
+  double length_x = 10;
+  double length_y = 10;
+  double resolution = 0.05;
+  double center_x = 3;
+  double center_y = 0;
+  double reach = 0.5;
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, ClearanceMapOptions>
 void visit_options(Options& o, Visit&& visit) {
-  visit(o.length_x,
-        Declaration{.name = "length_x", .unit = "m", .help = "length of the map", .min = 1e-3, .max = 1e4});
-  visit(o.length_y,
-        Declaration{.name = "length_y", .unit = "m", .help = "width of the map", .min = 1e-3, .max = 1e4});
-  visit(o.resolution,
-        Declaration{.name = "resolution", .unit = "m", .help = "size of a cell", .min = 1e-4, .max = 100});
-  visit(o.center_x,
-        Declaration{
-            .name = "center_x", .unit = "m", .help = "centre of the map, ahead", .min = -1e4, .max = 1e4});
-  visit(o.center_y, Declaration{.name = "center_y",
-                                .unit = "m",
-                                .help = "centre of the map, to the left",
-                                .min = -1e4,
-                                .max = 1e4});
-  visit(o.reach,
-        Declaration{
-            .name = "reach", .unit = "m", .help = "distances are known up to here", .min = 1e-3, .max = 100});
+  visit(o.length_x, {"length_x", "m", "length of the map", 1e-3, 1e4});
+  visit(o.length_y, {"length_y", "m", "width of the map", 1e-3, 1e4});
+  visit(o.resolution, {"resolution", "m", "size of a cell", 1e-4, 100});
+  visit(o.center_x, {"center_x", "m", "centre of the map, ahead of the robot", -1e4, 1e4});
+  visit(o.center_y, {"center_y", "m", "centre of the map, to the left of the robot", -1e4, 1e4});
+  visit(o.reach, {"reach", "m", "largest distance to an obstacle that is known", 1e-3, 100});
 }
 
 /// A map in the robot's frame that holds for every cell the distance (m) to the nearest obstacle point, up to

@@ -10,28 +10,25 @@
 namespace slalom::maps {
 
 /// Options of CourseField.
+/// `visit_options` below describes the fields.
 struct CourseFieldOptions {
-  double resolution = 0.1;     ///< m per cell, > 0
-  double corridor = 5;         ///< m, > 0: cells further than this from the path count as off the map
-  bool closed = true;          ///< the last point leads on to the first
+  double resolution = 0.1;
+  double corridor = 5;
+  bool closed = true;
   ReferenceOutside outside{};  ///< what a look-up off the map or the corridor returns
 
   /// Throws std::invalid_argument naming the field, its value and the rule.
   void validate() const;
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, CourseFieldOptions>
 void visit_options(Options& options, Visit&& visit) {
-  visit(options.resolution,
-        Declaration{.name = "resolution", .unit = "m", .help = "size of a cell", .min = 1e-4, .max = 100});
-  visit(options.corridor, Declaration{.name = "corridor",
-                                      .unit = "m",
-                                      .help = "half width of the strip round the path",
-                                      .min = 1e-3,
-                                      .max = 1e4});
-  visit(options.closed, Declaration{.name = "closed", .help = "the last point leads on to the first"});
+  visit(options.resolution, {"resolution", "m", "size of a cell", 1e-4, 100});
+  visit(options.corridor,
+        {"corridor", "m", "half width of the strip around the path; cells beyond it count as off the map",
+         1e-3, 1e4});
+  visit(options.closed, {"closed", "", "the last point leads on to the first"});
   visit_reference_outside(options.outside, visit);
 }
 

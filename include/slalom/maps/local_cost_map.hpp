@@ -21,25 +21,23 @@ struct Footprint {
 };
 
 /// Options of LocalCostMap.
+/// `visit_options` below describes the fields.
 struct LocalCostMapOptions {
-  double length_x = 10;      ///< m, > 0
-  double length_y = 10;      ///< m, > 0
-  double resolution = 0.05;  ///< m per cell, > 0
-  double center_x = 3;       ///< m, the map's centre in the robot's frame
-  double center_y = 0;       ///< m
-  double occupied = 100;     ///< value of a cell where the body would collide with an obstacle
-  double outside = 100;      ///< value of the ring of cells round the map
-  Footprint footprint{};     ///< the body by which obstacles are inflated
-  double margin = 0;         ///< m, >= 0, added to every side of the footprint
-  double soft_margin = 0;    ///< m, >= 0, beyond the margin, in which cells have the value `soft`
-  double soft = 10;          ///< value of a cell where the body would come near an obstacle
-  Pose laser{0.275, 0, 0};   ///< the laser's pose in the robot's frame
-  int max_beams = 4096;      ///< largest number of beams of a scan; 1 .. 1000000
+  double length_x = 10;
+  double length_y = 10;
+  double resolution = 0.05;
+  double center_x = 3;
+  double center_y = 0;
+  double occupied = 100;
+  double outside = 100;
+  Footprint footprint{};  ///< the body by which obstacles are inflated
+  double margin = 0;
+  double soft_margin = 0;
+  double soft = 10;
+  Pose laser{0.275, 0, 0};  ///< the laser's pose in the robot's frame
+  int max_beams = 4096;
 
-  /// Drop the points of a scan that lie within the footprint (without margin): the car sees itself.
   bool drop_points_on_body = true;
-  /// m, >= 0: only points so deep within the footprint are dropped, so that an obstacle
-  /// against the car's side remains visible.
   double body_inset = 0.05;
 
   PublishedCostMap published{};  ///< only to reproduce the program of K. Honda (proj-svg_mppi)
@@ -48,82 +46,40 @@ struct LocalCostMapOptions {
   void validate() const;
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, LocalCostMapOptions>
 void visit_options(Options& options, Visit&& visit) {
-  visit(options.length_x,
-        Declaration{.name = "length_x", .unit = "m", .help = "length of the map", .min = 1e-3, .max = 1e4});
-  visit(options.length_y,
-        Declaration{.name = "length_y", .unit = "m", .help = "width of the map", .min = 1e-3, .max = 1e4});
-  visit(options.resolution,
-        Declaration{.name = "resolution", .unit = "m", .help = "size of a cell", .min = 1e-4, .max = 100});
-  visit(options.center_x, Declaration{.name = "center_x",
-                                      .unit = "m",
-                                      .help = "centre of the map, ahead of the robot",
-                                      .min = -1e4,
-                                      .max = 1e4});
-  visit(options.center_y, Declaration{.name = "center_y",
-                                      .unit = "m",
-                                      .help = "centre of the map, to its left",
-                                      .min = -1e4,
-                                      .max = 1e4});
+  visit(options.length_x, {"length_x", "m", "length of the map", 1e-3, 1e4});
+  visit(options.length_y, {"length_y", "m", "width of the map", 1e-3, 1e4});
+  visit(options.resolution, {"resolution", "m", "size of a cell", 1e-4, 100});
+  visit(options.center_x, {"center_x", "m", "centre of the map, ahead of the robot", -1e4, 1e4});
+  visit(options.center_y, {"center_y", "m", "centre of the map, to the left of the robot", -1e4, 1e4});
   visit(options.occupied,
-        Declaration{.name = "occupied", .help = "value of an occupied cell", .min = -1e30, .max = 1e30});
-  visit(options.outside,
-        Declaration{.name = "outside", .help = "value off the map", .min = -1e30, .max = 1e30});
-  visit(options.footprint.front,
-        Declaration{
-            .name = "footprint_front", .unit = "m", .help = "reach of the body ahead", .min = 0, .max = 100});
-  visit(options.footprint.rear,
-        Declaration{
-            .name = "footprint_rear", .unit = "m", .help = "reach of the body behind", .min = 0, .max = 100});
-  visit(options.footprint.left, Declaration{.name = "footprint_left",
-                                            .unit = "m",
-                                            .help = "reach of the body to the left",
-                                            .min = 0,
-                                            .max = 100});
-  visit(options.footprint.right, Declaration{.name = "footprint_right",
-                                             .unit = "m",
-                                             .help = "reach of the body to the right",
-                                             .min = 0,
-                                             .max = 100});
-  visit(options.margin,
-        Declaration{
-            .name = "margin", .unit = "m", .help = "added to every side of the body", .min = 0, .max = 100});
-  visit(options.laser.x, Declaration{.name = "laser_x",
-                                     .unit = "m",
-                                     .help = "where the laser is, ahead of the reference point",
-                                     .min = -100,
-                                     .max = 100});
-  visit(options.laser.y, Declaration{.name = "laser_y",
-                                     .unit = "m",
-                                     .help = "where the laser is, to the left of it",
-                                     .min = -100,
-                                     .max = 100});
-  visit(
-      options.laser.yaw,
-      Declaration{.name = "laser_yaw", .unit = "rad", .help = "where the laser looks", .min = -7, .max = 7});
-  visit(options.max_beams,
-        Declaration{.name = "max_beams", .help = "most beams of a scan", .min = 1, .max = 1000000});
-  visit(options.soft_margin, Declaration{.name = "soft_margin",
-                                         .unit = "m",
-                                         .help = "beyond the margin, in which nearness has a value",
-                                         .min = 0,
-                                         .max = 10});
-  visit(options.soft, Declaration{.name = "soft", .help = "value of that nearness", .min = 0});
+        {"occupied", "", "value of a cell where the body would collide with an obstacle", -1e30, 1e30});
+  visit(options.outside, {"outside", "", "value of the ring of cells around the map", -1e30, 1e30});
+  visit(options.footprint.front, {"footprint_front", "m", "reach of the body ahead", 0, 100});
+  visit(options.footprint.rear, {"footprint_rear", "m", "reach of the body behind", 0, 100});
+  visit(options.footprint.left, {"footprint_left", "m", "reach of the body to the left", 0, 100});
+  visit(options.footprint.right, {"footprint_right", "m", "reach of the body to the right", 0, 100});
+  visit(options.margin, {"margin", "m", "added to every side of the body", 0, 100});
+  visit(options.laser.x, {"laser_x", "m", "position of the laser, ahead of the reference point", -100, 100});
+  visit(options.laser.y,
+        {"laser_y", "m", "position of the laser, to the left of the reference point", -100, 100});
+  visit(options.laser.yaw, {"laser_yaw", "rad", "direction of the laser", -7, 7});
+  visit(options.max_beams, {"max_beams", "", "largest number of beams of a scan", 1, 1000000});
+  visit(options.soft_margin,
+        {"soft_margin", "m", "width beyond the margin in which cells have the value `soft`", 0, 10});
+  visit(options.soft, {"soft", "", "value of a cell where the body would come near an obstacle", 0});
   visit(options.drop_points_on_body,
-        Declaration{.name = "drop_points_on_body", .help = "ignore readings within the body"});
-  visit(options.body_inset, Declaration{.name = "body_inset",
-                                        .unit = "m",
-                                        .help = "how deep within the body a reading is ignored",
-                                        .min = 0,
-                                        .max = 10});
+        {"drop_points_on_body", "",
+         "ignore points of a scan within the body (without margin): the car sees itself"});
+  visit(options.body_inset,
+        {"body_inset", "m", "points less deep within the body stay: an obstacle at its side remains visible",
+         0, 10});
   visit(options.published.half_open_inflation,
-        Declaration{.name = "half_open_inflation",
-                    .help = "paper's program: inflate by whole cells, by one cell less to one side"});
+        {"half_open_inflation", "", "paper's program: inflate by whole cells, by one cell less to one side"});
   visit(options.published.forget_points_outside,
-        Declaration{.name = "forget_points_outside", .help = "paper's program: ignore points off the map"});
+        {"forget_points_outside", "", "paper's program: ignore points off the map"});
 }
 
 /// A point in the robot's frame: m.

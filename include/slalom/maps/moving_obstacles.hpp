@@ -56,38 +56,37 @@ struct PredictedObstacle {
 };
 
 /// Options of MovingObstacles.
+/// `visit_options` below describes the fields.
 struct MovingObstacleOptions {
-  double front = 0.461;          ///< m, reach of the own body ahead of its reference point
-  double rear = 0.119;           ///< m, behind it
-  double width = 0.31;           ///< m
-  double margin = 0.05;          ///< m, distance below which bodies collide
-  double soft_margin = 0.25;     ///< m, distance beyond `margin` in which nearness has a cost
-  double collision_cost = 100;   ///< of a collision that is certain
-  double soft_cost = 20;         ///< of a state that almost collides; falls off as the square of the distance
-  double deviations = 1;         ///< standard deviations by which boxes are inflated
-  double max_probability = 0.2;  ///< of a collision in a step; a state above it collides
+  double front = 0.461;
+  double rear = 0.119;
+  double width = 0.31;
+  double margin = 0.05;
+  double soft_margin = 0.25;
+  double collision_cost = 100;
+  double soft_cost = 20;
+  double deviations = 1;
+  double max_probability = 0.2;
 
   /// Throws std::invalid_argument naming the option, its value and the rule.
   void validate() const { validate_options(*this, "moving_obstacles"); }
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, MovingObstacleOptions>
 void visit_options(Options& o, Visit&& visit) {
-  const auto number = [&](auto& field, const char* name, const char* unit, const char* help, double max) {
-    visit(field, Declaration{.name = name, .unit = unit, .help = help, .min = 0, .max = max});
-  };
-  number(o.front, "front", "m", "reach of the own body ahead of its reference point", 100);
-  number(o.rear, "rear", "m", "reach behind it", 100);
-  number(o.width, "width", "m", "width of the own body", 100);
-  number(o.margin, "margin", "m", "distance below which bodies collide", 100);
-  number(o.soft_margin, "soft_margin", "m", "distance beyond `margin` in which nearness has a cost", 100);
-  number(o.collision_cost, "collision_cost", "", "cost of a collision that is certain", 1e9);
-  number(o.soft_cost, "soft_cost", "", "cost of a state that almost collides", 1e9);
-  number(o.deviations, "deviations", "", "standard deviations by which boxes are inflated", 10);
-  number(o.max_probability, "max_probability", "", "probability of a collision above which a state collides",
-         1);
+  visit(o.front, {"front", "m", "reach of the own body ahead of its reference point", 0, 100});
+  visit(o.rear, {"rear", "m", "reach of the own body behind its reference point", 0, 100});
+  visit(o.width, {"width", "m", "width of the own body", 0, 100});
+  visit(o.margin, {"margin", "m", "distance below which bodies collide", 0, 100});
+  visit(o.soft_margin, {"soft_margin", "m", "distance beyond `margin` in which nearness has a cost", 0, 100});
+  visit(o.collision_cost, {"collision_cost", "", "cost of a collision that is certain", 0, 1e9});
+  visit(o.soft_cost,
+        {"soft_cost", "", "cost of a state that almost collides; falls off as the square of the distance", 0,
+         1e9});
+  visit(o.deviations, {"deviations", "", "standard deviations by which boxes are inflated", 0, 10});
+  visit(o.max_probability,
+        {"max_probability", "", "probability of a collision in a step above which a state collides", 0, 1});
 }
 
 /// What rollouts see of moving obstacles; it must not outlive them. By default there are none.

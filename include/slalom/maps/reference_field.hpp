@@ -13,44 +13,34 @@
 namespace slalom::maps {
 
 /// Options of ReferenceField.
+/// `visit_options` below describes the fields.
 struct ReferenceFieldOptions {
-  double length_x = 20;        ///< m, > 0
-  double length_y = 20;        ///< m, > 0
-  double resolution = 0.1;     ///< m per cell, > 0
-  int points = 80;             ///< points of the path in the window, from the nearest on; 1 .. 250
-  double spacing = 0.1;        ///< m, >= 0, least distance between successive points of the window
+  double length_x = 20;
+  double length_y = 20;
+  double resolution = 0.1;
+  int points = 80;
+  double spacing = 0.1;
   ReferenceOutside outside{};  ///< what a look-up off the map returns
 
-  /// Points of the window behind the nearest one, in addition; points + points_behind <= 250. With 0
-  /// the distance of positions behind the nearest point is that to the window's first point, not to the path.
+  /// With 0 the distance of positions behind the nearest point is that to the window's first point, not to
+  /// the path.
   int points_behind = 10;
 
   /// Throws std::invalid_argument naming the field, its value and the rule.
   void validate() const;
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, ReferenceFieldOptions>
 void visit_options(Options& options, Visit&& visit) {
-  visit(options.length_x,
-        Declaration{.name = "length_x", .unit = "m", .help = "length of the map", .min = 1e-3, .max = 1e4});
-  visit(options.length_y,
-        Declaration{.name = "length_y", .unit = "m", .help = "width of the map", .min = 1e-3, .max = 1e4});
-  visit(options.resolution,
-        Declaration{.name = "resolution", .unit = "m", .help = "size of a cell", .min = 1e-4, .max = 100});
+  visit(options.length_x, {"length_x", "m", "length of the map", 1e-3, 1e4});
+  visit(options.length_y, {"length_y", "m", "width of the map", 1e-3, 1e4});
+  visit(options.resolution, {"resolution", "m", "size of a cell", 1e-4, 100});
   visit(options.points,
-        Declaration{
-            .name = "points", .help = "points of the window, from the nearest on", .min = 1, .max = 250});
-  visit(
-      options.points_behind,
-      Declaration{
-          .name = "points_behind", .help = "points of the window behind the nearest", .min = 0, .max = 249});
-  visit(options.spacing, Declaration{.name = "spacing",
-                                     .unit = "m",
-                                     .help = "least distance between points of the window",
-                                     .min = 0,
-                                     .max = 1e4});
+        {"points", "", "points of the window, from the nearest on; points + points_behind <= 250", 1, 250});
+  visit(options.points_behind,
+        {"points_behind", "", "points of the window behind the nearest, in addition", 0, 249});
+  visit(options.spacing, {"spacing", "m", "least distance between successive points of the window", 0, 1e4});
   visit_reference_outside(options.outside, visit);
 }
 

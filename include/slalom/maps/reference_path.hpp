@@ -25,26 +25,19 @@ struct ReferenceCell {
 static_assert(sizeof(ReferenceCell) == 16);
 
 /// What a look-up off a reference map returns.
+/// `visit_reference_outside` below describes the fields.
 struct ReferenceOutside {
-  double distance = 20;  ///< m
-  double yaw = 2.0;      ///< rad, the yaw error to assume; the value of the paper's program (proj-svg_mppi)
-  double speed = 0;      ///< m/s
+  double distance = 20;
+  double yaw = 2.0;  ///< The value of the paper's program (proj-svg_mppi).
+  double speed = 0;
 };
 
 /// Declares the fields of `outside`, for the visit_options of the maps that have one.
 template <class Outside, class Visit>
 void visit_reference_outside(Outside& outside, Visit&& visit) {
-  visit(outside.distance, Declaration{.name = "outside_distance",
-                                      .unit = "m",
-                                      .help = "distance off the map",
-                                      .min = -1e30,
-                                      .max = 1e30});
-  visit(outside.yaw,
-        Declaration{
-            .name = "outside_yaw", .unit = "rad", .help = "yaw error off the map", .min = -7, .max = 7});
-  visit(outside.speed,
-        Declaration{
-            .name = "outside_speed", .unit = "m/s", .help = "speed off the map", .min = -1e3, .max = 1e3});
+  visit(outside.distance, {"outside_distance", "m", "distance to the path off the map", -1e30, 1e30});
+  visit(outside.yaw, {"outside_yaw", "rad", "yaw error off the map", -7, 7});
+  visit(outside.speed, {"outside_speed", "m/s", "speed of the path off the map", -1e3, 1e3});
 }
 
 /// Throws std::invalid_argument, naming the point, unless there are 3 to 10 million points, all within

@@ -29,50 +29,33 @@ struct Velocity {
 };
 
 /// Limits of a base.
+/// `visit_options` below describes the fields.
 struct BaseOptions {
-  BaseKind kind = BaseKind::differential;  ///< how it moves
-  double max_forward = 0.5;                ///< m/s
-  double max_reverse = 0.35;               ///< m/s
-  double max_sideways = 0.5;               ///< m/s, omnidirectional bases
-  double max_turn = 1.9;                   ///< rad/s
-  double max_acceleration = 2.5;           ///< m/s^2, in each direction, also for braking
-  double max_turn_acceleration = 3.2;      ///< rad/s^2
-  double min_turning_radius = 0.2;         ///< m, of Ackermann bases
+  BaseKind kind = BaseKind::differential;
+  double max_forward = 0.5;
+  double max_reverse = 0.35;
+  double max_sideways = 0.5;
+  double max_turn = 1.9;
+  double max_acceleration = 2.5;
+  double max_turn_acceleration = 3.2;
+  double min_turning_radius = 0.2;
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, BaseOptions>
 void visit_options(Options& o, Visit&& visit) {
-  visit(o.kind, Declaration{.name = "base", .help = "how the base can move"});
-  visit(o.max_forward,
-        Declaration{
-            .name = "max_forward", .unit = "m/s", .help = "largest speed forward", .min = 0.01, .max = 20});
-  visit(o.max_reverse,
-        Declaration{
-            .name = "max_reverse", .unit = "m/s", .help = "largest speed backward", .min = 0, .max = 20});
-  visit(o.max_sideways, Declaration{.name = "max_sideways",
-                                    .unit = "m/s",
-                                    .help = "largest speed to either side of an omnidirectional base",
-                                    .min = 0,
-                                    .max = 20});
-  visit(o.max_turn,
-        Declaration{.name = "max_turn", .unit = "rad/s", .help = "largest yaw rate", .min = 0.01, .max = 20});
-  visit(o.max_acceleration, Declaration{.name = "max_acceleration",
-                                        .unit = "m/s^2",
-                                        .help = "largest change of a speed, also for braking",
-                                        .min = 0.01,
-                                        .max = 100});
-  visit(o.max_turn_acceleration, Declaration{.name = "max_turn_acceleration",
-                                             .unit = "rad/s^2",
-                                             .help = "largest change of the yaw rate",
-                                             .min = 0.01,
-                                             .max = 100});
-  visit(o.min_turning_radius, Declaration{.name = "min_turning_radius",
-                                          .unit = "m",
-                                          .help = "smallest radius of a circle that an Ackermann base drives",
-                                          .min = 0.01,
-                                          .max = 100});
+  visit(o.kind, {"base", "", "how the base moves"});
+  visit(o.max_forward, {"max_forward", "m/s", "largest speed forward", 0.01, 20});
+  visit(o.max_reverse, {"max_reverse", "m/s", "largest speed backward", 0, 20});
+  visit(o.max_sideways,
+        {"max_sideways", "m/s", "largest speed to either side of an omnidirectional base", 0, 20});
+  visit(o.max_turn, {"max_turn", "rad/s", "largest yaw rate", 0.01, 20});
+  visit(o.max_acceleration, {"max_acceleration", "m/s^2",
+                             "largest change of a speed in each direction, also for braking", 0.01, 100});
+  visit(o.max_turn_acceleration,
+        {"max_turn_acceleration", "rad/s^2", "largest change of the yaw rate", 0.01, 100});
+  visit(o.min_turning_radius,
+        {"min_turning_radius", "m", "smallest radius of a circle that an Ackermann base drives", 0.01, 100});
 }
 
 /// What the motion of a step is: speeds in the robot's frame.

@@ -24,56 +24,34 @@ MppiOptions mppi_options(const BaseOptions& base);
 SolverOptions method_options(std::string_view method, const BaseOptions& base);
 
 /// Options of a Navigator, besides those of its solver.
+/// `visit_options` below describes the fields.
 struct NavigatorOptions {
-  BaseOptions base{};          ///< limits of the base
-  CostOptions costs{};         ///< weights of the cost of a plan
-  double time_step = 0.05;     ///< s, of a plan
-  double goal_distance = 0.1;  ///< m, at which the goal is reached
-  double goal_angle = 0.15;    ///< rad, the same
-  bool find_detours = true;    ///< search a way round where the path is blocked, and report if there is none
-  double look_ahead = 6;       ///< m of path that are checked for obstacles
-  double patience = 0.3;       ///< s without a way before the robot stops and reports that it is blocked
-  double stuck_after = 4;      ///< s without progress after which the way that was chosen counts as closed
+  BaseOptions base{};   ///< limits of the base
+  CostOptions costs{};  ///< weights of the cost of a plan
+  double time_step = 0.05;
+  double goal_distance = 0.1;
+  double goal_angle = 0.15;
+  bool find_detours = true;
+  double look_ahead = 6;
+  double patience = 0.3;
+  double stuck_after = 4;
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, NavigatorOptions>
 void visit_options(Options& o, Visit&& visit) {
   visit_options(o.base, visit);
   visit_options(o.costs, visit);
-  visit(
-      o.time_step,
-      Declaration{
-          .name = "time_step", .unit = "s", .help = "duration of a step of a plan", .min = 0.001, .max = 1});
-  visit(o.goal_distance, Declaration{.name = "goal_distance",
-                                     .unit = "m",
-                                     .help = "distance at which the goal is reached",
-                                     .min = 0.001,
-                                     .max = 100});
-  visit(o.goal_angle, Declaration{.name = "goal_angle",
-                                  .unit = "rad",
-                                  .help = "yaw error at which the goal is reached",
-                                  .min = 0.001,
-                                  .max = 4});
+  visit(o.time_step, {"time_step", "s", "duration of a step of a plan", 0.001, 1});
+  visit(o.goal_distance, {"goal_distance", "m", "distance at which the goal is reached", 0.001, 100});
+  visit(o.goal_angle, {"goal_angle", "rad", "yaw error at which the goal is reached", 0.001, 4});
   visit(o.find_detours,
-        Declaration{.name = "find_detours", .help = "search a way round where the path is blocked"});
-  visit(o.look_ahead, Declaration{.name = "look_ahead",
-                                  .unit = "m",
-                                  .help = "length of path that is checked for obstacles",
-                                  .min = 0,
-                                  .max = 100});
-  visit(o.patience, Declaration{.name = "patience",
-                                .unit = "s",
-                                .help = "time without a way before the robot stops and reports it",
-                                .min = 0,
-                                .max = 60});
+        {"find_detours", "", "search a way around where the path is blocked, and report if there is none"});
+  visit(o.look_ahead, {"look_ahead", "m", "length of path that is checked for obstacles", 0, 100});
+  visit(o.patience,
+        {"patience", "s", "time without a way before the robot stops and reports that it is blocked", 0, 60});
   visit(o.stuck_after,
-        Declaration{.name = "stuck_after",
-                    .unit = "s",
-                    .help = "time without progress after which the place ahead counts as closed",
-                    .min = 0.1,
-                    .max = 3600});
+        {"stuck_after", "s", "time without progress after which the way ahead counts as closed", 0.1, 3600});
 }
 
 /// What a navigator does.

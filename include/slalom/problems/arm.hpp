@@ -10,6 +10,7 @@ namespace slalom::problems {
 /// An arm of seven joints that reaches past a ball: over it, under it, or drawn in behind it. Its joints turn
 /// about z, y, z, y, z, y, z, from the base on; with all angles 0 it stands upright. Inputs are the joints'
 /// rates.
+/// `visit_options` below describes the fields.
 struct Arm {
   static constexpr int joints = 7;  ///< number
   /// State of the dynamics.
@@ -29,13 +30,13 @@ struct Arm {
   };
   static constexpr int inputs = joints;                                  ///< joint speeds, rad/s
   static constexpr std::array cost_names{"reach", "effort", "contact"};  ///< names of the cost terms
-  double dt = 0.05;                                                      ///< duration of a step, s
-  double input_min = -1.5, input_max = 1.5;                              ///< joint speeds, rad/s
-  double input_rate_max = 10;                                 ///< bound on the rates of the inputs, rad/s^2
+  double dt = 0.05;
+  double input_min = -1.5, input_max = 1.5;  ///< joint speeds, rad/s
+  double input_rate_max = 10;
   double base = 0.33, upper = 0.32, fore = 0.38, hand = 0.2;  ///< lengths from the ground to the hand, m
-  double goal_x = 0.38, goal_y = -0.48, goal_z = 0.34;        ///< for the hand, m
-  double ball_x = 0.5, ball_y = 0, ball_z = 0.45, ball_radius = 0.15;  ///< m
-  double thickness = 0.06;                                             ///< half of a link's, m
+  double goal_x = 0.38, goal_y = -0.48, goal_z = 0.34;
+  double ball_x = 0.5, ball_y = 0, ball_z = 0.45, ball_radius = 0.15;
+  double thickness = 0.06;
 
   /// A posture from which the ball is in the way.
   static constexpr std::array<double, joints> start{0.9, 0.5, 0, 1.3, 0, 0.9, 0};
@@ -119,33 +120,19 @@ struct Arm {
   }
 };
 
-/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, Arm>
 void visit_options(Parameters& p, Visit&& visit) {
-  visit(p.dt, Declaration{.name = "dt", .unit = "s", .help = "duration of a step", .min = 0.001, .max = 1});
-  visit(p.input_rate_max, Declaration{.name = "input_rate_max",
-                                      .unit = "rad/s^2",
-                                      .help = "largest acceleration of a joint",
-                                      .min = 0,
-                                      .max = 1000});
-  visit(p.goal_x,
-        Declaration{.name = "goal_x", .unit = "m", .help = "where the hand is to go", .min = -10, .max = 10});
-  visit(p.goal_y,
-        Declaration{.name = "goal_y", .unit = "m", .help = "where the hand is to go", .min = -10, .max = 10});
-  visit(p.goal_z,
-        Declaration{.name = "goal_z", .unit = "m", .help = "where the hand is to go", .min = -10, .max = 10});
-  visit(p.ball_x,
-        Declaration{.name = "ball_x", .unit = "m", .help = "centre of the ball", .min = -10, .max = 10});
-  visit(p.ball_y,
-        Declaration{.name = "ball_y", .unit = "m", .help = "centre of the ball", .min = -10, .max = 10});
-  visit(p.ball_z,
-        Declaration{.name = "ball_z", .unit = "m", .help = "centre of the ball", .min = -10, .max = 10});
-  visit(p.ball_radius,
-        Declaration{.name = "ball_radius", .unit = "m", .help = "of the ball", .min = 0, .max = 10});
-  visit(p.thickness,
-        Declaration{
-            .name = "thickness", .unit = "m", .help = "half of the thickness of a link", .min = 0, .max = 1});
+  visit(p.dt, {"dt", "s", "duration of a step", 0.001, 1});
+  visit(p.input_rate_max, {"input_rate_max", "rad/s^2", "largest acceleration of a joint", 0, 1000});
+  visit(p.goal_x, {"goal_x", "m", "goal of the hand, x", -10, 10});
+  visit(p.goal_y, {"goal_y", "m", "goal of the hand, y", -10, 10});
+  visit(p.goal_z, {"goal_z", "m", "goal of the hand, z", -10, 10});
+  visit(p.ball_x, {"ball_x", "m", "centre of the ball, x", -10, 10});
+  visit(p.ball_y, {"ball_y", "m", "centre of the ball, y", -10, 10});
+  visit(p.ball_z, {"ball_z", "m", "centre of the ball, z", -10, 10});
+  visit(p.ball_radius, {"ball_radius", "m", "radius of the ball", 0, 10});
+  visit(p.thickness, {"thickness", "m", "half of the thickness of a link", 0, 1});
 }
 
 }  // namespace slalom::problems

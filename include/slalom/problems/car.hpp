@@ -9,18 +9,19 @@ namespace slalom::problems {
 
 /// A car that steers and accelerates (kinematic bicycle about its rear axle) on a straight road with two cars
 /// parked in the middle: pass them on either side and stop at a line.
+/// `visit_options` below describes the fields.
 struct Car {
   /// State of the dynamics.
   template <class T>
   struct State {
     T x, y, yaw, speed;  ///< m, m, rad, m/s
   };
-  static constexpr int inputs = 2;                              ///< steering angle, rad; acceleration, m/s^2
-  double dt = 0.1;                                              ///< duration of a step, s
-  double wheelbase = 2.7;                                       ///< distance of the axles, m
-  double cruise = 8;                                            ///< speed at which the car drives, m/s
-  double stop_x = 80;                                           ///< where the car stops, m
-  double half_road = 4;                                         ///< half of the width of the road, m
+  static constexpr int inputs = 2;  ///< steering angle, rad; acceleration, m/s^2
+  double dt = 0.1;
+  double wheelbase = 2.7;
+  double cruise = 8;
+  double stop_x = 80;
+  double half_road = 4;
   std::array<double, 2> parked_x{25, 50}, parked_y{0.2, -0.3};  ///< parked cars of 4.5 m x 2 m; m
 
   /// State after one step.
@@ -60,23 +61,14 @@ struct Car {
   }
 };
 
-/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, Car>
 void visit_options(Parameters& p, Visit&& visit) {
-  visit(p.dt, Declaration{.name = "dt", .unit = "s", .help = "duration of a step", .min = 0.001, .max = 1});
-  visit(p.wheelbase,
-        Declaration{.name = "wheelbase", .unit = "m", .help = "between the axles", .min = 0.1, .max = 100});
-  visit(p.cruise,
-        Declaration{.name = "cruise", .unit = "m/s", .help = "speed on a free road", .min = 0, .max = 100});
-  visit(p.stop_x, Declaration{.name = "stop_x",
-                              .unit = "m",
-                              .help = "where to stop, along the road",
-                              .min = -1e+06,
-                              .max = 1e+06});
-  visit(p.half_road,
-        Declaration{
-            .name = "half_road", .unit = "m", .help = "half of the width of the road", .min = 1, .max = 100});
+  visit(p.dt, {"dt", "s", "duration of a step", 0.001, 1});
+  visit(p.wheelbase, {"wheelbase", "m", "distance between the axles", 0.1, 100});
+  visit(p.cruise, {"cruise", "m/s", "speed on a free road", 0, 100});
+  visit(p.stop_x, {"stop_x", "m", "position along the road where the car stops", -1e+06, 1e+06});
+  visit(p.half_road, {"half_road", "m", "half of the width of the road", 1, 100});
 }
 
 }  // namespace slalom::problems

@@ -7,6 +7,7 @@ namespace slalom::problems {
 
 /// A pole on a cart that is pushed: hanging, it has to be swung up within the track. The cart weighs 1 kg,
 /// the pole 0.2 kg with its centre at 0.5 m from the hinge; the angle is measured from upright.
+/// `visit_options` below describes the fields.
 struct CartPole {
   /// State of the dynamics.
   template <class T>
@@ -14,8 +15,8 @@ struct CartPole {
     T position, speed, angle, rate;  ///< m, m/s, rad, rad/s
   };
   static constexpr int inputs = 1;  ///< force on the cart, N
-  double dt = 0.02;                 ///< duration of a step, s
-  double track = 2;                 ///< length of the track to either side, m
+  double dt = 0.02;
+  double track = 2;
 
   /// State after one step.
   template <class T>
@@ -43,16 +44,11 @@ struct CartPole {
   }
 };
 
-/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, CartPole>
 void visit_options(Parameters& p, Visit&& visit) {
-  visit(p.dt, Declaration{.name = "dt", .unit = "s", .help = "duration of a step", .min = 0.001, .max = 1});
-  visit(p.track, Declaration{.name = "track",
-                             .unit = "m",
-                             .help = "free way of the cart to either side",
-                             .min = 0.1,
-                             .max = 1000});
+  visit(p.dt, {"dt", "s", "duration of a step", 0.001, 1});
+  visit(p.track, {"track", "m", "length of the track to either side", 0.1, 1000});
 }
 
 }  // namespace slalom::problems

@@ -13,6 +13,7 @@ struct Disc {
 };
 
 /// A robot with two driven wheels on its way to a goal among discs that it must avoid.
+/// `visit_options` below describes the fields.
 struct DifferentialDrive {
   /// State of the dynamics.
   template <class T>
@@ -20,8 +21,8 @@ struct DifferentialDrive {
     T x, y, yaw;  ///< m, m, rad
   };
   static constexpr int inputs = 2;  ///< speed, m/s; yaw rate, rad/s
-  double dt = 0.1;                  ///< duration of a step, s
-  double goal_x = 8, goal_y = 0;    ///< where the drive ends, m
+  double dt = 0.1;
+  double goal_x = 8, goal_y = 0;
   std::array<Disc, 3> discs{
       {{2.5, 0.0, 0.9}, {5.2, 1.0, 0.7}, {5.2, -1.0, 0.7}}};  ///< the discs, with the robot's radius added
 
@@ -64,15 +65,12 @@ struct DifferentialDrive {
   }
 };
 
-/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, DifferentialDrive>
 void visit_options(Parameters& p, Visit&& visit) {
-  visit(p.dt, Declaration{.name = "dt", .unit = "s", .help = "duration of a step", .min = 0.001, .max = 1});
-  visit(p.goal_x,
-        Declaration{.name = "goal_x", .unit = "m", .help = "where to go", .min = -1e+06, .max = 1e+06});
-  visit(p.goal_y,
-        Declaration{.name = "goal_y", .unit = "m", .help = "where to go", .min = -1e+06, .max = 1e+06});
+  visit(p.dt, {"dt", "s", "duration of a step", 0.001, 1});
+  visit(p.goal_x, {"goal_x", "m", "goal of the drive, x", -1e+06, 1e+06});
+  visit(p.goal_y, {"goal_y", "m", "goal of the drive, y", -1e+06, 1e+06});
 }
 
 }  // namespace slalom::problems

@@ -9,6 +9,7 @@ namespace slalom::problems {
 /// follow: left and right are equally good, and their average is a collision. The smallest problem
 /// with two modes; its lateral position is linear in the inputs, so a Gaussian over inputs is one over
 /// places.
+/// `visit_options` below describes the fields.
 struct PassingPoint {
   /// State of the dynamics.
   template <class T>
@@ -16,13 +17,13 @@ struct PassingPoint {
     T x, y;  ///< m; the way is y = 0
   };
   static constexpr int inputs = 1;  ///< speed to the left, m/s
-  double dt = 0.2;                  ///< duration of a step, s
-  double speed = 1;                 ///< speed ahead, m/s
-  double disc_x = 2, disc_y = 0;    ///< centre of the disc, m
-  double disc_radius = 0.5;         ///< radius of the disc, m
-  double collision_cost = 10;       ///< cost of a step inside the disc
-  double way_weight = 0.5;          ///< of the squared distance from the way, 1/m^2
-  double input_weight = 0.05;       ///< of the squared input, s^2/m^2
+  double dt = 0.2;
+  double speed = 1;
+  double disc_x = 2, disc_y = 0;
+  double disc_radius = 0.5;
+  double collision_cost = 10;
+  double way_weight = 0.5;
+  double input_weight = 0.05;
 
   /// State after one step.
   template <class T>
@@ -50,31 +51,17 @@ struct PassingPoint {
   }
 };
 
-/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, PassingPoint>
 void visit_options(Parameters& p, Visit&& visit) {
-  visit(p.dt, Declaration{.name = "dt", .unit = "s", .help = "duration of a step", .min = 0.001, .max = 1});
-  visit(p.speed, Declaration{.name = "speed", .unit = "m/s", .help = "ahead", .min = 0.01, .max = 100});
-  visit(p.disc_x,
-        Declaration{.name = "disc_x", .unit = "m", .help = "centre of the disc", .min = -1e3, .max = 1e3});
-  visit(p.disc_y, Declaration{.name = "disc_y",
-                              .unit = "m",
-                              .help = "centre of the disc, left of the way",
-                              .min = -1e3,
-                              .max = 1e3});
-  visit(p.disc_radius,
-        Declaration{.name = "disc_radius", .unit = "m", .help = "of the disc", .min = 0, .max = 1e3});
-  visit(p.collision_cost,
-        Declaration{.name = "collision_cost", .help = "of a step inside the disc", .min = 0, .max = 1e6});
-  visit(p.way_weight, Declaration{.name = "way_weight",
-                                  .unit = "1/m^2",
-                                  .help = "of the distance from the way",
-                                  .min = 0,
-                                  .max = 1e6});
-  visit(p.input_weight,
-        Declaration{
-            .name = "input_weight", .unit = "s^2/m^2", .help = "of the steering", .min = 0, .max = 1e6});
+  visit(p.dt, {"dt", "s", "duration of a step", 0.001, 1});
+  visit(p.speed, {"speed", "m/s", "speed ahead", 0.01, 100});
+  visit(p.disc_x, {"disc_x", "m", "centre of the disc, along the way", -1e3, 1e3});
+  visit(p.disc_y, {"disc_y", "m", "centre of the disc, left of the way", -1e3, 1e3});
+  visit(p.disc_radius, {"disc_radius", "m", "radius of the disc", 0, 1e3});
+  visit(p.collision_cost, {"collision_cost", "", "cost of a step inside the disc", 0, 1e6});
+  visit(p.way_weight, {"way_weight", "1/m^2", "weight of the squared distance from the way", 0, 1e6});
+  visit(p.input_weight, {"input_weight", "s^2/m^2", "weight of the squared input", 0, 1e6});
 }
 
 }  // namespace slalom::problems

@@ -6,6 +6,7 @@
 namespace slalom::problems {
 
 /// A pendulum that is turned by a motor too weak to lift it; the angle is measured from upright.
+/// `visit_options` below describes the fields.
 struct Pendulum {
   /// State of the dynamics.
   template <class T>
@@ -13,10 +14,10 @@ struct Pendulum {
     T angle, rate;  ///< rad, rad/s
   };
   static constexpr int inputs = 1;  ///< torque, N m
-  double dt = 0.02;                 ///< duration of a step, s
-  double mass = 1;                  ///< mass at the end of the rod, kg
-  double length = 1;                ///< length of the rod, m
-  double gravity = 9.81;            ///< acceleration of gravity, m/s^2
+  double dt = 0.02;
+  double mass = 1;
+  double length = 1;
+  double gravity = 9.81;
 
   /// State after one step.
   template <class T>
@@ -37,16 +38,13 @@ struct Pendulum {
   }
 };
 
-/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, Pendulum>
 void visit_options(Parameters& p, Visit&& visit) {
-  visit(p.dt, Declaration{.name = "dt", .unit = "s", .help = "duration of a step", .min = 1e-3, .max = 1});
-  visit(p.mass,
-        Declaration{.name = "mass", .unit = "kg", .help = "at the end of the rod", .min = 1e-6, .max = 1e6});
-  visit(p.length, Declaration{.name = "length", .unit = "m", .help = "of the rod", .min = 1e-3, .max = 1e3});
-  visit(p.gravity,
-        Declaration{.name = "gravity", .unit = "m/s^2", .help = "pulls down", .min = 0, .max = 100});
+  visit(p.dt, {"dt", "s", "duration of a step", 1e-3, 1});
+  visit(p.mass, {"mass", "kg", "mass at the end of the rod", 1e-6, 1e6});
+  visit(p.length, {"length", "m", "length of the rod", 1e-3, 1e3});
+  visit(p.gravity, {"gravity", "m/s^2", "acceleration of gravity", 0, 100});
 }
 
 }  // namespace slalom::problems

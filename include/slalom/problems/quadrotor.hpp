@@ -6,17 +6,18 @@
 namespace slalom::problems {
 
 /// A quadrotor in the vertical plane, and a wall across its way with two gaps.
+/// `visit_options` below describes the fields.
 struct Quadrotor {
   /// State of the dynamics.
   template <class T>
   struct State {
     T x, z, tilt, speed_x, speed_z, rate;  ///< m, m, rad, m/s, m/s, rad/s
   };
-  static constexpr int inputs = 2;        ///< thrust beyond the weight, m/s^2; turning acceleration, rad/s^2
-  double dt = 0.05;                       ///< duration of a step, s
-  double goal_x = 6, goal_z = 0;          ///< where the flight ends, m
-  double wall_from = 2.8, wall_to = 3.2;  ///< extent of the wall along x, m
-  double gap_centre = 1.0, gap_width = 1.0;  ///< gaps at z = +gap_centre and z = -gap_centre; m
+  static constexpr int inputs = 2;  ///< thrust beyond the weight, m/s^2; turning acceleration, rad/s^2
+  double dt = 0.05;
+  double goal_x = 6, goal_z = 0;
+  double wall_from = 2.8, wall_to = 3.2;
+  double gap_centre = 1.0, gap_width = 1.0;
 
   /// State after one step.
   template <class T>
@@ -60,32 +61,17 @@ struct Quadrotor {
   }
 };
 
-/// Declares the parameters that can be set by name.
 template <class Parameters, class Visit>
 requires is_options_of<Parameters, Quadrotor>
 void visit_options(Parameters& p, Visit&& visit) {
-  visit(p.dt, Declaration{.name = "dt", .unit = "s", .help = "duration of a step", .min = 0.001, .max = 1});
-  visit(p.goal_x,
-        Declaration{.name = "goal_x", .unit = "m", .help = "where to hover", .min = -1e+06, .max = 1e+06});
-  visit(p.goal_z,
-        Declaration{.name = "goal_z", .unit = "m", .help = "where to hover", .min = -1e+06, .max = 1e+06});
-  visit(p.wall_from, Declaration{.name = "wall_from",
-                                 .unit = "m",
-                                 .help = "where the wall begins, along x",
-                                 .min = -1e+06,
-                                 .max = 1e+06});
-  visit(p.wall_to, Declaration{.name = "wall_to",
-                               .unit = "m",
-                               .help = "where the wall ends, along x",
-                               .min = -1e+06,
-                               .max = 1e+06});
-  visit(p.gap_centre, Declaration{.name = "gap_centre",
-                                  .unit = "m",
-                                  .help = "the gaps are at this height above and below 0",
-                                  .min = 0,
-                                  .max = 1e+06});
-  visit(p.gap_width,
-        Declaration{.name = "gap_width", .unit = "m", .help = "height of a gap", .min = 0, .max = 1e+06});
+  visit(p.dt, {"dt", "s", "duration of a step", 0.001, 1});
+  visit(p.goal_x, {"goal_x", "m", "goal of the flight, x", -1e+06, 1e+06});
+  visit(p.goal_z, {"goal_z", "m", "goal of the flight, z", -1e+06, 1e+06});
+  visit(p.wall_from, {"wall_from", "m", "start of the wall along x", -1e+06, 1e+06});
+  visit(p.wall_to, {"wall_to", "m", "end of the wall along x", -1e+06, 1e+06});
+  visit(p.gap_centre,
+        {"gap_centre", "m", "height of one gap's centre above 0, and of the other's below 0", 0, 1e+06});
+  visit(p.gap_width, {"gap_width", "m", "height of a gap", 0, 1e+06});
 }
 
 }  // namespace slalom::problems

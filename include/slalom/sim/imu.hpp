@@ -10,29 +10,29 @@
 namespace slalom::sim {
 
 /// Errors of an inertial measurement unit. The biases are constant for a drive and drawn at its start.
+/// `visit_options` below describes the fields.
 struct ImuOptions {
-  std::uint64_t seed = 0;            ///< seed of the random numbers
-  double gyro_bias = 0.01;           ///< rad/s, standard deviation over drives
-  double gyro_noise = 0.02;          ///< rad/s, standard deviation of a sample
-  double accelerometer_bias = 0.1;   ///< m/s^2, standard deviation over drives, of each axis
-  double accelerometer_noise = 0.5;  ///< m/s^2, standard deviation of a sample, with the car's vibration
+  std::uint64_t seed = 0;
+  double gyro_bias = 0.01;
+  double gyro_noise = 0.02;
+  double accelerometer_bias = 0.1;
+  double accelerometer_noise = 0.5;
 
   /// Throws std::invalid_argument naming the field, its value and the rule.
   void validate() const;
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, ImuOptions>
 void visit_options(Options& o, Visit&& visit) {
-  const auto number = [&](auto& field, const char* name, const char* unit, const char* help) {
-    visit(field, Declaration{.name = name, .unit = unit, .help = help, .min = 0, .max = 10});
-  };
-  visit(o.seed, Declaration{.name = "seed", .help = "of the errors"});
-  number(o.gyro_bias, "gyro_bias", "rad/s", "of the yaw rate, standard deviation over drives");
-  number(o.gyro_noise, "gyro_noise", "rad/s", "of a sample");
-  number(o.accelerometer_bias, "accelerometer_bias", "m/s^2", "of each axis, standard deviation over drives");
-  number(o.accelerometer_noise, "accelerometer_noise", "m/s^2", "of a sample");
+  visit(o.seed, {"seed", "", "seed of the errors"});
+  visit(o.gyro_bias, {"gyro_bias", "rad/s", "standard deviation over drives of the yaw rate's bias", 0, 10});
+  visit(o.gyro_noise, {"gyro_noise", "rad/s", "standard deviation of a sample of the yaw rate", 0, 10});
+  visit(o.accelerometer_bias,
+        {"accelerometer_bias", "m/s^2", "standard deviation over drives of the bias of each axis", 0, 10});
+  visit(o.accelerometer_noise,
+        {"accelerometer_noise", "m/s^2",
+         "standard deviation of a sample of each axis, with the car's vibration", 0, 10});
 }
 
 /// An inertial measurement unit at the car's centre of gravity. It takes a sample in each step.

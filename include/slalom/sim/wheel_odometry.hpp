@@ -12,39 +12,39 @@ namespace slalom::sim {
 /// Errors of the odometry that the motor controller of a 1/10-scale car reports. It counts the turns of the
 /// wheels and knows the commanded steering. With all errors 0 and `yaw_from_gyro`, the odometry is exact
 /// dead reckoning.
+/// `visit_options` below describes the fields.
 struct WheelOdometryOptions {
-  std::uint64_t seed = 0;               ///< seed of the random numbers
-  double speed_gain_error = 0.03;       ///< share by which the assumed wheel is larger than the real one
-  double slip_per_acceleration = 0.01;  ///< s^2/m: wheels turn faster by this share per m/s^2 of drive
-  double speed_noise = 0.03;            ///< m/s, standard deviation of each reading
-  bool yaw_from_gyro = false;      ///< else from the steering by the kinematic bicycle, which has no slip
-  double steer_gain_error = 0.02;  ///< share by which the assumed steering is larger than the real one
-  double steer_offset = 0.005;     ///< rad, by which the assumed steering is to the left of the real one
-  double gyro_bias = 0.005;        ///< rad/s
-  double gyro_noise = 0.02;        ///< rad/s, standard deviation of each reading
+  std::uint64_t seed = 0;
+  double speed_gain_error = 0.03;
+  double slip_per_acceleration = 0.01;
+  double speed_noise = 0.03;
+  bool yaw_from_gyro = false;
+  double steer_gain_error = 0.02;
+  double steer_offset = 0.005;
+  double gyro_bias = 0.005;
+  double gyro_noise = 0.02;
 
   /// Throws std::invalid_argument naming the field, its value and the rule.
   void validate() const;
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, WheelOdometryOptions>
 void visit_options(Options& o, Visit&& visit) {
-  const auto number = [&](auto& field, const char* name, const char* unit, const char* help, double bound) {
-    visit(field, Declaration{.name = name, .unit = unit, .help = help, .min = -bound, .max = bound});
-  };
-  visit(o.seed, Declaration{.name = "seed", .help = "of the noise"});
-  number(o.speed_gain_error, "speed_gain_error", "", "share by which the assumed wheel is larger", 0.9);
-  number(o.slip_per_acceleration, "slip_per_acceleration", "s^2/m", "wheels turn faster under drive", 0.5);
-  visit(o.speed_noise,
-        Declaration{.name = "speed_noise", .unit = "m/s", .help = "of each reading", .min = 0, .max = 10});
-  visit(o.yaw_from_gyro, Declaration{.name = "yaw_from_gyro", .help = "else from the steering"});
-  number(o.steer_gain_error, "steer_gain_error", "", "share by which the assumed steering is larger", 0.9);
-  number(o.steer_offset, "steer_offset", "rad", "by which the assumed steering is to the left", 0.5);
-  number(o.gyro_bias, "gyro_bias", "rad/s", "of the yaw rate", 10);
-  visit(o.gyro_noise,
-        Declaration{.name = "gyro_noise", .unit = "rad/s", .help = "of each reading", .min = 0, .max = 10});
+  visit(o.seed, {"seed", "", "seed of the noise"});
+  visit(o.speed_gain_error,
+        {"speed_gain_error", "", "share by which the assumed wheel is larger than the real one", -0.9, 0.9});
+  visit(o.slip_per_acceleration, {"slip_per_acceleration", "s^2/m",
+                                  "share by which wheels turn faster per m/s^2 of drive", -0.5, 0.5});
+  visit(o.speed_noise, {"speed_noise", "m/s", "standard deviation of each reading of the speed", 0, 10});
+  visit(o.yaw_from_gyro, {"yaw_from_gyro", "",
+                          "the yaw is that of a gyro; otherwise of the steering, by the kinematic bicycle"});
+  visit(o.steer_gain_error, {"steer_gain_error", "",
+                             "share by which the assumed steering is larger than the real one", -0.9, 0.9});
+  visit(o.steer_offset, {"steer_offset", "rad",
+                         "angle by which the assumed steering is to the left of the real one", -0.5, 0.5});
+  visit(o.gyro_bias, {"gyro_bias", "rad/s", "bias of the yaw rate", -10, 10});
+  visit(o.gyro_noise, {"gyro_noise", "rad/s", "standard deviation of each reading of the yaw rate", 0, 10});
 }
 
 /// Dead reckoning of the rear axle from wheels and steering (or a gyro), with slip and bias, in a frame that

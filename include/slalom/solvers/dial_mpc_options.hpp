@@ -12,52 +12,44 @@ namespace slalom {
 /// Diffusion-Style Annealing", arXiv 2409.15610, section III-C and algorithm 1): several updates of MPPI in a
 /// solve, without control term. Their noise shrinks from one update to the next, and it is smaller at the
 /// start of the horizon than at its end.
+/// `visit_options` below describes the fields.
 struct DialMpcOptions {
   static constexpr const char* method = "dial_mpc";  ///< name in configurations
 
-  int horizon = 30;        ///< T, steps
-  int samples = 512;       ///< K, control sequences drawn in an update
-  double temperature = 1;  ///< lambda
-  PerInput variance = 1;   ///< Sigma of the first update at the last step, input^2
-  PerInput input_min = -std::numeric_limits<double>::infinity();  ///< lower bounds of the inputs
-  PerInput input_max = std::numeric_limits<double>::infinity();   ///< upper bounds of the inputs
+  int horizon = 30;
+  int samples = 512;  ///< control sequences drawn in each update
+  double temperature = 1;
+  PerInput variance = 1;  ///< variance in the first update, at the last step
+  PerInput input_min = -std::numeric_limits<double>::infinity();
+  PerInput input_max = std::numeric_limits<double>::infinity();
 
-  int iterations = 2;            ///< N, updates in a solve
-  int first_iterations = 10;     ///< updates in the first solve, which has no last solution
-  double iteration_decay = 0.5;  ///< factor of the standard deviation from one update to the next
-  double horizon_decay = 0.66;   ///< factor of the standard deviation from the last step to the first
+  int iterations = 2;
+  int first_iterations = 10;
+  double iteration_decay = 0.5;
+  double horizon_decay = 0.66;
 
   NoiseOptions noise{};          ///< shape of the noise; white and normal
   WeightingOptions weighting{};  ///< how costs become weights; exponentially
-  SmoothingOptions smoothing{};  ///< of the solution; none
-  double zero_mean_share = 0;    ///< of the samples, drawn around zero instead of the last solution
-  bool shift_warm_start = true;  ///< move the last solution forward by the elapsed time
-  std::uint64_t seed = 0;        ///< seed of the random numbers
-  int threads = 1;               ///< threads that work on a solve; the result does not depend on it
+  SmoothingOptions smoothing{};  ///< Savitzky-Golay filter of the solution; none
+  double zero_mean_share = 0;
+  bool shift_warm_start = true;
+  std::uint64_t seed = 0;
+  int threads = 1;
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, DialMpcOptions>
 void visit_options(Options& o, Visit&& visit) {
   detail::visit_sampling_options(o, visit);
-  visit(
-      o.iterations,
-      Declaration{.name = "iterations", .symbol = "N", .help = "updates in a solve", .min = 1, .max = 1000});
-  visit(o.first_iterations, Declaration{.name = "first_iterations",
-                                        .help = "updates in the first solve, which has no last solution",
-                                        .min = 1,
-                                        .max = 1000});
+  visit(o.iterations, {"iterations", "", "updates in a solve", 1, 1000, "N"});
+  visit(o.first_iterations,
+        {"first_iterations", "", "updates in the first solve, which has no last solution", 1, 1000});
   visit(o.iteration_decay,
-        Declaration{.name = "iteration_decay",
-                    .help = "factor of the samples' standard deviation from one update to the next",
-                    .min = 1e-3,
-                    .max = 1});
+        {"iteration_decay", "", "factor of the samples' standard deviation from one update to the next", 1e-3,
+         1});
   visit(o.horizon_decay,
-        Declaration{.name = "horizon_decay",
-                    .help = "factor of the samples' standard deviation from the last step to the first",
-                    .min = 1e-3,
-                    .max = 1});
+        {"horizon_decay", "", "factor of the samples' standard deviation from the last step to the first",
+         1e-3, 1});
   detail::visit_noise_options(o.noise, visit);
   detail::visit_weighting_options(o.weighting, visit);
   detail::visit_smoothing_options(o.smoothing, visit);

@@ -12,48 +12,43 @@ namespace slalom {
 /// Method for Real-time Planning", CoRL 2020): `cem` with coloured noise, with elites that stay in the next
 /// iteration and the next solve, with fewer samples from iteration to iteration, and with the mean as a
 /// sample of the last one. The best sequence seen is sent.
+/// `visit_options` below describes the fields.
 struct IcemOptions {
   static constexpr const char* method = "icem";  ///< name in configurations
 
-  int horizon = 30;       ///< T, steps
-  int samples = 320;      ///< K, drawn in the first iteration
-  PerInput variance = 1;  ///< Sigma at the start of every solve, input^2
-  PerInput input_min = -std::numeric_limits<double>::infinity();  ///< lower bounds of the inputs
-  PerInput input_max = std::numeric_limits<double>::infinity();   ///< upper bounds of the inputs
+  int horizon = 30;
+  int samples = 320;      ///< control sequences drawn in the first iteration
+  PerInput variance = 1;  ///< variance at the start of every solve
+  PerInput input_min = -std::numeric_limits<double>::infinity();
+  PerInput input_max = std::numeric_limits<double>::infinity();
 
-  int iterations = 5;         ///< refits of the distribution in a solve
-  double elite_share = 0.03;  ///< share of the first iteration's samples that the distribution is refitted to
-  double smoothing = 0.1;     ///< share of the old distribution that is kept in an update
-  PerInput variance_min = 1e-4;   ///< least variance, input^2
-  double kept_elite_share = 0.3;  ///< xi, share of the elites that stay as samples
-  double sample_decay = 1.25;     ///< gamma, factor by which every iteration has fewer samples
-  bool send_best = true;          ///< the solution is the best sample seen instead of the mean
+  int iterations = 5;
+  double elite_share = 0.03;  ///< share of the first iteration's samples
+  double smoothing = 0.1;
+  PerInput variance_min = 1e-4;
+  double kept_elite_share = 0.3;
+  double sample_decay = 1.25;
+  bool send_best = true;
 
   NoiseOptions noise{.exponent = 2};  ///< shape of the noise; coloured and normal
-  double zero_mean_share = 0;         ///< of the samples, drawn around zero instead of the mean
-  bool shift_warm_start = true;       ///< move the last solution and elites forward by the elapsed time
-  std::uint64_t seed = 0;             ///< seed of the random numbers
-  int threads = 1;                    ///< threads that work on a solve; the result does not depend on it
+  double zero_mean_share = 0;
+  bool shift_warm_start = true;  ///< The elites move, too.
+  std::uint64_t seed = 0;
+  int threads = 1;
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, IcemOptions>
 void visit_options(Options& o, Visit&& visit) {
   detail::visit_sampling_options(o, visit);
   detail::visit_cross_entropy_options(o, visit);
-  visit(o.kept_elite_share, Declaration{.name = "kept_elite_share",
-                                        .symbol = "xi",
-                                        .help = "share of the elites that stay as samples of the next "
-                                                "iteration and of the next solve",
-                                        .min = 0,
-                                        .max = 1});
-  visit(o.sample_decay, Declaration{.name = "sample_decay",
-                                    .symbol = "gamma",
-                                    .help = "every iteration has fewer samples by this factor, and at least "
-                                            "twice the elites",
-                                    .min = 1,
-                                    .max = 100});
+  visit(o.kept_elite_share,
+        {"kept_elite_share", "", "share of the elites that stay as samples of the next iteration and solve",
+         0, 1, "xi"});
+  visit(o.sample_decay,
+        {"sample_decay", "",
+         "factor by which every iteration has fewer samples; at least twice the elites remain", 1, 100,
+         "gamma"});
   detail::visit_noise_options(o.noise, visit);
   visit_run_options(o, visit);
 }

@@ -14,19 +14,16 @@
 namespace slalom {
 
 /// Options of iterative LQR.
+/// `visit_options` below describes the fields.
 struct IlqrOptions {
-  int iterations = 5;  ///< maximum number of steps of an improvement
+  int iterations = 5;
 };
 
-/// Declares every option by name, help and range.
 template <class Options, class Visit>
 requires is_options_of<Options, IlqrOptions>
 void visit_options(Options& o, Visit&& visit) {
   visit(o.iterations,
-        Declaration{.name = "iterations",
-                    .help = "maximum number of steps of an improvement; each computes derivatives once",
-                    .min = 1,
-                    .max = 1000});
+        {"iterations", "", "most steps of an improvement; each computes derivatives once", 1, 1000});
 }
 
 /// Improves a control sequence by iterative LQR (W. Li and E. Todorov, "Iterative linear quadratic regulator

@@ -11,30 +11,29 @@ namespace slalom {
 
 /// Options of `mppi`, model predictive path integral control. Defaults are the method of Williams et al.
 /// (2018).
+/// `visit_options` below describes the fields.
 struct MppiOptions {
   static constexpr const char* method = "mppi";  ///< name in configurations
 
-  int horizon = 30;                                               ///< T, steps
-  int samples = 1024;                                             ///< K, control sequences drawn in a solve
-  double temperature = 1;                                         ///< lambda
-  PerInput variance = 1;                                          ///< Sigma, input^2
-  PerInput input_min = -std::numeric_limits<double>::infinity();  ///< lower bounds of the inputs
-  PerInput input_max = std::numeric_limits<double>::infinity();   ///< upper bounds of the inputs
-  NoiseOptions noise{};                                           ///< shape of the noise; white and normal
-  WeightingOptions weighting{};                                   ///< how costs become weights; exponentially
-  SmoothingOptions smoothing{};                                   ///< of the solution; none
-  double control_cost_discount = 0;  ///< alpha: the control term is multiplied by 1 - alpha
-  double zero_mean_share = 0;        ///< of the samples, drawn around zero instead of the last solution
-  bool shift_warm_start = true;      ///< move the last solution forward by the elapsed time
-  /// Mean of the samples and nominal sequence are the best of the proposals and the last solution, so that
-  /// there is no control term; the proposals are no samples.
+  int horizon = 30;
+  int samples = 1024;
+  double temperature = 1;
+  PerInput variance = 1;
+  PerInput input_min = -std::numeric_limits<double>::infinity();
+  PerInput input_max = std::numeric_limits<double>::infinity();
+  NoiseOptions noise{};          ///< shape of the noise; white and normal
+  WeightingOptions weighting{};  ///< how costs become weights; exponentially
+  SmoothingOptions smoothing{};  ///< Savitzky-Golay filter of the solution; none
+  double control_cost_discount = 0;
+  double zero_mean_share = 0;
+  bool shift_warm_start = true;
+  /// The best is the nominal sequence, too, so that there is no control term.
   bool nominal_from_proposals = false;
-  std::uint64_t seed = 0;     ///< seed of the random numbers
-  int threads = 1;            ///< threads that work on a solve; the result does not depend on it
+  std::uint64_t seed = 0;
+  int threads = 1;
   PublishedMppi published{};  ///< only to reproduce the program of proj-svg_mppi
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, MppiOptions>
 void visit_options(Options& o, Visit&& visit) {
@@ -43,11 +42,9 @@ void visit_options(Options& o, Visit&& visit) {
   detail::visit_weighting_options(o.weighting, visit);
   detail::visit_smoothing_options(o.smoothing, visit);
   detail::visit_control_cost_options(o, visit);
-  visit(
-      o.nominal_from_proposals,
-      Declaration{.name = "nominal_from_proposals",
-                  .help = "draw the samples around the best of the proposals and the last solution, which is "
-                          "the nominal sequence; otherwise proposals are samples"});
+  visit(o.nominal_from_proposals, {"nominal_from_proposals", "",
+                                   "draw the samples around the best of the proposals and the last solution; "
+                                   "otherwise proposals are samples"});
   visit_run_options(o, visit);
   visit_options(o.published, visit);
 }

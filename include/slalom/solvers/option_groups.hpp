@@ -9,24 +9,25 @@ namespace slalom {
 /// The shape of the samples' noise. For one solver either `exponent` or `knots` may be above 0, not both, and
 /// with a horizon above 2048 steps neither: otherwise `make_solver` throws std::invalid_argument. `icem` has
 /// an exponent of 2 by default.
+/// `visit_noise_options` below describes the fields.
 struct NoiseOptions {
-  PerInput exponent = 0;           ///< beta of the noise's spectrum 1/f^beta, 0 ... 4; 0: white
-  PerInput log_normal_spread = 0;  ///< sigma_ln of a log-normal factor of the noise, 0 ... 2; 0: none
-  int knots = 0;  ///< along the horizon, between which the noise is interpolated, 0 ... 64; 0: none
+  PerInput exponent = 0;
+  PerInput log_normal_spread = 0;
+  int knots = 0;
 };
 
 /// How costs become weights.
+/// `visit_weighting_options` below describes the fields.
 struct WeightingOptions {
-  double tsallis_index = 1;  ///< q of the weights' q-exponential; 1: exp
-  /// Effective sample size, as a fraction of the samples, for which the temperature is searched in every
-  /// solve; 0: the temperature is as set.
+  double tsallis_index = 1;
   double target_ess_fraction = 0;
 };
 
 /// Savitzky-Golay smoothing of the solution along the steps.
+/// `visit_smoothing_options` below describes the fields.
 struct SmoothingOptions {
-  int half_width = 0;  ///< steps to each side; 0: no smoothing
-  int degree = 3;      ///< of the fitted polynomials
+  int half_width = 0;
+  int degree = 3;
 };
 
 }  // namespace slalom
@@ -40,129 +41,75 @@ inline constexpr double finite = 1e12;
 /// needs uncorrelated noise (NoiseOptions).
 template <class Options, class Visit>
 void visit_sampling_options(Options& o, Visit&& visit) {
-  visit(o.horizon, Declaration{.name = "horizon",
-                               .symbol = "T",
-                               .unit = "steps",
-                               .help = "inputs of a control sequence; the rollout has one state more",
-                               .min = 1,
-                               .max = 10000});
-  visit(o.samples, Declaration{.name = "samples",
-                               .symbol = "K",
-                               .help = "control sequences drawn in a solve",
-                               .min = 1,
-                               .max = 4194304});
+  visit(o.horizon,
+        {"horizon", "steps", "inputs of a control sequence; the rollout has one state more", 1, 10000, "T"});
+  visit(o.samples, {"samples", "", "control sequences drawn in a solve", 1, 4194304, "K"});
   if constexpr (requires { o.temperature; }) {
-    visit(o.temperature, Declaration{.name = "temperature",
-                                     .symbol = "lambda",
-                                     .help = "cost difference at which a weight falls by a factor of e: a "
-                                             "small value selects the best sample, a large one averages",
-                                     .min = 1e-6,
-                                     .max = finite});
+    visit(
+        o.temperature,
+        {"temperature", "",
+         "cost difference at which a weight falls by a factor of e; small: the best sample, large: the mean",
+         1e-6, finite, "lambda"});
   }
-  visit(o.variance, Declaration{.name = "variance",
-                                .symbol = "Sigma",
-                                .unit = "input^2",
-                                .help = "variance of the samples",
-                                .min = 0,
-                                .max = finite});
-  visit(o.input_min, Declaration{.name = "input_min", .unit = "input", .help = "lower bound of the inputs"});
-  visit(o.input_max, Declaration{.name = "input_max", .unit = "input", .help = "upper bound of the inputs"});
-  visit(
-      o.zero_mean_share,
-      Declaration{.name = "zero_mean_share",
-                  .help = "share of the samples drawn around zero instead of the mean, without correction of "
-                          "their weights",
-                  .min = 0,
-                  .max = 1});
-  visit(o.shift_warm_start, Declaration{.name = "shift_warm_start",
-                                        .help = "move the last solution forward by the elapsed time"});
+  visit(o.variance, {"variance", "input^2", "variance of the samples", 0, finite, "Sigma"});
+  visit(o.input_min, {"input_min", "input", "lower bound of the inputs"});
+  visit(o.input_max, {"input_max", "input", "upper bound of the inputs"});
+  visit(o.zero_mean_share,
+        {"zero_mean_share", "",
+         "share of the samples drawn around zero instead of the mean, with uncorrected weights", 0, 1});
+  visit(o.shift_warm_start, {"shift_warm_start", "", "move the last solution forward by the elapsed time"});
 }
 
 template <class Options, class Visit>
 void visit_noise_options(Options& o, Visit&& visit) {
-  visit(o.exponent,
-        Declaration{.name = "noise_exponent",
-                    .symbol = "beta",
-                    .help =
-                        "colour of the noise along the steps, power 1/f^beta, per input: 0 is white, 1 pink, "
-                        "2 Brownian; the larger, the smoother",
-                    .min = 0,
-                    .max = 4});
+  visit(o.exponent, {"noise_exponent", "",
+                     "power 1/f^beta of the noise along the steps, per input; 0: white, 1: pink, 2: Brownian",
+                     0, 4, "beta"});
   visit(o.log_normal_spread,
-        Declaration{.name = "log_normal_spread",
-                    .symbol = "sigma_ln",
-                    .help = "log-normal factor of the noise at the same variance, per input: 0 is none; "
-                            "larger values give more distant samples",
-                    .min = 0,
-                    .max = 2});
-  visit(o.knots, Declaration{.name = "noise_knots",
-                             .symbol = "n",
-                             .help = "knots along the horizon between which the noise is interpolated; 0: "
-                                     "independent noise in every step",
-                             .min = 0,
-                             .max = 64});
+        {"log_normal_spread", "",
+         "log-normal factor of the noise at the same variance, per input; large: distant samples, 0: none", 0,
+         2, "sigma_ln"});
+  visit(o.knots,
+        {"noise_knots", "",
+         "knots along the horizon between which the noise is interpolated; 0: none, independent steps", 0, 64,
+         "n"});
 }
 
 template <class Options, class Visit>
 void visit_weighting_options(Options& o, Visit&& visit) {
-  visit(o.tsallis_index,
-        Declaration{.name = "tsallis_index",
-                    .symbol = "q",
-                    .help = "weights are the q-exponential of -cost / temperature: 1 is exp; below 1, costs "
-                            "above temperature / (1 - q) have weight 0; above 1, weights fall more slowly",
-                    .min = -20,
-                    .max = 3});
-  visit(o.target_ess_fraction, Declaration{.name = "target_ess_fraction",
-                                           .help = "effective sample size, as a fraction of the samples, to "
-                                                   "which every solve adapts the temperature; 0: off",
-                                           .min = 0,
-                                           .max = 1,
-                                           .formerly = "effective_share"});
+  visit(o.tsallis_index, {"tsallis_index", "",
+                          "q of the weights, q-exponentials of -cost / temperature; 1: exp; below 1, costs "
+                          "above temperature / (1 - q) have weight 0; above 1, weights fall more slowly",
+                          -20, 3, "q"});
+  visit(
+      o.target_ess_fraction,
+      {"target_ess_fraction", "",
+       "effective sample size, as a fraction of the samples, to which the temperature adapts; 0: off", 0, 1});
 }
 
 template <class Options, class Visit>
 void visit_smoothing_options(Options& o, Visit&& visit) {
-  visit(o.half_width,
-        Declaration{
-            .name = "smoothing_half_width",
-            .unit = "steps",
-            .help = "Savitzky-Golay smoothing of the solution over this many steps to each side; 0: none",
-            .min = 0,
-            .max = 1000});
-  visit(o.degree,
-        Declaration{
-            .name = "smoothing_degree", .help = "degree of the fitted polynomials", .min = 0, .max = 9});
+  visit(o.half_width, {"smoothing_half_width", "steps",
+                       "steps to each side of the solution's Savitzky-Golay smoothing; 0: none", 0, 1000});
+  visit(o.degree, {"smoothing_degree", "", "degree of the fitted polynomials", 0, 9});
 }
 
 template <class Options, class Visit>
 void visit_cross_entropy_options(Options& o, Visit&& visit) {
-  visit(o.iterations,
-        Declaration{
-            .name = "iterations", .help = "refits of the distribution in a solve", .min = 1, .max = 10000});
-  visit(o.elite_share, Declaration{.name = "elite_share",
-                                   .symbol = "rho",
-                                   .help = "share of the samples that the distribution is refitted to",
-                                   .min = 0,
-                                   .max = 1});
-  visit(o.smoothing, Declaration{.name = "smoothing",
-                                 .help = "share of the old distribution kept in an update",
-                                 .min = 0,
-                                 .max = 1});
-  visit(o.variance_min,
-        Declaration{
-            .name = "variance_min", .unit = "input^2", .help = "least variance", .min = 0, .max = finite});
-  visit(o.send_best,
-        Declaration{.name = "send_best", .help = "send the best sample seen instead of the mean"});
+  visit(o.iterations, {"iterations", "", "refits of the distribution in a solve", 1, 10000});
+  visit(o.elite_share,
+        {"elite_share", "", "share of the samples to which the distribution is refitted; at least one sample",
+         0, 1, "rho"});
+  visit(o.smoothing, {"smoothing", "", "share of the old distribution kept in an update", 0, 1});
+  visit(o.variance_min, {"variance_min", "input^2", "least variance", 0, finite});
+  visit(o.send_best, {"send_best", "", "send the best sample seen instead of the mean"});
 }
 
 template <class Options, class Visit>
 void visit_control_cost_options(Options& o, Visit&& visit) {
   visit(o.control_cost_discount,
-        Declaration{.name = "control_cost_discount",
-                    .symbol = "alpha",
-                    .help = "the control term of the weights is multiplied by 1 - alpha; 1 leaves it out",
-                    .min = 0,
-                    .max = 1});
+        {"control_cost_discount", "",
+         "the control term of the weights is multiplied by 1 - alpha; 1 leaves it out", 0, 1, "alpha"});
 }
 
 }  // namespace slalom::detail
@@ -173,11 +120,9 @@ namespace slalom {
 /// `visit_options` of a solver's options.
 template <class Options, class Visit>
 void visit_run_options(Options& o, Visit&& visit) {
-  visit(o.seed, Declaration{.name = "seed", .help = "seed of the random numbers"});
-  visit(o.threads, Declaration{.name = "threads",
-                               .help = "threads that work on a solve; the result does not depend on it",
-                               .min = 1,
-                               .max = 1024});
+  visit(o.seed, {"seed", "", "seed of the random numbers"});
+  visit(o.threads,
+        {"threads", "", "threads that work on a solve; the result does not depend on it", 1, 1024});
 }
 
 }  // namespace slalom

@@ -21,67 +21,47 @@ inline const char* const* enum_names(Resampling) {
 }
 
 /// Options of `reverse_mppi`: mirror descent on the reverse KL divergence (Kobayashi and Fukumoto 2022).
+/// `visit_options` below describes the fields.
 struct ReverseMppiOptions {
   static constexpr const char* method = "reverse_mppi";  ///< name in configurations
 
-  int horizon = 30;                                               ///< T, steps
-  int samples = 256;                                              ///< K, evaluated in each iteration
-  double temperature = 1;                                         ///< lambda
-  PerInput variance = 1;                                          ///< Sigma at the start, input^2
-  PerInput input_min = -std::numeric_limits<double>::infinity();  ///< lower bounds of the inputs
-  PerInput input_max = std::numeric_limits<double>::infinity();   ///< upper bounds of the inputs
+  int horizon = 30;
+  int samples = 256;  ///< control sequences evaluated in each iteration
+  double temperature = 1;
+  PerInput variance = 1;  ///< variance at the start of every solve
+  PerInput input_min = -std::numeric_limits<double>::infinity();
+  PerInput input_max = std::numeric_limits<double>::infinity();
 
-  int iterations = 20;                             ///< updates of the distribution in a solve
-  double step = 0.2;                               ///< eta of the mirror descent
-  double negative_ratio = 0.5;                     ///< weight of the repulsion from bad samples
-  bool reject_samples = true;                      ///< draw more samples and keep those away from bad ones
-  double inflation = 2;                            ///< samples drawn for each one that is kept
-  Resampling resampling = Resampling::systematic;  ///< how samples are selected by their probability
-  double warm_start = 0.5;       ///< share of the new distribution in the initial one of the next solve
-  PerInput variance_min = 1e-4;  ///< least variance, input^2
+  int iterations = 20;
+  double step = 0.2;
+  double negative_ratio = 0.5;
+  bool reject_samples = true;
+  double inflation = 2;
+  Resampling resampling = Resampling::systematic;
+  double warm_start = 0.5;
+  PerInput variance_min = 1e-4;
 
-  double control_cost_discount = 0;  ///< alpha: the control term is multiplied by 1 - alpha
-  double zero_mean_share = 0;        ///< of the samples, drawn around zero instead of the mean
-  bool shift_warm_start = true;      ///< move the last solution forward by the elapsed time
-  std::uint64_t seed = 0;            ///< seed of the random numbers
-  int threads = 1;                   ///< threads that work on a solve; the result does not depend on it
+  double control_cost_discount = 0;
+  double zero_mean_share = 0;
+  bool shift_warm_start = true;
+  std::uint64_t seed = 0;
+  int threads = 1;
   PublishedReverseMppi published{};  ///< only to reproduce the program of proj-svg_mppi
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, ReverseMppiOptions>
 void visit_options(Options& o, Visit&& visit) {
   detail::visit_sampling_options(o, visit);
-  visit(o.iterations,
-        Declaration{
-            .name = "iterations", .help = "updates of the distribution in a solve", .min = 1, .max = 10000});
-  visit(o.step, Declaration{.name = "step",
-                            .symbol = "eta",
-                            .help = "step size of the mirror descent; 1 takes the weighted mean",
-                            .min = 0,
-                            .max = 2});
-  visit(
-      o.negative_ratio,
-      Declaration{
-          .name = "negative_ratio", .help = "weight of the repulsion from bad samples", .min = 0, .max = 10});
-  visit(o.reject_samples,
-        Declaration{.name = "reject_samples", .help = "draw more samples and keep those away from bad ones"});
-  visit(o.inflation,
-        Declaration{
-            .name = "inflation", .help = "samples drawn for each one that is kept", .min = 1, .max = 100});
-  visit(o.resampling,
-        Declaration{.name = "resampling", .help = "how samples are selected by their probability"});
+  visit(o.iterations, {"iterations", "", "updates of the distribution in a solve", 1, 10000});
+  visit(o.step, {"step", "", "step size of the mirror descent; 1 takes the weighted mean", 0, 2, "eta"});
+  visit(o.negative_ratio, {"negative_ratio", "", "weight of the repulsion from bad samples", 0, 10});
+  visit(o.reject_samples, {"reject_samples", "", "draw more samples and keep those away from bad ones"});
+  visit(o.inflation, {"inflation", "", "samples drawn for each one that is kept", 1, 100});
+  visit(o.resampling, {"resampling", "", "how samples are selected by their probability"});
   visit(o.warm_start,
-        Declaration{.name = "warm_start",
-                    .help = "share of the new distribution in the initial one of the next solve",
-                    .min = 0,
-                    .max = 1});
-  visit(o.variance_min, Declaration{.name = "variance_min",
-                                    .unit = "input^2",
-                                    .help = "least variance",
-                                    .min = 0,
-                                    .max = detail::finite});
+        {"warm_start", "", "share of the new distribution in the initial one of the next solve", 0, 1});
+  visit(o.variance_min, {"variance_min", "input^2", "least variance", 0, detail::finite});
   detail::visit_control_cost_options(o, visit);
   visit_run_options(o, visit);
   visit_options(o.published, visit);

@@ -47,20 +47,20 @@ inline const char* const* enum_names(SampleCentre) {
 }
 
 /// The guide particles of `svg_mppi`, which follow a gradient to a mode.
+/// `visit_guide_options` below describes the fields.
 struct GuideOptions {
-  int count = 4;                      ///< K_g
-  int iterations = 10;                ///< L, number of steps by which the guides move in a solve
-  PerInput step = 0.125;              ///< epsilon, input^2
-  PerInput variance = 1;              ///< input^2, of the initial guides, and Sigma of their weights
-  int gradient_samples = 25;          ///< N, for the gradient of a guide
-  PerInput gradient_variance = 0.25;  ///< Sigma_g, input^2
-  double gradient_temperature = 1;    ///< lambda of the weights of the gradient
-  GuideWeight weight = GuideWeight::state_cost;  ///< how the weights of the gradient are computed
-  /// In every solve all guides but the best restart at smooth deviations from the best one: they search for
-  /// other modes, and the best is kept until another is better. Otherwise all guides continue.
+  int count = 4;
+  int iterations = 10;
+  PerInput step = 0.125;
+  PerInput variance = 1;
+  int gradient_samples = 25;
+  PerInput gradient_variance = 0.25;
+  double gradient_temperature = 1;
+  GuideWeight weight = GuideWeight::state_cost;
+  /// Guides that restart search for other modes; the best guide is kept until another is better.
   bool restart = true;
-  PerInput restart_variance = 1;  ///< input^2, of those deviations
-  /// Mean of the samples. Without the nominal sequence (`use_nominal`) it is the last solution.
+  PerInput restart_variance = 1;
+  /// Without the nominal sequence (`use_nominal`) it is the last solution.
   SampleCentre sample_around = SampleCentre::nominal;
   /// With `exact`, the weights of the gradient (`weight`) must be those of the costs alone, a step is limited
   /// by `gradient_variance`, and `gradient_samples` and `zero_mean_share` do not count for guides.
@@ -69,116 +69,77 @@ struct GuideOptions {
 
 /// Options of `svg_mppi`: Stein variational guided MPPI (Honda et al., ICRA 2024), whose equations are cited
 /// here.
+/// `visit_options` below describes the fields.
 struct SvgMppiOptions {
   static constexpr const char* method = "svg_mppi";  ///< name in configurations
 
-  int horizon = 30;                                               ///< T, steps
-  int samples = 1024;                                             ///< K, control sequences drawn in a solve
-  double temperature = 1;                                         ///< lambda
-  PerInput variance = 1;                                          ///< Sigma, input^2, where it is not adapted
-  PerInput input_min = -std::numeric_limits<double>::infinity();  ///< lower bounds of the inputs
-  PerInput input_max = std::numeric_limits<double>::infinity();   ///< upper bounds of the inputs
+  int horizon = 30;
+  int samples = 1024;
+  double temperature = 1;
+  PerInput variance = 1;  ///< variance of the samples where it is not adapted
+  PerInput input_min = -std::numeric_limits<double>::infinity();
+  PerInput input_max = std::numeric_limits<double>::infinity();
 
   GuideOptions guides{};  ///< the guide particles
-  bool use_nominal =
-      true;  ///< use the best guide as the nominal sequence (NS), equation (12); otherwise zero is
-  bool adapt_covariance = true;  ///< fit the variances to the best guide's path (AC), equation (13)
-  PerInput variance_min = 0.01;  ///< least adapted variance, input^2
-  PerInput variance_max = 1;     ///< largest adapted variance, input^2; variance_min where it is less
+  bool use_nominal = true;
+  bool adapt_covariance = true;
+  PerInput variance_min = 0.01;
+  PerInput variance_max = 1;
 
-  NoiseOptions noise{};              ///< shape of the noise; white and normal
-  WeightingOptions weighting{};      ///< how costs become weights; exponentially
-  SmoothingOptions smoothing{};      ///< of the solution; none
-  double control_cost_discount = 0;  ///< alpha: the control term is multiplied by 1 - alpha
-  double zero_mean_share = 0;        ///< of the samples, drawn around zero instead of the last solution
-  bool shift_warm_start = true;      ///< move guides and last solution forward by the elapsed time
-  std::uint64_t seed = 0;            ///< seed of the random numbers
-  int threads = 1;                   ///< threads that work on a solve; the result does not depend on it
-  PublishedSvgMppi published{};      ///< only to reproduce the program of proj-svg_mppi
+  NoiseOptions noise{};          ///< shape of the noise; white and normal
+  WeightingOptions weighting{};  ///< how costs become weights; exponentially
+  SmoothingOptions smoothing{};  ///< Savitzky-Golay filter of the solution; none
+  double control_cost_discount = 0;
+  double zero_mean_share = 0;
+  bool shift_warm_start = true;  ///< The guides move, too.
+  std::uint64_t seed = 0;
+  int threads = 1;
+  PublishedSvgMppi published{};  ///< only to reproduce the program of proj-svg_mppi
 };
 
 namespace detail {
 
 template <class Options, class Visit>
 void visit_guide_options(Options& o, Visit&& visit) {
-  visit(o.count,
-        Declaration{.name = "guides", .symbol = "K_g", .help = "guide particles", .min = 1, .max = 1024});
-  visit(o.iterations, Declaration{.name = "guide_iterations",
-                                  .symbol = "L",
-                                  .help = "number of steps by which the guides move in a solve",
-                                  .min = 1,
-                                  .max = 1000});
-  visit(o.step, Declaration{.name = "guide_step",
-                            .symbol = "epsilon",
-                            .unit = "input^2",
-                            .help = "step size; a step moves a guide by epsilon / Sigma_g of the way to the "
-                                    "weighted mean of its samples",
-                            .min = 0,
-                            .max = finite});
-  visit(o.variance, Declaration{.name = "guide_variance",
-                                .symbol = "Sigma",
-                                .unit = "input^2",
-                                .help = "variance of the initial guides, and the variance in their weights",
-                                .min = 0,
-                                .max = finite});
-  visit(o.gradient_samples, Declaration{.name = "gradient_samples",
-                                        .symbol = "N",
-                                        .help = "samples for the gradient of a guide",
-                                        .min = 1,
-                                        .max = 65536});
-  visit(o.gradient_variance, Declaration{.name = "gradient_variance",
-                                         .symbol = "Sigma_g",
-                                         .unit = "input^2",
-                                         .help = "variance of the samples for the gradient",
-                                         .min = 0,
-                                         .max = finite});
-  visit(o.gradient_temperature, Declaration{.name = "gradient_temperature",
-                                            .symbol = "lambda",
-                                            .help = "temperature of the weights of the gradient",
-                                            .min = 1e-6,
-                                            .max = finite});
-  visit(o.weight,
-        Declaration{.name = "guide_weight", .help = "how the weights of the gradient are computed"});
-  visit(
-      o.restart,
-      Declaration{
-          .name = "restart_guides",
-          .help = "all guides but the best restart in every solve, at smooth deviations from the best one"});
-  visit(o.restart_variance, Declaration{.name = "restart_variance",
-                                        .unit = "input^2",
-                                        .help = "variance of the deviations at which guides restart",
-                                        .min = 0,
-                                        .max = finite});
-  visit(
-      o.sample_around,
-      Declaration{.name = "sample_around",
-                  .help = "mean of the samples: the nominal sequence, or the last solution as in the paper"});
-  visit(o.gradient, Declaration{.name = "guide_gradient",
-                                .help = "gradient for the guides: estimated from samples, or exact if the "
-                                        "problem has derivatives"});
+  visit(o.count, {"guides", "", "guide particles", 1, 1024, "K_g"});
+  visit(o.iterations,
+        {"guide_iterations", "", "number of steps by which the guides move in a solve", 1, 1000, "L"});
+  visit(o.step,
+        {"guide_step", "input^2",
+         "step size: a step moves a guide by epsilon / Sigma_g of the way to its samples' weighted mean", 0,
+         finite, "epsilon"});
+  visit(o.variance,
+        {"guide_variance", "input^2", "variance of the initial guides, and the variance in their weights", 0,
+         finite, "Sigma"});
+  visit(o.gradient_samples, {"gradient_samples", "", "samples for the gradient of a guide", 1, 65536, "N"});
+  visit(o.gradient_variance,
+        {"gradient_variance", "input^2", "variance of the samples for the gradient", 0, finite, "Sigma_g"});
+  visit(o.gradient_temperature,
+        {"gradient_temperature", "", "temperature of the weights of the gradient", 1e-6, finite, "lambda"});
+  visit(o.weight, {"guide_weight", "", "how the weights of the gradient are computed"});
+  visit(o.restart, {"restart_guides", "",
+                    "all guides but the best restart in every solve, at smooth deviations from the best"});
+  visit(o.restart_variance,
+        {"restart_variance", "input^2", "variance of the deviations at which guides restart", 0, finite});
+  visit(o.sample_around, {"sample_around", "",
+                          "mean of the samples: the nominal sequence, or the last solution as in the paper"});
+  visit(o.gradient,
+        {"guide_gradient", "",
+         "gradient for the guides: estimated from samples, or exact if the problem has derivatives"});
 }
 
 template <class Options, class Visit>
 void visit_variance_options(Options& o, Visit&& visit) {
-  visit(o.use_nominal,
-        Declaration{.name = "use_nominal", .help = "use the best guide as the nominal sequence"});
+  visit(o.use_nominal, {"use_nominal", "", "use the best guide as the nominal sequence (NS), equation (12)"});
   visit(o.adapt_covariance,
-        Declaration{.name = "adapt_covariance", .help = "fit the variances to the path of the best guide"});
-  visit(o.variance_min, Declaration{.name = "variance_min",
-                                    .unit = "input^2",
-                                    .help = "least adapted variance",
-                                    .min = 0,
-                                    .max = finite});
-  visit(o.variance_max, Declaration{.name = "variance_max",
-                                    .unit = "input^2",
-                                    .help = "largest adapted variance",
-                                    .min = 0,
-                                    .max = finite});
+        {"adapt_covariance", "", "fit the variances to the path of the best guide (AC), equation (13)"});
+  visit(o.variance_min, {"variance_min", "input^2", "least adapted variance", 0, finite});
+  visit(o.variance_max,
+        {"variance_max", "input^2", "largest adapted variance; variance_min where it is less", 0, finite});
 }
 
 }  // namespace detail
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, SvgMppiOptions>
 void visit_options(Options& o, Visit&& visit) {

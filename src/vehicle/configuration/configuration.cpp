@@ -21,11 +21,7 @@ std::string resolved(std::string_view key, std::string_view default_section) {
   for (const Section& each : list_sections(configuration)) {
     sections += (sections.empty() ? "" : ", ") + each.name;
     section_known = section_known || each.name == section;
-    for (const OptionEntry& entry : each.options) {
-      keys.push_back(each.name + "." + entry.declaration.name);
-      if (*entry.declaration.formerly && key == each.name + "." + entry.declaration.formerly)
-        throw std::invalid_argument("key " + std::string(key) + ": is now called " + keys.back());
-    }
+    for (const OptionEntry& entry : each.options) keys.push_back(each.name + "." + entry.declaration.name);
   }
   std::string message = "key " + std::string(key) + ": unknown option";
   if (section_known)

@@ -20,12 +20,13 @@ inline const char* const* enum_names(RiskMeasure) {
 }
 
 /// Options of rollouts in several variants of the world.
+/// `visit_options` below describes the fields.
 struct RiskOptions {
-  int variants = 1;  ///< of the world, in which every sample is rolled out, 1 ... 32; 1: the problem alone
-  RiskMeasure measure = RiskMeasure::mean;  ///< what of their costs counts
-  double tail = 0.25;                       ///< measure `cvar`: share of the variants that counts
-  double aversion = 0.1;                    ///< measure `exponential`, over a unit of cost
-  std::uint64_t seed = 0;                   ///< of the variants
+  int variants = 1;
+  RiskMeasure measure = RiskMeasure::mean;
+  double tail = 0.25;
+  double aversion = 0.1;
+  std::uint64_t seed = 0;
 
   /// Whether all values are equal.
   bool operator==(const RiskOptions&) const = default;
@@ -34,28 +35,19 @@ struct RiskOptions {
 /// The most variants of a world.
 inline constexpr int max_variants = 32;
 
-/// Declares every option by name, unit, help and range.
 template <class Options, class Visit>
 requires is_options_of<Options, RiskOptions>
 void visit_options(Options& o, Visit&& visit) {
-  visit(o.variants, Declaration{.name = "risk_variants",
-                                .symbol = "M",
-                                .help = "variants of the world in which every sample is rolled out",
-                                .min = 1,
-                                .max = max_variants});
-  visit(o.measure, Declaration{.name = "risk_measure", .help = "what of a sample's costs in them counts"});
-  visit(o.tail, Declaration{.name = "risk_tail",
-                            .symbol = "alpha",
-                            .help = "risk_measure `cvar`: share of the variants, the worst, that counts",
-                            .min = 1e-3,
-                            .max = 1});
-  visit(o.aversion, Declaration{.name = "risk_aversion",
-                                .symbol = "theta",
-                                .unit = "1/cost",
-                                .help = "risk_measure `exponential`: weight of high costs",
-                                .min = 1e-6,
-                                .max = 1e6});
-  visit(o.seed, Declaration{.name = "risk_seed", .help = "seed of the variants"});
+  visit(o.variants, {"risk_variants", "",
+                     "variants of the world in which every sample is rolled out; 1: the problem alone", 1,
+                     max_variants, "M"});
+  visit(o.measure, {"risk_measure", "", "how the costs of a sample in the variants become one cost"});
+  visit(o.tail,
+        {"risk_tail", "", "risk_measure `cvar`: share of the variants, those of highest cost, that counts",
+         1e-3, 1, "alpha"});
+  visit(o.aversion,
+        {"risk_aversion", "1/cost", "risk_measure `exponential`: weight of high costs", 1e-6, 1e6, "theta"});
+  visit(o.seed, {"risk_seed", "", "seed of the variants"});
 }
 
 }  // namespace slalom

@@ -32,31 +32,27 @@ struct RoomDriver {
 };
 
 /// The conditions of a drive.
+/// `visit_options` below describes the fields.
 struct RoomConditions {
-  double timeout = 60;         ///< s
-  double period = 0.05;        ///< s, of control; scans come as often
-  double range_noise = 0.01;   ///< m, standard deviation of the scanner's ranges
-  double start_spread = 0.03;  ///< m, of the start's position along each axis, uniform, to either side
-  double start_turn = 0.1;     ///< rad, of its yaw, the same
-  double walker_spread = 0.1;  ///< of the speeds of walkers, as a share, uniform, to either side
-  double walker_pause = 1;     ///< s, by which their pauses are longer, at most, uniform
+  double timeout = 60;
+  double period = 0.05;
+  double range_noise = 0.01;
+  double start_spread = 0.03;
+  double start_turn = 0.1;
+  double walker_spread = 0.1;
+  double walker_pause = 1;
 };
 
-/// Declares the conditions above.
 template <class Options, class Visit>
 requires is_options_of<Options, RoomConditions>
 void visit_options(Options& o, Visit&& visit) {
-  const auto number = [&](auto& field, const char* name, const char* unit, const char* help, double min,
-                          double max) {
-    visit(field, Declaration{.name = name, .unit = unit, .help = help, .min = min, .max = max});
-  };
-  number(o.timeout, "timeout", "s", "time after which a drive ends", 0.001, 86400);
-  number(o.period, "period", "s", "time between two commands, and between two scans", 0.001, 1);
-  number(o.range_noise, "range_noise", "m", "standard deviation of the scanner's ranges", 0, 1);
-  number(o.start_spread, "start_spread", "m", "largest change of the start along each axis", 0, 10);
-  number(o.start_turn, "start_turn", "rad", "largest change of the start's yaw", 0, 4);
-  number(o.walker_spread, "walker_spread", "", "largest change of the walkers' speeds, as a share", 0, 0.9);
-  number(o.walker_pause, "walker_pause", "s", "longest addition to the walkers' pauses", 0, 3600);
+  visit(o.timeout, {"timeout", "s", "time after which a drive ends", 0.001, 86400});
+  visit(o.period, {"period", "s", "time between two commands, and between two scans", 0.001, 1});
+  visit(o.range_noise, {"range_noise", "m", "standard deviation of the scanner's ranges", 0, 1});
+  visit(o.start_spread, {"start_spread", "m", "largest change of the start along each axis", 0, 10});
+  visit(o.start_turn, {"start_turn", "rad", "largest change of the start's yaw", 0, 4});
+  visit(o.walker_spread, {"walker_spread", "", "largest change of the walkers' speeds, as a share", 0, 0.9});
+  visit(o.walker_pause, {"walker_pause", "s", "longest addition to the walkers' pauses", 0, 3600});
 }
 
 /// A drive.

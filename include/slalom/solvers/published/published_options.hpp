@@ -10,9 +10,10 @@
 namespace slalom {
 
 /// Of `mppi`.
+/// `visit_options` below describes the fields.
 struct PublishedMppi {
-  double inverse_variance_offset = 0;  ///< added to the inverse of every variance, 1/input^2; program: 1e-4
-  double normaliser_offset = 0;        ///< added to the sum of the weights; program: 1e-10
+  double inverse_variance_offset = 0;
+  double normaliser_offset = 0;
 };
 
 /// What the Gaussian is fitted to along a guide's path.
@@ -27,22 +28,21 @@ inline const char* const* enum_names(FitTarget) {
 }
 
 /// Of `svg_mppi`.
+/// `visit_options` below describes the fields.
 struct PublishedSvgMppi {
-  double inverse_variance_offset = 0;  ///< as in `PublishedMppi`
-  double normaliser_offset = 0;        ///< as in `PublishedMppi`
-  /// Weights of a gradient are taken relative to the best sample, so that a guide whose samples are all bad
-  /// moves too. Program: false, such a guide stands still.
+  double inverse_variance_offset = 0;
+  double normaliser_offset = 0;
+  /// Otherwise a guide (or particle) whose samples are all bad stands still.
   bool subtract_minimum = true;
-  double gradient_floor = 0;  ///< added to the sum of a gradient's weights; program: 1e-10
-  bool clamp_guides = true;   ///< keep guides within the bounds; program: false
-  FitTarget fit_target = FitTarget::optimal_density;  ///< program: state_cost
-  double fit_temperature = 0.1;                       ///< lambda of the fit to state costs
-  bool fit_all_guides = false;                        ///< pool the paths of all guides; program: true
-  /// Take the fitted Gaussian's standard deviation for its variance. Program: true, as the paper's equation
-  /// (13) can be read, though Sigma is a variance everywhere else.
+  double gradient_floor = 0;
+  bool clamp_guides = true;
+  FitTarget fit_target = FitTarget::optimal_density;
+  double fit_temperature = 0.1;
+  bool fit_all_guides = false;
+  /// The paper's equation (13) can be read so, though Sigma is a variance everywhere else.
   bool fit_standard_deviation = false;
-  /// Where the fit is convex, take the curvature's absolute value, and solve its normal equations as they are.
-  /// Program: true; otherwise such a fit determines nothing and the variance is `variance_max`.
+  /// With true the normal equations are solved as they are. Otherwise a convex fit determines nothing, and
+  /// the variance is `variance_max`.
   bool fit_absolute_curvature = false;
 };
 
@@ -59,13 +59,12 @@ inline const char* const* enum_names(RejectionModel) {
 }
 
 /// Of `reverse_mppi`.
+/// `visit_options` below describes the fields.
 struct PublishedReverseMppi {
-  double inverse_variance_offset = 0;                 ///< as in `PublishedMppi`
-  double normaliser_offset = 0;                       ///< as in `PublishedMppi`
-  RejectionModel rejection = RejectionModel::normal;  ///< program: published
-  /// Measure second moments in units of the present variance, but use them as variances all the same.
-  /// Program: true, so that every variance is drawn towards 1.
-  bool dimensionless_variance = false;
+  double inverse_variance_offset = 0;
+  double normaliser_offset = 0;
+  RejectionModel rejection = RejectionModel::normal;
+  bool dimensionless_variance = false;  ///< With true every variance is drawn towards 1.
 };
 
 /// What the bandwidth of the kernel between the particles of `sv_mpc` is taken from.
@@ -80,24 +79,20 @@ inline const char* const* enum_names(BandwidthModel) {
 }
 
 /// Of `sv_mpc`.
+/// `visit_options` below describes the fields.
 struct PublishedSvMpc {
-  double inverse_variance_offset = 0;  ///< as in `PublishedMppi`
-  double normaliser_offset = 0;        ///< as in `PublishedMppi`
-  /// Add the control term of the weights to the costs in a gradient. Program: true, though the prior has its
-  /// own gradient.
+  double inverse_variance_offset = 0;
+  double normaliser_offset = 0;
   bool gradient_control_term = false;
-  BandwidthModel bandwidth = BandwidthModel::pair_distances;  ///< program: squared_norms
-  /// Gradient of the log prior with the inverse of the inverse variance and the wrong sign. Program: true.
+  BandwidthModel bandwidth = BandwidthModel::pair_distances;
   bool inverted_prior = false;
-  bool subtract_minimum = true;  ///< as in `PublishedSvgMppi`; program: false
-  double gradient_floor = 0;     ///< as in `PublishedSvgMppi`; program: 1e-10
-  bool clamp_particles = true;   ///< keep particles within the bounds; program: false
-  /// Keep the sequence that is returned within the bounds. Program: false; then it may leave them as far as
-  /// the particles do, and `Solver::keeps_bounds` is false.
+  /// Otherwise a guide (or particle) whose samples are all bad stands still.
+  bool subtract_minimum = true;
+  double gradient_floor = 0;
+  bool clamp_particles = true;
+  /// If false, the sequence may leave the bounds as far as the particles do: `Solver::keeps_bounds` is false.
   bool clamp_solution = true;
-  /// Measure the prior's new variances in units of the old, but use them as variances all the same. Program:
-  /// true.
-  bool dimensionless_variance = false;
+  bool dimensionless_variance = false;  ///< With true every variance is drawn towards 1.
 };
 
 namespace detail {
@@ -105,109 +100,80 @@ namespace detail {
 template <class Published, class Visit>
 void visit_published_offsets(Published& p, Visit&& visit) {
   visit(p.inverse_variance_offset,
-        Declaration{.name = "inverse_variance_offset",
-                    .unit = "1/input^2",
-                    .help = "added to the inverse of every variance; paper's program: 1e-4",
-                    .min = 0,
-                    .max = 1e12});
+        {"inverse_variance_offset", "1/input^2",
+         "added to the inverse of every variance; paper's program: 1e-4", 0, 1e12});
   visit(p.normaliser_offset,
-        Declaration{.name = "normaliser_offset",
-                    .help = "added to the sum of the weights before dividing by it; paper's program: 1e-10",
-                    .min = 0,
-                    .max = 1});
+        {"normaliser_offset", "",
+         "added to the sum of the weights before dividing by it; paper's program: 1e-10", 0, 1});
 }
 
 template <class Published, class Visit>
 void visit_published_gradient(Published& p, Visit&& visit) {
   visit(p.subtract_minimum,
-        Declaration{
-            .name = "subtract_minimum",
-            .help = "compute the weights of a gradient relative to its best sample; paper's program: false"});
+        {"subtract_minimum", "",
+         "compute the weights of a gradient relative to its best sample; paper's program: false"});
   visit(p.gradient_floor,
-        Declaration{.name = "gradient_floor",
-                    .help = "added to the sum of a gradient's weights; paper's program: 1e-10",
-                    .min = 0,
-                    .max = 1});
+        {"gradient_floor", "", "added to the sum of a gradient's weights; paper's program: 1e-10", 0, 1});
 }
 
 template <class Published, class Visit>
 void visit_published_variance(Published& p, Visit&& visit) {
-  visit(p.dimensionless_variance,
-        Declaration{.name = "dimensionless_variance",
-                    .help = "compute new variances relative to the old ones; paper's program: true"});
+  visit(p.dimensionless_variance, {"dimensionless_variance", "",
+                                   "compute new variances relative to the old ones; paper's program: true"});
 }
 
 }  // namespace detail
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, PublishedMppi>
 void visit_options(Options& p, Visit&& visit) {
   detail::visit_published_offsets(p, visit);
 }
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, PublishedSvgMppi>
 void visit_options(Options& p, Visit&& visit) {
   detail::visit_published_offsets(p, visit);
   detail::visit_published_gradient(p, visit);
-  visit(p.clamp_guides,
-        Declaration{.name = "clamp_guides", .help = "keep guides within the bounds; paper's program: false"});
-  visit(p.fit_target, Declaration{.name = "fit_target",
-                                  .symbol = "q*",
-                                  .help = "what the Gaussian is fitted to; paper's program: state_cost"});
-  visit(p.fit_temperature, Declaration{.name = "fit_temperature",
-                                       .symbol = "lambda",
-                                       .help = "temperature of the fit to state costs",
-                                       .min = 1e-6,
-                                       .max = 1e12});
+  visit(p.clamp_guides, {"clamp_guides", "", "keep guides within the bounds; paper's program: false"});
+  visit(p.fit_target, {"fit_target", "", "target of the Gaussian's fit; paper's program: state_cost",
+                       -no_limit, no_limit, "q*"});
+  visit(p.fit_temperature,
+        {"fit_temperature", "", "temperature of the fit to state costs", 1e-6, 1e12, "lambda"});
   visit(p.fit_all_guides,
-        Declaration{.name = "fit_all_guides",
-                    .help = "fit to the paths of all guides together; paper's program: true"});
+        {"fit_all_guides", "", "fit to the paths of all guides together; paper's program: true"});
   visit(p.fit_standard_deviation,
-        Declaration{.name = "fit_standard_deviation",
-                    .help = "use the fitted standard deviation as the variance; paper's program: true"});
-  visit(
-      p.fit_absolute_curvature,
-      Declaration{.name = "fit_absolute_curvature",
-                  .help = "treat convex fits as concave ones of the same curvature; paper's program: true"});
+        {"fit_standard_deviation", "",
+         "use the fitted standard deviation as the variance; paper's program: true"});
+  visit(p.fit_absolute_curvature,
+        {"fit_absolute_curvature", "",
+         "treat convex fits as concave ones of the same curvature; paper's program: true"});
 }
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, PublishedReverseMppi>
 void visit_options(Options& p, Visit&& visit) {
   detail::visit_published_offsets(p, visit);
-  visit(p.rejection, Declaration{.name = "rejection",
-                                 .help = "densities used to reject samples; paper's program: published"});
+  visit(p.rejection, {"rejection", "", "densities used to reject samples; paper's program: published"});
   detail::visit_published_variance(p, visit);
 }
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, PublishedSvMpc>
 void visit_options(Options& p, Visit&& visit) {
   detail::visit_published_offsets(p, visit);
   detail::visit_published_gradient(p, visit);
-  visit(
-      p.gradient_control_term,
-      Declaration{
-          .name = "gradient_control_term",
-          .help = "include the control term in gradients, in addition to the prior; paper's program: true"});
-  visit(p.bandwidth,
-        Declaration{
-            .name = "bandwidth",
-            .symbol = "h",
-            .help = "values from which the kernel's bandwidth is computed; paper's program: squared_norms"});
+  visit(p.gradient_control_term,
+        {"gradient_control_term", "",
+         "include the control term in gradients, in addition to the prior; paper's program: true"});
+  visit(p.bandwidth, {"bandwidth", "", "source of the kernel's bandwidth; paper's program: squared_norms",
+                      -no_limit, no_limit, "h"});
   visit(p.inverted_prior,
-        Declaration{.name = "inverted_prior",
-                    .help = "gradient of the prior with wrong sign and scale; paper's program: true"});
-  visit(p.clamp_particles, Declaration{.name = "clamp_particles",
-                                       .help = "keep particles within the bounds; paper's program: false"});
+        {"inverted_prior", "", "gradient of the prior with wrong sign and scale; paper's program: true"});
+  visit(p.clamp_particles,
+        {"clamp_particles", "", "keep particles within the bounds; paper's program: false"});
   visit(p.clamp_solution,
-        Declaration{.name = "clamp_solution",
-                    .help = "keep the returned sequence within the bounds; paper's program: false"});
+        {"clamp_solution", "", "keep the returned sequence within the bounds; paper's program: false"});
   detail::visit_published_variance(p, visit);
 }
 

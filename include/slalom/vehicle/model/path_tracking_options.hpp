@@ -28,49 +28,52 @@ inline const char* const* enum_names(BodyModel) {
 }
 
 /// The car's body and the clearance that it keeps from obstacles.
+/// `visit_body` below describes the fields.
 struct BodyOptions {
-  BodyModel model = BodyModel::discs;  ///< how the body is checked for collisions
-  double front = 0.461;                ///< m, reach ahead of the rear axle
-  double rear = 0.119;                 ///< m, reach behind the rear axle
-  double width = 0.31;                 ///< m
-  double margin = 0.04;                ///< m, clearance below which a state collides
-  double soft_margin = 0.1;            ///< m, clearance beyond `margin` in which nearness has a cost
-  double soft_cost = 10;  ///< cost map value of a state that almost collides; with discs it falls off as
-                          ///< the square of the clearance, with a box it is constant
+  BodyModel model = BodyModel::discs;
+  double front = 0.461;
+  double rear = 0.119;
+  double width = 0.31;
+  double margin = 0.04;
+  double soft_margin = 0.1;
+  /// With discs it falls off as the square of the clearance, with a box it is constant.
+  double soft_cost = 10;
 };
 
 /// Weights of the cost of a state (see PathTracking).
+/// `visit_tracking_cost` below describes the fields.
 struct TrackingCostOptions {
-  double distance_weight = 1;           ///< 1/m^2
-  double yaw_weight = 0.01;             ///< 1/rad^2
-  double terminal_distance_weight = 1;  ///< 1/m^2, at the last state
-  double terminal_yaw_weight = 0.01;    ///< 1/rad^2, at the last state
-  double speed_weight = 1;      ///< of models with acceleration: s^2/m^2; with `single_track` per lost step
-  double collision_weight = 1;  ///< factor of the cost map's values; 100 is occupied
-  double outside_cost = 100;    ///< cost map value off the local map
-  double outside_terminal_cost = 100;  ///< cost map value off the local map, at the last state
+  double distance_weight = 1;
+  double yaw_weight = 0.01;
+  double terminal_distance_weight = 1;
+  double terminal_yaw_weight = 0.01;
+  double speed_weight = 1;
+  double collision_weight = 1;
+  double outside_cost = 100;
+  double outside_terminal_cost = 100;
 };
 
 /// Options of the vehicle problem that every vehicle model shares.
+/// `visit_options` below describes the fields.
 struct PathTrackingOptions {
-  double time_step = 0.05;                   ///< s, of the prediction
-  double front_length = 0.15875;             ///< m, l_f: centre of gravity to front axle
-  double rear_length = 0.17145;              ///< m, l_r: centre of gravity to rear axle
-  double steer_time_constant = 0.1;          ///< s, of the first-order lag of the steering
-  double dead_time = 0.025;                  ///< s, from a command to its first effect on the steering
-  SpeedModel speed = SpeedModel::reference;  ///< of models whose only input is the steering
-  double reference_speed = 1.5;              ///< m/s, where no speed profile is used
-  double max_acceleration = 5;               ///< m/s^2, of the predicted speed, >= 0
-  double max_deceleration = 3;               ///< m/s^2, of the predicted speed, >= 0
-  bool limit_acceleration = true;  ///< with `SpeedModel::reference`: whether the predicted speed keeps to the
-                                   ///< two limits; if not, it is at once that of the reference field
-  /// Models the dead time in the rollout: in its first ceil(dead_time / time_step) + 1 steps the sequence's
-  /// first input acts, and commands sent before are not known. Otherwise the planner predicts the start by
-  /// the dead time, with the commands sent, and the rollout has no dead time.
+  double time_step = 0.05;
+  double front_length = 0.15875;
+  double rear_length = 0.17145;
+  double steer_time_constant = 0.1;
+  double dead_time = 0.025;
+  SpeedModel speed = SpeedModel::reference;
+  double reference_speed = 1.5;
+  double max_acceleration = 5;
+  double max_deceleration = 3;
+  /// Only with `SpeedModel::reference`. If false, the predicted speed is at once that of the reference field.
+  bool limit_acceleration = true;
+  /// In the first ceil(dead_time / time_step) + 1 steps of a rollout the sequence's first input acts, and
+  /// commands sent before are not known. Otherwise the planner predicts the start by the dead time, with the
+  /// commands sent, and the rollout has no dead time.
   bool hold_first_input = false;
-  bool localisation_less = false;  ///< drive by the cost map alone, without pose or path
-  TrackingCostOptions cost;        ///< weights of the cost
-  BodyOptions body;                ///< dimensions of the body
+  bool localisation_less = false;
+  TrackingCostOptions cost;  ///< weights of the cost
+  BodyOptions body;          ///< dimensions of the body
 
   /// Wheelbase, m.
   double wheelbase() const noexcept { return front_length + rear_length; }
@@ -80,124 +83,58 @@ namespace detail {
 
 template <class Options, class Visit>
 void visit_tracking_cost(Options& o, Visit&& visit) {
-  visit(o.distance_weight, Declaration{.name = "distance_weight",
-                                       .help = "weight of the squared distance to the path, 1/m^2",
-                                       .min = 0});
-  visit(o.yaw_weight,
-        Declaration{.name = "yaw_weight", .help = "weight of the squared yaw error, 1/rad^2", .min = 0});
-  visit(o.terminal_distance_weight, Declaration{.name = "terminal_distance_weight",
-                                                .help = "distance_weight of the last state, 1/m^2",
-                                                .min = 0});
-  visit(
-      o.terminal_yaw_weight,
-      Declaration{.name = "terminal_yaw_weight", .help = "yaw_weight of the last state, 1/rad^2", .min = 0});
-  visit(o.speed_weight,
-        Declaration{.name = "speed_weight",
-                    .help = "where the acceleration is an input: weight of the squared speed below the "
-                            "path's, s^2/m^2; with model `single_track`, of the share of a step that is lost",
-                    .min = 0});
-  visit(o.collision_weight, Declaration{.name = "collision_weight",
-                                        .help = "factor of the cost map's value, which is 100 where occupied",
-                                        .min = 0});
-  visit(o.outside_cost,
-        Declaration{.name = "outside_cost", .help = "cost map value off the local map", .min = 0});
-  visit(o.outside_terminal_cost,
-        Declaration{.name = "outside_terminal_cost", .help = "outside_cost of the last state", .min = 0});
+  visit(o.distance_weight, {"distance_weight", "", "weight of the squared distance to the path, 1/m^2", 0});
+  visit(o.yaw_weight, {"yaw_weight", "", "weight of the squared yaw error, 1/rad^2", 0});
+  visit(o.terminal_distance_weight,
+        {"terminal_distance_weight", "", "distance_weight of the last state, 1/m^2", 0});
+  visit(o.terminal_yaw_weight, {"terminal_yaw_weight", "", "yaw_weight of the last state, 1/rad^2", 0});
+  visit(o.speed_weight, {"speed_weight", "",
+                         "acceleration as an input: weight of the squared speed below the path's, s^2/m^2; "
+                         "model `single_track`: of the share of a step that is lost",
+                         0});
+  visit(o.collision_weight,
+        {"collision_weight", "", "factor of the cost map's value, which is 100 where occupied", 0});
+  visit(o.outside_cost, {"outside_cost", "", "cost map value off the local map", 0});
+  visit(o.outside_terminal_cost, {"outside_terminal_cost", "", "outside_cost of the last state", 0});
 }
 
 template <class Options, class Visit>
 void visit_body(Options& o, Visit&& visit) {
-  visit(o.model, Declaration{.name = "body", .help = "how the body is checked for collisions"});
-  visit(o.front, Declaration{.name = "body_front",
-                             .unit = "m",
-                             .help = "reach of the body ahead of the rear axle",
-                             .min = 0,
-                             .max = 10});
-  visit(o.rear, Declaration{.name = "body_rear",
-                            .unit = "m",
-                            .help = "reach of the body behind the rear axle",
-                            .min = 0,
-                            .max = 10});
-  visit(o.width,
-        Declaration{.name = "body_width", .unit = "m", .help = "width of the body", .min = 0.01, .max = 10});
-  visit(o.margin, Declaration{.name = "body_margin",
-                              .unit = "m",
-                              .help = "clearance below which a state collides",
-                              .min = 0,
-                              .max = 1});
-  visit(o.soft_margin, Declaration{.name = "soft_margin",
-                                   .unit = "m",
-                                   .help = "clearance beyond body_margin in which nearness has a cost",
-                                   .min = 0,
-                                   .max = 1});
-  visit(o.soft_cost, Declaration{.name = "soft_cost",
-                                 .help = "cost map value of a state that almost collides",
-                                 .min = 0,
-                                 .max = 100});
+  visit(o.model, {"body", "", "how the body is checked for collisions"});
+  visit(o.front, {"body_front", "m", "reach of the body ahead of the rear axle", 0, 10});
+  visit(o.rear, {"body_rear", "m", "reach of the body behind the rear axle", 0, 10});
+  visit(o.width, {"body_width", "m", "width of the body", 0.01, 10});
+  visit(o.margin, {"body_margin", "m", "clearance below which a state collides", 0, 1});
+  visit(o.soft_margin,
+        {"soft_margin", "m", "clearance beyond body_margin in which nearness has a cost", 0, 1});
+  visit(o.soft_cost, {"soft_cost", "", "cost map value of a state that almost collides", 0, 100});
 }
 
 }  // namespace detail
 
-/// Declares every option by name, unit, help and range.
 template <class Options, class Visit>
 requires is_options_of<Options, PathTrackingOptions>
 void visit_options(Options& o, Visit&& visit) {
-  visit(o.time_step, Declaration{.name = "time_step",
-                                 .symbol = "Delta tau",
-                                 .unit = "s",
-                                 .help = "step of the prediction",
-                                 .min = 1e-3,
-                                 .max = 1});
-  visit(o.front_length, Declaration{.name = "front_length",
-                                    .symbol = "l_f",
-                                    .unit = "m",
-                                    .help = "centre of gravity to front axle",
-                                    .min = 1e-3,
-                                    .max = 10});
-  visit(o.rear_length, Declaration{.name = "rear_length",
-                                   .symbol = "l_r",
-                                   .unit = "m",
-                                   .help = "centre of gravity to rear axle",
-                                   .min = 1e-3,
-                                   .max = 10});
-  visit(o.steer_time_constant, Declaration{.name = "steer_time_constant",
-                                           .symbol = "tau",
-                                           .unit = "s",
-                                           .help = "first-order lag of the steering",
-                                           .min = 1e-3,
-                                           .max = 10});
-  visit(o.dead_time, Declaration{.name = "dead_time",
-                                 .unit = "s",
-                                 .help = "from a command to its first effect on the steering",
-                                 .min = 0,
-                                 .max = 1});
+  visit(o.time_step, {"time_step", "s", "step of the prediction", 1e-3, 1, "Delta tau"});
+  visit(o.front_length,
+        {"front_length", "m", "distance from the centre of gravity to the front axle", 1e-3, 10, "l_f"});
+  visit(o.rear_length,
+        {"rear_length", "m", "distance from the centre of gravity to the rear axle", 1e-3, 10, "l_r"});
+  visit(o.steer_time_constant,
+        {"steer_time_constant", "s", "time constant of the steering's first-order lag", 1e-3, 10, "tau"});
+  visit(o.dead_time, {"dead_time", "s", "time from a command to its first effect on the steering", 0, 1});
   visit(o.speed,
-        Declaration{
-            .name = "speed",
-            .help = "how a model whose only input is the steering predicts the speed of the next step"});
-  visit(o.reference_speed, Declaration{.name = "reference_speed",
-                                       .unit = "m/s",
-                                       .help = "where no speed profile is used",
-                                       .min = 0,
-                                       .max = 100});
-  visit(o.max_acceleration, Declaration{.name = "max_acceleration",
-                                        .unit = "m/s^2",
-                                        .help = "of the predicted speed",
-                                        .min = 0,
-                                        .max = 100});
-  visit(o.max_deceleration, Declaration{.name = "max_deceleration",
-                                        .unit = "m/s^2",
-                                        .help = "of the predicted speed",
-                                        .min = 0,
-                                        .max = 100});
+        {"speed", "", "how a model whose only input is the steering predicts the speed of the next step"});
+  visit(o.reference_speed, {"reference_speed", "m/s", "speed where no speed profile is used", 0, 100});
+  visit(o.max_acceleration,
+        {"max_acceleration", "m/s^2", "largest acceleration of the predicted speed", 0, 100});
+  visit(o.max_deceleration,
+        {"max_deceleration", "m/s^2", "largest deceleration of the predicted speed", 0, 100});
   visit(o.limit_acceleration,
-        Declaration{.name = "limit_acceleration",
-                    .help = "the predicted speed keeps to max_acceleration and max_deceleration"});
+        {"limit_acceleration", "", "the predicted speed keeps to max_acceleration and max_deceleration"});
   visit(o.hold_first_input,
-        Declaration{.name = "hold_first_input",
-                    .help = "model the dead time as steps in which the sequence's first input acts"});
-  visit(o.localisation_less, Declaration{.name = "localisation_less",
-                                         .help = "drive by the cost map alone, without pose or path"});
+        {"hold_first_input", "", "model the dead time as steps in which the sequence's first input acts"});
+  visit(o.localisation_less, {"localisation_less", "", "drive by the cost map alone, without pose or path"});
   detail::visit_tracking_cost(o.cost, visit);
   detail::visit_body(o.body, visit);
 }

@@ -20,8 +20,9 @@ inline const char* const* enum_names(VehicleModelId) {
 VehicleModelId vehicle_model(std::string_view name);
 
 /// The options of the car: which model it has, the options that all models share, and each model's own.
+/// `visit_options` below describes the fields.
 struct VehicleOptions : PathTrackingOptions {
-  VehicleModelId model{};      ///< how the car moves, and what its inputs are
+  VehicleModelId model{};
   VehicleModels::Options own;  ///< each model's own options
   RiskOptions risk;            ///< of rollouts in several variants of the world, for models that have them
 
@@ -42,7 +43,7 @@ template <class Options, class Visit>
 requires is_options_of<Options, VehicleOptions>
 void visit_options(Options& o, Visit&& visit) {
   using Shared = std::conditional_t<std::is_const_v<Options>, const PathTrackingOptions, PathTrackingOptions>;
-  visit(o.model, Declaration{.name = "model", .help = "how the car moves, and what its inputs are"});
+  visit(o.model, {"model", "", "how the car moves, and what its inputs are"});
   visit_options(static_cast<Shared&>(o), visit);
   visit_options(o.risk, visit);
   std::apply([&](auto&... own) { (visit_options(own, visit), ...); }, o.own);

@@ -20,13 +20,11 @@ inline const char* const* enum_names(BicycleModel) {
 }
 
 /// Options of `vehicle.model: published` besides those of every model. The defaults are the correct forms.
+/// `visit_options` below describes the fields.
 struct ModelOptions {
-  BicycleModel bicycle = BicycleModel::rear_axle;  ///< reference point and yaw gain of the bicycle
-  bool exact_lag = true;  ///< published: false, the lag of the steering by explicit Euler
-  /// Published: true. Collisions are looked up along a second rollout in the robot's frame that starts with
-  /// the wheels straight, whatever their angle.
+  BicycleModel bicycle = BicycleModel::rear_axle;
+  bool exact_lag = true;
   bool straight_local_rollout = false;
-  /// Published: true. With SpeedModel::linear a car that is too fast accelerates.
   bool linear_sign_error = false;
 
   /// Whether all values are equal.
@@ -41,22 +39,17 @@ struct ModelOptions {
   }
 };
 
-/// Declares the options above.
 template <class Options, class Visit>
 requires is_options_of<Options, ModelOptions>
 void visit_options(Options& o, Visit&& visit) {
-  visit(o.bicycle, Declaration{.name = "bicycle",
-                               .help = "model `published`: reference point and yaw gain of the bicycle"});
+  visit(o.bicycle, {"bicycle", "", "model `published`: reference point and yaw gain of the bicycle"});
   visit(o.exact_lag,
-        Declaration{.name = "exact_lag",
-                    .help = "model `published`: steering lag discretised exactly, not by explicit Euler"});
+        {"exact_lag", "", "model `published`: steering lag discretised exactly, not by explicit Euler"});
   visit(o.straight_local_rollout,
-        Declaration{.name = "straight_local_rollout",
-                    .help = "model `published`: collisions along a second rollout that starts with straight "
-                            "wheels"});
-  visit(o.linear_sign_error,
-        Declaration{.name = "linear_sign_error",
-                    .help = "model `published`: with `speed: linear` a car that is too fast accelerates"});
+        {"straight_local_rollout", "",
+         "model `published`: collisions along a second rollout that starts with straight wheels"});
+  visit(o.linear_sign_error, {"linear_sign_error", "",
+                              "model `published`: with `speed: linear` a car that is too fast accelerates"});
 }
 
 }  // namespace slalom::vehicle::published
