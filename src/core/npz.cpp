@@ -55,7 +55,7 @@ std::uint32_t checksum(std::string_view bytes) {
   return ~crc;
 }
 
-/// What follows a key in the header of an array, a Python dictionary of fixed form.
+/// Returns the text that follows a key in the header of an array, a Python dictionary of fixed form.
 std::string_view entry(const Bytes& bytes, std::string_view header, const std::string& key) {
   const std::string quoted = "'" + key + "':";
   const std::size_t at = header.find(quoted);
@@ -140,7 +140,7 @@ NpyArray read_array(const Bytes& bytes) {
   return array;
 }
 
-/// Where the directory of a ZIP archive begins, and how many files it lists.
+/// Finds the start of the directory of a ZIP archive, and the number of files that it lists.
 std::pair<std::uint64_t, int> find_directory(const Bytes& zip) {
   constexpr std::uint64_t size = 22;  // of the record at the end, which numpy writes without a comment
   zip.require(zip.size() >= size && zip.number(zip.size() - size, 4) == 0x06054b50,

@@ -28,13 +28,13 @@ GridGeometry geometry_of(std::span<const ReferencePoint> path, const CourseField
 
 /// A stretch between two points of the path.
 struct Segment {
-  double x, y;            ///< its start, m
+  double x, y;            ///< start of the segment, m
   double dx, dy;          ///< to its end, m
   double inverse_square;  ///< 1 / length^2, 0 for coincident ends
   double yaw, turn;       ///< direction at the start, change to the end; rad
   double speed, gain;     ///< at the start, change to the end; m/s
 
-  /// Where on the segment, 0 .. 1, the point nearest to a position lies.
+  /// The place on the segment, 0 .. 1, of the point nearest to a position.
   double nearest(double px, double py) const {
     return std::clamp(((px - x) * dx + (py - y) * dy) * inverse_square, 0.0, 1.0);
   }

@@ -14,8 +14,9 @@ namespace {
 /// Larger than any distance in cells, small enough to be counted up from.
 constexpr std::int32_t far = 1 << 29;
 
-/// Where the parabola of (q, fq) goes below that of (v, fv), v < q. Both operands are integers below 2^53,
-/// and two different results are further apart than their rounding, so that comparing with integers is exact.
+/// The place where the parabola of (q, fq) goes below that of (v, fv), v < q. Both operands are integers
+/// below 2^53, and two different results are further apart than their rounding, so that comparing with
+/// integers is exact.
 double intersection(std::int64_t v, std::int64_t fv, std::int64_t q, std::int64_t fq) {
   return static_cast<double>((fq + q * q) - (fv + v * v)) / static_cast<double>(2 * (q - v));
 }

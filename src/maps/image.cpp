@@ -100,7 +100,7 @@ GreyImage read_pgm(const std::filesystem::path& path) {
     if (value > largest) reader.fail("a pixel must be at most " + std::to_string(largest));
     grey = static_cast<std::uint8_t>((value * 255 + largest / 2) / largest);
   }
-  // Of another size than its header says, it would be a map with every row out of place.
+  // A size other than that of the header would give a map with every row out of place.
   if (!reader.at_end(text)) {
     reader.fail("the PGM holds more than the " + std::to_string(width) + " x " + std::to_string(height) +
                 " pixels of its header");

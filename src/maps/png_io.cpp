@@ -20,8 +20,8 @@ struct Closer {
 };
 using File = std::unique_ptr<std::FILE, Closer>;
 
-/// What libpng's handlers and the guarded functions below share. They may hold no object with a destructor of
-/// their own, because libpng leaves them by longjmp.
+/// Data that libpng's handlers and the guarded functions below share. They may hold no object with a
+/// destructor of their own, because libpng leaves them by longjmp.
 struct Session {
   png_structp png = nullptr;
   png_infop info = nullptr;

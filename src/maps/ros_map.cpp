@@ -19,7 +19,7 @@ namespace {
 
 enum class Mode { trinary, scale, raw };
 
-/// What the yaml file says.
+/// The contents of the yaml file.
 struct Header {
   std::string image;
   double resolution = 0;

@@ -13,7 +13,7 @@ class ClosedPlaces {
  public:
   bool has_dead_ends() const noexcept { return dead_ends_ > 0; }
   void forget_dead_ends() noexcept { dead_ends_ = 0; }
-  /// Of many dead ends the last four count.
+  /// Adds a dead end; the last four count.
   void add_dead_end(const maps::Point& middle) noexcept {
     if (dead_ends_ == max_dead_ends) {
       std::copy(places_.begin() + 1, places_.begin() + max_dead_ends, places_.begin());

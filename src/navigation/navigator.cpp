@@ -87,7 +87,7 @@ class Navigator::Implementation {
   PathPlanner planner_;
   detail::Others others_;
   NavigationMaps maps_;
-  std::vector<maps::Point> points_;  ///< of a path that is being made
+  std::vector<maps::Point> points_;  ///< points of a path that is being made
   std::vector<maps::Pose> chosen_;   ///< the last detour, which later searches prefer
   detail::ClosedPlaces closed_;
   double detour_left_ = std::numeric_limits<double>::infinity();  ///< m of path left where the detour ends

@@ -30,7 +30,7 @@ maps::MovingObstacleOptions options_of(const Footprint& footprint, const Navigat
   return made;
 }
 
-/// The same for the bodies alone.
+/// The options for the bodies alone.
 maps::MovingObstacleOptions without_margins(maps::MovingObstacleOptions options) {
   options.margin = options.soft_margin = options.deviations = 0;
   return options;

@@ -10,7 +10,7 @@
 
 namespace slalom::navigation::detail {
 
-/// What moves around the robot, over the steps of a plan.
+/// The moving obstacles around the robot, over the steps of a plan.
 class Others {
  public:
   /// For plans of so many steps.
@@ -26,13 +26,13 @@ class Others {
     bodies_.clear();
   }
 
-  /// What rollouts see of them, map frame.
+  /// The obstacles as rollouts see them, map frame.
   maps::MovingObstaclesView view() const noexcept { return obstacles_.view(); }
   /// Whether one of them is so near that the robot may have to wait for it.
   bool are_near(const maps::Point& robot) const noexcept;
-  /// Where a robot that follows a path, with its points `step` (m) apart, meets one of them who comes towards
-  /// it or goes ahead of it, and the room that passing there takes. Those who cross the path are left to the
-  /// plans: they are gone soon.
+  /// Finds the place where a robot that follows a path, with its points `step` (m) apart, meets an object
+  /// that comes towards it or goes ahead of it, and the room that passing there takes. Objects that cross the
+  /// path are left to the plans: they are gone soon.
   std::optional<ClosedPlace> meeting(std::span<const maps::Pose> path, double step) const noexcept;
   /// Whether a pose of the plan meets one of them, up to the one with this index: comes into their margins,
   /// or collides with them. A robot that is within the margins may leave them, and one that collides may move
@@ -43,8 +43,8 @@ class Others {
   double time_step_;                 ///< s
   double speed_;                     ///< m/s, at which the robot follows paths
   double half_width_;                ///< m, of the robot, with the margin
-  maps::MovingObstacles obstacles_;  ///< with margins and deviations
-  maps::MovingObstacles bodies_;     ///< the same without
+  maps::MovingObstacles obstacles_;  ///< obstacles with margins and deviations
+  maps::MovingObstacles bodies_;     ///< obstacles without them
 };
 
 }  // namespace slalom::navigation::detail

@@ -9,7 +9,7 @@
 
 namespace slalom::navigation::detail {
 
-/// Where the path ahead is open, as far as a costmap and the closed places tell. Refers to its arguments.
+/// The open part of the path ahead, as far as a costmap and the closed places tell. Refers to its arguments.
 class PathAhead {
  public:
   static constexpr double min_rejoin = 0.5;  ///< m of path with room that a detour needs where it ends

@@ -51,7 +51,7 @@ class PathGuide {
   std::vector<maps::Pose> path_;
   double step_ = spacing;
   std::size_t nearest_ = 0;
-  maps::ReferenceField field_;  ///< of the window, with indices into it in the place of speeds
+  maps::ReferenceField field_;  ///< field of the window, with indices into it in the place of speeds
   maps::CellGrid<4> cells_;
   std::vector<maps::ReferencePoint> window_;
 };

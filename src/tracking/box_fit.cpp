@@ -123,7 +123,7 @@ void measure_box(const BoxPrior& prior, const Readings& scan, std::span<const Re
              last_ends = scan.ends_at(readings.back().beam, 1, min_incidence, deviation);
   const maps::Point sensor{scan.sensor().x, scan.sensor().y};
   const double view[2] = {along(sensor), across(sensor)};
-  // Where nothing but its outline ends, an object reaches half a beam farther than its last reading.
+  // An object whose outline ends with nothing beside it reaches half a beam farther than its last reading.
   const double beam = 0.5 * readings[count / 2].range * scan.increment();
   for (int axis = 0; axis < 2; ++axis) {
     End low = axis == 0 ? find_end(count, 1, deviation, a, b, first_ends, last_ends)
@@ -137,7 +137,7 @@ void measure_box(const BoxPrior& prior, const Readings& scan, std::span<const Re
     const double reading = deviation * deviation / 2 + beam * beam / 3 + 1e-4;  // of an end
     const double anchored = reading + 0.25 * prior.size_deviation * prior.size_deviation;
     const bool both = low.in_view && high.in_view;
-    // Of a box to one side of the sensor the near end counts alone: the far one is hidden.
+    // If the box is to one side of the sensor, its near end counts alone: the far one is hidden.
     const bool from_low = view[axis] + half<0, from_high = view[axis] - half> 0;
     if (low.in_view && (from_low || (!high.in_view && !from_high))) {
       m = {low.at + half, anchored, 0};

@@ -17,9 +17,9 @@ struct BoxFit {
 /// algorithm 2 with the criterion of algorithm 4. At least two readings; `deviation` is that of a range (m).
 BoxFit fit_box(std::span<const Reading> readings, double deviation) noexcept;
 
-/// What is known of a box: its axes, the expected size, and how far the readings support the ends of it.
+/// The prior of a box: its axes, the expected size, and how far the readings support its ends.
 struct BoxPrior {
-  maps::Pose pose;            ///< of the middle, as predicted
+  maps::Pose pose;            ///< predicted pose of the middle
   double size[2] = {};        ///< m, length and width
   double size_deviation = 0;  ///< m, of both
 };

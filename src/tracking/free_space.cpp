@@ -18,7 +18,7 @@ struct Sight {
   bool there = false;    ///< a beam ended at the place
 };
 
-/// What a scan saw at a place. Free space must be seen all about it: at the horizon of a curved wall the
+/// Classifies a place by a scan. Free space must be seen all about it: at the horizon of a curved wall the
 /// beams beside a reading go on behind it.
 Sight sight(const Readings& scan, const maps::Point& place, double margin) noexcept {
   const maps::Point at = maps::inverse_transform(scan.sensor(), place);

@@ -8,8 +8,9 @@
 
 namespace slalom::tracking {
 
-/// What moves between scans, without a map. Some earlier scans are kept. A reading has entered free space if
-/// an earlier scan saw through its place; an earlier reading has left if the present scan sees through its.
+/// Finds motion between scans, without a map. Some earlier scans are kept. A reading has entered free space
+/// if an earlier scan saw through its place; an earlier reading has left if the present scan sees through
+/// its.
 class FreeSpace {
  public:
   /// Keeps scans of at most `max_beams`.
@@ -32,14 +33,14 @@ class FreeSpace {
     double stamp = 0;
     Readings scan;
   };
-  static constexpr int scans = 7;             ///< that are kept
+  static constexpr int scans = 7;             ///< scans that are kept
   static constexpr double spacing = 0.1;      ///< s between them
   static constexpr int compared[2] = {1, 5};  ///< scans back from the last one that was kept
   const Past* past(int back) const noexcept;
 
   std::vector<Past> past_;
   int kept_ = 0, last_ = 0;
-  maps::Pose here_;  ///< of the sensor in the present scan
+  maps::Pose here_;  ///< pose of the sensor in the present scan
   std::vector<maps::Point> left_;
   std::size_t left_count_ = 0;
 };

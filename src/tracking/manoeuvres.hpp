@@ -9,7 +9,7 @@
 
 namespace slalom::tracking {
 
-/// What an object may do. The first two are also those of an object without a course.
+/// A manoeuvre of an object. The first two are also those of an object without a course.
 enum class Manoeuvre { keep, brake, follow, left, right };
 inline constexpr int manoeuvres = 5, manoeuvres_without_course = 2;
 /// Their weights before an object is known.
@@ -18,7 +18,7 @@ inline constexpr std::array<double, manoeuvres> usual_weights{0.4, 0.08, 0.36, 0
 /// The motion of an object from which hypotheses are drawn.
 struct Motion {
   bool on_course = false;
-  maps::Pose pose;      ///< of the middle
+  maps::Pose pose;      ///< pose of the middle
   double speed = 0;     ///< m/s; on a course along it
   double yaw_rate = 0;  ///< rad/s, without a course
   double arc = 0;       ///< m, on a course

@@ -8,7 +8,7 @@
 
 namespace slalom::tracking {
 
-/// What the map explains of a scan.
+/// The part of a scan that the map explains.
 class MapBackground {
  public:
   /// Throws std::invalid_argument on maps that ObjectTracker excludes.
@@ -35,7 +35,7 @@ class MapBackground {
   int width_, height_;
   double resolution_;
   maps::Pose origin_;
-  double cosine_, sine_;         ///< of the origin's yaw
+  double cosine_, sine_;         ///< direction of the origin's yaw
   std::vector<float> distance_;  ///< m, height x width
 };
 

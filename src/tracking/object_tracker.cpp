@@ -72,7 +72,7 @@ struct ObjectTracker::Implementation {
   std::optional<MapBackground> background;
   std::optional<FreeSpace> free_space;
   std::vector<Reading> candidates;  ///< readings that may belong to objects
-  std::vector<int> owners;          ///< of each candidate, the index of its object or -1
+  std::vector<int> owners;          ///< object of each candidate, by index, or -1
   std::vector<Cluster> clusters;
   std::vector<Reading> own;  ///< the readings of one object
   std::vector<Tracked> objects;
@@ -150,7 +150,7 @@ void ObjectTracker::Implementation::correct() noexcept {
 /// Whether readings belong to something that moves, as far as that must be known: without a map.
 bool ObjectTracker::Implementation::moves(std::span<const Reading> part) const noexcept {
   if (!free_space) return true;
-  // What appears behind something else has not moved there.
+  // An object that appears behind something else has not moved there.
   const bool isolated =
       readings.ends_at(part.front().beam, -1, options.min_incidence, options.range_deviation) &&
       readings.ends_at(part.back().beam, 1, options.min_incidence, options.range_deviation);

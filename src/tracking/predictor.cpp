@@ -50,14 +50,14 @@ Weights first_weights(const Motion& motion) noexcept {
 }  // namespace
 
 struct Predictor::Implementation {
-  /// What is remembered of an object.
+  /// The memory of an object.
   struct Remembered {
     int id = 0;
     double since = 0;  ///< s, when `motion` was
     Motion motion;
     Weights weights{};
     double seen = 0;          ///< s, when `ratio` was
-    double ratio = 0;         ///< of its speed to the course's
+    double ratio = 0;         ///< ratio of its speed to the course's
     double speed = 0;         ///< m/s, at that time
     double rise = 0;          ///< 1/s, mean of the rise of `ratio`
     double acceleration = 0;  ///< m/s^2, mean

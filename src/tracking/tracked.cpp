@@ -28,7 +28,7 @@ double yaw_of(const BoxFit& fit, const TrackerOptions& options, double bearing) 
   const int longer = fit.extent[1] > fit.extent[0] ? 1 : 0;
   const double along = fit.angle + longer * right_angle;
   if (fit.extent[longer] > 0.5 * (options.width + options.length)) return along;
-  // What is in view is the front or the rear: the axis of the fit that points away from the sensor.
+  // The visible end is the front or the rear: the axis of the fit that points away from the sensor.
   const double away = maps::wrap_angle(bearing - fit.angle);
   return fit.angle + right_angle * std::round(away / right_angle);
 }

@@ -35,7 +35,7 @@ class Tracked {
   /// Scans in a row with readings that do not show that it moves.
   int at_rest() const noexcept { return at_rest_; }
   double unseen() const noexcept { return unseen_; }   ///< s
-  maps::Pose pose() const noexcept;                    ///< of the middle
+  maps::Pose pose() const noexcept;                    ///< pose of the middle
   double length() const noexcept { return size_[0]; }  ///< m
   double width() const noexcept { return size_[1]; }   ///< m
   double position_variance() const noexcept;           ///< m^2, mean over x and y
@@ -49,7 +49,7 @@ class Tracked {
   void correct_size(const AxisMeasurement (&axes)[2], double deviation) noexcept;
 
   int id_ = 0;
-  bool round_ = false;  ///< its outline gives no yaw
+  bool round_ = false;  ///< whether its outline gives no yaw
   bool confirmed_ = false;
   bool turns_ = false;   ///< `state_` has taken over from `point_`
   Gaussian<5> state_;    ///< x, y, yaw, speed, yaw rate; once its motion is known

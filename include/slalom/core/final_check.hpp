@@ -9,7 +9,7 @@
 /// The last thing that happens to a control sequence before it leaves the library.
 namespace slalom {
 
-/// What an input may be, [input]: finite values with `low` <= `high`, or infinities where an input has no
+/// Bounds of the inputs, [input]: finite values with `low` <= `high`, or infinities where an input has no
 /// bound.
 struct InputBounds {
   InputBounds() = default;

@@ -46,7 +46,7 @@ class GridView {
     set_origin(0, 0);
   }
 
-  /// The same cells for look-ups at positions relative to (x, y), m.
+  /// Returns a view of the same cells for look-ups at positions relative to (x, y), m.
   GridView relative_to(double x, double y) const noexcept {
     GridView view = *this;
     view.set_origin(origin_x_ + x, origin_y_ + y);
@@ -87,7 +87,7 @@ class GridView {
     using F = Pack<Target>;
     return index_of_cell(x * F(scale_) + F(offset_x_), y * F(scale_) + F(offset_y_));
   }
-  /// The same for a position in cells, as `rows_axis` and `columns_axis` give it.
+  /// Looks up a position in cells, as `rows_axis` and `columns_axis` give it.
   template <class Target>
   SLALOM_INLINE_CALLS simd::IntPack<Target> index_of_cell(const Pack<Target>& row_position,
                                                           const Pack<Target>& column_position) const {
@@ -149,11 +149,11 @@ class GridView {
   double origin_x_ = 0;  ///< m, what positions are relative to
   double origin_y_ = 0;
   GridAxis rows_axis_, columns_axis_;
-  int last_row_ = 1, last_column_ = 1;  ///< of the ring; kept to be broadcast from memory
+  int last_row_ = 1, last_column_ = 1;  ///< last cell of the ring; kept to be broadcast from memory
   Coefficient scale_, offset_x_, offset_y_;
 };
 
-/// What a look-up of a four-layer cell returns.
+/// The result of a look-up of a four-layer cell.
 template <class T>
 struct CellValues {
   T a, b, c, d;  ///< one value for each layer
@@ -209,7 +209,7 @@ template <class T>
 SLALOM_INLINE_CALLS PackPair<T> look_up(const GridView<1>& grid, const PackPair<T>& x, const PackPair<T>& y) {
   return {look_up(grid, x.low, y.low), look_up(grid, x.high, y.high)};
 }
-/// The same for positions in cells.
+/// Looks up positions in cells.
 template <class T>
 SLALOM_INLINE_CALLS PackPair<T> look_up_cell(const GridView<1>& grid, const PackPair<T>& row,
                                              const PackPair<T>& column) {

@@ -89,7 +89,7 @@ template <Scalar T>
 T abs(T x) {
   return std::abs(x);
 }
-/// To the nearest integer, ties to even.
+/// Rounds to the nearest integer, ties to even.
 template <Scalar T>
 T round(T x) {
   return std::nearbyint(x);

@@ -20,7 +20,7 @@ using OptionValue = std::variant<bool, int, std::uint64_t, double, std::vector<d
 struct OptionEntry {
   Declaration declaration;           ///< the declaration of the option
   OptionValue value;                 ///< the value of the option
-  std::vector<std::string> choices;  ///< of an enumeration: the enumerators' names
+  std::vector<std::string> choices;  ///< names of the enumerators if the option is an enumeration
 
   /// Whether the values are equal.
   bool operator==(const OptionEntry& other) const { return value == other.value; }

@@ -6,8 +6,8 @@
 
 #include "slalom/core/math.hpp"
 
-/// What a problem is: dynamics and cost written once, as templates over the scalar type `T`, which is
-/// `double`, `float` or a pack of SIMD lanes.
+/// A problem: dynamics and cost written once, as templates over the scalar type `T`, which is `double`,
+/// `float` or a pack of SIMD lanes.
 ///
 ///     struct Pendulum {                                        // angle measured from upright
 ///       template <class T> struct State { T angle, rate; };    // rad, rad/s

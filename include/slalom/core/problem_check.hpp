@@ -69,7 +69,7 @@ concept HasTimeStep = requires(const P& p) {
   static_cast<double>(p.dt);
 };
 
-/// What a problem says of itself besides dynamics and costs.
+/// The optional members of a problem, besides dynamics and costs.
 template <class P>
 constexpr void check_parts() {
   static_assert(InputMinFits<P>,

@@ -32,14 +32,15 @@ class ProblemEvaluator final : public BatchEvaluator, private Sampler {
   /// The problem.
   const P& problem() const noexcept { return problem_; }
 
-  /// Where the next rollouts start.
+  /// Sets the state in which the next rollouts start.
   void set_state(const State& state) noexcept {
     double values[detail::state_size<P>];
     std::memcpy(values, &state, sizeof values);
     for (int i = 0; i < detail::state_size<P>; ++i) state_[i] = static_cast<float>(values[i]);
   }
 
-  /// What was applied before the next rollouts. Ignored unless the problem has `input_rate_max`.
+  /// Sets the input that was applied before the next rollouts. Ignored unless the problem has
+  /// `input_rate_max`.
   void set_previous_input(const Input<double, P::inputs>& u) noexcept {
     if constexpr (detail::limits_rates<P>) {
       for (int i = 0; i < P::inputs; ++i) state_[detail::state_size<P> + i] = static_cast<float>(u[i]);

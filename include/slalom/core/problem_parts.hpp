@@ -11,14 +11,14 @@
 #include "slalom/core/final_check.hpp"
 #include "slalom/core/problem.hpp"
 
-/// What a problem may say of itself besides its dynamics and costs: names of its cost terms, bounds of its
-/// inputs and of their rates, noise of its own. What it does not say costs nothing.
+/// The optional members of a problem: names of its cost terms, bounds of its inputs and of their rates, noise
+/// of its own. A member that a problem does not have costs nothing.
 namespace slalom {
 
 /// A part of the cost of a control sequence, summed over its states.
 struct CostTerm {
-  const char* name = "";  ///< as the problem names it; "stage" and "terminal" where it names none
-  double value = 0;       ///< in the problem's unit of cost
+  const char* name = "";  ///< name in the problem; "stage" and "terminal" where it names none
+  double value = 0;       ///< value in the problem's unit of cost
 };
 
 namespace detail {
@@ -188,8 +188,8 @@ SLALOM_INLINE void hold_rate(Input<T, M>& u, Input<T, M>& previous, const Input<
 
 }  // namespace detail
 
-/// What a problem with `input_rate_max` makes of a control sequence u[step], in place, when `previous` was
-/// applied before it: no input moves faster. Of another problem nothing is changed.
+/// Limits the rates of a control sequence u[step], in place, to the problem's `input_rate_max`, when
+/// `previous` was applied before it. Changes nothing for a problem without it.
 template <Problem P>
 void hold_input_rates(const P& problem, Input<double, P::inputs> previous, Input<double, P::inputs>* u,
                       int steps) noexcept {

@@ -17,8 +17,8 @@ std::string read_file(const std::filesystem::path& file, std::uint64_t most);
 /// as too many open files: the `errno` of the failed call.
 IoError cannot_open(const std::filesystem::path& file);
 
-/// What is in a folder, sorted. Throws IoError if it cannot be listed. Unlike the iterators of the standard
-/// library it can run out of memory without ending the program.
+/// Returns the entries of a folder, sorted. Throws IoError if it cannot be listed. Unlike the iterators of
+/// the standard library it can run out of memory without ending the program.
 std::vector<std::filesystem::path> list_folder(const std::filesystem::path& folder);
 
 }  // namespace slalom

@@ -25,11 +25,11 @@ SLALOM_INLINE StateOf<P, T> broadcast_state(const float* x, std::index_sequence<
 #pragma clang diagnostic pop
 #endif
 
-/// What a problem returns from a look-up.
+/// The type that a problem returns from a look-up.
 template <class P, class F>
 using SeenOf = decltype(look_up<P, F>(std::declval<const P&>(), std::declval<const StateOf<P, F>&>()));
 
-/// Where no input has to be remembered.
+/// Stands for the previous input where none has to be remembered.
 struct NoInput {};
 /// The inputs of the step before, of a problem that limits their rates.
 template <class P, class F>
@@ -44,7 +44,7 @@ struct Rollout {
   [[no_unique_address]] HeldInput<P, F> previous;
 };
 
-/// What all rollouts of a batch have in common.
+/// Data that all rollouts of a batch have in common.
 template <class P, class F>
 struct RolloutStart {
   StateOf<P, F> x;
@@ -57,7 +57,7 @@ struct RolloutStart {
 template <class P>
 inline constexpr int start_size = state_size<P> + (limits_rates<P> ? P::inputs : 0);
 
-/// Where the inputs of a batch are: for each step and input a row with a value for each sample.
+/// The inputs of a batch: for each step and input a row with a value for each sample.
 struct InputRows {
   const float* values;
   std::ptrdiff_t stride;  ///< from a row to the next

@@ -104,7 +104,7 @@ template <class T>
 struct Mask {
   using Vector = typename detail::MaskVector<T>::type;      ///< vector type of the compiler
   static constexpr bool bits = std::is_integral_v<Vector>;  ///< one bit per lane
-  Vector v;  ///< with `bits` one bit per lane, else all bits of a lane 1 where true and 0 where false
+  Vector v;  ///< with `bits` one bit per lane; else all bits of a lane, 1 where true and 0 where false
 
   Mask() = default;
   /// From a vector in this form.
@@ -116,7 +116,7 @@ struct Mask {
     v = other.v;
     return *this;
   }
-  /// The same value in all lanes.
+  /// Sets all lanes to `value`.
   SLALOM_INLINE explicit Mask(bool value) {
     if constexpr (bits) {
       v = static_cast<Vector>(-static_cast<int>(value));
@@ -167,7 +167,7 @@ struct IntPack {
   Vector v;                                                    ///< the lanes
 
   IntPack() = default;
-  /// The same value in all lanes.
+  /// Sets all lanes to `value`.
   SLALOM_INLINE explicit IntPack(int value) { v = Vector{} + value; }
   /// From a vector.
   SLALOM_INLINE IntPack(const Vector& vector) : v(vector) {}
@@ -199,7 +199,7 @@ struct IntPack {
   }
 };
 
-/// What may stand beside a pack for the same value in all lanes.
+/// A type that may stand beside a pack for one value in all lanes.
 template <class N>
 concept Number = std::same_as<N, int> || std::same_as<N, float> || std::same_as<N, double>;
 
@@ -212,13 +212,13 @@ struct Pack {
   Vector v;                                                      ///< the lanes
 
   Pack() = default;
-  /// The same value in all lanes.
+  /// Sets all lanes to `value`.
   SLALOM_INLINE_CALLS Pack(float value) { detail::Broadcast<T>::of(value, v); }
-  /// The same value in all lanes, rounded to float32.
+  /// Sets all lanes to `value`, rounded to float32.
   SLALOM_INLINE Pack(double value) : Pack(static_cast<float>(value)) {}
-  /// The same value in all lanes.
+  /// Sets all lanes to `value`.
   SLALOM_INLINE Pack(int value) : Pack(static_cast<float>(value)) {}
-  /// The same value in all lanes, already rounded.
+  /// Sets all lanes to a value that is already rounded.
   SLALOM_INLINE Pack(const Coefficient& value) : Pack(value.rounded()) {}
   /// From a vector.
   SLALOM_INLINE Pack(const Vector& vector) : v(vector) {}

@@ -9,7 +9,7 @@
 
 namespace slalom::maps {
 
-/// Where the cells of a map around the car lie. The convention is that of ROS grid_map: rows run along x,
+/// The place of the cells of a map around the car. The convention is that of ROS grid_map: rows run along x,
 /// columns along y, and row 0, column 0 is the cell with the LARGEST x and y; the upper edges of the map are
 /// inside, the lower ones are not. The formulas keep the order of operations of grid_map 1.6.4, so that a
 /// position on the corner of four cells falls into the same cell.

@@ -15,7 +15,7 @@ struct CourseFieldOptions {
   double resolution = 0.1;
   double corridor = 5;
   bool closed = true;
-  ReferenceOutside outside{};  ///< what a look-up off the map or the corridor returns
+  ReferenceOutside outside{};  ///< result of a look-up off the map or the corridor
 
   /// Throws std::invalid_argument naming the field, its value and the rule.
   void validate() const;

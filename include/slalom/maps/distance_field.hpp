@@ -13,7 +13,7 @@ struct DistanceField {
   int width = 0;                 ///< cells
   int height = 0;                ///< cells
   double resolution = 0;         ///< m per cell
-  Pose origin;                   ///< as in OccupancyGrid
+  Pose origin;                   ///< pose of the corner, as in OccupancyGrid
   std::vector<double> distance;  ///< height x width, row 0 at the bottom, m
 
   /// Distance from a cell to the nearest occupied cell, m.

@@ -25,7 +25,7 @@ class DistanceTransform {
   struct Parabola {
     std::int32_t site;
     std::int64_t height;  ///< squared, cells^2
-    double start;         ///< where the parabola becomes the lowest
+    double start;         ///< place from which the parabola is the lowest
   };
 
   void measure_columns(std::span<const Occupancy> cells, bool unknown_is_obstacle) noexcept;

@@ -13,7 +13,7 @@
 
 namespace slalom::maps {
 
-/// Where the samples of a field lie: in the centres of square cells that are placed like those of an
+/// The place of the samples of a field: the centres of square cells that are placed like those of an
 /// OccupancyGrid.
 struct FieldGeometry {
   int width = 1;          ///< cells along the grid's x
@@ -30,7 +30,7 @@ struct FieldGeometry {
 /// A field's value at a position, and its gradient.
 template <class T>
 struct FieldValue {
-  T value;   ///< in the unit of the samples
+  T value;   ///< value in the unit of the samples
   T dx, dy;  ///< partial derivatives by x and y of the map frame, in that unit per metre
 };
 
@@ -97,8 +97,8 @@ class Field {
   void evaluate(const float* x, const float* y, std::size_t count, float* value, float* dx = nullptr,
                 float* dy = nullptr) const;
 
-  /// The same field for look-ups at positions relative to the point (x, y) of the map frame, m, along the
-  /// axes of that frame.
+  /// Returns the same field for look-ups at positions relative to the point (x, y) of the map frame, m, along
+  /// the axes of that frame.
   Field relative_to(double x, double y) const;
 
   /// Position and number of the samples, map frame.

@@ -51,8 +51,8 @@ class GridSearch {
   double cell_size_;  ///< m
   std::size_t max_points_;
   Point corner_;
-  std::vector<float> prices_;   ///< of driving 1 m in a cell
-  std::vector<float> costs_;    ///< of reaching a cell
+  std::vector<float> prices_;   ///< price of driving 1 m in each cell
+  std::vector<float> costs_;    ///< cost of reaching each cell
   std::vector<int> previous_;   ///< cell before each on the cheapest path; -1 at its start
   std::vector<Reached> queue_;  ///< a heap
   std::vector<int> corners_;

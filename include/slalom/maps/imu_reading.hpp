@@ -4,8 +4,7 @@
 
 namespace slalom {
 
-/// What an inertial measurement unit reports of a car on a plane, at the centre of gravity, in the body's
-/// frame.
+/// A reading of an inertial measurement unit on a plane, at the centre of gravity, in the body's frame.
 struct ImuReading {
   static constexpr double fastest_turn = 100;  ///< rad/s, largest magnitude of a plausible yaw rate
   static constexpr double strongest = 1000;    ///< m/s^2, largest magnitude of a plausible acceleration

@@ -88,7 +88,7 @@ struct ScanPoint {
   float y;  ///< m
 };
 
-/// What was done with the beams of a scan.
+/// Counts of the beams of a scan by their use.
 struct ScanReport {
   bool accepted =
       false;        ///< false: empty, too many beams, angles not finite, or not 0 <= range_min < range_max

@@ -24,10 +24,10 @@
 ///     }
 namespace slalom::maps {
 
-/// Where an obstacle is expected at a moment: the middle of its box, with its standard deviations along the
-/// box and across it.
+/// The expected pose of an obstacle at a moment: the middle of its box, with its standard deviations along
+/// the box and across it.
 struct PredictedPose {
-  Pose pose;                    ///< of the middle
+  Pose pose;                    ///< pose of the middle
   double along_deviation = 0;   ///< m
   double across_deviation = 0;  ///< m
 };
@@ -35,14 +35,14 @@ struct PredictedPose {
 /// A rectangular obstacle that moves, with hypotheses of what it will do. It does not own `poses`: the array
 /// that they view must outlive it.
 struct PredictedObstacle {
-  static constexpr int max_hypotheses = 4;  ///< of an obstacle
+  static constexpr int max_hypotheses = 4;  ///< most hypotheses of an obstacle
 
-  int id = 0;                                    ///< as its tracker has it
+  int id = 0;                                    ///< id in its tracker
   double length = 0;                             ///< m
   double width = 0;                              ///< m
   double interval = 0;                           ///< s, from one pose to the next, > 0
   int hypotheses = 0;                            ///< 1 ... max_hypotheses
-  std::array<double, max_hypotheses> weights{};  ///< their probabilities; the sum is 1
+  std::array<double, max_hypotheses> weights{};  ///< probabilities of the hypotheses; the sum is 1
   /// [hypothesis][time], as many for each: the first is that of now, after the last the obstacle keeps its
   /// last velocity
   std::span<const PredictedPose> poses;
@@ -89,7 +89,7 @@ void visit_options(Options& o, Visit&& visit) {
         {"max_probability", "", "probability of a collision in a step above which a state collides", 0, 1});
 }
 
-/// What rollouts see of moving obstacles; it must not outlive them. By default there are none.
+/// The moving obstacles as rollouts see them; the view must not outlive them. By default there are none.
 class MovingObstaclesView {
  public:
   MovingObstaclesView() = default;
@@ -99,8 +99,8 @@ class MovingObstaclesView {
   /// The last step at which they are known.
   int last_step() const noexcept { return steps_; }
 
-  /// The same obstacles in a frame that is parallel to theirs and begins at `origin` (m). Rollouts in float32
-  /// need it (see GridView::relative_to).
+  /// Returns the same obstacles in a frame that is parallel to theirs and begins at `origin` (m). Rollouts in
+  /// float32 need it (see GridView::relative_to).
   MovingObstaclesView relative_to(const Point& origin) const noexcept {
     MovingObstaclesView moved = *this;
     moved.x_ = double(x_) + origin.x;
@@ -232,7 +232,7 @@ class MovingObstacles {
   /// MovingObstaclesView::following_cost). The next update sets these costs to 0.
   void set_following_costs(std::span<const double> costs) noexcept;
 
-  /// Those of the last update that count.
+  /// The obstacles of the last update that count.
   std::span<const PredictedObstacle* const> taken() const noexcept {
     return {taken_.data(), static_cast<std::size_t>(view_.obstacles_)};
   }

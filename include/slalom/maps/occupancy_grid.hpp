@@ -7,7 +7,7 @@
 
 namespace slalom::maps {
 
-/// What is known of a cell.
+/// The state of a cell.
 enum class Occupancy : std::uint8_t { free, occupied, unknown };
 
 /// A map of square cells, row-major, row 0 at the bottom. The pose of the lower left corner of cell (0, 0) in

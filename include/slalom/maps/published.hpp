@@ -1,7 +1,7 @@
 #pragma once
 
-/// What exists only to reproduce the program that the authors of SVG-MPPI published (K. Honda,
-/// proj-svg_mppi): deviations of its maps, all off by default, and its settings.
+/// Parts that only reproduce the program that the authors of SVG-MPPI published (K. Honda, proj-svg_mppi):
+/// deviations of its maps, all off by default, and its settings.
 namespace slalom::maps {
 
 struct LocalCostMapOptions;

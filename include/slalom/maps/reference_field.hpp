@@ -20,7 +20,7 @@ struct ReferenceFieldOptions {
   double resolution = 0.1;
   int points = 80;
   double spacing = 0.1;
-  ReferenceOutside outside{};  ///< what a look-up off the map returns
+  ReferenceOutside outside{};  ///< result of a look-up off the map
 
   /// With 0 the distance of positions behind the nearest point is that to the window's first point, not to
   /// the path.
@@ -66,7 +66,7 @@ class ReferenceField {
   /// is not finite.
   bool update(const Point& robot, double reach = std::numeric_limits<double>::infinity(),
               double seconds = 0) noexcept;
-  /// The same, but computes only the cells of the box from `low` to `high` (m, map frame).
+  /// Computes only the cells of the box from `low` to `high` (m, map frame).
   bool update(const Point& robot, const Point& low, const Point& high) noexcept;
 
   /// Changes the speeds (m/s, one for each point of the path) from the next update on; no other number of
@@ -120,12 +120,12 @@ class ReferenceField {
   /// A point of the window, with what the rows need of it.
   struct Site {
     double x = 0, y = 0;
-    double u = 0;  ///< its y as a column coordinate, 0 at the centre of column 0
+    double u = 0;  ///< y as a column coordinate, 0 at the centre of column 0
     float yaw = 0, speed = 0;
-    Piece piece{};  ///< where curvatures are known
+    Piece piece{};  ///< curvatures, where they are known
   };
   struct Parabola {
-    double u = 0;       ///< its site's
+    double u = 0;       ///< column coordinate of its site
     double height = 0;  ///< squared distance of the site from the row, in cells^2
     double start = 0;   ///< column coordinate from which on it is the lowest
     const Site* site = nullptr;
@@ -147,7 +147,7 @@ class ReferenceField {
   std::vector<ReferencePoint> path_;
   std::vector<double> path_x_, path_y_;
   std::vector<double> curvature_;  ///< 1/m; empty if unknown
-  bool closed_ = true;             ///< where curvatures are known
+  bool closed_ = true;             ///< whether the path is closed, where curvatures are known
   std::vector<double> column_y_;   ///< m, of the columns' cells
   double reach_ = 0;
   int nearest_ = 0;

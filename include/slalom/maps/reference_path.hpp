@@ -14,7 +14,7 @@ struct ReferencePoint {
   double speed = 0;  ///< m/s
 };
 
-/// What a look-up in a reference map returns: one 16-byte cell, so that one load fetches it.
+/// The result of a look-up in a reference map: one 16-byte cell, so that one load fetches it.
 struct ReferenceCell {
   float distance;  ///< m to the path
   float yaw;       ///< rad, yaw of the path at its nearest place
@@ -24,7 +24,7 @@ struct ReferenceCell {
 };
 static_assert(sizeof(ReferenceCell) == 16);
 
-/// What a look-up off a reference map returns.
+/// The result of a look-up off a reference map.
 /// `visit_reference_outside` below describes the fields.
 struct ReferenceOutside {
   double distance = 20;

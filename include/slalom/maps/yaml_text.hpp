@@ -8,10 +8,10 @@
 
 namespace slalom::maps {
 
-/// What a YAML file may be, at most.
+/// The largest YAML file that is read.
 struct YamlLimits {
-  static constexpr std::uint64_t bytes = 1 << 20;  ///< of the file
-  static constexpr int depth = 32;                 ///< of nested maps and lists
+  static constexpr std::uint64_t bytes = 1 << 20;  ///< size of the file
+  static constexpr int depth = 32;                 ///< depth of nested maps and lists
 };
 
 /// The text of a YAML file of one document, which can be parsed in bounded time and memory. Throws IoError if

@@ -11,7 +11,7 @@ namespace slalom::navigation {
 /// How a base can move.
 enum class BaseKind {
   differential,     ///< forward, back, and turning, also on the spot
-  omnidirectional,  ///< the same, and sideways
+  omnidirectional,  ///< forward and sideways, and it turns on the spot
   ackermann,        ///< steered wheels: turning only while driving
 };
 /// The names of the enumerators, in order.
@@ -58,7 +58,7 @@ void visit_options(Options& o, Visit&& visit) {
         {"min_turning_radius", "m", "smallest radius of a circle that an Ackermann base drives", 0.01, 100});
 }
 
-/// What the motion of a step is: speeds in the robot's frame.
+/// The motion of a step: speeds in the robot's frame.
 template <class T>
 struct Motion {
   T forward, left, turn;  ///< m/s, m/s, rad/s
@@ -66,7 +66,7 @@ struct Motion {
 
 /// The inputs of a differential base: speed (m/s) and yaw rate (rad/s).
 struct DifferentialBase {
-  static constexpr int inputs = 2;  ///< of a step
+  static constexpr int inputs = 2;  ///< inputs of a step
   /// Does not use the limits: the problem takes them as bounds of the inputs.
   explicit DifferentialBase(const BaseOptions&) {}
   /// The motion of an input.
@@ -82,7 +82,7 @@ struct DifferentialBase {
 
 /// The inputs of an omnidirectional base: speeds forward and to the left (m/s) and yaw rate (rad/s).
 struct OmnidirectionalBase {
-  static constexpr int inputs = 3;  ///< of a step
+  static constexpr int inputs = 3;  ///< inputs of a step
   /// Does not use the limits: the problem takes them as bounds of the inputs.
   explicit OmnidirectionalBase(const BaseOptions&) {}
   /// The motion of an input.
@@ -101,7 +101,7 @@ struct OmnidirectionalBase {
 /// The inputs of an Ackermann base: speed (m/s) and yaw rate (rad/s), of which the smallest turning radius
 /// leaves the part that the speed allows.
 struct AckermannBase {
-  static constexpr int inputs = 2;  ///< of a step
+  static constexpr int inputs = 2;  ///< inputs of a step
   /// Takes the smallest turning radius from the limits.
   explicit AckermannBase(const BaseOptions& limits) : largest_curvature_(1 / limits.min_turning_radius) {}
   /// The motion of an input.

@@ -10,7 +10,7 @@
 
 namespace slalom::navigation {
 
-/// What the robot may do with cells of which nothing is known.
+/// The treatment of cells of which nothing is known.
 enum class UnknownCells {
   obstacle,  ///< they are obstacles
   priced,    ///< it may enter them, and its problem has a price for that

@@ -19,7 +19,7 @@ class Footprint {
     double covering = 0;   ///< m, radius of a disc that covers the part
   };
   static constexpr int part_count = 3;       ///< along the longer side of the bounding box
-  static constexpr int max_vertices = 32;    ///< of an outline
+  static constexpr int max_vertices = 32;    ///< most vertices of an outline
   static constexpr double max_extent = 100;  ///< m, from the origin to a vertex
 
   /// A simple polygon, its vertices in order, in either direction. Throws std::invalid_argument, naming the

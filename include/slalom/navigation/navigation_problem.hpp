@@ -24,7 +24,7 @@ namespace slalom::navigation {
 /// cell, a body meets such a cell with its outline first.
 class BodyCheck {
  public:
-  static constexpr std::size_t max_points = 512;  ///< of an outline
+  static constexpr std::size_t max_points = 512;  ///< most points of an outline
 
   /// For costmaps of this resolution (m). Throws std::invalid_argument if the outline is longer than 512
   /// cells.
@@ -47,7 +47,7 @@ class BodyCheck {
     }
   }
 
-  /// What is known of a pose.
+  /// The values that the maps hold at a pose.
   template <class T>
   struct Contact {
     T clearance;         ///< m, from the body to the nearest obstacle, within about a cell
@@ -82,7 +82,7 @@ class BodyCheck {
     Place middle;
     Coefficient contained;   ///< m; an obstacle whose distance is less is inside
     Coefficient covering;    ///< m
-    std::size_t begin, end;  ///< its points
+    std::size_t begin, end;  ///< first of its points, and the one after its last
   };
 
   template <class T>
@@ -93,15 +93,15 @@ class BodyCheck {
   }
 
   std::array<Part, Footprint::part_count> parts_;
-  std::array<Place, max_points> points_;  ///< of the outline, part by part
+  std::array<Place, max_points> points_;  ///< points of the outline, part by part
   Coefficient unsure_;                    ///< m of clearance below which the outline decides
   Coefficient half_cell_;                 ///< m
 };
 
 /// The maps of a solve, in the map frame, and the goal.
 struct NavigationMaps {
-  GridView<1> distances;  ///< of the costmap
-  GridView<1> prices;     ///< of the costmap
+  GridView<1> distances;  ///< distances of the costmap
+  GridView<1> prices;     ///< prices of the costmap
   /// For every cell what is known of the nearest point of the path: x, y relative to `origin` (m), yaw (rad),
   /// and length of the path (m) from the beginning of the window.
   GridView<4> path;
@@ -109,7 +109,7 @@ struct NavigationMaps {
   double window_length = 0;            ///< m, of the path in the window
   bool goal_in_window = false;         ///< whether the path in the window ends at the goal
   maps::Pose goal;                     ///< map frame
-  maps::MovingObstaclesView others{};  ///< what moves, map frame
+  maps::MovingObstaclesView others{};  ///< moving obstacles, map frame
 };
 
 /// A robot with a base that follows a path between obstacles to a goal.
@@ -121,7 +121,7 @@ class NavigationProblem {
   struct State {
     T x, y, yaw;  ///< m, m, rad
   };
-  static constexpr int inputs = Base::inputs;  ///< of a step
+  static constexpr int inputs = Base::inputs;  ///< inputs of a step
   /// Names of the terms of the cost of a step.
   static constexpr std::array cost_names{"progress", "path",         "heading",   "clearance",
                                          "motion",   "goal_heading", "collision", "others"};
@@ -158,13 +158,13 @@ class NavigationProblem {
     goal_weight_ = maps.goal_in_window ? costs_.goal_heading : Coefficient(0);
   }
 
-  /// What is read from the maps at a state.
+  /// The values that the maps hold at a state.
   template <class T>
   struct Seen {
     CellValues<T> foot;              ///< nearest point of the path
     BodyCheck::Contact<T> obstacle;  ///< nearest obstacle
     T price;                         ///< 1 in a priced cell
-    T sine, cosine;                  ///< of the yaw
+    T sine, cosine;                  ///< sine and cosine of the yaw
   };
   /// Reads the maps at a state.
   template <class T>

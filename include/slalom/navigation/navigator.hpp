@@ -17,10 +17,11 @@ namespace slalom::navigation {
 /// The options of `svg_mppi` for a base with these limits: 2000 samples of 56 steps, with standard deviations
 /// in proportion to the largest speeds of the base.
 SvgMppiOptions svg_mppi_options(const BaseOptions& base);
-/// The same for `mppi`.
+/// The options of `mppi` for such a base.
 MppiOptions mppi_options(const BaseOptions& base);
-/// The same for any method of the registry: those of these options that the method has, and the method's
-/// defaults for the others. Throws std::invalid_argument that lists the names if the method is unknown.
+/// The options of any method of the registry: those of the options above that the method has, and the
+/// method's defaults for the others. Throws std::invalid_argument that lists the names if the method is
+/// unknown.
 SolverOptions method_options(std::string_view method, const BaseOptions& base);
 
 /// Options of a Navigator, besides those of its solver.
@@ -54,7 +55,7 @@ void visit_options(Options& o, Visit&& visit) {
         {"stuck_after", "s", "time without progress after which the way ahead counts as closed", 0.1, 3600});
 }
 
-/// What a navigator does.
+/// The behaviour of a navigator.
 enum class NavigationStatus {
   following,     ///< follows the path
   detour,        ///< follows a way round what blocks the path
@@ -97,7 +98,7 @@ struct NavigationResult {
   /// Predicted poses, map frame; the first is now. Empty unless the status is `following`, `detour` or
   /// `braking`; with `braking` the plan is not followed.
   std::span<const maps::Pose> plan;
-  std::span<const maps::Pose> path;  ///< what is followed, with the present detour
+  std::span<const maps::Pose> path;  ///< path that is followed, with the present detour
 };
 
 /// Drives a mobile robot along a path to a goal, between the obstacles of a costmap.
@@ -116,11 +117,11 @@ class Navigator {
   /// option, its value and the rule.
   Navigator(const Footprint& footprint, const NavigatorOptions& options, const SolverOptions& solver,
             const Costmap& costmap);
-  /// The same with `svg_mppi`.
+  /// Makes a navigator with `svg_mppi`.
   Navigator(const Footprint& footprint, const NavigatorOptions& options, const Costmap& costmap);
   ~Navigator();
   Navigator(Navigator&&) noexcept;  ///< the navigator moved from may only be destroyed or assigned to
-  Navigator& operator=(Navigator&&) noexcept;  ///< the same
+  Navigator& operator=(Navigator&&) noexcept;  ///< moves
 
   /// The path to follow, in the map frame: positions from near the robot to the goal. The yaw of the last
   /// pose is the heading at the goal; that of the others is not used. Throws std::invalid_argument unless

@@ -19,7 +19,7 @@ struct ClosedPlace {
 /// what it needs cost up to five times as much. After construction nothing allocates.
 class PathPlanner {
  public:
-  static constexpr std::size_t max_points = 4000;  ///< of a path
+  static constexpr std::size_t max_points = 4000;  ///< most points of a path
   static constexpr double spacing = 0.05;          ///< m, between the points of a path
   static constexpr double dead_end_radius = 0.5;   ///< m, round a dead end, where no way leads
 
@@ -47,7 +47,7 @@ class PathPlanner {
   double half_width_;
   maps::GridGeometry geometry_;
   maps::GridSearch grid_;
-  std::vector<std::uint8_t> is_kept_;  ///< by cell
+  std::vector<std::uint8_t> is_kept_;  ///< whether each cell is kept
 };
 
 /// A path to a goal: points at most 0.05 m apart, each with the direction of the path, and the goal. Empty if

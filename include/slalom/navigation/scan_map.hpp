@@ -10,7 +10,7 @@ namespace slalom::navigation {
 
 /// The ranges of a planar scanner that looks all round.
 struct RangeScan {
-  maps::Pose pose;                 ///< of the scanner, map frame
+  maps::Pose pose;                 ///< pose of the scanner, map frame
   std::span<const double> ranges;  ///< m; the beams are evenly spread, the first along the scanner's x axis
   double max_range = 0;            ///< m; a range that is not below it is a beam that hit nothing
 };

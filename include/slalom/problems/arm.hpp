@@ -18,7 +18,7 @@ struct Arm {
   struct State {
     T angle[joints];  ///< rad
   };
-  /// Where the parts of an arm are, m.
+  /// A point of an arm, m.
   template <class T>
   struct Point {
     T x, y, z;  ///< m

@@ -48,7 +48,7 @@ struct DifferentialDrive {
     return cost;
   }
 
-  /// To the goal, m.
+  /// Distance to the goal, m.
   template <class T>
   T distance(const State<T>& x) const {
     return sqrt(square(x.x - T(goal_x)) + square(x.y - T(goal_y)));

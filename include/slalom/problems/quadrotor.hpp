@@ -43,7 +43,7 @@ struct Quadrotor {
     return T(3) * distance(x) + T(0.3) * square_speed(x);
   }
 
-  /// To the goal, m.
+  /// Distance to the goal, m.
   template <class T>
   T distance(const State<T>& x) const {
     return sqrt(square(x.x - T(goal_x)) + square(x.z - T(goal_z)));

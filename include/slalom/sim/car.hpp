@@ -2,7 +2,7 @@
 
 namespace slalom::sim {
 
-/// What a car is made of. The defaults are the 1/10-scale car of f1tenth_gym.
+/// The parameters of a car. The defaults are the 1/10-scale car of f1tenth_gym.
 struct CarParameters {
   double friction = 1.0489;        ///< mu, between tyre and road
   double cornering_front = 4.718;  ///< C_Sf, 1/rad, cornering stiffness over friction and axle load
@@ -60,7 +60,7 @@ struct CarState {
   bool operator==(const CarState&) const = default;
 };
 
-/// What drives the model: both are held over a time step.
+/// The inputs of the model; both are held over a time step.
 struct DriveInput {
   double steer_rate = 0;    ///< rad/s
   double acceleration = 0;  ///< m/s^2

@@ -15,13 +15,15 @@ class CollisionLog {
   /// Forgets all collisions.
   void reset() noexcept;
 
-  /// To be called after each step of the world.
+  /// Records the collisions of a step. Call it after each step of the world.
   void update(const World& world, std::size_t car);
 
   /// Number of collisions: different bodies that the car collided with, all walls together as one.
   int collisions() const noexcept { return static_cast<int>(bodies_.size()) + wall_; }
-  bool hit_wall() const noexcept { return wall_; }                   ///< whether it collided with a wall
-  std::span<const int> bodies() const noexcept { return bodies_; }   ///< that it collided with, ascending
+  bool hit_wall() const noexcept { return wall_; }  ///< whether it collided with a wall
+  std::span<const int> bodies() const noexcept {
+    return bodies_;
+  }  ///< bodies with which it collided, ascending
   int collision_steps() const noexcept { return collision_steps_; }  ///< steps with any collision
   /// Number of different patterns of the fixed bodies' collision flags seen while the car collided: what the
   /// evaluation of K. Honda et al. (proj-svg_mppi) counts. A wall alone is the pattern of no flag, two bodies

@@ -1,10 +1,10 @@
 #pragma once
 
-/// What exists only to reproduce f1tenth_gym, the simulator of the paper's experiments: switches for its
-/// deviations from the physics and geometry that this simulator computes. Each options struct of the layer
-/// that has such switches holds them in a member `gym`; all are off by default. `all()` turns on every switch
-/// of a struct. `WorldOptions::gym_compatible()` turns on those of a world, and sets the other options in
-/// which its world differs.
+/// Switches that only reproduce f1tenth_gym, the simulator of the paper's experiments: its deviations from
+/// the physics and geometry that this simulator computes. Each options struct of the layer that has such
+/// switches holds them in a member `gym`; all are off by default. `all()` turns on every switch of a struct.
+/// `WorldOptions::gym_compatible()` turns on those of a world, and sets the other options in which its world
+/// differs.
 namespace slalom::sim {
 
 /// Deviations of the equations of motion.

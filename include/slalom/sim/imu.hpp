@@ -44,8 +44,8 @@ class Imu {
   /// Begins a drive with the car in this state; draws the biases.
   void reset(const CarState& state) noexcept;
 
-  /// To be called after each step of `time_step` (s) with the state reached. A time step that is not above 0
-  /// and a state that is not finite change nothing.
+  /// Takes a sample. Call it after each step of `time_step` (s) with the state reached. A time step that is
+  /// not above 0 and a state that is not finite change nothing.
   void update(const CarState& state, double time_step) noexcept;
 
   /// The mean of the samples since the last call, or the last reading where there is none.

@@ -56,7 +56,7 @@ class LapTimer {
   /// Starts at a position and time (s).
   void reset(const LapPath& path, const maps::Point& position, double time) noexcept;
 
-  /// To be called after each step, with the position and the time (s) reached.
+  /// Counts a step. Call it after each one, with the position and the time (s) reached.
   void update(const LapPath& path, const maps::Point& position, double time) noexcept;
 
   /// The car was moved elsewhere: progress continues from there, and the distance between does not count.

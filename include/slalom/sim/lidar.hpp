@@ -22,7 +22,7 @@ struct LidarOptions {
   double range_max = 30;  ///< m; the range of a beam that meets nothing nearer
   double noise = 0.01;    ///< m, standard deviation of each range
   double rate = 0;        ///< Hz, rounded to whole time steps; 0 scans in every step
-  maps::Pose mount{0.10355, 0, 0};  ///< of the sensor on the car, from the centre of gravity
+  maps::Pose mount{0.10355, 0, 0};  ///< pose of the sensor on the car, from the centre of gravity
   double dropout = 0;               ///< share of beams that come back without a return: range_max
 
   GymLidar gym{};  ///< reproduction of f1tenth_gym
@@ -85,8 +85,8 @@ class Lidar {
 
   LidarOptions options_;
   std::vector<double> angles_;
-  std::vector<float> cosines_, sines_;            ///< of the angles, padded
-  std::vector<float> cone_cosines_, cone_sines_;  ///< of the middles of cones of beams, padded
+  std::vector<float> cosines_, sines_;            ///< cosines and sines of the angles, padded
+  std::vector<float> cone_cosines_, cone_sines_;  ///< the same of the middles of cones of beams, padded
   const detail::ScanKernels* kernels_;
 };
 

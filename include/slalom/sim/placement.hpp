@@ -23,7 +23,7 @@ struct Placement {
 std::vector<Placement> place_at_random(std::span<const maps::Point> path, int cars, std::uint64_t seed,
                                        double radius = 0.1);
 
-/// Where place_apart puts cars.
+/// The rules by which place_apart places cars.
 struct PlacementRules {
   double radius = 0.1;      ///< m, most distance from the waypoint, uniform over the disc
   double length = 0.58;     ///< m, of a car

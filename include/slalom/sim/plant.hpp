@@ -9,12 +9,12 @@
 
 namespace slalom::sim {
 
-/// What `Command::steer` means to a car: an angle, rad, or the rate of the angle, rad/s.
+/// The meaning of `Command::steer`: an angle, rad, or the rate of the angle, rad/s.
 enum class SteeringInput { angle, rate };
-/// What `Command::speed` means to a car: a speed, m/s, or an acceleration, m/s^2.
+/// The meaning of `Command::speed`: a speed, m/s, or an acceleration, m/s^2.
 enum class SpeedInput { speed, acceleration };
 
-/// What a car does in a step for which no usable command has come.
+/// The behaviour of a car in a step without a usable command.
 enum class Coast {
   roll,    ///< the wheels keep their angle, no drive and no brake
   brake,   ///< the wheels keep their angle, the car brakes to a stop

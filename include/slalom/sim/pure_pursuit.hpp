@@ -44,7 +44,7 @@ class PurePursuit {
   /// The nearest position on the path.
   struct Nearest {
     std::size_t segment = 0;  ///< from this row to the next
-    double along = 0;         ///< in [0, 1] of the segment
+    double along = 0;         ///< place along the segment, [0, 1]
     double distance = 0;      ///< m
   };
   /// The point to steer for.
@@ -53,9 +53,9 @@ class PurePursuit {
     enum class Mode { lookahead, reacquire, lost };
     Mode mode = Mode::lost;  ///< how it was found
     int row = -2;            ///< start of the segment found (-1 the last row); -2 if lost
-    double along = -1;       ///< in [0, 1] of that segment; -1 where it was not searched
+    double along = -1;       ///< place along that segment, [0, 1]; -1 where it was not searched
     Nearest nearest;         ///< position of the car on the path
-    PathPoint aim;           ///< where and how fast
+    PathPoint aim;           ///< point to aim at, and its speed
   };
 
   /// The nearest position on the path.

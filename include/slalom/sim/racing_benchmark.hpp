@@ -38,11 +38,11 @@ class BenchmarkLine {
 
   std::vector<maps::Point> rows_;
   std::vector<double> arc_;             ///< m, of the rows
-  std::vector<double> parameter_;       ///< of the rows, 0..1
+  std::vector<double> parameter_;       ///< parameter of each row, 0..1
   std::vector<maps::Point> curvature_;  ///< second derivatives of the spline at the rows
 };
 
-/// What a driver of the racing benchmark sees.
+/// The observation of a driver of the racing benchmark.
 struct RacingObservation {
   double time = 0;                 ///< s since the start of the lap
   CarState state;                  ///< the true state
@@ -80,7 +80,7 @@ class RacingBenchmark {
   /// Drives one control period. A command that is not finite leaves wheels and motor alone.
   void step(const Command& command);
 
-  /// What the driver sees now.
+  /// The driver's present observation.
   RacingObservation observation() const noexcept;
   bool collided() const noexcept { return collided_; }  ///< the lap ended in a collision
   bool complete() const noexcept { return complete_; }  ///< the lap ended otherwise

@@ -34,7 +34,7 @@ struct RacingLineOptions {
 /// accelerations allow on the way that was found.
 class RacingLine {
  public:
-  /// What is known of the line at an arc length of the path.
+  /// The line at an arc length of the path.
   struct Point {
     maps::Point point;  ///< m, of the path, map frame
     double yaw = 0;     ///< rad, direction of the path

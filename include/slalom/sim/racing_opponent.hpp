@@ -14,8 +14,8 @@ namespace slalom::sim {
 enum class OpponentDriver {
   pursuit,  ///< pure pursuit of the path; it looks at nothing: PurePursuit
   racing,   ///< the racing line round what is parked; it follows a car ahead and leaves room to one alongside
-  blocking,  ///< the same, but it moves in front of the car that comes from behind
-  erratic,   ///< the same, but it changes lane and speed at random times
+  blocking,  ///< follows the path and moves in front of a car that comes from behind
+  erratic,   ///< follows the path and changes lane and speed at random times
 };
 /// The names of the enumerators, in order.
 inline const char* const* enum_names(OpponentDriver) {
@@ -26,14 +26,14 @@ inline const char* const* enum_names(OpponentDriver) {
 /// Options of RacingOpponent. Lengths are for 1/10-scale cars.
 struct RacingOpponentOptions {
   OpponentDriver driver = OpponentDriver::racing;  ///< not `pursuit`
-  double speed_share = 0.8;                        ///< of the speeds of the line, [0.01, 1]
+  double speed_share = 0.8;                        ///< share of the speeds of the line, [0.01, 1]
   double room = 0.1;                               ///< m, sideways from cars alongside
   double side_acceleration = 4;                    ///< m/s^2, about the largest of a change of lane
   double blocking_reach = 4;                       ///< m, within which a car behind is blocked
   double lane_offset = 0.6;  ///< m from the line at most, of blocking and of random lanes
   double shortest_stay = 1;  ///< s, of an erratic driver in a lane, at least
   double longest_stay = 3;   ///< s, at most
-  double slowest = 0.6;      ///< of its speed share, the least that an erratic driver chooses
+  double slowest = 0.6;      ///< least share of its speed that an erratic driver chooses
 
   /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
   void validate() const;
@@ -82,13 +82,14 @@ class RacingOpponent {
   RandomStream random_;
 
   bool placed_ = false;
-  LapPath::Place place_;                     ///< of the own car along the path
+  LapPath::Place place_;                     ///< place of the own car along the path
   double speed_ = 0;                         ///< m/s, own
   double half_length_ = 0, half_width_ = 0;  ///< m, own
   std::vector<Neighbour> neighbours_;
-  double lane_ = 0;                                               ///< m left of the line
-  double change_ = 0;                                             ///< m, length of the way into the lane
-  double random_lane_ = 0, random_share_ = 1, random_until_ = 0;  ///< of erratic drivers
+  double lane_ = 0;    ///< m left of the line
+  double change_ = 0;  ///< m, length of the way into the lane
+  double random_lane_ = 0, random_share_ = 1,
+         random_until_ = 0;  ///< choice of an erratic driver, and the time until which it holds
 };
 
 }  // namespace slalom::sim

@@ -75,7 +75,7 @@ class Track {
   std::optional<LapPath> lap_path_;
   maps::DistanceField distance_;
   std::vector<std::int16_t> clearance_;
-  double cosine_ = 1;  ///< of the grid's yaw
+  double cosine_ = 1;  ///< cosine of the grid's yaw
   double sine_ = 0;
 };
 

@@ -57,11 +57,11 @@ class WheelOdometry {
   /// Starts again; the first pose of the odometry is `start`.
   void reset(const CarState& state, const maps::Pose& start = {}) noexcept;
 
-  /// To be called after each step of `time_step` (s) with the state reached. A time step that is not above 0
-  /// and a state that is not finite change nothing.
+  /// Moves the odometry. Call it after each step of `time_step` (s) with the state reached. A time step that
+  /// is not above 0 and a state that is not finite change nothing.
   void update(const CarState& state, double time_step) noexcept;
 
-  const maps::Pose& pose() const noexcept { return pose_; }  ///< of the rear axle, odometry frame
+  const maps::Pose& pose() const noexcept { return pose_; }  ///< pose of the rear axle, odometry frame
   double speed() const noexcept { return speed_; }           ///< m/s, as the wheels have it
   double yaw_rate() const noexcept { return yaw_rate_; }     ///< rad/s
 

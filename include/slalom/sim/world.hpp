@@ -31,7 +31,7 @@
 /// thousands can run in parallel threads, each thread with worlds of its own.
 namespace slalom::sim {
 
-/// What a collision does to a driven car.
+/// The effect of a collision on a driven car.
 enum class CollisionResponse {
   stop,        ///< it returns to where it was before the step, at rest
   slide,       ///< it loses the speed into the obstacle and keeps the speed along it
@@ -64,22 +64,22 @@ struct WorldOptions {
   void validate() const;
 };
 
-/// What one car knows and what has happened to it. Spans point into the world, until it changes.
+/// The knowledge of one car, and the events that it met. Spans point into the world, until it changes.
 struct Observation {
-  maps::Pose pose;           ///< of the centre of gravity, map frame
-  maps::Pose sensor;         ///< of the LiDAR when it scanned, map frame
-  double speed = 0;          ///< m/s, along the direction of travel
-  double steer = 0;          ///< rad, of the front wheels
-  double yaw_rate = 0;       ///< rad/s
-  double slip = 0;           ///< rad
-  double time = 0;           ///< s since the reset
-  double scan_time = 0;      ///< s since the reset, when `scan` was taken
-  maps::LaserScanView scan;  ///< in the frame of `sensor`; where nothing was hit a range is range_max
+  maps::Pose pose;                     ///< pose of the centre of gravity, map frame
+  maps::Pose sensor;                   ///< pose of the LiDAR when it scanned, map frame
+  double speed = 0;                    ///< m/s, along the direction of travel
+  double steer = 0;                    ///< rad, of the front wheels
+  double yaw_rate = 0;                 ///< rad/s
+  double slip = 0;                     ///< rad
+  double time = 0;                     ///< s since the reset
+  double scan_time = 0;                ///< s since the reset, when `scan` was taken
+  maps::LaserScanView scan;            ///< scan in the frame of `sensor`; without a hit a range is range_max
   std::span<const double> gym_ranges;  ///< the ranges in float64, with LidarOptions::gym.ranges only
   bool wall = false;                   ///< collides with a wall in this step
   std::span<const int> colliding;      ///< bodies that it collides with in this step, ascending
 
-  bool collides() const { return wall || !colliding.empty(); }  ///< with a wall or a body
+  bool collides() const { return wall || !colliding.empty(); }  ///< whether it collides with a wall or a body
 };
 
 /// Result of a step; where both errors apply, non_finite_command.
@@ -151,8 +151,8 @@ class World {
   /// Per body, whether it collides with another body in this step, and for driven cars also with a wall:
   /// f1tenth_gym's collision flags. Parked bodies that overlap each other stay flagged.
   std::span<const std::uint8_t> flags() const noexcept { return flags_; }
-  /// Of a body, the last of the bodies it collides with, -1 if none: f1tenth_gym's collision_idx. Here and in
-  /// `outline` and `disc`, `body` must be less than `bodies()`.
+  /// Returns the last of the bodies with which a body collides, -1 if none: f1tenth_gym's collision_idx. Here
+  /// and in `outline` and `disc`, `body` must be less than `bodies()`.
   int last_partner(std::size_t body) const noexcept { return partners_[body]; }
 
   double time() const noexcept { return time_; }  ///< s since the reset
@@ -183,14 +183,14 @@ class World {
     NormalNoise noise;
     NumpyRandom gym_noise{12345};
     std::vector<float> ranges;       ///< padded
-    std::vector<double> gym_ranges;  ///< with LidarOptions::gym.ranges only
+    std::vector<double> gym_ranges;  ///< ranges with LidarOptions::gym.ranges only
     std::vector<int> colliding;
     maps::Pose sensor;
     double scan_time = 0;
     bool wall = false;
     bool scans = true;
     bool away = false;
-    bool struck = false;  ///< in this step, with CollisionResponse::slide_unless_struck
+    bool struck = false;  ///< whether it was struck in this step, with CollisionResponse::slide_unless_struck
   };
   /// A parked car, box or disc.
   struct Fixed {
@@ -223,7 +223,7 @@ class World {
   TimeToCollision time_to_collision_;
   std::vector<Car> cars_;
   std::vector<Fixed> fixed_;
-  std::vector<Box> boxes_;  ///< of driven cars, as moved in this step
+  std::vector<Box> boxes_;  ///< boxes of driven cars, as moved in this step
   std::vector<std::uint8_t> flags_;
   std::vector<int> partners_;
   double time_ = 0;

@@ -29,8 +29,8 @@ class FeedbackGains {
     std::span<double> inputs;          ///< u [inputs]
     std::span<double> state_jacobian;  ///< A [states][states]
     std::span<double> input_jacobian;  ///< B [states][inputs]
-    std::span<double> gradient;        ///< of the stage cost [states + inputs]
-    std::span<double> hessian;         ///< of the stage cost [states + inputs][states + inputs]
+    std::span<double> gradient;        ///< gradient of the stage cost [states + inputs]
+    std::span<double> hessian;         ///< Hessian of the stage cost [states + inputs][states + inputs]
   };
   /// The last state and the derivatives of the terminal cost, to be filled before `solve`.
   struct Terminal {
@@ -45,11 +45,11 @@ class FeedbackGains {
 
   int states() const noexcept { return states_; }  ///< scalars of a state
   int inputs() const noexcept { return inputs_; }  ///< inputs of a step
-  int steps() const noexcept { return steps_; }    ///< of the horizon
+  int steps() const noexcept { return steps_; }    ///< steps of the horizon
 
-  /// Where the values of step `k` belong.
+  /// Returns the place for the values of step `k`.
   Step step(int k) noexcept;
-  /// Where the values of the plan's end belong.
+  /// Returns the place for the values of the plan's end.
   Terminal terminal() noexcept;
 
   /// Fills the derivatives along the plan, whose states and inputs must have been filled. Returns whether a
@@ -97,15 +97,15 @@ class FeedbackGains {
 
   int states_, inputs_, steps_;
   InputBounds bounds_;
-  double time_step_ = 1;                                          ///< s
-  double linear_ = 0, quadratic_ = 0;                             ///< of the expected change of the cost
-  std::vector<double> plan_states_, plan_inputs_;                 ///< [steps + 1][states], [steps][inputs]
-  std::vector<double> jacobians_, gradients_, hessians_, gains_;  ///< of all steps
+  double time_step_ = 1;                           ///< s
+  double linear_ = 0, quadratic_ = 0;              ///< terms of the expected change of the cost
+  std::vector<double> plan_states_, plan_inputs_;  ///< [steps + 1][states], [steps][inputs]
+  std::vector<double> jacobians_, gradients_, hessians_, gains_;  ///< values of all steps
   std::vector<double> value_, value_gradient_;                    ///< cost to go: Hessian and gradient
-  std::vector<double> hessian_, gradient_;                        ///< of the cost-to-go by state and inputs
-  std::vector<double> changes_;                                   ///< [steps][inputs]
-  std::vector<double> product_, matrix_, vectors_;                ///< working memory
-  std::vector<int> free_;                                         ///< inputs that may move
+  std::vector<double> hessian_, gradient_;          ///< derivatives of the cost-to-go by state and inputs
+  std::vector<double> changes_;                     ///< [steps][inputs]
+  std::vector<double> product_, matrix_, vectors_;  ///< working memory
+  std::vector<int> free_;                           ///< inputs that may move
 };
 
 }  // namespace slalom

@@ -58,8 +58,8 @@ class IterativeLqr {
   /// call. If its cost or a derivative is not finite, it stays as it is.
   std::span<const double> improve(DifferentiableProblem& problem, std::span<const double> x);
 
-  int steps() const noexcept { return gains_.steps(); }  ///< of the horizon
-  double cost() const noexcept { return cost_; }  ///< of the sequence that the last improvement returned
+  int steps() const noexcept { return gains_.steps(); }  ///< steps of the horizon
+  double cost() const noexcept { return cost_; }  ///< cost of the sequence that the last improvement returned
   double first_cost() const noexcept { return first_cost_; }  ///< before the last improvement
   int iterations() const noexcept { return iterations_; }     ///< steps of the last improvement
   /// Whether the last improvement met a function without derivative (see Dual).
@@ -74,7 +74,7 @@ class IterativeLqr {
   InputBounds bounds_;
   int most_iterations_;
   std::vector<double> inputs_, states_;              ///< the sequence, [steps][inputs], [steps + 1][states]
-  std::vector<double> tried_inputs_, tried_states_;  ///< of a step that may be taken
+  std::vector<double> tried_inputs_, tried_states_;  ///< sequence of a step that may be taken
   double cost_ = 0, first_cost_ = 0;
   double damping_ = 0;
   int iterations_ = 0;

@@ -18,7 +18,7 @@ struct SequenceList {
   int sequences = 0;              ///< number
 };
 
-/// What changes from one solve to the next.
+/// The inputs of a solve that change from one to the next.
 struct SolveRequest {
   /// Time since the last solve, s; the warm start is shifted by it where the solver shifts.
   double elapsed = 0;
@@ -52,21 +52,21 @@ struct SolveResult {
   std::span<const float> inputs;     ///< the control sequence to apply, [step][input]
   std::span<const float> nominal;    ///< the nominal sequence (svg_mppi: the best guide), [step][input]
   std::span<const float> mean;       ///< mean of the resulting distribution, [step][input]
-  std::span<const float> variances;  ///< its variances, [step][input]
+  std::span<const float> variances;  ///< variances of the distribution, [step][input]
 
-  const SequenceBatch* samples = nullptr;  ///< what was drawn last
-  std::span<const float> costs;            ///< of the samples
+  const SequenceBatch* samples = nullptr;  ///< samples that were drawn last
+  std::span<const float> costs;            ///< costs of the samples
   std::span<const std::uint8_t> collided;  ///< 1 where a sample collides
-  std::span<const float> weights;          ///< of the samples; the sum is 1, or less with a
+  std::span<const float> weights;          ///< weights of the samples; the sum is 1, or less with a
                                            ///< `normaliser_offset`. If no cost is finite they mean nothing
 
-  SequenceList guides;               ///< where the guide particles ended (empty without guides)
+  SequenceList guides;               ///< last positions of the guide particles (empty without guides)
   SequenceList guide_path;           ///< all guides after each transport step, [iteration x guide]
   double minimum_cost = 0;           ///< the least cost of a sample
   double expected_cost = 0;          ///< weighted mean of the samples' costs
   double effective_sample_size = 0;  ///< 1 / sum of squared weights
   int few_samples_solves = 0;        ///< solves in a row, with this one, below `few_samples`
-  double collided_share = 0;         ///< of the samples, 0 ... 1
+  double collided_share = 0;         ///< share of the samples that collide, 0 ... 1
   double temperature = 0;            ///< lambda in use; 0 with `cem` and `icem`, which have none
   int iterations = 0;                ///< guide or distribution updates made
   StageTimes times;                  ///< times of the stages

@@ -11,7 +11,8 @@
 #include "slalom/core/thread_pool.hpp"
 #include "slalom/solvers/solver.hpp"
 
-/// What solvers have in common, for those of the library and for your own: examples/predictive_sampling.hpp.
+/// The parts that solvers have in common, for those of the library and for your own:
+/// examples/predictive_sampling.hpp.
 namespace slalom {
 
 /// The moment at which a solve has to end. Without a limit it never reads the clock.
@@ -33,10 +34,10 @@ class Deadline {
 
 /// The outcome of evaluating a batch.
 struct BatchOutcome {
-  int samples = 0;    ///< in the batch
+  int samples = 0;    ///< number in the batch
   int evaluated = 0;  ///< before the deadline
-  int finite = 0;     ///< of finite cost
-  int collided = 0;   ///< that collide
+  int finite = 0;     ///< number of finite cost
+  int collided = 0;   ///< number that collide
   int best = 0;       ///< index of the sample of least cost, the first of equal ones
 
   /// `deadline` if samples were left out, `degenerate` without a finite cost, `all_collided`, or `ok`.
@@ -60,14 +61,16 @@ class SolverBase : public Solver {
                    pool ? std::move(pool) : std::make_shared<ThreadPool>(options.threads)) {}
 
   int rows() const noexcept { return horizon_ * inputs_; }  ///< values of a control sequence
-  std::size_t size() const noexcept { return static_cast<std::size_t>(rows()); }  ///< the same, unsigned
+  std::size_t size() const noexcept {
+    return static_cast<std::size_t>(rows());
+  }                                               ///< `rows` as an unsigned number
   ThreadPool& pool() noexcept { return *pool_; }  ///< the threads that evaluate
 
   /// The random stream of a stage (< 65536) of the present solve.
   RandomKey key(int stage) const noexcept {
     return {seed_, (solves_ << 16) | static_cast<std::uint64_t>(stage)};
   }
-  /// To be called once per solve, so that the next one has other random numbers.
+  /// Counts a solve, so that the next one has other random numbers. Call it once per solve.
   void next_solve() noexcept { ++solves_; }
   /// Starts the random numbers again: for `reset`.
   void restart(std::uint64_t seed) noexcept {
@@ -110,7 +113,7 @@ class SolverBase : public Solver {
 /// A control sequence [step][input] moved forward by `shift` >= 0 steps, by linear interpolation; the last
 /// input is held. `sequence` and `result` must not overlap.
 void shift_sequence(const float* sequence, int steps, int inputs, double shift, float* result) noexcept;
-/// The same in double.
+/// Shifts a sequence in double.
 void shift_sequence(const double* sequence, int steps, int inputs, double shift, double* result) noexcept;
 
 /// The time since the last solve in steps of the evaluator; 0 if the duration of a step is unknown.

@@ -47,9 +47,9 @@ enum class TrackerStatus {
 
 /// The input of an update.
 struct TrackerInput {
-  maps::LaserScanView scan;  ///< in the frame of the LiDAR
-  maps::Pose sensor;         ///< of the LiDAR: in the map frame; without a map in any frame that is at rest
-  double stamp = 0;          ///< s, of the scan
+  maps::LaserScanView scan;  ///< scan in the frame of the LiDAR
+  maps::Pose sensor;  ///< pose of the LiDAR: in the map frame; without a map in any frame that is at rest
+  double stamp = 0;   ///< s, of the scan
   double position_deviation =
       0;                     ///< m, of x and of y; where 0 and with a yaw deviation of 0 the pose is exact
   double yaw_deviation = 0;  ///< rad
@@ -59,12 +59,12 @@ struct TrackerInput {
 /// The order of the state in `covariance` is x, y, yaw, speed, yaw rate.
 struct TrackedObject {
   int id = 0;                    ///< stays with the object; from 1
-  maps::Pose pose;               ///< of the middle of its box
+  maps::Pose pose;               ///< pose of the middle of its box
   double speed = 0;              ///< m/s, along the yaw
   double yaw_rate = 0;           ///< rad/s
   double length = 0;             ///< m
   double width = 0;              ///< m
-  double covariance[5][5] = {};  ///< of the state (m, m, rad, m/s, rad/s)
+  double covariance[5][5] = {};  ///< covariance of the state (m, m, rad, m/s, rad/s)
   double length_deviation = 0;   ///< m
   double width_deviation = 0;    ///< m
   double unseen = 0;             ///< s since it was last seen; 0 if this scan has readings of it
@@ -74,9 +74,9 @@ struct TrackedObject {
 struct TrackerOutput {
   TrackerStatus status = TrackerStatus::ok;  ///< how the update ended
   std::span<const TrackedObject> objects;    ///< confirmed objects, ascending by id
-  /// Of the LiDAR at the last scan that was used (status `ok` or `misfit`), aligned with the map.
+  /// The pose of the LiDAR at the last scan that was used (status `ok` or `misfit`), aligned with the map.
   maps::Pose sensor;
-  int clusters = 0;        ///< of this scan
+  int clusters = 0;        ///< clusters of this scan
   double update_time = 0;  ///< s of wall clock
 };
 

@@ -8,7 +8,7 @@
 #include "slalom/tracking/object_tracker.hpp"
 #include "slalom/tracking/predictor_options.hpp"
 
-/// What tracked objects will do, in hypotheses with weights:
+/// Predicts the motion of tracked objects, in hypotheses with weights:
 ///
 ///     Predictor predictor(path);
 ///     while (driving) {

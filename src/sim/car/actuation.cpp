@@ -31,7 +31,7 @@ double acceleration_towards(const CarParameters& car, const ActuationOptions& op
     const double range = difference > 0 ? car.speed_max : -car.speed_min;
     return factor * car.acceleration_max / range * difference;
   }
-  // To brake is to slow down whichever way the car goes.
+  // Braking is slowing down whichever way the car goes.
   const bool brakes = speed != 0 && (difference > 0) != (speed > 0);
   return (brakes ? options.brake_gain : options.speed_gain) * difference;
 }

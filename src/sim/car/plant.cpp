@@ -67,7 +67,7 @@ void Plant::step(const Command& command) noexcept {
 
 void Plant::coast() noexcept {
   if (options_.coast == Coast::repeat) return step(last_);
-  // What is under way still arrives; after it the wheels stay as they are.
+  // Commands under way still arrive; after them the wheels stay as they are.
   const double hold = options_.steering_input == SteeringInput::angle ? state_.steer : 0.0;
   applied_ = delayed(hold);
   DriveInput input{applied_, 0};

@@ -103,7 +103,7 @@ double RacingOpponent::offset_at(double ahead) const noexcept {
   double offset = at.offset + from + (lane_ - from) * share * share * (3 - 2 * share);
   for (const Neighbour& other : neighbours_) {
     if (!alongside(other)) continue;
-    // What room is less than wanted already may stay as it is.
+    // A distance that is less than wanted already may stay as it is.
     const double apart = other.half_width + half_width_ + options_.room;
     if (other.offset > place_.lateral)
       offset = std::min(offset, std::max(other.offset - apart, place_.lateral));

@@ -37,7 +37,7 @@ struct PortableDoubleOperations {
   using L = typename detail::DoubleVectorTypes<T::lanes>::Long;    ///< mask, one 64-bit integer for each lane
   using I = typename detail::DoubleVectorTypes<T::lanes>::Int;     ///< vector of indices
 
-  /// The same value in all lanes.
+  /// Sets all lanes to `value`.
   static void broadcast(double value, D& r) { r = value - D{}; }
   /// Whether a < b, in each lane.
   static void less(const D& a, const D& b, L& r) { r = a < b; }
@@ -129,7 +129,7 @@ struct DoublePack {
   Vector v;                                                             ///< the lanes
 
   DoublePack() = default;
-  /// The same value in all lanes.
+  /// Sets all lanes to `value`.
   SLALOM_INLINE_CALLS DoublePack(double value) { DoubleOperations<T>::broadcast(value, v); }
   /// From a vector.
   SLALOM_INLINE DoublePack(const Vector& vector) : v(vector) {}

@@ -31,7 +31,7 @@ Lidar::Window Lidar::window(const maps::Pose& sensor, const maps::Point& middle,
     all.last = std::max(all.last, static_cast<int>(high));
   };
   include(bearing);
-  // What straddles the first beam shows its left part a turn earlier.
+  // A body that straddles the first beam shows its left part a turn earlier.
   include(bearing - 2 * pi);
   return all;
 }

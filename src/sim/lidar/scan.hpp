@@ -14,8 +14,8 @@ inline constexpr int scan_padding = 64;
 struct ScanTask {
   const std::int16_t* clearance;
   int stride;
-  float x, y;            ///< of the sensor, cells, the ring's corner at (0, 0)
-  float cosine, sine;    ///< of the sensor's yaw in the grid
+  float x, y;            ///< position of the sensor, cells, the ring's corner at (0, 0)
+  float cosine, sine;    ///< direction of the sensor's yaw in the grid
   const float* cosines;  ///< per beam, in the sensor's frame
   const float* sines;
   int beams;                  ///< without padding
@@ -32,13 +32,13 @@ struct ScanTask {
 /// A body to look for in beams [first, last].
 struct CastTask {
   float x, y;            ///< m, of the sensor in the body's frame
-  float cosine, sine;    ///< of the sensor's yaw in the body's frame
+  float cosine, sine;    ///< direction of the sensor's yaw in the body's frame
   const float* cosines;  ///< per beam, in the sensor's frame
   const float* sines;
   float half_length, half_width;  ///< m, of a box
   float radius;                   ///< m, above 0 for a disc
   int first, last;
-  float* ranges;  ///< in and out, m
+  float* ranges;  ///< ranges, in and out, m
 };
 
 /// Beams through f1tenth_gym's distance field, in double precision as it does.
@@ -58,9 +58,9 @@ struct NoiseTask {
   std::uint32_t key0, key1;
   float deviation;           ///< m
   float most;                ///< m
-  std::uint32_t lost_below;  ///< of 2^32: share of lost beams
+  std::uint32_t lost_below;  ///< share of lost beams, times 2^32
   int count;
-  float* ranges;  ///< in and out, m, with room for the padding
+  float* ranges;  ///< ranges, in and out, m, with room for the padding
 };
 
 /// The kernels of scans for one instruction set. All instruction sets give the same bits.
@@ -69,10 +69,10 @@ struct ScanKernels {
   void (*cast)(const CastTask&);
   void (*noise)(const NoiseTask&);
   void (*gym_walk)(const GymWalkTask&);
-  const char* name;  ///< of the instruction set
+  const char* name;  ///< name of the instruction set
 };
 
-/// Those for simd::active_target(). Throws as that does.
+/// Returns the kernels of simd::active_target(). Throws as that does.
 const ScanKernels& scan_kernels();
 
 /// All that this processor runs, the widest first.

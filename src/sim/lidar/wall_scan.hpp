@@ -126,7 +126,7 @@ SLALOM_INLINE_CALLS void walk_beams(const ScanTask& task, int begin, int end, co
   int next = begin, on_the_way = 0;
   Rays<F> rays[sizeof...(k)];
   const auto start = [&](Rays<F>& pack) {
-    // Where there are fewer packs than places the first is walked once more, without effect.
+    // If there are fewer packs than places, the first is walked once more, without effect.
     const int first = next < end ? next : begin;
     start_beams(task, first, reach[(first - begin) / cone_beams], pack);
     if (next < end) ++on_the_way;

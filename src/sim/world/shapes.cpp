@@ -37,7 +37,7 @@ double signed_gap(const Box& a, const Box& b) noexcept {
   const double dx = b.pose.x - a.pose.x, dy = b.pose.y - a.pose.y;
   const double ca = std::cos(a.pose.yaw), sa = std::sin(a.pose.yaw);
   const double cb = std::cos(b.pose.yaw), sb = std::sin(b.pose.yaw);
-  // Of the angle between them only how much of a side shows along the other's axes.
+  // The angle between them counts only by how much of a side shows along the other's axes.
   const double cosine = std::abs(ca * cb + sa * sb), sine = std::abs(sa * cb - ca * sb);
   const double al = a.length / 2, aw = a.width / 2, bl = b.length / 2, bw = b.width / 2;
   const double gaps[] = {std::abs(dx * ca + dy * sa) - al - (bl * cosine + bw * sine),

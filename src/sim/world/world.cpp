@@ -81,7 +81,7 @@ void World::reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::spa
   fixed_.clear();
   for (const maps::Pose& pose : parked)
     fixed_.push_back(Fixed{.box = {pose, options_.car.length, options_.car.width}});
-  // What was allocated for the last run serves the next.
+  // Memory of the last run serves the next.
   if (cars_.size() > cars.size())
     cars_.erase(cars_.begin() + static_cast<std::ptrdiff_t>(cars.size()), cars_.end());
   while (cars_.size() < cars.size())

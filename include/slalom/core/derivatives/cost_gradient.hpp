@@ -5,7 +5,7 @@
 
 namespace slalom {
 
-/// What a gradient of a cost is worth.
+/// Quality of a gradient of a cost.
 enum class GradientQuality {
   exact,       ///< the derivative
   kink,        ///< on one side at most: a function on the way has no derivative there (see Dual)

@@ -12,7 +12,7 @@ namespace slalom {
 /// The truth value of a comparison of dual numbers. `kink` says that the operands were equal and their
 /// derivatives not, so that the comparison changes within any distance.
 struct DualMask {
-  bool value = false;  ///< of the comparison
+  bool value = false;  ///< result of the comparison
   bool kink = false;   ///< whether it changes here
 
   DualMask() = default;
@@ -77,8 +77,8 @@ bool has_kink(const Dual<T, N>& x) {
 /// `select(hit, T(100), T(0))` is 0.
 template <class T, int N>
 struct Dual {
-  T value;            ///< of the number
-  T derivative[N];    ///< in each direction
+  T value;            ///< value of the number
+  T derivative[N];    ///< derivative in each direction
   bool kink = false;  ///< whether a function on the way here has no derivative where it was evaluated
 
   Dual() = default;

@@ -208,7 +208,7 @@ template <class T, int N>
 Dual<T, N> sign(const Dual<T, N>& x) {
   return detail::step_function(x, sign(detail::plain(x)), detail::plain(x) == 0);
 }
-/// To the nearest integer, ties to even.
+/// Rounds to the nearest integer, ties to even.
 template <class T, int N>
 Dual<T, N> round(const Dual<T, N>& x) {
   const double value = detail::plain(x);

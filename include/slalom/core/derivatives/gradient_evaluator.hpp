@@ -36,12 +36,12 @@ class GradientEvaluator final : public BatchEvaluator, private CostGradient {
   /// The problem.
   const P& problem() const noexcept { return batch_.problem(); }
 
-  /// Where the next rollouts start.
+  /// Sets the state in which the next rollouts start.
   void set_state(const State& state) noexcept {
     batch_.set_state(state);
     start_ = state;
   }
-  /// What was applied before the next rollouts.
+  /// Sets the input that was applied before the next rollouts.
   void set_previous_input(const Input<double, nu>& u) noexcept requires detail::limits_rates<P> {
     batch_.set_previous_input(u);
   }

@@ -11,7 +11,7 @@
 
 namespace slalom {
 
-/// What a neuron of a hidden layer makes of its weighted sum.
+/// The function that a neuron of a hidden layer applies to its weighted sum.
 enum class Activation : std::uint8_t {
   tanh,
   relu,      ///< max(x, 0)
@@ -29,7 +29,7 @@ struct MlpParameters {
     std::vector<double> biases;   ///< one for each neuron
   };
   std::vector<Layer> layers;                 ///< hidden layers, then the linear output layer
-  Activation activation = Activation::tanh;  ///< of the hidden layers
+  Activation activation = Activation::tanh;  ///< activation of the hidden layers
   std::vector<double> input_mean;            ///< subtracted from the inputs; empty: 0
   std::vector<double> input_scale;           ///< divides them then; empty: 1
   std::vector<double> output_scale;          ///< multiplies the outputs; empty: 1

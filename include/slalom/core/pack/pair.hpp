@@ -18,12 +18,12 @@ struct Pair {
 /// One truth value per lane of a pair.
 template <class T>
 struct Mask<Pair<T>> {
-  Mask<T> low, high;  ///< of the first lanes and of the others
+  Mask<T> low, high;  ///< masks of the first lanes and of the others
 
   Mask() = default;
   /// From its halves.
   SLALOM_INLINE Mask(const Mask<T>& a, const Mask<T>& b) : low(a), high(b) {}
-  /// The same value in all lanes.
+  /// Sets all lanes to `value`.
   SLALOM_INLINE explicit Mask(bool value) : low(value), high(value) {}
 
   /// Applies to each lane.
@@ -52,20 +52,20 @@ struct Mask<Pair<T>> {
 /// A pair of packs: arithmetic like a float's, lane by lane.
 template <class T>
 struct Pack<Pair<T>> {
-  using Target = Pair<T>;                      ///< in place of an instruction set
+  using Target = Pair<T>;                      ///< stands in place of an instruction set
   static constexpr int lanes = Target::lanes;  ///< number of float32 values
   Pack<T> low, high;                           ///< the first lanes and the others
 
   Pack() = default;
   /// From its halves.
   SLALOM_INLINE Pack(const Pack<T>& a, const Pack<T>& b) : low(a), high(b) {}
-  /// The same value in all lanes.
+  /// Sets all lanes to `value`.
   SLALOM_INLINE_CALLS Pack(float value) : low(value), high(low) {}
-  /// The same value in all lanes, rounded to float32.
+  /// Sets all lanes to `value`, rounded to float32.
   SLALOM_INLINE Pack(double value) : Pack(static_cast<float>(value)) {}
-  /// The same value in all lanes.
+  /// Sets all lanes to `value`.
   SLALOM_INLINE Pack(int value) : Pack(static_cast<float>(value)) {}
-  /// The same value in all lanes, already rounded.
+  /// Sets all lanes to a value that is already rounded.
   SLALOM_INLINE Pack(const Coefficient& value) : Pack(value.rounded()) {}
 
   /// Reads one value for each lane.

@@ -54,7 +54,7 @@ class RiskEvaluator final : public BatchEvaluator, private Sampler {
   /// The problem (index 0) and its variants, as of the last `set_state`.
   const P& variant(int index) const noexcept { return variants_[static_cast<std::size_t>(index)].problem(); }
 
-  /// Where the next rollouts start, with variants of the problem as it is now.
+  /// Sets the state in which the next rollouts start, with variants of the problem as it is now.
   void set_state(const State& state) noexcept {
     variants_.front().set_state(state);
     for (std::size_t m = 1; m < variants_.size(); ++m) {
@@ -65,7 +65,7 @@ class RiskEvaluator final : public BatchEvaluator, private Sampler {
     }
   }
 
-  /// What was applied before the next rollouts. Only for problems with `input_rate_max`.
+  /// Sets the input that was applied before the next rollouts. Only for problems with `input_rate_max`.
   void set_previous_input(const Input<double, P::inputs>& u) noexcept requires detail::limits_rates<P> {
     for (ProblemEvaluator<P>& variant : variants_) variant.set_previous_input(u);
   }

@@ -15,7 +15,7 @@ struct Room {
   double width = 0;            ///< m, along y
   std::vector<Box> walls;      ///< besides those around the floor
   std::vector<Box> obstacles;  ///< not on the map
-  std::vector<Disc> people{};  ///< where they are now; not on the map
+  std::vector<Disc> people{};  ///< present places of people, who are not on the map
 };
 
 /// The map of a room: its walls, and one cell of wall around the floor. Throws std::invalid_argument unless

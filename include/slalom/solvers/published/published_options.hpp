@@ -9,14 +9,14 @@
 /// paper.
 namespace slalom {
 
-/// Of `mppi`.
+/// Options of `mppi` that reproduce the program.
 /// `visit_options` below describes the fields.
 struct PublishedMppi {
   double inverse_variance_offset = 0;
   double normaliser_offset = 0;
 };
 
-/// What the Gaussian is fitted to along a guide's path.
+/// The target of the Gaussian's fit along a guide's path.
 enum class FitTarget {
   optimal_density,  ///< q* of the paper's equation (5): exp(-S / temperature) q(V | nominal, Sigma)
   state_cost,       ///< softmax of S with `fit_temperature` (program)
@@ -27,7 +27,7 @@ inline const char* const* enum_names(FitTarget) {
   return names;
 }
 
-/// Of `svg_mppi`.
+/// Options of `svg_mppi` that reproduce the program.
 /// `visit_options` below describes the fields.
 struct PublishedSvgMppi {
   double inverse_variance_offset = 0;
@@ -46,7 +46,7 @@ struct PublishedSvgMppi {
   bool fit_absolute_curvature = false;
 };
 
-/// By which densities `reverse_mppi` rejects samples.
+/// The densities by which `reverse_mppi` rejects samples.
 enum class RejectionModel {
   normal,     ///< a sample is kept with probability p / (p + p_rejected), normal densities at the sample
   published,  ///< product over steps of 1 / (p + p_rejected) where a "density" grows with the distance, and p
@@ -58,7 +58,7 @@ inline const char* const* enum_names(RejectionModel) {
   return names;
 }
 
-/// Of `reverse_mppi`.
+/// Options of `reverse_mppi` that reproduce the program.
 /// `visit_options` below describes the fields.
 struct PublishedReverseMppi {
   double inverse_variance_offset = 0;
@@ -67,7 +67,7 @@ struct PublishedReverseMppi {
   bool dimensionless_variance = false;  ///< With true every variance is drawn towards 1.
 };
 
-/// What the bandwidth of the kernel between the particles of `sv_mpc` is taken from.
+/// The source of the bandwidth of the kernel between the particles of `sv_mpc`.
 enum class BandwidthModel {
   pair_distances,  ///< median squared distance between particles / log n (Liu and Wang 2016)
   squared_norms,   ///< median squared norm of the particles / log n (program)
@@ -78,7 +78,7 @@ inline const char* const* enum_names(BandwidthModel) {
   return names;
 }
 
-/// Of `sv_mpc`.
+/// Options of `sv_mpc` that reproduce the program.
 /// `visit_options` below describes the fields.
 struct PublishedSvMpc {
   double inverse_variance_offset = 0;

@@ -24,7 +24,7 @@ SvMpcOptions published_sv_mpc();
 /// The program has no `cem`: bounds and horizon are those of the program's methods.
 CemOptions published_cem();
 
-/// The same by name. Throws std::invalid_argument if there is none of that name.
+/// Returns the options of a method by its name. Throws std::invalid_argument if there is none of that name.
 SolverOptions published_solver_options(std::string_view method);
 
 }  // namespace slalom
