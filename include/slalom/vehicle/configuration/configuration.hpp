@@ -70,7 +70,7 @@ void set_option(Configuration& configuration, std::string_view key, std::string_
 /// One section with all its options.
 struct Section {
   std::string name;                  ///< the name
-  std::vector<OptionEntry> options;  ///< with their present values
+  std::vector<OptionEntry> options;  ///< options with their present values
 };
 /// All options by section.
 std::vector<Section> list_sections(const Configuration& configuration);

@@ -40,13 +40,13 @@ struct Course {
   std::vector<Waypoint>
       waypoints;  ///< at least 3, successive ones differ; the first is not repeated at the end
   std::vector<maps::Point>
-      obstacle_path;  ///< where obstacles are placed; the waypoints if the folder has no such file
-  maps::Pose
-      start;  ///< of the centre of gravity: the first waypoint, along the path, or the one of course.yaml
+      obstacle_path;  ///< path on which obstacles are placed; the waypoints if the folder has no such file
+  maps::Pose start;   ///< pose of the centre of gravity: the first waypoint, along the path, or the one of
+                      ///< course.yaml
   std::optional<double> timeout;   ///< s per lap, if course.yaml gives one
   bool closed = true;              ///< the path continues from the last waypoint to the first
   double length = 0;               ///< m along the waypoints, with the closing stretch if closed
-  std::vector<std::string> notes;  ///< what was ignored and why, one sentence each
+  std::vector<std::string> notes;  ///< things that were ignored and why, one sentence each
 };
 
 /// Loads and checks the course in `folder`; `reading` has the options for its map. Throws IoError naming

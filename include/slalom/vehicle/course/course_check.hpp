@@ -9,11 +9,11 @@
 
 namespace slalom::vehicle {
 
-/// What a course is checked against.
+/// The limits that a course must keep.
 struct CourseCheckOptions {
   double half_width = 0.155;  ///< m, of the body
   double margin = 0.06;       ///< m, that the body keeps from walls
-  SpeedLimits limits;         ///< what tyres, motor and brakes allow
+  SpeedLimits limits;         ///< limits of tyres, motor and brakes
   double tolerance = 0.05;    ///< share by which a profile may exceed the accelerations, since files are
                               ///< rounded; there is none for the top speed
 };
@@ -25,10 +25,10 @@ struct CourseStretch {
   double value = 0;           ///< there
 };
 
-/// Where a course breaks one rule.
+/// The parts of a course that break one rule.
 struct CourseFinding {
-  double share = 0;                      ///< of the length, 0 .. 1
-  std::vector<CourseStretch> stretches;  ///< in the order of the course
+  double share = 0;                      ///< share of the length, 0 .. 1
+  std::vector<CourseStretch> stretches;  ///< stretches in the order of the course
 };
 
 /// The findings about a course.
@@ -50,7 +50,7 @@ std::vector<std::string> sentences(const CourseCheck& check, const CourseCheckOp
 
 /// Lowers the speeds of a course to what the limits allow (see feasible_speeds).
 void make_feasible(Course& course, const SpeedLimits& limits);
-/// The same for a path, which is closed if its ends are near each other (see path_geometry).
+/// Makes a path feasible; it is closed if its ends are near each other (see path_geometry).
 void make_feasible(std::vector<maps::ReferencePoint>& path, const SpeedLimits& limits);
 
 }  // namespace slalom::vehicle

@@ -8,7 +8,7 @@
 
 namespace slalom::vehicle {
 
-/// What a car's tyres, motor and brakes allow. All > 0.
+/// Limits of a car's tyres, motor and brakes. All > 0.
 struct SpeedLimits {
   double top_speed = 6.0;             ///< m/s
   double lateral_acceleration = 4.5;  ///< m/s^2
@@ -32,10 +32,10 @@ SpeedLimits grip_limits(double friction, double top_speed, double acceleration, 
 std::vector<double> speed_profile(const std::vector<double>& curvature, double step,
                                   const SpeedLimits& limits);
 
-/// The same for a path that has a profile already: the highest speeds (m/s), nowhere above `speed`, that obey
-/// the rules above. `speed` and `curvature` have one entry per point, and `step[i]` is the way (m) from point
-/// i to the next, from the last to the first; that of an open path is not used. Throws std::invalid_argument
-/// for limits that are not finite and above 0, and for sizes that differ.
+/// Lowers the speeds of a path that has a profile already: returns the highest speeds (m/s), nowhere above
+/// `speed`, that obey the rules above. `speed` and `curvature` have one entry per point, and `step[i]` is the
+/// way (m) from point i to the next, from the last to the first; that of an open path is not used. Throws
+/// std::invalid_argument for limits that are not finite and above 0, and for sizes that differ.
 std::vector<double> feasible_speeds(std::span<const double> speed, std::span<const double> curvature,
                                     std::span<const double> step, bool closed, const SpeedLimits& limits);
 

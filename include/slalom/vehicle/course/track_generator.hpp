@@ -22,11 +22,11 @@ TrackCharacter track_character(const std::string& name);
 /// Options of a generated track. Ranges are checked by validate().
 struct TrackGeneratorOptions {
   std::uint64_t seed = 0;  ///< seed of the random numbers
-  double length = 60.0;    ///< of the centre line, m, 20..1000, and at least 16 (width / 2 + wall)
+  double length = 60.0;    ///< length of the centre line, m, 20..1000, and at least 16 (width / 2 + wall)
   double width = 2.2;      ///< from wall to wall, m, 1.2..10
   TrackCharacter character = TrackCharacter::balanced;  ///< style of its corners
   double wall = 0.2;          ///< thickness of the walls, m, 0.1..1, at least 2 cells
-  double resolution = 0.05;   ///< of the map, m, 0.02..0.1
+  double resolution = 0.05;   ///< size of a cell of the map, m, 0.02..0.1
   double wall_margin = 0.45;  ///< the raceline keeps this far from the walls, m, 0.3.. width / 2 - 0.1
   SpeedLimits limits;         ///< for the speed profile
 };
@@ -55,7 +55,7 @@ struct GeneratedTrack {
   TrackGeneratorOptions options;           ///< from which it was generated
   std::vector<maps::Point> centre_line;    ///< equal steps of about 0.1 m
   std::vector<RacelinePoint> raceline;     ///< equal steps of about 0.11 m
-  std::vector<maps::Point> obstacle_path;  ///< where a parked car leaves room to pass it on one side
+  std::vector<maps::Point> obstacle_path;  ///< path on which a parked car leaves room to pass it on one side
   maps::OccupancyGrid map;                 ///< free between the walls, occupied inside them, unknown beyond
   double lap_time = 0;                     ///< s, at the raceline's speeds
 };
@@ -70,11 +70,11 @@ struct GeneratedTrack {
 /// Throws std::invalid_argument for bad options, or where no track of the length and width is found.
 GeneratedTrack generate_track(const TrackGeneratorOptions& options);
 
-/// What save_track writes in addition to the geometry.
+/// The description that save_track writes beside the geometry.
 struct TrackLabel {
   std::string name;         ///< the name
   std::string description;  ///< one sentence
-  std::string command;      ///< that generates the same track
+  std::string command;      ///< command that generates the same track
 };
 
 /// Writes a course folder: map.yaml, map.png, raceline.csv (`# s_m; x_m; ...`), opp_ref_path.csv,

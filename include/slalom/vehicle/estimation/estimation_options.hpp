@@ -56,7 +56,7 @@ struct EstimationOptions {
   double window = 0.4;
   double lateral_noise = 0.02;
   double yaw_noise = 0.02;
-  ObserverOptions observer;  ///< of the state
+  ObserverOptions observer;  ///< options of the state observer
 };
 
 template <class Options, class Visit>

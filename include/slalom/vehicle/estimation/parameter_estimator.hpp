@@ -9,11 +9,11 @@
 
 namespace slalom::vehicle {
 
-/// What a drive so far says about the car and the ground.
+/// The estimate of car and ground from the drive so far.
 struct ParameterEstimate {
   double friction = 0;                 ///< mean
   double friction_deviation = 0;       ///< standard deviation
-  double cautious_friction = 0;        ///< what a plan should rely on, see ParameterEstimator
+  double cautious_friction = 0;        ///< friction on which a plan should rely, see ParameterEstimator
   double steering_gain = 1;            ///< angle of the wheels / commanded angle, mean
   double steering_gain_deviation = 0;  ///< standard deviation
   double delay = 0;                    ///< s, from sending a steering command to its first effect, mean
@@ -24,7 +24,7 @@ struct ParameterEstimate {
 
 /// How the car moved, one control period after the last.
 struct MeasuredMotion {
-  maps::Pose pose;      ///< of the rear axle, map frame
+  maps::Pose pose;      ///< pose of the rear axle, map frame
   double speed = 0;     ///< m/s
   double yaw_rate = 0;  ///< rad/s, of the observer
   double slip = 0;      ///< rad, of the observer
@@ -92,9 +92,10 @@ class ParameterEstimator {
     std::array<double, delays> angle{};  ///< rad, of the wheels at gain 1, for each delay
   };
 
-  /// Of the prior alone.
+  /// The prior alone.
   struct Prior {
-    detail::Moments logarithm, gain, delay;  ///< of the friction's logarithm, the gain and the delay, s
+    detail::Moments logarithm, gain,
+        delay;  ///< moments of the friction's logarithm, the gain and the delay, s
   };
 
   const Moment& ago(int periods) const noexcept;

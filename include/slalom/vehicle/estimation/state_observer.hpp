@@ -10,11 +10,11 @@
 
 namespace slalom::vehicle {
 
-/// What sensors say of the car at one moment.
+/// The measurements of the car at one moment.
 struct ObserverInput {
-  maps::Pose pose;                  ///< of the rear axle, map frame
+  maps::Pose pose;                  ///< pose of the rear axle, map frame
   double speed = 0;                 ///< m/s
-  PoseCovariance covariance{};      ///< of `pose`
+  PoseCovariance covariance{};      ///< covariance of `pose`
   std::optional<ImuReading> imu{};  ///< mean over the last control period
 };
 

@@ -69,21 +69,22 @@ struct LocaliserInput {
   static constexpr double latest = 1e12;   ///< s, largest magnitude of a stamp
 
   maps::LaserScanView scan;  ///< the scan, in the frame of the laser
-  maps::Pose odometry;       ///< of the rear axle at the time of the scan, in a frame that may drift
+  maps::Pose odometry;       ///< pose of the rear axle at the time of the scan, in a frame that may drift
   double stamp = 0;          ///< s, of the scan
 };
 
 /// The estimate and its quality.
 struct LocaliserOutput {
   LocaliserStatus status = LocaliserStatus::uncertain;  ///< how reliable the estimate is
-  maps::Pose pose;                                      ///< of the rear axle, map frame
-  double covariance[3][3] = {};  ///< of x, y (m, map frame) and yaw (rad) of the particles near the estimate
-  double fit = 0;                ///< share of beams that the map explains at the estimate, 0 .. 1
-  double share = 0;              ///< of the weight near the estimate, 0 .. 1
-  double health = 0;             ///< fit times share
+  maps::Pose pose;                                      ///< pose of the rear axle, map frame
+  double covariance[3][3] =
+      {};             ///< covariance of x, y (m, map frame) and yaw (rad) of the particles near the estimate
+  double fit = 0;     ///< share of beams that the map explains at the estimate, 0 .. 1
+  double share = 0;   ///< share of the weight near the estimate, 0 .. 1
+  double health = 0;  ///< fit times share
   double effective_samples = 0;  ///< 1 / sum of squared weights, before resampling
   double update_time = 0;        ///< s of wall clock
-  int particles = 0;             ///< that weighed this scan
+  int particles = 0;             ///< particles that weighed this scan
   int beams = 0;                 ///< used of this scan
   bool resampled = false;        ///< the particles were resampled after this scan
   bool searching = false;        ///< hypotheses in other places are tracked
@@ -92,7 +93,7 @@ struct LocaliserOutput {
 
 /// A particle; the weights of all sum to 1.
 struct Particle {
-  maps::Pose pose;    ///< of the rear axle, map frame
+  maps::Pose pose;    ///< pose of the rear axle, map frame
   double weight = 0;  ///< 0 .. 1
 };
 
@@ -121,7 +122,7 @@ class Localiser {
 
   /// Updates the estimate with a scan and the odometry at its time.
   const LocaliserOutput& update(const LocaliserInput& input) noexcept;
-  const LocaliserOutput& output() const noexcept;  ///< of the last update
+  const LocaliserOutput& output() const noexcept;  ///< output of the last update
 
   /// The estimate moved by the odometry since the last update (in the same frame), for a control loop that is
   /// faster than the scans.
@@ -129,7 +130,7 @@ class Localiser {
   /// The pose of the odometry's frame in the map frame, as in a tf tree.
   maps::Pose odometry_frame() const noexcept;
 
-  int particle_count() const noexcept;          ///< of the present particles
+  int particle_count() const noexcept;          ///< number of the present particles
   Particle particle(int index) const noexcept;  ///< 0 <= index < particle_count()
   /// The options given at construction.
   const LocaliserOptions& options() const noexcept;

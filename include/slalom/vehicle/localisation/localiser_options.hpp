@@ -8,8 +8,8 @@ namespace slalom::vehicle {
 
 /// How probable a range is at a pose (Thrun, Burgard & Fox, "Probabilistic Robotics", MIT Press 2005, Ch. 6).
 enum class SensorModel {
-  likelihood_field,  ///< by the distance from the beam's end to the nearest wall (Table 6.3)
-  beam,  ///< by the range expected from the map, from a table that is computed at construction (Table 6.1)
+  likelihood_field,  ///< distance from the beam's end to the nearest wall (Table 6.3)
+  beam,              ///< range expected from the map, by a table that is computed at construction (Table 6.1)
 };
 /// The names of the enumerators, in order.
 inline const char* const* enum_names(SensorModel) {

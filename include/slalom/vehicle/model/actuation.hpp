@@ -46,7 +46,7 @@ class SpeedPrediction {
   /// The change of speed in a step of the linear model above its target, m/s; positive slows down.
   void set_linear_loss(double loss) { linear_loss_ = loss; }
 
-  /// Where the speed is not an input: after a step at `speed`, with this reference speed; m/s.
+  /// The speed after a step at `speed`, with this reference speed, if the speed is not an input; m/s.
   template <class T>
   SLALOM_INLINE T following(const T& speed, const T& reference) const {
     if (model_ == SpeedModel::constant) return speed;

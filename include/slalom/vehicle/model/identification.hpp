@@ -25,7 +25,7 @@ struct DrivenSample {
   double steer_command = 0;  ///< rad, sent at `time`
 };
 
-/// What is known in advance.
+/// The knowledge of the car in advance.
 struct IdentificationOptions {
   double wheelbase = 0;    ///< m; 0: estimated as well
   double min_speed = 0.5;  ///< m/s, > 0; slower samples are not used
@@ -33,7 +33,7 @@ struct IdentificationOptions {
 
 /// An estimate and its standard deviation.
 struct Identified {
-  double value = 0;  ///< in the unit of the quantity
+  double value = 0;  ///< value in the unit of the quantity
   /// Standard deviation, in the same unit; 0 if the value was given, infinite if the drive does not determine
   /// it.
   double deviation = 0;

@@ -76,7 +76,7 @@ class PathTracking {
   /// The options given at construction.
   const PathTrackingOptions& options() const { return options_; }
   double time_step() const { return options_.time_step; }  ///< s
-  /// What the planner needs to know of the model.
+  /// The traits of the model for the planner.
   VehicleTraits traits() const {
     VehicleTraits traits = traits_of(options_, plans_speed);
     traits.meets_others = true;
@@ -133,7 +133,7 @@ class PathTracking {
     return made;
   }
 
-  /// What the maps hold at a state.
+  /// The values that the maps hold at a state.
   template <class T>
   Surroundings<T> look_up(const State<T>& s) const {
     const T obstacle = obstacles_.in_map_frame(s.x, s.y, s.yaw);

@@ -34,7 +34,7 @@ class ProblemModel final : public VehicleModel {
   explicit ProblemModel(Evaluator evaluator) : evaluator_(std::move(evaluator)) {}
 
   int inputs() const noexcept override { return P::inputs; }
-  /// What the planner needs to know of the model.
+  /// The traits of the model for the planner.
   VehicleTraits traits() const noexcept override { return evaluator_.problem().traits(); }
   /// Sets the maps that rollouts look up.
   void set_maps(const VehicleMaps& maps) noexcept override {
@@ -140,7 +140,7 @@ class ProblemModel final : public VehicleModel {
  private:
   Evaluator evaluator_;
   VehicleMaps maps_;
-  maps::Point origin_;  ///< of the problem's frame, in the map frame
+  maps::Point origin_;  ///< origin of the problem's frame, in the map frame
   State start_{};
 };
 

@@ -79,7 +79,7 @@ class SingleTrackDynamics {
   SLALOM_INLINE T lagged(const T& steer, const T& command) const {
     return steer + (command - steer) * T(steer_share_);
   }
-  /// The same after `dt` (s).
+  /// The steering angle after `dt` (s).
   double lagged(double steer, double command, double dt) const noexcept;
 
   /// The state after `dt` (s) in which the wheels turn towards this angle (rad), no faster than their rate,
@@ -185,7 +185,7 @@ class SingleTrackDynamics {
   double steer_time_constant_;
   Coefficient max_deceleration_, max_power_, switch_speed_;
   Coefficient usable_acceleration_;  ///< over the friction
-  Coefficient min_squared_share_;    ///< of the usable grip, left to slow down
+  Coefficient min_squared_share_;    ///< square of the share of the usable grip that is left to slow down
   Coefficient braking_share_, negative_inverse_braking_share_;
   Coefficient gravity_, inverse_gravity_;
 };

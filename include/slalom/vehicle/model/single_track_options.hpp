@@ -15,7 +15,7 @@ inline const char* const* enum_names(TyreModel) {
   return names;
 }
 
-/// What plans seek.
+/// The aim of a plan.
 enum class Objective {
   path_speed,  ///< the speeds of the path, which plans do not exceed
   lap_time,    ///< the shortest time within grip and `max_speed`, whatever the speeds of the path

@@ -8,7 +8,7 @@
 
 namespace slalom::vehicle {
 
-/// What the maps hold at a state.
+/// The values that the maps hold at a state.
 template <class T>
 struct Surroundings {
   T distance;  ///< m to the path
@@ -40,7 +40,7 @@ class TrackingCost {
   /// constant, the time from its end to the finish at the path's speeds.
   void set_lap_time() noexcept { min_lost_ = -1e3; }
 
-  /// What the maps hold at a position (m, map frame) with this cost map value.
+  /// Looks up the maps at a position (m, map frame) with this cost map value.
   template <class T>
   SLALOM_INLINE Surroundings<T> look_up(const T& x, const T& y, const T& speed, const T& obstacle) const {
     if (localisation_less_) return {T(0), T(0), speed, T(0), obstacle};
@@ -61,7 +61,7 @@ class TrackingCost {
   SLALOM_INLINE Cost<T> stage(const T& yaw, const Surroundings<T>& seen) const {
     return cost(yaw, seen, distance_weight_, yaw_weight_, outside_cost_);
   }
-  /// The same for the last state of a sequence.
+  /// The cost of the last state of a sequence.
   template <class T>
   SLALOM_INLINE Cost<T> terminal(const T& yaw, const Surroundings<T>& seen) const {
     return cost(yaw, seen, terminal_distance_weight_, terminal_yaw_weight_, outside_terminal_cost_);

@@ -8,7 +8,7 @@
 
 namespace slalom::vehicle {
 
-/// What is found of tyres and steering.
+/// The identified tyres and steering.
 struct TyreIdentification {
   Identified friction;           ///< mu
   Identified cornering_front;    ///< C_Sf, 1/rad

@@ -14,9 +14,9 @@ namespace slalom::vehicle {
 
 /// The cost of a predicted sequence, by term.
 struct PredictedCost {
-  double state = 0;       ///< of distance, yaw and speed, without collisions
+  double state = 0;       ///< cost of distance, yaw and speed, without collisions
   double distance = 0;    ///< the part of `state` that the distance to the path makes
-  double collision = 0;   ///< of collisions and nearness to obstacles
+  double collision = 0;   ///< cost of collisions and nearness to obstacles
   bool collided = false;  ///< a state after the first free one collides, or none is free
 };
 
@@ -26,11 +26,11 @@ class VehicleModel {
   virtual ~VehicleModel() = default;
 
   virtual int inputs() const noexcept = 0;  ///< per step; the first is the steering
-  /// What the planner needs to know of the model.
+  /// The traits of the model for the planner.
   virtual VehicleTraits traits() const noexcept = 0;
   /// Sets the maps that rollouts look up; they must outlive their use.
   virtual void set_maps(const VehicleMaps& maps) noexcept = 0;
-  /// Where rollouts start; `reference_speed` (m/s) is that of the path there.
+  /// Sets the start of the rollouts; `reference_speed` (m/s) is that of the path there.
   virtual void set_start(const VehicleStart& start, double reference_speed) noexcept = 0;
   /// Rollouts from the start over the maps.
   virtual const BatchEvaluator& evaluator() const noexcept = 0;

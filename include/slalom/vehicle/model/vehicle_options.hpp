@@ -24,7 +24,7 @@ VehicleModelId vehicle_model(std::string_view name);
 struct VehicleOptions : PathTrackingOptions {
   VehicleModelId model{};
   VehicleModels::Options own;  ///< each model's own options
-  RiskOptions risk;            ///< of rollouts in several variants of the world, for models that have them
+  RiskOptions risk;            ///< rollouts in several variants of the world, for models that have them
 
   /// The own options of a registered model, by their type.
   template <class Options>

@@ -8,12 +8,12 @@
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
 
-/// What the planner asks of a vehicle problem, so that it can drive any of them.
+/// The interface of a vehicle problem to the planner, which can drive any of them.
 namespace slalom::vehicle {
 
-/// Where a rollout starts: what odometry and observers say.
+/// The start of a rollout, from odometry and observers.
 struct VehicleStart {
-  maps::Pose pose;      ///< of the rear axle, map frame
+  maps::Pose pose;      ///< pose of the rear axle, map frame
   double speed = 0;     ///< m/s
   double steer = 0;     ///< rad, of the wheels
   double yaw_rate = 0;  ///< rad/s
@@ -22,10 +22,11 @@ struct VehicleStart {
 
 /// A predicted state.
 struct PredictedState {
-  maps::Pose pose;      ///< of the rear axle, map frame
-  double speed = 0;     ///< m/s
-  double steer = 0;     ///< rad, of the wheels
-  maps::Pose local;     ///< where the body is looked up, in the frame of the robot at the time of the scan
+  maps::Pose pose;   ///< pose of the rear axle, map frame
+  double speed = 0;  ///< m/s
+  double steer = 0;  ///< rad, of the wheels
+  maps::Pose
+      local;  ///< pose at which the body is looked up, in the frame of the robot at the time of the scan
   double yaw_rate = 0;  ///< rad/s; 0 where the model has none
   double slip = 0;      ///< rad; 0 where the model has none
 };
@@ -33,12 +34,13 @@ struct PredictedState {
 /// The maps that rollouts look up; they must outlive their use.
 struct VehicleMaps {
   GridView<4> reference;  ///< {distance to the path in m, yaw in rad, speed in m/s, 1 off the map}, map frame
-  GridView<1> obstacles;  ///< as VehicleTraits::obstacle_map says, robot's frame; its ring is negative
+  GridView<1> obstacles;  ///< map of obstacles as VehicleTraits::obstacle_map says, robot's frame; its ring
+                          ///< is negative
   maps::Pose robot;       ///< the robot's frame, in the map frame
   maps::MovingObstaclesView others{};  ///< obstacles that move, map frame
 
-  /// The same maps in a frame that is parallel to the map frame and begins at `origin` (m). Rollouts in
-  /// float32 need it: at 1e6 m from the origin of their frame a float32 resolves 0.06 m.
+  /// Returns the same maps in a frame that is parallel to the map frame and begins at `origin` (m). Rollouts
+  /// in float32 need it: at 1e6 m from the origin of their frame a float32 resolves 0.06 m.
   VehicleMaps relative_to(const maps::Point& origin) const noexcept {
     return {reference.relative_to(origin.x, origin.y),
             obstacles,
@@ -47,7 +49,7 @@ struct VehicleMaps {
   }
 };
 
-/// What the map of obstacles holds.
+/// The contents of the map of obstacles.
 enum class ObstacleMap {
   inflated,  ///< cost map: 100 where the body of now, in its heading of now, would collide
   clearance  ///< distance to the nearest obstacle, m, up to `clearance_reach`
@@ -61,7 +63,7 @@ enum class Urgency {
   detour    ///< the path is a way around an obstacle, to be followed: lost time costs 10 times as much
 };
 
-/// What the planner needs to know of a model besides its rollouts.
+/// Facts about a model that the planner needs besides its rollouts.
 struct VehicleTraits {
   double time_step = 0;         ///< s, of the prediction, > 0
   double wheelbase = 0;         ///< m, > 0
@@ -74,11 +76,11 @@ struct VehicleTraits {
   bool meets_others = false;            ///< rollouts meet obstacles that move
   bool follows_path = true;             ///< false: drives by the obstacles alone, at `reference_speed`
   double reference_speed = 0;           ///< m/s, without a path
-  ObstacleMap obstacle_map = ObstacleMap::inflated;  ///< what the map of obstacles holds
+  ObstacleMap obstacle_map = ObstacleMap::inflated;  ///< contents of the map of obstacles
   double clearance_reach = 0;                        ///< m
-  BodyOptions body;                                  ///< by which obstacles are inflated
-  /// Where the model has tyres that slip: the friction (> 0) that its options give. The planner then predicts
-  /// the start with the model, and lowers the path's speeds to what the car can do.
+  BodyOptions body;                                  ///< body by which obstacles are inflated
+  /// The friction (> 0) that the options of a model with slipping tyres give. The planner then predicts the
+  /// start with the model, and lowers the path's speeds to those that the car can drive.
   double friction = 0;
   double usable_grip = 0;       ///< the share of the friction that plans may use
   double braking_share = 1;     ///< the share of the usable grip that the mean deceleration may use

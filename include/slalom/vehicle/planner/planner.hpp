@@ -34,7 +34,7 @@ struct Odometry {
   static constexpr double fastest = 200;   ///< m/s, largest magnitude that a planner takes as a speed
   maps::Pose pose;                         ///< m, m, rad, in the map frame
   double speed = 0;                        ///< m/s
-  PoseCovariance covariance{};             ///< of `pose`; all 0 where the pose counts as exact
+  PoseCovariance covariance{};             ///< covariance of `pose`; all 0 where the pose counts as exact
 };
 
 /// The reason for a command.
@@ -70,7 +70,7 @@ constexpr const char* name(PlannerStatus status) noexcept {
   return "unknown";
 }
 
-/// What a planner is given.
+/// The inputs of an update.
 struct PlannerInput {
   maps::LaserScanView scan;                  ///< the scan, in the frame of the laser
   Odometry odometry;                         ///< at the time of the scan
@@ -93,14 +93,14 @@ struct PlannerOutput {
   int inputs_per_step = 1;        ///< number of inputs of a step
   /// horizon + 1 states of the sequence that is sent; empty where none is, or where its cost is not finite
   std::span<const PredictedState> predicted;
-  double state_cost = 0;               ///< of the predicted states without collisions
-  double collision_cost = 0;           ///< of the predicted states
-  double steer_estimate = 0;           ///< rad, of the steering observer
-  double speed_estimate = 0;           ///< m/s, of the observer; 0 where tyres do not slip
-  double yaw_rate_estimate = 0;        ///< rad/s, of the observer; 0 where tyres do not slip
-  double slip_estimate = 0;            ///< rad, of the observer; 0 where tyres do not slip
-  ParameterEstimate parameters;        ///< of car and ground; a friction of 0 where tyres do not slip
-  const SolveResult* solve = nullptr;  ///< of the solver; null where nothing was solved
+  double state_cost = 0;         ///< cost of the predicted states without collisions
+  double collision_cost = 0;     ///< cost of the collisions of the predicted states
+  double steer_estimate = 0;     ///< rad, of the steering observer
+  double speed_estimate = 0;     ///< m/s, of the observer; 0 where tyres do not slip
+  double yaw_rate_estimate = 0;  ///< rad/s, of the observer; 0 where tyres do not slip
+  double slip_estimate = 0;      ///< rad, of the observer; 0 where tyres do not slip
+  ParameterEstimate parameters;  ///< estimate of car and ground; a friction of 0 where tyres do not slip
+  const SolveResult* solve = nullptr;  ///< result of the solver; null where nothing was solved
   maps::ScanReport scan;               ///< how many beams were used and why others were not
   double tick_time = 0;                ///< s of wall clock for the whole update
   int corrections = 0;                 ///< values that the final check changed; 0 in normal operation
@@ -134,7 +134,8 @@ class Planner {
 
   /// The solver in use.
   const Solver& solver() const noexcept;
-  /// Of the last scan. Where the model takes a map of distances (`vehicle.body: discs`), only its points.
+  /// The map of the last scan. Where the model takes a map of distances (`vehicle.body: discs`), it has only
+  /// the points.
   const maps::LocalCostMap& cost_map() const noexcept;
 
  private:

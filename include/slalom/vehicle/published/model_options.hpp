@@ -8,7 +8,7 @@ namespace slalom::vehicle::published {
 
 /// Reference point and yaw gain of the bicycle.
 enum class BicycleModel {
-  rear_axle,  ///< that of KinematicBicycle
+  rear_axle,  ///< as in KinematicBicycle
   published,  ///< tan(b) = l_f / (l_f + l_r) tan(steer), x' = v cos(yaw + b), yaw' = v sin(b) / l_r. About
               ///< the centre of gravity, tan(b) has l_r in its numerator (Rajamani, "Vehicle Dynamics and
               ///< Control", 2nd ed., section 2.2): the yaw gain of this form is too high

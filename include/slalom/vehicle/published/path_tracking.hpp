@@ -73,7 +73,7 @@ class OneTrajectory {
   /// The options given at construction.
   const PathTrackingOptions& options() const { return options_; }
   double time_step() const { return options_.time_step; }  ///< s
-  /// What the planner needs to know of the model.
+  /// The traits of the model for the planner.
   VehicleTraits traits() const { return traits_of(options_, false); }
 
   /// Sets the maps that rollouts look up.
@@ -124,7 +124,7 @@ class OneTrajectory {
   }
 
  protected:
-  /// What a step does besides moving: the command that acts, rad, and the way it is held for, m.
+  /// The parts of a step besides the motion: the command that acts, rad, and the way it is held for, m.
   template <class S, class T>
   SLALOM_INLINE void begin_step(const S& s, const Surroundings<T>& seen, const Input<T, 1>& u, int k, S& next,
                                 T& command, T& travelled) const {
@@ -150,7 +150,7 @@ class TwoTrajectories : public OneTrajectory {
   /// State of the dynamics.
   template <class T>
   struct State {
-    T x, y, yaw, speed, steer, held;             ///< as OneTrajectory has it
+    T x, y, yaw, speed, steer, held;             ///< state of OneTrajectory
     T local_x, local_y, local_yaw, local_steer;  ///< m, m, rad, rad, robot's frame
   };
 

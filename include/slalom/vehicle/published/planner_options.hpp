@@ -2,7 +2,7 @@
 
 namespace slalom::vehicle::published {
 
-/// What the planner does as the published program of Honda et al. (ICRA 2024) does it.
+/// Parts of the planner that follow the published program of Honda et al. (ICRA 2024).
 struct PlannerOptions {
   bool maps = false;  ///< cost map and reference field as in the paper's program
   /// Subtract whole turns from the planned steering angle, and limit only the command to `steer_limit`: the

@@ -20,10 +20,10 @@ struct GripAtSpeed {
   double lateral = 0;       ///< m/s^2, at constant speed
 };
 
-/// What a raceline depends on of a car. Lateral and longitudinal acceleration are inside an ellipse with
-/// these limits as half axes.
+/// The limits of a car that determine its raceline. Lateral and longitudinal acceleration are inside an
+/// ellipse with these limits as half axes.
 struct RacingCar {
-  std::string name = "f1tenth";                ///< of the car, for messages
+  std::string name = "f1tenth";                ///< name of the car, for messages
   double width = 0.31;                         ///< m, of the body
   double margin = 0.06;                        ///< m, that the body keeps from walls
   double wheelbase = 0.3302;                   ///< m
