@@ -10,7 +10,7 @@
 #include "slalom/core/problem.hpp"
 #include "slalom/maps/pose.hpp"
 
-/// Obstacles that move, in rollouts: every state meets them where they may be at its step.
+/// Moving obstacles in rollouts: every state meets them at their predicted place at its step.
 ///
 ///     MovingObstacles others({.front = 0.46, .rear = 0.12, .width = 0.31}, horizon);
 ///     others.update(predictions, {robot.x, robot.y}, 0, dt);   // before a solve
@@ -32,7 +32,7 @@ struct PredictedPose {
   double across_deviation = 0;  ///< m
 };
 
-/// A rectangular obstacle that moves, with hypotheses of what it will do. It does not own `poses`: the array
+/// A rectangular obstacle that moves, with hypotheses of its motion. It does not own `poses`: the array
 /// that they view must outlive it.
 struct PredictedObstacle {
   static constexpr int max_hypotheses = 4;  ///< most hypotheses of an obstacle
@@ -47,7 +47,7 @@ struct PredictedObstacle {
   /// last velocity
   std::span<const PredictedPose> poses;
 
-  /// How many poses a hypothesis has.
+  /// The number of poses of a hypothesis.
   std::size_t times() const noexcept { return poses.size() / static_cast<std::size_t>(hypotheses); }
   /// The hypothesis with the greatest weight.
   int likeliest() const noexcept;

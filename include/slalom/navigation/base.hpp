@@ -76,7 +76,7 @@ struct DifferentialBase {
   }
   /// The input of a motion.
   static Input<double, 2> input(const Velocity& v) { return {{v.forward, v.turn}}; }
-  /// Values for each input, of those for speeds forward, sideways and turning.
+  /// Selects the values of the inputs from those of the speeds forward, sideways and turning.
   static std::array<double, 2> per_input(double forward, double, double turn) { return {forward, turn}; }
 };
 
@@ -92,14 +92,14 @@ struct OmnidirectionalBase {
   }
   /// The input of a motion.
   static Input<double, 3> input(const Velocity& v) { return {{v.forward, v.left, v.turn}}; }
-  /// Values for each input, of those for speeds forward, sideways and turning.
+  /// Selects the values of the inputs from those of the speeds forward, sideways and turning.
   static std::array<double, 3> per_input(double forward, double left, double turn) {
     return {forward, left, turn};
   }
 };
 
-/// The inputs of an Ackermann base: speed (m/s) and yaw rate (rad/s), of which the smallest turning radius
-/// leaves the part that the speed allows.
+/// The inputs of an Ackermann base: speed (m/s) and yaw rate (rad/s). The smallest turning radius limits the
+/// yaw rate at each speed.
 struct AckermannBase {
   static constexpr int inputs = 2;  ///< inputs of a step
   /// Takes the smallest turning radius from the limits.
@@ -112,7 +112,7 @@ struct AckermannBase {
   }
   /// The input of a motion.
   static Input<double, 2> input(const Velocity& v) { return {{v.forward, v.turn}}; }
-  /// Values for each input, of those for speeds forward, sideways and turning.
+  /// Selects the values of the inputs from those of the speeds forward, sideways and turning.
   static std::array<double, 2> per_input(double forward, double, double turn) { return {forward, turn}; }
 
  private:

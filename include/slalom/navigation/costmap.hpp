@@ -12,8 +12,8 @@ namespace slalom::navigation {
 
 /// The treatment of cells of which nothing is known.
 enum class UnknownCells {
-  obstacle,  ///< they are obstacles
-  priced,    ///< it may enter them, and its problem has a price for that
+  obstacle,  ///< obstacles
+  priced,    ///< places that the robot may enter at a price
 };
 /// The names of the enumerators, in order.
 inline const char* const* enum_names(UnknownCells) {
@@ -37,13 +37,13 @@ class Costmap {
   /// The distance (m) from the middle of the cell at a position (m) to that of the nearest obstacle cell: 0
   /// on an obstacle, at most `reach`.
   double distance(double x, double y) const noexcept;
-  /// Whether the body at this pose (map frame) overlaps an obstacle cell: exact but for the rounding of
-  /// double. Most poses are decided by one look-up of the distance.
+  /// Whether the body at this pose (map frame) overlaps an obstacle cell: exact but for rounding. One look-up
+  /// of the distance decides for most poses.
   bool collides(const Footprint& footprint, const maps::Pose& pose) const noexcept;
 
-  /// Distances as above, for rollouts in the map frame.
+  /// The distances of all cells, for rollouts in the map frame.
   GridView<1> distances() const noexcept { return distances_.view(geometry_); }
-  /// 1 in cells that are unknown and priced, else 0.
+  /// The prices of all cells: 1 where they are unknown and priced, else 0.
   GridView<1> prices() const noexcept { return prices_.view(geometry_); }
   /// Position and size of the cells.
   const maps::GridGeometry& geometry() const noexcept { return geometry_; }

@@ -16,9 +16,9 @@
 
 namespace slalom::navigation {
 
-/// A body as rollouts check it against the distances of a costmap. The parts of the footprint decide first:
-/// no obstacle is near a part, or one is inside. Where neither is sure for a lane, the points of the outline
-/// of that part are looked up, which are at most the edge of a cell apart; the body collides where one of
+/// Checks a body against the distances of a costmap, for rollouts. The parts of the footprint decide first:
+/// no obstacle is near a part, or one is inside. Where neither is certain for a lane, it looks up the points
+/// of the outline of that part, which are at most the edge of a cell apart; the body collides where one of
 /// them is in an obstacle cell. So every overlap deeper than half a cell is found, with one exception: a
 /// single cell that lies within the body and does not touch its outline. As long as a step is shorter than a
 /// cell, a body meets such a cell with its outline first.
@@ -102,7 +102,7 @@ class BodyCheck {
 struct NavigationMaps {
   GridView<1> distances;  ///< distances of the costmap
   GridView<1> prices;     ///< prices of the costmap
-  /// For every cell what is known of the nearest point of the path: x, y relative to `origin` (m), yaw (rad),
+  /// For every cell the nearest point of the path: x, y relative to `origin` (m), yaw (rad),
   /// and length of the path (m) from the beginning of the window.
   GridView<4> path;
   maps::Point origin;                  ///< m, near the robot: states are relative to it
@@ -144,7 +144,7 @@ class NavigationProblem {
         costs_(costs, step),
         step_(step) {}
 
-  /// The maps of the next rollouts; what they look at must outlive those.
+  /// Sets the maps of the next rollouts, which the maps and the data of their views must outlive.
   void set_maps(const NavigationMaps& maps) noexcept {
     distances_ = maps.distances.relative_to(maps.origin.x, maps.origin.y);
     prices_ = maps.prices.relative_to(maps.origin.x, maps.origin.y);

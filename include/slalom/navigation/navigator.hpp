@@ -58,8 +58,8 @@ void visit_options(Options& o, Visit&& visit) {
 /// The behaviour of a navigator.
 enum class NavigationStatus {
   following,     ///< follows the path
-  detour,        ///< follows a way round what blocks the path
-  braking,       ///< the plan leads into an obstacle, or what moves, too soon: the robot brakes
+  detour,        ///< follows a way around the place where the path is blocked
+  braking,       ///< the plan soon meets a fixed or moving obstacle: the robot brakes
   blocked,       ///< the path is blocked and there is no way round: the robot stands
   goal_reached,  ///< the robot stands at the goal
   no_path,       ///< no path was set, or the robot is off the costmap: the robot stands
@@ -90,8 +90,8 @@ constexpr const char* name(NavigationStatus status) noexcept {
 /// The answer of a navigator.
 struct NavigationResult {
   NavigationStatus status = NavigationStatus::no_path;  ///< whether it drives, and if not, why
-  /// Finite, within the largest speeds of the base. Braking reduces speed and turn each by itself, so that an
-  /// Ackermann base may then be told to turn more tightly than it can.
+  /// Finite and within the largest speeds of the base. Braking reduces speed and yaw rate separately, so that
+  /// the command may then ask an Ackermann base for a tighter turn than it can drive.
   Velocity command;
   int corrections = 0;   ///< values of it that the final check changed
   double remaining = 0;  ///< m of path to the goal
@@ -129,8 +129,8 @@ class Navigator {
   void set_path(std::span<const maps::Pose> path);
 
   /// The command for the next control period. `velocity` is that of the robot now, and `elapsed` (s) the time
-  /// since the last update. `others` is what moves, as it is predicted from now on in the map frame: plans
-  /// meet it where it will be at each of their steps, and the costmap should not show it where it is.
+  /// since the last update. `others` are the moving objects, predicted from now on in the map frame:
+  /// plans avoid their place at each step, and the costmap should not show them.
   NavigationResult update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
                           double elapsed, std::span<const maps::PredictedObstacle> others = {}) noexcept;
 

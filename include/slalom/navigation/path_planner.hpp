@@ -15,8 +15,8 @@ struct ClosedPlace {
   double radius = 0;   ///< m
 };
 
-/// Cheapest paths over a costmap for a body that needs a corridor of a given width. Cells within 0.3 m of
-/// what it needs cost up to five times as much. After construction nothing allocates.
+/// Finds cheapest paths over a costmap for a body that needs a corridor of a given width. Cells within 0.3 m
+/// of the edge of that corridor cost up to five times as much. After construction nothing allocates.
 class PathPlanner {
  public:
   static constexpr std::size_t max_points = 4000;  ///< most points of a path
@@ -26,12 +26,12 @@ class PathPlanner {
   /// For costmaps of this size, and a body with this half width (m).
   PathPlanner(const maps::GridGeometry& geometry, double half_width);
 
-  /// Whether the costmap tells of all cells that the body touches at a point of a path.
+  /// Whether the costmap covers all cells that the body touches at a point of a path.
   bool knows(const Costmap& costmap, const maps::Point& point) const noexcept;
   /// Whether there is room for the body there, where the path goes straight on.
   bool has_room(const Costmap& costmap, const maps::Point& point) const noexcept;
 
-  /// Makes the cells of a costmap, which must have the size given, those of the next search. `kept` is a path
+  /// Takes the cells of a costmap, which must have the size given, for the next search. `kept` is a path
   /// that was followed before: cells further than 0.4 m from it cost 1.3 times as much, so that the search
   /// prefers the way that was chosen. No way leads through the `closed` places.
   void read(const Costmap& costmap, std::span<const maps::Pose> kept,

@@ -15,18 +15,18 @@ struct RangeScan {
   double max_range = 0;            ///< m; a range that is not below it is a beam that hit nothing
 };
 
-/// A map with what scans have seen besides: beams clear the cells that they cross and mark the cell where
-/// they end. What the map knows is never cleared. After construction nothing allocates.
+/// A map and the additions of scans: beams clear the cells that they cross and mark the cell where they end.
+/// Obstacles of the map are never cleared. After construction nothing allocates.
 class ScanMap {
  public:
-  /// On this map, whose origin must not be turned; throws std::invalid_argument if it is, or has no cells.
+  /// Starts with this map. Throws std::invalid_argument if its origin is turned or it has no cells.
   explicit ScanMap(maps::OccupancyGrid known);
 
   /// Adds a scan. Beams whose range is not finite or below 0 are dropped. A beam from off the map clears and
   /// marks the cells of the map that it crosses.
   void add(const RangeScan& scan) noexcept;
 
-  /// The map and what was seen.
+  /// The map with the additions.
   const maps::OccupancyGrid& grid() const noexcept { return seen_; }
 
  private:

@@ -6,7 +6,7 @@ namespace slalom::sim {
 struct CarParameters {
   double friction = 1.0489;        ///< mu, between tyre and road
   double cornering_front = 4.718;  ///< C_Sf, 1/rad, cornering stiffness over friction and axle load
-  double cornering_rear = 5.4562;  ///< C_Sr, 1/rad, the same
+  double cornering_rear = 5.4562;  ///< C_Sr, 1/rad, the same of the rear axle
   double front_length = 0.15875;   ///< l_f, m, from the centre of gravity to the front axle
   double rear_length = 0.17145;    ///< l_r, m
   double gravity_height = 0.074;   ///< h, m, of the centre of gravity
@@ -16,13 +16,13 @@ struct CarParameters {
   double steer_max = 0.4189;       ///< rad
   double steer_rate_max = 3.2;     ///< rad/s, either way
   double switch_speed = 7.319;     ///< m/s, above it the motor's power limits the acceleration
-  double acceleration_max = 9.51;  ///< m/s^2, and of braking
+  double acceleration_max = 9.51;  ///< m/s^2, also of braking
   double speed_min = -5.0;         ///< m/s
   double speed_max = 20.0;         ///< m/s
   double length = 0.58;            ///< m, of the body, whose middle is the centre of gravity
   double width = 0.31;             ///< m
 
-  /// Distance of the axles, m.
+  /// Distance between the axles, m.
   double wheelbase() const { return front_length + rear_length; }
 
   /// A passenger car: parameter set 2 (a BMW 320i) of Althoff & Wuersching, "CommonRoad: Vehicle Models"
@@ -33,7 +33,7 @@ struct CarParameters {
   void validate() const;
 };
 
-/// The cars of which parameters and LiDAR are known by name.
+/// The cars whose parameters and LiDAR are known by name.
 enum class CarKind {
   f1tenth,        ///< the 1/10-scale car of f1tenth_gym
   passenger_car,  ///< CarParameters::full_scale()

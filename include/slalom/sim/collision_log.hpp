@@ -25,9 +25,9 @@ class CollisionLog {
     return bodies_;
   }  ///< bodies with which it collided, ascending
   int collision_steps() const noexcept { return collision_steps_; }  ///< steps with any collision
-  /// Number of different patterns of the fixed bodies' collision flags seen while the car collided: what the
-  /// evaluation of K. Honda et al. (proj-svg_mppi) counts. A wall alone is the pattern of no flag, two bodies
-  /// at once are a pattern of their own.
+  /// Number of different patterns of the fixed bodies' collision flags seen while the car collided, as the
+  /// evaluation of K. Honda et al. (proj-svg_mppi) counts them. A wall alone is the pattern of no flag, two
+  /// bodies at once are a pattern of their own.
   int flag_patterns() const noexcept { return static_cast<int>(patterns_.size()); }
 
  private:

@@ -50,7 +50,7 @@ CarState derivative(const CarParameters& car, const DynamicsOptions& options, co
 CarState advance(const CarParameters& car, const DynamicsOptions& options, const CarState& state,
                  const DriveInput& input, double time_step) noexcept;
 
-/// The substeps that `options` mean for a time step (s).
+/// The number of substeps that `options` give for a time step (s).
 int substeps(const CarParameters& car, const DynamicsOptions& options, double time_step) noexcept;
 
 }  // namespace slalom::sim

@@ -24,8 +24,7 @@ struct RacingLineOptions {
   void validate() const;
 };
 
-/// A closed line with speeds that leads around what is parked on it, and the room beside it: what opponents
-/// drive by.
+/// A closed line for opponents, with speeds, that leads around parked bodies, and the room beside it.
 ///
 /// The given path is resampled at about 0.2 m. Of the offsets from it at which a car has its margins, dynamic
 /// programming takes the way round that stays nearest to the path and moves least from side to side, by at
@@ -65,7 +64,7 @@ class RacingLine {
   }
   /// m from arc length `from` to `to` along the path, in [-length / 2, length / 2).
   double between(double from, double to) const noexcept;
-  /// Whether the line keeps less than the margins of the options, or leads through what is parked.
+  /// Whether the line keeps less than the margins of the options, or leads through parked bodies.
   bool narrow() const noexcept { return narrow_; }
 
  private:

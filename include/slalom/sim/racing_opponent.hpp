@@ -12,8 +12,8 @@ namespace slalom::sim {
 
 /// How an opponent drives.
 enum class OpponentDriver {
-  pursuit,  ///< pure pursuit of the path; it looks at nothing: PurePursuit
-  racing,   ///< the racing line round what is parked; it follows a car ahead and leaves room to one alongside
+  pursuit,  ///< pure pursuit of the path; it ignores everything else: PurePursuit
+  racing,   ///< the racing line around parked bodies; it follows a car ahead and leaves room to one alongside
   blocking,  ///< follows the path and moves in front of a car that comes from behind
   erratic,   ///< follows the path and changes lane and speed at random times
 };
@@ -55,7 +55,8 @@ class RacingOpponent {
   RacingOpponent(std::shared_ptr<const RacingLine> line, std::size_t car,
                  const RacingOpponentOptions& options, RandomKey key);
 
-  /// Steering and speed for now. To be called a few tens of times a second; between calls the command holds.
+  /// Returns steering and speed for now. Call it a few tens of times a second; between calls the command
+  /// holds.
   Command command(const World& world);
 
   /// m left of the racing line, where the car wants to be since the last command.

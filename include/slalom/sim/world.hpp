@@ -89,7 +89,8 @@ enum class StepStatus {
   non_finite_command,  ///< a command was not finite; its car coasted
 };
 
-/// Bodies are numbered: driven cars first, then parked cars in their order, then what was placed later.
+/// Bodies are numbered: driven cars first, then parked cars in their order, then bodies that were placed
+/// later.
 class World {
  public:
   /// Throws std::invalid_argument on a missing track or options out of range.
@@ -100,7 +101,7 @@ class World {
   /// in another body.
   void reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::span<const maps::Pose> parked = {});
 
-  /// Places something that does not move; the number of the body. Throws std::invalid_argument on sizes that
+  /// Places a fixed body and returns its number. Throws std::invalid_argument on sizes that
   /// are not positive and poses that are not finite. It may be placed onto a car.
   int add_parked_car(const maps::Pose& pose);
   /// Adds a fixed body and returns its index.
@@ -164,7 +165,7 @@ class World {
   std::size_t bodies() const noexcept { return cars_.size() + fixed_.size(); }
   /// The outline of a body; a disc as the square about it.
   Box outline(std::size_t body) const noexcept;
-  /// The disc that a body is, if it is one.
+  /// The disc of a body, if it is one.
   std::optional<Disc> disc(std::size_t body) const noexcept;
   /// The options given at construction.
   const WorldOptions& options() const noexcept { return options_; }

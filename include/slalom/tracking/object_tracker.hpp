@@ -8,7 +8,7 @@
 #include "slalom/maps/pose.hpp"
 #include "slalom/tracking/tracker_options.hpp"
 
-/// Other cars around a LiDAR: detected, and followed from scan to scan.
+/// Detects other cars around a LiDAR, and follows them from scan to scan.
 ///
 ///     ObjectTracker tracker(course.map);
 ///     while (driving) {
@@ -84,9 +84,9 @@ struct TrackerOutput {
 /// bounded by `max_beams` and `max_objects`. The same inputs give the same bits on one machine.
 class ObjectTracker {
  public:
-  /// Without a map: objects are what moves. Throws std::invalid_argument on options out of range.
+  /// Tracks without a map: moving things are objects. Throws std::invalid_argument on options out of range.
   explicit ObjectTracker(const TrackerOptions& options = {});
-  /// With a map, of which it copies what it needs: objects are what is not on it. Unknown cells hide objects.
+  /// Tracks with a map, which it copies: things that are not on it are objects. Unknown cells hide objects.
   /// Throws std::invalid_argument on options out of range, and on a map that has not width x height cells, at
   /// least one, whose origin is not finite, or whose resolution is not finite and above 0.
   explicit ObjectTracker(const maps::OccupancyGrid& map, const TrackerOptions& options = {});

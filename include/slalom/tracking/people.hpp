@@ -6,7 +6,7 @@
 namespace slalom::tracking {
 
 /// Options of a tracker of people on foot, each of them a round body 0.5 m across, in scans of a mobile robot
-/// with a noise of about 0.01 m. What is slower than 0.25 m/s stands.
+/// with a noise of about 0.01 m. Anything slower than 0.25 m/s stands.
 inline TrackerOptions people_tracker_options() {
   TrackerOptions options;
   options.min_points = 3;

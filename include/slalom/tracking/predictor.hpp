@@ -33,12 +33,12 @@
 /// hypotheses are returned. Deviations grow from those of the track.
 namespace slalom::tracking {
 
-/// Predicts objects. After construction nothing allocates or throws.
+/// A predictor. After construction nothing allocates or throws.
 class Predictor {
  public:
-  /// Without a course. Throws std::invalid_argument on options out of range.
+  /// Predicts without a course. Throws std::invalid_argument on options out of range.
   explicit Predictor(const PredictorOptions& options = {});
-  /// Along a course, which is closed if its ends are about as near as its points. Throws
+  /// Predicts along a course, which is closed if its ends are about as near as its points. Throws
   /// std::invalid_argument on options out of range and where check_reference_path does.
   explicit Predictor(std::span<const maps::ReferencePoint> course, const PredictorOptions& options = {});
   ~Predictor();
@@ -53,7 +53,7 @@ class Predictor {
   /// not finite or absurdly large. Valid until the next call.
   std::span<const maps::PredictedObstacle> update(std::span<const TrackedObject> objects,
                                                   double stamp) noexcept;
-  /// Forgets what objects did.
+  /// Forgets all objects.
   void reset() noexcept;
 
  private:

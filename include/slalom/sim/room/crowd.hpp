@@ -10,8 +10,8 @@ namespace slalom::sim {
 /// Somebody who walks through a room: a disc that goes from point to point and stops within 0.1 m of the last
 /// one.
 struct Walker {
-  std::vector<maps::Point> way;  ///< m; it begins at the first of at least one point
-  double speed = 1;              ///< m/s, at which it wants to walk
+  std::vector<maps::Point> way;  ///< m; at least one point, the first is the start
+  double speed = 1;              ///< m/s, desired speed
   double radius = 0.25;          ///< m
   double pause = 0;              ///< s, before it begins to walk
   /// Whether it avoids others. If not, it walks straight from point to point, through whatever stands there.
@@ -26,7 +26,7 @@ struct Walker {
 ///
 /// with the desired velocity v0 e towards the next point (eq. 2), the repulsion f_ab from others, whose
 /// potential has ellipses as level lines (eqs. 3 and 4), that from walls and obstacles (eq. 5), and the
-/// weight w for what is out of view (eq. 8).
+/// weight w for others out of view (eq. 8).
 ///
 /// The robot counts as one of the others, at the point of its body that is nearest. The model has no contact,
 /// so one rule is added: an attentive walker does not step nearer to a robot that is within 0.05 m. So only

@@ -8,8 +8,8 @@
 
 namespace slalom::sim {
 
-/// A rectangular floor from (0, 0) to (length, width) with walls, which its map shows, and what the map does
-/// not show: obstacles, such as pallets, and people, whom a Crowd moves.
+/// A rectangular floor from (0, 0) to (length, width) with walls, which are on its map, and with
+/// obstacles (such as pallets) and people (moved by a Crowd), which are not.
 struct Room {
   double length = 0;           ///< m, along x
   double width = 0;            ///< m, along y
@@ -25,7 +25,7 @@ maps::OccupancyGrid map_of(const Room& room, double resolution);
 /// Whether a body overlaps a wall, an obstacle or a person, or leaves the floor. Exact.
 bool collides(const Room& room, const Box& body) noexcept;
 
-/// The distances (m) from a scanner to what it sees, one for each of `ranges`, evenly spread around it from
+/// Writes the distances (m) that a scanner measures, one for each of `ranges`, evenly spread around it from
 /// its x axis on; at most `max_range`. The scanner must be on the floor.
 void scan(const Room& room, const maps::Pose& scanner, double max_range, std::span<double> ranges) noexcept;
 
