@@ -142,7 +142,7 @@ NpyArray read_array(const Bytes& bytes) {
 
 /// Finds the start of the directory of a ZIP archive, and the number of files that it lists.
 std::pair<std::uint64_t, int> find_directory(const Bytes& zip) {
-  constexpr std::uint64_t size = 22;  // of the record at the end, which numpy writes without a comment
+  constexpr std::uint64_t size = 22;  // size of the record at the end, which numpy writes without a comment
   zip.require(zip.size() >= size && zip.number(zip.size() - size, 4) == 0x06054b50,
               "is not an .npz file of numpy.savez, or is truncated");
   const std::uint64_t end = zip.size() - size, count = zip.number(end + 10, 2);

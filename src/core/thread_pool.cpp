@@ -98,7 +98,7 @@ struct ThreadPool::Shared {
   Call call = nullptr;
   void* context = nullptr;
   std::uint32_t first = 0, tasks = 0;
-  std::vector<TaskRange> ranges;  ///< of each thread, the caller's first
+  std::vector<TaskRange> ranges;  ///< range of each thread, the caller's first
   std::atomic<bool> busy{false};  ///< whether the workers serve a caller
   std::atomic<bool> quit{false};
   std::vector<std::thread> workers;
@@ -115,7 +115,7 @@ struct ThreadPool::Shared {
     const auto start = Clock::now();
     std::uint32_t done = 0, task = 0;
     for (; ranges[self].take_first(of_round, task); ++done) run_task(self, task);
-    // To take the tasks of two microseconds from a thread at work costs more: their data move twice.
+    // Taking tasks of two microseconds from a thread at work costs more: their data move twice.
     const double each = std::chrono::duration<double, std::micro>(Clock::now() - start).count() / done;
     const std::uint32_t few =
         done == 0 || each > 2 ? 0 : static_cast<std::uint32_t>(2 / std::max(each, 1e-3));

@@ -286,7 +286,7 @@ void ReferenceField::write_row(int row, int begin, int end, int parabolas) noexc
 }
 
 void ReferenceField::interpolate(int row, int begin, int end, const Site& site) noexcept {
-  constexpr double least = 0.25;  // of 1 - k d, which is 0 at the centre of the path's curve
+  constexpr double least = 0.25;  // least 1 - k d, which is 0 at the centre of the path's curve
   const Piece& piece = site.piece;
   const double x = geometry_.cell_x(row) - site.x;
   float* cell = cells_.at(row, begin);

@@ -88,7 +88,7 @@ double Costmap::distance(double x, double y) const noexcept {
 }
 
 bool Costmap::collides(const Footprint& footprint, const maps::Pose& pose) const noexcept {
-  const double slack = 2 * half_diagonal * geometry_.resolution;  // of the positions in both cells
+  const double slack = 2 * half_diagonal * geometry_.resolution;  // error of the positions in both cells
   if (distance(pose.x, pose.y) >= footprint.circumscribed_radius() + slack) return false;
   std::array<maps::Point, Footprint::max_vertices> corners;
   const std::span<const maps::Point> vertices = footprint.vertices();

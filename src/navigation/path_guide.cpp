@@ -7,10 +7,10 @@ namespace slalom::navigation::detail {
 
 namespace {
 
-constexpr std::size_t max_points = 240;    // of the window
+constexpr std::size_t max_points = 240;    // points of the window
 constexpr double behind = 0.3, ahead = 2;  // m, where the nearest point is searched
 constexpr double finest = 0.05;            // m, cells of the map
-constexpr double max_cells = 120;          // of the map along each side
+constexpr double max_cells = 120;          // cells along each side of the map
 constexpr double margin = 0.4;             // m of map beyond the reach of plans
 
 /// Field around the robot, over a path as long as a window may be.

@@ -134,7 +134,7 @@ void measure_box(const BoxPrior& prior, const Readings& scan, std::span<const Re
     if (!high.side) high.at += beam;
     const double half = 0.5 * prior.size[axis];
     AxisMeasurement& m = axes[axis];
-    const double reading = deviation * deviation / 2 + beam * beam / 3 + 1e-4;  // of an end
+    const double reading = deviation * deviation / 2 + beam * beam / 3 + 1e-4;  // variance of an end
     const double anchored = reading + 0.25 * prior.size_deviation * prior.size_deviation;
     const bool both = low.in_view && high.in_view;
     // If the box is to one side of the sensor, its near end counts alone: the far one is hidden.

@@ -6,10 +6,11 @@
 namespace slalom::tracking {
 namespace {
 
-constexpr double max_across = 1.0;                   // rad, between an object's yaw and the course
-constexpr double min_ratio = 0.15, max_ratio = 1.5;  // of the speed to the course's that is kept
-constexpr double usual_drift = 0.3;                  // m/s, standard deviation of drifts among objects
-constexpr double max_piece = 0.1;                    // s, of an integration
+constexpr double max_across = 1.0;  // rad, between an object's yaw and the course
+constexpr double min_ratio = 0.15,
+                 max_ratio = 1.5;    // bounds of the ratio of the speed to the course's that is kept
+constexpr double usual_drift = 0.3;  // m/s, standard deviation of drifts among objects
+constexpr double max_piece = 0.1;    // s, of an integration
 
 }  // namespace
 

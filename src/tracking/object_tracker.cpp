@@ -20,10 +20,10 @@ constexpr double max_deviation = 0.8;  // m, of the position of an object; beyon
 constexpr double max_pause = 1.0;      // s between scans, after which all objects are forgotten
 constexpr double max_jump = 0.5;       // m, of the sensor beyond its largest way, after which they are, too
 constexpr double max_behind_walls = 0.1;  // share of the readings; with more the pose is wrong
-constexpr double min_gap = 2.5;           // of the distance of neighbouring beams, where a cluster is split
-constexpr double largest_object = 1.3;    // of the largest diameter: a larger cluster is not an object
-constexpr int max_scans_at_rest = 12;     // scans without a sign of motion, without a map
-constexpr int max_splits = 4;             // times that a cluster is halved
+constexpr double min_gap = 2.5;  // gap, over the distance of neighbouring beams, where a cluster is split
+constexpr double largest_object = 1.3;  // size over the largest diameter: a larger cluster is not an object
+constexpr int max_scans_at_rest = 12;   // scans without a sign of motion, without a map
+constexpr int max_splits = 4;           // times that a cluster is halved
 
 bool is_finite(const maps::Pose& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);

@@ -25,15 +25,15 @@ namespace slalom {
 /// in a physics engine or by hand-written loops. Beside what `BatchEvaluator` asks for it has
 ///
 ///     struct State { double x, y, yaw; };               // `double` members only
-///     static constexpr int input_count = 2;             // what inputs() returns
-///     void set_state(const State&);                     // where the next sequences start
+///     static constexpr int input_count = 2;             // result of inputs()
+///     void set_state(const State&);                     // start of the next sequences
 ///
 /// and may have
 ///
 ///     Cost<double> predict(const State&, const Input<double, 2>* u, int steps, State* x) const;
 ///                                                       // x[0 ... steps] and the cost of one sequence
-///     void set_previous_input(const Input<double, 2>&); // what was applied before the next sequences
-///     const MyProblem& problem() const;                 // whose bounds and rates hold, as RiskEvaluator has
+///     void set_previous_input(const Input<double, 2>&); // input before the next sequences
+///     const MyProblem& problem() const;                 // gives bounds and rates, as in RiskEvaluator
 template <class E>
 concept StateEvaluator = std::derived_from<E, BatchEvaluator> && requires(E& e, const typename E::State& x) {
   requires std::is_trivially_copyable_v<typename E::State>;
@@ -45,7 +45,7 @@ concept StateEvaluator = std::derived_from<E, BatchEvaluator> && requires(E& e, 
 
 namespace detail {
 
-/// What a controller has to know of the problem or the evaluator that it owns.
+/// The facts about the problem or the evaluator that a controller owns.
 template <class P>
 struct Controlled {
   static_assert(check_problem<P>());
@@ -86,7 +86,7 @@ struct Plan {
   std::span<const Input<double, detail::Controlled<P>::inputs>> inputs;  ///< [horizon]; the first is for now
   /// [horizon + 1]; the first is the state given. Empty with an evaluator that does not predict.
   std::span<const State> states;
-  double cost = 0;                       ///< of the plan
+  double cost = 0;                       ///< cost of the plan
   bool collided = false;                 ///< whether the plan collides
   std::span<const CostTerm> cost_terms;  ///< the parts of the cost, which sum to it
   const SolveResult& stats;              ///< samples, weights, guides, times ...
@@ -158,10 +158,9 @@ class Controller {
     return plan(check_prediction(x) ? result.status : Status::degenerate);
   }
 
-  /// What was applied before the next solve, for a problem with `input_rate_max`. Without this call it is
-  /// taken to be what the last plan had for that time (before the first, the value within the bounds that is
-  /// nearest to 0). A value outside the bounds is moved into them; of one that is not finite nothing is
-  /// taken.
+  /// Tells the input that was applied before the next solve, for a problem with `input_rate_max`. Without
+  /// this call it is taken to be the last plan's for that time (before the first, the value within the bounds
+  /// that is nearest to 0). A value outside the bounds is moved into them; one that is not finite is ignored.
   void set_previous_input(const Inputs& u) noexcept {
     given_ = u;
     told_ = true;
@@ -210,7 +209,7 @@ class Controller {
     }
     if (!options) return bounds;
     const PerInput &low = bound(*options, "input_min"), &high = bound(*options, "input_max");
-    for (int i = 0; i < input_count; ++i) {  // what does not fit, the solver's own check reports
+    for (int i = 0; i < input_count; ++i) {  // the solver's own check reports values that do not fit
       const auto at = static_cast<std::size_t>(i);
       if (low.fits(input_count)) bounds.low[at] = std::max(low[i], bounds.low[at]);
       if (high.fits(input_count)) bounds.high[at] = std::min(high[i], bounds.high[at]);
@@ -308,8 +307,8 @@ class Controller {
     return {status, inputs_, states_, cost_.value, cost_.collided, terms_, solver_->result(), corrections_};
   }
 
-  /// What is being applied: what was told, or the input that the last plan had for `elapsed` (s) after it
-  /// was made.
+  /// Recalls the input that is being applied: the one that was told, or the one that the last plan had for
+  /// `elapsed` (s) after it was made.
   void recall_input(double elapsed) noexcept {
     const double step = evaluator_.time_step();
     const double last = static_cast<double>(inputs_.size() - 1);
@@ -338,8 +337,8 @@ class Controller {
   decltype(Controlled::cost_terms()) terms_ = Controlled::cost_terms();
   Inputs previous_{};    ///< applied before the last solve; within the bounds
   Inputs given_{};       ///< by set_previous_input
-  bool told_ = true;     ///< what was applied before the next solve is in `given_`
-  int corrections_ = 0;  ///< of the final check, in the last solve
+  bool told_ = true;     ///< whether `given_` was applied before the next solve
+  int corrections_ = 0;  ///< corrections by the final check, in the last solve
   SequenceBatch alone_;  ///< the plan as a batch of one, for an evaluator that does not predict
   AlignedBuffer alone_cost_;
   std::vector<std::uint8_t> alone_collided_;

@@ -163,7 +163,7 @@ int substeps(const CarParameters& car, const DynamicsOptions& options, double ti
   const double scale = car.friction / (kinematic_below * length);
   const double yaw_decay = scale * car.mass / car.inertia * (lf * lf * front + lr * lr * rear);
   const double slip_decay = scale * (front + rear);
-  const double stable = options.integrator == Integrator::euler ? 1.0 : 2.4;  // of the bounds 2 and 2.785
+  const double stable = options.integrator == Integrator::euler ? 1.0 : 2.4;  // below the bounds 2 and 2.785
   return std::max(1, static_cast<int>(std::ceil(time_step * std::max(yaw_decay, slip_decay) / stable)));
 }
 

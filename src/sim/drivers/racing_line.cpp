@@ -12,7 +12,7 @@ namespace {
 constexpr double usual_spacing = 0.2;  // m, of samples
 constexpr int lanes_aside = 40, lanes = 2 * lanes_aside + 1;
 constexpr double lane_step = 0.05;                    // m, from one lane to the next: 0.25 of the spacing
-constexpr double offset_cost = 0.1, change_cost = 1;  // of 1 m^2 for a sample, and of a change of lane
+constexpr double offset_cost = 0.1, change_cost = 1;  // costs of 1 m^2 for a sample, and of a change of lane
 constexpr double inflation = 0.05;                    // m, of a body that is turned while it moves aside
 constexpr double curvature_reach = 0.4;               // m to either side, over which it is measured
 constexpr int smoothing = 3;                          // samples to either side

@@ -22,7 +22,7 @@ constexpr double walls_range = 0.2;           // R, m
 constexpr double step_time = 2;               // Delta t, s, of the others' next step
 constexpr double out_of_view = 0.5;           // c
 constexpr double view = -0.1736481776669303;  // cos(phi), phi = 100 degrees
-constexpr double max_speed_ratio = 1.3;       // of the largest speed to v0
+constexpr double max_speed_ratio = 1.3;       // ratio of the largest speed to v0
 
 constexpr double at_point = 0.3;        // m from a point of the way that is not the last, where it is reached
 constexpr double at_end = 0.1;          // m, the same of the last

@@ -292,7 +292,7 @@ bool FeedbackGains::solve_step(double damping) noexcept {
 }
 
 void FeedbackGains::input_at(double t, std::span<const double> x, std::span<double> u) const noexcept {
-  // What rounding takes from a multiple of the time step does not lead to the step before.
+  // Rounding of a multiple of the time step does not lead to the step before.
   const double position = std::isfinite(t) ? std::clamp(t / time_step_, 0.0, static_cast<double>(steps_)) : 0;
   const int k = std::min(static_cast<int>(position + 1e-9), steps_ - 1);
   const double share = position - k;

@@ -11,7 +11,7 @@ namespace slalom {
 
 namespace {
 
-/// What `icem` adds to `cem`; with these defaults nothing.
+/// The additions of `icem` to `cem`; none with these defaults.
 struct Memory {
   double kept_elite_share = 0;  ///< xi, of the elites, that stay as samples
   double sample_decay = 1;      ///< gamma, by which every iteration has fewer samples
@@ -211,8 +211,9 @@ class CemSolver final : public SolverBase {
   const char* name_;
   CemOptions options_;
   Memory memory_;
-  std::vector<detail::SampleSet> batches_;  ///< of the iterations; the last one also of all later ones
-  std::size_t last_batch_ = 0;              ///< of the last iteration made
+  std::vector<detail::SampleSet>
+      batches_;                 ///< samples of the iterations; the last one also of all later ones
+  std::size_t last_batch_ = 0;  ///< batch of the last iteration made
   int elites_;
   int max_kept_;
   int kept_count_ = 0;

@@ -92,7 +92,7 @@ class Guides {
   SvgMppiOptions options_;
   int inputs_;
   int count_;             ///< guides
-  int gradient_samples_;  ///< of a guide; 0 with exact gradients
+  int gradient_samples_;  ///< samples for the gradient of a guide; 0 with exact gradients
   int block_;             ///< samples of a guide's block: its gradient samples, the guide itself, padding
   int rows_;              ///< values of a control sequence
   std::vector<float> low_, high_;  ///< bounds [row]
@@ -103,22 +103,22 @@ class Guides {
   SequenceBatch ends_;              ///< the guides alone, and place for one more
   AlignedBuffer costs_, totals_, weights_, end_costs_;
   std::vector<std::uint8_t> collided_, end_collided_;
-  Matrix<float> gradient_;                                                    ///< [guide][row]
-  std::vector<float> deviation_, inverse_;                                    ///< of gradient samples [row]
-  std::vector<float> step_;                                                   ///< epsilon [row]
+  Matrix<float> gradient_;                  ///< [guide][row]
+  std::vector<float> deviation_, inverse_;  ///< deviations of gradient samples and their inverse [row]
+  std::vector<float> step_;                 ///< epsilon [row]
   std::vector<float> weight_variance_, linear_, distance_weight_, solution_;  ///< [row]
   Matrix<double> path_;                                                       ///< [point][row]
   Matrix<float> path_float_;                                                  ///< `path_` as float32
   std::vector<float> path_costs_;                                             ///< [point]
-  std::vector<double> workspace_;   ///< of exact gradients, for each guide
+  std::vector<double> workspace_;   ///< workspace of exact gradients, for each guide
   std::vector<int> kinks_;          ///< exact gradients at a kink or not finite [guide]
   Matrix<double> taken_;            ///< with exact gradients: the best point of a guide [guide][row]
-  std::vector<double> part_;        ///< of a step that a guide makes from there [guide]
+  std::vector<double> part_;        ///< part of a step that a guide makes from there [guide]
   std::vector<float> taken_costs_;  ///< [guide]
   std::vector<std::uint8_t> taken_collided_;  ///< [guide]
   std::vector<int> made_;                     ///< iterations made [share]
   std::vector<int> fit_points_;               ///< indices of the fitted points
-  double log_error_ = 0;  ///< of the logarithms of the densities, from the rounding of the costs
+  double log_error_ = 0;  ///< error of the logarithms of the densities, from the rounding of the costs
   std::vector<double> density_, square_, logarithm_, abscissa_;  ///< [fitted point]
   int shares_ = 1;
   int iterations_ = 0;

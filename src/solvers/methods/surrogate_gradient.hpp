@@ -24,7 +24,7 @@ struct SurrogateGradient {
   bool subtract_minimum = true;            ///< whether the weights are relative to the lowest J
   double floor = 0;                        ///< added to the sum of the weights
   const Real* centre = nullptr;            ///< theta [row]
-  const Real* inverse_variance = nullptr;  ///< of the samples, [row]
+  const Real* inverse_variance = nullptr;  ///< inverse variances of the samples, [row]
   const Real* linear = nullptr;            ///< J += sum linear[row] v[row]; may be null
   const Real* distance_centre = nullptr;   ///< J += sum distance_weight (v - distance_centre)^2; may be null
   const Real* distance_weight = nullptr;   ///< [row]

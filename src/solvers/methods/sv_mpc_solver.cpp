@@ -321,7 +321,7 @@ class SvMpcSolver final : public SolverBase {
   }
 
   SvMpcOptions options_;
-  int steps_;  ///< of a particle: the horizon, or the control points of its spline
+  int steps_;  ///< steps of a particle: the horizon, or the control points of its spline
   detail::Spline spline_;
   SequenceBatch sequences_, expanded_;  ///< with splines: of what is evaluated, and of the particles
   std::vector<float> step_solution_, step_shifted_, step_mean_, step_zero_,

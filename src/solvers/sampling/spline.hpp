@@ -37,7 +37,7 @@ class Spline {
 
   int steps_ = 0, points_ = 0, inputs_ = 0;
   int count_ = 0;                        ///< control points that an input depends on
-  std::vector<int> first_;               ///< of them [step]
+  std::vector<int> first_;               ///< first control point of each step
   std::vector<float> weights_;           ///< [step][count]
   std::vector<float> fit_;               ///< least squares, [point][step]
   std::vector<float> sequence_, moved_;  ///< [step][input]

@@ -17,7 +17,7 @@ constexpr const char* folder_name = "configs";
 constexpr const char* marker = "published.yaml";  // every `configs` of this project has it
 constexpr int deepest_base = 8;
 
-using Lines = std::map<std::string, int>;  ///< of each key that a file sets
+using Lines = std::map<std::string, int>;  ///< line of each key that a file sets
 
 int line_of(const YAML::Node& node) {
   return node.Mark().line + 1;

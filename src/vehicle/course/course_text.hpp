@@ -7,7 +7,7 @@
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/course/track_generator.hpp"
 
-/// What the files of a course contain.
+/// The contents of the files of a course.
 namespace slalom::vehicle::detail {
 
 /// A number with this many decimals, never "-0".

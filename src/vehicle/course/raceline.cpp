@@ -19,7 +19,7 @@ using detail::operator*;
 constexpr double relaxation = 1.6;  // 1 is Gauss-Seidel, below 2 converges
 constexpr double tolerance = 1e-6;  // m per sweep
 constexpr int max_sweeps = 20000;
-constexpr std::size_t fewest_points = 24;  // of the coarsest level
+constexpr std::size_t fewest_points = 24;  // points of the coarsest level
 
 /// One level of the quadratic program. Updates the second differences when an offset changes.
 class Level {

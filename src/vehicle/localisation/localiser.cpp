@@ -123,7 +123,7 @@ struct Localiser::Implementation {
   void look_elsewhere() noexcept;
 
   LocaliserOptions options;
-  maps::Pose origin;  ///< of the grid, map frame
+  maps::Pose origin;  ///< origin of the grid, map frame
   SensorTables sensor;
   Particles particles;
   detail::Search search;
@@ -137,12 +137,13 @@ struct Localiser::Implementation {
   maps::Pose velocity;                 ///< m/s and rad/s in the car's frame, of the last good motion
   maps::Pose step;                     ///< m and rad in the car's frame, since the last update
   double elapsed = 0;                  ///< s, since the last update
-  double fit = 0, slow = 0, fast = 0;  ///< of the estimate: now, and averaged
+  double fit = 0, slow = 0, fast = 0;  ///< fit of the estimate: now, and averaged
   double trust = 0;                    ///< s without doubt about the place, reduced by doubt
   bool settled = false;                ///< the place was given, or a search ended with it
   bool lost = false;                   ///< no place is known, and no scan was used since
   double search_until = -1;            ///< s, stamp
-  double place_log_fit = 0;  ///< of the particles' place, averaged as those of the search's hypotheses are
+  double place_log_fit =
+      0;  ///< log fit of the particles' place, averaged as those of the search's hypotheses are
 };
 
 /// Moves the particles by what the odometry says since the last update.

@@ -57,7 +57,7 @@ class Particles {
   struct Estimate {
     maps::Pose pose;
     double covariance[3][3] = {};
-    double share = 0;  ///< of the weight that lies near the pose
+    double share = 0;  ///< share of the weight near the pose
   };
   /// The mean and the spread of the particles about the heaviest bin.
   Estimate estimate() noexcept;

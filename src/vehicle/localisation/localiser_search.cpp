@@ -6,7 +6,7 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-constexpr int copies = 12;                                      // of a hypothesis, itself included
+constexpr int copies = 12;                                      // copies of a hypothesis, itself included
 constexpr int young = 6;                                        // updates: not yet to be compared with others
 constexpr int newcomers = 8;                                    // an update
 constexpr double same_place = 0.35, same_yaw = 0.3;             // m, rad
@@ -71,7 +71,7 @@ void Search::take_best_copies(double memory) noexcept {
   }
 }
 
-/// Of hypotheses about the same place only the better one stays.
+/// Keeps the better one of hypotheses about the same place.
 void Search::drop_twins() noexcept {
   for (int a = 0; a < count_; ++a) {
     Hypothesis& first = hypotheses_[static_cast<std::size_t>(a)];

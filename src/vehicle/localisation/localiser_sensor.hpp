@@ -79,7 +79,7 @@ class SensorTables {
 
   /// How well a pose explains the beams that came back.
   struct Explained {
-    double share = 0;  ///< of beams that end near a wall, 0 .. 1
+    double share = 0;  ///< share of beams that end near a wall, 0 .. 1
     double fit = 0;    ///< mean over beams of each one's probability over the highest possible one, 0 .. 1
   };
   Explained explain(const maps::Pose& pose_grid, const ScanBeams& beams) const noexcept;
@@ -93,7 +93,7 @@ class SensorTables {
   maps::CellGrid<1> field_;  ///< log of the probability of a beam's end over the highest one
   maps::CellGrid<1> place_;  ///< log of the probability of a rear axle there: 0 in free cells
   RangeTable table_;
-  float explained_from_ = 0;  ///< of `field_`
+  float explained_from_ = 0;  ///< least value of `field_` that explains a beam
 };
 
 /// Everything that a kernel reads.
@@ -107,8 +107,8 @@ struct WeighInput {
   float laser_x = 0, laser_y = 0;
   float hit_scale = 0;     ///< -1 / (2 sigma^2), 1/m^2
   float hit = 0;           ///< probability density at the expected range, over the highest one
-  float random = 0;        ///< of a range from anywhere, over the highest one
-  float short_scale = 0;   ///< of a range from something in front, at 0 m
+  float random = 0;        ///< density of a range from anywhere, over the highest one
+  float short_scale = 0;   ///< density of a range from something in front, at 0 m
   float short_rate = 0;    ///< 1/m
   float lost = 0;          ///< that a beam does not come back though it should, over that it rightly does not
   float nothing_from = 0;  ///< m, expected ranges from which on nothing is hit

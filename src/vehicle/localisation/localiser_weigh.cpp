@@ -29,8 +29,8 @@ struct ByField {
   }
 };
 
-/// What a table of ranges has at an angle between two of its own: the range interpolated and the difference
-/// of the two, m.
+/// The value of a table of ranges at an angle between two of its own: the range interpolated and the
+/// difference of the two, m.
 template <class Target>
 struct Expected {
   Pack<Target> range, difference;

@@ -12,8 +12,8 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-constexpr std::size_t max_areas = 3;    // of free space, the largest, that are searched
-constexpr std::size_t max_islands = 5;  // of an area, the largest, that are tried
+constexpr std::size_t max_areas = 3;    // largest areas of free space that are searched
+constexpr std::size_t max_islands = 5;  // largest islands of an area that are tried
 
 constexpr int steps[8][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
 

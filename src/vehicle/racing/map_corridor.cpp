@@ -10,9 +10,9 @@ namespace slalom::vehicle::detail {
 namespace {
 
 constexpr int centring_rounds = 4;
-constexpr double centring_reach = 1.5;   // of the median half width: side rooms do not draw the line
-constexpr double centring_smooth = 0.5;  // of the median half width, deviation of the shifts along the line
-constexpr double line_smooth = 0.3;      // of the median half width, deviation of the line's own smoothing
+constexpr double centring_reach = 1.5;   // share of the median half width: side rooms do not draw the line
+constexpr double centring_smooth = 0.5;  // deviation of the shifts along the line, over the median half width
+constexpr double line_smooth = 0.3;      // deviation of the line's own smoothing, over the median half width
 
 /// Looks along the normals of a line.
 class Rays {

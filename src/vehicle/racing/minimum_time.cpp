@@ -15,13 +15,14 @@ using detail::BandedMatrix;
 using detail::RacelineProgram;
 using detail::RacelineState;
 
-constexpr double weight_factor = 0.3;    // of the barrier, from one stage to the next
-constexpr double last_gap = 1e-4;        // of the time: constraints times weight in the last stage
+constexpr double weight_factor = 0.3;    // factor of the barrier from one stage to the next
+constexpr double last_gap = 1e-4;        // share of the time: constraints times weight in the last stage
 constexpr double stage_accuracy = 5e-6;  // share of the value that a step must promise in a stage
-constexpr int max_newton_steps = 60;     // of Newton's method in a stage
-constexpr double curvature_room = 1.05;  // of a line that is tighter than the car turns, to be tightened
-constexpr double start_share = 0.4;      // of the fastest squared speeds along the first line
-constexpr double start_room = 0.1;       // of the width, from the bounds of the first line
+constexpr int max_newton_steps = 60;     // steps of Newton's method in a stage
+constexpr double curvature_room =
+    1.05;                            // factor for a line that is tighter than the car turns, to be tightened
+constexpr double start_share = 0.4;  // share of the fastest squared speeds along the first line
+constexpr double start_room = 0.1;   // share of the width, from the bounds of the first line
 
 /// Distances and curvatures of a line.
 struct Geometry {

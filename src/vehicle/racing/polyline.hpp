@@ -22,8 +22,8 @@ std::vector<double> values_smoothed(const std::vector<double>& values, bool clos
 /// New points of a line and where they are on the old one.
 struct Resampling {
   std::vector<maps::Point> points;  ///< at equal steps
-  std::vector<std::size_t> row;     ///< of the old point before each
-  std::vector<double> share;        ///< of the way to the next old point, 0..1
+  std::vector<std::size_t> row;     ///< row of the old point before each
+  std::vector<double> share;        ///< share of the way to the next old point, 0..1
 };
 
 /// Points at equal steps of about `step` (m), by Catmull-Rom cubics through the points of the line.

@@ -15,9 +15,9 @@
 namespace slalom::vehicle {
 namespace {
 
-constexpr double widest = 25;             // of half the car's width: the reach of a corridor to one side
-constexpr double max_line_points = 3000;  // of a centre line
-constexpr int max_rounds = 4;             // of improving a line along its own normals
+constexpr double widest = 25;             // reach of a corridor to one side, in half widths of the car
+constexpr double max_line_points = 3000;  // points of a centre line
+constexpr int max_rounds = 4;             // rounds of improving a line along its own normals
 constexpr double min_gain = 5e-4;         // share of the time, by which a round must improve it
 constexpr double min_room = 1e-3;         // m, between the bounds of a line
 constexpr double max_yaw = 0.6;           // rad, of the way from the x axis at a start that is found
@@ -119,7 +119,7 @@ void complete(RaceCourse& course, const detail::FreeSpace& space, const RacingCa
   }
 }
 
-/// What the corridor of a course of a length is measured with.
+/// Returns the measures for the corridor of a course of a length.
 detail::CorridorMeasure measure_for(const RacingCar& car, double length) {
   return {wall_distance(car), centre_line_step(car, length), 0.5 * widest * car.width};
 }

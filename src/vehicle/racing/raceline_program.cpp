@@ -10,7 +10,7 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-constexpr int variables = 6;  // of a segment: four offsets, two speeds
+constexpr int variables = 6;  // variables of a segment: four offsets, two speeds
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <class T>

@@ -74,7 +74,7 @@ template <class Target>
 SLALOM_INLINE Pack<Target> log1p(const Pack<Target>& x) {
   using F = Pack<Target>;
   const F u = F(1.0f) + x, logarithm = log(u);
-  const F lost = x - (u - F(1.0f));  // what rounding took from u
+  const F lost = x - (u - F(1.0f));  // loss of u by rounding
   const F corrected = select(u == F(1.0f), x, logarithm + lost / u);
   return select((u > F(0.0f)) & (u < F(__builtin_inff())), corrected, logarithm);
 }

@@ -46,11 +46,11 @@ struct Moments {
 ///
 ///     (period / window) / 2 * ((lateral error / lateral_noise)^2 + (yaw error / yaw_noise)^2)
 ///
-/// of the predicted pose at the end (the factor, since successive windows overlap), and errors beyond five
-/// deviations count as five, so that a collision or a jump of the localisation decides nothing. What was
-/// learned is forgotten within `memory` seconds of turning: on a straight line, where nothing can be learned
-/// about the tyres, nothing is forgotten either. Prior: independent normal distributions around the given
-/// values, of the friction's logarithm.
+/// with the errors of the predicted pose at the end; the factor allows for the overlap of successive windows.
+/// Errors beyond five deviations count as five, so that a collision or a jump of the localisation decides
+/// nothing. What was learned is forgotten within `memory` seconds of turning: on a straight line, where
+/// nothing can be learned about the tyres, nothing is forgotten either. Prior: independent normal
+/// distributions around the given values, of the friction's logarithm.
 ///
 /// The means are those of the posterior; before the first turn they are the given values.
 /// `cautious_friction` is the `friction_quantile` of the posterior, never above the given friction: before

@@ -14,7 +14,7 @@ namespace slalom::vehicle {
 /// A motion model for PathTracking:
 ///
 ///     struct Motion {
-///       static constexpr const char* name = "kinematic";            // of `vehicle.model`
+///       static constexpr const char* name = "kinematic";            // value of `vehicle.model`
 ///       static constexpr const char* help = "...";
 ///       static constexpr int inputs = 1;
 ///       static constexpr std::array input_names{"steering"};        // steering first; then "acceleration"
