@@ -30,15 +30,15 @@ std::vector<LapTask> open_tasks(const Evaluation& evaluation, const LapStore& st
 void drive_until_empty(const Evaluation& evaluation, LapQueue& queue,
                        const std::atomic<bool>& cancel) noexcept {
   try {
-    std::optional<LapRunner> runner;
+    LapSetup setup;
     int current = -1;
     while (const auto task = queue.next()) {
       const Experiment& experiment = evaluation.experiments.at(static_cast<std::size_t>(task->experiment));
-      if (task->experiment != current) runner.emplace(make_runner(evaluation, task->experiment));
+      if (task->experiment != current) setup = lap_setup(evaluation, task->experiment);
       current = task->experiment;
       const auto begin = Clock::now();
       const LapResult result =
-          runner->run(lap_seed(evaluation.seed0, task->lap, experiment.obstacles), {}, &cancel);
+          run_lap(setup, lap_seed(evaluation.seed0, task->lap, experiment.obstacles), {}, &cancel);
       if (result.cancelled) return;
       queue.keep(make_row(task->experiment, task->lap, result, seconds_since(begin)));
     }
@@ -93,28 +93,28 @@ bool EvaluationQueue::finish() {
   return true;
 }
 
-LapRunner make_runner(const Evaluation& evaluation, int index) {
+LapSetup lap_setup(const Evaluation& evaluation, int index) {
   const Experiment& experiment = evaluation.experiments.at(static_cast<std::size_t>(index));
-  vehicle::Configuration configuration = evaluation.configuration;
-  LapSettings settings;
+  LapSetup setup{evaluation.environment, {evaluation.configuration, experiment.method}};
+  LapSettings& settings = setup.settings;
   settings.obstacles = experiment.obstacles;
   settings.latency = evaluation.latency;
   settings.additional_costs = evaluation.additional_costs;
   for (const auto& [key, value] : experiment.set)
     if (!set_world_option(settings, key, value))
-      vehicle::set_option(configuration, key, value, experiment.method);
+      vehicle::set_option(setup.driver.configuration, key, value, experiment.method);
   // All experiments meet the same opponents.
   if (settings.planning_opponents > 0)
-    settings.opponent_planner =
-        std::make_shared<const OpponentPlanner>(OpponentPlanner{evaluation.configuration});
-  return LapRunner(evaluation.environment, configuration, experiment.method, settings);
+    settings.opponent_planner = std::make_shared<const Driver>(Driver{evaluation.configuration});
+  return setup;
 }
 
 bool run_evaluation(const Evaluation& evaluation, LapStore& store, int jobs,
                     const std::function<void(const EvaluationProgress&)>& on_progress,
                     const std::atomic<bool>& cancel) {
   // Reports unknown methods and options before the first lap.
-  for (int i = 0; i < static_cast<int>(evaluation.experiments.size()); ++i) make_runner(evaluation, i);
+  for (int i = 0; i < static_cast<int>(evaluation.experiments.size()); ++i)
+    lap_setup(evaluation, i).validate();
   EvaluationQueue queue(evaluation, store, on_progress, cancel);
   drive_laps(evaluation, queue, jobs, cancel);
   return queue.finish();

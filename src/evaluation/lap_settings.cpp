@@ -12,6 +12,11 @@ bool has_planner(const LapSettings& settings, int index) noexcept {
   return index >= first && index < first + settings.planning_opponents;
 }
 
+std::optional<HardwareConditions> hardware_of(const LapSettings& settings) {
+  if (settings.hardware || !settings.localised) return settings.hardware;
+  return HardwareConditions::sensors(settings.range_noise, settings.dropout);
+}
+
 sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept {
   if (index < settings.blocking_opponents) return sim::OpponentDriver::blocking;
   if (index < settings.blocking_opponents + settings.erratic_opponents) return sim::OpponentDriver::erratic;

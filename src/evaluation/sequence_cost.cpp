@@ -51,6 +51,7 @@ MeasuredStates resampled(std::span<const PredictedState> predicted, double spaci
 }  // namespace
 
 struct SequenceCostMeter::Implementation {
+  std::vector<maps::ReferencePoint> path;
   VehicleOptions model;
   /// Has the weights and costs of the paper's program.
   Problem problem{vehicle::published::vehicle_options(), vehicle::published::ModelOptions::published()};
@@ -64,9 +65,10 @@ struct SequenceCostMeter::Implementation {
   maps::Point low, high;    ///< m, the part of the field that is up to date, map frame
   bool everywhere = false;  ///< whether the whole field is up to date
 
-  Implementation(std::span<const maps::ReferencePoint> path, const VehicleOptions& m)
-      : model(m),
-        field(path, maps::published_reference_field()),
+  Implementation(std::span<const maps::ReferencePoint> along, const VehicleOptions& m)
+      : path(along.begin(), along.end()),
+        model(m),
+        field(along, maps::published_reference_field()),
         own(make_vehicle_model(m)),
         paper(make_vehicle_model(vehicle::published::vehicle_options())),
         states(std::max<std::size_t>(
@@ -155,6 +157,11 @@ struct SequenceCostMeter::Implementation {
 SequenceCostMeter::SequenceCostMeter(std::span<const maps::ReferencePoint> path, const VehicleOptions& model)
     : implementation_(std::make_unique<Implementation>(path, model)) {}
 SequenceCostMeter::~SequenceCostMeter() = default;
+SequenceCostMeter::SequenceCostMeter(const SequenceCostMeter& other)
+    : SequenceCostMeter(other.implementation_->path, other.implementation_->model) {}
+SequenceCostMeter& SequenceCostMeter::operator=(const SequenceCostMeter& other) {
+  return *this = SequenceCostMeter(other);
+}
 SequenceCostMeter::SequenceCostMeter(SequenceCostMeter&&) noexcept = default;
 SequenceCostMeter& SequenceCostMeter::operator=(SequenceCostMeter&&) noexcept = default;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -42,7 +43,7 @@ struct ObjectTracker::Implementation {
         objects(static_cast<std::size_t>(given.max_objects)),
         reported(objects.size()) {
     if (map) {
-      background.emplace(*map);
+      background = std::make_shared<const MapBackground>(*map);
     } else {
       free_space.emplace(given.max_beams);
     }
@@ -69,7 +70,7 @@ struct ObjectTracker::Implementation {
 
   TrackerOptions options;
   Readings readings;
-  std::optional<MapBackground> background;
+  std::shared_ptr<const MapBackground> background;  ///< null without a map
   std::optional<FreeSpace> free_space;
   std::vector<Reading> candidates;  ///< readings that may belong to objects
   std::vector<int> owners;          ///< object of each candidate, by index, or -1
@@ -275,6 +276,14 @@ ObjectTracker::ObjectTracker(const TrackerOptions& options)
 ObjectTracker::ObjectTracker(const maps::OccupancyGrid& map, const TrackerOptions& options)
     : implementation_(std::make_unique<Implementation>(&map, options)) {}
 ObjectTracker::~ObjectTracker() = default;
+ObjectTracker::ObjectTracker(const ObjectTracker& other)
+    : implementation_(std::make_unique<Implementation>(*other.implementation_)) {
+  Implementation& own = *implementation_;
+  own.output.objects = {own.reported.data(), own.output.objects.size()};
+}
+ObjectTracker& ObjectTracker::operator=(const ObjectTracker& other) {
+  return *this = ObjectTracker(other);
+}
 ObjectTracker::ObjectTracker(ObjectTracker&&) noexcept = default;
 ObjectTracker& ObjectTracker::operator=(ObjectTracker&&) noexcept = default;
 

@@ -217,6 +217,15 @@ Predictor::Predictor(const PredictorOptions& options)
 Predictor::Predictor(std::span<const maps::ReferencePoint> course, const PredictorOptions& options)
     : implementation_(std::make_unique<Implementation>(options, CourseLine(course))) {}
 Predictor::~Predictor() = default;
+Predictor::Predictor(const Predictor& other)
+    : implementation_(
+          std::make_unique<Implementation>(other.implementation_->options, other.implementation_->course)) {
+  const auto& remembered = other.implementation_->remembered;
+  implementation_->remembered.assign(remembered.begin(), remembered.end());
+}
+Predictor& Predictor::operator=(const Predictor& other) {
+  return *this = Predictor(other);
+}
 Predictor::Predictor(Predictor&&) noexcept = default;
 Predictor& Predictor::operator=(Predictor&&) noexcept = default;
 

@@ -4,8 +4,8 @@
 
 #include <atomic>
 
-#include "slalom/evaluation/closed_loop.hpp"
 #include "slalom/evaluation/grid_race.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "slalom/evaluation/rooms/room_drive.hpp"
 #include "support/allocation_failures.hpp"
 #include "vehicle/planner/planner_calls.hpp"
@@ -42,9 +42,9 @@ TEST(AllocationFailure, ACourseIsLoadedOrThrows) {
 /// The start of a lap with few samples.
 double start_of_lap(const std::shared_ptr<const Environment>& environment,
                     const vehicle::Configuration& configuration, const LapSettings& settings) {
-  ClosedLoop loop(std::make_shared<const LapRunner>(environment, configuration, "svg_mppi", settings), 5);
-  for (int step = 0; step < 2; ++step) loop.step();
-  return loop.world().state(0).x;
+  LapDrive drive({environment, {configuration}, settings}, 5);
+  for (int step = 0; step < 2; ++step) drive.step();
+  return drive.world().state(0).x;
 }
 
 TEST(AllocationFailure, ALapStartsOrThrows) {
@@ -71,10 +71,10 @@ TEST(AllocationFailure, ARaceAmongCarsStartsOrThrows) {
   const auto environment = load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {});
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "40", "mppi");
-  const std::vector<RaceEntry> entries{{"first", configuration, "mppi"}, {"second", configuration, "mppi"}};
+  const std::vector<Driver> drivers(2, {configuration, "mppi"});
   EXPECT_GT(testing::fail_every_allocation(
                 [&] {
-                  const GridRace race(environment, entries, {.tracking = TrackingMode::exact}, {.laps = 1});
+                  const GridRace race{environment, drivers, {.tracking = TrackingMode::exact}, {.laps = 1}};
                   std::atomic<bool> cancel{false};
                   const GridRaceResult result = race.run(
                       3, 0, [&](const GridRaceStep& step) { cancel = step.time > 0.03; }, &cancel);

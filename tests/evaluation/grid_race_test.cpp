@@ -84,15 +84,15 @@ sim::CarState on_ring(double progress, double left, double speed) {
 }
 
 /// Where a car starts (m beyond the line, m left of it) and how fast it drives.
-struct Drive {
+struct Motion {
   double from = 0, left = 0, speed = 0;
 };
 
 /// What is seen of cars that drive like this for so long (s), with the line at arc length 0.
-RaceWatch watch(const std::vector<Drive>& drives, double time) {
+RaceWatch watch(const std::vector<Motion>& drives, double time) {
   sim::World world({}, testing::ring_track());
   std::vector<maps::Pose> starts;
-  for (const Drive& drive : drives) {
+  for (const Motion& drive : drives) {
     const sim::CarState state = on_ring(drive.from, drive.left, drive.speed);
     starts.push_back({state.x, state.y, state.yaw});
   }
@@ -100,7 +100,7 @@ RaceWatch watch(const std::vector<Drive>& drives, double time) {
   RaceWatch seen(world, 0);
   for (int k = 1; k * 0.01 <= time; ++k) {
     std::vector<sim::CarState> states;
-    for (const Drive& drive : drives)
+    for (const Motion& drive : drives)
       states.push_back(on_ring(drive.from + drive.speed * 0.01 * k, drive.left, drive.speed));
     world.follow(states);
     seen.update(world);
@@ -137,9 +137,8 @@ std::shared_ptr<const Environment> course(const char* name) {
   return load_environment(fs::path(SLALOM_COURSES) / name, Protocol::true_physics, {SLALOM_COURSES});
 }
 
-RaceEntry entry(const std::string& name, double max_speed = 100) {
-  RaceEntry made{
-      name,
+Driver entry(double max_speed = 100) {
+  Driver made{
       vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / "default_kinematic.yaml", {SLALOM_CONFIGS}),
       "mppi"};
   vehicle::set_option(made.configuration, "mppi.samples", "64");
@@ -147,16 +146,14 @@ RaceEntry entry(const std::string& name, double max_speed = 100) {
   return made;
 }
 
-GridRace race_of(const std::vector<RaceEntry>& entries, const GridRaceOptions& options = {.laps = 1},
+GridRace race_of(const std::vector<Driver>& entries, const GridRaceOptions& options = {.laps = 1},
                  const LapSettings& settings = {.tracking = TrackingMode::exact}) {
   static const auto wren = course("wren");
-  return GridRace(wren, entries, settings, options);
+  return {wren, entries, settings, options};
 }
 
-std::vector<RaceEntry> equals(int cars) {
-  std::vector<RaceEntry> entries;
-  for (int i = 0; i < cars; ++i) entries.push_back(entry("car " + std::to_string(i + 1)));
-  return entries;
+std::vector<Driver> equals(std::size_t cars) {
+  return std::vector<Driver>(cars, entry());
 }
 
 void expect_same(const GridRaceResult& a, const GridRaceResult& b) {
@@ -185,7 +182,7 @@ TEST(GridRace, FourEqualCarsRaceAndTheRaceRepeats) {
     EXPECT_EQ(step.world.observe(1).scan.ranges.size(), 1080U);
   });
   EXPECT_EQ(most, 4);
-  EXPECT_NEAR(steps, first.time / race.drivers()[0].control_period(), 2);
+  EXPECT_NEAR(steps, first.time / race.control_period(), 2);
   ASSERT_TRUE(first.has_winner());
   std::vector<int> grid;
   for (const int car : first.standings) {
@@ -223,8 +220,8 @@ TEST(GridRace, FourEqualCarsRaceAndTheRaceRepeats) {
 }
 
 TEST(GridRace, TheFasterCarOvertakesOrFollowsAndEveryDriverHasItsOwnOptions) {
-  const GridRace race = race_of({entry("slow", 1.0), entry("fast")});
-  EXPECT_NEAR(race.timeout(), race.drivers()[0].timeout(), 1e-9) << "that of the slower one";
+  const GridRace race = race_of({entry(1.0), entry()});
+  EXPECT_NEAR(race.timeout(), race.lap(0).timeout(), 1e-9) << "that of the slower one";
   const GridRaceResult result = race.run(1, 1);
   EXPECT_EQ(result.cars[1].grid_place, 0) << "the faster car starts ahead";
   EXPECT_EQ(result.standings[0], 1);
@@ -233,13 +230,13 @@ TEST(GridRace, TheFasterCarOvertakesOrFollowsAndEveryDriverHasItsOwnOptions) {
 }
 
 TEST(GridRace, ACarThatHitsAWallIsOutAndTheOthersGoOn) {
-  RaceEntry blind = entry("blind");
+  Driver blind = entry();
   blind.configuration.planner.laser_yaw = 3;  // so that it knows walls where there are none
   blind.configuration.planner.stop_when_blocked = false;
   blind.configuration.planner.verify_plan = false;
   blind.configuration.planner.back_up = false;
   blind.configuration.planner.steer_limit = 0.02;  // rad
-  const GridRaceResult result = race_of({entry("sound"), blind}).run(2);
+  const GridRaceResult result = race_of({entry(), blind}).run(2);
   EXPECT_EQ(result.cars[1].end, CarEnd::wall);
   EXPECT_TRUE(result.cars[1].lap_times.empty());
   EXPECT_TRUE(std::isnan(result.cars[1].gap));
@@ -264,15 +261,15 @@ TEST(GridRace, EndsWithWhatWasDrivenWhenItIsCancelled) {
 }
 
 TEST(GridRace, RefusesWhatItCannotDrive) {
-  EXPECT_THROW(race_of(equals(1)), std::invalid_argument);
-  EXPECT_THROW(race_of(equals(5)), std::invalid_argument);
-  EXPECT_THROW(race_of(equals(2), {.laps = 0}), std::invalid_argument);
-  EXPECT_THROW(race_of(equals(2), {.laps = 1}, {.obstacles = 1}), std::invalid_argument);
-  EXPECT_THROW(race_of(equals(2), {.laps = 1}, {.opponents = 1}), std::invalid_argument);
-  EXPECT_THROW(race_of(equals(2), {.laps = 1}, {.rounds = 2}), std::invalid_argument);
-  std::vector<RaceEntry> periods = equals(2);
+  EXPECT_THROW(race_of(equals(1)).validate(), std::invalid_argument);
+  EXPECT_THROW(race_of(equals(5)).validate(), std::invalid_argument);
+  EXPECT_THROW(race_of(equals(2), {.laps = 0}).validate(), std::invalid_argument);
+  EXPECT_THROW(race_of(equals(2), {.laps = 1}, {.obstacles = 1}).validate(), std::invalid_argument);
+  EXPECT_THROW(race_of(equals(2), {.laps = 1}, {.opponents = 1}).validate(), std::invalid_argument);
+  EXPECT_THROW(race_of(equals(2), {.laps = 1}, {.rounds = 2}).validate(), std::invalid_argument);
+  std::vector<Driver> periods = equals(2);
   periods[1].configuration.planner.control_period = 0.05;
-  EXPECT_THROW(race_of(periods), std::invalid_argument);
+  EXPECT_THROW(race_of(periods).validate(), std::invalid_argument);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <numeric>
 
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 
 namespace slalom::evaluation {
 namespace {
@@ -23,7 +23,7 @@ vehicle::Configuration configuration(const char* name) {
 LapResult lap(const char* name, LapSettings settings) {
   static const auto environment =
       load_environment(fs::path(SLALOM_COURSES) / "fox", Protocol::true_physics, {SLALOM_COURSES});
-  return LapRunner(environment, configuration(name), "svg_mppi", settings).run(3);
+  return run_lap({environment, {configuration(name)}, settings}, 3);
 }
 
 TEST(LocalisedLap, ThePlannerGetsAnEstimateOfThePose) {
@@ -64,9 +64,9 @@ TEST(TrackedLap, AnEstimatedPoseIsAsGoodAsTheTrueOne) {
   const auto wren =
       load_environment(fs::path(SLALOM_COURSES) / "wren", Protocol::true_physics, {SLALOM_COURSES});
   // In this lap the car hits another one.
-  const TrackingRecord exact = LapRunner(wren, driver, "svg_mppi", settings).run(110).tracking;
+  const TrackingRecord exact = run_lap({wren, {driver}, settings}, 110).tracking;
   settings.tracking = TrackingMode::localised;
-  const TrackingRecord localised = LapRunner(wren, driver, "svg_mppi", settings).run(110).tracking;
+  const TrackingRecord localised = run_lap({wren, {driver}, settings}, 110).tracking;
   EXPECT_GT(localised.in_view, 300);
   EXPECT_EQ(localised.in_view, exact.in_view);
   EXPECT_GT(localised.long_detected, 0.97 * exact.long_detected);

@@ -9,7 +9,7 @@
 
 #include "evaluation/overtaking/overtaking_meter.hpp"
 #include "sim/rooms.hpp"
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "slalom/evaluation/lap_table.hpp"
 
 namespace slalom::evaluation {
@@ -142,16 +142,16 @@ vehicle::Configuration configuration(const std::string& name) {
   return vehicle::load_configuration(fs::path(SLALOM_CONFIGS) / (name + ".yaml"), {SLALOM_CONFIGS});
 }
 
-LapRunner runner_with(const LapSettings& settings, const std::string& method = "mppi") {
+LapSetup setup_with(const LapSettings& settings, const std::string& method = "mppi") {
   auto driver = configuration("default_kinematic");
   vehicle::set_option(driver, "mppi.samples", "64");
   vehicle::set_option(driver, "svg_mppi.samples", "64");
   static const auto environment = wren();
-  return {environment, driver, method, settings};
+  return {environment, {driver, method}, settings};
 }
 
 LapResult lap_with(const LapSettings& settings, std::uint64_t seed = 1) {
-  return runner_with(settings).run(seed);
+  return run_lap(setup_with(settings), seed);
 }
 
 TEST(Overtaking, OpponentsOfEveryKindAreInALapAndItRepeats) {
@@ -210,14 +210,13 @@ TEST(Overtaking, OpponentsWithPlannersAreInALapAndItRepeatsWithAnyThreads) {
 double way_of_opponent(const LapSettings& settings, double time, const std::string& method = "mppi") {
   double way = 0;
   std::atomic<bool> enough = false;
-  runner_with(settings, method)
-      .run(
-          1,
-          [&](const ControlStep& step) {
-            way = step.world.laps(1)->progress();
-            enough = step.time >= time;
-          },
-          &enough);
+  run_lap(
+      setup_with(settings, method), 1,
+      [&](const ControlStep& step) {
+        way = step.world.laps(1)->progress();
+        enough = step.time >= time;
+      },
+      &enough);
   return way;
 }
 
@@ -225,8 +224,7 @@ TEST(Overtaking, AnOpponentWithAPlannerDrivesAtItsShareOfTheSpeed) {
   const auto way = [](double share, bool fastest) {
     LapSettings settings{.opponents = 1, .opponent_speed = share, .planning_opponents = 1};
     settings.saturating_tyres = fastest;
-    if (fastest)
-      settings.opponent_planner = std::make_shared<OpponentPlanner>(OpponentPlanner{configuration("race")});
+    if (fastest) settings.opponent_planner = std::make_shared<Driver>(Driver{configuration("race")});
     return way_of_opponent(settings, 1.5);
   };
   const double all = way(1, false), all_fastest = way(1, true);
@@ -243,14 +241,14 @@ TEST(Overtaking, OpponentsCanHaveAPlannerThatDoesNotDependOnTheCar) {
   LapSettings settings{.opponents = 1, .opponent_speed = 1, .planning_opponents = 1};
   const auto way = [&](const char* method) { return way_of_opponent(settings, 2, method); };
   EXPECT_NE(way("mppi"), way("svg_mppi")) << "that of the car";
-  OpponentPlanner slow{configuration("default_kinematic"), "mppi"};
+  Driver slow{configuration("default_kinematic"), "mppi"};
   vehicle::set_option(slow.configuration, "mppi.samples", "64");
   slow.configuration.planner.max_speed = 0.5;
-  settings.opponent_planner = std::make_shared<OpponentPlanner>(slow);
+  settings.opponent_planner = std::make_shared<Driver>(slow);
   const double way_of_slow = way("mppi");
   EXPECT_EQ(way_of_slow, way("svg_mppi"));
   slow.configuration.planner.control_period = 0.05;
-  settings.opponent_planner = std::make_shared<OpponentPlanner>(slow);
+  settings.opponent_planner = std::make_shared<Driver>(slow);
   EXPECT_EQ(way_of_slow, way("mppi")) << "at the control period of the car";
   EXPECT_GT(way_of_slow, 0.4);
   EXPECT_LT(way_of_slow, 1.1);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "slalom/evaluation/closed_loop.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 
 namespace slalom::evaluation {
@@ -19,15 +19,14 @@ std::shared_ptr<Environment> environment_of(const std::string& course) {
                           Protocol::true_physics);
 }
 
-std::shared_ptr<const LapRunner> runner(std::shared_ptr<const Environment> environment,
-                                        const LapSettings& settings = {}) {
+LapSetup setup(std::shared_ptr<const Environment> environment, const LapSettings& settings = {}) {
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "256", "mppi");
   vehicle::set_option(configuration, "horizon", "14", "mppi");
   vehicle::set_option(configuration, "variance", "0.05", "mppi");
   vehicle::set_option(configuration, "input_min", "-0.4", "mppi");
   vehicle::set_option(configuration, "input_max", "0.4", "mppi");
-  return std::make_shared<const LapRunner>(std::move(environment), configuration, "mppi", settings);
+  return {std::move(environment), {configuration, "mppi"}, settings};
 }
 
 double total(const std::array<double, racing_sectors>& sectors) {
@@ -94,7 +93,7 @@ TEST(RacingLap, GripIsWeightedByTime) {
 }
 
 TEST(Race, StandingStartsAreToldFromFlyingLaps) {
-  const auto driver = runner(environment_of("stag"));
+  const auto driver = setup(environment_of("stag"));
   int steps = 0;
   const auto laps = drive_race(driver, {.laps = 3, .seed = 3},
                                {.on_step =
@@ -112,16 +111,15 @@ TEST(Race, StandingStartsAreToldFromFlyingLaps) {
     EXPECT_EQ(lap.seed, 3u);
     EXPECT_EQ(lap.samples.front().time, 0);
     EXPECT_EQ(lap.samples.front().distance, 0);
-    EXPECT_NEAR(lap.samples.back().distance, driver->lap_length(), 1e-9);
+    EXPECT_NEAR(lap.samples.back().distance, driver.length(), 1e-9);
     EXPECT_NEAR(total(lap.sector), lap.time(), 1e-9);
   }
   EXPECT_EQ(laps[0].samples.front().speed, 0);
   EXPECT_GT(laps[1].samples.front().speed, 2);
   EXPECT_EQ(laps[1].samples.front().speed, laps[0].samples.back().speed) << "the car goes on";
   EXPECT_LT(laps[1].time(), laps[0].time());
-  // The runner's own lap with this seed. It finds the line within a time step of the simulation.
-  auto alone = *driver;
-  const LapResult single = alone.run(3);
+  // A lap alone with this seed ends within a time step of the simulation.
+  const LapResult single = run_lap(driver, 3);
   EXPECT_NEAR(laps[0].time(), single.time, 1e-3);
   EXPECT_GT(steps, 3 * single.steps / 2);
 }
@@ -131,14 +129,14 @@ TEST(Race, TheSimulatedCarMayBeAPassengerCar) {
   EXPECT_TRUE(set_world_option(settings, "world.car", "passenger_car"));
   EXPECT_EQ(settings.car, sim::CarKind::passenger_car);
   const auto environment = environment_of("stag");
-  const ClosedLoop small(runner(environment), 1);
+  const LapDrive small(setup(environment), 1);
   EXPECT_EQ(small.world().options().car.mass, sim::CarParameters{}.mass);
-  EXPECT_THROW(ClosedLoop(runner(environment, settings), 1), std::invalid_argument)
+  EXPECT_THROW(LapDrive(setup(environment, settings), 1), std::invalid_argument)
       << "on a course of scale 1/10 it lies in a wall";
 }
 
 TEST(Race, AccelerationsAreThoseOfTheSpeedsAndTheCurve) {
-  const auto laps = drive_race(runner(environment_of("stag")), {.laps = 1});
+  const auto laps = drive_race(setup(environment_of("stag")), {.laps = 1});
   const auto& samples = laps[0].samples;
   double gained = 0, turned = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) {
@@ -154,7 +152,7 @@ TEST(Race, EveryLapCanBeginWithAStandingStart) {
   LapSettings settings;
   settings.obstacles = 1;
   const auto laps =
-      drive_race(runner(environment_of("stag"), settings), {.laps = 2, .seed = 5, .standing = true});
+      drive_race(setup(environment_of("stag"), settings), {.laps = 2, .seed = 5, .standing = true});
   ASSERT_EQ(laps.size(), 2u);
   EXPECT_EQ(laps[0].seed, lap_seed(5, 0, 1));
   EXPECT_EQ(laps[1].seed, lap_seed(5, 1, 1));
@@ -167,14 +165,14 @@ TEST(Race, EveryLapCanBeginWithAStandingStart) {
 TEST(Race, ACollisionEndsTheLapAndTheNextOneStands) {
   LapSettings settings;
   settings.latency = 0.5;  // s
-  const auto driver = runner(environment_of("stag"), settings);
+  const auto driver = setup(environment_of("stag"), settings);
   const auto laps = drive_race(driver, {.laps = 2});
   ASSERT_EQ(laps.size(), 2u);
   for (const RacingLap& lap : laps) {
     EXPECT_EQ(lap.end, RacingEnd::collision);
     EXPECT_TRUE(lap.standing);
     EXPECT_TRUE(std::isnan(lap.sector[2]));
-    EXPECT_LT(lap.samples.back().distance, driver->lap_length());
+    EXPECT_LT(lap.samples.back().distance, driver.length());
   }
   EXPECT_NE(laps[0].seed, laps[1].seed);
 }
@@ -182,7 +180,7 @@ TEST(Race, ACollisionEndsTheLapAndTheNextOneStands) {
 TEST(Race, ALapEndsAfterItsTimeout) {
   const auto environment = environment_of("stag");
   environment->timeout = 2;
-  const auto laps = drive_race(runner(environment), {.laps = 2});
+  const auto laps = drive_race(setup(environment), {.laps = 2});
   ASSERT_EQ(laps.size(), 2u);
   for (const RacingLap& lap : laps) {
     EXPECT_EQ(lap.end, RacingEnd::timeout);
@@ -192,16 +190,16 @@ TEST(Race, ALapEndsAfterItsTimeout) {
 
 TEST(Race, EndsWhenItIsCancelled) {
   std::atomic<bool> cancel = false;
-  const auto laps = drive_race(runner(environment_of("stag")), {.laps = 5},
+  const auto laps = drive_race(setup(environment_of("stag")), {.laps = 5},
                                {.on_step = {}, .on_lap = [&](const RacingLap&) { cancel = true; }}, &cancel);
   EXPECT_EQ(laps.size(), 1u);
-  EXPECT_THROW(drive_race(runner(environment_of("stag")), {.laps = 0}), std::invalid_argument);
+  EXPECT_THROW(drive_race(setup(environment_of("stag")), {.laps = 0}), std::invalid_argument);
 }
 
 TEST(ProfileLap, TakesTheTimeOfTheProfile) {
   for (const char* course : {"stag", "wren"}) {
     const auto environment = environment_of(course);
-    const RacingLap lap = profile_lap(*runner(environment), false, grip);
+    const RacingLap lap = profile_lap(setup(environment), false, grip);
     EXPECT_NEAR(lap.time(), vehicle::profile_time(environment->course), 1e-6) << course;
     EXPECT_NEAR(total(lap.sector), lap.time(), 1e-9) << course;
     EXPECT_NEAR(lap.samples.back().distance, environment->course.length, 1e-9) << course;
@@ -214,24 +212,24 @@ TEST(ProfileLap, BeginsWhereTheCarStarts) {
   LapSettings settings;
   const vehicle::Waypoint& middle = environment->course.waypoints[environment->course.waypoints.size() / 2];
   settings.start = maps::Pose{middle.x, middle.y, middle.yaw};
-  const auto first = profile_lap(*runner(environment), false, grip),
-             moved = profile_lap(*runner(environment, settings), false, grip);
+  const auto first = profile_lap(setup(environment), false, grip),
+             moved = profile_lap(setup(environment, settings), false, grip);
   EXPECT_NEAR(moved.time(), first.time(), 1e-3);
   EXPECT_NEAR(moved.samples.front().speed, middle.speed, 1e-6);
 }
 
 TEST(ProfileLap, FromRestItAcceleratesWithinTheGrip) {
   const auto environment = environment_of("stag");
-  const auto driver = runner(environment);
-  const RacingLap flying = profile_lap(*driver, false, grip), standing = profile_lap(*driver, true, grip),
-                  weak = profile_lap(*driver, true, 2);
+  const auto driver = setup(environment);
+  const RacingLap flying = profile_lap(driver, false, grip), standing = profile_lap(driver, true, grip),
+                  weak = profile_lap(driver, true, 2);
   EXPECT_EQ(standing.samples.front().speed, 0);
   EXPECT_GT(standing.time(), flying.time());
   EXPECT_GT(weak.time(), standing.time());
   for (std::size_t i = 1; standing.samples[i].speed < flying.samples[i].speed; ++i)
     EXPECT_LE(standing.samples[i].longitudinal, grip * (1 + 1e-9)) << i;
   EXPECT_NEAR(standing.samples.back().speed, flying.samples.back().speed, 1e-9);
-  EXPECT_THROW(profile_lap(*driver, true, 0), std::invalid_argument);
+  EXPECT_THROW(profile_lap(driver, true, 0), std::invalid_argument);
 }
 
 }  // namespace

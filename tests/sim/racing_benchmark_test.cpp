@@ -87,7 +87,7 @@ TEST(RacingBenchmark, AResetIsOneControlPeriodAtRest) {
 TEST(RacingBenchmark, SteeringTakesEffectTwoStepsLaterAndSpeedAtOnce) {
   RacingBenchmark world = ring_world();
   world.reset();
-  world.step({0.3, 8});
+  world.step(std::array{Command{0.3, 8}});
   // Four steps of 0.01 s, of which two still steer 0; the first accelerates by 0.951 * 8 m/s^2.
   EXPECT_NEAR(world.observation().state.steer, 2 * 0.032, 1e-12);
   EXPECT_NEAR(world.accelerations()[4], 0.951 * 8, 0.01);
@@ -98,7 +98,8 @@ TEST(RacingBenchmark, ALapEndsBetween995And999PerMille) {
   RacingBenchmark world = ring_world();
   for (int lap = 0; lap < 3; ++lap) {
     world.reset();
-    while (!world.collided() && !world.complete()) world.step(round_the_ring(world.observation(), 2));
+    while (!world.collided() && !world.complete())
+      world.step(std::array{round_the_ring(world.observation(), 2)});
     EXPECT_FALSE(world.collided());
     EXPECT_GT(world.observation().progress, 0.995);
     EXPECT_LE(world.observation().progress, 0.999);
@@ -112,7 +113,7 @@ TEST(RacingBenchmark, ALapEndsBetween995And999PerMille) {
 TEST(RacingBenchmark, ACornerInAWallEndsTheLap) {
   RacingBenchmark world = ring_world();
   world.reset();
-  while (!world.collided() && !world.complete()) world.step({0, 3});
+  while (!world.collided() && !world.complete()) world.step(std::array{Command{0, 3}});
   EXPECT_TRUE(world.collided());
   // The front corners are 0.29 m ahead of the centre of gravity, the wall 9 m from the middle of the ring.
   const CarState state = world.observation().state;
@@ -165,7 +166,8 @@ TEST_P(PublishedRacing, FollowTheGapDrivesTheSameLaps) {
   int collisions = 0;
   for (int lap = 0; lap < 10; ++lap) {
     world.reset();
-    while (!world.collided() && !world.complete()) world.step(driver.command(world.observation().scan));
+    while (!world.collided() && !world.complete())
+      world.step(std::array{driver.command(world.observation().scan)});
     collisions += world.collided();
     sum += world.collided() ? 0 : world.time();
   }

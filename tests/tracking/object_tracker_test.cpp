@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
 #include <set>
+#include <utility>
 
+#include "slalom/tracking/predictor.hpp"
 #include "support/allocations.hpp"
 #include "tracking/scene.hpp"
 
@@ -46,6 +49,44 @@ TEST(ObjectTracker, FindsACarAheadWithItsMotion) {
     ++scans;
   }
   EXPECT_LT(std::sqrt(squares / scans), 0.05);
+}
+
+TEST(ObjectTracker, ACopyOfTrackerAndPredictorGoesOnWithTheSameBits) {
+  using State = std::pair<ObjectTracker, Predictor>;
+  for (const bool has_map : {true, false}) {
+    Scene scene;
+    State state{has_map ? ObjectTracker(scene.map()) : ObjectTracker(), Predictor()};
+    std::optional<State> copy;
+    std::size_t compared = 0;
+    for (int k = 0; k < 80; ++k) {
+      const double time = k * Scene::period;
+      const maps::Pose sensor = Scene::on_ring(driven(0, 3, time));
+      const maps::LaserScanView scan =
+          scene.scan(sensor, {Scene::car(Scene::on_ring(driven(0.5, 3.6, time))),
+                              Scene::car(Scene::on_ring(driven(0.9, 1.5, time), 6.2))});
+      if (k == 40) copy = state;
+      const auto objects = state.first.update({scan, sensor, time}).objects;
+      const auto others = state.second.update(objects, time);
+      if (!copy) continue;
+      const auto same_objects = copy->first.update({scan, sensor, time}).objects;
+      const auto same_others = copy->second.update(same_objects, time);
+      ASSERT_EQ(objects.size(), same_objects.size());
+      ASSERT_EQ(others.size(), same_others.size());
+      for (std::size_t i = 0; i < objects.size(); ++i) {
+        EXPECT_EQ(objects[i].id, same_objects[i].id);
+        EXPECT_EQ(objects[i].pose.x, same_objects[i].pose.x);
+        EXPECT_EQ(objects[i].yaw_rate, same_objects[i].yaw_rate);
+        EXPECT_EQ(objects[i].covariance[4][4], same_objects[i].covariance[4][4]);
+      }
+      for (std::size_t i = 0; i < others.size(); ++i) {
+        EXPECT_EQ(others[i].weights, same_others[i].weights);
+        EXPECT_EQ(others[i].poses.back().pose.x, same_others[i].poses.back().pose.x);
+        EXPECT_NE(others[i].poses.data(), same_others[i].poses.data());
+        ++compared;
+      }
+    }
+    EXPECT_GT(compared, 40u) << has_map;
+  }
 }
 
 TEST(ObjectTracker, FindsAnOncomingCar) {

@@ -28,8 +28,7 @@ std::string record(bool wall_clock, int ticks = 12, bool ghost = false) {
   const auto where = environment();
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "64", "svg_mppi");
-  const evaluation::LapRunner runner(where, configuration, "svg_mppi", {.obstacles = 2});
-  evaluation::ClosedLoop loop(std::make_shared<const evaluation::LapRunner>(runner), 5);
+  evaluation::LapDrive loop({where, {configuration}, {.obstacles = 2}}, 5);
   std::ostringstream stream;
   Recorder recorder(stream, {.settings = {{"settings", "{}"}}, .wall_clock = wall_clock});
   recorder.add_text("{\"type\":\"hello\"}");
@@ -68,11 +67,8 @@ TEST(FrameEncoder, ShowsWhereTheOtherCarsAreExpectedIfTheyAreTracked) {
   vehicle::Configuration configuration;
   vehicle::set_option(configuration, "samples", "64", "svg_mppi");
   for (const auto mode : {evaluation::TrackingMode::off, evaluation::TrackingMode::exact}) {
-    evaluation::ClosedLoop loop(
-        std::make_shared<const evaluation::LapRunner>(
-            environment(), configuration, "svg_mppi",
-            evaluation::LapSettings{.opponents = 1, .opponent_gap = 3, .tracking = mode}),
-        5);
+    evaluation::LapDrive loop(
+        {environment(), {configuration}, {.opponents = 1, .opponent_gap = 3, .tracking = mode}}, 5);
     FrameEncoder encoder;
     int shown = 0;
     for (int i = 0; i < 60; ++i)

@@ -29,10 +29,10 @@ TEST_F(ViewSession, FirstMessagesHoldWhatThePageNeeds) {
 TEST_F(ViewSession, DrivesTheLapOfTheCommandLine) {
   // The session first: its client does not stay for as long as a lap may take.
   const double x5 = scalar(step_to(5), "x"), x60 = scalar(step_to(60), "x");
-  evaluation::LapRunner runner(session_options().load(session_options().scenario).environment, small(),
-                               "svg_mppi", {.obstacles = 2});
+  const evaluation::LapSetup setup{
+      session_options().load(session_options().scenario).environment, {small()}, {.obstacles = 2}};
   std::vector<double> x;
-  runner.run(4, [&](const evaluation::ControlStep& tick) { x.push_back(tick.seen.pose.x); });
+  run_lap(setup, 4, [&](const evaluation::ControlStep& tick) { x.push_back(tick.seen.pose.x); });
   EXPECT_EQ(x5, x[5]);
   EXPECT_EQ(x60, x[60]);
 }

@@ -5,7 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "slalom/evaluation/closed_loop.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "support/thread_starts.hpp"
 #include "view/protocol/frame_writer.hpp"
 #include "view/session_fixture.hpp"
@@ -140,14 +140,11 @@ TEST_F(ViewThreads, ACommandWithoutTheThreadsOfItsSolverChangesNothing) {
   const LoadedScenario loaded = session_options().load(names);
   vehicle::Configuration changed = loaded.configuration;
   vehicle::set_option(changed, "svg_mppi.samples", "64", "svg_mppi");
-  const auto runner = [&](const vehicle::Configuration& configuration) {
-    return std::make_shared<const evaluation::LapRunner>(loaded.environment, configuration, names.method,
-                                                         loaded.lap);
-  };
-  evaluation::ClosedLoop loop(runner(loaded.configuration), names.seed);
+  evaluation::LapDrive loop({loaded.environment, {loaded.configuration, names.method}, loaded.lap},
+                            names.seed);
   double x = 0;
   while (loop.steps() <= 30) {
-    if (loop.steps() == 10) loop.change_controller(runner(changed));
+    if (loop.steps() == 10) loop.change_driver({changed, names.method});
     loop.step([&](const evaluation::ControlStep& step) { x = step.seen.pose.x; });
   }
   EXPECT_EQ(scalar(shown, "x"), x) << "the drive is that without the commands";

@@ -36,18 +36,19 @@ class DriveJob {
       : arguments_(arguments),
         words_(arguments.json == "-" ? stderr : stdout),
         scenario_(load_scenario(arguments.scenario, arguments.method)),
-        runner_(scenario_.environment, scenario_.configuration, arguments.method, scenario_.lap),
+        setup_{scenario_.environment, {scenario_.configuration, arguments.method}, scenario_.lap},
         settings_(settings_json(arguments.scenario, scenario_, arguments.method)) {
+    setup_.validate();
     settings_["seed"] = arguments.seed;
     settings_["laps"] = arguments.laps;
-    settings_["timeout_s"] = runner_.timeout();
-    settings_["control_period_s"] = runner_.control_period();
+    settings_["timeout_s"] = setup_.timeout();
+    settings_["control_period_s"] = setup_.control_period();
     if (!arguments.record.empty())
       recording_ = make_recording(arguments.record, {.arguments = arguments.scenario,
                                                      .scenario = scenario_,
                                                      .method = arguments.method,
                                                      .seed = arguments.seed,
-                                                     .control_period = runner_.control_period(),
+                                                     .control_period = setup_.control_period(),
                                                      .settings = settings_,
                                                      .times = arguments.record_times});
   }
@@ -85,7 +86,7 @@ class DriveJob {
         driven_.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
         driven_.speeds.push_back(tick.seen.speed);
       };
-      result = runner_.run(seed, on_step, &interrupted);
+      result = run_lap(setup_, seed, on_step, &interrupted);
     }
     if (result.steps == 0) return;
     laps_.push_back(std::move(result));
@@ -189,7 +190,7 @@ class DriveJob {
               .closed = scenario_.environment->course.closed,
               .driven = driven_,
               .lap = lap,
-              .start = runner_.start(),
+              .start = setup_.start(),
               .title = arguments_.method + " on " + scenario_.environment->course.name,
               .facts = facts},
              arguments_.plot);
@@ -198,7 +199,7 @@ class DriveJob {
   const DriveArguments& arguments_;
   std::FILE* words_;
   Scenario scenario_;
-  evaluation::LapRunner runner_;
+  evaluation::LapSetup setup_;
   Json settings_;
   std::unique_ptr<Recording> recording_;
   DrivenLine driven_;

@@ -76,8 +76,8 @@ bool drive(std::vector<Task>& tasks, const std::vector<Driver>& drivers,
         settings.hardware = HardwareConditions{};
         settings.obstacles = task->layout < 0 ? 0 : arguments.obstacles;
         if (task->layout >= 0) settings.layout = static_cast<std::uint64_t>(1000 + task->layout);
-        task->result = LapRunner(environment, driver.configuration, driver.method, settings)
-                           .run(task->seed, {}, &interrupt.raised());
+        task->result = run_lap({environment, {driver.configuration, driver.method}, settings}, task->seed, {},
+                               &interrupt.raised());
         task->done = !task->result.cancelled;
       } catch (...) {
         const std::lock_guard lock(mutex);

@@ -53,21 +53,21 @@ class RaceJob {
       : arguments_(arguments),
         words_(arguments.json == "-" ? stderr : stdout),
         scenario_(load_scenario(arguments.scenario, arguments.method)),
-        runner_(std::make_shared<evaluation::LapRunner>(scenario_.environment, scenario_.configuration,
-                                                        arguments.method, scenario_.lap)),
+        setup_{scenario_.environment, {scenario_.configuration, arguments.method}, scenario_.lap},
         settings_(settings_json(arguments.scenario, scenario_, arguments.method)) {
+    setup_.validate();
     if (arguments.learn) check_learning();
     settings_["seed"] = arguments.seed;
     settings_["laps"] = arguments.laps;
     settings_["standing"] = arguments.standing;
     settings_["friction"] = arguments.friction;
     settings_["learn"] = arguments.learn;
-    settings_["timeout_s"] = runner_->timeout();
-    settings_["control_period_s"] = runner_->control_period();
-    race_.length = runner_->lap_length();
+    settings_["timeout_s"] = setup_.timeout();
+    settings_["control_period_s"] = setup_.control_period();
+    race_.length = setup_.length();
     race_.grip = acceleration_of(arguments.friction);
-    race_.profile = evaluation::profile_lap(*runner_, false, race_.grip);
-    race_.profile_from_rest = evaluation::profile_lap(*runner_, true, race_.grip);
+    race_.profile = evaluation::profile_lap(setup_, false, race_.grip);
+    race_.profile_from_rest = evaluation::profile_lap(setup_, true, race_.grip);
     if (!arguments.compare.empty()) other_ = read_run(arguments.compare, settings_, race_.length);
   }
 
@@ -106,7 +106,7 @@ class RaceJob {
     };
     if (arguments_.learn) return drive_and_learn(on_step, on_lap, interrupt.raised());
     evaluation::drive_race(
-        runner_, {.laps = arguments_.laps, .seed = arguments_.seed, .standing = arguments_.standing},
+        setup_, {.laps = arguments_.laps, .seed = arguments_.seed, .standing = arguments_.standing},
         {.on_step = on_step, .on_lap = on_lap}, &interrupt.raised());
   }
 
@@ -124,16 +124,15 @@ class RaceJob {
   template <class OnStep, class OnLap>
   void drive_and_learn(const OnStep& on_step, const OnLap& on_lap, const std::atomic<bool>& cancel) {
     const auto& own = scenario_.configuration.vehicle.own_of<vehicle::SingleTrackOptions>();
-    const maps::Pose& start = runner_->start();
+    const maps::Pose start = setup_.start();
     learned_.emplace(race_.length, scenario_.environment->track->lap_path()->project({start.x, start.y}).arc,
                      std::max(static_cast<int>(race_.length / part_length), 1), own.usable_grip, race_.grip);
     for (int lap = 0; lap < arguments_.laps && learned_->without_gain() < patience; ++lap) {
-      const auto runner = std::make_shared<evaluation::LapRunner>(
-          scenario_.environment, evaluation::with_belief(scenario_.configuration, learned_->next()),
-          arguments_.method, scenario_.lap);
+      evaluation::LapSetup setup = setup_;
+      setup.driver.configuration = evaluation::with_belief(scenario_.configuration, learned_->next());
       const auto seed = evaluation::lap_seed(arguments_.seed, lap, scenario_.lap.obstacles);
       const auto on_step_of_lap = [&](int, const evaluation::ControlStep& step) { on_step(lap, step); };
-      const auto driven = evaluation::drive_race(runner, {.laps = 1, .seed = seed, .standing = true},
+      const auto driven = evaluation::drive_race(setup, {.laps = 1, .seed = seed, .standing = true},
                                                  {.on_step = on_step_of_lap, .on_lap = on_lap}, &cancel);
       if (driven.empty()) return;
       learned_->learn(driven[0]);
@@ -228,7 +227,7 @@ class RaceJob {
   const RaceArguments& arguments_;
   std::FILE* words_;
   Scenario scenario_;
-  std::shared_ptr<const evaluation::LapRunner> runner_;
+  evaluation::LapSetup setup_;
   Json settings_;
   RaceResult race_;
   std::optional<OtherRun> other_;

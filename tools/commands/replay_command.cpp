@@ -58,7 +58,7 @@ void reject_inapplicable(const Subcommand& command, Kind kind) {
       throw IoError(option, 0, std::string("has no effect when ") + kind_name(kind) + " is replayed");
 }
 
-void plot(const ReplayCommandArguments& arguments, const Scenario& scenario, const LapRunner& runner,
+void plot(const ReplayCommandArguments& arguments, const Scenario& scenario, const LapSetup& setup,
           const DrivenLine& driven, const LapResult& lap, const std::string& label) {
   char facts[200];
   std::snprintf(
@@ -72,7 +72,7 @@ void plot(const ReplayCommandArguments& arguments, const Scenario& scenario, con
             .closed = scenario.environment->course.closed,
             .driven = driven,
             .lap = lap,
-            .start = runner.start(),
+            .start = setup.start(),
             .title = label,
             .facts = facts},
            arguments.plot);
@@ -90,7 +90,7 @@ int replay_lap(const ReplayCommandArguments& arguments) {
         std::to_string(arguments.lap) + " must be in [0, " + std::to_string(experiment.laps - 1) + "]");
   Scenario scenario;
   const Evaluation evaluation = rebuild_evaluation(stored, arguments.course, scenario);
-  LapRunner runner = make_runner(evaluation, index);
+  const LapSetup setup = lap_setup(evaluation, index);
   const std::uint64_t seed = lap_seed(evaluation.seed0, arguments.lap, experiment.obstacles);
   std::unique_ptr<Recording> recording;
   if (!arguments.record.empty()) {
@@ -100,12 +100,12 @@ int replay_lap(const ReplayCommandArguments& arguments) {
                                                   .scenario = scenario,
                                                   .method = experiment.method,
                                                   .seed = seed,
-                                                  .control_period = runner.control_period(),
+                                                  .control_period = setup.control_period(),
                                                   .settings = settings});
     recording->begin_lap(arguments.lap, seed);
   }
   DrivenLine driven;
-  const LapResult lap = runner.run(seed, [&](const ControlStep& tick) {
+  const LapResult lap = run_lap(setup, seed, [&](const ControlStep& tick) {
     if (recording) recording->add(tick);
     driven.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
     driven.speeds.push_back(tick.seen.speed);
@@ -119,7 +119,7 @@ int replay_lap(const ReplayCommandArguments& arguments) {
     std::printf("recording: %s\n", arguments.record.c_str());
   }
   if (!arguments.plot.empty()) {
-    plot(arguments, scenario, runner, driven, lap,
+    plot(arguments, scenario, setup, driven, lap,
          experiment.label() + " on " + evaluation.environment->course.name);
     std::printf("picture: %s\n", arguments.plot.c_str());
   }

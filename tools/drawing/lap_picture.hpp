@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "slalom/maps/occupancy_grid.hpp"
 
 namespace slalom::tools {

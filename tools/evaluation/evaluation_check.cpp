@@ -23,7 +23,7 @@ int check_evaluation(const std::filesystem::path& folder, int again) {
   std::size_t same = 0;
   for (std::size_t i = 0; i < repeats; ++i) {
     const evaluation::LapRow& kept = stored.rows[repeats == 1 ? 0 : i * (laps - 1) / (repeats - 1)];
-    const auto result = make_runner(evaluation, kept.experiment).run(kept.seed);
+    const auto result = run_lap(lap_setup(evaluation, kept.experiment), kept.seed);
     const bool equal = same_lap(make_row(kept.experiment, kept.lap, result, 0), kept, stored.experiments);
     same += equal;
     if (!equal)

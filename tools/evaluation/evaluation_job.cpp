@@ -31,7 +31,7 @@ Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
   for (const Experiment& e : experiments) {
     options.update(options_json(scenario.configuration, e.method));
     if (e.has_planning_opponents())
-      options.update(options_json(scenario.configuration, evaluation::OpponentPlanner{}.method));
+      options.update(options_json(scenario.configuration, evaluation::Driver{}.method));
     list.push_back({{"method", e.method},
                     {"scenario", e.scenario},
                     {"set", e.set_text()},
@@ -243,7 +243,8 @@ bool drive_evaluation(const Evaluation& evaluation, const EvaluationArguments& a
     LapSettings world;
     for (const auto& [key, value] : e.set) apply_setting(key, value, e.method, trial, world);
   }
-  for (int i = 0; i < static_cast<int>(evaluation.experiments.size()); ++i) make_runner(evaluation, i);
+  for (int i = 0; i < static_cast<int>(evaluation.experiments.size()); ++i)
+    lap_setup(evaluation, i).validate();
   if (rank() > 0) {
     drive_for_first_rank(evaluation, jobs, cancel);
     return false;

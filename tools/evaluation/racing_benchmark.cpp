@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "slalom/core/error.hpp"
+#include "slalom/evaluation/drive.hpp"
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/sim/follow_the_gap.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
@@ -70,6 +71,17 @@ class PlannerDriver : public RacingDriver {
   std::vector<float> ranges_;
   double time_ = 0;
   std::uint64_t laps_ = 0;
+};
+
+/// A driver in the loop; a step of the world is a control period.
+struct DriverOfWorld {
+  RacingDriver& driver;
+  Command decided{};
+  const Command& decide(const sim::RacingBenchmark& world) {
+    return decided = driver.command(world.observation());
+  }
+  Command command(const sim::RacingBenchmark&) const { return decided; }
+  void moved(const sim::RacingBenchmark&) const {}
 };
 
 maps::Point place(const maps::ReferencePoint& point) {
@@ -175,11 +187,15 @@ std::unique_ptr<RacingDriver> make_planner_driver(const RacingMap& map,
 }
 
 std::vector<BenchmarkLap> drive_benchmark_laps(const RacingMap& map, RacingDriver& driver, int laps) {
-  sim::RacingBenchmark world(std::make_shared<const sim::Track>(map.grid), map.centre_line);
+  evaluation::Drive<sim::RacingBenchmark, DriverOfWorld> drive{
+      {std::make_shared<const sim::Track>(map.grid), map.centre_line}, {{driver}}};
+  sim::RacingBenchmark& world = drive.world;
+  evaluation::Observer observer{[](std::size_t, const Command&) {},
+                                [](const sim::RacingBenchmark&) { return true; }};
   std::vector<BenchmarkLap> driven;
   for (int k = 0; k < laps; ++k) {
     world.reset();
-    while (!world.collided() && !world.complete()) world.step(driver.command(world.observation()));
+    while (!world.collided() && !world.complete()) drive.step(observer);
     BenchmarkLap lap{world.time(), !world.collided(), world.observation().progress, 0, 0};
     for (const double acceleration : world.accelerations()) {
       ++lap.steps;

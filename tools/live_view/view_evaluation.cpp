@@ -59,17 +59,17 @@ void open_evaluation(const std::string& folder, view::SessionOptions& options) {
       throw std::invalid_argument("experiment: must be one of this evaluation");
     const evaluation::Experiment& e = evaluation->experiments[static_cast<std::size_t>(experiment)];
     if (lap < 0 || lap >= e.laps) throw std::invalid_argument("lap: must be a lap of the experiment");
-    const evaluation::LapRunner runner = make_runner(*evaluation, experiment);
+    const evaluation::LapSetup setup = lap_setup(*evaluation, experiment);
     view::LoadedLap loaded;
     loaded.names = {.course = arguments.course,
                     .method = e.method,
                     .config = arguments.config,
                     .seed = evaluation::lap_seed(evaluation->seed0, lap, e.obstacles),
                     .obstacles = e.obstacles,
-                    .opponents = runner.settings().opponents};
+                    .opponents = setup.settings.opponents};
     loaded.scenario = {.environment = evaluation->environment,
-                       .configuration = runner.configuration(),
-                       .lap = runner.settings()};
+                       .configuration = setup.driver.configuration,
+                       .lap = setup.settings};
     loaded.scenario.lap.additional_costs = false;  // the page does not show them
     return loaded;
   };

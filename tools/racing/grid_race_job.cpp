@@ -22,7 +22,6 @@ namespace slalom::tools {
 namespace {
 
 using evaluation::GridRaceResult;
-using evaluation::RaceEntry;
 
 /// What drives a car: a configuration by name or file, and a method.
 struct RaceDriver {
@@ -108,24 +107,23 @@ class GridRaceJob {
     settings_["laps"] = arguments.laps;
     settings_["races"] = arguments.races;
     settings_["cars"] = Json::array();
-    std::vector<RaceEntry> entries;
+    race_ = {scenario_.environment, {}, scenario_.lap, {.laps = arguments.laps}};
     for (std::size_t i = 0; i < drivers_.size(); ++i) {
       const RaceDriver& driver = drivers_[i];
-      entries.push_back({races_.names[i], scenario_.configuration, driver.method});
+      race_.drivers.push_back({scenario_.configuration, driver.method});
       Json car{{"name", races_.names[i]}, {"config", driver.config}, {"method", driver.method}};
       if (!driver.own) {
         ScenarioArguments other;
         other.config = driver.config;
-        entries.back().configuration = load_configuration(other, driver.method);
-        car["options"] = options_json(entries.back().configuration, driver.method);
+        race_.drivers.back().configuration = load_configuration(other, driver.method);
+        car["options"] = options_json(race_.drivers.back().configuration, driver.method);
       }
       settings_["cars"].push_back(std::move(car));
     }
-    race_.emplace(scenario_.environment, entries, scenario_.lap,
-                  evaluation::GridRaceOptions{.laps = arguments.laps});
-    settings_["lap_length_m"] = race_->lap_length();
-    settings_["timeout_s"] = race_->timeout();
-    settings_["control_period_s"] = race_->drivers()[0].control_period();
+    race_.validate();
+    settings_["lap_length_m"] = race_.lap_length();
+    settings_["timeout_s"] = race_.timeout();
+    settings_["control_period_s"] = race_.control_period();
   }
 
   /// The exit status.
@@ -134,7 +132,7 @@ class GridRaceJob {
     std::fprintf(words_, "%d race%s of %zu cars on %s, %d lap%s of %.1f m, seed %llu\n", arguments_.races,
                  arguments_.races == 1 ? "" : "s", drivers_.size(),
                  scenario_.environment->course.name.c_str(), arguments_.laps, arguments_.laps == 1 ? "" : "s",
-                 race_->lap_length(), static_cast<unsigned long long>(arguments_.seed));
+                 race_.lap_length(), static_cast<unsigned long long>(arguments_.seed));
     drive();
     if (races_.results.empty()) return 1;
     if (arguments_.races == 1) print_standings(words_, races_.names, races_.results[0]);
@@ -161,8 +159,8 @@ class GridRaceJob {
         on_step = [&](const evaluation::GridRaceStep& step) {
           progress.show(number + 1, arguments_.races, step);
         };
-      GridRaceResult result = race_->run(arguments_.seed + static_cast<std::uint64_t>(number), number,
-                                         on_step, &interrupt.raised());
+      GridRaceResult result = race_.run(arguments_.seed + static_cast<std::uint64_t>(number), number, on_step,
+                                        &interrupt.raised());
       const std::lock_guard lock(mutex);
       progress.clear();
       ended[static_cast<std::size_t>(number)] = std::move(result);
@@ -208,7 +206,7 @@ class GridRaceJob {
   std::vector<RaceDriver> drivers_;
   Scenario scenario_;
   Json settings_;
-  std::optional<evaluation::GridRace> race_;
+  evaluation::GridRace race_;
   GridRaces races_;
 };
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "slalom/evaluation/json.hpp"
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "tools/scenario/scenario.hpp"
 
 namespace slalom::tools {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "slalom/evaluation/json.hpp"
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 
 namespace slalom::tools {
 

@@ -43,12 +43,12 @@ struct Line {
 };
 
 Line drive_again(const Evaluation& evaluation, int experiment, int lap) {
-  LapRunner runner = make_runner(evaluation, experiment);
   Line line;
   const int obstacles = evaluation.experiments[static_cast<std::size_t>(experiment)].obstacles;
-  line.lap = runner.run(lap_seed(evaluation.seed0, lap, obstacles), [&](const ControlStep& tick) {
-    line.driven.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
-  });
+  line.lap = run_lap(lap_setup(evaluation, experiment), lap_seed(evaluation.seed0, lap, obstacles),
+                     [&](const ControlStep& tick) {
+                       line.driven.points.push_back({tick.seen.pose.x, tick.seen.pose.y});
+                     });
   return line;
 }
 

@@ -166,8 +166,8 @@ Scenario load_scenario(const ScenarioArguments& arguments, const std::string& me
   scenario.lap.saturating_tyres = arguments.saturating_tyres;
   apply_settings(arguments.set, method, scenario.configuration, scenario.lap);
   if (scenario.lap.planning_opponents > 0)
-    scenario.lap.opponent_planner = std::make_shared<const evaluation::OpponentPlanner>(
-        evaluation::OpponentPlanner{file_configuration(arguments.config)});
+    scenario.lap.opponent_planner =
+        std::make_shared<const evaluation::Driver>(evaluation::Driver{file_configuration(arguments.config)});
   const maps::Point& origin = scenario.environment->course.origin;
   if (!arguments.start.empty()) {
     const maps::Pose start = parse_start(arguments.start);

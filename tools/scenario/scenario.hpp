@@ -9,7 +9,7 @@
 
 #include "slalom/evaluation/environment.hpp"
 #include "slalom/evaluation/json.hpp"
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "tools/command_line/command.hpp"
 

@@ -13,7 +13,7 @@
 #include <random>
 #include <thread>
 
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "tools/soak/child_process.hpp"
 #include "tools/soak/sensor_faults.hpp"
 
@@ -56,7 +56,7 @@ class Soak {
   Soak(const SoakArguments& arguments, const fs::path& folder, const std::atomic<bool>& interrupted)
       : arguments_(arguments),
         scenario_(load_scenario(arguments.scenario, arguments.method)),
-        runner_(scenario_.environment, scenario_.configuration, arguments.method, scenario_.lap),
+        setup_{scenario_.environment, {scenario_.configuration, arguments.method}, scenario_.lap},
         folder_(folder),
         interrupted_(interrupted),
         random_(arguments.seed) {}
@@ -95,12 +95,12 @@ class Soak {
     const auto wait = [&](const evaluation::ControlStep&) {
       if (uniform(0, 1) < 0.01) pause(uniform(0, 0.01));
     };
-    const evaluation::LapResult driven = runner_.run(seed, wait, &interrupted_);
+    const evaluation::LapResult driven = run_lap(setup_, seed, wait, &interrupted_);
     if (driven.cancelled) return;
     ++result_.laps.runs;
     for (const float ms : driven.tick_ms) {
       ++result_.ticks;
-      result_.late_ticks += 1e-3 * static_cast<double>(ms) > runner_.control_period();
+      result_.late_ticks += 1e-3 * static_cast<double>(ms) > setup_.control_period();
       result_.longest_tick = std::max(result_.longest_tick, 1e-3 * static_cast<double>(ms));
     }
     const auto [known, first] = figures_.try_emplace(seed, figures(driven));
@@ -200,7 +200,7 @@ class Soak {
 
   SoakArguments arguments_;
   Scenario scenario_;
-  evaluation::LapRunner runner_;
+  evaluation::LapSetup setup_;
   fs::path folder_;
   const std::atomic<bool>& interrupted_;
   std::mt19937_64 random_;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "slalom/evaluation/grid_race.hpp"
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 
 namespace slalom::tools {
 

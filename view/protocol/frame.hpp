@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "slalom/evaluation/closed_loop.hpp"
+#include "slalom/evaluation/lap.hpp"
 
 /// The message of a control step: everything that the page draws.
 namespace slalom::view {

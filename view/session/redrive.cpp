@@ -27,14 +27,13 @@ bool RedriveBudget::take() {
   return true;
 }
 
-ContactSearch::ContactSearch(std::shared_ptr<const evaluation::LapRunner> runner, std::uint64_t seed,
-                             int contact, double lead)
-    : contact_(contact), lead_(lead), lap_(std::move(runner), seed) {}
+ContactSearch::ContactSearch(const evaluation::LapSetup& setup, std::uint64_t seed, int contact, double lead)
+    : contact_(contact), lead_(lead), lap_(setup, seed) {}
 
 bool ContactSearch::advance(RedriveBudget& budget) {
-  const evaluation::LapRunner& runner = lap_.loop().runner();
-  const double period = runner.control_period();
-  const int most = static_cast<int>(runner.timeout() / period) + 1;
+  const evaluation::LapSetup& setup = lap_.loop().setup();
+  const double period = setup.control_period();
+  const int most = static_cast<int>(setup.timeout() / period) + 1;
   const auto found = [&] { return std::ssize(lap_.loop().first_collisions()) > contact_; };
   while (!found()) {
     if (lap_.ticks() >= most)

@@ -33,8 +33,7 @@ class ContactSearch {
  public:
   /// `contact`: the index of the collision among the first collisions with each body. `lead`: s before the
   /// collision at which `start` ends.
-  ContactSearch(std::shared_ptr<const evaluation::LapRunner> runner, std::uint64_t seed, int contact,
-                double lead);
+  ContactSearch(const evaluation::LapSetup& setup, std::uint64_t seed, int contact, double lead);
 
   /// Drives as far as the budget allows. True once `start` and `hit` are there. Throws std::runtime_error if
   /// the lap ends without the collision.

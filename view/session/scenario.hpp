@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "view/protocol/messages.hpp"
 

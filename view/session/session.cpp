@@ -34,9 +34,7 @@ void Session::load(const ScenarioNames& names) {
 
 void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
   // All that may throw comes before anything is replaced.
-  const auto runner = std::make_shared<const evaluation::LapRunner>(loaded.environment, loaded.configuration,
-                                                                    names.method, loaded.lap);
-  Simulation simulation(runner, names.seed);
+  Simulation simulation({loaded.environment, {loaded.configuration, names.method}, loaded.lap}, names.seed);
   const auto scene = std::make_shared<const std::string>(encode_scene(*loaded.environment));
   scenario_ = std::move(loaded);
   configuration_ = scenario_.configuration;
@@ -51,12 +49,13 @@ void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
 /// Restarts the drive with the same seed, and the ghost with it.
 void Session::restart() {
   // All that may throw comes before anything is replaced.
-  Simulation simulation(make_runner(configuration_, names_.method), names_.seed);
+  Simulation simulation(make_setup(configuration_, names_.method), names_.seed);
   std::optional<Simulation> ghost;
   if (ghost_) {
-    const auto& runner = ghost_->loop().runner();
-    if (runner.control_period() == simulation.loop().runner().control_period())
-      ghost.emplace(make_runner(runner.configuration(), runner.method()), names_.seed);
+    const evaluation::Driver& driver = ghost_->loop().setup().driver;
+    const auto setup = make_setup(driver.configuration, driver.method);
+    if (setup.control_period() == simulation.loop().setup().control_period())
+      ghost.emplace(setup, names_.seed);
   }
   begin_drive(std::move(simulation), std::move(ghost));
 }
@@ -83,10 +82,9 @@ void Session::begin_drive(Simulation simulation, std::optional<Simulation> ghost
   state_changed_ = true;
 }
 
-std::shared_ptr<const evaluation::LapRunner> Session::make_runner(const vehicle::Configuration& configuration,
-                                                                  const std::string& method) const {
-  return std::make_shared<const evaluation::LapRunner>(scenario_.environment, configuration, method,
-                                                       scenario_.lap);
+evaluation::LapSetup Session::make_setup(const vehicle::Configuration& configuration,
+                                         const std::string& method) const {
+  return {scenario_.environment, {configuration, method}, scenario_.lap};
 }
 
 void Session::run(const std::atomic<bool>& stop) {
@@ -121,7 +119,7 @@ Session::Clock::duration Session::until_due() const {
 
 void Session::tick() {
   const auto now = Clock::now();
-  const auto period = std::chrono::duration<double>(simulation_->loop().runner().control_period());
+  const auto period = std::chrono::duration<double>(simulation_->loop().setup().control_period());
   if (rate_ > 0) {
     const auto step = std::chrono::duration_cast<Clock::duration>(period / rate_);
     due_ = std::max(due_ + step, now - max_late_ticks * step);
@@ -134,7 +132,7 @@ void Session::tick() {
           std::vector<maps::Pose> plan;
           for (const auto& state : step.output.predicted) plan.push_back(state.pose);
           ghost = encode_ghost(step.world, plan);
-          made.ghost = encoder_.encode(step, facts_of(ghost_->loop().runner()));
+          made.ghost = encoder_.encode(step, facts_of(ghost_->loop().setup()));
           ghost_bodies = encode_bodies(step.world);
         },
         real_time_);
@@ -142,7 +140,7 @@ void Session::tick() {
   simulation_->tick(
       [&](const evaluation::ControlStep& step) {
         made.tick = step.step;
-        made.without_bodies = encoder_.encode(step, facts_of(simulation_->loop().runner())) + ghost;
+        made.without_bodies = encoder_.encode(step, facts_of(simulation_->loop().setup())) + ghost;
         made.frame = frame_of(made, encode_bodies(step.world), ghost_bodies);
       },
       real_time_);
@@ -158,11 +156,11 @@ void Session::tick() {
   if (Clock::now() - last_frame_ >= min_frame_gap || paused_) publish_newest();
 }
 
-StepFacts Session::facts_of(const evaluation::LapRunner& runner) const {
+StepFacts Session::facts_of(const evaluation::LapSetup& setup) const {
   const auto& methods = options_.choices.methods;
-  const auto method = std::find(methods.begin(), methods.end(), runner.method());
-  return {.deadline = runner.control_period(),
-          .prediction_step = runner.configuration().vehicle.time_step,
+  const auto method = std::find(methods.begin(), methods.end(), setup.driver.method);
+  return {.deadline = setup.control_period(),
+          .prediction_step = setup.driver.configuration.vehicle.time_step,
           .method = static_cast<int>(method - methods.begin())};
 }
 
@@ -206,8 +204,7 @@ void Session::note_laps_of(const Simulation& simulation, const std::string& meth
 void Session::keep(Step step) {
   history_bytes_ += bytes_of(step);
   history_.push_back(std::move(step));
-  const auto most =
-      static_cast<std::size_t>(options_.history / simulation_->loop().runner().control_period());
+  const auto most = static_cast<std::size_t>(options_.history / simulation_->loop().setup().control_period());
   while (history_.size() > 1 && (history_.size() > most || history_bytes_ > max_history_bytes)) {
     history_bytes_ -= bytes_of(history_.front());
     history_.pop_front();
@@ -230,11 +227,11 @@ void Session::go_to_viewed() {
   simulation_->go_back(std::move(prepared.present.value()));
   if (ghost_) ghost_->go_back(std::move(prepared.ghost.value()));
   for (Redrive& each : redrives_) each.go_back(tick + 1);
-  const auto& runner = simulation_->loop().runner();
-  if (names_.method != runner.method() ||
-      vehicle::to_yaml(configuration_) != vehicle::to_yaml(runner.configuration())) {
-    names_.method = runner.method();
-    configuration_ = runner.configuration();
+  const evaluation::Driver& driver = simulation_->loop().setup().driver;
+  if (names_.method != driver.method ||
+      vehicle::to_yaml(configuration_) != vehicle::to_yaml(driver.configuration)) {
+    names_.method = driver.method;
+    configuration_ = driver.configuration;
     tell_options();
   }
   forget_after(tick);

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "slalom/evaluation/json.hpp"
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/protocol/messages.hpp"
@@ -83,10 +83,10 @@ class Session {
   void install(LoadedScenario loaded, const ScenarioNames& names);
   void restart();
   void begin_drive(Simulation simulation, std::optional<Simulation> ghost);
-  std::shared_ptr<const evaluation::LapRunner> make_runner(const vehicle::Configuration& configuration,
-                                                           const std::string& method) const;
+  evaluation::LapSetup make_setup(const vehicle::Configuration& configuration,
+                                  const std::string& method) const;
   void tick();
-  StepFacts facts_of(const evaluation::LapRunner& runner) const;
+  StepFacts facts_of(const evaluation::LapSetup& setup) const;
   static std::shared_ptr<const std::string> frame_of(const Step& step, const std::string& bodies,
                                                      const std::string& ghost_bodies);
   void slow_down();

@@ -73,7 +73,7 @@ void Session::pause(const Json& command) {
   publish_newest();
   if (!command.contains("tick") || history_.empty()) return;
   const int tick = field::integer(command, "tick");
-  if ((history_.back().tick - tick) * simulation_->loop().runner().control_period() > 0.25) show(tick);
+  if ((history_.back().tick - tick) * simulation_->loop().setup().control_period() > 0.25) show(tick);
 }
 
 bool Session::handle_transport(const std::string& what, const Json& command) {
@@ -154,14 +154,14 @@ void Session::edit(const Edit& edit) {
 /// Another configuration or method drives from now on.
 void Session::change(const vehicle::Configuration& configuration, const std::string& method, bool remember) {
   check_work(configuration, method);
-  const auto runner = make_runner(configuration, method);
+  const evaluation::LapSetup setup = make_setup(configuration, method);
   // All that may throw comes before anything is replaced. With another clock the drive begins anew, without
   // a ghost, whose clock is the present one.
   std::optional<Simulation> anew;
-  if (runner->control_period() != simulation_->loop().runner().control_period())
-    anew.emplace(runner, names_.seed);
+  if (setup.control_period() != simulation_->loop().setup().control_period())
+    anew.emplace(setup, names_.seed);
   else
-    simulation_->apply(ChangeDriver{runner});
+    simulation_->apply(ChangeDriver{setup.driver});
   if (remember) undo_.remember(configuration_);
   configuration_ = configuration;
   names_.method = method;
@@ -205,10 +205,9 @@ void Session::start_ghost(const std::string& method, const vehicle::Configuratio
 
 Simulation Session::make_ghost(const std::string& method, const vehicle::Configuration& configuration) {
   check_work(configuration, method);
-  const auto runner = make_runner(configuration, method);
   Simulation ghost =
       simulation_->ticks() == 0 ? simulation_->from_start() : std::move(prepared_.value().copy.value());
-  if (method != names_.method || ghost.ticks() == 0) ghost.apply(ChangeDriver{runner});
+  if (method != names_.method || ghost.ticks() == 0) ghost.apply(ChangeDriver{{configuration, method}});
   return ghost;
 }
 
@@ -225,8 +224,9 @@ void Session::fork(const Json& command) {
   vehicle::Configuration changed = configuration_;
   const bool has_settings = apply_settings(changed, command, method);
   check_work(changed, method);
-  const auto runner = make_runner(changed, method);  // throws before anything changes
-  if (runner->control_period() != simulation_->loop().runner().control_period())
+  const evaluation::LapSetup setup = make_setup(changed, method);
+  setup.validate();  // throws before anything changes
+  if (setup.control_period() != simulation_->loop().setup().control_period())
     throw std::invalid_argument("fork: the control period cannot change during a drive");
   go_to_viewed();
   Simulation ghost = make_ghost(before, configuration_);

@@ -26,9 +26,10 @@ LoadedLap Session::load_lap(const Json& command) {
 void Session::search_contact(Redrive& redrive, const Json& command) {
   const int contact = field::integer(command, "contact");
   const LoadedLap& loaded = redrive.lap.emplace(load_lap(command));
-  const auto runner = std::make_shared<const evaluation::LapRunner>(
-      loaded.scenario.environment, loaded.scenario.configuration, loaded.names.method, loaded.scenario.lap);
-  redrive.search.emplace(runner, loaded.names.seed, contact, before_contact);
+  const LoadedScenario& scenario = loaded.scenario;
+  redrive.search.emplace(
+      evaluation::LapSetup{scenario.environment, {scenario.configuration, loaded.names.method}, scenario.lap},
+      loaded.names.seed, contact, before_contact);
 }
 
 /// A lap of the evaluation: from its start, or the seconds before one of its collisions.
@@ -44,7 +45,7 @@ void Session::handle_lap(const Json& command) {
     ContactSearch& search = prepared_.value().search.value();
     hit = search.hit();
     simulation_->go_back(std::move(search.start()));
-    stop_at_ = hit + static_cast<int>(after_contact / simulation_->loop().runner().control_period());
+    stop_at_ = hit + static_cast<int>(after_contact / simulation_->loop().setup().control_period());
     rate_ = slow;
   }
   contact_ = {experiment, lap, contact, hit};

@@ -83,7 +83,7 @@ std::string Session::hello() const {
   return hello_message(*scenario_.environment, options_.choices,
                        {.session = number_,
                         .history = options_.history,
-                        .control_period = simulation_->loop().runner().control_period()});
+                        .control_period = simulation_->loop().setup().control_period()});
 }
 
 std::string Session::state() const {
@@ -92,7 +92,7 @@ std::string Session::state() const {
                         .environment = *scenario_.environment,
                         .laps = laps_,
                         .time = simulation_->loop().world().time(),
-                        .control_period = simulation_->loop().runner().control_period(),
+                        .control_period = simulation_->loop().setup().control_period(),
                         .tick = viewed_ >= 0 ? viewed_ : newest,
                         .newest = newest,
                         .oldest = history_.empty() ? -1 : history_.front().tick,

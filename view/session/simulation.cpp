@@ -30,8 +30,8 @@ std::vector<AddBody> bodies_of(const sim::World& world) {
   return bodies;
 }
 
-Simulation::Simulation(std::shared_ptr<const evaluation::LapRunner> runner, std::uint64_t seed)
-    : first_runner_(std::move(runner)), seed_(seed), loop_(first_runner_, seed) {}
+Simulation::Simulation(const evaluation::LapSetup& setup, std::uint64_t seed)
+    : first_setup_(setup), seed_(seed), loop_(setup, seed) {}
 
 void Simulation::tick(const evaluation::ControlStepCallback& on_step, bool real_time) {
   const double delay = real_time ? last_update_ : 0;
@@ -75,7 +75,7 @@ void Simulation::go_back(Simulation&& earlier) {
 void Simulation::perform(const Edit& edit) {
   sim::World& world = loop_.world();
   struct Perform {
-    evaluation::ClosedLoop& loop;
+    evaluation::LapDrive& loop;
     sim::World& world;
     void operator()(const AddBody& e) const { add(world, e); }
     void operator()(const MoveBody& e) const { world.move_body(e.body, e.pose); }
@@ -93,7 +93,7 @@ void Simulation::perform(const Edit& edit) {
       state.yaw = e.pose.yaw;
       world.set_state(0, state);
     }
-    void operator()(const ChangeDriver& e) const { loop.change_controller(e.runner); }
+    void operator()(const ChangeDriver& e) const { loop.change_driver(e.driver); }
   };
   std::visit(Perform{loop_, world}, edit);
 }

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <variant>
 #include <vector>
 
-#include "slalom/evaluation/closed_loop.hpp"
+#include "slalom/evaluation/lap.hpp"
 
 /// A loop that remembers what was done to it, so that it can go back in time exactly.
 namespace slalom::view {
@@ -33,7 +32,7 @@ struct MoveCar {
   maps::Pose pose;
 };
 struct ChangeDriver {
-  std::shared_ptr<const evaluation::LapRunner> runner;
+  evaluation::Driver driver;
 };
 using Edit = std::variant<AddBody, MoveBody, RemoveBody, SetBodies, MoveCar, ChangeDriver>;
 
@@ -45,7 +44,7 @@ std::vector<AddBody> bodies_of(const sim::World& world);
 /// grows with the ticks, so the caller drives them a few at a time (see Redrive).
 class Simulation {
  public:
-  Simulation(std::shared_ptr<const evaluation::LapRunner> runner, std::uint64_t seed);
+  Simulation(const evaluation::LapSetup& setup, std::uint64_t seed);
   Simulation(Simulation&&) = default;
   Simulation& operator=(Simulation&&) = default;
 
@@ -55,7 +54,7 @@ class Simulation {
   void apply(const Edit& edit);
 
   /// The same loop at tick 0. With `follow` it becomes any earlier state of this one.
-  Simulation from_start() const { return {first_runner_, seed_}; }
+  Simulation from_start() const { return {first_setup_, seed_}; }
   /// Drives the next tick as `source` drove it, with the edits that `source` got before it. This simulation
   /// must come from `source.from_start()` and have fewer ticks than `source`.
   void follow(const Simulation& source);
@@ -65,9 +64,7 @@ class Simulation {
 
   int ticks() const noexcept { return loop_.steps(); }
   bool edited() const noexcept { return !log_.empty(); }
-  const evaluation::ClosedLoop& loop() const noexcept { return loop_; }
-  /// Who drove first.
-  const std::shared_ptr<const evaluation::LapRunner>& first_runner() const noexcept { return first_runner_; }
+  const evaluation::LapDrive& loop() const noexcept { return loop_; }
 
  private:
   struct Logged {
@@ -76,9 +73,9 @@ class Simulation {
   };
   void perform(const Edit& edit);
 
-  std::shared_ptr<const evaluation::LapRunner> first_runner_;
+  evaluation::LapSetup first_setup_;
   std::uint64_t seed_;
-  evaluation::ClosedLoop loop_;
+  evaluation::LapDrive loop_;
   std::vector<Logged> log_;
   std::vector<float> delays_;  ///< s, by tick; as long as the last one that is not 0 asks for
   double last_update_ = 0;     ///< s of wall clock

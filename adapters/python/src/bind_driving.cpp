@@ -1,5 +1,5 @@
 #include "driving.hpp"
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/course/course.hpp"
 
@@ -120,11 +120,11 @@ void bind_planner(py::module_& module) {
          int obstacles, py::dict options, const std::string& config) {
         evaluation::LapSettings settings = take_world_options(options);
         settings.obstacles = obstacles;
-        evaluation::LapRunner runner(environment, configure(method, config, options), method, settings);
+        const evaluation::LapSetup setup{environment, {configure(method, config, options), method}, settings};
         evaluation::LapResult lap;
         {
           const py::gil_scoped_release unlock;
-          lap = runner.run(seed);
+          lap = evaluation::run_lap(setup, seed);
         }
         return lap_dict(lap);
       },

@@ -30,10 +30,10 @@ struct Evaluation {
   bool any_build = false;  ///< mix laps of different builds
 };
 
-/// Drives the laps of one experiment: run(lap_seed(evaluation.seed0, lap, obstacles)) is its lap `lap`, bit
-/// for bit. Throws std::invalid_argument if an option or setting is invalid, std::out_of_range if there is no
-/// such experiment.
-LapRunner make_runner(const Evaluation& evaluation, int experiment);
+/// The laps of one experiment: run_lap with the seed lap_seed(evaluation.seed0, lap, obstacles) is its lap
+/// `lap`, bit for bit. Throws std::invalid_argument if an option cannot be set, std::out_of_range if there is
+/// no such experiment.
+LapSetup lap_setup(const Evaluation& evaluation, int experiment);
 
 /// The progress of an evaluation.
 struct EvaluationProgress {

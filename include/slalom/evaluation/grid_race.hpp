@@ -10,20 +10,13 @@
 #include <string_view>
 #include <vector>
 
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "slalom/evaluation/statistics.hpp"
 
 namespace slalom::evaluation {
 
 /// Most cars of a race.
 inline constexpr int most_race_cars = 4;
-
-/// A car of a race, by what drives it.
-struct RaceEntry {
-  std::string name;                      ///< in results
-  vehicle::Configuration configuration;  ///< options of planner, vehicle model and methods
-  std::string method = "svg_mppi";       ///< name of the method
-};
 
 /// The rules of a race that can be chosen.
 struct GridRaceOptions {
@@ -116,34 +109,32 @@ using GridRaceCallback = std::function<void(const GridRaceStep&)>;
 /// and start together. A lap ends at the first place's arc length, for all cars. A car that has driven its
 /// laps, and one that hits a wall, leaves the track at once. After a contact both cars go on; the one that
 /// was driven into keeps its motion. The race ends when no car is left on the track, or after the longest
-/// timeout of a lap of its cars (LapRunner::timeout) times the laps. Standings: cars that finished, by time,
+/// timeout of a lap of its cars (LapSetup::timeout) times the laps. Standings: cars that finished, by time,
 /// then the others, by how far they came.
-class GridRace {
- public:
-  /// With two to `most_race_cars` entries. Throws std::invalid_argument as LapRunner does, and on a course
-  /// that is not closed, another protocol than Protocol::true_physics, control periods that differ, settings
-  /// with obstacles, opponents or rounds, and options out of range; std::runtime_error if the course has no
-  /// room for the grid.
-  GridRace(const std::shared_ptr<const Environment>& environment, const std::vector<RaceEntry>& entries,
-           const LapSettings& settings, const GridRaceOptions& options);
+struct GridRace {
+  std::shared_ptr<const Environment> environment;
+  std::vector<Driver> drivers;  ///< of the entries, two to `most_race_cars`
+  LapSettings settings{};       ///< without obstacles, opponents or further rounds
+  GridRaceOptions options{};
+
+  /// Throws std::invalid_argument as LapSetup::validate does for each driver, and on a course that is not
+  /// closed, another protocol than Protocol::true_physics, control periods that differ, and settings and
+  /// options out of range.
+  void validate() const;
 
   /// Drives a race. Entry i starts from place (i + `rotation`) of the grid, modulo the number of cars. Ends
-  /// early when `cancel` becomes true. May be called by several threads at once.
+  /// early when `cancel` becomes true. Throws std::invalid_argument as `validate` does for drivers, and
+  /// std::runtime_error if the course has no room for the grid.
   GridRaceResult run(std::uint64_t seed, int rotation = 0, const GridRaceCallback& on_step = {},
                      const std::atomic<bool>* cancel = nullptr) const;
 
-  /// For each car, what drives it and in which world.
-  std::span<const LapRunner> drivers() const noexcept { return drivers_; }
-  const GridRaceOptions& options() const noexcept { return options_; }     ///< as given
-  std::span<const maps::Pose> grid() const noexcept { return grid_; }      ///< centres of gravity
-  double timeout() const noexcept { return timeout_; }                     ///< s
-  double lap_length() const noexcept { return drivers_[0].lap_length(); }  ///< m
-
- private:
-  std::vector<LapRunner> drivers_;
-  GridRaceOptions options_;
-  std::vector<maps::Pose> grid_;
-  double timeout_ = 0;
+  /// The lap of one entry on its own.
+  LapSetup lap(std::size_t entry) const { return {environment, drivers[entry], settings}; }
+  /// The places of the grid: centres of gravity. Throws std::runtime_error if the course has no room for it.
+  std::vector<maps::Pose> grid() const;
+  double timeout() const;                                                     ///< s
+  double lap_length() const { return lap(0).length(); }                       ///< m
+  double control_period() const noexcept { return lap(0).control_period(); }  ///< s
 };
 
 /// Contacts over the distance that was driven.

@@ -19,10 +19,11 @@ namespace slalom::evaluation {
 /// Most opponents of a lap that have a planner of their own.
 inline constexpr int most_planning_opponents = 4;
 
-/// What drives opponents that have a planner of their own.
-struct OpponentPlanner {
+/// Describes a driver with a planner.
+struct Driver {
   vehicle::Configuration configuration;  ///< options of planner, vehicle model and methods
   std::string method = "svg_mppi";       ///< name of the method
+  double speed_share = 1;                ///< share of the path's speeds that the planner is given, (0, 1]
 };
 
 /// The settings of a lap besides environment, configuration and method.
@@ -33,9 +34,8 @@ struct LapSettings {
   int threads = 1;                               ///< of the solver, 1 ... 1024; they do not change the result
   std::optional<HardwareConditions> hardware{};  ///< as on a real car; Protocol::true_physics only
   std::optional<std::uint64_t> layout{};         ///< seed of the obstacle placement; default: the lap's
-  /// Drives the `planning_opponents`, at the control period of the car. Null: the car's own configuration and
-  /// method.
-  std::shared_ptr<const OpponentPlanner> opponent_planner{};
+  /// Driver of the `planning_opponents`, at the control period of the car. Null: as the car itself.
+  std::shared_ptr<const Driver> opponent_planner{};
   bool additional_costs = false;  ///< also compute `paper_model_cost` and `driven_cost` (slower)
 
   // Changes of the world, for Protocol::true_physics only. visit_options declares them, so that evaluations
@@ -97,6 +97,9 @@ void visit_options(Options& o, Visit&& visit) {
 
 /// Whether opponent `index` (from 0, in the order in which they start ahead of the car) has a planner.
 bool has_planner(const LapSettings& settings, int index) noexcept;
+/// The sensors and actuators of a real car that a lap has, if it has them: `hardware`, or with `localised`
+/// HardwareConditions::sensors.
+std::optional<HardwareConditions> hardware_of(const LapSettings& settings);
 /// How opponent `index` drives if it has no planner.
 sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept;
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 
 namespace slalom::evaluation {
 

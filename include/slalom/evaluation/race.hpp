@@ -3,10 +3,9 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <vector>
 
-#include "slalom/evaluation/closed_loop.hpp"
+#include "slalom/evaluation/lap.hpp"
 #include "slalom/evaluation/racing_lap.hpp"
 
 namespace slalom::evaluation {
@@ -28,19 +27,18 @@ struct RaceCallbacks {
 
 /// Drives laps. The first begins at rest. The car then goes on, so that the others are flying laps, each from
 /// where the one before crossed the line. A lap ends early with the first collision, or after the timeout of
-/// the runner; the next one begins with a new standing start. So does every lap of an open course. The times
+/// the setup; the next one begins with a new standing start. So does every lap of an open course. The times
 /// at which the car crosses lines are interpolated linearly within a control period. Ends when `cancel`
-/// becomes true, without the lap that was being driven. `runner` must not be null. Throws
-/// std::invalid_argument for less than one lap and for laps of several rounds, and what LapRunner::run
-/// throws.
-std::vector<RacingLap> drive_race(const std::shared_ptr<const LapRunner>& runner, const RaceOptions& options,
+/// becomes true, without the lap that was being driven. Throws std::invalid_argument for less than one lap
+/// and for laps of several rounds, and what LapDrive throws.
+std::vector<RacingLap> drive_race(const LapSetup& setup, const RaceOptions& options,
                                   const RaceCallbacks& callbacks = {},
                                   const std::atomic<bool>* cancel = nullptr);
 
-/// The lap that the speed profile of the course asks for: along its line, from where the runner's laps start,
+/// The lap that the speed profile of the course asks for: along its line, from where laps of the setup start,
 /// at the speeds of its waypoints. `standing`: from rest, with accelerations of at most `grip` (m/s^2, > 0)
 /// along and across together until the profile is reached. Throws std::invalid_argument if `grip` is not
 /// above 0.
-RacingLap profile_lap(const LapRunner& runner, bool standing, double grip);
+RacingLap profile_lap(const LapSetup& setup, bool standing, double grip);
 
 }  // namespace slalom::evaluation

@@ -31,9 +31,13 @@ class SequenceCostMeter {
   /// std::invalid_argument if the path or an option is invalid.
   SequenceCostMeter(std::span<const maps::ReferencePoint> path, const vehicle::VehicleOptions& model);
   ~SequenceCostMeter();
+  /// Makes a meter like the other one; it must observe before it measures.
+  SequenceCostMeter(const SequenceCostMeter& other);
+  /// Copies likewise.
+  SequenceCostMeter& operator=(const SequenceCostMeter& other);
   /// Moves the meter; the source can only be destroyed or assigned to.
   SequenceCostMeter(SequenceCostMeter&&) noexcept;
-  /// Moves the meter; the source can only be destroyed or assigned to.
+  /// Moves likewise.
   SequenceCostMeter& operator=(SequenceCostMeter&&) noexcept;
 
   /// Computes the maps from a scan taken with the rear axle at `robot` (map frame). If the caller has a cost

@@ -77,8 +77,8 @@ class RacingBenchmark {
   /// Begins the next lap.
   void reset();
 
-  /// Drives one control period. A command that is not finite leaves wheels and motor alone.
-  void step(const Command& command);
+  /// Drives one control period with the only command. If it is not finite, wheels and motor stay as they are.
+  void step(std::span<const Command> commands);
 
   /// The driver's present observation.
   RacingObservation observation() const noexcept;

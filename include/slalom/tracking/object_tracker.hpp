@@ -91,9 +91,13 @@ class ObjectTracker {
   /// least one, whose origin is not finite, or whose resolution is not finite and above 0.
   explicit ObjectTracker(const maps::OccupancyGrid& map, const TrackerOptions& options = {});
   ~ObjectTracker();
-  /// Moves.
+  /// Copies the objects and scans; copies share the map.
+  ObjectTracker(const ObjectTracker& other);
+  /// Copies likewise.
+  ObjectTracker& operator=(const ObjectTracker& other);
+  /// Moves; the source can only be destroyed or assigned to.
   ObjectTracker(ObjectTracker&&) noexcept;
-  /// Moves.
+  /// Moves likewise.
   ObjectTracker& operator=(ObjectTracker&&) noexcept;
 
   /// Predicts all objects to `input.stamp` and corrects them with the scan.

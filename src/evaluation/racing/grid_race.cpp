@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
-#include "evaluation/driver/driver_stack.hpp"
+#include "evaluation/driver/car_driver.hpp"
 #include "evaluation/racing/race_watch.hpp"
 #include "evaluation/racing/starting_grid.hpp"
 
@@ -28,146 +27,138 @@ void check_in(const char* option, double value, double least, double most) {
                                                        std::to_string(most) + "]");
 }
 
-double line_of(const LapRunner& driver) {
-  return driver.environment().track->lap_path()->project({driver.start().x, driver.start().y}).arc;
+/// m, the arc length of the finish line.
+double line_of(const GridRace& race) {
+  const maps::Pose start = race.lap(0).start();
+  return race.environment->track->lap_path()->project({start.x, start.y}).arc;
 }
 
-/// A race from the start on. Its cars have their numbers in the world, which are their places on the grid.
-class RaceUnderWay {
+/// The race of the cars of a drive: their laps, contacts and overtakes, and who leaves the track. Cars have
+/// their numbers in the world here, which are their places on the grid.
+class Referee {
  public:
-  RaceUnderWay(const GridRace& race, std::uint64_t seed, int rotation);
+  /// Before the first step.
+  Referee(const GridRace& race, const sim::World& world, int rotation);
 
-  bool goes_on() const noexcept { return driving_ > 0 && world_.time() <= race_.timeout(); }
-  /// One control period.
-  void step(const GridRaceCallback& on_step);
+  // The observer of the drive.
+  void decided(std::size_t car, const PlannerUpdate& update);
+  bool moved(sim::World& world);
+
+  /// The race before a control period.
+  GridRaceStep step_of(const sim::World& world) const;
+  int entry_of(std::size_t car) const noexcept { return entry_of_[car]; }
+  int driving() const noexcept { return driving_; }  ///< cars on the track
   /// Ends the race for the cars on the track.
-  GridRaceResult result(bool cancelled);
+  GridRaceResult result(sim::World& world, bool cancelled);
 
  private:
   struct Racer {
-    std::optional<DriverStack> driver;
     CarResult result;
     double line_time = 0;    ///< s, when its lap began
     double reached = 0;      ///< m beyond the line, before the step
     double reached_at = 0;   ///< s
     sim::CarState before{};  ///< before the step
   };
+  void moved(sim::World& world, std::size_t car);
+  void end(sim::World& world, std::size_t car, CarEnd how, double time);
 
-  void moved(std::size_t car);
-  void end(std::size_t car, CarEnd how, double time);
-
-  const GridRace& race_;
-  sim::World world_;
+  int laps_;
+  double lap_length_;  ///< m
   std::vector<int> entry_of_;
   std::vector<Racer> racers_;
-  std::optional<RaceWatch> watch_;
-  std::vector<Command> commands_;
+  RaceWatch watch_;
   GridRaceResult result_;
-  int driving_ = 0;
+  int driving_;
 };
 
-sim::WorldOptions race_world(const LapRunner& driver) {
-  sim::WorldOptions options = DriverStack::world_options(driver);
-  options.body_response = sim::CollisionResponse::slide_unless_struck;
-  return options;
-}
-
-RaceUnderWay::RaceUnderWay(const GridRace& race, std::uint64_t seed, int rotation)
-    : race_(race), world_(race_world(race.drivers()[0]), race.drivers()[0].environment().track) {
-  const int cars = static_cast<int>(race.drivers().size());
-  world_.reset(seed, race.grid());
-  watch_.emplace(world_, line_of(race.drivers()[0]));
-  result_.seed = seed;
-  driving_ = cars;
-  commands_.resize(race.grid().size());
-  entry_of_.resize(race.grid().size());
-  racers_.resize(race.grid().size());
-  for (int entry = 0; entry < cars; ++entry) {
-    const int place = ((entry + rotation) % cars + cars) % cars;
-    const auto car = static_cast<std::size_t>(place);
+Referee::Referee(const GridRace& race, const sim::World& world, int rotation)
+    : laps_(race.options.laps),
+      lap_length_(race.lap_length()),
+      entry_of_(world.cars()),
+      racers_(world.cars()),
+      watch_(world, line_of(race)),
+      driving_(static_cast<int>(world.cars())) {
+  for (int entry = 0; entry < driving_; ++entry) {
+    const auto car = static_cast<std::size_t>(((entry + rotation) % driving_ + driving_) % driving_);
     entry_of_[car] = entry;
-    Racer& racer = racers_[car];
-    racer.driver.emplace(race.drivers()[static_cast<std::size_t>(entry)], world_, car, seed,
-                         " of car " + std::to_string(entry));
-    racer.result.grid_place = place;
-    racer.before = world_.state(car);
-    racer.reached = watch_->distance(world_, car);
+    racers_[car].result.grid_place = static_cast<int>(car);
+    racers_[car].before = world.state(car);
+    racers_[car].reached = watch_.distance(world, car);
   }
 }
 
-void RaceUnderWay::step(const GridRaceCallback& on_step) {
+GridRaceStep Referee::step_of(const sim::World& world) const {
   double first = 0;
-  for (std::size_t car = 0; car < racers_.size(); ++car) {
-    Racer& racer = racers_[car];
-    first = std::max(first, watch_->distance(world_, car));
-    if (!world_.on_track(car)) continue;
-    const DriverStack::Update update = racer.driver->update(world_);
-    racer.driver->send(update.output.command, world_);
-    ++racer.result.planner_status[static_cast<std::size_t>(update.output.status)];
-    if (update.output.solve)
-      racer.result.solve_ms.push_back(static_cast<float>(1e3 * update.output.solve->times.total));
-  }
-  const double whole = race_.options().laps * race_.lap_length();
-  if (on_step)
-    on_step({world_.time(), std::min(first / whole, 1.0), static_cast<int>(watch_->contacts().size()),
-             driving_, world_, entry_of_});
-  const auto steps = DriverStack::steps_per_command(race_.drivers()[0], world_);
-  for (long long k = 0; k < steps && driving_ > 0; ++k) {
-    for (std::size_t car = 0; car < racers_.size(); ++car)
-      commands_[car] = world_.on_track(car) ? racers_[car].driver->command(world_) : Command{};
-    world_.step(commands_);
-    watch_->update(world_);
-    for (std::size_t car = 0; car < racers_.size(); ++car)
-      if (world_.on_track(car)) moved(car);
-  }
+  for (std::size_t car = 0; car < racers_.size(); ++car) first = std::max(first, watch_.distance(world, car));
+  return {world.time(),
+          std::min(first / (laps_ * lap_length_), 1.0),
+          static_cast<int>(watch_.contacts().size()),
+          driving_,
+          world,
+          entry_of_};
+}
+
+void Referee::decided(std::size_t car, const PlannerUpdate& update) {
+  if (!update.output) return;
+  CarResult& result = racers_[car].result;
+  ++result.planner_status[static_cast<std::size_t>(update.output->status)];
+  if (update.output->solve)
+    result.solve_ms.push_back(static_cast<float>(1e3 * update.output->solve->times.total));
+}
+
+/// Returns whether a car is left on the track.
+bool Referee::moved(sim::World& world) {
+  watch_.update(world);
+  for (std::size_t car = 0; car < racers_.size(); ++car)
+    if (world.on_track(car)) moved(world, car);
+  return driving_ > 0;
 }
 
 /// Measures where a car has come in a step, and takes it off the track where the race ends for it.
-void RaceUnderWay::moved(std::size_t car) {
+void Referee::moved(sim::World& world, std::size_t car) {
   Racer& racer = racers_[car];
-  racer.driver->moved(world_);
-  const sim::CarState& state = world_.state(car);
+  const sim::CarState& state = world.state(car);
   racer.result.distance += std::hypot(state.x - racer.before.x, state.y - racer.before.y);
   racer.before = state;
-  const double reached = watch_->distance(world_, car);
-  const double line = race_.lap_length() * static_cast<double>(racer.result.lap_times.size() + 1);
+  const double reached = watch_.distance(world, car);
+  const double line = lap_length_ * static_cast<double>(racer.result.lap_times.size() + 1);
   if (reached >= line) {
     const double share = (line - racer.reached) / (reached - racer.reached);
-    const double time = racer.reached_at + share * (world_.time() - racer.reached_at);
+    const double time = racer.reached_at + share * (world.time() - racer.reached_at);
     racer.result.lap_times.push_back(time - racer.line_time);
     racer.line_time = time;
-    if (static_cast<int>(racer.result.lap_times.size()) == race_.options().laps)
-      return end(car, CarEnd::finished, time);
+    if (static_cast<int>(racer.result.lap_times.size()) == laps_)
+      return end(world, car, CarEnd::finished, time);
   }
   racer.reached = reached;
-  racer.reached_at = world_.time();
-  if (world_.observe(car).wall) end(car, CarEnd::wall, world_.time());
+  racer.reached_at = world.time();
+  if (world.observe(car).wall) end(world, car, CarEnd::wall, world.time());
 }
 
-void RaceUnderWay::end(std::size_t car, CarEnd how, double time) {
+void Referee::end(sim::World& world, std::size_t car, CarEnd how, double time) {
   CarResult& result = racers_[car].result;
   result.end = how;
   result.time = time;
-  result.progress = watch_->distance(world_, car);
-  result.last = world_.observe(car).pose;
-  result.contact_before = how == CarEnd::wall && time - watch_->last_collision(car) <= pushed_time;
-  world_.take_away(car);
+  result.progress = watch_.distance(world, car);
+  result.last = world.observe(car).pose;
+  result.contact_before = how == CarEnd::wall && time - watch_.last_collision(car) <= pushed_time;
+  world.take_away(car);
   --driving_;
 }
 
-GridRaceResult RaceUnderWay::result(bool cancelled) {
+GridRaceResult Referee::result(sim::World& world, bool cancelled) {
   result_.cancelled = cancelled;
-  result_.time = world_.time();
+  result_.time = world.time();
   for (std::size_t car = 0; car < racers_.size(); ++car)
-    if (world_.on_track(car)) end(car, cancelled ? CarEnd::cancelled : CarEnd::timeout, world_.time());
-  result_.contacts = watch_->contacts();
+    if (world.on_track(car)) end(world, car, cancelled ? CarEnd::cancelled : CarEnd::timeout, world.time());
+  result_.contacts = watch_.contacts();
   for (CarContact& contact : result_.contacts) {
     for (const int car : contact.cars) ++racers_[static_cast<std::size_t>(car)].result.contacts;
     ++racers_[static_cast<std::size_t>(contact.at_fault)].result.caused;
     for (int* car : {&contact.cars[0], &contact.cars[1], &contact.at_fault})
       *car = entry_of_[static_cast<std::size_t>(*car)];
   }
-  result_.overtakes = watch_->overtakes();
+  result_.overtakes = watch_.overtakes();
   for (Overtake& overtake : result_.overtakes) {
     ++racers_[static_cast<std::size_t>(overtake.car)].result.overtakes;
     ++racers_[static_cast<std::size_t>(overtake.overtaken)].result.overtaken;
@@ -203,18 +194,14 @@ bool GridRaceResult::has_winner() const noexcept {
                      [](const CarResult& car) { return car.end == CarEnd::finished; });
 }
 
-GridRace::GridRace(const std::shared_ptr<const Environment>& environment,
-                   const std::vector<RaceEntry>& entries, const LapSettings& settings,
-                   const GridRaceOptions& options)
-    : options_(options) {
+void GridRace::validate() const {
   require_of_race(
-      entries.size() >= 2 && entries.size() <= static_cast<std::size_t>(most_race_cars),
-      "cars: " + std::to_string(entries.size()) + " must be in [2, " + std::to_string(most_race_cars) + "]");
+      drivers.size() >= 2 && drivers.size() <= static_cast<std::size_t>(most_race_cars),
+      "cars: " + std::to_string(drivers.size()) + " must be in [2, " + std::to_string(most_race_cars) + "]");
   check_in("laps", options.laps, 1, 1000);
   check_in("place_spacing", options.place_spacing, 0.7, 10);
   check_in("place_offset", options.place_offset, 0, 2);
-  for (const RaceEntry& entry : entries)
-    drivers_.emplace_back(environment, entry.configuration, entry.method, settings);
+  for (std::size_t entry = 0; entry < drivers.size(); ++entry) lap(entry).validate();
   require_of_race(environment->protocol == Protocol::true_physics,
                   "evaluation: must be true in a race of several cars");
   require_of_race(environment->course.closed, "course: must be closed for a race of several cars");
@@ -223,24 +210,46 @@ GridRace::GridRace(const std::shared_ptr<const Environment>& environment,
         std::tuple("world.rounds", settings.rounds, 1)})
     require_of_race(value == only, std::string(option) + ": " + std::to_string(value) + " must be " +
                                        std::to_string(only) + " in a race of several cars");
-  for (const LapRunner& driver : drivers_) {
-    require_of_race(driver.control_period() == drivers_[0].control_period(),
+  for (std::size_t entry = 1; entry < drivers.size(); ++entry)
+    require_of_race(lap(entry).control_period() == control_period(),
                     "planner.control_period: must be the same for all cars of a race");
-    timeout_ = std::max(timeout_, options.laps * driver.timeout());
-  }
-  grid_ = starting_grid(*environment, line_of(drivers_[0]), static_cast<int>(entries.size()),
-                        DriverStack::world_options(drivers_[0]).car, options);
+}
+
+std::vector<maps::Pose> GridRace::grid() const {
+  return starting_grid(*environment, line_of(*this), static_cast<int>(drivers.size()),
+                       world_options(lap(0)).car, options);
+}
+
+double GridRace::timeout() const {
+  double longest = 0;
+  for (std::size_t entry = 0; entry < drivers.size(); ++entry)
+    longest = std::max(longest, options.laps * lap(entry).timeout());
+  return longest;
 }
 
 GridRaceResult GridRace::run(std::uint64_t seed, int rotation, const GridRaceCallback& on_step,
                              const std::atomic<bool>* cancel) const {
-  RaceUnderWay race(*this, seed, rotation);
-  bool cancelled = false;
-  while (!cancelled && race.goes_on()) {
-    race.step(on_step);
-    cancelled = cancel && cancel->load(std::memory_order_relaxed) && race.goes_on();
+  sim::WorldOptions world = world_options(lap(0));
+  world.body_response = sim::CollisionResponse::slide_unless_struck;
+  CarDrive drive{sim::World(world, environment->track), {}, steps_per_command(lap(0), world)};
+  drive.world.reset(seed, grid());
+  Referee referee(*this, drive.world, rotation);
+  for (std::size_t car = 0; car < drivers.size(); ++car) {
+    const int entry = referee.entry_of(car);
+    drive.drivers.emplace_back(car, PlanningDriver(lap(static_cast<std::size_t>(entry)), drive.world, car,
+                                                   seed, " of car " + std::to_string(entry)));
   }
-  return race.result(cancelled);
+  const double longest = timeout();
+  bool cancelled = false;
+  const auto goes_on = [&] { return referee.driving() > 0 && drive.world.time() <= longest; };
+  while (!cancelled && goes_on()) {
+    if (on_step) on_step(referee.step_of(drive.world));
+    drive.step(referee);
+    cancelled = cancel && cancel->load(std::memory_order_relaxed) && goes_on();
+  }
+  GridRaceResult result = referee.result(drive.world, cancelled);
+  result.seed = seed;
+  return result;
 }
 
 ContactRate contact_rate(std::span<const GridRaceResult> races, int entry) {

@@ -69,12 +69,12 @@ void start_from_rest(std::vector<ProfilePoint>& points, double grip) {
 
 }  // namespace
 
-RacingLap profile_lap(const LapRunner& runner, bool standing, double grip) {
+RacingLap profile_lap(const LapSetup& setup, bool standing, double grip) {
   if (!(grip > 0)) throw std::invalid_argument("grip: " + std::to_string(grip) + " must be above 0");
-  const Environment& environment = runner.environment();
-  const double length = runner.lap_length();
-  auto points = points_from(environment.course, *environment.track->lap_path(),
-                            {runner.start().x, runner.start().y}, length);
+  const Environment& environment = *setup.environment;
+  const double length = setup.length();
+  const maps::Pose start = setup.start();
+  auto points = points_from(environment.course, *environment.track->lap_path(), {start.x, start.y}, length);
   if (standing) start_from_rest(points, grip);
   RacingLap lap;
   lap.standing = standing;

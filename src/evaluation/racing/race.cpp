@@ -32,25 +32,29 @@ RacingSample sample_between(const Motion& before, const Motion& now) {
           .lateral = (now.speed + before.speed) * std::sin(half_turn) / duration};
 }
 
-/// The drive that follows a standing start.
-class Stint {
+/// Times the laps of a drive from a standing start on.
+class LapClock {
  public:
-  Stint(const std::shared_ptr<const LapRunner>& runner, std::uint64_t seed, bool flying)
-      : loop_(runner, seed), seed_(seed), flying_(flying), before_(motion_of(loop_.world())) {
+  LapClock(const LapDrive& drive, std::uint64_t seed, bool flying)
+      : length_(drive.setup().length()),
+        timeout_(drive.setup().timeout()),
+        seed_(seed),
+        flying_(flying),
+        before_(motion_of(drive.world())) {
     begin_lap({.distance = 0, .time = 0});
   }
 
-  /// One control period.
-  void step(const std::function<void(const ControlStep&)>& on_step) {
-    loop_.step([&](const ControlStep& tick) {
-      if (!on_step) return;
-      ControlStep of_lap = tick;
-      of_lap.progress = std::clamp(lap_.samples.back().distance / length(), 0.0, 1.0);
-      of_lap.time = tick.time - begin_.time;
-      on_step(of_lap);
-    });
-    const Motion now = motion_of(loop_.world());
-    add(sample_between(before_, now));
+  /// A control step with progress and time of the present lap.
+  ControlStep of_lap(ControlStep step) const {
+    step.progress = std::clamp(lap_.samples.back().distance / length_, 0.0, 1.0);
+    step.time -= begin_.time;
+    return step;
+  }
+
+  /// To be called after each control period.
+  void moved(const LapDrive& drive) {
+    const Motion now = motion_of(drive.world());
+    add(sample_between(before_, now), drive.collisions() > 0);
     before_ = now;
   }
 
@@ -60,8 +64,6 @@ class Stint {
   bool goes_on() const { return goes_on_; }
 
  private:
-  double length() const { return loop_.runner().lap_length(); }
-
   /// Begins a lap at a sample whose distance and time are those since the standing start.
   void begin_lap(RacingSample at) {
     lap_ = {};
@@ -74,18 +76,18 @@ class Stint {
 
   void end_lap(RacingEnd end) {
     lap_.end = end;
-    lap_.sector = sector_times(lap_.samples, length());
+    lap_.sector = sector_times(lap_.samples, length_);
     ended_ = std::move(lap_);
   }
 
   /// Adds a sample whose distance and time are those since the standing start.
-  void add(RacingSample sample) {
+  void add(RacingSample sample, bool collided) {
     sample.distance -= begin_.distance;
     sample.time -= begin_.time;
     lap_.samples.push_back(sample);
-    if (loop_.collisions() > 0) return end_early(RacingEnd::collision);
-    if (sample.distance >= length()) return cross_line();
-    if (sample.time > loop_.runner().timeout()) end_early(RacingEnd::timeout);
+    if (collided) return end_early(RacingEnd::collision);
+    if (sample.distance >= length_) return cross_line();
+    if (sample.time > timeout_) end_early(RacingEnd::timeout);
   }
 
   void end_early(RacingEnd end) {
@@ -96,7 +98,7 @@ class Stint {
   /// Ends the lap, whose last sample is beyond the line, and begins the next one with the rest of that step.
   void cross_line() {
     RacingSample beyond = lap_.samples.back();
-    RacingSample line = *at_distance(lap_.samples, length());
+    RacingSample line = *at_distance(lap_.samples, length_);
     lap_.samples.back() = line;
     end_lap(RacingEnd::completed);
     goes_on_ = flying_;
@@ -108,7 +110,7 @@ class Stint {
     lap_.samples.push_back(beyond);
   }
 
-  ClosedLoop loop_;
+  double length_, timeout_;  ///< m, s; of a lap
   std::uint64_t seed_;
   bool flying_;
   Motion before_;
@@ -120,24 +122,27 @@ class Stint {
 
 }  // namespace
 
-std::vector<RacingLap> drive_race(const std::shared_ptr<const LapRunner>& runner, const RaceOptions& options,
+std::vector<RacingLap> drive_race(const LapSetup& setup, const RaceOptions& options,
                                   const RaceCallbacks& callbacks, const std::atomic<bool>* cancel) {
   if (options.laps < 1)
     throw std::invalid_argument("laps: " + std::to_string(options.laps) + " must be at least 1");
-  if (runner->settings().rounds != 1)
-    throw std::invalid_argument("world.rounds: " + std::to_string(runner->settings().rounds) +
+  if (setup.settings.rounds != 1)
+    throw std::invalid_argument("world.rounds: " + std::to_string(setup.settings.rounds) +
                                 " must be 1 in a race");
-  const bool flying = !options.standing && runner->environment().course.closed;
+  const bool flying = !options.standing && setup.environment->course.closed;
   std::vector<RacingLap> laps;
   const auto driven = [&] { return static_cast<int>(laps.size()); };
   while (driven() < options.laps) {
-    Stint stint(runner, lap_seed(options.seed, driven(), runner->settings().obstacles), flying);
-    while (driven() < options.laps && stint.goes_on()) {
+    const std::uint64_t seed = lap_seed(options.seed, driven(), setup.settings.obstacles);
+    LapDrive drive(setup, seed);
+    LapClock clock(drive, seed, flying);
+    while (driven() < options.laps && clock.goes_on()) {
       if (cancel && cancel->load(std::memory_order_relaxed)) return laps;
-      stint.step([&](const ControlStep& step) {
-        if (callbacks.on_step) callbacks.on_step(driven(), step);
+      drive.step([&](const ControlStep& step) {
+        if (callbacks.on_step) callbacks.on_step(driven(), clock.of_lap(step));
       });
-      std::optional<RacingLap> lap = stint.take_ended();
+      clock.moved(drive);
+      std::optional<RacingLap> lap = clock.take_ended();
       if (!lap) continue;
       laps.push_back(std::move(*lap));
       if (callbacks.on_lap) callbacks.on_lap(laps.back());

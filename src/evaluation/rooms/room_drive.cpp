@@ -8,6 +8,7 @@
 #include "evaluation/rooms/drive_counters.hpp"
 #include "evaluation/rooms/mover_watch.hpp"
 #include "slalom/core/random.hpp"
+#include "slalom/evaluation/drive.hpp"
 #include "slalom/navigation/path_planner.hpp"
 #include "slalom/navigation/scan_map.hpp"
 
@@ -35,90 +36,130 @@ std::vector<sim::Walker> varied(std::vector<sim::Walker> walkers, const RoomCond
   return walkers;
 }
 
-/// A robot in a room, among people.
-class Robot {
+/// A robot in a room, among people. Each control period has `parts` steps.
+class RoomWorld {
  public:
-  Robot(const RoomScenario& scenario, const RoomConditions& conditions, std::uint64_t seed)
-      : room_(scenario.room),
+  static constexpr int parts = 5;
+
+  RoomWorld(const RoomScenario& scenario, const RoomConditions& conditions, std::uint64_t seed,
+            const Pose& start)
+      : pose(start),
+        room_(scenario.room),
         crowd_(room_, varied(scenario.walkers, conditions, seed)),
-        noise_(conditions.range_noise),
-        random_({seed, 0}),
-        ranges_(beams) {
+        time_step_(conditions.period / parts) {
     room_.people.assign(crowd_.bodies().begin(), crowd_.bodies().end());
-    const auto spread = [&](double most) { return random_.uniform(-most, most); };
-    pose = {scenario.start.x + spread(conditions.start_spread),
-            scenario.start.y + spread(conditions.start_spread),
-            scenario.start.yaw + spread(conditions.start_turn)};
   }
 
-  /// Where the first obstacle is, or else the first walker; far away if there is neither.
+  /// Moves robot and people; the robot keeps the velocity of the only command.
+  void step(std::span<const Velocity> commands) {
+    velocity = commands[0];
+    const double dt = time_step_, yaw = pose.yaw + 0.5 * dt * velocity.turn;
+    const double c = std::cos(yaw), s = std::sin(yaw);
+    const maps::Point in_room{c * velocity.forward - s * velocity.left,
+                              s * velocity.forward + c * velocity.left};
+    pose = {pose.x + dt * in_room.x, pose.y + dt * in_room.y, pose.yaw + dt * velocity.turn};
+    const sim::Box body{pose, RoomScenario::robot_length, RoomScenario::robot_width};
+    if (!room_.people.empty()) {
+      crowd_.step(dt, body, in_room);
+      room_.people.assign(crowd_.bodies().begin(), crowd_.bodies().end());
+    }
+    collided = collided || sim::collides(room_, body);
+  }
+
+  const sim::Room& room() const { return room_; }
+  /// The middle of the first obstacle, or else of the first walker; far away if there is neither.
   maps::Point counted() const {
     if (!room_.obstacles.empty()) return {room_.obstacles[0].pose.x, room_.obstacles[0].pose.y};
     return room_.people.empty() ? maps::Point{1e6, 1e6} : room_.people[0].middle;
-  }
-  std::span<const sim::Disc> people() const { return room_.people; }
-  navigation::RangeScan scan() {
-    sim::scan(room_, pose, max_range, ranges_);
-    for (double& range : ranges_)
-      if (range < max_range) range = std::max(range + noise_ * random_.normal(), 0.0);
-    return {pose, ranges_, max_range};
-  }
-  /// Drives with constant velocity, while people walk; returns the way driven, m.
-  double move(const Velocity& command, double period) {
-    constexpr int parts = 5;
-    const double dt = period / parts;
-    for (int i = 0; i < parts; ++i) {
-      const double yaw = pose.yaw + 0.5 * dt * command.turn, c = std::cos(yaw), s = std::sin(yaw);
-      pose = {pose.x + dt * (c * command.forward - s * command.left),
-              pose.y + dt * (s * command.forward + c * command.left), pose.yaw + dt * command.turn};
-      const sim::Box body{pose, RoomScenario::robot_length, RoomScenario::robot_width};
-      if (!room_.people.empty()) {
-        crowd_.step(dt, body,
-                    {c * command.forward - s * command.left, s * command.forward + c * command.left});
-        room_.people.assign(crowd_.bodies().begin(), crowd_.bodies().end());
-      }
-      collided = collided || sim::collides(room_, body);
-    }
-    velocity = command;
-    return period * std::hypot(command.forward, command.left);
   }
 
   Pose pose;
   Velocity velocity;
   bool collided = false;
+  double time = 0;  ///< s, at the start of the control period
 
  private:
   sim::Room room_;
   sim::Crowd crowd_;
-  double noise_;
-  RandomStream random_;
-  std::vector<double> ranges_;
+  double time_step_;  ///< s
 };
 
-/// What the robot knows of the room: its map, and what scans have shown besides.
-class Knowledge {
+SolverOptions with_seed(SolverOptions solver, std::uint64_t seed) {
+  std::uint64_t* const solver_seed = solver.find<std::uint64_t>("seed");
+  if (!solver_seed)
+    throw std::invalid_argument("method " + std::string(solver.method()) +
+                                ": must have the option seed of type std::uint64_t");
+  *solver_seed = seed;
+  return solver;
+}
+
+navigation::NavigatorOptions with_base(navigation::NavigatorOptions options,
+                                       const navigation::BaseOptions& base) {
+  options.base = base;
+  return options;
+}
+
+/// The robot's scanner, its map of what the scans have shown, and its navigator.
+class RoomNavigator {
  public:
-  Knowledge(const RoomScenario& scenario, bool predicts)
-      : predicts_(predicts),
+  RoomNavigator(const RoomScenario& scenario, const RoomDriver& driver, const RoomConditions& conditions,
+                std::uint64_t seed, const RandomStream& random)
+      : conditions_(conditions),
+        random_(random),
+        ranges_(beams),
+        predicts_(driver.predict_movers),
+        goal_(scenario.goal),
         watch_(beams),
         map_(sim::map_of(scenario.room, resolution)),
-        costmap(map_.grid().width, map_.grid().height, resolution) {
-    costmap.update(map_.grid());
+        costmap_(map_.grid().width, map_.grid().height, resolution),
+        navigator_((costmap_.update(map_.grid()), footprint()), with_base(driver.navigator, scenario.base),
+                   with_seed(driver.solver, seed), costmap_) {}
+
+  /// Plans and follows a path from a pose; false if the map shows none.
+  bool set_path(const Pose& from) {
+    const std::vector<Pose> path = path_from(from);
+    if (!path.empty()) navigator_.set_path(path);
+    return !path.empty();
   }
-  void add(const navigation::RangeScan& scan, double time) {
-    if (predicts_) others = watch_.update(scan, time);
+  std::vector<Pose> path_from(const Pose& pose) const {
+    return plan_path(costmap_, footprint(), pose, goal_);
+  }
+
+  navigation::NavigationResult decide(const RoomWorld& world) {
+    sim::scan(world.room(), world.pose, max_range, ranges_);
+    for (double& range : ranges_)
+      if (range < max_range) range = std::max(range + conditions_.range_noise * random_.normal(), 0.0);
+    const navigation::RangeScan scan{world.pose, ranges_, max_range};
+    std::span<const maps::PredictedObstacle> others;
+    if (predicts_) others = watch_.update(scan, world.time);
     map_.add(predicts_ ? watch_.without_movers() : scan);
-    costmap.update(map_.grid());
+    costmap_.update(map_.grid());
+    const auto result = stopwatch.measure(
+        [&] { return navigator_.update(world.pose, world.velocity, costmap_, conditions_.period, others); });
+    command_ = result.command;
+    return result;
   }
+  Velocity command(const RoomWorld&) const { return command_; }
+  void moved(const RoomWorld&) const {}
+
+  Stopwatch stopwatch;  ///< of the navigator's updates
 
  private:
+  static navigation::Footprint footprint() {
+    constexpr double half_length = 0.5 * RoomScenario::robot_length;
+    return navigation::Footprint::rectangle(half_length, half_length, RoomScenario::robot_width);
+  }
+
+  RoomConditions conditions_;
+  RandomStream random_;
+  std::vector<double> ranges_;
   bool predicts_;
+  Pose goal_;
   MoverWatch watch_;
   navigation::ScanMap map_;
-
- public:
-  navigation::Costmap costmap;
-  std::span<const maps::PredictedObstacle> others;  ///< what moves
+  navigation::Costmap costmap_;
+  navigation::Navigator navigator_;
+  Velocity command_;
 };
 
 bool stands(const Velocity& v, double below = standing) {
@@ -130,61 +171,53 @@ bool stands(const Velocity& v, double below = standing) {
 RoomDrive drive_room(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed,
                      const RoomConditions& conditions) {
   validate_options(conditions, "conditions");
-  SolverOptions solver = driver.solver;
-  std::uint64_t* const solver_seed = solver.find<std::uint64_t>("seed");
-  if (!solver_seed)
-    throw std::invalid_argument("method " + std::string(solver.method()) +
-                                ": must have the option seed of type std::uint64_t");
-  *solver_seed = seed;
-  constexpr double half_length = 0.5 * RoomScenario::robot_length;
-  const navigation::Footprint footprint =
-      navigation::Footprint::rectangle(half_length, half_length, RoomScenario::robot_width);
-  Knowledge known(scenario, driver.predict_movers);
-  Robot robot(scenario, conditions, seed);
-  const auto path_from = [&](const Pose& pose) {
-    return plan_path(known.costmap, footprint, pose, scenario.goal);
-  };
-  const std::vector<Pose> path = path_from(robot.pose);
-  if (path.empty()) throw std::invalid_argument(std::string("scenario: ") + scenario.name + ": has no path");
-
-  navigation::NavigatorOptions options = driver.navigator;
-  options.base = scenario.base;
-  navigation::Navigator navigator(footprint, options, solver, known.costmap);
-  navigator.set_path(path);
+  RandomStream random({seed, 0});
+  const auto spread = [&](double most) { return random.uniform(-most, most); };
+  const Pose start{scenario.start.x + spread(conditions.start_spread),
+                   scenario.start.y + spread(conditions.start_spread),
+                   scenario.start.yaw + spread(conditions.start_turn)};
+  Drive<RoomWorld, RoomNavigator> loop{RoomWorld(scenario, conditions, seed, start), {}, RoomWorld::parts};
+  loop.drivers.emplace_back(scenario, driver, conditions, seed, random);
+  const RoomWorld& world = loop.world;
+  RoomNavigator& navigator = loop.drivers[0];
+  if (!navigator.set_path(start))
+    throw std::invalid_argument(std::string("scenario: ") + scenario.name + ": has no path");
 
   RoomDrive drive;
-  drive.people.resize(robot.people().size());
+  drive.people.resize(world.room().people.size());
   SideCounter sides(scenario.start, scenario.goal);
   ReversalCounter reversals;
-  Stopwatch stopwatch;
+  NavigationStatus status{};
   double shown_closed = -1;  // s
+  Observer observer{[&](std::size_t, const navigation::NavigationResult& result) {
+                      if (!scenario.has_way && shown_closed < 0 && navigator.path_from(world.pose).empty())
+                        shown_closed = drive.time;
+                      sides.add(world.pose, world.counted(), result.plan);
+                      status = result.status;
+                      if (status == NavigationStatus::blocked && drive.answer_time < 0 && shown_closed >= 0)
+                        drive.answer_time = drive.time - shown_closed;
+                    },
+                    [](const RoomWorld&) { return true; }};
   const int periods = static_cast<int>(std::ceil(conditions.timeout / conditions.period));
-  for (int i = 0; i < periods && !robot.collided; ++i) {
-    drive.time = i * conditions.period;
-    drive.trace.push_back(robot.pose);
-    for (std::size_t k = 0; k < drive.people.size(); ++k) drive.people[k].push_back(robot.people()[k].middle);
-    known.add(robot.scan(), drive.time);
-    if (!scenario.has_way && shown_closed < 0 && path_from(robot.pose).empty()) shown_closed = drive.time;
-    const auto result = stopwatch.measure([&] {
-      return navigator.update(robot.pose, robot.velocity, known.costmap, conditions.period, known.others);
-    });
-    sides.add(robot.pose, robot.counted(), result.plan);
-    const bool blocked = result.status == NavigationStatus::blocked;
-    if (blocked && drive.answer_time < 0 && shown_closed >= 0) drive.answer_time = drive.time - shown_closed;
-    drive.length += robot.move(result.command, conditions.period);
-    reversals.add(robot.velocity.forward);
-    if (!stands(robot.velocity)) continue;
-    if (result.status == NavigationStatus::goal_reached) drive.outcome = RoomOutcome::reached;
-    if (blocked && !scenario.has_way) drive.outcome = RoomOutcome::blocked;
-    if (drive.outcome != RoomOutcome::timeout) break;
+  for (int i = 0; i < periods && !world.collided && drive.outcome == RoomOutcome::timeout; ++i) {
+    drive.time = loop.world.time = i * conditions.period;
+    drive.trace.push_back(world.pose);
+    for (std::size_t k = 0; k < drive.people.size(); ++k)
+      drive.people[k].push_back(world.room().people[k].middle);
+    loop.step(observer);
+    drive.length += conditions.period * std::hypot(world.velocity.forward, world.velocity.left);
+    reversals.add(world.velocity.forward);
+    if (!stands(world.velocity)) continue;
+    if (status == NavigationStatus::goal_reached) drive.outcome = RoomOutcome::reached;
+    if (status == NavigationStatus::blocked && !scenario.has_way) drive.outcome = RoomOutcome::blocked;
   }
-  if (robot.collided)
-    drive.outcome = stands(robot.velocity, min_driving_speed) ? RoomOutcome::struck : RoomOutcome::collision;
+  if (world.collided)
+    drive.outcome = stands(world.velocity, min_driving_speed) ? RoomOutcome::struck : RoomOutcome::collision;
   drive.success = drive.outcome == (scenario.has_way ? RoomOutcome::reached : RoomOutcome::blocked);
   drive.side_changes = sides.changes();
   drive.reversals = reversals.changes();
-  drive.update_p50 = stopwatch.percentile(0.5);
-  drive.update_max = stopwatch.percentile(1);
+  drive.update_p50 = navigator.stopwatch.percentile(0.5);
+  drive.update_max = navigator.stopwatch.percentile(1);
   return drive;
 }
 

@@ -1,5 +1,6 @@
 #include "slalom/sim/racing_benchmark.hpp"
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -70,14 +71,14 @@ void RacingBenchmark::reset() {
   plant_.reset(state);
   ticks_ = 0;
   accelerations_.clear();
-  step({});
+  step(std::array{Command{}});
   progress_ = 0;
 }
 
-void RacingBenchmark::step(const Command& command) {
+void RacingBenchmark::step(std::span<const Command> commands) {
   for (int k = 0; k < steps_per_command; ++k) {
     const maps::Point before = velocity(plant_.state());
-    plant_.step(command);
+    plant_.step(commands[0]);
     const maps::Point after = velocity(plant_.state());
     accelerations_.push_back(std::hypot(after.x - before.x, after.y - before.y) / time_step);
   }

@@ -1,5 +1,5 @@
 // Laps finish on a course of the repository, repeat bit for bit for the same seed, and have comparable costs.
-#include "slalom/evaluation/lap_runner.hpp"
+#include "slalom/evaluation/lap.hpp"
 
 #include <gtest/gtest.h>
 
@@ -40,14 +40,14 @@ std::vector<std::uint64_t> bits(const LapResult& lap) {
   return all;
 }
 
-TEST(LapRunner, FinishesALap) {
-  LapRunner runner(wren(), configuration("default"), "svg_mppi", {});
-  const LapResult lap = runner.run(0);
+TEST(Lap, FinishesALap) {
+  const LapSetup setup{wren(), {configuration("default")}};
+  const LapResult lap = run_lap(setup, 0);
   EXPECT_TRUE(lap.finished);
   EXPECT_FALSE(lap.timeout);
   EXPECT_EQ(lap.collisions, 0);
   EXPECT_GT(lap.min_clearance, 0.05);
-  EXPECT_LT(lap.time, 0.5 * runner.timeout());
+  EXPECT_LT(lap.time, 0.5 * setup.timeout());
   EXPECT_NEAR(lap.time, lap.steps * 0.025, 0.05);
   EXPECT_EQ(lap.mean_sequence_cost, lap.state_cost + lap.collision_cost);
   EXPECT_GT(lap.state_cost, 0);
@@ -71,7 +71,7 @@ std::shared_ptr<const Environment> at_utm_coordinates(vehicle::Course course, Pr
   return make_environment(std::move(course), protocol);
 }
 
-TEST(LapRunner, DrivesTheSameLapAtUtmCoordinates) {
+TEST(Lap, DrivesTheSameLapAtUtmCoordinates) {
   for (const Protocol protocol : {Protocol::true_physics, Protocol::published}) {
     SCOPED_TRACE(name(protocol));
     const auto here = load_environment(fs::path(SLALOM_COURSES) / "eel", protocol, {SLALOM_COURSES});
@@ -81,13 +81,13 @@ TEST(LapRunner, DrivesTheSameLapAtUtmCoordinates) {
     EXPECT_EQ(there->course.origin.y, 5000000);
     LapSettings settings;
     settings.obstacles = 2;
-    const LapResult a = LapRunner(here, configuration("default"), "svg_mppi", settings).run(0);
-    const LapResult b = LapRunner(there, configuration("default"), "svg_mppi", settings).run(0);
+    const LapResult a = run_lap({here, {configuration("default")}, settings}, 0);
+    const LapResult b = run_lap({there, {configuration("default")}, settings}, 0);
     EXPECT_EQ(bits(a), bits(b));
   }
 }
 
-TEST(LapRunner, StartsWhereTheCarHasRoom) {
+TEST(Lap, StartsWhereTheCarHasRoom) {
   vehicle::Course course = wren()->course;
   const vehicle::Waypoint& first = course.waypoints.front();
   course.start = {first.x, first.y, first.yaw};
@@ -101,23 +101,23 @@ TEST(LapRunner, StartsWhereTheCarHasRoom) {
   EXPECT_LT(moved->start_moved, 1);
   EXPECT_NEAR(std::hypot(moved->start.x - first.x, moved->start.y - first.y), moved->start_moved, 0.05);
   moved->timeout = 0.1;
-  EXPECT_EQ(LapRunner(moved, configuration("default"), "svg_mppi", {}).run(0).collisions, 0);
+  EXPECT_EQ(run_lap({moved, {configuration("default")}, {}}, 0).collisions, 0);
 
   course.start.yaw += 1e-6;  // given by course.yaml
   const auto given = make_environment(course, Protocol::true_physics);
   EXPECT_EQ(given->start_moved, 0);
-  EXPECT_THROW(LapRunner(given, configuration("default"), "svg_mppi", {}).run(0), std::invalid_argument);
+  EXPECT_THROW(run_lap({given, {configuration("default")}, {}}, 0), std::invalid_argument);
 }
 
-TEST(LapRunner, DrivesWithTheAccelerationAsAnInputByEveryMethod) {
-  const double usual = LapRunner(wren(), configuration("default_kinematic"), "svg_mppi", {}).run(0).time;
+TEST(Lap, DrivesWithTheAccelerationAsAnInputByEveryMethod) {
+  const double usual = run_lap({wren(), {configuration("default_kinematic")}, {}}, 0).time;
   const auto begun = timed_out_after(3);
   for (const char* name : {"default", "default_speed"}) {
     for (const char* method : {"mppi", "svg_mppi", "reverse_mppi", "sv_mpc", "cem"}) {
       SCOPED_TRACE(std::string(name) + ", " + method);
       const bool whole = method == std::string("svg_mppi");
       const LapResult lap =
-          LapRunner(whole ? wren() : begun, configuration(name), method, {.additional_costs = true}).run(0);
+          run_lap({whole ? wren() : begun, {configuration(name), method}, {.additional_costs = true}}, 0);
       EXPECT_TRUE(std::isfinite(lap.mean_sequence_cost));
       EXPECT_TRUE(std::isfinite(lap.paper_model_cost));
       EXPECT_GT(lap.mean_speed, 0.3);
@@ -129,32 +129,28 @@ TEST(LapRunner, DrivesWithTheAccelerationAsAnInputByEveryMethod) {
   }
 }
 
-TEST(LapRunner, RepeatsBitForBitInAnyOrderWithAnyThreads) {
+TEST(Lap, RepeatsBitForBitInAnyOrderWithAnyThreads) {
   const auto environment = timed_out_after(5);
   LapSettings settings{.obstacles = 3};
-  LapRunner one(environment, configuration("default"), "svg_mppi", settings);
-  const auto first = bits(one.run(8)), second = bits(one.run(16)), again = bits(one.run(8));
+  const LapSetup one{environment, {configuration("default")}, settings};
+  const auto first = bits(run_lap(one, 8)), second = bits(run_lap(one, 16)), again = bits(run_lap(one, 8));
   EXPECT_EQ(first, again) << "a lap depends on the one before it";
   EXPECT_NE(first, second) << "the seed does nothing";
-  settings.threads = 3;
-  LapRunner three(environment, configuration("default"), "svg_mppi", settings);
-  EXPECT_EQ(bits(three.run(8)), first);
+  LapSetup three = one;
+  three.settings.threads = 3;
+  EXPECT_EQ(bits(run_lap(three, 8)), first);
 
-  settings.threads = 1;
   std::vector<std::uint64_t> beside;
-  std::thread other([&] {
-    LapRunner two(environment, configuration("default"), "svg_mppi", settings);
-    beside = bits(two.run(16));
-  });
-  EXPECT_EQ(bits(one.run(8)), first);
+  std::thread other([&] { beside = bits(run_lap(one, 16)); });
+  EXPECT_EQ(bits(run_lap(one, 8)), first);
   other.join();
   EXPECT_EQ(beside, second);
 }
 
-TEST(LapRunner, CostEqualsThePlannersInThePublishedConfiguration) {
-  LapRunner runner(wren(Protocol::published), configuration("published"), "svg_mppi", {.obstacles = 2});
+TEST(Lap, CostEqualsThePlannersInThePublishedConfiguration) {
+  const LapSetup setup{wren(Protocol::published), {configuration("published")}, {.obstacles = 2}};
   int ticks = 0;
-  const LapResult lap = runner.run(0, [&](const ControlStep& tick) {
+  const LapResult lap = run_lap(setup, 0, [&](const ControlStep& tick) {
     ++ticks;
     ASSERT_EQ(tick.cost.state, tick.output.state_cost) << tick.step;
     ASSERT_EQ(tick.cost.collision, tick.output.collision_cost) << tick.step;
@@ -163,10 +159,10 @@ TEST(LapRunner, CostEqualsThePlannersInThePublishedConfiguration) {
   EXPECT_GT(ticks, 100);
 }
 
-TEST(LapRunner, APlannerThatEstimatesTheCarKnowsThePeriodOfThePublishedEvaluation) {
-  LapRunner runner(wren(Protocol::published), configuration("default"), "svg_mppi", {});
+TEST(Lap, APlannerThatEstimatesTheCarKnowsThePeriodOfThePublishedEvaluation) {
+  const LapSetup setup{wren(Protocol::published), {configuration("default")}, {}};
   double gain = 0, speed_error = 0;
-  const LapResult lap = runner.run(0, [&](const ControlStep& tick) {
+  const LapResult lap = run_lap(setup, 0, [&](const ControlStep& tick) {
     gain = tick.output.parameters.steering_gain;
     speed_error = std::max(speed_error, std::abs(tick.output.speed_estimate - tick.seen.speed));
   });
@@ -175,51 +171,50 @@ TEST(LapRunner, APlannerThatEstimatesTheCarKnowsThePeriodOfThePublishedEvaluatio
   EXPECT_LT(speed_error, 0.1);
 }
 
-TEST(LapRunner, AdditionalCostsAreComparable) {
-  LapRunner runner(wren(), configuration("published"), "svg_mppi", {.additional_costs = true});
-  const LapResult lap = runner.run(0);
+TEST(Lap, AdditionalCostsAreComparable) {
+  const LapSetup setup{wren(), {configuration("published")}, {.additional_costs = true}};
+  const LapResult lap = run_lap(setup, 0);
   EXPECT_NEAR(lap.paper_model_cost, lap.mean_sequence_cost, 1e-9);
   EXPECT_GT(lap.driven_cost, 0);
 }
 
-TEST(LapRunner, CanBeTimedOutAndCancelled) {
+TEST(Lap, CanBeTimedOutAndCancelled) {
   auto slow = configuration("default_kinematic", 64);
   vehicle::set_option(slow, "planner.max_speed", "0.02");
   auto environment = std::make_shared<Environment>(*wren());
   environment->timeout = 1;
-  const LapResult late = LapRunner(environment, slow, "mppi", {}).run(0);
+  const LapResult late = run_lap({environment, {slow, "mppi"}, {}}, 0);
   EXPECT_FALSE(late.finished);
   EXPECT_TRUE(late.timeout);
   EXPECT_GE(late.time, 1);
   EXPECT_LT(late.time, 1.1);
 
   std::atomic<bool> cancel{false};
-  const LapResult cut = LapRunner(wren(), slow, "mppi", {})
-                            .run(
-                                0, [&](const ControlStep& tick) { cancel = tick.step == 4; }, &cancel);
+  const LapResult cut = run_lap(
+      {wren(), {slow, "mppi"}}, 0, [&](const ControlStep& tick) { cancel = tick.step == 4; }, &cancel);
   EXPECT_TRUE(cut.cancelled);
   EXPECT_FALSE(cut.timeout);
   EXPECT_EQ(cut.steps, 5);
 }
 
-TEST(LapRunner, LatencyDelaysCommands) {
+TEST(Lap, LatencyDelaysCommands) {
   const auto environment = wren();
   const auto first_motion = [&](double latency) {
     double start = -1;
-    LapRunner(environment, configuration("default_kinematic", 64), "mppi", {.latency = latency})
-        .run(0, [&](const ControlStep& tick) {
-          if (start < 0 && tick.seen.speed > 0) start = tick.time;
-        });
+    run_lap({environment, {configuration("default_kinematic", 64), "mppi"}, {.latency = latency}}, 0,
+            [&](const ControlStep& tick) {
+              if (start < 0 && tick.seen.speed > 0) start = tick.time;
+            });
     return start;
   };
   EXPECT_NEAR(first_motion(0.1) - first_motion(0), 0.1, 1e-6);
 }
 
-TEST(LapRunner, HardwareLapsRepeatWithAnyThreadsAndApplyTheirConditions) {
+TEST(Lap, HardwareLapsRepeatWithAnyThreadsAndApplyTheirConditions) {
   const auto environment = wren();
   const auto lap = [&](const HardwareConditions& conditions, std::uint64_t seed, int threads) {
     const LapSettings settings{.threads = threads, .hardware = conditions};
-    return LapRunner(environment, configuration("default", 128), "svg_mppi", settings).run(seed);
+    return run_lap({environment, {configuration("default", 128)}, settings}, seed);
   };
   const LapResult first = lap({}, 3, 1), threaded = lap({}, 3, 2), other = lap({}, 4, 1);
   EXPECT_TRUE(first.finished);
@@ -237,13 +232,13 @@ TEST(LapRunner, HardwareLapsRepeatWithAnyThreadsAndApplyTheirConditions) {
   EXPECT_NE(bits(lap(late, 3, 1)), bits(first));
 }
 
-TEST(LapRunner, ATrackerFindsTheOtherCars) {
+TEST(Lap, ATrackerFindsTheOtherCars) {
   auto driver = configuration("default_kinematic", 64);
   const auto lap = [&, environment = wren()](TrackingMode mode, int opponents, bool predicts) {
     driver.planner.predict_others = predicts;
-    return LapRunner(environment, driver, "mppi",
-                     {.opponents = opponents, .range_noise = 0.02, .dropout = 0.02, .tracking = mode})
-        .run(2);
+    const LapSettings settings{
+        .opponents = opponents, .range_noise = 0.02, .dropout = 0.02, .tracking = mode};
+    return run_lap({environment, {driver, "mppi"}, settings}, 2);
   };
   const LapResult without = lap(TrackingMode::off, 2, true), alone = lap(TrackingMode::off, 0, true);
   for (const TrackingMode mode : {TrackingMode::exact, TrackingMode::localised}) {
@@ -258,27 +253,27 @@ TEST(LapRunner, ATrackerFindsTheOtherCars) {
   }
 }
 
-TEST(LapRunner, ACarThatCannotLocaliseStops) {
+TEST(Lap, ACarThatCannotLocaliseStops) {
   auto environment = std::make_shared<Environment>(*wren());
   environment->timeout = 2;
   HardwareConditions blind;
   blind.dropout = 1;
   const LapResult lap =
-      LapRunner(environment, configuration("default_kinematic", 64), "mppi", {.hardware = blind}).run(1);
+      run_lap({environment, {configuration("default_kinematic", 64), "mppi"}, {.hardware = blind}}, 1);
   EXPECT_FALSE(lap.finished);
   EXPECT_GT(lap.localisation.blind, lap.steps / 2);
   EXPECT_LT(lap.mean_speed, 0.5);
   EXPECT_EQ(lap.collisions, 0);
 }
 
-TEST(LapRunner, TheWorldCanBeMadeHarder) {
+TEST(Lap, TheWorldCanBeMadeHarder) {
   const auto environment = wren();
   const auto lap = [&](const char* key, const char* value) {
     LapSettings settings;
     if (key) {
       EXPECT_TRUE(set_world_option(settings, key, value)) << key;
     }
-    return LapRunner(environment, configuration("default_kinematic", 64), "mppi", settings).run(0);
+    return run_lap({environment, {configuration("default_kinematic", 64), "mppi"}, settings}, 0);
   };
   const LapResult usual = lap(nullptr, nullptr);
   for (const auto& [key, value] :
@@ -296,16 +291,16 @@ TEST(LapRunner, TheWorldCanBeMadeHarder) {
   EXPECT_FALSE(set_world_option(settings, "vehicle.friction", "1"));
   EXPECT_THROW(set_world_option(settings, "world.fricton", "1"), std::invalid_argument);
   EXPECT_THROW(set_world_option(settings, "world.friction", "-1"), std::invalid_argument);
-  EXPECT_THROW(LapRunner(wren(Protocol::published), configuration("default"), "mppi", {.friction = 0.7}),
-               std::invalid_argument);
+  const LapSetup published{wren(Protocol::published), {configuration("default"), "mppi"}, {.friction = 0.7}};
+  EXPECT_THROW(published.validate(), std::invalid_argument);
 }
 
-TEST(LapRunner, RejectsInvalidSettings) {
+TEST(Lap, RejectsInvalidSettings) {
   const auto environment = wren();
   const auto error_of = [&](const std::string& method, const LapSettings& settings,
                             vehicle::Configuration made) {
     try {
-      LapRunner(environment, made, method, settings);
+      LapSetup{environment, {made, method}, settings}.validate();
     } catch (const std::invalid_argument& error) {
       return std::string(error.what());
     }
@@ -327,7 +322,7 @@ TEST(LapRunner, RejectsInvalidSettings) {
   lost.localiser.beams = 0;
   says(error_of("mppi", {.hardware = lost}, usual), "beams");
   try {
-    const LapRunner runner(wren(Protocol::published), usual, "mppi", {.hardware = HardwareConditions{}});
+    LapSetup{wren(Protocol::published), {usual, "mppi"}, {.hardware = HardwareConditions{}}}.validate();
     ADD_FAILURE() << "the published evaluation knows no hardware";
   } catch (const std::invalid_argument& error) {
     says(error.what(), "hardware");

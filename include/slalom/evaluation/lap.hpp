@@ -5,9 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -37,8 +35,8 @@ struct Collision {
   int body = -1;    ///< index of the body, -1 for a wall
 };
 
-/// A control step after the planner's update and before its command is applied. The references are valid
-/// until the callback returns.
+/// A control step of the first car, after the planner's update and before its command takes effect. The
+/// references are valid until the callback returns.
 struct ControlStep {
   int step = 0;                     ///< index of the control step, from 0
   double time = 0;                  ///< s
@@ -73,11 +71,11 @@ struct LapResult {
   double state_cost = 0;          ///< mean, of distance and yaw error
   double collision_cost = 0;      ///< mean
   double mean_sequence_cost = 0;  ///< MS = state_cost + collision_cost
-  double paper_model_cost =
-      0;                   ///< MS predicted with the model of the paper's program; with `additional_costs`
-  double driven_cost = 0;  ///< MS of the states that the car reached; with `additional_costs`
-  double input_error = 0;  ///< mean of the sum of |steering| over the control sequence, rad
-  double mean_speed = 0;   ///< m/s
+  /// MS predicted with the model of the paper's program; with `additional_costs`.
+  double paper_model_cost = 0;
+  double driven_cost = 0;         ///< MS of the states that the car reached; with `additional_costs`
+  double input_error = 0;         ///< mean of the sum of |steering| over the control sequence, rad
+  double mean_speed = 0;          ///< m/s
   double mean_path_distance = 0;  ///< m, of the rear axle
   double max_path_distance = 0;   ///< m
   /// m, the least over the control steps: from the corners of the car to a wall (0 in a wall, with the error
@@ -99,65 +97,65 @@ struct LapResult {
   OvertakingRecord overtaking;              ///< with LapSettings::opponents
 };
 
-/// Drives laps of one configuration and method. Each lap is independent of the others: world, planner and
-/// solver are reset, all random numbers follow from the seed of the lap, and runners share only the
-/// environment. So laps can be driven in any order, by any number of runners in parallel, with the same
+/// Describes a lap: where it is driven, by whom and under which conditions. All random numbers of a lap
+/// follow from its seed, so laps can be driven in any order and in any number of threads, with the same
 /// results bit for bit.
-class LapRunner {
+struct LapSetup {
+  std::shared_ptr<const Environment> environment;
+  Driver driver;
+  LapSettings settings{};
+
+  /// Throws std::invalid_argument if the environment is null, the method is unknown, an option or a setting
+  /// is out of range, or the start is off the map or less than 0.15 m from a wall.
+  void validate() const;
+
+  maps::Pose start() const;                ///< of the centre of gravity
+  double control_period() const noexcept;  ///< s of simulated time per command
+  double timeout() const;                  ///< s, after which a lap is stopped
+  /// m along the path of the course from the start of a lap to its finish, which is after
+  /// `settings.rounds` times around the course.
+  double length() const;
+};
+
+/// Cars on a course in a closed loop, of which the first is measured. The caller may change the world and the
+/// driver between steps; the same changes at the same steps give the same drive.
+class LapDrive {
  public:
-  /// Throws std::invalid_argument if `environment` is null, the method is unknown, an option or a setting is
-  /// out of range, or the start is off the map or less than 0.15 m from a wall.
-  LapRunner(std::shared_ptr<const Environment> environment, const vehicle::Configuration& configuration,
-            std::string method, const LapSettings& settings);
+  /// Puts the cars at their starts. Throws std::invalid_argument as LapSetup::validate does and if an
+  /// obstacle or opponent overlaps the start, and std::runtime_error if there is no room for them.
+  LapDrive(const LapSetup& setup, std::uint64_t seed);
+  ~LapDrive();
+  /// Moves the state; the source can only be destroyed or assigned to.
+  LapDrive(LapDrive&&) noexcept;
+  /// Moves the state; the source can only be destroyed or assigned to.
+  LapDrive& operator=(LapDrive&&) noexcept;
 
-  /// Drives one lap and calls `on_step` in every control step. Ends early when `cancel` becomes true. Throws
-  /// std::runtime_error if there is no room for the obstacles or opponents, std::invalid_argument if one of
-  /// them overlaps the start.
-  LapResult run(std::uint64_t seed, const ControlStepCallback& on_step = {},
-                const std::atomic<bool>* cancel = nullptr);
+  /// Drives one control period, beyond the finish, too. The command takes effect `extra_latency` (s) later
+  /// than the settings say.
+  void step(const ControlStepCallback& on_step = {}, double extra_latency = 0);
+  /// Drives to the finish, where the world stops within a control period, or until the timeout or until
+  /// `cancel` becomes true.
+  LapResult finish(const ControlStepCallback& on_step = {}, const std::atomic<bool>* cancel = nullptr);
 
-  double timeout() const noexcept { return timeout_; }         ///< s, after which a lap is stopped
-  double control_period() const noexcept;                      ///< s of simulated time per command
-  const maps::Pose& start() const noexcept { return start_; }  ///< of the centre of gravity
-  const Environment& environment() const noexcept { return *environment_; }  ///< where laps are driven
-  const std::string& method() const noexcept { return method_; }             ///< name of the method
-  /// The options of planner, vehicle problem and methods.
-  const vehicle::Configuration& configuration() const noexcept { return configuration_; }
-  /// The settings of each lap.
-  const LapSettings& settings() const noexcept { return settings_; }
-  /// m along the path of the course from the start of a lap to its finish, which is after `rounds` times
-  /// around the course.
-  double lap_length() const noexcept;
+  /// Lets another driver, with a new planner, drive the first car from the next step on. Throws
+  /// std::invalid_argument if an option is out of range or the control period differs.
+  void change_driver(const Driver& driver);
+
+  const LapSetup& setup() const noexcept;  ///< with the present driver
+  int steps() const noexcept;              ///< control steps so far
+  sim::World& world() noexcept;            ///< may be changed between steps
+  const sim::World& world() const noexcept;
+  int collisions() const noexcept;  ///< so far, as the protocol counts them
+  /// The first collision with each body so far, in order of time.
+  std::span<const Collision> first_collisions() const noexcept;
 
  private:
-  friend class ClosedLoop;
-  friend class DriverStack;
-  struct LapInProgress;
-  std::unique_ptr<LapInProgress> begin(std::uint64_t seed) const;
-  std::vector<maps::Pose> place_obstacles(std::uint64_t seed) const;
-  std::vector<maps::Pose> place_opponents(const std::vector<maps::Pose>& obstacles) const;
-  std::shared_ptr<const LapRunner> planning_opponent(int index) const;
-  void make_opponents(LapInProgress& lap) const;
-  void command_opponents(LapInProgress& lap, bool decide) const;
-  std::unique_ptr<vehicle::Planner> make_planner() const;
-  bool at_finish(const sim::World& world) const noexcept;
-  double progress(const sim::World& world) const noexcept;
-  void control(LapInProgress& lap, const ControlStepCallback& on_step, double extra_latency = 0) const;
-  void advance(LapInProgress& lap, bool past_finish = false) const;
-  void record_collisions(LapInProgress& lap) const;
-  void finish(LapInProgress& lap) const;
-
-  std::shared_ptr<const Environment> environment_;
-  std::vector<maps::ReferencePoint> path_;  ///< the environment's, with the speeds of this lap
-  vehicle::Configuration configuration_;
-  std::string method_;
-  LapSettings settings_;
-  double speed_share_ = 1;  ///< of the path's speeds, which the planner is given
-  /// Drivers of the opponents that have a planner, in their order.
-  std::vector<std::shared_ptr<const LapRunner>> planning_opponents_;
-  maps::Pose start_;
-  double timeout_ = 0;
-  double open_length_ = 0;  ///< m to drive on an open course; 0 on closed courses
+  struct State;
+  std::unique_ptr<State> state_;
 };
+
+/// Drives one lap: LapDrive(setup, seed).finish(on_step, cancel).
+LapResult run_lap(const LapSetup& setup, std::uint64_t seed, const ControlStepCallback& on_step = {},
+                  const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace slalom::evaluation

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace slalom::evaluation {
+
+/// The loop that drives: a world, a driver for each of its cars or robots, and one control period per step.
+/// Laps, races, rooms and the racing benchmark use it. If world and drivers are values, so is the drive: a
+/// copy goes on with the same bits.
+///
+/// A world moves by `step(commands)`, with one command per driver. A driver has
+///
+///     Update decide(const World&)       // once per control period: sense and plan
+///     Command command(const World&)     // before each step of the world
+///     void moved(const World&)          // after each step of the world
+///
+/// and an observer, which meters, judges and recorders hang on, has
+///
+///     void decided(std::size_t driver, const Update&)   // after each decision
+///     bool moved(World&)                                // after each step; false ends the period early
+template <class World, class Driver>
+struct Drive {
+  using Command =
+      std::remove_cvref_t<decltype(std::declval<Driver&>().command(std::declval<const World&>()))>;
+
+  World world;
+  std::vector<Driver> drivers;
+  long long steps_per_command = 1;  ///< steps of the world in a control period
+  std::vector<Command> commands{};  ///< of the last step of the world, one per driver
+
+  /// Drives one control period: all drivers decide in the same world, then it moves.
+  template <class Observer>
+  void step(Observer& observer) {
+    for (std::size_t i = 0; i < drivers.size(); ++i)
+      observer.decided(i, drivers[i].decide(std::as_const(world)));
+    for (long long k = 0; k < steps_per_command; ++k) {
+      commands.clear();
+      for (Driver& driver : drivers) commands.push_back(driver.command(std::as_const(world)));
+      world.step(commands);
+      for (Driver& driver : drivers) driver.moved(std::as_const(world));
+      if (!observer.moved(world)) return;
+    }
+  }
+};
+
+/// An observer of two functions.
+template <class Decided, class Moved>
+struct Observer {
+  Decided decided;
+  Moved moved;
+};
+
+}  // namespace slalom::evaluation

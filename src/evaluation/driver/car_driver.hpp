@@ -1,0 +1,118 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "evaluation/hardware_model.hpp"
+#include "evaluation/lap_rules.hpp"
+#include "evaluation/tracking/tracking_meter.hpp"
+#include "slalom/evaluation/drive.hpp"
+#include "slalom/evaluation/lap.hpp"
+#include "slalom/sim/pure_pursuit.hpp"
+#include "slalom/sim/racing_opponent.hpp"
+#include "slalom/tracking/predictor.hpp"
+
+namespace slalom::evaluation {
+
+/// An update of a planner, with its inputs. Valid until the driver's next one.
+struct PlannerUpdate {
+  sim::Observation seen;                           ///< the true state of the car
+  maps::LaserScanView scan;                        ///< input of the planner
+  vehicle::Odometry odometry;                      ///< input of the planner; if not `localised`, the true one
+  bool localised = true;                           ///< whether the planner was given a pose
+  const vehicle::PlannerOutput* output = nullptr;  ///< null for drivers without a planner
+  std::span<const maps::PredictedObstacle> others{};  ///< input of the planner
+};
+
+/// The planner of a car, its sensors with localiser, tracker and predictor of other cars, and its commands on
+/// their way to the car.
+class PlanningDriver {
+ public:
+  /// For car `car` of a world that has been reset. All random numbers follow from `seed` and `label`, which
+  /// tells the drivers of one world apart.
+  PlanningDriver(const LapSetup& setup, const sim::World& world, std::size_t car, std::uint64_t seed,
+                 const std::string& label = {});
+
+  /// Senses, tracks and plans, and sends the command on its way.
+  PlannerUpdate decide(const sim::World& world);
+  /// The command for the next step of the world.
+  Command command(const sim::World& world);
+  /// Moves the sensors after a step of the world.
+  void moved(const sim::World& world) noexcept;
+
+  /// Replaces the planner. Sensors and tracker stay.
+  void change(vehicle::Planner planner) noexcept { planner_ = std::move(planner); }
+  /// Lets the next commands take effect this much (s) later than the settings say.
+  void set_extra_latency(double latency) noexcept { extra_latency_ = latency; }
+
+  const vehicle::Planner& planner() const noexcept { return planner_; }
+  /// The sensors of a real car; null where the planner gets exact measurements.
+  const HardwareModel* hardware() const noexcept { return hardware_ ? &*hardware_ : nullptr; }
+  /// The tracker with its figures; null with TrackingMode::off.
+  const TrackingMeter* tracking() const noexcept { return tracking_ ? &*tracking_ : nullptr; }
+
+ private:
+  const LapRules* rules_;
+  double latency_, extra_latency_ = 0;  ///< s
+  double steering_gain_;
+  std::size_t car_;
+  vehicle::Planner planner_;
+  std::optional<HardwareModel> hardware_;
+  std::optional<TrackingMeter> tracking_;
+  std::optional<tracking::Predictor> predictor_;  ///< with `tracking_`
+  Command applied_;                               ///< the command that the car executes now
+  /// Commands that were sent but not yet applied, each with the step of the world in which it takes effect.
+  std::vector<std::pair<std::int64_t, Command>> pending_;
+};
+
+/// The driver of a car: along the path, by the states of all cars, or with sensors and planner.
+class CarDriver {
+ public:
+  template <class Law>
+  CarDriver(std::size_t car, Law law) : car_(car), law_(std::move(law)) {}
+
+  /// Decides once per control period, unless the car has left the track.
+  PlannerUpdate decide(const sim::World& world);
+  /// The command for the next step of the world.
+  Command command(const sim::World& world);
+  /// To be called after each step of the world.
+  void moved(const sim::World& world) noexcept;
+  /// The driver with a planner, which this one must be.
+  PlanningDriver& planning() noexcept { return std::get<PlanningDriver>(law_); }
+  const PlanningDriver& planning() const noexcept { return std::get<PlanningDriver>(law_); }
+
+ private:
+  std::size_t car_;
+  std::variant<sim::PurePursuit, sim::RacingOpponent, PlanningDriver> law_;
+  Command decided_;  ///< of a RacingOpponent, until it decides again
+};
+
+/// Cars in the world of a lap or race.
+using CarDrive = Drive<sim::World, CarDriver>;
+
+/// The options of the world in which a lap is driven.
+sim::WorldOptions world_options(const LapSetup& setup);
+/// Steps of such a world from one command to the next.
+long long steps_per_command(const LapSetup& setup, const sim::WorldOptions& world) noexcept;
+/// The path of the environment with the speeds of the lap's settings.
+std::vector<maps::ReferencePoint> path_of(const LapSetup& setup);
+/// A planner as the driver of a lap describes it.
+vehicle::Planner make_planner(const LapSetup& setup);
+/// Whether the finish of a lap is the end of an open path.
+bool ends_with_path(const LapSetup& setup) noexcept;
+/// Throws std::invalid_argument as LapSetup::validate does, but for the options of drivers.
+void check_settings(const LapSetup& setup);
+/// The setup with which opponent `index`, which has a planner, drives in the world of a lap. Throws
+/// std::invalid_argument if it is too slow for its configuration.
+LapSetup setup_of_opponent(const LapSetup& setup, int index);
+
+/// Puts the cars of a lap at their starts, among obstacles at the poses returned in `obstacles`.
+CarDrive start_lap(const LapSetup& setup, std::uint64_t seed, std::vector<maps::Pose>& obstacles);
+
+}  // namespace slalom::evaluation

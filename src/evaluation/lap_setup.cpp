@@ -1,0 +1,165 @@
+#include "slalom/evaluation/lap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "evaluation/driver/car_driver.hpp"
+#include "evaluation/lap_rules.hpp"
+#include "slalom/core/option_access.hpp"
+#include "slalom/vehicle/course/course_check.hpp"
+
+namespace slalom::evaluation {
+namespace {
+
+constexpr double timeout_laps = 3;         // laps at the speed profile
+constexpr double finish_tolerance = 0.5;   // m before the end of an open course
+constexpr double least_speed_share = 0.5;  // of vehicle.speed_share
+
+void require(bool holds, const std::string& message) {
+  if (!holds) throw std::invalid_argument(message);
+}
+
+void check(const LapSettings& settings, const LapRules& rules, bool closed) {
+  require(settings.obstacles >= 0 && settings.obstacles <= 1000,
+          "obstacles: " + std::to_string(settings.obstacles) + " must be in [0, 1000]");
+  validate_options(settings, "world");
+  require(settings.threads >= 1 && settings.threads <= 1024,
+          "threads: " + std::to_string(settings.threads) + " must be in [1, 1024]");
+  rules.check(settings);
+  if (settings.hardware) {
+    validate_options(*settings.hardware, "hardware");
+    settings.hardware->wheels.validate();
+    settings.hardware->inertial.validate();
+    settings.hardware->localiser.validate();
+  }
+  require(settings.opponents == 0 || closed,
+          "world.opponents: " + std::to_string(settings.opponents) + " must be 0 on an open course");
+  require(settings.rounds == 1 || closed,
+          "world.rounds: " + std::to_string(settings.rounds) + " must be 1 on an open course");
+  const int others = std::max(settings.opponents, 1),
+            special = settings.blocking_opponents + settings.erratic_opponents + settings.planning_opponents;
+  require(settings.opponent_speed.fits(others), "world.opponent_speed: has " +
+                                                    std::to_string(settings.opponent_speed.values().size()) +
+                                                    " values, must have one, or one for each opponent");
+  require(special <= settings.opponents,
+          "world.blocking_opponents, world.erratic_opponents and world.planning_opponents: together " +
+              std::to_string(special) + ", must be at most world.opponents, " +
+              std::to_string(settings.opponents));
+}
+
+}  // namespace
+
+std::uint64_t solver_seed(std::uint64_t lap_seed, std::string_view method) {
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a of the method's name
+  for (const char c : method) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  std::uint64_t z = hash + lap_seed * 0x9e3779b97f4a7c15u;  // splitmix64
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+void check_settings(const LapSetup& setup) {
+  require(setup.environment != nullptr, "environment: must not be null");
+  const vehicle::Course& course = setup.environment->course;
+  check(setup.settings, rules_of(setup.environment->protocol), course.closed);
+  vehicle::check_start(course, setup.start());
+}
+
+void LapSetup::validate() const {
+  check_settings(*this);
+  make_planner(*this);
+  for (int i = 0; i < settings.opponents; ++i)
+    if (has_planner(settings, i)) setup_of_opponent(*this, i).validate();
+}
+
+maps::Pose LapSetup::start() const {
+  return settings.start.value_or(environment->start);
+}
+
+double LapSetup::control_period() const noexcept {
+  return rules_of(environment->protocol).control_period(driver.configuration);
+}
+
+double LapSetup::timeout() const {
+  if (environment->timeout > 0) return environment->timeout * settings.rounds;
+  const vehicle::Course& course = environment->course;
+  vehicle::Course capped;
+  capped.waypoints = course.waypoints;
+  capped.closed = course.closed;
+  for (vehicle::Waypoint& point : capped.waypoints) point.speed *= settings.speed_scale;
+  const vehicle::PlannerOptions& planner = driver.configuration.planner;
+  vehicle::cap_speed(capped, planner.max_speed);
+  if (planner.profile_friction > 0)
+    vehicle::make_feasible(capped, vehicle::grip_limits(planner.profile_friction, planner.max_speed,
+                                                        driver.configuration.vehicle.max_acceleration,
+                                                        driver.configuration.vehicle.max_deceleration));
+  return timeout_laps * vehicle::profile_time(capped) * settings.rounds;
+}
+
+bool ends_with_path(const LapSetup& setup) noexcept {
+  return !setup.environment->course.closed && rules_of(setup.environment->protocol).finishes_open_courses();
+}
+
+double LapSetup::length() const {
+  const sim::LapPath& path = *environment->track->lap_path();
+  if (!ends_with_path(*this)) return settings.rounds * path.length();
+  const maps::Pose from = start();
+  return environment->course.length - path.project({from.x, from.y}).arc - finish_tolerance;
+}
+
+sim::WorldOptions world_options(const LapSetup& setup) {
+  sim::WorldOptions options = setup.environment->world_options();
+  rules_of(setup.environment->protocol).configure(options, setup.settings, setup.driver.configuration);
+  if (const auto conditions = hardware_of(setup.settings)) HardwareModel::apply(*conditions, options);
+  return options;
+}
+
+long long steps_per_command(const LapSetup& setup, const sim::WorldOptions& world) noexcept {
+  return std::max<long long>(1, std::llround(setup.control_period() / world.time_step));
+}
+
+std::vector<maps::ReferencePoint> path_of(const LapSetup& setup) {
+  std::vector<maps::ReferencePoint> path = setup.environment->path;
+  for (maps::ReferencePoint& point : path) point.speed *= setup.settings.speed_scale;
+  return path;
+}
+
+vehicle::Planner make_planner(const LapSetup& setup) {
+  const vehicle::Configuration& configuration = setup.driver.configuration;
+  auto model = vehicle::make_vehicle_model(configuration.vehicle);
+  vehicle::PlannerOptions options = configuration.planner;
+  // A planner that estimates the car's motion must know the time between two updates. The paper's program
+  // does not: its planner assumes 0.025 s where its simulator takes steps of 0.01 s.
+  if (model->has_dynamics()) options.control_period = setup.control_period();
+  std::vector<maps::ReferencePoint> path = path_of(setup);
+  for (maps::ReferencePoint& point : path) point.speed *= setup.driver.speed_share;
+  return {options, std::move(model), path,
+          vehicle::make_solver(configuration, setup.driver.method, setup.settings.threads)};
+}
+
+LapSetup setup_of_opponent(const LapSetup& setup, int index) {
+  LapSetup own = setup;
+  if (setup.settings.opponent_planner) own.driver = *setup.settings.opponent_planner;
+  LapSettings& settings = own.settings;
+  settings.obstacles = settings.opponents = 0;
+  settings.blocking_opponents = settings.erratic_opponents = settings.planning_opponents = 0;
+  settings.opponent_speed = 1;
+  const double share = own.driver.speed_share = setup.settings.opponent_speed[index];
+  vehicle::Configuration& configuration = own.driver.configuration;
+  configuration.planner.control_period = setup.driver.configuration.planner.control_period;
+  if (vehicle::make_vehicle_model(configuration.vehicle)->traits().seeks_lap_time) {
+    auto& speed_share = configuration.vehicle.own_of<vehicle::SingleTrackOptions>().speed_share;
+    speed_share *= share;
+    if (speed_share < least_speed_share)
+      throw std::invalid_argument("world.opponent_speed: " + std::to_string(share) +
+                                  " is too slow for an opponent that plans with vehicle.objective lap_time: "
+                                  "times vehicle.speed_share it must be at least 0.5");
+  } else {
+    configuration.planner.max_speed *= share;
+    configuration.vehicle.reference_speed *= share;
+  }
+  return own;
+}
+
+}  // namespace slalom::evaluation

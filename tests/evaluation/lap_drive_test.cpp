@@ -1,0 +1,109 @@
+// A drive equals a lap without interventions; the same interventions give the same result; a copy goes on
+// alike.
+#include "slalom/evaluation/lap.hpp"
+
+#include <gtest/gtest.h>
+
+#include "slalom/vehicle/configuration/configuration.hpp"
+
+namespace slalom::evaluation {
+namespace {
+
+LapSetup lap(const std::string& method, const LapSettings& settings = {.obstacles = 2}) {
+  static const auto environment = load_environment(SLALOM_COURSES "/stag", Protocol::true_physics, {});
+  vehicle::Configuration configuration;
+  for (const char* each : {"svg_mppi", "mppi"}) {
+    vehicle::set_option(configuration, "samples", "256", each);
+    vehicle::set_option(configuration, "horizon", "14", each);
+    vehicle::set_option(configuration, "variance", "0.05", each);
+    vehicle::set_option(configuration, "input_min", "-0.4", each);
+    vehicle::set_option(configuration, "input_max", "0.4", each);
+  }
+  return {environment, {configuration, method}, settings};
+}
+
+TEST(LapDrive, FirstLapEqualsTheLapAlone) {
+  std::vector<double> steering, times;
+  run_lap(lap("mppi"), 3, [&](const ControlStep& tick) {
+    steering.push_back(tick.output.command.steer);
+    times.push_back(tick.time);
+  });
+  LapDrive drive(lap("mppi"), 3);
+  ASSERT_GT(steering.size(), 100u);
+  for (std::size_t i = 0; i < steering.size(); ++i) {
+    drive.step([&](const ControlStep& tick) {
+      ASSERT_EQ(tick.output.command.steer, steering[i]) << i;
+      ASSERT_EQ(tick.time, times[i]) << i;
+    });
+  }
+  EXPECT_GE(drive.world().laps(0)->laps(), 1);
+  const double there = drive.world().state(0).x;
+  for (int i = 0; i < 20; ++i) drive.step();
+  EXPECT_NE(drive.world().state(0).x, there) << "the car drives on";
+}
+
+/// A drive with an obstacle, another method and a late command on the way.
+sim::CarState with_interventions() {
+  LapDrive drive(lap("mppi"), 5);
+  for (int i = 0; i < 60; ++i) {
+    if (i == 20) drive.world().add_disc({{drive.world().state(0).x + 1, drive.world().state(0).y}, 0.1});
+    if (i == 40) drive.change_driver(lap("svg_mppi").driver);
+    drive.step({}, i == 30 ? 0.02 : 0);
+  }
+  EXPECT_EQ(drive.steps(), 60);
+  return drive.world().state(0);
+}
+
+TEST(LapDrive, SameInterventionsGiveTheSameDrive) {
+  const sim::CarState once = with_interventions();
+  EXPECT_TRUE(once == with_interventions());
+  LapDrive untouched(lap("mppi"), 5);
+  for (int i = 0; i < 60; ++i) untouched.step();
+  EXPECT_FALSE(once == untouched.world().state(0));
+}
+
+TEST(LapDrive, AnOpponentKeepsItsPlannerWhenTheControllerOfTheCarChanges) {
+  // Half the course ahead, where neither car sees the other.
+  const LapSettings settings{.opponents = 1, .planning_opponents = 1};
+  const auto states = [&](const char* later) {
+    LapDrive drive(lap("mppi", settings), 5);
+    for (int i = 0; i < 60; ++i) {
+      if (i == 20) drive.change_driver(lap(later).driver);
+      drive.step();
+    }
+    return std::pair(drive.world().state(0), drive.world().state(1));
+  };
+  const auto [car, opponent] = states("mppi");
+  const auto [other_car, same_opponent] = states("svg_mppi");
+  EXPECT_FALSE(car == other_car);
+  EXPECT_TRUE(opponent == same_opponent);
+  EXPECT_GT(opponent.speed, 0.5);
+}
+
+TEST(LapDrive, RejectsAnotherControlPeriod) {
+  LapDrive drive(lap("mppi"), 1);
+  Driver slower = lap("mppi").driver;
+  slower.configuration.planner.control_period = 0.05;
+  EXPECT_THROW(drive.change_driver(slower), std::invalid_argument);
+}
+
+TEST(LapDrive, PredictionFollowsThePlan) {
+  LapDrive drive(lap("svg_mppi"), 2);
+  int compared = 0;
+  for (int i = 0; i < 30; ++i) {
+    drive.step([&](const ControlStep& tick) {
+      if (!tick.output.solve) return;
+      std::vector<vehicle::PredictedState> states(tick.output.inputs.size() + 1);
+      const auto cost = tick.planner.predict(tick.output.inputs, states);
+      EXPECT_EQ(cost.state, tick.output.state_cost);
+      EXPECT_EQ(cost.collision, tick.output.collision_cost);
+      EXPECT_LE(cost.distance, cost.state);
+      EXPECT_EQ(states.back().pose.x, tick.output.predicted.back().pose.x);
+      ++compared;
+    });
+  }
+  EXPECT_GT(compared, 20);
+}
+
+}  // namespace
+}  // namespace slalom::evaluation
