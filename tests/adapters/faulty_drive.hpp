@@ -11,12 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "bridge/input_watch.hpp"
-#include "test/faulty_car.hpp"
+#include "node_computer.hpp"
 
-namespace slalom_bridge::testing {
+namespace slalom::nodes::testing {
 
-/// For the names of the tests.
+// The names of the tests.
 inline void PrintTo(const Fault& fault, std::ostream* out) {
   *out << fault.name;
 }
@@ -26,42 +25,27 @@ inline std::string name_of_test(const ::testing::TestParamInfo<Fault>& info) {
   return name;
 }
 
-constexpr double period = 0.025;  // s, of the car
-
-/// What a computer of a car sends.
-struct ComputerOutputs {
-  std::function<void(double steer, double speed)> drive;  ///< rad, m/s
-  std::function<void(const std::string& node, const std::string& line)> log;
-};
-
-/// A simulated car and its computer, with simulated clocks. A `Computer` is made from clocks and outputs. It
-/// has tick(), hear(OdometryMessage), hear(ScanMessage), hear_map(Grid), hear_other_command(), and
-/// begin(Fault) and end() for the faults that are its own.
-template <class Computer>
+/// A simulated car and its computer, with simulated clocks.
 class Drive {
  public:
-  template <class... Options>
-  explicit Drive(Options... options)
+  Drive()
       : car_(SLALOM_COURSES "/wren", 1, 3),
         computer_({[this] { return time_ + ahead_; }, [this] { return time_; }},
-                  {[this](double steer, double speed) {
-                     commands_.push_back({time_, steer, speed});
+                  {[this](const Command& command) {
+                     commands_.push_back({time_, command});
                    },
                    [this](const std::string& node, const std::string& line) {
                      said_.push_back({time_, node, line});
-                   }},
-                  options...) {}
+                   }}) {}
 
   void begin(const Fault& fault) {
-    fault_ = fault;
     car_.begin(fault);
     computer_.begin(fault);
     if (fault.of == "map") hear_map();
     if (fault.of == "clock") ahead_ += fault.value;
   }
   void end() {
-    const bool was_of_map = fault_ && fault_->of == "map";
-    fault_.reset();
+    const bool was_of_map = car_.has("map", "resolution");
     car_.end();
     computer_.end();
     if (was_of_map) hear_map();
@@ -81,10 +65,10 @@ class Drive {
     run_until(seconds, [] { return false; });
   }
 
-  Computer& computer() { return computer_; }
-  double time() const { return time_; }                  // s
-  double speed() const { return car_.reading().speed; }  // m/s
-  bool car_stands() const { return std::abs(car_.reading().speed) < 0.2; }
+  NodeComputer& computer() { return computer_; }
+  double time() const { return time_; }                           // s
+  double speed() const { return car_.car().odometry().speed(); }  // m/s
+  bool car_stands() const { return car_.stands(); }
   /// Whether the commands of the last 0.3 s drive, or stop.
   bool drives() const {
     return all_of_last(0.3, [](double speed) { return speed > 0.2; });
@@ -94,7 +78,7 @@ class Drive {
   }
   /// Whether commands to stop have lasted for 0.2 s since a time.
   bool has_stopped_since(double since) const {
-    const auto stopped = [&](const Command& c) { return c.time >= since && c.speed == 0; };
+    const auto stopped = [&](const Sent& c) { return c.time >= since && c.command.speed == 0; };
     const auto first = std::find_if(commands_.begin(), commands_.end(), stopped);
     const auto last = std::find_if(commands_.rbegin(), commands_.rend(), stopped);
     return first != commands_.end() && last->time - first->time > 0.2;
@@ -114,10 +98,10 @@ class Drive {
   }
 
   void expect_valid_commands() const {
-    for (const Command& c : commands_) {
-      ASSERT_TRUE(std::isfinite(c.steer) && std::isfinite(c.speed)) << "at " << c.time << " s";
-      ASSERT_LE(std::abs(c.steer), 0.4189 + 1e-9) << "at " << c.time << " s";
-      ASSERT_LE(std::abs(c.speed), 12) << "at " << c.time << " s";
+    for (const auto& [time, command] : commands_) {
+      ASSERT_TRUE(std::isfinite(command.steer) && std::isfinite(command.speed)) << "at " << time << " s";
+      ASSERT_LE(std::abs(command.steer), 0.4189 + 1e-9) << "at " << time << " s";
+      ASSERT_LE(std::abs(command.speed), 12) << "at " << time << " s";
     }
   }
   void expect_a_reason_per_second() const {
@@ -139,8 +123,9 @@ class Drive {
   }
 
  private:
-  struct Command {
-    double time, steer, speed;  // s, rad, m/s
+  struct Sent {
+    double time;  // s
+    Command command;
   };
   struct Line {
     double time;  // s
@@ -156,7 +141,7 @@ class Drive {
   bool all_of_last(double seconds, Holds&& holds) const {
     int count = 0;
     for (auto c = commands_.rbegin(); c != commands_.rend() && c->time >= time_ - seconds; ++c, ++count)
-      if (!holds(c->speed)) return false;
+      if (!holds(c->command.speed)) return false;
     return count > 3;
   }
 
@@ -166,25 +151,23 @@ class Drive {
       time_ += period / ticks;
       computer_.tick();
     }
-    if (fault_ && fault_->change == "twice") computer_.hear_other_command();
+    if (car_.has("planner", "twice")) computer_.hear_other_command();
     const bool commanded = !commands_.empty() && time_ - commands_.back().time < 0.2;
-    car_.step(commanded ? commands_.back().steer : 0, commanded ? commands_.back().speed : 0, time_ + ahead_);
+    car_.step(commanded ? commands_.back().command : Command{}, time_ + ahead_);
     for (const auto& m : car_.odometry) computer_.hear(m);
     for (const auto& m : car_.scans) computer_.hear(m);
   }
 
   double time_ = 1000, ahead_ = 0;  // s
-  std::vector<Command> commands_;
+  std::vector<Sent> commands_;
   std::vector<Line> said_;
-  std::optional<Fault> fault_;
   FaultyCar car_;
-  Computer computer_;
+  NodeComputer computer_;
 };
 
-/// A fault stops the car with a reason; then it drives on.
-template <class Computer>
-void expect_a_stop_with_a_reason(const Fault& fault) {
-  Drive<Computer> drive;
+/// Expects that a fault stops the car with a reason, and that it then drives on.
+inline void expect_a_stop_with_a_reason(const Fault& fault) {
+  Drive drive;
   ASSERT_TRUE(drive.run_until(30, [&] { return drive.drives(); })) << drive.log();
   drive.run(1.5);  // longer than a fault is remembered as the cause of others
   ASSERT_TRUE(drive.drives()) << drive.log();
@@ -206,4 +189,4 @@ void expect_a_stop_with_a_reason(const Fault& fault) {
   drive.expect_a_reason_per_second();
 }
 
-}  // namespace slalom_bridge::testing
+}  // namespace slalom::nodes::testing

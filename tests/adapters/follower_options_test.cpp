@@ -4,37 +4,37 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "bridge/follower/mppi_keys.hpp"
-#include "bridge/follower/path_follower.hpp"
+#include "logic/mppi_keys.hpp"
+#include "logic/path_follower.hpp"
 
-namespace slalom_bridge {
+namespace slalom::nodes {
 namespace {
 
 TEST(FollowerOptions, HaveTheNamesOfMppiThatMeanTheSame) {
   const PathFollower follower;
-  const std::vector<Option> options = follower.options();
-  const auto find = [&](std::string name) {
-    std::replace(name.begin(), name.end(), '.', '/');
-    const auto found =
-        std::find_if(options.begin(), options.end(), [&](const Option& each) { return each.name == name; });
+  const std::vector<NamedOption> options = follower.options();
+  const auto find = [&](const std::string& name) {
+    const auto found = std::find_if(options.begin(), options.end(),
+                                    [&](const NamedOption& each) { return each.name == name; });
     return found == options.end() ? nullptr : &*found;
   };
   for (const char* name : mppi_keys::taken) {
     ASSERT_NE(find(name), nullptr) << name;
-    EXPECT_FALSE(find(name)->help.empty()) << name;
+    EXPECT_FALSE(std::string(find(name)->entry.declaration.help).empty()) << name;
   }
-  for (const char* name : {"temperature", "ax_max", "look_ahead", "patience", "costs/progress",
-                           "svg_mppi/guides", "svg_mppi/seed"})
+  for (const char* name : {"temperature", "ax_max", "look_ahead", "patience", "costs.progress",
+                           "svg_mppi.guides", "svg_mppi.seed"})
     EXPECT_NE(find(name), nullptr) << name;
-  EXPECT_EQ(find("vx_max")->value, "0.5");
-  EXPECT_EQ(find("vx_max")->rule, "must be in [0.01, 20]");
-  EXPECT_EQ(find("time_steps")->value, "56");
-  EXPECT_EQ(find("motion_model")->choices, (std::vector<std::string>{"DiffDrive", "Omni", "Ackermann"}));
-  for (const char* name : {"base", "max_forward", "max_reverse", "horizon", "svg_mppi/horizon",
-                           "svg_mppi/variance", "svg_mppi/input_max"})
+  EXPECT_EQ(to_text(find("vx_max")->entry.value), "0.5");
+  EXPECT_EQ(range_rule(find("vx_max")->entry.declaration), "must be in [0.01, 20]");
+  EXPECT_EQ(to_text(find("time_steps")->entry.value), "56");
+  EXPECT_EQ(find("motion_model")->entry.choices,
+            (std::vector<std::string>{"DiffDrive", "Omni", "Ackermann"}));
+  for (const char* name : {"base", "max_forward", "max_reverse", "horizon", "svg_mppi.horizon",
+                           "svg_mppi.variance", "svg_mppi.input_max"})
     EXPECT_EQ(find(name), nullptr) << name << " follows from others or has another name";
   std::vector<std::string> names;
-  for (const Option& each : options) names.push_back(each.name);
+  for (const NamedOption& each : options) names.push_back(each.name);
   std::sort(names.begin(), names.end());
   EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end()) << "two of the same name";
 }
@@ -50,8 +50,8 @@ TEST(FollowerOptions, AreRefusedWithTheirRuleAndThenNothingChanges) {
     return "";
   };
   const auto value = [&](const std::string& name) {
-    for (const Option& each : follower.options())
-      if (each.name == name) return each.value;
+    for (const NamedOption& each : follower.options())
+      if (each.name == name) return to_text(each.entry.value);
     return std::string();
   };
   EXPECT_EQ(why({{"time_steps", "30"}, {"vx_max", "-3"}}), "vx_max: '-3' must be in [0.01, 20]");
@@ -60,12 +60,12 @@ TEST(FollowerOptions, AreRefusedWithTheirRuleAndThenNothingChanges) {
             "motion_model: 'boat' must be one of DiffDrive, Omni, Ackermann");
   EXPECT_EQ(why({{"vx_min", "0.1"}}), "vx_min: '0.1' must be in [-20, 0]");
   EXPECT_EQ(why({{"time_step", "30"}}), "time_step: unknown option, did you mean 'time_steps'?");
-  EXPECT_NE(why({{"costs/none", "1"}}), "");
-  EXPECT_EQ(why({{"time_steps", "30"}, {"costs/path", "3"}, {"svg_mppi/guides", "2"}}), "");
+  EXPECT_NE(why({{"costs.none", "1"}}), "");
+  EXPECT_EQ(why({{"time_steps", "30"}, {"costs.path", "3"}, {"svg_mppi.guides", "2"}}), "");
   EXPECT_EQ(value("time_steps"), "30");
-  EXPECT_EQ(value("costs/path"), "3");
+  EXPECT_EQ(value("costs.path"), "3");
   EXPECT_THROW(PathFollower("none"), std::exception);
 }
 
 }  // namespace
-}  // namespace slalom_bridge
+}  // namespace slalom::nodes

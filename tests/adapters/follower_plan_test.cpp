@@ -1,5 +1,5 @@
-// Where a plan lies in the frame of a costmap, and which plans are news.
-#include "bridge/follower/follower_plan.hpp"
+// The placement of a plan in the frame of a costmap, and plans that are news.
+#include "logic/follower_plan.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace slalom_bridge {
+namespace slalom::nodes {
 namespace {
 
 /// A plan along the x axis of its frame, with a pose every 0.1 m.
-std::vector<Pose> along_x(double from, double to, double y = 0) {
-  std::vector<Pose> plan;
+std::vector<maps::Pose> along_x(double from, double to, double y = 0) {
+  std::vector<maps::Pose> plan;
   for (int i = 0; from + 0.1 * i < to + 1e-9; ++i) plan.push_back({from + 0.1 * i, y, 0});
   return plan;
 }
@@ -55,8 +55,8 @@ TEST(FollowerPlan, BeginsAtTheRobot) {
 
 TEST(FollowerPlan, DoesNotSkipALoopThatComesBackToTheRobot) {
   FollowerPlan plan;
-  std::vector<Pose> loop = along_x(0, 4);
-  for (const Pose& pose : along_x(0, 4, 1)) loop.push_back({4 - pose.x, 1, 0});
+  std::vector<maps::Pose> loop = along_x(0, 4);
+  for (const maps::Pose& pose : along_x(0, 4, 1)) loop.push_back({4 - pose.x, 1, 0});
   for (int i = 9; i >= 1; --i) loop.push_back({0, 0.1 * i, 0});
   loop.push_back({0, 0.02, 0});
   plan.use(loop, "map");
@@ -69,18 +69,18 @@ TEST(FollowerPlan, OfTheSameWayToTheSameGoalIsNoNews) {
   FollowerPlan plan;
   plan.use(along_x(0, 10), "map");
   plan.place({0, 0, 0}, {0, 0, 0});
-  const auto is_news = [&](const std::vector<Pose>& other, const std::string& frame) {
+  const auto is_news = [&](const std::vector<maps::Pose>& other, const std::string& frame) {
     plan.use(other, frame);
     return plan.place({0, 0, 0}, {0, 0, 0}) != nullptr;
   };
-  std::vector<Pose> from_here = along_x(2, 10, 0.02);
+  std::vector<maps::Pose> from_here = along_x(2, 10, 0.02);
   from_here.back().y = 0;
   EXPECT_FALSE(is_news(from_here, "map")) << "from where the robot is now";
   EXPECT_TRUE(is_news(along_x(2, 9), "map")) << "another goal";
   EXPECT_FALSE(is_news(along_x(3, 9), "map"));
   EXPECT_TRUE(is_news(along_x(3, 9, 0.3), "map")) << "another way";
   EXPECT_TRUE(is_news(along_x(3, 9, 0.3), "odom")) << "another frame";
-  std::vector<Pose> turned = along_x(3, 9, 0.3);
+  std::vector<maps::Pose> turned = along_x(3, 9, 0.3);
   turned.back().yaw = 1;
   EXPECT_TRUE(is_news(turned, "odom")) << "another heading at the goal";
 }
@@ -99,4 +99,4 @@ TEST(FollowerPlan, WithoutPosesOrWithOneThatIsNotFiniteChangesNothing) {
 }
 
 }  // namespace
-}  // namespace slalom_bridge
+}  // namespace slalom::nodes

@@ -1,14 +1,15 @@
 // The checks that every driving node makes of its inputs, with clocks that the tests set.
-#include "bridge/input_watch.hpp"
+#include "logic/input_watch.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <vector>
 
-#include "bridge/pose_trust.hpp"
-#include "bridge/throttled_log.hpp"
+#include "logic/pose_trust.hpp"
+#include "logic/reports.hpp"
 
-namespace slalom_bridge {
+namespace slalom::nodes {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -101,7 +102,8 @@ TEST_F(InputWatchTest, APoseThatTheCarCannotHaveReachedIsAFault) {
 
 TEST_F(InputWatchTest, APoseThatIsNotFiniteIsAFaultAndIsNotComparedWith) {
   EXPECT_TRUE(watch_.moves_like_a_car({1, 2, 3}, now_));
-  for (const Pose& pose : {Pose{unknown, 2, 3}, Pose{1, unknown, 3}, Pose{1, 2, unknown}}) {
+  for (const maps::Pose& pose :
+       {maps::Pose{unknown, 2, 3}, maps::Pose{1, unknown, 3}, maps::Pose{1, 2, unknown}}) {
     EXPECT_FALSE(watch_.moves_like_a_car(pose, now_ + 0.01));
     EXPECT_EQ(watch_.fault(), "pose is not finite");
   }
@@ -110,7 +112,8 @@ TEST_F(InputWatchTest, APoseThatIsNotFiniteIsAFaultAndIsNotComparedWith) {
 
 TEST(CountFits, ComparesTheNumberOfRangesWithTheAngles) {
   const auto scan = [](std::size_t count, double increment) {
-    return Scan{nullptr, count, -2, increment, 0, 10};
+    static const std::vector<float> ranges(500);
+    return maps::LaserScanView{{ranges.data(), count}, -2, increment, 0, 10};
   };
   EXPECT_TRUE(count_fits(scan(401, 0.01), 2));
   EXPECT_TRUE(count_fits(scan(400, 0.01), 2)) << "drivers differ in whether they count the last beam";
@@ -120,10 +123,9 @@ TEST(CountFits, ComparesTheNumberOfRangesWithTheAngles) {
   EXPECT_FALSE(count_fits(scan(401, 0.01), unknown));
 }
 
-Estimate estimate(bool usable, double health) {
-  Estimate made;
-  made.usable = usable;
-  made.status = usable ? "ok" : "odometry_jump";
+vehicle::LocaliserOutput estimate(bool usable, double health) {
+  vehicle::LocaliserOutput made;
+  made.status = usable ? vehicle::LocaliserStatus::ok : vehicle::LocaliserStatus::odometry_jump;
   made.health = health;
   return made;
 }
@@ -146,6 +148,18 @@ TEST(PoseTrust, ComesBackAfterConsecutiveGoodScans) {
     EXPECT_EQ(trust.update(estimate(true, 0.6)), scan == 18) << "mediocre, scan " << scan;
 }
 
+TEST(RecentValuesTest, PercentilesAreThoseOfTheSortedValues) {
+  RecentValues values;
+  EXPECT_EQ(values.percentile(0.5), 0);
+  for (int i = 100; i >= 1; --i) values.add(i);
+  EXPECT_EQ(values.percentile(0.5), 50);
+  EXPECT_EQ(values.percentile(0.99), 99);
+  EXPECT_EQ(values.percentile(0), 1);
+  EXPECT_EQ(values.percentile(1), 100);
+  for (int i = 0; i < 400; ++i) values.add(7);
+  EXPECT_EQ(values.percentile(0.99), 7) << "only the latest count";
+}
+
 TEST(ThrottledLog, WritesAtMostOneMessagePerSecondAndTheLastOneThatWaits) {
   double steady = 7;
   std::vector<std::string> written;
@@ -162,4 +176,4 @@ TEST(ThrottledLog, WritesAtMostOneMessagePerSecondAndTheLastOneThatWaits) {
 }
 
 }  // namespace
-}  // namespace slalom_bridge
+}  // namespace slalom::nodes

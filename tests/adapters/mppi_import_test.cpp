@@ -1,19 +1,18 @@
-// The importer of parameter files for nav2's MPPI controller: what becomes of each key, and what it refuses.
-#include "bridge/follower/mppi_import.hpp"
+// The importer of parameter files for nav2's MPPI controller: the fate of each key, and what it refuses.
+#include "logic/mppi_import.hpp"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "bridge/follower/path_follower.hpp"
+#include "logic/path_follower.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_words.hpp"
 
-namespace slalom_bridge {
+namespace slalom::nodes {
 namespace {
 
-using slalom::expect_error_with;
-using slalom::testing::ScopedFolder;
+using testing::ScopedFolder;
 
 /// A file with these lines in the section of the controller.
 std::string with_lines(const ScopedFolder& folder, const std::string& lines) {
@@ -160,4 +159,4 @@ TEST(MppiImport, RefusesBadInputWithFileLineKeyAndRule) {
 }
 
 }  // namespace
-}  // namespace slalom_bridge
+}  // namespace slalom::nodes

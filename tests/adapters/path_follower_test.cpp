@@ -1,5 +1,5 @@
-// What a controller of nav2 promises, played through without ROS: costs of cells, plans, limits and refusals.
-#include "bridge/follower/path_follower.hpp"
+// A controller of nav2 without ROS: costs of cells, plans, limits and refusals.
+#include "logic/path_follower.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace slalom_bridge {
+namespace slalom::nodes {
 namespace {
 
 using Problem = FollowerAnswer::Problem;
@@ -31,7 +31,7 @@ struct Room {
       }
   }
   /// Whether an obstacle is nearer than a distance (m).
-  bool is_obstacle_within(const Pose& pose, double distance) const {
+  bool is_obstacle_within(const maps::Pose& pose, double distance) const {
     for (int row = 0; row < height; ++row)
       for (int column = 0; column < width; ++column)
         if (costs[static_cast<std::size_t>(row * width + column)] == lethal &&
@@ -46,8 +46,8 @@ struct Room {
   std::vector<unsigned char> costs;
 };
 
-std::vector<Pose> line(double x0, double y0, double x1, double y1) {
-  std::vector<Pose> plan;
+std::vector<maps::Pose> line(double x0, double y0, double x1, double y1) {
+  std::vector<maps::Pose> plan;
   const double yaw = std::atan2(y1 - y0, x1 - x0);
   for (int i = 0; i <= 100; ++i) plan.push_back({x0 + i * (x1 - x0) / 100, y0 + i * (y1 - y0) / 100, yaw});
   return plan;
@@ -57,15 +57,15 @@ std::vector<Pose> line(double x0, double y0, double x1, double y1) {
 struct Drive {
   explicit Drive(const std::string& method = "svg_mppi") : follower(method) {
     follower.change({{"batch_size", "256"}});
-    if (method == "svg_mppi") follower.change({{"svg_mppi/guide_iterations", "2"}});
-    follower.use_footprint({{0.2, 0.2, 0}, {-0.2, 0.2, 0}, {-0.2, -0.2, 0}, {0.2, -0.2, 0}});
+    if (method == "svg_mppi") follower.change({{"svg_mppi.guide_iterations", "2"}});
+    follower.use_footprint({{0.2, 0.2}, {-0.2, 0.2}, {-0.2, -0.2}, {0.2, -0.2}});
   }
   FollowerAnswer step() {
     follower.use_costmap(room.grid());
     input.time += period;
     const FollowerAnswer answer = follower.update(input);
-    const Velocity& v = answer.command;
-    Pose& pose = input.pose;
+    const navigation::Velocity& v = answer.command;
+    maps::Pose& pose = input.pose;
     const double c = std::cos(pose.yaw), sine = std::sin(pose.yaw);
     pose = {pose.x + period * (c * v.forward - sine * v.left),
             pose.y + period * (sine * v.forward + c * v.left), pose.yaw + period * v.turn};
@@ -75,7 +75,7 @@ struct Drive {
     return answer;
   }
   /// Drives until there is a problem, the robot is so near to a point, or for so long (s).
-  FollowerAnswer drive(double duration, const Pose& to, double near = 0.15) {
+  FollowerAnswer drive(double duration, const maps::Pose& to, double near = 0.15) {
     FollowerAnswer answer;
     const double end = input.time + duration;
     while (input.time < end && answer.problem == Problem::none &&
@@ -178,7 +178,7 @@ TEST(PathFollower, KeepsToSpeedLimitsInPercentAndInMetresPerSecond) {
 }
 
 TEST(PathFollower, StandsOnlyWhereTheGoalCheckerIsContent) {
-  const auto status_at = [](const Pose& pose, const GoalTolerance& tolerance) {
+  const auto status_at = [](const maps::Pose& pose, const GoalTolerance& tolerance) {
     Drive drive;
     drive.input.pose = pose;
     drive.input.tolerance = tolerance;
@@ -209,7 +209,7 @@ TEST(PathFollower, RefusesWithoutAPlan) {
 TEST(PathFollower, RefusesAPoseThatIsNotFiniteOrOffTheCostmap) {
   Drive drive;
   drive.follower.use_plan(line(1, 2, 7, 2), "map");
-  const Pose pose = drive.input.pose;
+  const maps::Pose pose = drive.input.pose;
   drive.input.pose.x = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(drive.step().problem, Problem::no_control);
   drive.input.pose = {-3, 2, 0};
@@ -247,7 +247,7 @@ TEST(PathFollower, KeepsItsDetourWhenThePlannerPlansTheSameWayAgain) {
   ASSERT_EQ(drive.step().status, "detour");
   const auto aside = [&] {
     double most = 0;
-    for (const Pose& pose : drive.follower.path()) most = std::max(most, std::abs(pose.y - 2));
+    for (const maps::Pose& pose : drive.follower.path()) most = std::max(most, std::abs(pose.y - 2));
     return most;
   };
   EXPECT_GT(aside(), 0.3);
@@ -280,7 +280,7 @@ TEST(PathFollower, PlansFromItsLastCommandInOpenLoop) {
 TEST(PathFollower, RefusesFootprintsAndCostmapsThatAreNone) {
   Drive drive;
   EXPECT_THROW(drive.follower.use_footprint({}), std::invalid_argument);
-  EXPECT_THROW(drive.follower.use_footprint({{0.1, 0, 0}, {0.2, 0, 0}, {0.1, 0.1, 0}}), std::invalid_argument)
+  EXPECT_THROW(drive.follower.use_footprint({{0.1, 0}, {0.2, 0}, {0.1, 0.1}}), std::invalid_argument)
       << "the robot's origin lies outside";
   const unsigned char cells[4] = {};
   EXPECT_THROW(drive.follower.use_costmap({2, 2, 0.05, 0, 0, cells}), std::invalid_argument);
@@ -290,7 +290,7 @@ TEST(PathFollower, RefusesFootprintsAndCostmapsThatAreNone) {
   drive.room.fill(4, 0, 4.2, 1.5);
   drive.room.fill(4, 2.5, 4.2, 4);
   EXPECT_EQ(drive.drive(0.5, {7, 2, 0}).status, "following");
-  drive.follower.use_footprint({{0.7, 0.7, 0}, {-0.7, 0.7, 0}, {-0.7, -0.7, 0}, {0.7, -0.7, 0}});
+  drive.follower.use_footprint({{0.7, 0.7}, {-0.7, 0.7}, {-0.7, -0.7}, {0.7, -0.7}});
   EXPECT_EQ(drive.drive(1, {7, 2, 0}).problem, Problem::no_control);
 }
 
@@ -305,4 +305,4 @@ TEST(PathFollower, DrivesEveryBaseWithOtherMethods) {
 }
 
 }  // namespace
-}  // namespace slalom_bridge
+}  // namespace slalom::nodes

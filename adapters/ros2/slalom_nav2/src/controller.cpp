@@ -14,11 +14,12 @@
 namespace slalom_nav2 {
 namespace {
 
-using slalom_bridge::FollowerAnswer;
-using slalom_bridge::GoalTolerance;
-using slalom_bridge::Pose;
+using slalom::maps::Pose;
+using slalom::nodes::FollowerAnswer;
+using slalom::nodes::GoalTolerance;
 
-/// Goal checkers set what they do not measure to a value that no tolerance has, or to 0.
+/// Returns a tolerance of a goal checker, or 0 if it does not measure that: then it tells 0, or a value that
+/// no tolerance has.
 double tolerance(double told) {
   return std::isfinite(told) && told > 0 && told < 1e6 ? told : 0;
 }
@@ -28,12 +29,6 @@ GoalTolerance tolerance_of(nav2_core::GoalChecker* checker) {
   if (checker == nullptr || !checker->getTolerances(pose, velocity)) return {};
   return {tolerance(std::min(pose.position.x, pose.position.y)),
           tolerance(slalom_ros::yaw_of(pose.orientation)), true};
-}
-
-/// A pose given in a frame, in the frame in which that frame is given.
-Pose composed(const Pose& frame, const Pose& pose) {
-  const double c = std::cos(frame.yaw), s = std::sin(frame.yaw);
-  return {frame.x + c * pose.x - s * pose.y, frame.y + s * pose.x + c * pose.y, frame.yaw + pose.yaw};
 }
 
 nav_msgs::msg::Path message_of(const std::vector<Pose>& poses, const std::string& frame,
@@ -69,14 +64,14 @@ void Controller::configure(const rclcpp_lifecycle::LifecycleNode::WeakPtr& paren
     node->declare_parameter<std::string>(prefix + "method", "svg_mppi", descriptor);
   }
   follower_ =
-      std::make_unique<slalom_bridge::PathFollower>(node->get_parameter(prefix + "method").as_string());
+      std::make_unique<slalom::nodes::PathFollower>(node->get_parameter(prefix + "method").as_string());
   parameters_ = std::make_unique<slalom_ros::OptionParameters>(
       *node,
       [this] {
         const std::lock_guard<std::mutex> lock(mutex_);
         return follower_->options();
       },
-      [this](const slalom_bridge::Changes& changes) {
+      [this](const slalom::nodes::Changes& changes) {
         const std::lock_guard<std::mutex> lock(mutex_);
         follower_->change(changes);
       },
@@ -88,7 +83,7 @@ void Controller::configure(const rclcpp_lifecycle::LifecycleNode::WeakPtr& paren
 }
 
 void Controller::cleanup() {
-  // First what calls back, without the lock that it takes.
+  // The parameters call back and take the lock, so they end first, without it.
   parameters_.reset();
   const std::lock_guard<std::mutex> lock(mutex_);
   follower_.reset();
@@ -122,7 +117,7 @@ void Controller::setPlan(const nav_msgs::msg::Path& plan) {
   plan_frame_ = plan.header.frame_id;
 }
 
-/// The pose of a frame in that of the costmap. Throws nav2_core::ControllerTFError.
+/// Returns the pose of a frame in the frame of the costmap. Throws nav2_core::ControllerTFError.
 Pose Controller::frame_in_costmap(const std::string& frame, const rclcpp::Time& time) const {
   const std::string costmap = costmap_->getGlobalFrameID();
   if (frame == costmap || frame.empty()) return {};
@@ -139,8 +134,8 @@ Pose Controller::frame_in_costmap(const std::string& frame, const rclcpp::Time& 
 
 void Controller::read_costmap() try {
   const std::vector<geometry_msgs::msg::Point> footprint = costmap_->getRobotFootprint();
-  std::vector<Pose> vertices;
-  for (const auto& point : footprint) vertices.push_back({point.x, point.y, 0});
+  std::vector<slalom::maps::Point> vertices;
+  for (const auto& point : footprint) vertices.push_back({point.x, point.y});
   follower_->use_footprint(vertices);
 
   nav2_costmap_2d::Costmap2D& costmap = *costmap_->getCostmap();
@@ -157,9 +152,9 @@ geometry_msgs::msg::TwistStamped Controller::computeVelocityCommands(
     nav2_core::GoalChecker* goal_checker) {
   const std::lock_guard<std::mutex> lock(mutex_);
   read_costmap();
-  slalom_bridge::FollowerInput input;
-  input.pose =
-      composed(frame_in_costmap(pose.header.frame_id, pose.header.stamp), slalom_ros::pose_of(pose.pose));
+  slalom::nodes::FollowerInput input;
+  input.pose = slalom::nodes::composed(frame_in_costmap(pose.header.frame_id, pose.header.stamp),
+                                       slalom_ros::pose_of(pose.pose));
   input.plan_frame = frame_in_costmap(plan_frame_, pose.header.stamp);
   input.velocity = {velocity.linear.x, velocity.linear.y, velocity.angular.z};
   input.time = clock_->now().seconds();

@@ -6,14 +6,14 @@
 
 #include <nav2_core/controller.hpp>
 
-#include "bridge/follower/path_follower.hpp"
+#include "logic/path_follower.hpp"
 #include "option_parameters.hpp"
 
 namespace slalom_nav2 {
 
-/// A controller of nav2's controller server that drives with slalom::navigation. What it does is in the
-/// bridge (slalom_bridge::PathFollower); this has messages, frames and parameters. The server may call its
-/// functions and change its parameters from several threads.
+/// A controller of nav2's controller server that drives with slalom::navigation. Its logic is in
+/// slalom::nodes::PathFollower; this has messages, frames and parameters. The server may call its functions
+/// and change its parameters from several threads.
 class Controller : public nav2_core::Controller {
  public:
   /// Throws std::exception if a parameter or the footprint breaks a rule.
@@ -40,18 +40,18 @@ class Controller : public nav2_core::Controller {
  private:
   using PathPublisher = rclcpp_lifecycle::LifecyclePublisher<nav_msgs::msg::Path>;
 
-  slalom_bridge::Pose frame_in_costmap(const std::string& frame, const rclcpp::Time& time) const;
+  slalom::maps::Pose frame_in_costmap(const std::string& frame, const rclcpp::Time& time) const;
   void read_costmap();
   void publish(const rclcpp::Time& time);
 
-  // Of the node, which owns the controller.
+  // Clock and logger of the node, which owns the controller.
   rclcpp::Clock::SharedPtr clock_;
   rclcpp::Logger logger_ = rclcpp::get_logger("slalom_nav2");
 
   std::shared_ptr<tf2_ros::Buffer> transforms_;
   std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap_;
-  std::mutex mutex_;  ///< of the follower
-  std::unique_ptr<slalom_bridge::PathFollower> follower_;
+  std::mutex mutex_;  ///< guards the follower
+  std::unique_ptr<slalom::nodes::PathFollower> follower_;
   std::unique_ptr<slalom_ros::OptionParameters> parameters_;
   std::shared_ptr<PathPublisher> predicted_out_, path_out_;
   std::string plan_frame_;

@@ -10,12 +10,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "bridge/follower/mppi_import.hpp"
+#include "logic/mppi_import.hpp"
 
 namespace {
 
-using slalom_bridge::ImportedKey;
-using slalom_bridge::ImportedSection;
+using slalom::nodes::ImportedKey;
+using slalom::nodes::ImportedSection;
 
 std::string line_of(const std::string& file, const ImportedSection& section, const ImportedKey& key) {
   std::string text = file + ":" + std::to_string(key.line) + ": " + section.name + "." + key.key + ": " +
@@ -27,7 +27,7 @@ std::string line_of(const std::string& file, const ImportedSection& section, con
 
 void run(const std::string& file, const std::string& output) {
   std::string yaml;
-  for (const ImportedSection& section : slalom_bridge::import_mppi(file)) {
+  for (const ImportedSection& section : slalom::nodes::import_mppi(file)) {
     yaml += section.yaml;
     for (const ImportedKey& key : section.keys)
       std::fprintf(stderr, "%s\n", line_of(file, section, key).c_str());

@@ -1,7 +1,7 @@
 // nav2's own controller server loads the controller and drives a simulated robot, with a local costmap that
 // moves with it: to a goal round an obstacle, to a goal behind a wall, and until it is cancelled.
 //
-// usage: controller_test FILE                            a parameter file to write
+// usage: controller_test FILE     FILE is the parameter file that it writes
 #include <exception>
 #include <fstream>
 

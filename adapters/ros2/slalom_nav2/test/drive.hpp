@@ -20,7 +20,7 @@
 
 namespace slalom_nav2_test {
 
-using slalom_bridge::Pose;
+using slalom::maps::Pose;
 
 /// An axis-parallel obstacle, m.
 struct Box {

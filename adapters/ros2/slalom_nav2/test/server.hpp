@@ -23,7 +23,7 @@
 
 namespace slalom_nav2_test {
 
-using slalom_bridge::Pose;
+using slalom::maps::Pose;
 
 inline void expect(bool holds, const std::string& what) {
   if (!holds) throw std::runtime_error("FAILED: " + what);

@@ -12,14 +12,17 @@
 #include <nav_msgs/msg/occupancy_grid.hpp>
 #include <sensor_msgs/msg/laser_scan.hpp>
 
-#include "bridge/bridge.hpp"
-#include "bridge/frames.hpp"
+#include "logic/transforms.hpp"
+#include "slalom/maps/laser_scan.hpp"
+#include "slalom/maps/occupancy_grid.hpp"
 
-/// Conversions between the messages of ROS 2 and the structs of the bridge.
+/// Conversions between the messages of ROS 2 and the structs of the library.
 namespace slalom_ros {
 
-using slalom_bridge::Pose;
-using slalom_bridge::Stamp;
+namespace maps = slalom::maps;
+namespace nodes = slalom::nodes;
+using maps::Pose;
+using nodes::Stamp;
 
 constexpr std::int64_t second = 1'000'000'000;  ///< ns
 
@@ -60,44 +63,49 @@ inline void set_transform(geometry_msgs::msg::TransformStamped& m, const Pose& p
   m.transform.rotation = quaternion(p.yaw);
 }
 
-inline slalom_bridge::Scan scan_of(const sensor_msgs::msg::LaserScan& s) {
-  return {s.ranges.data(),
-          s.ranges.size(),
-          static_cast<double>(s.angle_min),
-          static_cast<double>(s.angle_increment),
-          static_cast<double>(s.range_min),
-          static_cast<double>(s.range_max)};
+inline maps::LaserScanView scan_of(const sensor_msgs::msg::LaserScan& s) {
+  return {s.ranges, static_cast<double>(s.angle_min), static_cast<double>(s.angle_increment),
+          static_cast<double>(s.range_min), static_cast<double>(s.range_max)};
 }
-inline slalom_bridge::Grid grid_of(const nav_msgs::msg::OccupancyGrid& m) {
-  return {static_cast<int>(m.info.width), static_cast<int>(m.info.height),
-          static_cast<double>(m.info.resolution), pose_of(m.info.origin), m.data};
+inline maps::OccupancyGrid grid_of(const nav_msgs::msg::OccupancyGrid& m) {
+  using maps::Occupancy;
+  maps::OccupancyGrid grid{static_cast<int>(m.info.width),
+                           static_cast<int>(m.info.height),
+                           static_cast<double>(m.info.resolution),
+                           pose_of(m.info.origin),
+                           {}};
+  for (const std::int8_t cell : m.data)
+    grid.cells.push_back(cell < 0 ? Occupancy::unknown : cell >= 50 ? Occupancy::occupied : Occupancy::free);
+  return grid;
 }
-/// Without a stamp.
-inline nav_msgs::msg::OccupancyGrid message_of(const slalom_bridge::Grid& g, const std::string& frame) {
+/// The message has no stamp.
+inline nav_msgs::msg::OccupancyGrid message_of(const maps::OccupancyGrid& g, const std::string& frame) {
+  using maps::Occupancy;
   nav_msgs::msg::OccupancyGrid m;
   m.header.frame_id = frame;
   m.info.width = static_cast<std::uint32_t>(g.width);
   m.info.height = static_cast<std::uint32_t>(g.height);
   m.info.resolution = static_cast<float>(g.resolution);
   m.info.origin = message_of(g.origin);
-  m.data = g.cells;
+  for (const Occupancy cell : g.cells)
+    m.data.push_back(cell == Occupancy::unknown ? -1 : cell == Occupancy::occupied ? 100 : 0);
   return m;
 }
 
-inline slalom_bridge::Mount mount_of(const geometry_msgs::msg::Transform& t) {
-  return slalom_bridge::mount_of(t.translation.x, t.translation.y, t.translation.z, t.rotation.x,
-                                 t.rotation.y, t.rotation.z, t.rotation.w);
+inline nodes::Mount mount_of(const geometry_msgs::msg::Transform& t) {
+  return nodes::mount_of(t.translation.x, t.translation.y, t.translation.z, t.rotation.x, t.rotation.y,
+                         t.rotation.z, t.rotation.w);
 }
 
 /// The transforms in a buffer, which must remain valid.
-inline slalom_bridge::Frames frames_of(tf2::BufferCore& buffer, const std::string& map,
+inline nodes::Transforms transforms_of(tf2::BufferCore& buffer, const std::string& map,
                                        const std::string& base) {
   const auto at = [](Stamp stamp) { return tf2::TimePoint(std::chrono::nanoseconds(stamp)); };
   return {[&buffer, map, base, at](Stamp stamp) { return buffer.canTransform(map, base, at(stamp)); },
           [&buffer, map, base, at](Stamp stamp) {
             return mount_of(buffer.lookupTransform(map, base, at(stamp)).transform).planar();
           },
-          [&buffer, base](const std::string& frame) -> slalom_bridge::Mount {
+          [&buffer, base](const std::string& frame) -> nodes::Mount {
             if (frame.empty() || frame == base) return {};
             return mount_of(buffer.lookupTransform(base, frame, tf2::TimePointZero).transform);
           },

@@ -1,6 +1,6 @@
 // Localisation: computes the transform from map to odom, `pf/pose/odom` and `particlecloud` from `scan`,
-// `odom` and a map. The core of the bridge does the work. docs/on-the-car.md has topics, frames, parameters
-// and faults.
+// `odom` and a map. LocaliserCore does the work. docs/on-the-car.md has topics, frames, parameters and
+// faults.
 #include <ctime>
 #include <limits>
 #include <optional>
@@ -13,9 +13,8 @@
 #include <tf2_msgs/msg/tf_message.hpp>
 #include <tf2_ros/qos.hpp>
 
-#include "bridge/known_place.hpp"
-#include "bridge/localiser_core.hpp"
 #include "conversions.hpp"
+#include "logic/localiser_core.hpp"
 #include "managed_node.hpp"
 #include "option_parameters.hpp"
 
@@ -25,10 +24,10 @@ using geometry_msgs::msg::PoseArray;
 using geometry_msgs::msg::PoseWithCovarianceStamped;
 using nav_msgs::msg::OccupancyGrid;
 using nav_msgs::msg::Odometry;
+using nodes::LocaliserCore;
 using rclcpp_lifecycle::LifecyclePublisher;
 using sensor_msgs::msg::LaserScan;
-using slalom_bridge::Estimate;
-using slalom_bridge::LocaliserCore;
+using slalom::vehicle::LocaliserOutput;
 using tf2_msgs::msg::TFMessage;
 
 class LocaliserNode : public ManagedNode {
@@ -69,21 +68,22 @@ class LocaliserNode : public ManagedNode {
     tf_out_ = create_publisher<TFMessage>("/tf", tf2_ros::DynamicBroadcasterQoS());
     LocaliserCore::Settings settings = settings_;
     settings.start = told_;
-    settings.earlier = slalom_bridge::read_place(pose_file_, wall_time());
-    core_.emplace(
-        settings, clocks(), frames_of(buffer_, map_, base_),
-        LocaliserCore::Outputs{
-            [this](const Pose& base, const Estimate& estimate, Stamp scan) { publish(base, estimate, scan); },
-            [this](const Pose& odometry_frame, Stamp stamp) {
-              set_transform(transforms_.transforms[0], odometry_frame, stamp);
-              tf_out_->publish(transforms_);
-            },
-            [this](const slalom_bridge::Grid& map) { course_map_ = message_of(map, map_); },
-            [this](const std::string& message) { warn(message); },
-            [this](const std::string& message) { inform(message); }});
+    settings.earlier = nodes::read_place(pose_file_, wall_time());
+    core_.emplace(settings, clocks(), transforms_of(buffer_, map_, base_),
+                  LocaliserCore::Outputs{
+                      [this](const Pose& base, const LocaliserOutput& estimate, Stamp scan) {
+                        publish(base, estimate, scan);
+                      },
+                      [this](const Pose& odometry_frame, Stamp stamp) {
+                        set_transform(transforms_.transforms[0], odometry_frame, stamp);
+                        tf_out_->publish(transforms_);
+                      },
+                      [this](const maps::OccupancyGrid& map) { course_map_ = message_of(map, map_); },
+                      [this](const std::string& message) { warn(message); },
+                      [this](const std::string& message) { inform(message); }});
     parameters_.emplace(
         *this, [this] { return core_->options(); },
-        [this](const slalom_bridge::Changes& changes) { core_->change(changes); });
+        [this](const nodes::Changes& changes) { core_->change(changes); });
     core_->use_course();
     if (!settings_.course.empty()) map_out_ = latched_publisher<OccupancyGrid>("map");
   }
@@ -130,10 +130,10 @@ class LocaliserNode : public ManagedNode {
 
   void tick() override { core_->tick(); }
 
-  slalom_bridge::Report report() override {
+  nodes::Report report() override {
     parameters_->refresh();
     if (const auto place = core_->reliable();
-        place && !pose_file_.empty() && !slalom_bridge::write_place(pose_file_, *place, wall_time()))
+        place && !pose_file_.empty() && !nodes::write_place(pose_file_, *place, wall_time()))
       RCLCPP_WARN_ONCE(get_logger(), "pose_file: %s cannot be written", pose_file_.c_str());
     if (cloud_out_->get_subscription_count() > 0) {
       PoseArray cloud;
@@ -146,7 +146,7 @@ class LocaliserNode : public ManagedNode {
   }
 
  private:
-  /// s since 1970, of the computer.
+  /// The time of the computer, s since 1970.
   static double wall_time() { return static_cast<double>(std::time(nullptr)); }
 
   void hear(const Odometry& m) {
@@ -156,7 +156,7 @@ class LocaliserNode : public ManagedNode {
         {stamp_of(m.header.stamp), pose_of(m.pose.pose), m.twist.twist.linear.x, m.twist.twist.angular.z});
   }
 
-  void publish(const Pose& base, const Estimate& estimate, Stamp scan) {
+  void publish(const Pose& base, const LocaliserOutput& estimate, Stamp scan) {
     out_.header.stamp = time_of(scan);
     out_.pose.pose = message_of(base);
     constexpr std::size_t row[3] = {0, 1, 5};
@@ -168,14 +168,14 @@ class LocaliserNode : public ManagedNode {
 
   LocaliserCore::Settings settings_;
   std::string base_, map_, pose_file_;
-  std::optional<Pose> told_;  ///< the start in the parameters
+  std::optional<Pose> told_;  ///< the start, if the parameters have one
   tf2::BufferCore buffer_;
   std::optional<tf2_ros::TransformListener> listener_;
   std::shared_ptr<LifecyclePublisher<Odometry>> pose_out_;
   std::shared_ptr<LifecyclePublisher<PoseArray>> cloud_out_;
   std::shared_ptr<LifecyclePublisher<TFMessage>> tf_out_;
   std::shared_ptr<LifecyclePublisher<OccupancyGrid>> map_out_;
-  // Kept, so that their memory is reused.
+  // These messages are kept so that their memory is reused.
   Odometry out_;
   TFMessage transforms_;
   OccupancyGrid course_map_;

@@ -92,7 +92,7 @@ void ManagedNode::fall_silent() {
 }
 
 void ManagedNode::send_report() {
-  slalom_bridge::Report report = this->report();
+  nodes::Report report = this->report();
   DiagnosticArray array;
   array.header.stamp = now();
   array.status.resize(1);
@@ -110,8 +110,8 @@ void ManagedNode::send_report() {
   diagnostics_out_->publish(array);
 }
 
-slalom_bridge::Clocks ManagedNode::clocks() const {
-  // The clock of the node, which follows the parameter use_sim_time.
+nodes::Clocks ManagedNode::clocks() const {
+  // The clock of the node follows the parameter use_sim_time.
   const rclcpp::Clock::SharedPtr clock = std::const_pointer_cast<rclcpp::Clock>(get_clock());
   return {[clock] { return 1e-9 * static_cast<double>(clock->now().nanoseconds()); },
           [] {

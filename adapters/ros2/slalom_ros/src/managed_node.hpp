@@ -10,17 +10,19 @@
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
-#include "bridge/input_watch.hpp"
-#include "bridge/report.hpp"
+#include "logic/input_watch.hpp"
+#include "logic/reports.hpp"
 
 namespace slalom_ros {
+
+namespace nodes = slalom::nodes;
 
 /// A lifecycle node that publishes its state on `/diagnostics` once per second while it is active. With the
 /// parameter `autostart` it configures and activates itself. A transition that throws fails with the message
 /// in the log. All callbacks are in the default callback group, so they never run at the same time.
 class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
  public:
-  /// `tick_period` is that of the calls of `tick`.
+  /// Calls `tick` once per `tick_period`.
   ManagedNode(const std::string& name, const rclcpp::NodeOptions& options,
               std::chrono::milliseconds tick_period);
 
@@ -34,14 +36,14 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
   CallbackReturn on_error(const State& before) override;
 
  protected:
-  // What a node does in each transition; these may throw std::exception.
+  // The work of a node in each transition; these may throw std::exception.
   virtual void set_up() = 0;     ///< unconfigured to inactive
   virtual void start() = 0;      ///< inactive to active; publishers are active
   virtual void stop() = 0;       ///< active to inactive; publishers are still active
   virtual void tear_down() = 0;  ///< inactive to unconfigured
   virtual void tick() {}         ///< every few milliseconds while active
-  /// What happened since the last report; once per second while active.
-  virtual slalom_bridge::Report report() = 0;
+  /// Reports the events since the last report; once per second while active.
+  virtual nodes::Report report() = 0;
 
   /// A parameter that is fixed when the node is made.
   template <class Value>
@@ -60,15 +62,15 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
     options.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
     return create_publisher<Message>(topic, rclcpp::QoS(1).transient_local(), options);
   }
-  /// For a subscription that receives all messages from the middleware: those of latched publishers, and
-  /// those of which the sender matters, which messages within a process do not have.
+  /// The options of a subscription that receives all messages from the middleware. Messages within a process
+  /// are not latched and have no sender.
   static rclcpp::SubscriptionOptions from_middleware() {
     rclcpp::SubscriptionOptions options;
     options.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
     return options;
   }
 
-  /// A subscription that hears only while the node is active. An executor may have taken messages already
+  /// A subscription that hears only while the node is active: an executor may already have taken messages
   /// when a transition drops their subscription. `hear` takes a message, or a message and its
   /// rclcpp::MessageInfo.
   template <class Message, class Hear>
@@ -86,8 +88,8 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
         },
         options);
   }
-  /// A service that acts only while the node is configured, for the same reason; otherwise the answer is that
-  /// of the type's defaults.
+  /// A service that acts only while the node is configured; otherwise the answer has the defaults of its
+  /// type.
   template <class Service, class Act>
   rclcpp::ServiceBase::SharedPtr serve(const std::string& name, Act act) {
     return create_service<Service>(
@@ -97,7 +99,7 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
         });
   }
 
-  slalom_bridge::Clocks clocks() const;
+  nodes::Clocks clocks() const;
   void warn(const std::string& message) const;
   void inform(const std::string& message) const;
 

@@ -2,66 +2,44 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <limits>
+#include <cstdint>
 #include <set>
-#include <sstream>
 #include <stdexcept>
+#include <type_traits>
+#include <variant>
 
 #include <rclcpp/version.h>
 
 namespace slalom_ros {
 namespace {
 
+using nodes::NamedOption;
 using rclcpp::ParameterType;
 using rclcpp::ParameterValue;
-using slalom_bridge::Option;
+using slalom::OptionEntry;
 
-double number_of(const std::string& text) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  return text == ".inf" ? infinity : text == "-.inf" ? -infinity : std::strtod(text.c_str(), nullptr);
-}
-
-/// Of "0.1" or "[0.1, 0.2]".
-std::vector<double> numbers_of(std::string text) {
-  for (char& c : text)
-    if (c == '[' || c == ']' || c == ',') c = ' ';
-  std::vector<double> numbers;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) numbers.push_back(number_of(word));
-  return numbers;
-}
-
-ParameterValue value_of(const Option& o) {
-  if (o.type == "flag") return ParameterValue(o.value == "true");
-  if (o.type == "integer") return ParameterValue(std::int64_t{std::strtoll(o.value.c_str(), nullptr, 10)});
-  if (o.type == "number") return ParameterValue(number_of(o.value));
-  if (o.type == "numbers") return ParameterValue(numbers_of(o.value));
-  return ParameterValue(o.value);
-}
-
-std::string text_of(double value) {
-  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
-  std::ostringstream text;
-  text.precision(std::numeric_limits<double>::max_digits10);
-  text << value;
-  return text.str();
+ParameterValue value_of(const OptionEntry& entry) {
+  return std::visit(
+      [](const auto& value) {
+        using Value = std::decay_t<decltype(value)>;
+        if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>)
+          return ParameterValue(static_cast<std::int64_t>(value));
+        else
+          return ParameterValue(value);
+      },
+      entry.value);
 }
 
 std::string text_of(const ParameterValue& value) {
   switch (value.get_type()) {
     case ParameterType::PARAMETER_BOOL:
-      return value.get<bool>() ? "true" : "false";
+      return slalom::to_text(value.get<bool>());
     case ParameterType::PARAMETER_INTEGER:
       return std::to_string(value.get<std::int64_t>());
     case ParameterType::PARAMETER_DOUBLE:
-      return text_of(value.get<double>());
-    case ParameterType::PARAMETER_DOUBLE_ARRAY: {
-      std::string text;
-      for (const double entry : value.get<std::vector<double>>())
-        text += (text.empty() ? "" : ", ") + text_of(entry);
-      return "[" + text + "]";
-    }
+      return slalom::to_text(value.get<double>());
+    case ParameterType::PARAMETER_DOUBLE_ARRAY:
+      return slalom::to_text(value.get<std::vector<double>>());
     case ParameterType::PARAMETER_STRING:
       return value.get<std::string>();
     default:
@@ -69,28 +47,36 @@ std::string text_of(const ParameterValue& value) {
   }
 }
 
+/// The rule that the values of an option keep; empty for flags.
+std::string rule_of(const OptionEntry& entry) {
+  if (std::holds_alternative<bool>(entry.value)) return "";
+  if (entry.choices.empty()) return slalom::range_rule(entry.declaration);
+  std::string rule = "must be one of";
+  for (const std::string& choice : entry.choices) rule += " " + choice;
+  return rule;
+}
+
 std::int64_t whole(double value) {
   constexpr double most = 9.2e18;  // less than the largest std::int64_t
   return static_cast<std::int64_t>(std::clamp(value, -most, most));
 }
 
-rcl_interfaces::msg::ParameterDescriptor descriptor_of(const Option& o) {
+rcl_interfaces::msg::ParameterDescriptor descriptor_of(const OptionEntry& entry) {
+  const slalom::Declaration& declared = entry.declaration;
+  const std::string unit = declared.unit;
   rcl_interfaces::msg::ParameterDescriptor d;
-  d.description = o.help + (o.unit.empty() ? "" : " [" + o.unit + "]");
-  d.additional_constraints = o.rule;
-  if (o.type == "choice") {
-    d.additional_constraints = "must be one of";
-    for (const std::string& choice : o.choices) d.additional_constraints += " " + choice;
-  }
-  if (std::isinf(o.min) && std::isinf(o.max)) return d;
-  if (o.type == "number") {
+  d.description = declared.help + (unit.empty() ? "" : " [" + unit + "]");
+  d.additional_constraints = rule_of(entry);
+  if (std::isinf(declared.min) && std::isinf(declared.max)) return d;
+  const std::string type = slalom::type_name(entry);
+  if (type == "number") {
     d.floating_point_range.resize(1);
-    d.floating_point_range[0].from_value = o.min;
-    d.floating_point_range[0].to_value = o.max;
-  } else if (o.type == "integer") {
+    d.floating_point_range[0].from_value = declared.min;
+    d.floating_point_range[0].to_value = declared.max;
+  } else if (type == "integer") {
     d.integer_range.resize(1);
-    d.integer_range[0].from_value = whole(o.min);
-    d.integer_range[0].to_value = whole(o.max);
+    d.integer_range[0].from_value = whole(declared.min);
+    d.integer_range[0].to_value = whole(declared.max);
   }
   return d;
 }
@@ -100,11 +86,11 @@ rcl_interfaces::msg::ParameterDescriptor descriptor_of(const Option& o) {
 OptionParameters::OptionParameters(rclcpp_lifecycle::LifecycleNode& node, List list, Change change,
                                    std::string prefix)
     : node_(node), list_(std::move(list)), change_(std::move(change)), prefix_(std::move(prefix)) {
-  slalom_bridge::Changes given;
-  for (const Option& option : list_()) {
+  nodes::Changes given;
+  for (const NamedOption& option : list_()) {
     declare(option);
-    const ParameterValue value = node_.get_parameter(parameter_name(option.name)).get_parameter_value();
-    if (value != value_of(option)) given.emplace_back(option.name, text_of(value));
+    const ParameterValue value = node_.get_parameter(prefix_ + option.name).get_parameter_value();
+    if (value != value_of(option.entry)) given.emplace_back(option.name, text_of(value));
   }
   check_names();
   change_(given);
@@ -116,23 +102,18 @@ OptionParameters::OptionParameters(rclcpp_lifecycle::LifecycleNode& node, List l
 #endif
 }
 
-std::string OptionParameters::parameter_name(std::string option) const {
-  std::replace(option.begin(), option.end(), '/', '.');
-  return prefix_ + option;
-}
-
-void OptionParameters::declare(const Option& option) {
-  const std::string name = parameter_name(option.name);
+void OptionParameters::declare(const NamedOption& option) {
+  const std::string name = prefix_ + option.name;
   options_.emplace(name, option);
   if (node_.has_parameter(name)) return;
   try {
-    node_.declare_parameter(name, value_of(option), descriptor_of(option));
+    node_.declare_parameter(name, value_of(option.entry), descriptor_of(option.entry));
   } catch (const std::exception& error) {
-    throw std::invalid_argument(name + " " + option.rule + ": " + error.what());
+    throw std::invalid_argument(name + " " + rule_of(option.entry) + ": " + error.what());
   }
 }
 
-/// Values that the user gave for no option of their section.
+/// Throws if the user gave a value for a name that no option of its section has.
 void OptionParameters::check_names() const {
   const auto section_of = [this](const std::string& name) {
     const auto dot = name.find('.', prefix_.size());
@@ -159,7 +140,7 @@ rcl_interfaces::msg::SetParametersResult OptionParameters::set(
   rcl_interfaces::msg::SetParametersResult result;
   result.successful = true;
   if (refreshing_) return result;
-  slalom_bridge::Changes changes;
+  nodes::Changes changes;
   for (const rclcpp::Parameter& parameter : parameters)
     if (const auto found = options_.find(parameter.get_name()); found != options_.end())
       changes.emplace_back(found->second.name, text_of(parameter.get_parameter_value()));
@@ -167,7 +148,7 @@ rcl_interfaces::msg::SetParametersResult OptionParameters::set(
   try {
     change_(changes);
     for (const auto& [name, text] : changes)
-      RCLCPP_INFO(node_.get_logger(), "set %s to %s", parameter_name(name).c_str(), text.c_str());
+      RCLCPP_INFO(node_.get_logger(), "set %s%s to %s", prefix_.c_str(), name.c_str(), text.c_str());
   } catch (const std::exception& error) {
     result.successful = false;
     result.reason = error.what();
@@ -184,17 +165,18 @@ void OptionParameters::log_broken_ranges(const std::vector<rclcpp::Parameter>& p
     if (type != ParameterType::PARAMETER_DOUBLE && type != ParameterType::PARAMETER_INTEGER) continue;
     const double value = type == ParameterType::PARAMETER_DOUBLE ? parameter.as_double()
                                                                  : static_cast<double>(parameter.as_int());
-    if (value < found->second.min || value > found->second.max)
+    const OptionEntry& entry = found->second.entry;
+    if (value < entry.declaration.min || value > entry.declaration.max)
       RCLCPP_ERROR(node_.get_logger(), "not changed: %s: '%s' %s", found->first.c_str(),
-                   parameter.value_to_string().c_str(), found->second.rule.c_str());
+                   parameter.value_to_string().c_str(), rule_of(entry).c_str());
   }
 }
 
 void OptionParameters::refresh() {
   std::vector<rclcpp::Parameter> differing;
-  for (const Option& option : list_()) {
-    const std::string name = parameter_name(option.name);
-    const ParameterValue value = value_of(option);
+  for (const NamedOption& option : list_()) {
+    const std::string name = prefix_ + option.name;
+    const ParameterValue value = value_of(option.entry);
     if (node_.get_parameter(name).get_parameter_value() != value) differing.emplace_back(name, value);
   }
   if (differing.empty()) return;

@@ -7,33 +7,33 @@
 
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
-#include "bridge/bridge.hpp"
+#include "logic/named_option.hpp"
 
 namespace slalom_ros {
 
+namespace nodes = slalom::nodes;
+
 /// Declared options of Slalom as parameters of a node, with type, range and description, that can change
-/// while the node runs. The option "section/name" is the parameter "section.name". A change that breaks a
-/// rule is refused with that rule. Ranges are checked by rclcpp, whose answer does not state them; so from
-/// Iron on the rule is also written to the log.
+/// while the node runs. A change that breaks a rule is refused with that rule. Ranges are checked by rclcpp,
+/// whose answer does not state them; so from Iron on the rule is also written to the log.
 class OptionParameters {
  public:
-  using List = std::function<std::vector<slalom_bridge::Option>()>;
-  using Change = std::function<void(const slalom_bridge::Changes&)>;  ///< throws std::exception
+  using List = std::function<std::vector<nodes::NamedOption>()>;
+  using Change = std::function<void(const nodes::Changes&)>;  ///< throws std::exception
 
   /// Declares the options, with the values of `list` where the user gave none, and applies those of the user.
   /// The names of all parameters begin with `prefix`. Throws std::exception if one of them breaks a rule or a
   /// section has no option of its name. The node must outlive this.
   OptionParameters(rclcpp_lifecycle::LifecycleNode& node, List list, Change change, std::string prefix = "");
 
-  /// Values that the user gave under the prefix, for which nobody has declared a parameter.
+  /// The names under the prefix for which the user gave a value and nobody has declared a parameter.
   std::vector<std::string> unused() const;
 
   /// Sets the parameters to the options that something else changed.
   void refresh();
 
  private:
-  std::string parameter_name(std::string option) const;
-  void declare(const slalom_bridge::Option& option);
+  void declare(const nodes::NamedOption& option);
   void check_names() const;
   rcl_interfaces::msg::SetParametersResult set(const std::vector<rclcpp::Parameter>& parameters);
   void log_broken_ranges(const std::vector<rclcpp::Parameter>& parameters) const;
@@ -42,7 +42,7 @@ class OptionParameters {
   List list_;
   Change change_;
   std::string prefix_;
-  std::map<std::string, slalom_bridge::Option> options_;  ///< by the names of the parameters
+  std::map<std::string, nodes::NamedOption> options_;  ///< by the names of the parameters
   bool refreshing_ = false;
   std::shared_ptr<void> before_set_, on_set_;  ///< the registrations of the callbacks
 };

@@ -1,5 +1,6 @@
-// The controller: computes `drive` from `scan`, `odom` and tf, with a new plan for every scan. The core of
-// the bridge does the work. docs/on-the-car.md has topics, frames, parameters and faults.
+// The controller: computes `drive` from `scan`, `odom` and tf, with a new plan for every scan. PlannerCore
+// does the work. docs/on-the-car.md has topics, frames, parameters and faults.
+#include <cmath>
 #include <optional>
 
 #include <tf2_ros/transform_listener.h>
@@ -15,8 +16,8 @@
 #include <std_msgs/msg/float32.hpp>
 #include <visualization_msgs/msg/marker_array.hpp>
 
-#include "bridge/planner_core.hpp"
 #include "conversions.hpp"
+#include "logic/planner_core.hpp"
 #include "managed_node.hpp"
 #include "option_parameters.hpp"
 
@@ -24,12 +25,11 @@ namespace slalom_ros {
 
 using ackermann_msgs::msg::AckermannDriveStamped;
 using nav_msgs::msg::Odometry;
+using nodes::PlannerCore;
 using rclcpp_lifecycle::LifecyclePublisher;
 using sensor_msgs::msg::Imu;
 using sensor_msgs::msg::LaserScan;
-using slalom_bridge::Command;
-using slalom_bridge::PlannerCore;
-using slalom_bridge::Waypoint;
+using slalom::vehicle::PlannerOutput;
 using slalom_msgs::msg::PlannerMetrics;
 using slalom_msgs::msg::Waypoints;
 using slalom_msgs::srv::DriveLaps;
@@ -66,17 +66,17 @@ class PlannerNode : public ManagedNode {
     metrics_out_ = create_publisher<PlannerMetrics>("mppi/eval_metrics", rclcpp::QoS(1));
     markers_out_ = create_publisher<MarkerArray>("planner_markers", rclcpp::QoS(1));
     path_out_ = latched_publisher<nav_msgs::msg::Path>("reference_path");
-    core_.emplace(settings_, clocks(), frames_of(buffer_, map_, base_),
-                  PlannerCore::Outputs{
-                      [this](double steer, double speed) { send(steer, speed); },
-                      [this](const Command& command, Stamp scan) { show(command, scan); },
-                      [this](const std::vector<Waypoint>& path, bool closed) { use_path(path, closed); },
-                      [this](const std::string& message) { warn(message); },
-                      [this](const std::string& message) { inform(message); }});
+    core_.emplace(
+        settings_, clocks(), transforms_of(buffer_, map_, base_),
+        PlannerCore::Outputs{[this](const slalom::Command& command) { send(command); },
+                             [this](const PlannerOutput& output, Stamp scan) { show(output, scan); },
+                             [this](const PlannerCore::Path& path, bool closed) { use_path(path, closed); },
+                             [this](const std::string& message) { warn(message); },
+                             [this](const std::string& message) { inform(message); }});
     limit_speed();
     parameters_.emplace(
         *this, [this] { return core_->options(); },
-        [this](const slalom_bridge::Changes& changes) { core_->change(changes); });
+        [this](const nodes::Changes& changes) { core_->change(changes); });
     core_->use_course();
     laps_service_ = serve<DriveLaps>("~/drive_laps",
                                      [this](const DriveLaps::Request& asked, DriveLaps::Response& answer) {
@@ -141,7 +141,7 @@ class PlannerNode : public ManagedNode {
   }
 
   void tick() override { core_->tick(); }
-  slalom_bridge::Report report() override {
+  nodes::Report report() override {
     parameters_->refresh();
     return core_->report();
   }
@@ -157,16 +157,16 @@ class PlannerNode : public ManagedNode {
     }
   }
 
-  /// A car drives at most 1 m/s unless the user says otherwise.
+  /// Limits the speed to 1 m/s unless the user has set a limit.
   void limit_speed() {
     const char* const name = "planner.max_speed";
     if (has_parameter(name) || get_node_parameters_interface()->get_parameter_overrides().count(name) > 0)
       return;
-    core_->change({{"planner/max_speed", "1"}});
+    core_->change({{"planner.max_speed", "1"}});
     inform("the car drives at most 1 m/s; the parameter planner.max_speed sets another limit");
   }
 
-  /// The other nodes that publish commands.
+  /// The names of the other nodes that publish commands.
   std::string others() const {
     std::string names;
     for (const auto& publisher : get_publishers_info_by_topic(drive_in_->get_topic_name()))
@@ -184,7 +184,7 @@ class PlannerNode : public ManagedNode {
   void hear_waypoints(const Waypoints& m) {
     if (m.speeds.size() != m.poses.size())
       return warn("waypoints: the numbers of poses and speeds differ; ignored");
-    std::vector<Waypoint> path;
+    PlannerCore::Path path;
     for (std::size_t i = 0; i < m.poses.size(); ++i) {
       const Pose p = pose_of(m.poses[i]);
       path.push_back({p.x, p.y, p.yaw, m.speeds[i]});
@@ -192,17 +192,17 @@ class PlannerNode : public ManagedNode {
     core_->hear_path(path);
   }
 
-  void send(double steer, double speed) {
+  void send(const slalom::Command& command) {
     drive_.header.stamp = now();
-    drive_.drive.steering_angle = static_cast<float>(steer);
-    drive_.drive.speed = static_cast<float>(speed);
+    drive_.drive.steering_angle = static_cast<float>(command.steer);
+    drive_.drive.speed = static_cast<float>(command.speed);
     drive_out_->publish(drive_);
   }
 
-  void use_path(const std::vector<Waypoint>& path, bool closed) {
+  void use_path(const PlannerCore::Path& path, bool closed) {
     path_.header.stamp = now();
     path_.poses.clear();
-    for (const Waypoint& w : path) {
+    for (const maps::ReferencePoint& w : path) {
       path_.poses.emplace_back();
       path_.poses.back().header = path_.header;
       path_.poses.back().pose = message_of(Pose{w.x, w.y, w.yaw});
@@ -211,26 +211,28 @@ class PlannerNode : public ManagedNode {
     if (path_out_->is_activated()) path_out_->publish(path_);
   }
 
-  void show(const Command& command, Stamp scan) {
+  void show(const PlannerOutput& output, Stamp scan) {
     metrics_.header.stamp = time_of(scan);
-    metrics_.status = command.status;
-    metrics_.state_cost = static_cast<float>(command.state_cost);
-    metrics_.collision_cost = static_cast<float>(command.collision_cost);
-    metrics_.input_error = static_cast<float>(command.input_error);
-    metrics_.effective_samples = static_cast<float>(command.effective_samples);
-    metrics_.calculation_time = static_cast<float>(1e3 * command.update_time);
+    metrics_.status = slalom::vehicle::name(output.status);
+    metrics_.state_cost = static_cast<float>(output.state_cost);
+    metrics_.collision_cost = static_cast<float>(output.collision_cost);
+    metrics_.input_error = 0;
+    for (const float input : output.inputs) metrics_.input_error += std::abs(input);
+    metrics_.effective_samples = output.solve ? static_cast<float>(output.solve->effective_sample_size) : 0;
+    metrics_.calculation_time = static_cast<float>(1e3 * output.tick_time);
     metrics_out_->publish(metrics_);
     if (markers_out_->get_subscription_count() == 0) return;
+    const bool ok = nodes::has_plan(output.status);
     auto& line = markers_.markers[0];
     line.header.stamp = time_of(scan);
-    line.color.r = command.ok ? 0.1F : 0.9F;
-    line.color.g = command.ok ? 0.5F : 0.1F;
-    line.color.b = command.ok ? 0.9F : 0.1F;
+    line.color.r = ok ? 0.1F : 0.9F;
+    line.color.g = ok ? 0.5F : 0.1F;
+    line.color.b = ok ? 0.9F : 0.1F;
     line.points.clear();
-    for (const Pose& p : core_->predicted()) {
+    for (const auto& state : output.predicted) {
       line.points.emplace_back();
-      line.points.back().x = p.x;
-      line.points.back().y = p.y;
+      line.points.back().x = state.pose.x;
+      line.points.back().y = state.pose.y;
       line.points.back().z = 0.05;
     }
     using visualization_msgs::msg::Marker;
@@ -238,7 +240,7 @@ class PlannerNode : public ManagedNode {
     markers_out_->publish(markers_);
   }
 
-  /// What all markers of plans have in common.
+  /// Sets the fields that are the same for all plans.
   void make_marker() {
     markers_.markers.resize(1);
     auto& line = markers_.markers[0];
@@ -258,7 +260,7 @@ class PlannerNode : public ManagedNode {
   std::shared_ptr<LifecyclePublisher<PlannerMetrics>> metrics_out_;
   std::shared_ptr<LifecyclePublisher<MarkerArray>> markers_out_;
   std::shared_ptr<LifecyclePublisher<nav_msgs::msg::Path>> path_out_;
-  // Kept, so that their memory is reused.
+  // These messages are kept so that their memory is reused.
   AckermannDriveStamped drive_;
   PlannerMetrics metrics_;
   MarkerArray markers_;

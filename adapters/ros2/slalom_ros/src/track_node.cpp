@@ -6,6 +6,7 @@
 #include <slalom_msgs/msg/waypoints.hpp>
 
 #include "conversions.hpp"
+#include "logic/installed.hpp"
 #include "managed_node.hpp"
 
 namespace slalom_ros {
@@ -23,7 +24,7 @@ class TrackNode : public ManagedNode {
 
  protected:
   void set_up() override {
-    course_ = slalom_bridge::load_course(name_);
+    course_ = nodes::load_course(name_);
     map_out_ = latched_publisher<OccupancyGrid>("map");
     waypoints_out_ = latched_publisher<Waypoints>("reference_waypoint");
   }
@@ -49,8 +50,8 @@ class TrackNode : public ManagedNode {
     waypoints_out_.reset();
   }
 
-  slalom_bridge::Report report() override {
-    slalom_bridge::Report r;
+  nodes::Report report() override {
+    nodes::Report r;
     r.about = "course";
     r.message = course_->name;
     r.add("waypoints", course_->waypoints.size());
@@ -60,7 +61,7 @@ class TrackNode : public ManagedNode {
 
  private:
   std::string name_, frame_;
-  std::optional<slalom_bridge::Course> course_;
+  std::optional<slalom::vehicle::Course> course_;
   std::shared_ptr<LifecyclePublisher<OccupancyGrid>> map_out_;
   std::shared_ptr<LifecyclePublisher<Waypoints>> waypoints_out_;
 };

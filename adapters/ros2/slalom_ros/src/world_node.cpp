@@ -1,7 +1,10 @@
 // The simulator as a car: subscribes to `drive` and publishes `scan`, `odom` (wheel odometry) with its
 // transforms, the parked cars, and the true state as `ground_truth`, `laps` and `contacts` (number of
-// collisions). The core of the bridge does the work. The node `track` publishes map and path.
+// collisions). Like a real car it must brake without a finite command for a while, or when two nodes command
+// it. The node `track` publishes map and path.
+#include <cmath>
 #include <cstdio>
+#include <map>
 #include <optional>
 
 #include <ackermann_msgs/msg/ackermann_drive_stamped.hpp>
@@ -13,17 +16,18 @@
 #include <tf2_ros/qos.hpp>
 #include <visualization_msgs/msg/marker_array.hpp>
 
-#include "bridge/world_core.hpp"
 #include "conversions.hpp"
+#include "logic/installed.hpp"
+#include "logic/simulated_car.hpp"
 #include "managed_node.hpp"
 
 namespace slalom_ros {
 
 using ackermann_msgs::msg::AckermannDriveStamped;
 using nav_msgs::msg::Odometry;
+using nodes::SimulatedCar;
 using rclcpp_lifecycle::LifecyclePublisher;
 using sensor_msgs::msg::LaserScan;
-using slalom_bridge::WorldCore;
 using std_msgs::msg::Int32;
 using std_srvs::srv::Empty;
 using tf2_msgs::msg::TFMessage;
@@ -36,13 +40,11 @@ class WorldNode : public ManagedNode {
         map_(setting<std::string>("map_frame", "map", "frame of the true pose and of the parked cars")),
         odom_(setting<std::string>("odom_frame", "odom", "frame of the odometry")),
         base_(setting<std::string>("base_frame", "base_link", "frame of the middle of the rear axle")),
-        laser_(setting<std::string>("laser_frame", "laser", "frame of the LiDAR")) {
-    settings_.course = setting("course", settings_.course, "a name or a folder");
-    settings_.seed = static_cast<std::uint64_t>(
-        setting("seed", static_cast<std::int64_t>(settings_.seed), "of noise and parked cars"));
-    settings_.obstacles = setting("obstacles", settings_.obstacles, "number of parked cars");
-    settings_.command_timeout = setting("command_timeout", settings_.command_timeout,
-                                        "without a command for this time it brakes [s]");
+        laser_(setting<std::string>("laser_frame", "laser", "frame of the LiDAR")),
+        course_(setting<std::string>("course", "wren", "a name or a folder")),
+        seed_(setting<std::int64_t>("seed", 1, "of noise and parked cars")),
+        obstacles_(setting("obstacles", 5, "number of parked cars")),
+        command_timeout_(setting("command_timeout", 0.2, "without a command for this time it brakes [s]")) {
     transforms_.transforms.resize(1);
     transforms_.transforms[0].header.frame_id = odom_;
     transforms_.transforms[0].child_frame_id = base_;
@@ -58,9 +60,10 @@ class WorldNode : public ManagedNode {
     tf_out_ = create_publisher<TFMessage>("/tf", tf2_ros::DynamicBroadcasterQoS());
     tf_static_out_ = latched_publisher<TFMessage>("/tf_static");
     markers_out_ = latched_publisher<MarkerArray>("obstacles");
-    core_.emplace(settings_, clocks(), [this](const std::string& message) { warn(message); });
+    car_.emplace(nodes::load_course(course_), static_cast<std::uint64_t>(seed_), obstacles_);
+    due_ = nodes::stamp_of(clocks_.now());
     reset_service_ =
-        serve<Empty>("reset", [this](const Empty::Request&, Empty::Response&) { core_->reset(); });
+        serve<Empty>("reset", [this](const Empty::Request&, Empty::Response&) { car_->reset(); });
   }
 
   void start() override {
@@ -68,13 +71,13 @@ class WorldNode : public ManagedNode {
     fixed.transforms.resize(1);
     fixed.transforms[0].header.frame_id = base_;
     fixed.transforms[0].child_frame_id = laser_;
-    set_transform(fixed.transforms[0], core_->world().laser(), now().nanoseconds());
+    set_transform(fixed.transforms[0], car_->laser(), now().nanoseconds());
     tf_static_out_->publish(fixed);
     drive_in_ = subscribe<AckermannDriveStamped>(
         "drive", rclcpp::QoS(10),
         [this](const AckermannDriveStamped& m, const rclcpp::MessageInfo& info) {
-          core_->hear_drive(sender_of(info.get_rmw_message_info().publisher_gid),
-                            static_cast<double>(m.drive.steering_angle), static_cast<double>(m.drive.speed));
+          hear({static_cast<double>(m.drive.steering_angle), static_cast<double>(m.drive.speed)},
+               sender_of(info.get_rmw_message_info().publisher_gid));
         },
         from_middleware());
   }
@@ -83,7 +86,7 @@ class WorldNode : public ManagedNode {
 
   void tear_down() override {
     reset_service_.reset();
-    core_.reset();
+    car_.reset();
     scan_out_.reset();
     odometry_out_.reset();
     truth_out_.reset();
@@ -95,10 +98,28 @@ class WorldNode : public ManagedNode {
   }
 
   void tick() override {
-    Stamp stamp = 0;
-    if (core_->step_if_due(stamp)) publish(stamp);
+    constexpr Stamp furthest_ahead = 1'000'000'000, furthest_behind = 500'000'000;  // ns
+    log_.flush();
+    const Stamp time = nodes::stamp_of(clocks_.now());
+    if (due_ > time + furthest_ahead || due_ < time - furthest_behind)
+      due_ = time;  // the clock jumped, or this process was stopped
+    if (time < due_) return;
+    car_->step({command_.steer, is_commanded() ? command_.speed : 0});
+    publish(due_);
+    due_ += nodes::stamp_of(SimulatedCar::period);
   }
-  slalom_bridge::Report report() override { return core_->report(); }
+
+  nodes::Report report() override {
+    nodes::Report r;
+    r.about = "simulated car";
+    r.add("speed, m/s", car_->odometry().speed());
+    r.add("laps", car_->laps());
+    r.add("contacts", car_->contacts());
+    r.message = why_.empty() ? "driving" : "braking: " + why_;
+    r.level = why_.empty() ? nodes::Level::ok : nodes::Level::warning;
+    why_.clear();
+    return r;
+  }
 
  private:
   /// A name of the publisher of a command.
@@ -112,14 +133,36 @@ class WorldNode : public ManagedNode {
     return name;
   }
 
+  void hear(const slalom::Command& command, const std::string& sender) {
+    if (!std::isfinite(command.steer) || !std::isfinite(command.speed))
+      return log_("a command is not finite");
+    command_ = command;
+    heard_[sender] = clocks_.steady();
+  }
+
+  /// Whether exactly one node commands the car.
+  bool is_commanded() {
+    std::string names;
+    int speaking = 0;
+    for (const auto& [name, time] : heard_) {
+      if (clocks_.steady() - time > command_timeout_) continue;
+      ++speaking;
+      names += " " + name;
+    }
+    if (speaking == 1) return true;
+    why_ = speaking == 0 ? "no command" : "commanded by more than one";
+    if (speaking > 1) log_("braking: commanded by more than one:" + names);
+    return false;
+  }
+
   Odometry odometry(const Pose& p, const std::string& frame, Stamp stamp) const {
     Odometry m;
     m.header.stamp = time_of(stamp);
     m.header.frame_id = frame;
     m.child_frame_id = base_;
     m.pose.pose = message_of(p);
-    m.twist.twist.linear.x = core_->world().reading().speed;
-    m.twist.twist.angular.z = core_->world().reading().yaw_rate;
+    m.twist.twist.linear.x = car_->odometry().speed();
+    m.twist.twist.angular.z = car_->odometry().yaw_rate();
     return m;
   }
 
@@ -131,17 +174,17 @@ class WorldNode : public ManagedNode {
     m.type = visualization_msgs::msg::Marker::CUBE;
     m.pose = message_of(pose);
     m.pose.position.z = 0.1;
-    m.scale.x = core_->world().car_length();
-    m.scale.y = core_->world().car_width();
+    m.scale.x = car_->parameters().length;
+    m.scale.y = car_->parameters().width;
     m.scale.z = 0.2;
     m.color.a = 0.8F;
     return m;
   }
 
-  /// Publishes obstacles and car.
+  /// Publishes markers of the parked cars and the car.
   void mark() {
     MarkerArray array;
-    for (const Pose& p : core_->world().obstacles()) {
+    for (const Pose& p : car_->parked()) {
       array.markers.push_back(box(static_cast<int>(array.markers.size()), map_, p));
       array.markers.back().color.r = 0.9F;
     }
@@ -153,17 +196,19 @@ class WorldNode : public ManagedNode {
   }
 
   void publish(Stamp stamp) {
-    if (core_->marks_due()) mark();
-    const auto& seen = core_->world().reading();
-    odometry_out_->publish(odometry(seen.odometry, odom_, stamp));
-    truth_out_->publish(odometry(seen.truth, map_, stamp));
-    set_transform(transforms_.transforms[0], seen.odometry, stamp);
+    // A display discards markers that it has no transform for yet, so they are repeated each second.
+    constexpr int steps_per_second = 40;
+    if (++steps_ % steps_per_second == 1) mark();
+    odometry_out_->publish(odometry(car_->odometry().pose(), odom_, stamp));
+    truth_out_->publish(odometry(car_->pose(), map_, stamp));
+    set_transform(transforms_.transforms[0], car_->odometry().pose(), stamp);
     tf_out_->publish(transforms_);
     Int32 laps, contacts;
-    laps.data = seen.laps;
-    contacts.data = seen.contacts;
+    laps.data = car_->laps();
+    contacts.data = car_->contacts();
     laps_out_->publish(laps);
     contacts_out_->publish(contacts);
+    const maps::LaserScanView seen = car_->scan();
     scan_.header.stamp = time_of(stamp);
     scan_.header.frame_id = laser_;
     scan_.angle_min = static_cast<float>(seen.angle_min);
@@ -172,12 +217,14 @@ class WorldNode : public ManagedNode {
     scan_.angle_max = static_cast<float>(seen.angle_min + seen.angle_increment * last);
     scan_.range_min = 0.02F;
     scan_.range_max = static_cast<float>(seen.range_max);
-    scan_.ranges = seen.ranges;
+    scan_.ranges.assign(seen.ranges.begin(), seen.ranges.end());
     scan_out_->publish(scan_);
   }
 
-  WorldCore::Settings settings_;
-  std::string map_, odom_, base_, laser_;
+  std::string map_, odom_, base_, laser_, course_;
+  std::int64_t seed_;
+  int obstacles_;
+  double command_timeout_;  ///< s
   std::shared_ptr<LifecyclePublisher<LaserScan>> scan_out_;
   std::shared_ptr<LifecyclePublisher<Odometry>> odometry_out_, truth_out_;
   std::shared_ptr<LifecyclePublisher<Int32>> laps_out_, contacts_out_;
@@ -185,7 +232,14 @@ class WorldNode : public ManagedNode {
   std::shared_ptr<LifecyclePublisher<MarkerArray>> markers_out_;
   TFMessage transforms_;
   LaserScan scan_;
-  std::optional<WorldCore> core_;
+  nodes::Clocks clocks_ = clocks();
+  nodes::ThrottledLog log_{clocks_.steady, [this](const std::string& message) { warn(message); }};
+  std::optional<SimulatedCar> car_;
+  slalom::Command command_;
+  std::map<std::string, double> heard_;  ///< time of the last command of each node, s, steady clock
+  Stamp due_ = 0;                        ///< of the next step
+  long steps_ = 0;
+  std::string why_;  ///< the reason if the car has braked since the last report
   rclcpp::SubscriptionBase::SharedPtr drive_in_;
   rclcpp::ServiceBase::SharedPtr reset_service_;
 };

@@ -1,5 +1,6 @@
-// Every fault of adapters/test/faults.csv stops the car with a reason that is logged at most once per second,
-// and the car continues by itself afterwards. The nodes run under the clock of this test (use_sim_time).
+// Every fault of adapters/ros2/test/faults.csv stops the car with a reason that is logged at most once per
+// second, and the car continues by itself afterwards. The nodes run under the clock of this test
+// (use_sim_time).
 //
 // usage: fault_test processes|composed FAULTS_CSV [FAULT...]
 #include <algorithm>
@@ -99,7 +100,7 @@ void test(int argc, char** argv) {
   expect(argc >= 3, "usage: fault_test processes|composed FAULTS_CSV [FAULT...]");
   const std::vector<std::string> chosen(argv + 3, argv + argc);
   FaultTest all(place_of(argv[1]));
-  for (const Fault& fault : slalom_bridge::testing::read_faults(argv[2]))
+  for (const Fault& fault : slalom::nodes::testing::read_faults(argv[2]))
     if (chosen.empty() || std::count(chosen.begin(), chosen.end(), fault.name) > 0) all.run(fault);
   all.finish();
 }

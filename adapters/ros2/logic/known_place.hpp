@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "slalom/maps/pose.hpp"
+
+/// The last reliable pose of a localiser, from which one that is restarted continues.
+namespace slalom::nodes {
+
+/// Poses of the same point of the car at the same time: in the map frame, and in the odometry frame.
+struct KnownPlace {
+  maps::Pose map, odometry;
+};
+
+/// The pose in the map frame, if the odometry is `odometry` now: `known`, moved as the odometry has moved
+/// since. An odometry that starts again has its origin where the car is. So if it is nearer to its origin
+/// than to that of `known`, the car is taken to be where it was.
+inline maps::Pose place_now(const KnownPlace& known, const maps::Pose& odometry) {
+  const double x = odometry.x - known.odometry.x, y = odometry.y - known.odometry.y;
+  if (std::hypot(odometry.x, odometry.y) < std::hypot(x, y)) return known.map;
+  const double turn = known.map.yaw - known.odometry.yaw;
+  return {known.map.x + x * std::cos(turn) - y * std::sin(turn),
+          known.map.y + x * std::sin(turn) + y * std::cos(turn), odometry.yaw + turn};
+}
+
+/// Writes a place and the time (s since 1970) to a file, which has the old or the new content at any time.
+/// Returns whether it could be written.
+inline bool write_place(const std::string& file, const KnownPlace& place, double time) {
+  const std::string fresh = file + ".new";
+  std::ofstream stream(fresh);
+  stream.precision(std::numeric_limits<double>::max_digits10);
+  const auto& [map, odometry] = place;
+  for (const double each : {map.x, map.y, map.yaw, odometry.x, odometry.y, odometry.yaw, time})
+    stream << each << ' ';
+  stream << '\n';
+  stream.close();
+  return stream && std::rename(fresh.c_str(), file.c_str()) == 0;
+}
+
+/// Reads the place in a file. Returns nothing if there is none, a number is not finite, or it was written in
+/// the future or more than 10 s ago.
+inline std::optional<KnownPlace> read_place(const std::string& file, double time) {
+  std::ifstream stream(file);
+  std::array<double, 7> n{};
+  for (double& each : n)
+    if (!(stream >> each) || !std::isfinite(each)) return std::nullopt;
+  constexpr double oldest = 10;  // s
+  if (!(n[6] <= time && time - n[6] <= oldest)) return std::nullopt;
+  return KnownPlace{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+}
+
+}  // namespace slalom::nodes

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "logic/input_watch.hpp"
+#include "logic/installed.hpp"
+#include "logic/known_place.hpp"
+#include "logic/named_option.hpp"
+#include "logic/pose_trust.hpp"
+#include "logic/reports.hpp"
+#include "logic/transforms.hpp"
+#include "slalom/vehicle/localisation/localiser.hpp"
+
+namespace slalom::nodes {
+
+/// A message of the odometry.
+struct OdometrySample {
+  Stamp stamp = 0;
+  maps::Pose pose;                 ///< of the base frame in the odometry frame
+  double speed = 0, yaw_rate = 0;  ///< m/s, rad/s
+};
+
+/// The logic of a localiser node, without the transport of its messages. While the estimate is not reliable
+/// it publishes neither pose nor transform, and a planner stops. No function throws unless it says so. From a
+/// scan to its estimate nothing is allocated in normal operation.
+class LocaliserCore {
+ public:
+  /// The settings that are fixed when the node starts.
+  struct Settings {
+    std::string course;               ///< a name or a folder, whose map is used; empty: the map is a message
+    bool everywhere = false;          ///< search the whole map at the start
+    std::optional<maps::Pose> start;  ///< of the base frame; otherwise the start of the course, or everywhere
+    std::optional<KnownPlace> earlier;  ///< last place of the base frame by an earlier node; comes first
+    int trust_scans = 10;               ///< see PoseTrust
+    double trust_health = 0.7;          ///< likewise
+    double transform_tolerance = 0.1;   ///< s, how far the stamps of transforms are in the future
+    double rear_axle = 0;               ///< m, x of the middle of the rear axle in the base frame
+    WatchLimits limits;
+  };
+  /// The messages that the node sends; called from within the functions below.
+  struct Outputs {
+    /// A pose that can be relied on: that of the base frame in the map at the stamp of a scan, with the
+    /// covariance of `estimate`.
+    std::function<void(const maps::Pose& base, const vehicle::LocaliserOutput& estimate, Stamp scan)> pose;
+    /// The pose of the odometry frame in the map frame, with the stamp to publish it with.
+    std::function<void(const maps::Pose& odometry_frame, Stamp stamp)> transform;
+    std::function<void(const maps::OccupancyGrid&)> map;   ///< that of the course, once
+    std::function<void(const std::string&)> warn, inform;  ///< the log
+  };
+
+  /// Without the map of a course yet.
+  LocaliserCore(const Settings& settings, Clocks clocks, Transforms transforms, Outputs outputs);
+
+  std::vector<NamedOption> options() const;
+  /// Sets options; the localiser starts again from the last pose that was told or reliable. Throws
+  /// std::exception with the rule; then nothing has changed.
+  void change(const Changes& changes);
+
+  /// Reads the map of the course, if there is one; to be called when the options are set. Throws
+  /// std::exception.
+  void use_course();
+
+  // Messages.
+  void hear_map(const maps::OccupancyGrid& map);
+  void hear_start(const maps::Pose& base);  ///< the pose of the base frame, from a user
+  void hear_odometry(const OdometrySample& sample);
+  void hear_scan(Stamp stamp, const std::string& frame, const maps::LaserScanView& scan, double angle_max);
+
+  /// To be called every few milliseconds.
+  void tick();
+
+  /// What happened since the last report.
+  Report report();
+  /// The last place of the base frame that could be relied on, as long as it can.
+  std::optional<KnownPlace> reliable() const;
+  /// Poses of at most `most` particles.
+  std::vector<maps::Pose> particles(int most) const;
+
+ private:
+  void use_map(const maps::OccupancyGrid& map);
+  void begin();
+  void continue_from(const KnownPlace& earlier);
+  void start_at(const std::optional<maps::Pose>& rear);
+  bool odometry_at(Stamp stamp, maps::Pose& rear) const;
+  void place_laser(const std::string& frame);
+  /// The `i`-th odometry of those kept, the oldest first.
+  const OdometrySample& odometry(std::size_t i) const { return odometry_[(oldest_ + i) % odometry_.size()]; }
+  void localisation_warning(const std::string& text) { log_("localisation: " + text); }
+
+  Clocks clocks_;
+  Transforms transforms_;
+  Outputs outputs_;
+  Settings settings_;
+  InputWatch watch_;
+  ThrottledLog log_;
+  vehicle::LocaliserOptions options_;
+  maps::OccupancyGrid map_;
+  std::optional<vehicle::Localiser> localiser_;  ///< none without a map
+  std::optional<maps::Pose>
+      start_;  ///< of the rear axle, the last that was told or reliable; none: everywhere
+  PoseTrust trust_;
+  std::array<OdometrySample, 50> odometry_;  ///< a ring
+  std::size_t oldest_ = 0, count_ = 0;       ///< of `odometry_`
+  Stamp last_scan_ = 0;
+  std::optional<maps::Pose> course_start_;  ///< of the rear axle
+  std::optional<KnownPlace> known_;         ///< likewise
+  vehicle::LocaliserOutput estimate_;
+  double slowest_ = 0;  ///< s, since the last report
+};
+
+}  // namespace slalom::nodes

@@ -1,0 +1,204 @@
+#include "logic/path_follower.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+namespace slalom::nodes {
+namespace {
+
+namespace nav = navigation;
+using Problem = FollowerAnswer::Problem;
+
+/// As nav2_costmap_2d defines them.
+constexpr unsigned char lethal = 254, unknown = 255;
+
+constexpr double longest_period = 1;   ///< s; after a longer one the robot was not controlled in between
+constexpr double usual_period = 0.05;  ///< s, of the first update
+constexpr double longest_braking = 3;  ///< s, after which a cancellation waits no longer
+
+bool stands(const nav::Velocity& v) {
+  return std::hypot(v.forward, v.left) < 0.01 && std::abs(v.turn) < 0.05;
+}
+
+std::string why_of(nav::NavigationStatus status) {
+  switch (status) {
+    case nav::NavigationStatus::blocked:
+      return "the path is blocked and there is no way round";
+    case nav::NavigationStatus::no_path:
+      return "the robot is off the costmap";
+    case nav::NavigationStatus::bad_input:
+      return "pose or velocity of the robot is not finite or too large";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+void PathFollower::change(const Changes& changes) {
+  FollowerSettings changed = settings_;
+  for (const auto& [name, text] : changes) changed.set(name, text);
+  // A navigator over the smallest of maps refuses combinations that no single range refuses.
+  const nav::Costmap smallest(3, 3, 0.1);
+  const nav::Navigator made(nav::Footprint::rectangle(0.1, 0.1, 0.2), changed.navigator(1), changed.solver(1),
+                            smallest);
+  const bool other_costmap = changed.own().unknown_cells != settings_.own().unknown_cells;
+  settings_ = changed;
+  navigator_.reset();
+  if (other_costmap) costmap_.reset();
+  find_share();
+}
+
+void PathFollower::use_footprint(const std::vector<maps::Point>& vertices) {
+  const auto same = [](const maps::Point& a, const maps::Point& b) { return a.x == b.x && a.y == b.y; };
+  if (footprint_ && std::equal(vertices.begin(), vertices.end(), vertices_.begin(), vertices_.end(), same))
+    return;
+  footprint_.emplace(nav::Footprint(vertices));
+  vertices_ = vertices;
+  navigator_.reset();
+}
+
+void PathFollower::use_costmap(const CostGrid& from) {
+  maps::OccupancyGrid& grid = grid_;
+  const bool same_size = costmap_ && grid.width == from.width && grid.height == from.height &&
+                         grid.resolution == from.resolution;
+  if (!same_size) {
+    nav::Costmap made(from.width, from.height, from.resolution, settings_.own().unknown_cells);
+    navigator_.reset();
+    costmap_.emplace(std::move(made));
+    grid.width = from.width;
+    grid.height = from.height;
+    grid.resolution = from.resolution;
+    grid.cells.resize(static_cast<std::size_t>(from.width) * static_cast<std::size_t>(from.height));
+  }
+  grid.origin = {from.x, from.y, 0};
+  for (std::size_t i = 0; i < grid.cells.size(); ++i) {
+    const unsigned char cost = from.costs[i];
+    grid.cells[i] = cost == unknown  ? maps::Occupancy::unknown
+                    : cost == lethal ? maps::Occupancy::occupied
+                                     : maps::Occupancy::free;
+  }
+  if (!costmap_->update(grid)) throw std::invalid_argument("costmap: its origin must be finite");
+}
+
+void PathFollower::use_plan(const std::vector<maps::Pose>& plan, const std::string& frame) {
+  plan_.use(plan, frame);
+  cancelling_ = false;
+}
+
+void PathFollower::limit_speed(double limit, bool percentage) {
+  if (!std::isfinite(limit) || limit < 0)
+    throw std::invalid_argument("speed limit: " + std::to_string(limit) + " must be finite and at least 0");
+  limit_ = limit;
+  limit_is_percentage_ = percentage;
+  find_share();
+}
+
+bool PathFollower::cancel() {
+  if (!cancelling_) {
+    cancelling_ = true;
+    cancelling_for_ = 0;
+    plan_.clear();
+    if (navigator_) navigator_->reset(seed());
+  }
+  return !navigator_ || stands(velocity_) || cancelling_for_ > longest_braking;
+}
+
+void PathFollower::reset() {
+  plan_.clear();
+  if (navigator_) navigator_->reset(seed());
+  cancelling_ = false;
+  standing_ = 0;
+  last_time_.reset();
+  velocity_ = command_ = {};
+  predicted_.clear();
+  path_.clear();
+}
+
+FollowerAnswer PathFollower::update(const FollowerInput& input) {
+  try {
+    return answer(input);
+  } catch (const std::exception& error) {
+    command_ = {};
+    return {Problem::no_control, error.what(), "", {}, 0};
+  }
+}
+
+std::uint64_t PathFollower::seed() const {
+  const SolverOptions solver = settings_.solver(1);
+  const std::uint64_t* const seed_of_method = solver.find<std::uint64_t>("seed");
+  return seed_of_method ? *seed_of_method : 0;
+}
+
+/// Finds the share of the limits that the speed limit leaves.
+void PathFollower::find_share() {
+  const double before = share_;
+  share_ = limit_ == 0
+               ? 1.0
+               : std::min(limit_is_percentage_ ? limit_ / 100 : limit_ / settings_.max_forward(), 1.0);
+  if (share_ != before) navigator_.reset();
+}
+
+/// The goal checker decides when the goal is reached; the navigator must not stand before.
+void PathFollower::make_navigator(const GoalTolerance& told) {
+  const auto equal = [](const GoalTolerance& a, const GoalTolerance& b) {
+    return a.known == b.known && a.distance == b.distance && a.angle == b.angle;
+  };
+  if (navigator_ && equal(told, tolerance_)) return;
+  nav::NavigatorOptions options = settings_.navigator(share_);
+  constexpr double least = 0.001, every_heading = 4;  // what the navigator takes
+  if (told.known && told.distance > 0)
+    options.goal_distance = std::clamp(told.distance, least, options.goal_distance);
+  if (told.known)
+    options.goal_angle = told.angle > 0 ? std::clamp(told.angle, least, options.goal_angle) : every_heading;
+  navigator_.emplace(*footprint_, options, settings_.solver(share_), *costmap_);
+  tolerance_ = told;
+  plan_.forget_placement();
+}
+
+double PathFollower::elapsed_until(double time) {
+  const double since = last_time_ ? time - *last_time_ : usual_period;
+  last_time_ = time;
+  return since > 0 && since < longest_period ? since : usual_period;
+}
+
+FollowerAnswer PathFollower::answer(const FollowerInput& input) {
+  const double elapsed = elapsed_until(input.time);
+  velocity_ = settings_.own().open_loop ? command_ : input.velocity;
+  if (plan_.empty() && !cancelling_) return {Problem::invalid_path, "no path was set", "", {}, 0};
+  if (!costmap_) return {Problem::no_control, "there is no costmap", "", {}, 0};
+  if (!footprint_) return {Problem::no_control, "the robot has no footprint", "", {}, 0};
+  make_navigator(input.tolerance);
+  if (!plan_.empty()) {
+    if (const std::vector<maps::Pose>* const placed = plan_.place(input.plan_frame, input.pose))
+      navigator_->set_path(*placed);
+  }
+  const nav::NavigationResult result = navigator_->update(input.pose, velocity_, *costmap_, elapsed);
+  predicted_.assign(result.plan.begin(), result.plan.end());
+  path_.assign(result.path.begin(), result.path.end());
+  const FollowerAnswer judged = judge(result, elapsed);
+  command_ = judged.command;
+  return judged;
+}
+
+FollowerAnswer PathFollower::judge(const nav::NavigationResult& result, double elapsed) {
+  FollowerAnswer answer;
+  answer.status = nav::name(result.status);
+  answer.remaining = result.remaining;
+  answer.command = result.command;
+  if (cancelling_) {  // without a path the navigator brakes
+    cancelling_for_ += elapsed;
+    return answer;
+  }
+  const bool stands_still = result.status == nav::NavigationStatus::braking && stands(answer.command);
+  standing_ = stands_still ? standing_ + elapsed : 0;
+  answer.why = standing_ > settings_.navigator(1).patience ? "every plan collides" : why_of(result.status);
+  if (answer.why.empty()) return answer;
+  answer.problem = Problem::no_control;
+  answer.command = {};
+  return answer;
+}
+
+}  // namespace slalom::nodes

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// The reports and the log of a node.
+namespace slalom::nodes {
+
+/// The level of a report, as in diagnostic_msgs/DiagnosticStatus.
+enum class Level { ok = 0, warning = 1, error = 2 };
+
+/// The state of a node, about once per second.
+struct Report {
+  Level level = Level::ok;
+  std::string about;    ///< the subject
+  std::string message;  ///< the state in a few words
+  std::vector<std::pair<std::string, std::string>> values;
+
+  template <class Value>
+  void add(const std::string& key, const Value& value) {
+    std::ostringstream text;
+    text << value;
+    values.emplace_back(key, text.str());
+  }
+};
+
+/// The latest 400 values of a quantity (ten seconds at 40 Hz) and their percentiles. Adding one does not
+/// allocate.
+class RecentValues {
+ public:
+  void add(double value) {
+    values_[next_] = value;
+    next_ = (next_ + 1) % values_.size();
+    count_ = std::min(count_ + 1, values_.size());
+  }
+  std::size_t count() const { return count_; }
+
+  /// The least value that at least the fraction `share` (0 .. 1) of the values does not exceed; 0 if there is
+  /// none.
+  double percentile(double share) const {
+    if (count_ == 0) return 0;
+    std::array<double, 400> sorted = values_;
+    const double rank = std::clamp(share, 0.0, 1.0) * static_cast<double>(count_);
+    const auto whole = static_cast<std::size_t>(rank);
+    const std::size_t above = whole + (static_cast<double>(whole) < rank ? 1 : 0);
+    const auto nth = sorted.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(above, 1) - 1);
+    std::nth_element(sorted.begin(), nth, sorted.begin() + static_cast<std::ptrdiff_t>(count_));
+    return *nth;
+  }
+
+ private:
+  std::array<double, 400> values_{};
+  std::size_t count_ = 0, next_ = 0;
+};
+
+/// Logs at most one message per second of the steady clock. If several come within a second, the last one is
+/// logged when the second is over.
+class ThrottledLog {
+ public:
+  using Write = std::function<void(const std::string&)>;
+
+  ThrottledLog(std::function<double()> steady, Write write)
+      : steady_(std::move(steady)), write_(std::move(write)) {}
+
+  void operator()(const std::string& message) {
+    waiting_ = message;
+    flush();
+  }
+  /// Logs the message that waits, if it is due; to be called often.
+  void flush() {
+    const double now = steady_();
+    if (waiting_.empty() || now - last_ < 1) return;
+    last_ = now;
+    write_(std::exchange(waiting_, {}));
+  }
+
+ private:
+  std::function<double()> steady_;
+  Write write_;
+  double last_ = -1e9;
+  std::string waiting_;
+};
+
+}  // namespace slalom::nodes

@@ -1,0 +1,64 @@
+#include "logic/simulated_car.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "slalom/sim/placement.hpp"
+
+namespace slalom::nodes {
+namespace {
+
+sim::WorldOptions world_options(const evaluation::Environment& environment) {
+  sim::WorldOptions options = environment.world_options();
+  options.lidar = sim::LidarOptions::hokuyo_utm_30lx();
+  return options;
+}
+
+sim::WheelOdometryOptions odometry_options(std::uint64_t seed) {
+  sim::WheelOdometryOptions options;
+  options.seed = seed;
+  return options;
+}
+
+}  // namespace
+
+SimulatedCar::SimulatedCar(const vehicle::Course& course, std::uint64_t seed, int obstacles)
+    : environment_(evaluation::make_environment(course, evaluation::Protocol::true_physics)),
+      seed_(seed),
+      world_(world_options(*environment_), environment_->track),
+      odometry_(parameters(), odometry_options(seed)) {
+  const maps::Pose& start = environment_->start;
+  for (const sim::Placement& placed :
+       sim::place_apart(environment_->course.obstacle_path, environment_->obstacle_room, obstacles, seed,
+                        {start.x, start.y}))
+    parked_.push_back(placed.pose);
+  reset();
+}
+
+void SimulatedCar::reset() {
+  world_.reset(seed_, std::array{environment_->start}, parked_);
+  odometry_.reset(world_.state(0));
+  contacts_ = 0;
+}
+
+void SimulatedCar::step(const Command& command) {
+  const double time_step = world_.options().time_step;
+  for (int steps = static_cast<int>(std::lround(period / time_step)); steps > 0; --steps) {
+    world_.step(std::array{command});
+    odometry_.update(world_.state(0), time_step);
+  }
+  const bool collides = world_.observe(0).collides();
+  contacts_ += collides && !colliding_;
+  colliding_ = collides;
+}
+
+maps::Pose SimulatedCar::pose() const {
+  return sim::rear_axle(parameters(), world_.state(0));
+}
+
+maps::Pose SimulatedCar::laser() const {
+  const maps::Pose& mount = world_.options().lidar.mount;
+  return {parameters().rear_length + mount.x, mount.y, mount.yaw};
+}
+
+}  // namespace slalom::nodes

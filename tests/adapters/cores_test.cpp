@@ -1,0 +1,112 @@
+// The logic of planner and localiser nodes: refused options, paths and maps change nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "logic/localiser_core.hpp"
+#include "logic/planner_core.hpp"
+
+namespace slalom::nodes {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+template <class Core>
+std::string value_of(const Core& core, const std::string& option) {
+  for (const NamedOption& each : core.options())
+    if (each.name == option) return to_text(each.entry.value);
+  return "no such option";
+}
+
+Clocks clocks() {
+  return {[] { return 1000.0; }, [] { return 1000.0; }};
+}
+
+PlannerCore::Settings with(const std::string& configuration, const std::string& method) {
+  PlannerCore::Settings settings;
+  settings.configuration = configuration;
+  settings.method = method;
+  return settings;
+}
+
+class PlannerCoreTest : public ::testing::Test {
+ protected:
+  PlannerCore core_{with("", "mppi"),
+                    clocks(),
+                    {},
+                    {{},
+                     {},
+                     [this](const PlannerCore::Path&, bool closed) { paths_.push_back(closed); },
+                     [](const std::string&) {},
+                     {}}};
+  std::vector<bool> paths_;  ///< whether each path that was taken is closed
+};
+
+TEST_F(PlannerCoreTest, AnInvalidOptionChangesNothing) {
+  core_.change({{"mppi.samples", "64"}, {"planner.max_speed", "3"}});
+  EXPECT_THROW(core_.change({{"mppi.samples", "128"}, {"mppi.horizon", "0"}}), std::exception);
+  EXPECT_THROW(core_.change({{"mppi.samples", "128"}, {"mppi.none", "1"}}), std::exception);
+  EXPECT_EQ(value_of(core_, "mppi.samples"), "64");
+  EXPECT_EQ(value_of(core_, "planner.max_speed"), "3");
+  EXPECT_THROW(PlannerCore(with("", "none"), clocks(), {}, {}), std::exception);
+  EXPECT_THROW(PlannerCore(with("no/such/file.yaml", "mppi"), clocks(), {}, {}), std::exception);
+}
+
+TEST_F(PlannerCoreTest, AnInvalidPathIsIgnored) {
+  core_.change({{"mppi.samples", "64"}});
+  PlannerCore::Path line;
+  for (int i = 0; i < 40; ++i) line.push_back({0.5 * i, 0, 0, 2});
+  core_.hear_path({line[0], line[1]});
+  EXPECT_TRUE(paths_.empty()) << "too short";
+  core_.hear_path(line);
+  line[7].x = unknown;
+  core_.hear_path(line);
+  EXPECT_EQ(paths_, std::vector<bool>{false});
+  EXPECT_THROW(core_.drive_laps(1), std::exception) << "the path is open";
+}
+
+class LocaliserCoreTest : public ::testing::Test {
+ protected:
+  static maps::OccupancyGrid room() {
+    maps::OccupancyGrid grid{40, 20, 0.1, {}, std::vector<maps::Occupancy>(800, maps::Occupancy::free)};
+    for (int i = 0; i < 40; ++i) grid.at(i, 0) = maps::Occupancy::occupied;
+    return grid;
+  }
+
+  LocaliserCore core_{{}, clocks(), {}, {{}, {}, {}, [](const std::string&) {}, [](const std::string&) {}}};
+};
+
+TEST_F(LocaliserCoreTest, AnInvalidMapOrOptionChangesNothing) {
+  maps::OccupancyGrid torn = room(), flat = room();
+  torn.cells.pop_back();
+  flat.resolution = unknown;
+  core_.hear_map(torn);
+  EXPECT_EQ(core_.report().message, "no map");
+  core_.hear_map(room());
+  EXPECT_EQ(core_.report().message, "no scans");
+  core_.hear_map(torn);
+  core_.hear_map(flat);
+  EXPECT_EQ(core_.report().message, "no scans");
+
+  const std::string beams = value_of(core_, "beams");
+  EXPECT_THROW(core_.change({{"beams", "20"}, {"min_particles", "0"}}), std::exception);
+  EXPECT_THROW(core_.change({{"beams", "20"}, {"none", "1"}}), std::exception);
+  EXPECT_EQ(value_of(core_, "beams"), beams);
+}
+
+TEST_F(LocaliserCoreTest, AChangeOfOptionsKeepsTheStartThatWasTold) {
+  core_.hear_map(room());
+  core_.hear_start({2, 1, 0.5});
+  core_.change({{"beams", "20"}});
+  const std::vector<maps::Pose> some = core_.particles(50);
+  ASSERT_FALSE(some.empty());
+  for (const maps::Pose& each : some) {
+    EXPECT_NEAR(each.x, 2, 1.5);
+    EXPECT_NEAR(each.y, 1, 1.5);
+    EXPECT_NEAR(each.yaw, 0.5, 1);
+  }
+}
+
+}  // namespace
+}  // namespace slalom::nodes

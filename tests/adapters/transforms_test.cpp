@@ -1,0 +1,90 @@
+// The poses of sensors, stamps, and the file with the last pose.
+#include "logic/transforms.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "logic/known_place.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace slalom::nodes {
+namespace {
+
+constexpr double quarter = std::numbers::pi / 2;  // rad
+
+TEST(MountTest, AnUprightSensorIsAPoseInThePlane) {
+  const Mount turned = mount_of(0.3, -0.1, 0.2, 0, 0, std::sin(quarter / 2), std::cos(quarter / 2));
+  EXPECT_TRUE(turned.upright());
+  const maps::Pose pose = turned.planar();
+  EXPECT_EQ(pose.x, 0.3);
+  EXPECT_EQ(pose.y, -0.1);
+  EXPECT_NEAR(pose.yaw, quarter, 1e-12);
+  EXPECT_NEAR(turned.rotation[0][1], -1, 1e-12) << "its y axis points backwards";
+}
+
+TEST(MountTest, ASensorThatHangsUpsideDownIsNotUpright) {
+  const Mount hanging = mount_of(0, 0, 0, 1, 0, 0, 0);  // turned by 180 degrees about x
+  EXPECT_FALSE(hanging.upright());
+  EXPECT_NEAR(hanging.rotation[1][1], -1, 1e-12);
+  EXPECT_NEAR(hanging.rotation[2][2], -1, 1e-12) << "a turn to its left is one to the right of the car";
+}
+
+TEST(MountTest, RotatesVectorsToTheAxesOfTheCar) {
+  const Mount turned = mount_of(0, 0, 0, 0, 0, std::sin(quarter / 2), std::cos(quarter / 2));
+  const double ahead_of_sensor[3] = {2, 0, 0}, up[3] = {0, 0, 3};
+  EXPECT_NEAR(along(0, turned, ahead_of_sensor), 0, 1e-12);
+  EXPECT_NEAR(along(1, turned, ahead_of_sensor), 2, 1e-12) << "it looks to the left of the car";
+  EXPECT_NEAR(along(2, turned, up), 3, 1e-12);
+  const Mount hanging = mount_of(0, 0, 0, 1, 0, 0, 0);
+  EXPECT_NEAR(along(2, hanging, up), -3, 1e-12);
+}
+
+TEST(StampTest, SurvivesTheWayThroughSeconds) {
+  const Stamp stamp = 1'700'000'000'250'000'000;
+  EXPECT_NEAR(static_cast<double>(stamp_of(in_seconds(stamp)) - stamp), 0, 300) << "ns";
+  EXPECT_EQ(stamp_of(-0.5), -500'000'000);
+}
+
+TEST(KnownPlaceTest, MovesAsTheOdometryDoes) {
+  const KnownPlace known{{10, 20, 1 + quarter}, {3, 4, 1}};
+  const maps::Pose moved = place_now(known, {4, 4, 1.5});
+  EXPECT_NEAR(moved.x, 10, 1e-12);
+  EXPECT_NEAR(moved.y, 21, 1e-12);
+  EXPECT_NEAR(moved.yaw, 1.5 + quarter, 1e-12);
+}
+
+TEST(KnownPlaceTest, IsKeptWhereTheOdometryHasStartedAgain) {
+  const KnownPlace known{{10, 20, 1}, {30, 40, 2}};
+  const maps::Pose same = place_now(known, {0.1, 0, 0});
+  EXPECT_EQ(same.x, 10);
+  EXPECT_EQ(same.y, 20);
+  EXPECT_EQ(same.yaw, 1);
+}
+
+TEST(KnownPlaceTest, IsReadFromAFileWhileItIsYoung) {
+  const testing::ScopedFolder folder;
+  const std::string file = folder.path() / "place";
+  EXPECT_FALSE(read_place(file, 1000)) << "there is none yet";
+  ASSERT_TRUE(write_place(file, {{1.25, -3.5, 0.1}, {7, 8, 0.9}}, 1000));
+  const auto place = read_place(file, 1009);
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->map.x, 1.25);
+  EXPECT_EQ(place->map.y, -3.5);
+  EXPECT_EQ(place->map.yaw, 0.1);
+  EXPECT_EQ(place->odometry.x, 7);
+  EXPECT_EQ(place->odometry.y, 8);
+  EXPECT_EQ(place->odometry.yaw, 0.9);
+  EXPECT_FALSE(read_place(file, 1011)) << "too old";
+  EXPECT_FALSE(read_place(file, 999)) << "from the future";
+  std::ofstream(file) << "1.25 -3.5";
+  EXPECT_FALSE(read_place(file, 1001)) << "cut";
+  std::ofstream(file) << "1.25 -3.5 nan 0 0 0 1000";
+  EXPECT_FALSE(read_place(file, 1001)) << "not finite";
+  EXPECT_FALSE(write_place(folder.path() / "none" / "place", {}, 1000));
+}
+
+}  // namespace
+}  // namespace slalom::nodes
