@@ -24,7 +24,7 @@ function(slalom_add_layer name)
   set_property(GLOBAL APPEND PROPERTY SLALOM_LAYERS slalom_${name})
 endfunction()
 
-# Flags of the targets of this project; none is exported. Functions take wide packs by reference, so the warning about
+# Flags of the targets of this project; none is exported. Tests set SLALOM_UNHARDENED: they are not installed. Functions take wide packs by reference, so the warning about
 # their calling convention (-Wpsabi) does not apply.
 function(slalom_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wno-psabi)
@@ -42,7 +42,7 @@ function(slalom_compile_options target)
         target_compile_options(${target} PRIVATE -Wno-tsan)
       endif()
     endif()
-  else()
+  elseif(NOT SLALOM_UNHARDENED)
     slalom_harden(${target})
   endif()
 endfunction()
