@@ -12,7 +12,6 @@ namespace slalom::nodes {
 
 /// How a base moves, by the names of nav2's MPPI controller; in the order of navigation::BaseKind.
 enum class MotionModel { DiffDrive, Omni, Ackermann };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(MotionModel) {
   static constexpr const char* const names[] = {"DiffDrive", "Omni", "Ackermann", nullptr};
   return names;

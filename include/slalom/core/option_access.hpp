@@ -22,7 +22,6 @@ struct OptionEntry {
   OptionValue value;                 ///< the value of the option
   std::vector<std::string> choices;  ///< names of the enumerators if the option is an enumeration
 
-  /// Whether the values are equal.
   bool operator==(const OptionEntry& other) const { return value == other.value; }
 };
 

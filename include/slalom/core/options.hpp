@@ -90,7 +90,6 @@ class PerInput {
   bool fits(int inputs) const noexcept {
     return values_.size() == 1 || static_cast<int>(values_.size()) == inputs;
   }
-  /// Whether the values are equal.
   bool operator==(const PerInput&) const = default;
 
  private:

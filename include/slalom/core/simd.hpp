@@ -109,9 +109,7 @@ struct Mask {
   Mask() = default;
   /// From a vector in this form.
   SLALOM_INLINE Mask(const Vector& vector) : v(vector) {}
-  /// Copies.
   SLALOM_INLINE Mask(const Mask& other) : v(other.v) {}
-  /// Copies.
   SLALOM_INLINE Mask& operator=(const Mask& other) {
     v = other.v;
     return *this;
@@ -125,19 +123,14 @@ struct Mask {
     }
   }
 
-  /// Applies to each lane.
   SLALOM_INLINE friend Mask operator&(const Mask& a, const Mask& b) {
     return Mask(static_cast<Vector>(a.v & b.v));
   }
-  /// Applies to each lane.
   SLALOM_INLINE friend Mask operator|(const Mask& a, const Mask& b) {
     return Mask(static_cast<Vector>(a.v | b.v));
   }
-  /// Applies to each lane.
   SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(static_cast<Vector>(~a.v)); }
-  /// Applies to each lane; both operands are evaluated.
   SLALOM_INLINE friend Mask operator&&(const Mask& a, const Mask& b) { return a & b; }
-  /// Applies to each lane; both operands are evaluated.
   SLALOM_INLINE friend Mask operator||(const Mask& a, const Mask& b) { return a | b; }
   /// Refuses `if (x > 0)`, `x > 0 ? a : b` and `while (x > 0)` of packs, with words.
   template <std::same_as<bool> Bool>
@@ -171,27 +164,20 @@ struct IntPack {
   SLALOM_INLINE explicit IntPack(int value) { v = Vector{} + value; }
   /// From a vector.
   SLALOM_INLINE IntPack(const Vector& vector) : v(vector) {}
-  /// Copies.
   SLALOM_INLINE IntPack(const IntPack& other) : v(other.v) {}
-  /// Copies.
   SLALOM_INLINE IntPack& operator=(const IntPack& other) {
     v = other.v;
     return *this;
   }
 
-  /// Applies to each lane.
   SLALOM_INLINE friend IntPack operator+(const IntPack& a, const IntPack& b) { return IntPack(a.v + b.v); }
-  /// Applies to each lane.
   SLALOM_INLINE friend IntPack operator*(const IntPack& a, int b) { return IntPack(a.v * b); }
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator<(const IntPack& a, const IntPack& b) {
     Mask<T> r;
     Operations<T>::less(a.v, b.v, r.v);
     return r;
   }
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator>(const IntPack& a, const IntPack& b) { return b < a; }
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator==(const IntPack& a, const IntPack& b) {
     Mask<T> r;
     Operations<T>::equal(a.v, b.v, r.v);
@@ -222,9 +208,7 @@ struct Pack {
   SLALOM_INLINE Pack(const Coefficient& value) : Pack(value.rounded()) {}
   /// From a vector.
   SLALOM_INLINE Pack(const Vector& vector) : v(vector) {}
-  /// Copies.
   SLALOM_INLINE Pack(const Pack& other) : v(other.v) {}
-  /// Copies.
   SLALOM_INLINE Pack& operator=(const Pack& other) {
     v = other.v;
     return *this;
@@ -249,11 +233,8 @@ struct Pack {
     return 0;
   }
 
-  /// Applies to each lane.
   SLALOM_INLINE friend Pack operator+(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v + b.v); }
-  /// Applies to each lane.
   SLALOM_INLINE friend Pack operator-(const Pack& a, const Pack& b) { SLALOM_FUSE return Pack(a.v - b.v); }
-  /// Applies to each lane.
   SLALOM_INLINE friend Pack operator*(const Pack& a, const Pack& b) {
     if constexpr (detail::rounds_products<T>) {
       Vector product = a.v * b.v;
@@ -263,38 +244,26 @@ struct Pack {
       SLALOM_FUSE return Pack(a.v * b.v);
     }
   }
-  /// Applies to each lane.
   SLALOM_INLINE friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.v / b.v); }
-  /// Applies to each lane.
   SLALOM_INLINE friend Pack operator-(const Pack& a) { return Pack(-a.v); }
-  /// Applies to each lane.
   SLALOM_INLINE Pack& operator+=(const Pack& b) { return *this = *this + b; }
-  /// Applies to each lane.
   SLALOM_INLINE Pack& operator-=(const Pack& b) { return *this = *this - b; }
-  /// Applies to each lane.
   SLALOM_INLINE Pack& operator*=(const Pack& b) { return *this = *this * b; }
-  /// Applies to each lane.
   SLALOM_INLINE Pack& operator/=(const Pack& b) { return *this = *this / b; }
 
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator<(const Pack& a, const Pack& b) {
     Mask<T> r;
     Operations<T>::less(a.v, b.v, r.v);
     return r;
   }
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator<=(const Pack& a, const Pack& b) {
     Mask<T> r;
     Operations<T>::less_or_equal(a.v, b.v, r.v);
     return r;
   }
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator>(const Pack& a, const Pack& b) { return b < a; }
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator>=(const Pack& a, const Pack& b) { return b <= a; }
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator==(const Pack& a, const Pack& b) { return (a <= b) & (b <= a); }
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend Mask<T> operator!=(const Pack& a, const Pack& b) { return !(a == b); }
 
 /// An operator of a pack and a number, which stands for the same value in all lanes.

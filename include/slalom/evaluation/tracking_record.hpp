@@ -12,7 +12,6 @@ enum class TrackingMode {
   localised,  ///< with the map and the pose of a localiser, which has scans and wheel odometry
   mapless,    ///< without the map, with the pose of wheel odometry and gyro
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(TrackingMode) {
   static constexpr const char* names[] = {"off", "exact", "localised", "mapless", nullptr};
   return names;

@@ -14,7 +14,6 @@ enum class BaseKind {
   omnidirectional,  ///< forward and sideways, and it turns on the spot
   ackermann,        ///< steered wheels: turning only while driving
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(BaseKind) {
   static constexpr const char* const names[] = {"differential", "omnidirectional", "ackermann", nullptr};
   return names;

@@ -15,7 +15,6 @@ enum class UnknownCells {
   obstacle,  ///< obstacles
   priced,    ///< places that the robot may enter at a price
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(UnknownCells) {
   static constexpr const char* const names[] = {"obstacle", "priced", nullptr};
   return names;

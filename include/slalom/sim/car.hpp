@@ -38,7 +38,6 @@ enum class CarKind {
   f1tenth,        ///< the 1/10-scale car of f1tenth_gym
   passenger_car,  ///< CarParameters::full_scale()
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(CarKind) {
   static constexpr const char* const names[] = {"f1tenth", "passenger_car", nullptr};
   return names;
@@ -56,7 +55,6 @@ struct CarState {
   double yaw_rate = 0;  ///< rad/s
   double slip = 0;      ///< beta, rad, from the body's axis to the direction of travel
 
-  /// Whether all values are equal.
   bool operator==(const CarState&) const = default;
 };
 

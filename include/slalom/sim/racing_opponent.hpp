@@ -17,7 +17,6 @@ enum class OpponentDriver {
   blocking,  ///< follows the path and moves in front of a car that comes from behind
   erratic,   ///< follows the path and changes lane and speed at random times
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(OpponentDriver) {
   static constexpr const char* names[] = {"pursuit", "racing", "blocking", "erratic", nullptr};
   return names;

@@ -14,7 +14,6 @@ enum class Resampling {
   systematic,  ///< at equal distances along the cumulated probabilities: as often as expected, up to rounding
   multinomial,  ///< independently, with replacement
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(Resampling) {
   static constexpr const char* const names[] = {"systematic", "multinomial", nullptr};
   return names;

@@ -16,7 +16,6 @@ enum class GuideWeight {
   importance,  ///< S and (u - n)^T Sigma^-1 v, the control term of the paper's equation (8)
   proximity,   ///< S and (u - v)^T Sigma^-1 (u - v), the distance to the last solution
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(GuideWeight) {
   static constexpr const char* const names[] = {"state_cost", "importance", "proximity", nullptr};
   return names;
@@ -27,7 +26,6 @@ enum class GuideGradient {
   surrogate,  ///< the surrogate gradient of samples, equation (11)
   exact,      ///< the derivative of the cost, of an evaluator that has it (`GradientEvaluator`)
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(GuideGradient) {
   static constexpr const char* const names[] = {"surrogate", "exact", nullptr};
   return names;
@@ -40,7 +38,6 @@ enum class SampleCentre {
   /// The last solution, as in the paper: the weights correct for the distance to the nominal sequence.
   solution,
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(SampleCentre) {
   static constexpr const char* const names[] = {"nominal", "solution", nullptr};
   return names;

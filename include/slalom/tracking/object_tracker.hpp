@@ -93,11 +93,9 @@ class ObjectTracker {
   ~ObjectTracker();
   /// Copies the objects and scans; copies share the map.
   ObjectTracker(const ObjectTracker& other);
-  /// Copies likewise.
   ObjectTracker& operator=(const ObjectTracker& other);
   /// Moves; the source can only be destroyed or assigned to.
   ObjectTracker(ObjectTracker&&) noexcept;
-  /// Moves likewise.
   ObjectTracker& operator=(ObjectTracker&&) noexcept;
 
   /// Predicts all objects to `input.stamp` and corrects them with the scan.

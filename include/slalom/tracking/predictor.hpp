@@ -42,13 +42,11 @@ class Predictor {
   /// std::invalid_argument on options out of range and where check_reference_path does.
   explicit Predictor(std::span<const maps::ReferencePoint> course, const PredictorOptions& options = {});
   ~Predictor();
-  /// Copies what is remembered; the predictions of the last update are the source's alone.
+  /// Copies the memory of objects; the predictions of the last update are the source's alone.
   Predictor(const Predictor& other);
-  /// Copies likewise.
   Predictor& operator=(const Predictor& other);
   /// Moves; the source can only be destroyed or assigned to.
   Predictor(Predictor&&) noexcept;
-  /// Moves likewise.
   Predictor& operator=(Predictor&&) noexcept;
 
   /// Predictions of the objects that move, as they are at `stamp` (s), in their frame, which is that of the

@@ -105,14 +105,11 @@ struct DoubleMask {
   DoubleMask() = default;
   /// From a vector.
   SLALOM_INLINE DoubleMask(const Vector& vector) : v(vector) {}
-  /// Copies.
   SLALOM_INLINE DoubleMask(const DoubleMask& other) : v(other.v) {}
-  /// Copies.
   SLALOM_INLINE DoubleMask& operator=(const DoubleMask& other) {
     v = other.v;
     return *this;
   }
-  /// Applies to each lane.
   SLALOM_INLINE friend DoubleMask operator&(const DoubleMask& a, const DoubleMask& b) {
     return DoubleMask(static_cast<Vector>(a.v & b.v));
   }
@@ -133,9 +130,7 @@ struct DoublePack {
   SLALOM_INLINE_CALLS DoublePack(double value) { DoubleOperations<T>::broadcast(value, v); }
   /// From a vector.
   SLALOM_INLINE DoublePack(const Vector& vector) : v(vector) {}
-  /// Copies.
   SLALOM_INLINE DoublePack(const DoublePack& other) : v(other.v) {}
-  /// Copies.
   SLALOM_INLINE DoublePack& operator=(const DoublePack& other) {
     v = other.v;
     return *this;
@@ -156,43 +151,34 @@ struct DoublePack {
     return p;
   }
 
-  /// Applies to each lane.
   SLALOM_INLINE friend DoublePack operator+(const DoublePack& a, const DoublePack& b) {
     return DoublePack(a.v + b.v);
   }
-  /// Applies to each lane.
   SLALOM_INLINE friend DoublePack operator-(const DoublePack& a, const DoublePack& b) {
     return DoublePack(a.v - b.v);
   }
-  /// Applies to each lane.
   SLALOM_INLINE friend DoublePack operator*(const DoublePack& a, const DoublePack& b) {
     Vector product = a.v * b.v;
     SLALOM_ROUND(product);
     return DoublePack(product);
   }
-  /// Applies to each lane.
   SLALOM_INLINE friend DoublePack operator/(const DoublePack& a, const DoublePack& b) {
     return DoublePack(a.v / b.v);
   }
-  /// Applies to each lane.
   SLALOM_INLINE friend DoublePack operator-(const DoublePack& a) { return DoublePack(-a.v); }
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend DoubleMask<T> operator<(const DoublePack& a, const DoublePack& b) {
     DoubleMask<T> r;
     DoubleOperations<T>::less(a.v, b.v, r.v);
     return r;
   }
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend DoubleMask<T> operator<=(const DoublePack& a, const DoublePack& b) {
     DoubleMask<T> r;
     DoubleOperations<T>::less_or_equal(a.v, b.v, r.v);
     return r;
   }
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend DoubleMask<T> operator>(const DoublePack& a, const DoublePack& b) {
     return b < a;
   }
-  /// Applies to each lane.
   SLALOM_INLINE_CALLS friend DoubleMask<T> operator>=(const DoublePack& a, const DoublePack& b) {
     return b <= a;
   }

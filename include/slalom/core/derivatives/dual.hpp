@@ -21,13 +21,9 @@ struct DualMask {
   /// The truth value.
   explicit operator bool() const { return value; }
 
-  /// Logical operation; both operands are evaluated.
   friend DualMask operator&(DualMask a, DualMask b) { return {a.value && b.value, a.kink || b.kink}; }
-  /// Logical operation; both operands are evaluated.
   friend DualMask operator|(DualMask a, DualMask b) { return {a.value || b.value, a.kink || b.kink}; }
-  /// Logical operation; both operands are evaluated.
   friend DualMask operator&&(DualMask a, DualMask b) { return a & b; }
-  /// Logical operation; both operands are evaluated.
   friend DualMask operator||(DualMask a, DualMask b) { return a | b; }
   /// Negation.
   friend DualMask operator!(DualMask a) { return {!a.value, a.kink}; }
@@ -123,23 +119,17 @@ struct Dual {
   /// Divides.
   Dual& operator/=(const Dual& b) { return *this = *this / b; }
 
-  /// Comparison of the values.
   friend DualMask operator<(const Dual& a, const Dual& b) {
     return compare(a, b, detail::plain(a) < detail::plain(b));
   }
-  /// Comparison of the values.
   friend DualMask operator<=(const Dual& a, const Dual& b) {
     return compare(a, b, detail::plain(a) <= detail::plain(b));
   }
-  /// Comparison of the values.
   friend DualMask operator>(const Dual& a, const Dual& b) { return b < a; }
-  /// Comparison of the values.
   friend DualMask operator>=(const Dual& a, const Dual& b) { return b <= a; }
-  /// Comparison of the values.
   friend DualMask operator==(const Dual& a, const Dual& b) {
     return compare(a, b, detail::plain(a) == detail::plain(b));
   }
-  /// Comparison of the values.
   friend DualMask operator!=(const Dual& a, const Dual& b) { return !(a == b); }
 
   /// A number of this `value` whose derivatives are `by_a` times those of a plus `by_b` times those of b.

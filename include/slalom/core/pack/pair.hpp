@@ -26,19 +26,14 @@ struct Mask<Pair<T>> {
   /// Sets all lanes to `value`.
   SLALOM_INLINE explicit Mask(bool value) : low(value), high(value) {}
 
-  /// Applies to each lane.
   SLALOM_INLINE friend Mask operator&(const Mask& a, const Mask& b) {
     return Mask(a.low & b.low, a.high & b.high);
   }
-  /// Applies to each lane.
   SLALOM_INLINE friend Mask operator|(const Mask& a, const Mask& b) {
     return Mask(a.low | b.low, a.high | b.high);
   }
-  /// Applies to each lane.
   SLALOM_INLINE friend Mask operator!(const Mask& a) { return Mask(!a.low, !a.high); }
-  /// Applies to each lane; both operands are evaluated.
   SLALOM_INLINE friend Mask operator&&(const Mask& a, const Mask& b) { return a & b; }
-  /// Applies to each lane; both operands are evaluated.
   SLALOM_INLINE friend Mask operator||(const Mask& a, const Mask& b) { return a | b; }
   /// Writes 1 for each lane that is true, else 0.
   SLALOM_INLINE void store(std::uint8_t* to) const {
@@ -80,7 +75,6 @@ struct Pack<Pair<T>> {
   /// Value of one lane.
   float operator[](int lane) const { return lane < T::lanes ? low[lane] : high[lane - T::lanes]; }
 
-  /// Applies to each lane.
   SLALOM_INLINE friend Pack operator-(const Pack& a) { return Pack(-a.low, -a.high); }
 
 /// An operator of two pairs, and of a pair and a number, which stands for the same value in all lanes.
@@ -108,19 +102,15 @@ struct Pack<Pair<T>> {
   SLALOM_PAIR_OPERATOR(Mask<Target>, !=)
 #undef SLALOM_PAIR_OPERATOR
 
-  /// Applies to each lane.
   SLALOM_INLINE Pack& operator+=(const Pack& b) {
     return *this = *this + b;
   }
-  /// Applies to each lane.
   SLALOM_INLINE Pack& operator-=(const Pack& b) {
     return *this = *this - b;
   }
-  /// Applies to each lane.
   SLALOM_INLINE Pack& operator*=(const Pack& b) {
     return *this = *this * b;
   }
-  /// Applies to each lane.
   SLALOM_INLINE Pack& operator/=(const Pack& b) {
     return *this = *this / b;
   }

@@ -13,7 +13,6 @@ enum class RiskMeasure {
   cvar,         ///< the conditional value at risk: the mean of the worst share `tail` of the costs
   exponential,  ///< the entropic risk: log(mean(exp(aversion c))) / aversion
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(RiskMeasure) {
   static constexpr const char* const names[] = {"mean", "worst", "cvar", "exponential", nullptr};
   return names;
@@ -28,7 +27,6 @@ struct RiskOptions {
   double aversion = 0.1;
   std::uint64_t seed = 0;
 
-  /// Whether all values are equal.
   bool operator==(const RiskOptions&) const = default;
 };
 

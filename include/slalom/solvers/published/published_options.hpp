@@ -21,7 +21,6 @@ enum class FitTarget {
   optimal_density,  ///< q* of the paper's equation (5): exp(-S / temperature) q(V | nominal, Sigma)
   state_cost,       ///< softmax of S with `fit_temperature` (program)
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(FitTarget) {
   static constexpr const char* const names[] = {"optimal_density", "state_cost", nullptr};
   return names;
@@ -52,7 +51,6 @@ enum class RejectionModel {
   published,  ///< product over steps of 1 / (p + p_rejected) where a "density" grows with the distance, and p
               ///< is taken at the rejected mean (program)
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(RejectionModel) {
   static constexpr const char* const names[] = {"normal", "published", nullptr};
   return names;
@@ -72,7 +70,6 @@ enum class BandwidthModel {
   pair_distances,  ///< median squared distance between particles / log n (Liu and Wang 2016)
   squared_norms,   ///< median squared norm of the particles / log n (program)
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(BandwidthModel) {
   static constexpr const char* const names[] = {"pair_distances", "squared_norms", nullptr};
   return names;

@@ -107,9 +107,7 @@ class Localiser {
   /// positive; and if the table of ranges would have more than 2^27 entries.
   explicit Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options = {});
   ~Localiser();
-  /// Moves.
   Localiser(Localiser&&) noexcept;
-  /// Moves.
   Localiser& operator=(Localiser&&) noexcept;
 
   /// Draws all particles around a pose of the rear axle (map frame); false, without effect, if it is not

@@ -11,7 +11,6 @@ enum class SensorModel {
   likelihood_field,  ///< distance from the beam's end to the nearest wall (Table 6.3)
   beam,              ///< range expected from the map, by a table that is computed at construction (Table 6.1)
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(SensorModel) {
   static constexpr const char* names[] = {"likelihood_field", "beam", nullptr};
   return names;

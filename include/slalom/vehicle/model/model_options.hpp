@@ -6,7 +6,6 @@ namespace slalom::vehicle {
 
 /// The options of a model that has none of its own.
 struct NoOptions {
-  /// Whether all values are equal.
   bool operator==(const NoOptions&) const = default;
 };
 

@@ -10,7 +10,6 @@ enum class SpeedModel {
   constant,   ///< the present speed
   linear,     ///< constant acceleration towards the reference speed at the start
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(SpeedModel) {
   static constexpr const char* const names[] = {"reference", "constant", "linear", nullptr};
   return names;
@@ -21,7 +20,6 @@ enum class BodyModel {
   discs,  ///< three discs along the body, turned with it, on a map of clearances
   box,    ///< obstacles inflated by the body in its heading at the time of the scan
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(BodyModel) {
   static constexpr const char* const names[] = {"discs", "box", nullptr};
   return names;

@@ -9,7 +9,6 @@ enum class TyreModel {
   linear,      ///< proportional to the slip angle, without bound
   saturating,  ///< Pacejka's curve: no more than friction times load, shared with drive and brakes
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(TyreModel) {
   static constexpr const char* const names[] = {"linear", "saturating", nullptr};
   return names;
@@ -20,7 +19,6 @@ enum class Objective {
   path_speed,  ///< the speeds of the path, which plans do not exceed
   lap_time,    ///< the shortest time within grip and `max_speed`, whatever the speeds of the path
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(Objective) {
   static constexpr const char* const names[] = {"path_speed", "lap_time", nullptr};
   return names;
@@ -50,7 +48,6 @@ struct SingleTrackOptions {
   double cornering_deviation = 0.1;
   double collision_ahead_cost = 100;
 
-  /// Whether all values are equal.
   bool operator==(const SingleTrackOptions&) const = default;
 };
 

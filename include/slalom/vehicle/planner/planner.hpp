@@ -116,9 +116,7 @@ class Planner {
   Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
           std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver);
   ~Planner();
-  /// Moves.
   Planner(Planner&&) noexcept;
-  /// Moves.
   Planner& operator=(Planner&&) noexcept;
 
   /// Plans from scan and odometry; to be called once per `control_period`.

@@ -13,7 +13,6 @@ enum class BicycleModel {
               ///< the centre of gravity, tan(b) has l_r in its numerator (Rajamani, "Vehicle Dynamics and
               ///< Control", 2nd ed., section 2.2): the yaw gain of this form is too high
 };
-/// The names of the enumerators, in order.
 inline const char* const* enum_names(BicycleModel) {
   static constexpr const char* const names[] = {"rear_axle", "published", nullptr};
   return names;
@@ -27,7 +26,6 @@ struct ModelOptions {
   bool straight_local_rollout = false;
   bool linear_sign_error = false;
 
-  /// Whether all values are equal.
   bool operator==(const ModelOptions&) const = default;
 
   /// The values of the published program.

@@ -10,7 +10,6 @@ struct PlannerOptions {
   /// paper's program sends the angle without a limit; its simulator stops the wheels at 0.4189 rad.
   bool wrap_steer = false;
 
-  /// Whether all values are equal.
   bool operator==(const PlannerOptions&) const = default;
 };
 
