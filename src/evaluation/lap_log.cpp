@@ -25,7 +25,7 @@ std::vector<std::string> split_line(std::string line) {
   return cells;
 }
 
-constexpr std::uint64_t max_log_bytes = std::uint64_t{1} << 26;  // of a file
+constexpr std::uint64_t max_log_bytes = std::uint64_t{1} << 26;  // size of a file
 constexpr std::size_t max_log_line = std::size_t{1} << 16;       // bytes
 constexpr int max_log_laps = 1000000;
 constexpr double max_log_value = 1e12;  // in magnitude; sums over all laps stay finite
@@ -99,7 +99,7 @@ class NumberTable {
   std::size_t at_ = 0;  ///< where the next line begins
   std::map<std::string, std::size_t> columns_;
   std::vector<std::string> cells_;
-  int number_ = 0;  ///< of the last line
+  int number_ = 0;  ///< number of the last line
 };
 
 }  // namespace

@@ -13,7 +13,7 @@
 
 namespace slalom::evaluation {
 
-/// What the protocols of a lap do differently. The published protocol is implemented in
+/// The differences between the protocols of a lap. The published protocol is implemented in
 /// published_protocol.cpp, the product's own in standard_protocol.cpp; nothing else depends on which of them
 /// applies.
 class LapRules {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double timeout_laps = 3;         // laps at the speed profile
 constexpr double finish_tolerance = 0.5;   // m before the end of an open course
-constexpr double least_speed_share = 0.5;  // of vehicle.speed_share
+constexpr double least_speed_share = 0.5;  // least factor of vehicle.speed_share
 
 void require(bool holds, const std::string& message) {
   if (!holds) throw std::invalid_argument(message);

@@ -72,7 +72,7 @@ std::string differences(const Json& stored, const Json& requested) {
   return text;
 }
 
-/// What settings.json says besides the settings.
+/// The contents of settings.json besides the settings.
 struct StoredSettings {
   std::string build;     ///< that drove the laps; "" if it is unknown
   bool checked = false;  ///< whether they have a checksum

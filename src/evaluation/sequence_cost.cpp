@@ -61,7 +61,7 @@ struct SequenceCostMeter::Implementation {
   std::vector<PredictedState> states;
   std::vector<float> inputs;
   maps::Pose robot;
-  GridView<1> obstacles;    ///< of this cost map or of the caller's
+  GridView<1> obstacles;    ///< obstacles of this cost map or of the caller's
   maps::Point low, high;    ///< m, the part of the field that is up to date, map frame
   bool everywhere = false;  ///< whether the whole field is up to date
 

@@ -41,7 +41,7 @@ double nearest_rank(std::span<const Number> sorted, double share) {
 
 struct Moments {
   double mean = 0;
-  double variance = 0;  ///< of the mean
+  double variance = 0;  ///< variance of the mean
 };
 Moments moments(std::span<const double> values) {
   const double m = mean(values);

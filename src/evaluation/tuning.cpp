@@ -10,7 +10,7 @@ namespace slalom::evaluation {
 
 namespace {
 
-constexpr double max_weight = 1e12;  // of a figure: sums stay finite
+constexpr double max_weight = 1e12;  // largest weight of a figure: sums stay finite
 
 [[noreturn]] void throw_invalid(const std::string& text, const std::string& rule) {
   throw std::invalid_argument("'" + text + "' " + rule);

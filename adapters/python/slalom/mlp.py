@@ -153,7 +153,7 @@ def train_mlp(inputs: ArrayLike, outputs: ArrayLike, *, hidden: Sequence[int] = 
     target = outputs - inputs[:, :outputs.shape[1]] if residual else outputs
     (input_mean, input_scale), (output_mean, output_scale) = map(_normalisation, (inputs, target))
     x, y = (inputs - input_mean) / input_scale, (target - output_mean) / output_scale
-    output_scale = np.where(np.ptp(target, axis=0) > 0, output_scale, 0)  # what does not vary is its mean
+    output_scale = np.where(np.ptp(target, axis=0) > 0, output_scale, 0)  # a constant output is its mean
 
     random = np.random.default_rng(seed)
     sizes = [x.shape[1], *hidden, y.shape[1]]

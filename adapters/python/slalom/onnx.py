@@ -27,7 +27,7 @@ def load_mlp(file: str | os.PathLike[str], *, residual: bool = False) -> Mlp:
         graph = onnx.load(os.fspath(file)).graph
     except FileNotFoundError:
         raise
-    except Exception as error:  # of the parser, which has no error of its own
+    except Exception as error:  # the parser has no error type of its own
         raise ValueError(f"{file}: is not an ONNX file: {error}") from error
     constants = {each.name: numpy_helper.to_array(each) for each in graph.initializer}
     inputs = [each for each in graph.input if each.name not in constants]
@@ -52,7 +52,7 @@ class _Walk:
 
     def __init__(self, width: int, value: str, constants: dict[str, Any]) -> None:
         self.chain, self.value, self.constants = MlpChain(width), value, constants
-        self.sigmoid: str | None = None  # of the value
+        self.sigmoid: str | None = None  # name of the value
 
     def take(self, node: Any) -> None:
         attributes = {each.name: onnx.helper.get_attribute_value(each) for each in node.attribute}

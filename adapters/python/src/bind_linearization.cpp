@@ -17,7 +17,7 @@ py::array_t<double> block(const std::vector<double>& matrix, py::ssize_t size, p
   return part;
 }
 
-/// What `linearize` returns: derivatives with their sizes.
+/// The result of `linearize`: derivatives with their sizes.
 struct Expansion {
   Derivatives d;
   py::ssize_t states, inputs;

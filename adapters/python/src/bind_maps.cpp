@@ -76,7 +76,7 @@ Field field_from_function(const py::object& function, int width, int height, dou
   return make_field(samples, resolution, origin);
 }
 
-/// What numpy makes of a value: an array.
+/// Converts a value to an array, as numpy does.
 py::array to_array(const py::object& value) {
   auto array = py::array::ensure(value);
   if (!array) throw py::error_already_set();

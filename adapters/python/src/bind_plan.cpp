@@ -62,7 +62,7 @@ py::dict times(const Plan& plan) {
   return all;
 }
 
-/// What a plan says of its solve, in a class of that plan and in that of its `stats`.
+/// Binds the figures of a plan's solve, in a class of that plan and in that of its `stats`.
 template <class Base>
 void bind_statistics(py::class_<Base>& bound) {
   bound

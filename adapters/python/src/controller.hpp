@@ -27,7 +27,7 @@ class Controller {
   const InputBounds& bounds() const noexcept { return bounds_; }
   const SolverOptions& options() const noexcept { return options_; }
   const SolveResult& result() const noexcept { return result_; }
-  /// Of the last solve. A cost that is not finite shows when the prediction is first asked for.
+  /// The status of the last solve. A cost that is not finite shows when the prediction is first asked for.
   Status status() const noexcept { return status_; }
   /// The number of values that the final check changed in the last solve.
   int corrections() const noexcept { return corrections_; }

@@ -42,8 +42,8 @@ struct Derivatives {
   std::vector<double> state_jacobian;  ///< [states][states]
   std::vector<double> input_jacobian;  ///< [states][inputs]
   double cost = 0;
-  std::vector<double> gradient;  ///< of the cost: by the states, then by the inputs
-  std::vector<double> hessian;   ///< of the cost, [states + inputs][states + inputs]
+  std::vector<double> gradient;  ///< gradient of the cost: by the states, then by the inputs
+  std::vector<double> hessian;   ///< Hessian of the cost, [states + inputs][states + inputs]
   bool kink = false;             ///< whether a function has no derivative here
 };
 

@@ -20,7 +20,7 @@ namespace slalom::nodes {
 /// A message of the odometry.
 struct OdometrySample {
   Stamp stamp = 0;
-  maps::Pose pose;                 ///< of the base frame in the odometry frame
+  maps::Pose pose;                 ///< pose of the base frame in the odometry frame
   double speed = 0, yaw_rate = 0;  ///< m/s, rad/s
 };
 
@@ -31,9 +31,10 @@ class LocaliserCore {
  public:
   /// The settings that are fixed when the node starts.
   struct Settings {
-    std::string course;               ///< a name or a folder, whose map is used; empty: the map is a message
-    bool everywhere = false;          ///< search the whole map at the start
-    std::optional<maps::Pose> start;  ///< of the base frame; otherwise the start of the course, or everywhere
+    std::string course;       ///< a name or a folder, whose map is used; empty: the map is a message
+    bool everywhere = false;  ///< search the whole map at the start
+    std::optional<maps::Pose>
+        start;  ///< pose of the base frame; otherwise the start of the course, or everywhere
     std::optional<KnownPlace> earlier;  ///< last place of the base frame by an earlier node; comes first
     int trust_scans = 10;               ///< see PoseTrust
     double trust_health = 0.7;          ///< likewise
@@ -73,7 +74,7 @@ class LocaliserCore {
   /// To be called every few milliseconds.
   void tick();
 
-  /// What happened since the last report.
+  /// The events since the last report.
   Report report();
   /// The last place of the base frame that could be relied on, as long as it can.
   std::optional<KnownPlace> reliable() const;
@@ -101,12 +102,12 @@ class LocaliserCore {
   maps::OccupancyGrid map_;
   std::optional<vehicle::Localiser> localiser_;  ///< none without a map
   std::optional<maps::Pose>
-      start_;  ///< of the rear axle, the last that was told or reliable; none: everywhere
+      start_;  ///< last pose of the rear axle that was told or reliable; none: everywhere
   PoseTrust trust_;
   std::array<OdometrySample, 50> odometry_;  ///< a ring
-  std::size_t oldest_ = 0, count_ = 0;       ///< of `odometry_`
+  std::size_t oldest_ = 0, count_ = 0;       ///< oldest entry and number of entries of `odometry_`
   Stamp last_scan_ = 0;
-  std::optional<maps::Pose> course_start_;  ///< of the rear axle
+  std::optional<maps::Pose> course_start_;  ///< pose of the rear axle
   std::optional<KnownPlace> known_;         ///< likewise
   vehicle::LocaliserOutput estimate_;
   double slowest_ = 0;  ///< s, since the last report

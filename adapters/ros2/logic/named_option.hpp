@@ -11,7 +11,7 @@ namespace slalom::nodes {
 /// An option of the library under the name of its parameter: "section.option", or "option" where there are no
 /// sections.
 struct NamedOption {
-  std::string name;   ///< of the parameter
+  std::string name;   ///< name of the parameter
   OptionEntry entry;  ///< declaration and present value
 };
 

@@ -148,7 +148,7 @@ void PathFollower::make_navigator(const GoalTolerance& told) {
   };
   if (navigator_ && equal(told, tolerance_)) return;
   nav::NavigatorOptions options = settings_.navigator(share_);
-  constexpr double least = 0.001, every_heading = 4;  // what the navigator takes
+  constexpr double least = 0.001, every_heading = 4;  // least and largest values that the navigator takes
   if (told.known && told.distance > 0)
     options.goal_distance = std::clamp(told.distance, least, options.goal_distance);
   if (told.known)

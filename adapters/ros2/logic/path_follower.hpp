@@ -32,10 +32,10 @@ struct GoalTolerance {
 
 /// The input of an update. All poses are in the frame of the costmap.
 struct FollowerInput {
-  maps::Pose pose;                ///< of the robot
-  navigation::Velocity velocity;  ///< of the robot, as measured
+  maps::Pose pose;                ///< pose of the robot
+  navigation::Velocity velocity;  ///< measured velocity of the robot
   double time = 0;                ///< s, of a clock
-  maps::Pose plan_frame;          ///< of the frame of the plan
+  maps::Pose plan_frame;          ///< pose of the frame of the plan
   GoalTolerance tolerance;
 };
 
@@ -104,18 +104,18 @@ class PathFollower {
 
   FollowerSettings settings_;
   std::optional<navigation::Footprint> footprint_;
-  std::vector<maps::Point> vertices_;  ///< of the footprint
+  std::vector<maps::Point> vertices_;  ///< vertices of the footprint
   maps::OccupancyGrid grid_;
   std::optional<navigation::Costmap> costmap_;
   std::optional<navigation::Navigator> navigator_;  ///< none: the next update makes it
-  GoalTolerance tolerance_;                         ///< of that navigator
+  GoalTolerance tolerance_;                         ///< tolerance of that navigator
   FollowerPlan plan_;
   double limit_ = 0;  ///< m/s or percent; 0: none
   bool limit_is_percentage_ = false;
-  double share_ = 1;  ///< of the limits of the base, that the limit leaves
+  double share_ = 1;  ///< share of the limits of the base that the limit leaves
 
   std::optional<double> last_time_;          ///< s, of the last update
-  navigation::Velocity velocity_, command_;  ///< of the last update
+  navigation::Velocity velocity_, command_;  ///< velocity and command of the last update
   double standing_ = 0;                      ///< s for which the robot has braked and stood
   bool cancelling_ = false;
   double cancelling_for_ = 0;  ///< s

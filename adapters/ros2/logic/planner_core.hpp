@@ -90,7 +90,7 @@ class PlannerCore {
   /// Sends speed 0 once and forgets all inputs.
   void halt();
 
-  /// What happened since the last report.
+  /// The events since the last report.
   Report report();
 
  private:
@@ -129,7 +129,7 @@ class PlannerCore {
   Path path_;
   std::optional<vehicle::Planner> planner_;  ///< none without a path
   std::optional<Laps> laps_;                 ///< none without a closed path
-  ImuReading imu_sum_;                       ///< of the samples since the last plan
+  ImuReading imu_sum_;                       ///< sum of the samples since the last plan
   int imu_count_ = 0;                        ///< number of these samples
   std::map<std::string, Mount> imu_mounts_;
   double imu_retry_ = -1e9;  ///< s, steady clock
@@ -138,7 +138,7 @@ class PlannerCore {
   maps::LaserScanView scan_;
   std::string scan_frame_;
   Stamp scan_stamp_ = 0, odometry_stamp_ = 0;
-  Stamp used_ = 0;    ///< of the last scan with a plan
+  Stamp used_ = 0;    ///< stamp of the last scan with a plan
   double speed_ = 0;  ///< m/s
   bool new_scan_ = false, stopped_by_goal_ = false;
   int laps_to_drive_ = 0;

@@ -27,7 +27,7 @@ class SimulatedCar {
 
   maps::LaserScanView scan() const { return world_.observe(0).scan; }  ///< valid until the next step
   const sim::WheelOdometry& odometry() const { return odometry_; }     ///< measured motion of the rear axle
-  maps::Pose pose() const;                                             ///< of the rear axle, map frame
+  maps::Pose pose() const;                                             ///< pose of the rear axle, map frame
   int laps() const { return world_.laps(0) ? world_.laps(0)->laps() : 0; }
   int contacts() const { return contacts_; }                                     ///< number of collisions
   const std::vector<maps::Pose>& parked() const { return parked_; }              ///< their centres, map frame

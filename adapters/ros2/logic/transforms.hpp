@@ -53,8 +53,8 @@ inline double along(int axis, const Mount& mount, const double (&vector)[3]) {
 /// The transforms of a node. `pose` and `mount` throw std::exception with the reason if there is none.
 struct Transforms {
   std::function<bool(Stamp)> knows;                      ///< whether `pose` would return
-  std::function<maps::Pose(Stamp)> pose;                 ///< of the base frame in the map frame
-  std::function<Mount(const std::string& frame)> mount;  ///< of a sensor's frame in the base frame
+  std::function<maps::Pose(Stamp)> pose;                 ///< pose of the base frame in the map frame
+  std::function<Mount(const std::string& frame)> mount;  ///< pose of a sensor's frame in the base frame
   std::function<void()> forget;                          ///< discards all but the static ones
 };
 

@@ -102,8 +102,8 @@ class FaultyCar {
   bool stands() const { return std::abs(car_.odometry().speed()) < 0.2; }
   const SimulatedCar& car() const { return car_; }
 
-  std::vector<OdometrySample> odometry;  ///< of the last step, in the order of their arrival
-  std::vector<ScanMessage> scans;        ///< of the last step, in the order of their arrival
+  std::vector<OdometrySample> odometry;  ///< odometry of the last step, in the order of its arrival
+  std::vector<ScanMessage> scans;        ///< scans of the last step, in the order of their arrival
 
  private:
   void publish_odometry(double stamp) {

@@ -29,7 +29,7 @@ struct Drive {
   World world;
   std::vector<Driver> drivers;
   long long steps_per_command = 1;  ///< steps of the world in a control period
-  std::vector<Command> commands{};  ///< of the last step of the world, one per driver
+  std::vector<Command> commands{};  ///< commands of the last step of the world, one per driver
 
   /// Drives one control period: all drivers decide in the same world, then it moves.
   template <class Observer>

@@ -35,7 +35,7 @@ struct Environment {
   std::vector<maps::ReferencePoint> path;  ///< the waypoints of the course
   /// m, for each point of the course's obstacle path: the distance to the wall on its wider side, at most 10.
   std::vector<double> obstacle_room;
-  maps::Pose start;        ///< of the centre of gravity, relative to the course's origin
+  maps::Pose start;        ///< pose of the centre of gravity, relative to the course's origin
   double start_moved = 0;  ///< m along the waypoints from the first, where the body is in a wall
   double timeout = 0;      ///< s, for one time around the course; 0: three laps of the speed profile
   std::optional<sim::LidarOptions> lidar;  ///< replaces the LiDAR of the protocol

@@ -11,7 +11,7 @@ struct EstimationRecord {
   std::vector<float> yaw_rate_error;  ///< rad/s, of each control step, absolute
   std::vector<float> slip_error;      ///< rad, the same
   std::vector<float> speed_error;     ///< m/s, the same
-  vehicle::ParameterEstimate last;    ///< of car and ground, at the end of the lap
+  vehicle::ParameterEstimate last;    ///< estimate of car and ground at the end of the lap
   double informed_time = -1;          ///< s, when the confidence first reached 0.5; -1 if never
 };
 

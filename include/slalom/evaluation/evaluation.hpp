@@ -19,11 +19,12 @@ namespace slalom::evaluation {
 /// experiment has the same obstacles as lap k of another with as many.
 struct Evaluation {
   std::shared_ptr<const Environment> environment;  ///< where all laps are driven
-  vehicle::Configuration configuration;            ///< of all experiments, before their own options are set
-  std::vector<Experiment> experiments;             ///< the experiments to compare
-  std::uint64_t seed0 = 0;                         ///< seed of lap 0
-  double latency = 0;                              ///< s
-  bool additional_costs = true;                    ///< compute the costs of LapSettings::additional_costs
+  vehicle::Configuration
+      configuration;  ///< configuration of all experiments, before their own options are set
+  std::vector<Experiment> experiments;  ///< the experiments to compare
+  std::uint64_t seed0 = 0;              ///< seed of lap 0
+  double latency = 0;                   ///< s
+  bool additional_costs = true;         ///< compute the costs of LapSettings::additional_costs
   /// All that determines the results, as JSON text. Laps of evaluations with other settings are not mixed.
   std::string settings;
   std::string build;       ///< identifies the program that drives; laps of other builds may differ
@@ -38,7 +39,7 @@ LapSetup lap_setup(const Evaluation& evaluation, int experiment);
 /// The progress of an evaluation.
 struct EvaluationProgress {
   int laps_done = 0;             ///< laps finished so far
-  int laps_total = 0;            ///< of all experiments
+  int laps_total = 0;            ///< laps of all experiments
   int laps_resumed = 0;          ///< number of those done that an earlier run has driven
   double seconds_left = 0;       ///< estimated
   const LapRow* last = nullptr;  ///< the lap that ended last, valid during the callback

@@ -20,7 +20,7 @@ inline constexpr int most_race_cars = 4;
 
 /// The rules of a race that can be chosen.
 struct GridRaceOptions {
-  int laps = 5;                ///< of each car, 1 ... 1000
+  int laps = 5;                ///< laps of each car, 1 ... 1000
   double place_spacing = 1;    ///< m along the course from one place of the grid to the next, 0.7 ... 10
   double place_offset = 0.25;  ///< m from the course line, to the left and to the right in turn, 0 ... 2;
                                ///< less where a wall is too near
@@ -41,7 +41,7 @@ struct CarContact {
   double time = 0;            ///< s
   std::array<int, 2> cars{};  ///< indices of entries
   int at_fault = 0;           ///< one of these
-  maps::Pose pose{};          ///< of the centre of gravity of the first
+  maps::Pose pose{};          ///< pose of the first car's centre of gravity
 };
 
 /// A car overtakes another when it comes to be 1 m ahead of it, from middle to middle, and the other was 1 m
@@ -63,12 +63,12 @@ struct CarResult {
   std::vector<double> lap_times;        ///< s, of whole laps; the first begins with the start
   double distance = 0;                  ///< m, driven
   double progress = 0;                  ///< m along the course beyond the finish line
-  int overtakes = 0;                    ///< of other cars
+  int overtakes = 0;                    ///< number of cars that it overtook
   int overtaken = 0;                    ///< by other cars
   int contacts = 0;                     ///< with other cars
   int caused = 0;                       ///< those of them at which it is at fault
   bool contact_before = false;          ///< with CarEnd::wall: it collided with a car in the second before
-  maps::Pose last{};                    ///< of its centre of gravity, where it ended
+  maps::Pose last{};                    ///< pose of its centre of gravity where it ended
   std::array<int, 7> planner_status{};  ///< control steps by vehicle::PlannerStatus
   std::vector<float> solve_ms;          ///< wall-clock time of each solve
 
@@ -93,7 +93,7 @@ struct GridRaceResult {
 /// returns.
 struct GridRaceStep {
   double time = 0;                ///< s
-  double progress = 0;            ///< of the car that is first, as a share of the race
+  double progress = 0;            ///< share of the race that the first car has driven
   int contacts = 0;               ///< so far
   int driving = 0;                ///< cars on the track
   const sim::World& world;        ///< the simulated world; its cars are numbered by their place on the grid
@@ -113,7 +113,7 @@ using GridRaceCallback = std::function<void(const GridRaceStep&)>;
 /// then the others, by how far they came.
 struct GridRace {
   std::shared_ptr<const Environment> environment;
-  std::vector<Driver> drivers;  ///< of the entries, two to `most_race_cars`
+  std::vector<Driver> drivers;  ///< drivers of the entries, two to `most_race_cars`
   LapSettings settings{};       ///< without obstacles, opponents or further rounds
   GridRaceOptions options{};
 
@@ -139,13 +139,13 @@ struct GridRace {
 
 /// Contacts over the distance that was driven.
 struct ContactRate {
-  int contacts = 0;       ///< in which the car was, or of all cars
+  int contacts = 0;       ///< contacts of the car, or of all cars
   int caused = 0;         ///< those of them at which it was at fault; of all cars: every one
   double kilometres = 0;  ///< driven
   double per_100_km = 0;  ///< caused; NaN without a distance
-  Interval interval;      ///< of this, 95 % (poisson_interval)
+  Interval interval;      ///< 95 % interval of the rate (poisson_interval)
 };
-/// Of the car of one entry, or of all cars together for -1, over several races.
+/// Returns the rate of the car of one entry, or of all cars together for -1, over several races.
 ContactRate contact_rate(std::span<const GridRaceResult> races, int entry = -1);
 
 }  // namespace slalom::evaluation

@@ -8,7 +8,7 @@
 
 namespace slalom::evaluation {
 
-/// What is believed of the usable grip along a course: a share of friction times gravity
+/// The belief about the usable grip along a course: a share of friction times gravity
 /// (SingleTrackOptions::usable_grip) for each of its equal parts, from its first point.
 using GripBelief = std::vector<double>;
 
@@ -23,7 +23,7 @@ vehicle::Configuration with_belief(const vehicle::Configuration& configuration, 
 /// unless that is the least belief.
 class GripLearning {
  public:
-  static constexpr double least = 0.3, most = 1;  ///< of the belief in a part
+  static constexpr double least = 0.3, most = 1;  ///< bounds of the belief in a part
 
   /// A course of `length` (m > 0) on which laps begin `start` (m, >= 0) after its first point, with the
   /// belief before the first lap, which is the same for all of `parts` (>= 1) parts and in [least, most], and
@@ -49,7 +49,7 @@ class GripLearning {
 
   double length_, start_, circle_;
   GripBelief next_, best_;
-  std::vector<double> most_;  ///< of each part, what was too much has shown
+  std::vector<double> most_;  ///< largest share of each part that is not known to be too much
   double best_time_;
   int without_gain_ = 0;
 };

@@ -7,9 +7,9 @@
 #include "slalom/sim/wheel_odometry.hpp"
 #include "slalom/vehicle/localisation/localiser_options.hpp"
 
-/// What distinguishes a lap on a real car from one in an ideal simulation: a LiDAR with noise and missing
-/// returns, a pose estimated from the LiDAR and the odometry of slipping wheels, and a servo that differs
-/// from the model.
+/// The conditions of a real car, in contrast to an ideal simulation: a LiDAR with noise and missing returns,
+/// a pose estimated from the LiDAR and the odometry of slipping wheels, and a servo that differs from the
+/// model.
 namespace slalom::evaluation {
 
 /// Conditions after the experiment on a car in Honda et al. (ICRA 2024), section V-C, as far as it is

@@ -60,7 +60,7 @@ class Json {
 
   static constexpr int deepest = 64;                      ///< levels of arrays and objects that are parsed
   static constexpr std::size_t max_values = 1U << 20;     ///< that are parsed; each takes about 100 bytes
-  static constexpr std::uint64_t max_bytes = 1ULL << 24;  ///< of a JSON file that is read
+  static constexpr std::uint64_t max_bytes = 1ULL << 24;  ///< size of a JSON file that is read
 
   /// Throws JsonError if the text is not JSON, nests deeper than `deepest`, has more than `max_values`
   /// values, or has a key twice in one object.
@@ -162,14 +162,14 @@ class Json {
     double real_;
   };
   std::string text_;
-  std::vector<std::string> keys_;  ///< of an object's members
-  std::vector<Json> values_;       ///< of an array's elements or an object's members
+  std::vector<std::string> keys_;  ///< keys of an object's members
+  std::vector<Json> values_;       ///< values of an array's elements or an object's members
 };
 
 /// A member of an object. It refers into the object.
 struct Json::Member {
   const std::string& key;  ///< differs from those of the other members
-  const Json& value;       ///< of any type
+  const Json& value;       ///< value of any type
 };
 
 template <>

@@ -31,7 +31,7 @@ std::uint64_t solver_seed(std::uint64_t lap_seed, std::string_view method);
 /// The first collision with a body or a wall.
 struct Collision {
   double time = 0;  ///< s
-  maps::Pose pose;  ///< of the car's centre of gravity
+  maps::Pose pose;  ///< pose of the car's centre of gravity
   int body = -1;    ///< index of the body, -1 for a wall
 };
 
@@ -40,7 +40,7 @@ struct Collision {
 struct ControlStep {
   int step = 0;                     ///< index of the control step, from 0
   double time = 0;                  ///< s
-  double progress = 0;              ///< of the lap, 0 ... 1
+  double progress = 0;              ///< share of the lap that is driven, 0 ... 1
   int collisions = 0;               ///< so far, as the protocol counts them
   const sim::Observation& seen;     ///< the true state of the car
   const maps::LaserScanView& scan;  ///< input of the planner
@@ -50,7 +50,7 @@ struct ControlStep {
   const vehicle::PlannerOutput& output;  ///< output of the planner
   const vehicle::Planner& planner;       ///< after the update
   const sim::World& world;               ///< the simulated world
-  SequenceCostMeter::Cost cost;          ///< of the control sequence that the planner chose
+  SequenceCostMeter::Cost cost;          ///< cost of the control sequence that the planner chose
   /// Input of the planner: the other cars that are tracked, with their hypotheses, in the map frame.
   std::span<const maps::PredictedObstacle> others{};
 };
@@ -82,10 +82,11 @@ struct LapResult {
   /// of Track::distance_to_wall) and from its outline to other bodies (negative in a collision). Infinite if
   /// there is neither.
   double min_clearance = 0;
-  double mean_variance = 0;             ///< of the steering in the solver's distribution, rad^2; over solves
-  double mean_effective_samples = 0;    ///< mean of the solver's effective sample size over solves
-  std::array<int, 7> planner_status{};  ///< control steps by vehicle::PlannerStatus
-  int corrections = 0;                  ///< values that the planner's final check changed
+  double mean_variance =
+      0;  ///< mean over solves of the variance of the steering in the solver's distribution, rad^2
+  double mean_effective_samples = 0;        ///< mean of the solver's effective sample size over solves
+  std::array<int, 7> planner_status{};      ///< control steps by vehicle::PlannerStatus
+  int corrections = 0;                      ///< values that the planner's final check changed
   std::vector<Collision> first_collisions;  ///< one for each body hit and one for walls, in order of time
   std::vector<maps::Pose> obstacles;        ///< the parked cars, centres of gravity
   int impassable = 0;                       ///< number of obstacles in impassable_obstacles
@@ -109,7 +110,7 @@ struct LapSetup {
   /// is out of range, or the start is off the map or less than 0.15 m from a wall.
   void validate() const;
 
-  maps::Pose start() const;                ///< of the centre of gravity
+  maps::Pose start() const;                ///< pose of the centre of gravity
   double control_period() const noexcept;  ///< s of simulated time per command
   double timeout() const;                  ///< s, after which a lap is stopped
   /// m along the path of the course from the start of a lap to its finish, which is after

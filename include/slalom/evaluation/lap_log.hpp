@@ -17,7 +17,7 @@ namespace slalom::evaluation {
 struct LapLog {
   std::string file;                                   ///< path
   int laps = 0, successes = 0, timeouts = 0;          ///< numbers of laps
-  std::int64_t collisions = 0;                        ///< of all laps
+  std::int64_t collisions = 0;                        ///< collisions of all laps
   std::vector<double> ms;                             ///< per lap: state_cost + collision_cost
   std::optional<double> solve_ms_mean, solve_ms_max;  ///< ms, where the log has `*_calculation_time`
 };
@@ -37,13 +37,13 @@ enum class Agreement {
 /// Measured laps compared with a log.
 struct LogComparison {
   int our_laps = 0, laps = 0;                  ///< number of measured laps, number of laps in the log
-  double ms_mean = 0;                          ///< of the log
-  Interval ms_ci;                              ///< of the log, bootstrap over laps
+  double ms_mean = 0;                          ///< MS of the log
+  Interval ms_ci;                              ///< interval of the log's MS, bootstrap over laps
   double ms_ratio = 0;                         ///< measured / log
   Interval ms_ratio_ci;                        ///< 1 + the bootstrapped difference of means / mean of the log
   double ms_p = 1;                             ///< two-sample bootstrap; permutation test below `enough_laps`
-  std::optional<double> collision_rate;        ///< of the log; none without obstacles
-  std::optional<Interval> collision_rate_ci;   ///< of the log, Wilson
+  std::optional<double> collision_rate;        ///< collision rate of the log; none without obstacles
+  std::optional<Interval> collision_rate_ci;   ///< interval of the log's collision rate, Wilson
   std::optional<Interval> rate_difference_ci;  ///< measured - log, Newcombe
   std::optional<double> collision_p;           ///< Fisher's exact test
 
@@ -52,8 +52,8 @@ struct LogComparison {
   /// collision rate.
   static constexpr double ms_half_width = 0.5, rate_half_width = 0.1;  ///< fraction of MS, collision rate
 
-  Agreement ms_agreement() const;         ///< of MS
-  Agreement collision_agreement() const;  ///< of the collision rate; inside without obstacles
+  Agreement ms_agreement() const;         ///< agreement in MS
+  Agreement collision_agreement() const;  ///< agreement in the collision rate; inside without obstacles
   Agreement agreement() const;            ///< the worse of both
 };
 

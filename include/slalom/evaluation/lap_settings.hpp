@@ -29,9 +29,9 @@ struct Driver {
 /// The settings of a lap besides environment, configuration and method.
 /// `visit_options` below describes the fields.
 struct LapSettings {
-  int obstacles = 0;                             ///< parked cars, 0 ... 1000
-  std::optional<maps::Pose> start{};             ///< of the centre of gravity; default: the environment's
-  int threads = 1;                               ///< of the solver, 1 ... 1024; they do not change the result
+  int obstacles = 0;                  ///< parked cars, 0 ... 1000
+  std::optional<maps::Pose> start{};  ///< pose of the centre of gravity; default: the environment's
+  int threads = 1;                    ///< threads of the solver, 1 ... 1024; they do not change the result
   std::optional<HardwareConditions> hardware{};  ///< as on a real car; Protocol::true_physics only
   std::optional<std::uint64_t> layout{};         ///< seed of the obstacle placement; default: the lap's
   /// Driver of the `planning_opponents`, at the control period of the car. Null: as the car itself.

@@ -13,7 +13,7 @@
 
 namespace slalom::evaluation {
 
-/// What is compared: a method with options that differ from the configuration, in a scenario.
+/// An experiment: a method with options that differ from the configuration, in a scenario.
 struct Experiment {
   std::string method;                                    ///< name of the method
   std::vector<std::pair<std::string, std::string>> set;  ///< key (section.option) and value, as text
@@ -34,7 +34,7 @@ struct Experiment {
   bool has_planning_opponents() const;
 };
 
-/// What a lap with `world.tracking` says about its tracker: the figures of TrackingRecord.
+/// The figures of TrackingRecord for a lap with `world.tracking`.
 struct TrackingFigures {
   int in_view = 0;        ///< bodies in view, summed over control steps
   int detected = 0;       ///< those of them that were detected
@@ -45,7 +45,7 @@ struct TrackingFigures {
   double update_p99 = 0;                                      ///< ms, wall-clock; column `wall_tracking_p99`
 };
 
-/// What a lap with `world.opponents` says about them: the figures of OvertakingRecord.
+/// The figures of OvertakingRecord for a lap with `world.opponents`.
 struct OvertakingFigures {
   int met = 0;            ///< encounters; column `opponents_met`
   int overtaken = 0;      ///< those that ended with the opponent behind; column `overtaken`
@@ -53,7 +53,7 @@ struct OvertakingFigures {
   double duration = 0;    ///< s, mean until opponents were overtaken, 0 without any; `overtaking_time`
   int contacts = 0;       ///< with opponents; column `opponent_contacts`
   int caused = 0;         ///< those of them at which the car is at fault; column `contacts_caused`
-  int side_changes = 0;   ///< of Encounter, in all encounters; column of the same name
+  int side_changes = 0;   ///< Encounter::side_changes of all encounters; column of the same name
 };
 
 /// A row of `laps.csv`: one lap of one experiment. Columns whose names contain `calculation_time`, or begin
@@ -76,7 +76,7 @@ struct LapRow {
   double minimum_clearance = 0;  ///< m, LapResult::min_clearance
   double mean_speed = 0;         ///< m/s
   double mean_path_distance = 0, max_path_distance = 0;  ///< m
-  double mean_variance = 0, mean_effective_samples = 0;  ///< of the solver, means over its solves
+  double mean_variance = 0, mean_effective_samples = 0;  ///< means over the solves of the solver
   double ms_paper_model = 0;   ///< LapResult::paper_model_cost; column `ms_published_model`
   double ms_driven = 0;        ///< LapResult::driven_cost
   int blocked_steps = 0;       ///< control steps in which every plan collided

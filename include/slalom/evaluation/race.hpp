@@ -17,7 +17,7 @@ struct RaceOptions {
   bool standing = false;   ///< every lap begins with a standing start
 };
 
-/// What a race reports while it goes on. Both may be empty.
+/// The reports of a race while it goes on. Both may be empty.
 struct RaceCallbacks {
   /// Called in every control step, with the index of the lap from 0; progress and time are those of the lap.
   std::function<void(int lap, const ControlStep& step)> on_step;

@@ -32,9 +32,9 @@ std::string_view name(RacingEnd end) noexcept;
 
 /// A lap against the clock.
 struct RacingLap {
-  bool standing = true;                       ///< the car starts at rest; else the lap is a flying one
-  std::uint64_t seed = 0;                     ///< of the standing start that this lap begins with or follows
-  RacingEnd end = RacingEnd::completed;       ///< how it ended
+  bool standing = true;                  ///< the car starts at rest; else the lap is a flying one
+  std::uint64_t seed = 0;                ///< seed of the standing start that this lap begins with or follows
+  RacingEnd end = RacingEnd::completed;  ///< how it ended
   std::array<double, racing_sectors> sector;  ///< s, of each sector; NaN where the lap ended before its end
   /// From the start, at distance and time 0, to the end of the lap, where a completed one has its whole
   /// length.
@@ -60,7 +60,7 @@ struct GripUse {
   double p99 = 0;     ///< m/s^2, 99th percentile
   double beyond = 0;  ///< share of the time in which it is above `limit`
 };
-/// Of one lap, or of several whose samples follow each other. `limit` in m/s^2.
+/// Returns the grip used in one lap, or in several whose samples follow each other. `limit` in m/s^2.
 GripUse grip_use(std::span<const RacingSample> samples, double limit);
 
 }  // namespace slalom::evaluation

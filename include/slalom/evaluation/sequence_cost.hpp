@@ -21,8 +21,8 @@ class SequenceCostMeter {
 
   /// A cost and its two terms.
   struct Cost {
-    double state = 0;      ///< of the distance to the path and the yaw error
-    double collision = 0;  ///< of walls and obstacles
+    double state = 0;      ///< cost of the distance to the path and the yaw error
+    double collision = 0;  ///< cost of walls and obstacles
     /// Their sum.
     double total() const { return state + collision; }
   };

@@ -16,7 +16,7 @@ namespace slalom::evaluation {
 /// An option to be searched and its range.
 struct SearchDimension {
   std::string key;                   ///< key: section.option
-  double low = 0, high = 0;          ///< of a number
+  double low = 0, high = 0;          ///< bounds of a number
   bool logarithmic = false;          ///< uniform in the logarithm
   bool whole = false;                ///< whole numbers, both ends included
   std::vector<std::string> choices;  ///< the values, instead of a range

@@ -90,7 +90,7 @@ class CarDriver {
  private:
   std::size_t car_;
   std::variant<sim::PurePursuit, sim::RacingOpponent, PlanningDriver> law_;
-  Command decided_;  ///< of a RacingOpponent, until it decides again
+  Command decided_;  ///< command of a RacingOpponent, until it decides again
 };
 
 /// Cars in the world of a lap or race.

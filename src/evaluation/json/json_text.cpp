@@ -139,7 +139,7 @@ class JsonReader {
 
   Json root_;
   std::vector<Json*> open_;  ///< containers that have not ended, from the outermost
-  std::string key_;          ///< of the next member
+  std::string key_;          ///< key of the next member
   std::size_t values_ = 0;   ///< that were read
 };
 

@@ -12,10 +12,11 @@ namespace {
 constexpr double raised = 1.03;           // at most, from one lap to the next
 constexpr double lowered = 0.94;          // at least, where a lap went beyond the circle
 constexpr double after_collision = 0.92;  // where a lap ended early, and in the part before
-constexpr double caution = 0.99;          // of what went beyond the circle: never asked for again
-constexpr double use_quantile = 0.95;     // of the accelerations in a part
-constexpr double gain = 1e-3;             // share of the lap time
-constexpr double limited = 0.7;           // of the circle: a part that takes less is not limited by the grip
+constexpr double caution =
+    0.99;  // share of the grip that went beyond the circle: more is never asked for again
+constexpr double use_quantile = 0.95;  // quantile of the accelerations in a part
+constexpr double gain = 1e-3;          // share of the lap time
+constexpr double limited = 0.7;  // share of the circle: a part that takes less is not limited by the grip
 
 void require(bool holds, const char* what, double value, const char* rule) {
   if (!holds)

@@ -10,7 +10,7 @@
 namespace slalom::evaluation {
 namespace {
 
-/// What the accelerations of a car are computed from.
+/// The motion from which the accelerations of a car are computed.
 struct Motion {
   double distance = 0, time = 0;    ///< m since the standing start, s
   double speed = 0, direction = 0;  ///< m/s, rad, of the velocity
@@ -114,7 +114,7 @@ class LapClock {
   std::uint64_t seed_;
   bool flying_;
   Motion before_;
-  RacingSample begin_;  ///< of the lap, distance and time since the standing start
+  RacingSample begin_;  ///< start of the lap, distance and time since the standing start
   RacingLap lap_;       ///< that is being driven
   std::optional<RacingLap> ended_;
   bool goes_on_ = true;

@@ -28,7 +28,7 @@ class RaceWatch {
   const std::vector<Overtake>& overtakes() const noexcept { return overtakes_; }  ///< in order of time
 
  private:
-  /// What is known of two cars.
+  /// The state of two cars.
   struct Pair {
     std::size_t first = 0, second = 0;
     bool first_leads = true;  ///< was the last to be 1 m ahead

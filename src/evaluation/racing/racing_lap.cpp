@@ -8,7 +8,7 @@
 namespace slalom::evaluation {
 namespace {
 
-constexpr double rounding = 1e-9;  // by which a profile at the limit may be beyond it
+constexpr double rounding = 1e-9;  // excess that a profile at the limit may have
 
 /// The smallest of the values (first, sorted) such that those up to it have at least `share` of the weight
 /// (second).

@@ -9,7 +9,7 @@
 #include "slalom/evaluation/statistics.hpp"
 #include "slalom/maps/pose.hpp"
 
-/// What is counted and timed while a robot drives.
+/// Counts and times while a robot drives.
 namespace slalom::evaluation {
 
 inline constexpr double min_driving_speed = 0.03;  ///< m/s that counts as driving

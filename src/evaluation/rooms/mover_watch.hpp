@@ -9,7 +9,7 @@
 
 namespace slalom::evaluation {
 
-/// What moves around a robot, known from its scans alone: followed and predicted, and left out of the map.
+/// Follows and predicts the moving objects around a robot by its scans alone, and leaves them out of the map.
 class MoverWatch {
  public:
   /// For a scanner with so many beams.
@@ -25,7 +25,7 @@ class MoverWatch {
   tracking::Predictor predictor_;
   std::vector<float> turned_;  ///< the ranges from behind the robot on
   std::vector<double> ranges_;
-  maps::Pose pose_;       ///< of the last scan
+  maps::Pose pose_;       ///< pose of the last scan
   double max_range_ = 0;  ///< m, of the last scan
 };
 

@@ -142,7 +142,7 @@ class RoomNavigator {
   Velocity command(const RoomWorld&) const { return command_; }
   void moved(const RoomWorld&) const {}
 
-  Stopwatch stopwatch;  ///< of the navigator's updates
+  Stopwatch stopwatch;  ///< times of the navigator's updates
 
  private:
   static navigation::Footprint footprint() {

@@ -4,9 +4,9 @@
 
 namespace slalom::evaluation {
 
-/// What a row of the table says about a tracker.
+/// Returns a row's figures of a tracker.
 TrackingFigures figures_of(const TrackingRecord& record);
-/// What a row of the table says about opponents.
+/// Returns a row's figures of opponents.
 OvertakingFigures figures_of(const OvertakingRecord& record);
 
 }  // namespace slalom::evaluation

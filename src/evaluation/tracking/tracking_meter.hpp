@@ -44,10 +44,10 @@ class TrackingMeter {
   TrackingMode mode_;
   std::size_t own_;  ///< number of the car that scans
   sim::CarParameters car_;
-  maps::Pose mount_;  ///< of the LiDAR, from the rear axle
+  maps::Pose mount_;  ///< pose of the LiDAR from the rear axle
   sim::WheelOdometry wheels_;
   std::optional<vehicle::Localiser> localiser_;
-  maps::Pose aligned_;        ///< of the LiDAR, as the tracker aligned it last
+  maps::Pose aligned_;        ///< pose of the LiDAR as the tracker aligned it last
   maps::Pose wheels_before_;  ///< pose of the odometry at that time
   bool fits_ = false;         ///< the scan fitted the map from there
   tracking::ObjectTracker tracker_;

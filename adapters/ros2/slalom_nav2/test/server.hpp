@@ -154,7 +154,7 @@ class Server {
   std::shared_ptr<tf2_ros::Buffer> transforms;
   std::shared_ptr<nav2_costmap_2d::Costmap2DROS> costmap;
   Checker checker;
-  Pose pose{1, 3, 0};  ///< of the robot, frame of the costmap
+  Pose pose{1, 3, 0};  ///< pose of the robot, frame of the costmap
   geometry_msgs::msg::Twist velocity;
 
  private:

@@ -237,7 +237,7 @@ class WorldNode : public ManagedNode {
   std::optional<SimulatedCar> car_;
   slalom::Command command_;
   std::map<std::string, double> heard_;  ///< time of the last command of each node, s, steady clock
-  Stamp due_ = 0;                        ///< of the next step
+  Stamp due_ = 0;                        ///< time of the next step
   long steps_ = 0;
   std::string why_;  ///< the reason if the car has braked since the last report
   rclcpp::SubscriptionBase::SharedPtr drive_in_;

@@ -120,7 +120,7 @@ class Client {
 
   rclcpp::Node::SharedPtr node;
   std::function<void()> each_turn;                ///< is called all the time
-  double steer = 0, speed = 0, commanded_at = 0;  ///< of the last command: rad, m/s; s, steady
+  double steer = 0, speed = 0, commanded_at = 0;  ///< last command: rad, m/s; s, steady
   std::map<std::string, std::map<std::string, std::string>> diagnostics;  ///< by status and key
 
  private:

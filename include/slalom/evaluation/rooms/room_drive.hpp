@@ -58,7 +58,8 @@ void visit_options(Options& o, Visit&& visit) {
 /// A drive.
 struct RoomDrive {
   RoomOutcome outcome = RoomOutcome::timeout;  ///< how the drive ended
-  bool success = false;  ///< what the scenario asks for: the goal, or that it was said that there is no way
+  bool success =
+      false;  ///< whether the robot did as the scenario asks: reached the goal, or said that there is no way
   double time = 0;       ///< s, of the drive
   double length = 0;     ///< m driven
   int side_changes = 0;  ///< how often plans changed the side on which they pass what the scenario counts

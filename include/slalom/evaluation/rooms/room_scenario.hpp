@@ -24,7 +24,7 @@ struct RoomScenario {
   maps::Pose start, goal;  ///< m, m, rad
   bool has_way = true;     ///< whether the goal can be reached; otherwise the robot must say that it cannot
   std::vector<sim::Walker> walkers{};  ///< people; a drive varies their speeds and pauses
-  navigation::BaseOptions base{};      ///< of the robot
+  navigation::BaseOptions base{};      ///< limits of the robot
 };
 
 /// The scenarios.

@@ -20,7 +20,7 @@
 
 namespace slalom::mujoco {
 
-/// What a model has to achieve: its sizes, which are compared with those of the model, and its costs. Both
+/// The task of a model: its sizes, which are compared with those of the model, and its costs. Both
 /// costs see the simulation after `mj_step1`: positions, velocities and what follows from them, such as
 /// `xpos`, `subtree_com` and sensors of both, are those of the state; `ctrl` holds the inputs of the step.
 /// Contacts are those of the state, and accelerations and contact forces those of the time step before. A
@@ -81,10 +81,11 @@ std::pair<double, double> input_range(const Model& model, int input);
 template <Task T>
 class Evaluator final : public BatchEvaluator {
  public:
-  using State = mujoco::State<T::positions, T::velocities, detail::activations_of<T>()>;  ///< of the model
-  static constexpr int input_count = T::inputs;                                           ///< inputs per step
+  using State =
+      mujoco::State<T::positions, T::velocities, detail::activations_of<T>()>;  ///< state of the model
+  static constexpr int input_count = T::inputs;                                 ///< inputs per step
 
-  /// What a controller has to know of the inputs.
+  /// The facts about the inputs that a controller needs.
   struct Inputs {
     static constexpr int inputs = T::inputs;    ///< inputs per step
     std::array<double, T::inputs> input_min{};  ///< lower bounds
@@ -155,7 +156,7 @@ class Evaluator final : public BatchEvaluator {
   }
 
  private:
-  /// What one thread overwrites in every rollout.
+  /// The data that one thread overwrites in every rollout.
   struct Worker {
     Simulation simulation;
     RolloutCount rollouts;
