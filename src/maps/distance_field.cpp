@@ -6,8 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "slalom/maps/distance_transform.hpp"
-
 namespace slalom::maps {
 namespace {
 

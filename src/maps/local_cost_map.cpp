@@ -72,7 +72,7 @@ void LocalCostMap::clear() noexcept {
 
 ScanReport LocalCostMap::update(const LaserScanView& scan) noexcept {
   forget();
-  const ScanReport report = mark_scan(scan);
+  const ScanReport report = take_points(scan, [this](const ScanPoint& point) { mark(point.x, point.y); });
   write_cells();
   return report;
 }
@@ -80,12 +80,6 @@ ScanReport LocalCostMap::update(const LaserScanView& scan) noexcept {
 ScanReport LocalCostMap::read(const LaserScanView& scan) noexcept {
   if (marked_) clear();
   return take_points(scan, [](const ScanPoint&) {});
-}
-
-ScanReport LocalCostMap::add_scan(const LaserScanView& scan) noexcept {
-  const ScanReport report = mark_scan(scan);
-  write_cells();
-  return report;
 }
 
 void LocalCostMap::set_beams(const LaserScanView& scan) noexcept {
@@ -99,10 +93,6 @@ void LocalCostMap::set_beams(const LaserScanView& scan) noexcept {
   beam_count_ = same ? std::max(count, beam_count_) : count;
   beam_start_ = scan.angle_min;
   beam_step_ = scan.angle_increment;
-}
-
-ScanReport LocalCostMap::mark_scan(const LaserScanView& scan) noexcept {
-  return take_points(scan, [this](const ScanPoint& point) { mark(point.x, point.y, 0); });
 }
 
 template <class Use>
@@ -150,48 +140,13 @@ ScanReport LocalCostMap::take_points(const LaserScanView& scan, Use&& use) noexc
 void LocalCostMap::add_points(std::span<const Point> points) noexcept {
   if (points.empty()) return;
   for (const Point& point : points) {
-    if (std::isfinite(point.x) && std::isfinite(point.y)) mark(point.x, point.y, 0);
+    if (std::isfinite(point.x) && std::isfinite(point.y)) mark(point.x, point.y);
   }
   write_cells();
 }
 
-void LocalCostMap::add_grid(const OccupancyGrid& obstacles, const Pose& robot) noexcept {
-  const Footprint& body = options_.footprint;
-  const double reach =
-      options_.margin + obstacles.resolution + std::max({body.front, body.rear, body.left, body.right});
-  const double half_x = 0.5 * geometry_.length_x() + reach, half_y = 0.5 * geometry_.length_y() + reach;
-  // The part of the grid that can matter: the local map with all it inflates, seen in the grid's frame.
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-  for (const double x : {geometry_.center_x - half_x, geometry_.center_x + half_x}) {
-    for (const double y : {geometry_.center_y - half_y, geometry_.center_y + half_y}) {
-      const Point corner = inverse_transform(obstacles.origin, transform(robot, {x, y}));
-      low[0] = std::min(low[0], corner.x / obstacles.resolution);
-      low[1] = std::min(low[1], corner.y / obstacles.resolution);
-      high[0] = std::max(high[0], corner.x / obstacles.resolution);
-      high[1] = std::max(high[1], corner.y / obstacles.resolution);
-    }
-  }
-  if (!std::isfinite(low[0]) || !std::isfinite(low[1]) || !std::isfinite(high[0]) || !std::isfinite(high[1]))
-    return;
-  const int column_begin = clamped_floor(low[0], 0, obstacles.width),
-            row_begin = clamped_floor(low[1], 0, obstacles.height);
-  const int column_end = clamped_floor(high[0] + 1, 0, obstacles.width);
-  const int row_end = clamped_floor(high[1] + 1, 0, obstacles.height);
-  const double turn = obstacles.origin.yaw - robot.yaw;
-  const double half_cell = 0.5 * obstacles.resolution * (std::abs(std::cos(turn)) + std::abs(std::sin(turn)));
-  for (int row = row_begin; row < row_end; ++row) {
-    for (int column = column_begin; column < column_end; ++column) {
-      if (obstacles.at(column, row) != Occupancy::occupied) continue;
-      const Point cell{(column + 0.5) * obstacles.resolution, (row + 0.5) * obstacles.resolution};
-      const Point point = inverse_transform(robot, transform(obstacles.origin, cell));
-      mark(point.x, point.y, half_cell);
-    }
-  }
-  write_cells();
-}
-
-/// Counts a square of half width `reach` (m) about (x, y) in every cell where the body would collide with it.
-void LocalCostMap::mark(double x, double y, double reach) noexcept {
+/// Counts the point (x, y) in every cell where the body would collide with it.
+void LocalCostMap::mark(double x, double y) noexcept {
   marked_ = true;
   const PublishedCostMap& reproduction = options_.published;
   const bool by_cells = reproduction.half_open_inflation || reproduction.forget_points_outside;
@@ -202,15 +157,13 @@ void LocalCostMap::mark(double x, double y, double reach) noexcept {
   const double u = (geometry_.center_x - x) * scale + 0.5 * geometry_.rows;
   const double v = (geometry_.center_y - y) * scale + 0.5 * geometry_.columns;
   if (reproduction.half_open_inflation) {
-    const int more = static_cast<int>(std::ceil(reach * scale));
     if (row < 0) row = clamped_floor(u, -100000, 100000);
     if (column < 0) column = clamped_floor(v, -100000, 100000);
-    count(hard_, {row - cells_ahead_ - more, row + cells_behind_ + more, column - cells_left_ - more,
-                  column + cells_right_ + more});
+    count(hard_, {row - cells_ahead_, row + cells_behind_, column - cells_left_, column + cells_right_});
     return;
   }
   // Touching by less than a millionth of a cell is rounding.
-  const double wider = (reach + options_.margin) * scale - 1e-6;
+  const double wider = options_.margin * scale - 1e-6;
   count(hard_, box_round(u, v, wider));
   if (options_.soft_margin > 0) count(soft_, box_round(u, v, wider + options_.soft_margin * scale));
 }

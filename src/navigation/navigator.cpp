@@ -9,8 +9,6 @@
 #include <vector>
 
 #include "navigation/base_model.hpp"
-#include "navigation/closed_places.hpp"
-#include "navigation/final_check.hpp"
 #include "navigation/others.hpp"
 #include "navigation/path_ahead.hpp"
 #include "navigation/path_guide.hpp"
@@ -43,6 +41,20 @@ bool plausible(const Velocity& v) {
 
 maps::Point position(const maps::Pose& pose) {
   return {pose.x, pose.y};
+}
+
+/// The last step of an update: makes the command finite and moves it into the limits of the base. Counts the
+/// changed values in `corrections`.
+void check_result(NavigationResult& result, const BaseOptions& base) noexcept {
+  const auto check = [&](double& value, double least, double most) {
+    const double valid = std::clamp(std::isfinite(value) ? value : 0.0, least, most);
+    result.corrections += valid != value;
+    value = valid;
+  };
+  const double sideways = base.kind == BaseKind::omnidirectional ? base.max_sideways : 0;
+  check(result.command.forward, -base.max_reverse, base.max_forward);
+  check(result.command.left, -sideways, sideways);
+  check(result.command.turn, -base.max_turn, base.max_turn);
 }
 
 }  // namespace
@@ -321,7 +333,7 @@ void Navigator::set_path(std::span<const maps::Pose> path) {
 NavigationResult Navigator::update(const maps::Pose& pose, const Velocity& velocity, const Costmap& costmap,
                                    double elapsed, std::span<const maps::PredictedObstacle> others) noexcept {
   NavigationResult result = implementation_->update(pose, velocity, costmap, elapsed, others);
-  detail::check_result(result, implementation_->base());
+  check_result(result, implementation_->base());
   return result;
 }
 

@@ -70,9 +70,7 @@ std::optional<ClosedPlace> Others::meeting(std::span<const maps::Pose> path, dou
   std::size_t last =
       std::min(path.size(), static_cast<std::size_t>(foresight * speed_ / std::max(step, 1e-3)));
   for (const maps::PredictedObstacle* const other : obstacles_.taken()) {
-    const auto end = other->weights.begin() + other->hypotheses;
-    const int likeliest =
-        static_cast<int>(std::max_element(other->weights.begin(), end) - other->weights.begin());
+    const int likeliest = other->likeliest();
     const auto pose_at = [&](std::size_t i) {
       return other->at(likeliest, static_cast<double>(i) * step / speed_).pose;
     };

@@ -16,7 +16,6 @@ TEST(MapUpdates, AllocateNothing) {
   ReferenceField field(path);
   LocalCostMap map;
   const std::vector<float> ranges(1080, 2.0F);
-  const OccupancyGrid obstacles{20, 20, 0.1, {}, std::vector<Occupancy>(400, Occupancy::occupied)};
   const Point points[] = {{1, 1}, {2, 0}};
   const long before = testing::allocations();
   ASSERT_GT(before, 0) << "nothing is counted";
@@ -24,7 +23,6 @@ TEST(MapUpdates, AllocateNothing) {
     field.update({5, 0.1 * i});
     map.update({ranges, -2.35 + 0.01 * i, 4.7 / 1080, 0, 30});
     map.add_points(points);
-    map.add_grid(obstacles, {0.1 * i, 0, 0.2});
   }
   EXPECT_EQ(testing::allocations(), before);
 }

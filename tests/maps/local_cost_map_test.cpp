@@ -144,25 +144,6 @@ TEST(LocalCostMap, TheLaserMayBeTurnedAndTheScanMayChange) {
   EXPECT_NEAR(map.points()[0].x, 2.1, 1e-6);
 }
 
-TEST(LocalCostMap, AnObstacleGridIsSeenFromTheRobot) {
-  OccupancyGrid grid{40, 40, 0.1, {10, 20, 0.4}, std::vector<Occupancy>(1600)};
-  grid.at(30, 7) = Occupancy::occupied;
-  const Point centre = transform(grid.origin, {3.05, 0.75});
-  const Pose robot{centre.x - 3 * std::cos(-1.1), centre.y - 3 * std::sin(-1.1), -1.1};
-  LocalCostMap map;
-  map.add_grid(grid, robot);
-  EXPECT_EQ(map.at(3, 0), 100);
-  EXPECT_EQ(map.at(2.5, 0), 100);
-  EXPECT_EQ(map.at(2.3, 0), 0);
-  EXPECT_EQ(map.at(3, 0.15), 100);
-  EXPECT_EQ(map.at(3, -0.15), 100);
-  EXPECT_EQ(map.at(3, 0.4), 0);
-  map.clear();
-  map.add_grid(grid, {robot.x + 500, robot.y, robot.yaw});
-  map.add_grid(grid, {NAN, robot.y, robot.yaw});
-  EXPECT_EQ(occupied_cells(map), 0);
-}
-
 TEST(LocalCostMap, OutsideIsTheRing) {
   LocalCostMap map({.outside = 7});
   EXPECT_EQ(map.at(8.001, 0), 7);

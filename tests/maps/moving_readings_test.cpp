@@ -1,5 +1,5 @@
 // Readings that end on something that moves are dropped, whatever the turn of the scanner, and no others.
-#include "slalom/maps/moving_readings.hpp"
+#include "slalom/maps/moving_obstacles.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,6 @@
 #include <random>
 #include <stdexcept>
 
-#include "slalom/maps/course_field.hpp"
-
 namespace slalom::maps {
 namespace {
 
@@ -252,24 +250,22 @@ TEST(ReferenceField, TheViewLooksUpTheSameCells) {
   }
 }
 
-template <class Field>
-void expect_bad_paths_refused() {
-  EXPECT_THROW(Field(circle(2, 1)), std::invalid_argument);
-  EXPECT_THROW(Field({}), std::invalid_argument);
+TEST(ReferenceField, RejectsInvalidPaths) {
+  EXPECT_THROW(ReferenceField(circle(2, 1)), std::invalid_argument);
+  EXPECT_THROW(ReferenceField({}), std::invalid_argument);
   for (const double bad : {double{NAN}, double{INFINITY}, 1e9}) {
     auto path = circle(10, 1);
     path[4].x = bad;
-    EXPECT_THROW(Field{path}, std::invalid_argument);
+    EXPECT_THROW(ReferenceField{path}, std::invalid_argument);
   }
   auto path = circle(10, 1);
   path[9].speed = -1;
-  EXPECT_THROW(Field{path}, std::invalid_argument);
+  EXPECT_THROW(ReferenceField{path}, std::invalid_argument);
   path[9].speed = NAN;
-  EXPECT_THROW(Field{path}, std::invalid_argument);
+  EXPECT_THROW(ReferenceField{path}, std::invalid_argument);
 }
 
-TEST(ReferenceField, RejectsInvalidPathsAndOptions) {
-  expect_bad_paths_refused<ReferenceField>();
+TEST(ReferenceField, RejectsInvalidOptions) {
   const auto path = circle(10, 1);
   const auto refused = [&](auto change) {
     ReferenceFieldOptions options;
@@ -283,62 +279,6 @@ TEST(ReferenceField, RejectsInvalidPathsAndOptions) {
   refused([](auto& o) { o.resolution = 0; });
   refused([](auto& o) { o.length_x = NAN; });
   refused([](auto& o) { o.outside.distance = NAN; });
-}
-
-TEST(CourseReferenceField, IsTheDistanceToTheSegments) {
-  // A square of four points: far between them, the nearest point lies inside a segment.
-  const std::vector<ReferencePoint> path{{0, 0, 0, 1}, {4, 0, 0, 3}, {4, 4, 0, 1}, {0, 4, 0, 1}};
-  const CourseField field(path, {.resolution = 0.1, .corridor = 1.5});
-  for (int row = 0; row < field.geometry().rows; ++row) {
-    for (int column = 0; column < field.geometry().columns; ++column) {
-      const double x = field.geometry().cell_x(row), y = field.geometry().cell_y(column);
-      const double outside_x = std::max({-x, x - 4, 0.0}), outside_y = std::max({-y, y - 4, 0.0});
-      const bool inside = outside_x == 0 && outside_y == 0;
-      const double distance = inside ? std::min({x, y, 4 - x, 4 - y}) : std::hypot(outside_x, outside_y);
-      const float* cell = field.cells().at(row, column);
-      if (std::abs(distance - 1.5) < 1e-9) continue;
-      ASSERT_NEAR(cell[0], distance < 1.5 ? distance : 20, 1e-6) << x << ' ' << y;
-    }
-  }
-  EXPECT_NEAR(field.at(1, 0.5).speed, 1.5, 0.03);
-  EXPECT_NEAR(field.at(2, -0.5).speed, 2, 0.03);
-  // Half-way along a side the direction is that of the side, at a corner the mean of both.
-  EXPECT_NEAR(field.at(2, 0.04).yaw, 0, 0.03);
-  EXPECT_NEAR(field.at(4.5, -0.5).yaw, M_PI / 4, 0.03);
-  EXPECT_NEAR(std::abs(field.at(2, 4.04).yaw), M_PI, 0.05);
-  EXPECT_EQ(field.at(2, 2).distance, 20);
-  EXPECT_EQ(field.at(100, 2).distance, 20);
-}
-
-TEST(CourseReferenceField, AnOpenPathHasEnds) {
-  const std::vector<ReferencePoint> path{{0, 0, 0, 1}, {2, 0, 0, 1}, {4, 0, 0, 2}};
-  const CourseField field(path, {.closed = false});
-  EXPECT_NEAR(field.at(-3.05, 0.05).distance, 3.05, 0.01);
-  EXPECT_NEAR(field.at(-3.05, 0.05).speed, 1, 1e-6);
-  EXPECT_NEAR(field.at(6.95, 0.05).speed, 2, 1e-6);
-  EXPECT_NEAR(field.at(6.95, 0.05).yaw, 0, 1e-6);
-}
-
-TEST(CourseReferenceField, FollowsACircleWithinACellsWidth) {
-  const auto path = circle(500, 6);
-  const CourseField field(path);
-  for (double t = 0; t < 6.28; t += 0.01) {
-    for (const double r : {5.0, 6.0, 7.5}) {
-      const ReferenceCell cell = field.at(r * std::cos(t), r * std::sin(t));
-      EXPECT_NEAR(cell.distance, std::abs(r - 6), 0.075);
-      EXPECT_NEAR(wrap_angle(cell.yaw - t - M_PI / 2), 0, 0.02);
-      EXPECT_NEAR(cell.speed, 2 + std::cos(t), 0.02);
-    }
-  }
-}
-
-TEST(CourseReferenceField, RejectsInvalidPathsAndOptions) {
-  expect_bad_paths_refused<CourseField>();
-  const auto path = circle(10, 1);
-  EXPECT_THROW(CourseField(path, {.resolution = 0}), std::invalid_argument);
-  EXPECT_THROW(CourseField(path, {.resolution = 1e-4}), std::invalid_argument);
-  EXPECT_THROW(CourseField(path, {.corridor = NAN}), std::invalid_argument);
-  EXPECT_THROW(CourseField(path, {.corridor = 1e6}), std::invalid_argument);
 }
 
 }  // namespace

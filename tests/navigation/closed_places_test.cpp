@@ -1,5 +1,5 @@
 // Places that count as closed although the costmap shows room there.
-#include "navigation/closed_places.hpp"
+#include "navigation/path_ahead.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "slalom/core/options.hpp"
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/laser_scan.hpp"
-#include "slalom/maps/occupancy_grid.hpp"
+#include "slalom/maps/pose.hpp"
 #include "slalom/maps/published.hpp"
 
 namespace slalom::maps {
@@ -117,12 +117,8 @@ class LocalCostMap {
   /// Marks all cells free.
   void clear() noexcept;
 
-  /// Adds the readings of a scan. Those that are not finite are ignored.
-  ScanReport add_scan(const LaserScanView& scan) noexcept;
   /// Adds obstacle points in the robot's frame, m. Points that are not finite are ignored.
   void add_points(std::span<const Point> points) noexcept;
-  /// Adds the occupied cells of a map. `robot` is the robot's pose in the frame of the map's origin.
-  void add_grid(const OccupancyGrid& obstacles, const Pose& robot) noexcept;
 
   /// The value at a position in the robot's frame, m.
   float at(double x, double y) const noexcept {
@@ -152,11 +148,10 @@ class LocalCostMap {
 
   void forget() noexcept;
   void set_beams(const LaserScanView& scan) noexcept;
-  ScanReport mark_scan(const LaserScanView& scan) noexcept;
   /// Sets the points of a scan, and gives each to `use`.
   template <class Use>
   ScanReport take_points(const LaserScanView& scan, Use&& use) noexcept;
-  void mark(double x, double y, double reach) noexcept;
+  void mark(double x, double y) noexcept;
   /// Sums over boxes: (rows + 1) x columns of the boxes over a cell less those over the cell ahead of it.
   struct Layer {
     std::vector<std::int32_t> differences;

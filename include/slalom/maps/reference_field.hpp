@@ -12,6 +12,13 @@
 
 namespace slalom::maps {
 
+/// The result of a look-up off a reference map.
+struct ReferenceOutside {
+  double distance = 20;
+  double yaw = 2.0;  ///< The value of the paper's program (proj-svg_mppi).
+  double speed = 0;
+};
+
 /// Options of ReferenceField.
 /// `visit_options` below describes the fields.
 struct ReferenceFieldOptions {
@@ -41,15 +48,15 @@ void visit_options(Options& options, Visit&& visit) {
   visit(options.points_behind,
         {"points_behind", "", "points of the window behind the nearest, in addition", 0, 249});
   visit(options.spacing, {"spacing", "m", "least distance between successive points of the window", 0, 1e4});
-  visit_reference_outside(options.outside, visit);
+  visit(options.outside.distance, {"outside_distance", "m", "distance to the path off the map", -1e30, 1e30});
+  visit(options.outside.yaw, {"outside_yaw", "rad", "yaw error off the map", -7, 7});
+  visit(options.outside.speed, {"outside_speed", "m/s", "speed of the path off the map", -1e3, 1e3});
 }
 
 /// A map centred on the robot, parallel to the map frame, that holds for every cell the distance to the
 /// nearest of a window of the path's points, with that point's yaw and speed; with set_curvatures, to the
 /// nearest place of the line. The window begins at the point nearest to the robot (of the whole path) and
-/// wraps at the path's end. Each update computes the map again,
-/// because its cells move with the robot. CourseField does not move; it is cheaper and more exact if one map
-/// can hold the whole course.
+/// wraps at the path's end. Each update computes the map again, because its cells move with the robot.
 ///
 /// The nearest points are exact in double arithmetic: along a row of cells the squared distances are
 /// parabolas of which the lower envelope is built (as for the distance transform). After construction nothing

@@ -2,8 +2,6 @@
 
 #include <span>
 
-#include "slalom/core/options.hpp"
-
 namespace slalom::maps {
 
 /// A point of the path that the car is to follow.
@@ -23,22 +21,6 @@ struct ReferenceCell {
                    ///< map knows the path's curvatures (see ReferenceField::set_curvatures)
 };
 static_assert(sizeof(ReferenceCell) == 16);
-
-/// The result of a look-up off a reference map.
-/// `visit_reference_outside` below describes the fields.
-struct ReferenceOutside {
-  double distance = 20;
-  double yaw = 2.0;  ///< The value of the paper's program (proj-svg_mppi).
-  double speed = 0;
-};
-
-/// Declares the fields of `outside`, for the visit_options of the maps that have one.
-template <class Outside, class Visit>
-void visit_reference_outside(Outside& outside, Visit&& visit) {
-  visit(outside.distance, {"outside_distance", "m", "distance to the path off the map", -1e30, 1e30});
-  visit(outside.yaw, {"outside_yaw", "rad", "yaw error off the map", -7, 7});
-  visit(outside.speed, {"outside_speed", "m/s", "speed of the path off the map", -1e3, 1e3});
-}
 
 /// Throws std::invalid_argument, naming the point, unless there are 3 to 10 million points, all within
 /// 1e7 m of the origin along each axis, with a finite yaw and a finite speed >= 0.

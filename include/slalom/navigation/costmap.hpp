@@ -4,7 +4,7 @@
 
 #include "slalom/core/grid_view.hpp"
 #include "slalom/maps/cell_grid.hpp"
-#include "slalom/maps/distance_transform.hpp"
+#include "slalom/maps/distance_field.hpp"
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/navigation/footprint.hpp"
 

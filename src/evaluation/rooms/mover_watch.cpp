@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "slalom/maps/moving_readings.hpp"
+#include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/tracking/people.hpp"
 
 namespace slalom::evaluation {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slalom/maps/moving_readings.hpp"
+#include "slalom/maps/moving_obstacles.hpp"
 #include "vehicle/planner/car_estimator.hpp"
 #include "vehicle/planner/map_options.hpp"
 
