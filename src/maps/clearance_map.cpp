@@ -20,7 +20,7 @@ GridGeometry geometry_of(const ClearanceMapOptions& options) {
 }
 
 /// Lowers cells to the distances from one point. Rows of distances have `width` values, a multiple of the
-/// padding; what they have more than the kernel is larger than any cell.
+/// padding; the values beyond the kernel are larger than any cell.
 struct Lower {
   template <class Target>
   SLALOM_KERNEL static void run(const float* distances, int width, int rows, std::ptrdiff_t stride,
@@ -76,7 +76,7 @@ void ClearanceMap::stamp(double x, double y) noexcept {
   const double u = (geometry_.center_x - x) / geometry_.resolution + 0.5 * geometry_.rows;
   const double v = (geometry_.center_y - y) / geometry_.resolution + 0.5 * geometry_.columns;
   const int n = kernel_reach_;
-  // Also false for what is not finite.
+  // Also false for values that are not finite.
   if (!(u > -n && u < geometry_.rows + n && v > -n && v < geometry_.columns + n)) return;
   const int row = static_cast<int>(std::floor(u)), column = static_cast<int>(std::floor(v));
   const bool inside = row >= 0 && column >= 0 && row < geometry_.rows && column < geometry_.columns;

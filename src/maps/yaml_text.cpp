@@ -13,7 +13,7 @@
 namespace slalom::maps {
 namespace {
 
-/// Refuses what yaml-cpp would follow without end, before any node is made: aliases, deep nesting, and
+/// Refuses texts that yaml-cpp would follow without end, before any node is made: aliases, deep nesting, and
 /// further documents, of which some texts have infinitely many for yaml-cpp.
 class Limiter final : public YAML::EventHandler {
  public:
@@ -84,7 +84,7 @@ std::string yaml_text(const std::filesystem::path& file) {
     Limiter limiter(name);
     while (parser.HandleNextDocument(limiter)) {
     }
-    YAML::Load(text);  // finds what only building the nodes shows
+    YAML::Load(text);  // finds the errors that only building the nodes shows
   } catch (const YAML::Exception& error) {
     const int line = error.mark.line + 1;
     throw IoError(name, line, "is not YAML: " + error.msg + tab_hint(text, line));

@@ -72,7 +72,7 @@ bool Costmap::update(const maps::OccupancyGrid& grid) noexcept {
                        static_cast<std::size_t>(width - 1 - row);
     for (int column = 0; column < height; ++column, from -= static_cast<std::size_t>(width)) {
       distance[column] = std::min(static_cast<float>(transformed_[from]), reach);
-      if (unknown_ == UnknownCells::obstacle) {  // and so is what lies off the grid
+      if (unknown_ == UnknownCells::obstacle) {  // and so is the space off the grid
         const int to_edge = std::min(std::min(row + 1, width - row), std::min(column + 1, height - column));
         distance[column] = std::min(distance[column], static_cast<float>(to_edge * grid.resolution));
       }

@@ -18,13 +18,14 @@ namespace slalom::navigation {
 
 namespace {
 
-constexpr double largest = 1e6;         // m from the origin, of positions
-constexpr double search_period = 0.1;   // s between searches while there is no way
-constexpr double nearest_unseen = 0.5;  // m to what closes the path, beside those of braking, to see its end
+constexpr double largest = 1e6;        // m from the origin, of positions
+constexpr double search_period = 0.1;  // s between searches while there is no way
+constexpr double nearest_unseen =
+    0.5;  // m before a closed place, beside those of braking, at which its end is seen
 constexpr double least_period = 1e-3;   // s
 constexpr double progress_step = 0.1;   // m of progress after which the robot is not stuck
 constexpr double settling = 1;          // m before the goal, where a robot that turns makes no progress
-constexpr double dead_end_ahead = 0.2;  // m from the robot's front to the middle of what counts as closed
+constexpr double dead_end_ahead = 0.2;  // m from the robot's front to the middle of the closed place
 constexpr double retry_after = 10;      // s without a way after which ways that were closed are tried again
 constexpr int steps_to_react = 2;       // steps of a plan, beside those of braking, that must be free
 constexpr double max_period = 0.2;      // s for which the robot brakes in one command
@@ -219,7 +220,7 @@ bool Navigator::Implementation::keep_way(const maps::Pose& pose, const Costmap& 
       return true;
     }
   }
-  // A costmap that moves with the robot may show the end of what closes the path once the robot is nearer.
+  // A costmap that moves with the robot may show the end of the closed place once the robot is nearer.
   const BaseOptions& base = options_.base;
   const double braking = base.max_forward * base.max_forward / (2 * base.max_acceleration);
   if (ahead(costmap).opens_off_the_map(closed, nearest_unseen + braking)) {
@@ -251,7 +252,7 @@ void Navigator::Implementation::watch_progress(const maps::Point& robot, double 
   closed_.add_dead_end(position(path[std::min(guide_.nearest() + ahead, path.size() - 1)]));
 }
 
-/// Whether the plan leads into an obstacle, or meets what moves, before the robot could brake. A body that
+/// Whether the plan meets a fixed or moving obstacle before the robot could brake. A body that
 /// overlaps an obstacle already may leave it.
 bool Navigator::Implementation::plan_collides(const Costmap& costmap,
                                               const Velocity& velocity) const noexcept {

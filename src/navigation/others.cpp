@@ -8,12 +8,12 @@ namespace slalom::navigation::detail {
 
 namespace {
 
-constexpr double waits_for = 2;       // m from the robot, within which it may wait for what moves
+constexpr double waits_for = 2;       // m from the robot to moving objects for which it may wait
 constexpr double foresight = 5;       // s, in which meetings are found
 constexpr double along_path = 0.7;    // cosine of the angle to the path, of those who go along it
 constexpr double passing_room = 0.1;  // m, more than the margin, so that a way past somebody is kept
 
-/// The box around the footprint, and what plans pay beside others.
+/// The box around the footprint, and the costs of plans beside others.
 maps::MovingObstacleOptions options_of(const Footprint& footprint, const NavigatorOptions& options) {
   maps::MovingObstacleOptions made;
   made.front = made.rear = made.width = 0;

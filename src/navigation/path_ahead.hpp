@@ -73,8 +73,8 @@ class PathAhead {
       if (is_closed(i)) return false;
     return true;
   }
-  /// Whether the path leaves the costmap before a detour round what closes it at a point could end, and the
-  /// robot is further than `distance` (m) before that point.
+  /// Whether the path leaves the costmap before a detour around its closed point could end, and the robot is
+  /// more than `distance` (m) before that point.
   bool opens_off_the_map(std::size_t closed, double distance) const noexcept {
     if (guide_.step() * static_cast<double>(closed - guide_.nearest()) <= distance) return false;
     for (std::size_t i = closed + 1; i < points().size(); ++i) {

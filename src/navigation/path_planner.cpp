@@ -8,8 +8,8 @@ namespace slalom::navigation {
 
 namespace {
 
-constexpr double cautious = 0.3;     // m beyond what the body needs, in which driving costs more
-constexpr float nearness_price = 4;  // times as much at the inner end of it
+constexpr double cautious = 0.3;     // m beside the body's corridor in which driving costs more
+constexpr float nearness_price = 4;  // times as much at its inner edge
 constexpr float unknown_price = 1;   // times as much on top
 constexpr double start_reach = 0.3;  // m around the start that counts as free
 constexpr double kept_reach = 0.4;   // m

@@ -44,7 +44,7 @@ void ScanMap::add(const RangeScan& scan) noexcept {
   }
 }
 
-/// Sets the cells along a beam to what the map knows of them, or free.
+/// Sets the cells along a beam free, or occupied where the map has a wall.
 void ScanMap::clear(const maps::Point& from, double cosine, double sine, double range) noexcept {
   const double step = 0.5 * known_.resolution;
   const int steps = static_cast<int>(std::floor(std::fmin(range / step, 1e6)));

@@ -103,7 +103,7 @@ struct Predictor::Implementation {
                   square((now.speed - way.now().speed) / speed_error));
   }
 
-  /// Compares the hypotheses of a while ago with what the object did.
+  /// Compares the hypotheses of a while ago with the motion of the object.
   void learn(Remembered& past, const Motion& now, double elapsed) noexcept {
     const Weights first = first_weights(now);
     std::array<double, manoeuvres> mismatches{};
@@ -165,7 +165,7 @@ struct Predictor::Implementation {
     return past->weights;
   }
 
-  /// Standard deviations along and across the object, `time` (s) after what `object` says.
+  /// Standard deviations along and across the object, `time` (s) after the state of `object`.
   maps::PredictedPose spread(const TrackedObject& object, const maps::Pose& pose,
                              double time) const noexcept {
     const double c = std::cos(object.pose.yaw), s = std::sin(object.pose.yaw);

@@ -15,12 +15,12 @@ constexpr double yaw_floor = 0.04;               // rad, of measured yaws
 constexpr double slip = 0.05;                    // rad, from the yaw to the direction of travel
 constexpr double min_travel = 1.0;               // m/s, from which the velocity gives the yaw
 constexpr double known_speed = 4;                // standard deviations of a speed that gives the yaw
-constexpr double known_rest = 0.6;               // m/s, deviation of the speed of what stands or crawls
-constexpr double unknown_yaw_deviation = 0.4;    // rad
-constexpr double unknown_turn_deviation = 2;     // rad/s
-constexpr double reversing = -0.5;               // m/s, below which an object is turned around
-constexpr double round_deviation = 0.03;         // m, of the middle of a round object, for its limbs
-constexpr double min_walk = 0.1;  // m/s, from which the velocity of a round object gives its yaw
+constexpr double known_rest = 0.6;  // m/s, deviation of the speed of an object that stands or crawls
+constexpr double unknown_yaw_deviation = 0.4;  // rad
+constexpr double unknown_turn_deviation = 2;   // rad/s
+constexpr double reversing = -0.5;             // m/s, below which an object is turned around
+constexpr double round_deviation = 0.03;       // m, of the middle of a round object, for its limbs
+constexpr double min_walk = 0.1;               // m/s, from which the velocity of a round object gives its yaw
 
 /// The yaw of a new box: the longer side of the fit, or the line of sight if that side is no longer than an
 /// object is wide.

@@ -23,7 +23,7 @@
 ///  - The signature does not depend on `Target`, and `run` is not overloaded.
 ///  - Functions that `run` calls are templates over `Target` or over a pack, marked `SLALOM_INLINE`, or
 ///    `SLALOM_INLINE_CALLS` where they call a function that is not ours (of a user's problem) or an operation
-///    of `simd::Operations`. clang inlines only what is so marked; g++ inlines everything.
+///    of `simd::Operations`. clang inlines only functions with this mark; g++ inlines everything.
 ///  - Packs are passed by reference and returned by value; no pack is part of the signature of `run`.
 ///  - A kernel whose results must have the same bits on every instruction set uses packs of
 ///    `simd::Unfused<Target>`.

@@ -5,7 +5,7 @@
 
 namespace slalom {
 
-/// A file could not be read or written, or what it holds breaks a rule. The message reads `file:line: what`,
+/// A file could not be read or written, or its contents break a rule. The message reads `file:line: what`,
 /// naming the key, the value and the rule; the line is left out (0) where a file as a whole is meant.
 class IoError : public std::runtime_error {
  public:

@@ -146,7 +146,7 @@ class GridView {
   double resolution_ = 1;
   double center_x_ = 0;
   double center_y_ = 0;
-  double origin_x_ = 0;  ///< m, what positions are relative to
+  double origin_x_ = 0;  ///< m, origin of the positions
   double origin_y_ = 0;
   GridAxis rows_axis_, columns_axis_;
   int last_row_ = 1, last_column_ = 1;  ///< last cell of the ring; kept to be broadcast from memory

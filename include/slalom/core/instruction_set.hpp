@@ -90,7 +90,7 @@ bool supported(Target target) noexcept;
 Target active_target();
 
 /// Tags of the instruction sets: the `lanes` of a pack, and whether products and sums are fused, that is,
-/// rounded once. `Generic` uses what the build's baseline has (SSE2 on x86-64, NEON on AArch64).
+/// rounded once. `Generic` uses the build's baseline (SSE2 on x86-64, NEON on AArch64).
 struct Generic {
   static constexpr int lanes = 4;                 ///< number of float32 values
   static constexpr bool fused = SLALOM_X86 == 0;  ///< whether it has fused multiply-add

@@ -16,7 +16,7 @@ namespace slalom {
 /// The value of an option of any type; of an enumeration, the enumerator's name.
 using OptionValue = std::variant<bool, int, std::uint64_t, double, std::vector<double>, std::string>;
 
-/// An option of some options aggregate: what is declared of it, its type, its value.
+/// An option of an options aggregate: its declaration and its value.
 struct OptionEntry {
   Declaration declaration;           ///< the declaration of the option
   OptionValue value;                 ///< the value of the option

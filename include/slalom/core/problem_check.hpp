@@ -2,7 +2,7 @@
 
 #include "slalom/core/problem_parts.hpp"
 
-/// Says in words what a problem lacks, before the compiler says it in pages.
+/// Names the parts that a problem lacks, before the compiler does so in pages.
 namespace slalom::detail {
 
 template <class P>

@@ -223,7 +223,7 @@ struct Pack {
   /// Writes the lanes.
   SLALOM_INLINE void store(float* to) const { std::memcpy(to, &v, sizeof v); }
   float operator[](int lane) const { return v[lane]; }  ///< value of one lane
-  /// Refuses what takes one number, such as `std::sin(x)` and `double y = x`, with words.
+  /// Refuses, with a message, uses of a pack as one number, such as `std::sin(x)` and `double y = x`.
   template <std::same_as<double> Double>
   operator Double() const {
     static_assert(sizeof(Double) == 0,

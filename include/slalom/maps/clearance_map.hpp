@@ -33,9 +33,9 @@ void visit_options(Options& o, Visit&& visit) {
 }
 
 /// A map in the robot's frame that holds for every cell the distance (m) to the nearest obstacle point, up to
-/// a reach: what a body that consists of discs needs, at any heading. Points count as the centres of their
-/// cells, so the error of a distance is at most one cell. The border cells around the map hold -1. After
-/// construction nothing allocates.
+/// a reach. A body of discs needs no more, at any heading. Points count as the centres of their cells, so the
+/// error of a distance is at most one cell. The border cells around the map hold -1. After construction
+/// nothing allocates.
 class ClearanceMap {
  public:
   /// Throws std::invalid_argument where the options break a rule.

@@ -161,7 +161,7 @@ class MovingObstaclesView {
  private:
   friend class MovingObstacles;
 
-  /// The likeliest hypothesis of an obstacle at the last step, and what it costs to end behind it.
+  /// The likeliest hypothesis of an obstacle at the last step, and the cost of a plan's end behind it.
   struct Followed {
     float x, y;  ///< m, of the middle
     float sine, cosine;

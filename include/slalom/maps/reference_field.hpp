@@ -117,14 +117,14 @@ class ReferenceField {
   std::span<const int> window() const noexcept { return {window_.data(), window_size_}; }
 
  private:
-  /// The line around a point, for what lies beside it.
+  /// The line around a point, for the cells beside it.
   struct Piece {
     double ahead_x = 1, ahead_y = 0;           ///< unit vector along the line
     double curvature = 0;                      ///< 1/m
     double begin = 0, end = 0;                 ///< m along the line, half-way to the window's next points
     double slope_before = 0, slope_after = 0;  ///< 1/s, of the speed over the arc length
   };
-  /// A point of the window, with what the rows need of it.
+  /// A point of the window, with its values for the rows.
   struct Site {
     double x = 0, y = 0;
     double u = 0;  ///< y as a column coordinate, 0 at the centre of column 0

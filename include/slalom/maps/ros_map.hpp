@@ -28,10 +28,10 @@ struct MapReading {
 
 /// Loads a map of ROS map_server: a yaml file with `image` (relative to it), `resolution` (m per pixel),
 /// `origin` [x, y, yaw] of the lower left corner (m, m, rad), `negate`, `occupied_thresh`, `free_thresh` and,
-/// if present, `mode` (trinary, scale, raw). The grid keeps three states: what `scale` and `raw` put between
-/// free (0) and occupied (100) is unknown, as AMCL reads it, and so are, with MapRule::map_server, pixels
-/// less than half opaque. Throws IoError if a file cannot be read or breaks a rule, and std::invalid_argument
-/// if `grey_threshold` is outside [0, 255].
+/// if present, `mode` (trinary, scale, raw). The grid keeps three states: values of `scale` and `raw` between
+/// free (0) and occupied (100) are unknown, as in AMCL, and so are, with MapRule::map_server, pixels less
+/// than half opaque. Throws IoError if a file cannot be read or breaks a rule, and std::invalid_argument if
+/// `grey_threshold` is outside [0, 255].
 OccupancyGrid load_ros_map(const std::filesystem::path& yaml_file, const MapReading& reading = {});
 
 /// Writes `yaml_file` and, beside it, a PNG of the same name, with the greys and thresholds of map_saver.

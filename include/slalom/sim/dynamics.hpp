@@ -15,7 +15,7 @@ namespace slalom::sim {
 ///   then push the wrong way and the state explodes).
 /// - `saturating`: the same car with tyres after Pacejka, "Tire and Vehicle Dynamics", eq. 1.5 with E = 0,
 ///   F_y = mu F_z sin(C atan(B alpha)), C = 1.5, B = C_S / C: the same slope at 0, but grip can be exceeded.
-///   What drives or brakes takes its share of mu F_z from what is left sideways (friction ellipse).
+///   Driving and braking forces reduce the largest sideways force (friction ellipse).
 enum class Model { kinematic, single_track, saturating };
 
 /// Integration method of a step.

@@ -87,7 +87,7 @@ class LapTimer {
   std::vector<double> splits_;
 };
 
-/// Laps as f1tenth_gym counts them: the zone round the car's own start is what lies within 0.316 m of a line
+/// Laps as f1tenth_gym counts them: the zone around the car's own start lies within 0.316 m of a line
 /// 4 m long, across the heading of the first car's start. Each crossing of the zone's border counts as half a
 /// lap, in either direction, and after two laps the time stops.
 class StartZoneLaps {

@@ -29,8 +29,8 @@ struct RacingLineOptions {
 /// The given path is resampled at about 0.2 m. Of the offsets from it at which a car has its margins, dynamic
 /// programming takes the way round that stays nearest to the path and moves least from side to side, by at
 /// most 0.25 m for each metre. If there is none, it is searched with smaller margins. If there is none
-/// without margins either, the line is the path. Speeds are those of the path, lowered to what the
-/// accelerations allow on the way that was found.
+/// without margins either, the line is the path. Speeds are those of the path, lowered to the limits of the
+/// accelerations on the way that was found.
 class RacingLine {
  public:
   /// The line at an arc length of the path.

@@ -53,7 +53,7 @@ class FeedbackGains {
   Terminal terminal() noexcept;
 
   /// Fills the derivatives along the plan, whose states and inputs must have been filled. Returns whether a
-  /// function has no derivative somewhere along it (see Dual). Throws what the problem throws.
+  /// function has no derivative somewhere along it (see Dual). Throws as the problem does.
   bool expand(DifferentiableProblem& problem);
 
   /// Computes the gains for a plan whose steps take `time_step` (s). Returns false, and makes all gains 0, if

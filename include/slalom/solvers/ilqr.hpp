@@ -95,7 +95,7 @@ class IterativeLqr {
 ///     slalom::Ilqr ilqr{problem, 60};
 ///     apply(ilqr.improve(problem, x, 0.02)[0]);
 ///
-/// It knows what derivatives tell: jumps of a cost stop its steps, but nothing leads it around them. Limits
+/// It sees derivatives only: jumps of a cost stop its steps, but nothing leads it around them. Limits
 /// on the rates of inputs are not applied.
 template <Problem P>
 class Ilqr {
@@ -107,7 +107,7 @@ class Ilqr {
   using Inputs = Input<double, nu>;          ///< inputs of a step
 
   /// For sequences of `horizon` steps within the bounds that the problem states. Throws std::invalid_argument
-  /// that names what is out of range.
+  /// that names the value out of range.
   Ilqr(const P& problem, int horizon, const IlqrOptions& options = {})
       : Ilqr(horizon, detail::stated_bounds(problem), options) {}
   /// For the horizon and the bounds of a controller. Throws std::invalid_argument if an option is out of

@@ -2,8 +2,8 @@
 
 #include "slalom/core/options.hpp"
 
-/// Options that several methods share. What a user sets often stands in each method's own aggregate with its
-/// default, what is set rarely in the groups below; what is declared of both stands here once.
+/// Options that several methods share. Options that a user sets often stand in each method's own aggregate
+/// with its default, the others in the groups below; both are declared here once.
 namespace slalom {
 
 /// The shape of the samples' noise. For one solver either `exponent` or `knots` may be above 0, not both, and

@@ -90,7 +90,7 @@ class Solver {
   virtual int inputs() const noexcept = 0;
 
   /// Whether the inputs of every result are within the bounds. False only for `sv_mpc` as published, whose
-  /// program does not clamp what it sends (`PublishedSvMpc::clamp_solution`).
+  /// program does not clamp its inputs (`PublishedSvMpc::clamp_solution`).
   virtual bool keeps_bounds() const noexcept { return true; }
 
   /// Whether `solve` uses the proposals of a request.

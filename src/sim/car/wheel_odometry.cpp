@@ -28,7 +28,7 @@ void WheelOdometry::update(const CarState& state, double time_step) noexcept {
   if (!usable) return;
   const double acceleration = (state.speed - true_speed_) / time_step;
   true_speed_ = state.speed;
-  // Along the body: the rear wheels' own speed; what slips sideways turns no wheel.
+  // The speed along the body is that of the rear wheels; sideways slip turns no wheel.
   const double along = state.speed * std::cos(state.slip);
   speed_ = along * (1 + options_.speed_gain_error) * (1 + options_.slip_per_acceleration * acceleration) +
            options_.speed_noise * random_.normal();

@@ -182,7 +182,7 @@ void RacingLine::smooth() {
   }
 }
 
-/// Lowers the speeds to what the accelerations allow.
+/// Lowers the speeds to the limits of the accelerations.
 void RacingLine::limit_speeds(const RacingLineOptions& options) {
   std::vector<maps::Point> line;
   for (const Point& each : points_) line.push_back(each.beside(each.offset));

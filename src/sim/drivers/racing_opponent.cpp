@@ -10,16 +10,17 @@
 namespace slalom::sim {
 namespace {
 
-constexpr double sight = 12, widest = 4;            // m ahead and behind, and beside the path: what counts
-constexpr double most_aside = 2;                    // m, of lanes
-constexpr double look_step = 0.2;                   // m, from one look ahead to the next
+constexpr double sight = 12,
+                 widest = 4;       // m ahead and behind, and beside the path, in which other cars count
+constexpr double most_aside = 2;   // m, of lanes
+constexpr double look_step = 0.2;  // m, from one look ahead to the next
 constexpr double follow_gap = 0.4, headway = 0.5;   // m, s, to a car ahead
 constexpr double pass_gap = 0.15;                   // m along the line, from when cars are alongside
 constexpr double braking_lag = 0.1;                 // s, of the speed control
 constexpr double accelerating_lag = 0.21;           // s, where it speeds up
 constexpr double shortest_change = 1.2;             // m, of a change of lane
 constexpr double far_off = 3;                       // m from the path, from where it is searched anew
-constexpr double least_aim = 0.4, aim_time = 0.14;  // m, s: how far ahead is what it steers for
+constexpr double least_aim = 0.4, aim_time = 0.14;  // m, s: distance to the point that it steers for
 
 }  // namespace
 
@@ -43,7 +44,7 @@ RacingOpponent::RacingOpponent(std::shared_ptr<const RacingLine> line, std::size
   options_.validate();
 }
 
-/// Finds the own place along the path and those of the other cars. The line knows what is parked.
+/// Finds the own place along the path and those of the other cars. The line knows the parked bodies.
 void RacingOpponent::look(const World& world) {
   const CarState& own = world.state(car_);
   if (placed_) place_ = line_->project_near({own.x, own.y}, place_, 2);

@@ -130,7 +130,7 @@ Point Crowd::force_on(std::size_t i, const Box& robot, const Point& robot_veloci
   Point sum{(walker.speed * wanted.x - now.x) / relaxation, (walker.speed * wanted.y - now.y) / relaxation};
   if (wanted.x == 0 && wanted.y == 0) return sum;  // it waits or has arrived
   const auto add = [&](const Point& force) { sum = {sum.x + force.x, sum.y + force.y}; };
-  // Eq. 8: what pushes from behind counts less.
+  // Eq. 8: forces from behind count less.
   const auto add_seen = [&](const Point& force) {
     const double ahead = -(wanted.x * force.x + wanted.y * force.y) / length_of(wanted);
     const double weight = ahead >= length_of(force) * view ? 1 : out_of_view;

@@ -28,7 +28,8 @@ struct RoomDriver {
   navigation::NavigatorOptions navigator{};  ///< its base is replaced by the scenario's
   /// For that base. It has an option `seed`, as every registered method does, which is replaced.
   SolverOptions solver = navigation::svg_mppi_options({});
-  bool predict_movers = true;  ///< follow and predict what moves; otherwise it is an obstacle of the scans
+  bool predict_movers =
+      true;  ///< follow and predict moving objects; otherwise they are obstacles of the scans
 };
 
 /// The conditions of a drive.
@@ -62,7 +63,7 @@ struct RoomDrive {
       false;  ///< whether the robot did as the scenario asks: reached the goal, or said that there is no way
   double time = 0;       ///< s, of the drive
   double length = 0;     ///< m driven
-  int side_changes = 0;  ///< how often plans changed the side on which they pass what the scenario counts
+  int side_changes = 0;  ///< changes of the side on which plans pass the object that the scenario counts
   int reversals = 0;     ///< changes between driving forward and back
   /// s between the first scan in which a scenario without a way shows it, and the robot saying so; -1 if it
   /// did not. The way is shown to be closed once the search of the map of scans finds none.
@@ -72,9 +73,9 @@ struct RoomDrive {
   std::vector<std::vector<maps::Point>> people;  ///< the same for each person: where they were, m
 };
 
-/// Drives a scenario with a path planned on the map, which shows neither obstacles nor people; what moves is
-/// known from the scans alone. The same seed gives the same drive, but for the times of the updates. Throws
-/// std::invalid_argument where a condition is out of range or the solver has no option `seed`, and as
+/// Drives a scenario with a path planned on the map, which shows neither obstacles nor people; moving objects
+/// are known from the scans alone. The same seed gives the same drive, but for the times of the updates.
+/// Throws std::invalid_argument where a condition is out of range or the solver has no option `seed`, and as
 /// Navigator does.
 RoomDrive drive_room(const RoomScenario& scenario, const RoomDriver& driver, std::uint64_t seed,
                      const RoomConditions& conditions = {});

@@ -35,7 +35,7 @@ struct Waypoint {
 struct Course {
   std::string name;         ///< the name
   std::string description;  ///< one sentence
-  maps::Point origin;       ///< m, map frame: what the coordinates below are relative to
+  maps::Point origin;       ///< m, map frame; origin of the coordinates below
   maps::OccupancyGrid map;  ///< the map
   std::vector<Waypoint>
       waypoints;  ///< at least 3, successive ones differ; the first is not repeated at the end

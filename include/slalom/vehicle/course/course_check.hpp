@@ -48,7 +48,7 @@ CourseCheck check_course(const Course& course, const CourseCheckOptions& options
 /// The findings in words, one sentence for each broken rule, with its share and its three worst places.
 std::vector<std::string> sentences(const CourseCheck& check, const CourseCheckOptions& options);
 
-/// Lowers the speeds of a course to what the limits allow (see feasible_speeds).
+/// Lowers the speeds of a course to the limits (see feasible_speeds).
 void make_feasible(Course& course, const SpeedLimits& limits);
 /// Makes a path feasible; it is closed if its ends are near each other (see path_geometry).
 void make_feasible(std::vector<maps::ReferencePoint>& path, const SpeedLimits& limits);

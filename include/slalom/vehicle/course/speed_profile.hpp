@@ -17,7 +17,7 @@ struct SpeedLimits {
 };
 
 /// The limits of a car on ground of this friction coefficient: no acceleration above `friction` g, and none
-/// above what motor (`acceleration`) and brakes (`braking`, both m/s^2) allow.
+/// above the limits of motor (`acceleration`) and brakes (`braking`, both m/s^2).
 SpeedLimits grip_limits(double friction, double top_speed, double acceleration, double braking);
 
 /// The highest speeds (m/s) along a closed path of the given curvatures (1/m), points `step` m apart, such
@@ -39,7 +39,7 @@ std::vector<double> speed_profile(const std::vector<double>& curvature, double s
 std::vector<double> feasible_speeds(std::span<const double> speed, std::span<const double> curvature,
                                     std::span<const double> step, bool closed, const SpeedLimits& limits);
 
-/// A path as a polyline: what its profile depends on.
+/// The geometry of a path, a polyline, on which its profile depends.
 struct PathGeometry {
   bool closed = true;             ///< whether the first point follows the last one
   std::vector<double> step;       ///< m, from each point to the next, from the last to the first

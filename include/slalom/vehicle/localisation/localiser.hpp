@@ -101,7 +101,7 @@ struct Particle {
 /// the same bits on one machine and instruction set.
 class Localiser {
  public:
-  /// Copies what it needs of `map` into tables, and starts everywhere. Throws std::invalid_argument on
+  /// Copies the needed parts of `map` into tables, and starts everywhere. Throws std::invalid_argument on
   /// options out of range; on a map without free or without occupied cells, with more than 32766 cells to a
   /// side, with sizes that disagree, with an origin that is not finite or a resolution that is not finite and
   /// positive; and if the table of ranges would have more than 2^27 entries.

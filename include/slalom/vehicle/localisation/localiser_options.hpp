@@ -16,7 +16,7 @@ inline const char* const* enum_names(SensorModel) {
   return names;
 }
 
-/// How the readings of a scan are distributed about what the map predicts.
+/// The distribution of the readings of a scan about the prediction of the map.
 /// `visit_localiser_scan` below describes the fields.
 struct LocaliserBeamOptions {
   double hit_deviation = 0.08;

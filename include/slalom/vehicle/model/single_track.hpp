@@ -33,7 +33,7 @@ class SingleTrack {
   /// The state at the start.
   State<double> start(const VehicleStart& start, double reference_speed) const noexcept;
 
-  /// Adds what the planner needs to know of tyres and motor.
+  /// Adds the facts about tyres and motor that the planner needs.
   void complete(VehicleTraits& traits) const noexcept;
 
   /// The friction between tyres and road that rollouts assume.

@@ -2,8 +2,8 @@
 
 #include "slalom/core/options.hpp"
 
-/// The vehicle problem of the program that the authors of Honda et al. (ICRA 2024) published, with what in it
-/// departs from the paper or from the car. It exists to reproduce their results.
+/// The vehicle problem of the program that the authors of Honda et al. (ICRA 2024) published, with its
+/// departures from the paper and from the car. It exists to reproduce their results.
 namespace slalom::vehicle::published {
 
 /// Reference point and yaw gain of the bicycle.

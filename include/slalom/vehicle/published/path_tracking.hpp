@@ -191,7 +191,7 @@ struct Model {
   static constexpr std::array input_names{"steering"};  ///< names of the inputs
   using Options = ModelOptions;                         ///< the model's own options
 
-  /// Calls `use` with the problem of these options and returns what it returns.
+  /// Returns the result of `use` for the problem of these options.
   template <class Use>
   static auto with_problem(const PathTrackingOptions& options, const Options& own, Use&& use) {
     return own.straight_local_rollout ? use(TwoTrajectories(options, own)) : use(OneTrajectory(options, own));
