@@ -13,6 +13,7 @@
 
 #include "golden.hpp"
 #include "solvers/kernels/kernels.hpp"
+#include "solvers/methods/gaussian_fit.hpp"
 
 namespace slalom::testing {
 
@@ -69,9 +70,8 @@ void for_each_line(const std::filesystem::path& path, Use use) {
 }
 
 /// Control sequences [sample][row] as the solvers hold them, [row][sample], padded.
-template <class Real>
 struct Batch {
-  std::vector<Real> values;
+  std::vector<float> values;
   int samples = 0, stride = 0, rows = 0;
 
   explicit Batch(const Json& sequences)
@@ -82,7 +82,7 @@ struct Batch {
     for (int k = 0; k < samples; ++k)
       for (int r = 0; r < rows; ++r)
         view().row(r)[k] =
-            static_cast<Real>(number(sequences[static_cast<std::size_t>(k)][static_cast<std::size_t>(r)]));
+            static_cast<float>(number(sequences[static_cast<std::size_t>(k)][static_cast<std::size_t>(r)]));
   }
   Batch(int rows_of, int samples_of)
       : samples(samples_of),
@@ -90,21 +90,28 @@ struct Batch {
         rows(rows_of) {
     values.resize(static_cast<std::size_t>(stride) * static_cast<std::size_t>(rows));
   }
-  detail::Rows<Real> view() { return {values.data(), stride, rows}; }
+  detail::Rows view() { return {values.data(), stride, rows}; }
   detail::Range range() const { return {0, stride}; }
-  std::vector<Real> sequence(int sample) {
-    std::vector<Real> result;
+  std::vector<float> sequence(int sample) {
+    std::vector<float> result;
     for (int r = 0; r < rows; ++r) result.push_back(view().row(r)[sample]);
     return result;
   }
 };
 
 /// Values [sample], padded with `fill`.
-template <class Real>
-std::vector<Real> padded_numbers(const Json& list, Real fill) {
-  auto values = numbers<Real>(list);
+inline std::vector<float> padded_numbers(const Json& list, float fill) {
+  auto values = numbers<float>(list);
   values.resize((values.size() + simd::padding - 1) / simd::padding * simd::padding, fill);
   return values;
+}
+
+/// The fit of the paper's program to points of a density.
+inline detail::GaussianFit published_fit(const std::vector<double>& x, const std::vector<double>& density) {
+  std::vector<double> square(x.size()), logarithm(x.size());
+  const auto count = static_cast<int>(x.size());
+  detail::fit_weights(density.data(), count, square.data(), logarithm.data());
+  return detail::fit_gaussian_as_published(x.data(), square.data(), logarithm.data(), count);
 }
 
 /// Compares a golden set and says at its end how many cases there were and how large the largest error was.
@@ -144,14 +151,6 @@ class Comparison {
   int cases_ = 0;
   double largest_ = 0;
 };
-
-/// Tolerance of the double and of the float32 form.
-template <class Real>
-inline constexpr double tolerance = sizeof(Real) == 8 ? 1e-9 : 1e-4;
-template <class Real>
-std::string precision() {
-  return sizeof(Real) == 8 ? " (double)" : " (float32)";
-}
 
 inline std::string case_name(const Json& json) {
   return "case " + std::to_string(json.at("case_id").get<int>());

@@ -1,7 +1,7 @@
 #include "solvers/golden_json.hpp"
-#include "solvers/methods/control_term.hpp"
 #include "solvers/methods/reverse_weights.hpp"
 #include "solvers/published/published_rejection.hpp"
+#include "solvers/sampling/sample_set.hpp"
 
 namespace slalom::testing {
 namespace {
@@ -11,59 +11,53 @@ bool any_nan(const std::vector<double>& values) {
 }
 
 /// Weighted mean, and the published program's dimensionless second moment about the samples' mean.
-template <class Real>
-void compare_moments(const Json& json, const char* suffix, Batch<Real>& samples,
-                     const std::vector<Real>& weights, Comparison& comparison) {
+void compare_moments(const Json& json, const char* suffix, Batch& samples, const std::vector<float>& weights,
+                     Comparison& comparison) {
   const auto expected_mean = numbers<double>(json[std::string("mean_") + suffix]);
   if (any_nan(expected_mean)) return;
-  const auto prior = numbers<Real>(json["mean"]), variance = numbers<Real>(json["cov"]);
-  const std::vector<Real> zero(prior.size());
-  std::vector<Real> mean(prior.size()), sigma(prior.size());
-  detail::kernels<Real>().weighted_sums(samples.view(), weights.data(), zero.data(), samples.range(),
-                                        mean.data());
-  detail::kernels<Real>().weighted_squares(samples.view(), weights.data(), prior.data(), samples.range(),
-                                           sigma.data());
-  for (std::size_t r = 0; r < sigma.size(); ++r)
-    sigma[r] *= detail::inverse_variance(variance[r], Real(1e-4));
+  const auto prior = numbers<float>(json["mean"]), variance = numbers<float>(json["cov"]);
+  const std::vector<float> zero(prior.size());
+  std::vector<float> mean(prior.size()), sigma(prior.size());
+  detail::kernels::weighted_sums(samples.view(), weights.data(), zero.data(), samples.range(), mean.data());
+  detail::kernels::weighted_squares(samples.view(), weights.data(), prior.data(), samples.range(),
+                                    sigma.data());
+  for (std::size_t r = 0; r < sigma.size(); ++r) sigma[r] *= detail::inverse_variance(variance[r], 1e-4f);
   comparison.compare(mean, expected_mean, case_name(json) + " mean_" + suffix);
   comparison.compare(sigma, numbers<double>(json[std::string("sigma_") + suffix]),
                      case_name(json) + " sigma_" + suffix);
 }
 
 /// Plain mean and variance of the samples.
-template <class Real>
-void compare_plain_moments(const Json& json, Batch<Real>& samples, Comparison& comparison) {
-  std::vector<Real> weights(static_cast<std::size_t>(samples.stride)), mean(json["mean"].size()),
+void compare_plain_moments(const Json& json, Batch& samples, Comparison& comparison) {
+  std::vector<float> weights(static_cast<std::size_t>(samples.stride)), mean(json["mean"].size()),
       variance(mean.size());
-  std::fill_n(weights.begin(), samples.samples, Real(1) / static_cast<Real>(samples.samples));
-  const std::vector<Real> zero(mean.size());
-  detail::kernels<Real>().weighted_sums(samples.view(), weights.data(), zero.data(), samples.range(),
-                                        mean.data());
-  detail::kernels<Real>().weighted_squares(samples.view(), weights.data(), mean.data(), samples.range(),
-                                           variance.data());
-  for (Real& v : variance) v += Real(1e-5);
+  std::fill_n(weights.begin(), samples.samples, 1.0f / static_cast<float>(samples.samples));
+  const std::vector<float> zero(mean.size());
+  detail::kernels::weighted_sums(samples.view(), weights.data(), zero.data(), samples.range(), mean.data());
+  detail::kernels::weighted_squares(samples.view(), weights.data(), mean.data(), samples.range(),
+                                    variance.data());
+  for (float& v : variance) v += 1e-5f;
   comparison.compare(mean, numbers<double>(json["est_mu"]), case_name(json) + " est_mu");
   comparison.compare(variance, numbers<double>(json["est_sigma"]), case_name(json) + " est_sigma");
 }
 
-template <class Real>
 void compare_reverse(const std::filesystem::path& folder) {
-  Comparison comparison("reverse_weights" + precision<Real>(), tolerance<Real>);
+  Comparison comparison("reverse_weights (float32)", 1e-4);
   int overflown = 0;
   for_each_line(folder / "cases.jsonl", [&](const Json& json) {
     comparison.next_case();
-    Batch<Real> samples(json["samples"]);
-    const auto mean = numbers<Real>(json["mean"]), variance = numbers<Real>(json["cov"]);
-    const std::vector<Real> nominal(mean.size());
-    std::vector<Real> coefficients(mean.size());
+    Batch samples(json["samples"]);
+    const auto mean = numbers<float>(json["mean"]), variance = numbers<float>(json["cov"]);
+    const std::vector<float> nominal(mean.size());
+    std::vector<float> coefficients(mean.size());
     const double temperature = number(json["lambda"]);
     detail::control_coefficients(temperature, number(json["alpha"]), 1e-4, mean.data(), nominal.data(),
                                  variance.data(), samples.rows, coefficients.data());
-    auto totals = padded_numbers<Real>(json["costs"], std::numeric_limits<Real>::infinity());
-    detail::kernels<Real>().add_linear(samples.view(), coefficients.data(), samples.range(), totals.data());
-    std::vector<Real> evaluated(totals.size()), rejected(totals.size());
-    const auto sums = detail::reverse_weights(totals.data(), static_cast<Real>(temperature),
-                                              static_cast<Real>(number(json["negative_ratio"])), Real(1e-10),
+    auto totals = padded_numbers(json["costs"], std::numeric_limits<float>::infinity());
+    detail::kernels::add_linear(samples.view(), coefficients.data(), samples.range(), totals.data());
+    std::vector<float> evaluated(totals.size()), rejected(totals.size());
+    const auto sums = detail::reverse_weights(totals.data(), static_cast<float>(temperature),
+                                              static_cast<float>(number(json["negative_ratio"])), 1e-10f,
                                               samples.range(), evaluated.data(), rejected.data());
     const auto expected = numbers<double>(json["weights_eval"]),
                expected_rejected = numbers<double>(json["weights_reject"]);
@@ -72,7 +66,7 @@ void compare_reverse(const std::filesystem::path& folder) {
     EXPECT_EQ(published_nan, sums.log_growth > 709.78 || sums.evaluated == 0 || sums.rejected == 0)
         << case_name(json) << " log growth " << sums.log_growth;
     overflown += published_nan;
-    for (const Real w : evaluated) EXPECT_TRUE(std::isfinite(w));
+    for (const float w : evaluated) EXPECT_TRUE(std::isfinite(w));
     if (!any_nan(expected)) comparison.compare(evaluated, expected, case_name(json) + " evaluated");
     if (!any_nan(expected_rejected))
       comparison.compare(rejected, expected_rejected, case_name(json) + " rejected");
@@ -86,33 +80,31 @@ void compare_reverse(const std::filesystem::path& folder) {
 
 TEST(SolverGolden, ReverseWeights) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/reverse_weights");
-  compare_reverse<double>(folder);
-  compare_reverse<float>(folder);
+  compare_reverse(folder);
 }
 
-template <class Real>
 void compare_rejection(const std::filesystem::path& folder) {
-  Comparison comparison("rejection_prob" + precision<Real>(), tolerance<Real>);
+  Comparison comparison("rejection_prob (float32)", 1e-4);
   for_each_line(folder / "cases.jsonl", [&](const Json& json) {
     comparison.next_case();
-    Batch<Real> samples(json["samples"]);
-    const auto mean = numbers<Real>(json["mean"]), variance = numbers<Real>(json["cov"]);
-    const auto rejected = numbers<Real>(json["rejected_mean"]),
-               rejected_variance = numbers<Real>(json["rejected_cov"]);
-    detail::PublishedRejection<Real> densities(static_cast<int>(mean.size()));
+    Batch samples(json["samples"]);
+    const auto mean = numbers<float>(json["mean"]), variance = numbers<float>(json["cov"]);
+    const auto rejected = numbers<float>(json["rejected_mean"]),
+               rejected_variance = numbers<float>(json["rejected_cov"]);
+    detail::PublishedRejection densities(static_cast<int>(mean.size()));
     densities.set(mean.data(), variance.data(), rejected.data(), rejected_variance.data());
-    std::vector<Real> base(densities.base(), densities.base() + mean.size());
+    std::vector<float> base(densities.base(), densities.base() + mean.size());
     comparison.compare(base, numbers<double>(json["normal_pdf_rejected_mean"]), case_name(json) + " base");
-    std::vector<Real> first;
+    std::vector<float> first;
     for (int r = 0; r < samples.rows; ++r) {
       const auto i = static_cast<std::size_t>(r);
       first.push_back(detail::published_density(samples.view().row(r)[0], rejected[i], rejected_variance[i]));
     }
     comparison.compare(first, numbers<double>(json["normal_pdf_sample0"]), case_name(json) + " sample 0");
 
-    std::vector<Real> logarithms(static_cast<std::size_t>(samples.stride));
-    detail::kernels<Real>().published_rejection(samples.view(), densities.rows(), samples.range(),
-                                                logarithms.data());
+    std::vector<float> logarithms(static_cast<std::size_t>(samples.stride));
+    detail::kernels::published_rejection(samples.view(), densities.rows(), samples.range(),
+                                         logarithms.data());
     // The program divides by min(sum, 1e-10); only ratios matter, so both are compared as ratios to the
     // whole.
     std::vector<double> raw, expected = numbers<double>(json["prob_raw"]);
@@ -130,8 +122,7 @@ void compare_rejection(const std::filesystem::path& folder) {
 
 TEST(SolverGolden, RejectionProbability) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/rejection_prob");
-  compare_rejection<double>(folder);
-  compare_rejection<float>(folder);
+  compare_rejection(folder);
 }
 
 }  // namespace

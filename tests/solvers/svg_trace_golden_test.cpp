@@ -1,8 +1,7 @@
 #include "solvers/golden_json.hpp"
 #include "solvers/kernels/kernels.hpp"
-#include "solvers/methods/control_term.hpp"
-#include "solvers/methods/gaussian_fit.hpp"
-#include "solvers/methods/surrogate_gradient.hpp"
+#include "solvers/methods/guides.hpp"
+#include "solvers/sampling/sample_set.hpp"
 
 /// Whole solves of the published SVG-MPPI, stage by stage, each stage from what the trace says went into it.
 namespace slalom::testing {
@@ -30,32 +29,31 @@ std::vector<double> column(const std::filesystem::path& path, const std::string&
 }
 
 /// The guides' gradients and steps of every iteration.
-template <class Real>
 void compare_transport(const Json& solve, const std::string& where, Comparison& comparison) {
-  const auto previous = numbers<Real>(solve["prev_control_seq"]);
-  auto weight = numbers<Real>(solve["guide_inv_cov"]);
-  const std::vector<Real> inverse(weight.size(), detail::inverse_variance(Real(0.01), Real(1e-4)));
-  for (Real& w : weight) w *= static_cast<Real>(gradient_temperature);
+  const auto previous = numbers<float>(solve["prev_control_seq"]);
+  auto weight = numbers<float>(solve["guide_inv_cov"]);
+  const std::vector<float> inverse(weight.size(), detail::inverse_variance(0.01f, 1e-4f));
+  for (float& w : weight) w *= static_cast<float>(gradient_temperature);
   for (std::size_t l = 0; l < solve["svgd_iterations"].size(); ++l) {
     const Json& iteration = solve["svgd_iterations"][l];
     for (std::size_t g = 0; g < iteration["grad"].size(); ++g) {
-      Batch<Real> samples(iteration["grad_samples"][g]);
-      auto totals = padded_numbers<Real>(iteration["grad_sample_costs"][g], 0);
-      auto particle = numbers<Real>(iteration["particles_before"][g]);
-      std::vector<Real> weights(totals.size()), gradient(particle.size());
-      const detail::SurrogateGradient<Real> how{.temperature = static_cast<Real>(gradient_temperature),
-                                                .subtract_minimum = false,
-                                                .floor = offset,
-                                                .centre = particle.data(),
-                                                .inverse_variance = inverse.data(),
-                                                .distance_centre = previous.data(),
-                                                .distance_weight = weight.data()};
+      Batch samples(iteration["grad_samples"][g]);
+      auto totals = padded_numbers(iteration["grad_sample_costs"][g], 0);
+      auto particle = numbers<float>(iteration["particles_before"][g]);
+      std::vector<float> weights(totals.size()), gradient(particle.size());
+      const detail::SurrogateGradient how{.temperature = static_cast<float>(gradient_temperature),
+                                          .subtract_minimum = false,
+                                          .floor = offset,
+                                          .centre = particle.data(),
+                                          .inverse_variance = inverse.data(),
+                                          .distance_centre = previous.data(),
+                                          .distance_weight = weight.data()};
       detail::surrogate_gradient(how, samples.view(), samples.range(), samples.samples, totals.data(),
                                  weights.data(), gradient.data());
       const std::string at = where + " iteration " + std::to_string(l) + " guide " + std::to_string(g);
       comparison.compare(gradient, numbers<double>(iteration["grad"][g]), at + " gradient", 1e-12);
       for (std::size_t r = 0; r < particle.size(); ++r)
-        particle[r] += static_cast<Real>(guide_step) * gradient[r];
+        particle[r] += static_cast<float>(guide_step) * gradient[r];
       comparison.compare(particle, numbers<double>(iteration["particles_after"][g]), at + " guide");
     }
   }
@@ -63,13 +61,12 @@ void compare_transport(const Json& solve, const std::string& where, Comparison& 
 
 /// The Gaussians fitted to the guides' paths; returns how many fits, and counts the undetermined ones.
 int compare_fits(const Json& solve, const std::string& where, Comparison& comparison, int& undetermined) {
-  auto density = numbers<double>(solve["costs_history"]);
-  const detail::Range range{0, static_cast<int>(density.size())};
-  std::vector<double> weights(density.size());
-  const double least = detail::kernels<double>().minimum(density.data(), range);
-  const auto sums = detail::kernels<double>().exponential_weights(density.data(), density.data(), least,
-                                                                  fit_temperature, range, weights.data());
-  detail::kernels<double>().scale(1 / (sums.weight + offset), range, weights.data());
+  const auto density = numbers<double>(solve["costs_history"]);
+  std::vector<double> weights;
+  const double least = *std::min_element(density.begin(), density.end());
+  double sum = offset;
+  for (const double cost : density) sum += weights.emplace_back(std::exp((least - cost) / fit_temperature));
+  for (double& weight : weights) weight /= sum;
   const auto expected_weights = numbers<double>(solve["softmax_costs"]);
   for (std::size_t i = 0; i < weights.size(); ++i)
     EXPECT_NEAR(weights[i], expected_weights[i], 1e-9) << where;
@@ -79,7 +76,7 @@ int compare_fits(const Json& solve, const std::string& where, Comparison& compar
     std::vector<double> x;
     for (const Json& iteration : solve["svgd_iterations"])
       for (const Json& particle : iteration["particles_after"]) x.push_back(number(particle[r]));
-    const auto fit = detail::fit_gaussian_as_published(x, weights);
+    const auto fit = published_fit(x, weights);
     const double fitted = std::sqrt(detail::fitted_variance(fit, true));
     EXPECT_EQ(std::isinf(fitted), std::isinf(expected[r])) << where << " step " << r << ": rank decision";
     undetermined += std::isinf(expected[r]);
@@ -90,68 +87,62 @@ int compare_fits(const Json& solve, const std::string& where, Comparison& compar
 }
 
 /// Control term and weights of all samples, and the new solution where all samples are in the trace.
-template <class Real>
 void compare_update(const Json& solve, const std::filesystem::path& csv, const std::string& where,
                     Comparison& comparison) {
   const auto costs = column(csv, "cost"), totals = column(csv, "cost_with_control_term"),
              weights = column(csv, "weight");
   ASSERT_EQ(costs.size(), solve["num_samples"].get<std::size_t>());
 
-  Batch<Real> samples(solve["samples_first"]);
+  Batch samples(solve["samples_first"]);
   const auto known = static_cast<std::size_t>(samples.samples);
-  const auto mean = numbers<Real>(solve["prev_control_seq"]),
-             nominal = numbers<Real>(solve["nominal_control_seq"]),
-             variance = numbers<Real>(solve["covs_clamped"]);
-  std::vector<Real> coefficients(mean.size()), with_term(costs.begin(), costs.begin() + samples.samples);
+  const auto mean = numbers<float>(solve["prev_control_seq"]),
+             nominal = numbers<float>(solve["nominal_control_seq"]),
+             variance = numbers<float>(solve["covs_clamped"]);
+  std::vector<float> coefficients(mean.size()), with_term(costs.begin(), costs.begin() + samples.samples);
   with_term.resize(static_cast<std::size_t>(samples.stride));
   detail::control_coefficients(temperature, discount, 1e-4, mean.data(), nominal.data(), variance.data(),
                                samples.rows, coefficients.data());
-  detail::kernels<Real>().add_linear(samples.view(), coefficients.data(), samples.range(), with_term.data());
+  detail::kernels::add_linear(samples.view(), coefficients.data(), samples.range(), with_term.data());
   comparison.compare(with_term, {totals.begin(), totals.begin() + samples.samples}, where + " control term");
 
-  std::vector<Real> all(totals.begin(), totals.end());
+  std::vector<float> all(totals.begin(), totals.end());
   all.resize((all.size() + simd::padding - 1) / simd::padding * simd::padding,
-             std::numeric_limits<Real>::infinity());
-  std::vector<Real> w(all.size());
+             std::numeric_limits<float>::infinity());
+  std::vector<float> w(all.size());
   const detail::Range range{0, static_cast<int>(all.size())};
-  const Real least = detail::kernels<Real>().minimum(all.data(), range);
-  comparison.compare<Real>({least}, {number(solve["min_cost_with_control_term"])}, where + " least cost");
-  const auto sums = detail::kernels<Real>().exponential_weights(
-      all.data(), all.data(), least, static_cast<Real>(temperature), range, w.data());
-  detail::kernels<Real>().scale(Real(1) / (sums.weight + Real(offset)), range, w.data());
+  const float least = detail::kernels::minimum(all.data(), range);
+  comparison.compare<float>({least}, {number(solve["min_cost_with_control_term"])}, where + " least cost");
+  const auto sums = detail::kernels::exponential_weights(all.data(), all.data(), least,
+                                                         static_cast<float>(temperature), range, w.data());
+  detail::kernels::scale(1.0f / (sums.weight + static_cast<float>(offset)), range, w.data());
   comparison.compare(w, weights, where + " weights");
 
   if (known == costs.size()) {
-    const std::vector<Real> zero(mean.size());
-    std::vector<Real> solution(mean.size());
-    detail::kernels<Real>().weighted_sums(samples.view(), w.data(), zero.data(), samples.range(),
-                                          solution.data());
+    const std::vector<float> zero(mean.size());
+    std::vector<float> solution(mean.size());
+    detail::kernels::weighted_sums(samples.view(), w.data(), zero.data(), samples.range(), solution.data());
     comparison.compare(solution, numbers<double>(solve["result_control_seq"]), where + " solution");
   }
 }
 
 TEST(SolverGolden, SvgTrace) {
   SLALOM_GOLDEN_FOLDER(folder, "controller/svg_trace");
-  Comparison exact("svg_trace (double)", 1e-9), shipped("svg_trace (float32)", 1e-4),
-      fits("svg_trace fits, clamped (double)", 1e-4);
+  Comparison solves("svg_trace (float32)", 1e-4), fits("svg_trace fits, clamped (double)", 1e-4);
   int undetermined = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (!std::filesystem::exists(entry.path() / "trace.jsonl")) continue;
     for_each_line(entry.path() / "trace.jsonl", [&](const Json& solve) {
       const std::string index = std::to_string(solve["solve"].get<int>());
       const std::string where = entry.path().filename().string() + " solve " + index;
-      exact.next_case();
-      shipped.next_case();
-      compare_transport<double>(solve, where, exact);
-      compare_transport<float>(solve, where, shipped);
+      solves.next_case();
+      compare_transport(solve, where, solves);
       for (int i = compare_fits(solve, where, fits, undetermined); i > 0; --i) fits.next_case();
       const auto csv = entry.path() / ("solve" + index + "_costs.csv");
-      compare_update<double>(solve, csv, where, exact);
-      compare_update<float>(solve, csv, where, shipped);
+      compare_update(solve, csv, where, solves);
     });
   }
   fits.note(std::to_string(undetermined) + " of them undetermined, every decision equal");
-  EXPECT_GT(exact.cases(), 0);
+  EXPECT_GT(solves.cases(), 0);
 }
 
 }  // namespace

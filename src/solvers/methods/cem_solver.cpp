@@ -5,7 +5,7 @@
 
 #include "slalom/solvers/cem_options.hpp"
 #include "slalom/solvers/icem_options.hpp"
-#include "solvers/sampling/sample_report.hpp"
+#include "solvers/sampling/sample_set.hpp"
 
 namespace slalom {
 
@@ -151,8 +151,8 @@ class CemSolver final : public SolverBase {
   detail::BatchStatistics sample(detail::SampleSet& batch, const BatchEvaluator& evaluator, int iteration,
                                  const Deadline& deadline) noexcept {
     for (std::size_t r = 0; r < size(); ++r) deviation_[r] = std::sqrt(variance_[r]);
-    const detail::SamplingDistribution<float> to{mean_.data(), deviation_.data(), low().data(), high().data(),
-                                                 zero_mean_from(batch.samples(), options_.zero_mean_share)};
+    const detail::SamplingDistribution to{mean_.data(), deviation_.data(), low().data(), high().data(),
+                                          zero_mean_from(batch.samples(), options_.zero_mean_share)};
     const bool with_mean = memory_.add_mean && iteration + 1 == options_.iterations;
     if (kept_count_ == 0 && !with_mean)
       return batch.draw_and_evaluate(evaluator, key(iteration), to, nullptr, pool(), deadline);

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "solvers/methods/gaussian_fit.hpp"
-#include "solvers/methods/surrogate_gradient.hpp"
 
 namespace slalom::detail {
 
@@ -22,6 +21,29 @@ std::vector<float> spread(const PerInput& values, int horizon, int inputs) {
 
 }  // namespace
 
+bool surrogate_gradient(const SurrogateGradient& s, const Rows& v, Range block, int samples, float* totals,
+                        float* weights, float* gradient) noexcept {
+  if (s.linear) kernels::add_linear(v, s.linear, block, totals);
+  if (s.distance_centre)
+    kernels::add_squared_distance(v, s.distance_centre, s.distance_weight, block, totals);
+  kernels::make_finite(block, totals);
+  std::fill(totals + block.first + samples, totals + block.first + block.count, infinite);
+  const float least = kernels::minimum(totals, block);
+  if (!(least < infinite)) {
+    std::fill_n(gradient, v.rows, 0.0f);
+    return false;
+  }
+  const double sum =
+      kernels::exponential_weights(totals, totals, least, s.temperature, block, weights).weight;
+  const double temperature = s.temperature;
+  const double floor = s.subtract_minimum ? s.floor : s.floor * std::exp(least / temperature);
+  kernels::weighted_sums(v, weights, s.centre, block, gradient);
+  for (int r = 0; r < v.rows; ++r) {
+    const double moved = gradient[r];
+    gradient[r] = static_cast<float>(s.inverse_variance[r] * moved / (sum + floor));
+  }
+  return true;
+}
 Guides::Guides(const SvgMppiOptions& options, int inputs, std::span<const float> low,
                std::span<const float> high)
     : options_(options),
@@ -101,7 +123,7 @@ void Guides::take_in(const BatchEvaluator& evaluator, const float* solution) noe
   for (int g = 0; g < count_; ++g) ends_.set_sample(g, std::span<const float>(guides_[g], rows_));
   ends_.set_sample(count_, std::span<const float>(solution, rows_));
   evaluator.evaluate(ends_, 0, count_ + 1, end_costs_.data(), end_collided_.data());
-  kernels().make_finite({0, padded(count_ + 1)}, end_costs_.data());
+  kernels::make_finite({0, padded(count_ + 1)}, end_costs_.data());
   const auto first = end_costs_.data(), last = first + count_;
   const int worst = static_cast<int>(std::max_element(first, last) - first);
   if (end_costs_[count_] < end_costs_[worst]) {
@@ -152,14 +174,14 @@ std::span<const float> Guides::path_costs() const noexcept {
 /// Fills the block of each guide with its gradient samples and the guide itself.
 void Guides::fill_blocks(RandomKey key, int first, int last) noexcept {
   if (gradient_samples_ > 0) fill_normal(batch_, first * block_, (last - first) * block_, key);
-  const Rows<float> rows = rows_of(batch_);
+  const Rows rows = rows_of(batch_);
   const int biased = static_cast<int>((1.0 - options_.zero_mean_share) * gradient_samples_);
   for (int g = first; g < last; ++g) {
     const Range block{g * block_, block_};
     if (gradient_samples_ > 0) {
-      kernels().sample(rows, rows,
-                       {guides_[g], deviation_.data(), low_.data(), high_.data(), block.first + biased},
-                       block);
+      kernels::sample(rows, rows,
+                      {guides_[g], deviation_.data(), low_.data(), high_.data(), block.first + biased},
+                      block);
     }
     const int own = block.first + gradient_samples_;
     batch_.set_sample(own, std::span<const float>(guides_[g], rows_));
@@ -168,10 +190,10 @@ void Guides::fill_blocks(RandomKey key, int first, int last) noexcept {
 
 /// The surrogate gradient at a guide (equation (11)), given the costs of its block.
 void Guides::estimate_gradient(int g) noexcept {
-  const Rows<float> rows = rows_of(batch_);
+  const Rows rows = rows_of(batch_);
   const Range block{g * block_, block_};
   std::copy_n(costs_.data() + block.first, block_, totals_.data() + block.first);
-  SurrogateGradient<float> gradient;
+  SurrogateGradient gradient;
   gradient.temperature = static_cast<float>(options_.guides.gradient_temperature);
   gradient.subtract_minimum = reproduction().subtract_minimum;
   gradient.floor = reproduction().gradient_floor;
@@ -234,7 +256,7 @@ void Guides::move_share(int share, const BatchEvaluator& evaluator, RandomKey ke
     // compiler may fuse products and sums differently at the end of a range.
     for (int g = first; g < last; ++g)
       evaluator.evaluate(batch_, g * block_, block_, costs_.data(), collided_.data());
-    kernels().make_finite({first * block_, (last - first) * block_}, costs_.data());
+    kernels::make_finite({first * block_, (last - first) * block_}, costs_.data());
     for (int g = first; g < last; ++g) step(g, l, exact);
     made_[share] = l + 1;
   }
@@ -244,7 +266,7 @@ int Guides::end_move(const BatchEvaluator& evaluator) noexcept {
   iterations_ = *std::min_element(made_.begin(), made_.begin() + shares_);
   for (int g = 0; g < count_; ++g) ends_.set_sample(g, std::span<const float>(guides_[g], rows_));
   evaluator.evaluate(ends_, 0, count_, end_costs_.data(), end_collided_.data());
-  kernels().make_finite({0, padded(count_)}, end_costs_.data());
+  kernels::make_finite({0, padded(count_)}, end_costs_.data());
   best_ = 0;
   for (int share = 0; share < shares_; ++share) {
     // A share that made more iterations than the others has the cost of that point of the path already.

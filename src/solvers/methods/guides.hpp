@@ -5,10 +5,37 @@
 
 #include "slalom/core/derivatives/cost_gradient.hpp"
 #include "slalom/solvers/svg_mppi_options.hpp"
-#include "solvers/sampling/rows.hpp"
-#include "solvers/sampling/sample_report.hpp"
+#include "solvers/kernels/kernels.hpp"
+#include "solvers/sampling/sample_set.hpp"
 
 namespace slalom::detail {
+
+/// The gradient of log E[w] at a particle theta, estimated from samples v_i ~ N(theta, Sigma_g) without
+/// derivatives of the cost (Lambert et al., "Stein Variational Model Predictive Control", CoRL 2020; Honda et
+/// al., ICRA 2024, equation (11)):
+///
+///     g = sum_i w_i Sigma_g^-1 (v_i - theta) / (sum_i w_i + floor),   w_i = exp(-J_i / lambda)
+///
+/// J is the cost S with the terms that the method adds to it. With `subtract_minimum`, w_i = exp(-(J_i - min
+/// J) / lambda); this makes a difference only if the floor is not 0. Without it, the floor stops a particle
+/// whose samples are all bad. The weights are computed relative to the minimum in both cases, so that they do
+/// not all underflow; the floor is scaled accordingly.
+struct SurrogateGradient {
+  float temperature = 1;                    ///< lambda
+  bool subtract_minimum = true;             ///< whether the weights are relative to the lowest J
+  double floor = 0;                         ///< added to the sum of the weights
+  const float* centre = nullptr;            ///< theta [row]
+  const float* inverse_variance = nullptr;  ///< inverse variances of the samples, [row]
+  const float* linear = nullptr;            ///< J += sum linear[row] v[row]; may be null
+  const float* distance_centre = nullptr;   ///< J += sum distance_weight (v - distance_centre)^2; may be null
+  const float* distance_weight = nullptr;   ///< [row]
+};
+
+/// Computes the gradient g [row] from the first `samples` samples of the range `block` of `v`. `block.count`
+/// is a multiple of the lanes. `totals` holds the costs S and is replaced by J. `weights` is scratch memory
+/// of the same length. Returns false, with g = 0, if no J is finite.
+bool surrogate_gradient(const SurrogateGradient& s, const Rows& v, Range block, int samples, float* totals,
+                        float* weights, float* gradient) noexcept;
 
 /// The guide particles of SVG-MPPI (Honda et al., ICRA 2024): a few control sequences that follow the
 /// surrogate gradient to a mode of the optimal distribution, theta <- theta + epsilon g (equations (9) to

@@ -7,7 +7,7 @@
 #include "solvers/methods/resampler.hpp"
 #include "solvers/methods/reverse_weights.hpp"
 #include "solvers/published/published_rejection.hpp"
-#include "solvers/sampling/sample_report.hpp"
+#include "solvers/sampling/sample_set.hpp"
 
 namespace slalom {
 
@@ -141,8 +141,8 @@ class ReverseMppiSolver final : public SolverBase {
       RandomStream random(key(2 * iteration + 1));
       resampler_.pick(keep_.data(), samples_.samples(), options_.resampling == Resampling::systematic, random,
                       picked_.data());
-      detail::kernels().gather(inflated_.row_view(), picked_.data(), {0, samples_.stride()},
-                               samples_.row_view());
+      detail::kernels::gather(inflated_.row_view(), picked_.data(), {0, samples_.stride()},
+                              samples_.row_view());
     }
     result_.times.draw += detail::seconds(begin, detail::Clock::now());
   }
@@ -154,18 +154,18 @@ class ReverseMppiSolver final : public SolverBase {
     if (reproduction().rejection == RejectionModel::published) {
       rejection_.set(now_.mean.data(), now_.variance.data(), now_rejected_.mean.data(),
                      now_rejected_.variance.data());
-      detail::kernels().published_rejection(inflated_.row_view(), rejection_.rows(), range, logarithms);
+      detail::kernels::published_rejection(inflated_.row_view(), rejection_.rows(), range, logarithms);
     } else {
       const double own = distances(now_, own_distance_), other = distances(now_rejected_, rejected_distance_);
-      detail::kernels().rejection_logarithm(rejected_distance_.data(), static_cast<float>(own - other), range,
-                                            logarithms);
+      detail::kernels::rejection_logarithm(rejected_distance_.data(), static_cast<float>(own - other), range,
+                                           logarithms);
     }
     constexpr float infinite = std::numeric_limits<float>::infinity();
     std::fill(logarithms + inflated_.samples(), logarithms + range.count, infinite);
-    detail::kernels().make_finite(range, logarithms);
-    const float least = detail::kernels().minimum(logarithms, range);
+    detail::kernels::make_finite(range, logarithms);
+    const float least = detail::kernels::minimum(logarithms, range);
     if (least < infinite) {
-      detail::kernels().exponential_weights(logarithms, logarithms, least, 1.0f, range, keep_.data());
+      detail::kernels::exponential_weights(logarithms, logarithms, least, 1.0f, range, keep_.data());
     } else {
       std::fill(keep_.begin(), keep_.end(), 1.0f);
     }
@@ -181,8 +181,8 @@ class ReverseMppiSolver final : public SolverBase {
       if (sampled) logarithm += std::log(static_cast<double>(g.variance[r]));
     }
     std::fill(squared.begin(), squared.end(), 0.0f);
-    detail::kernels().add_squared_distance(inflated_.row_view(), g.mean.data(), inverse_.data(),
-                                           {0, inflated_.stride()}, squared.data());
+    detail::kernels::add_squared_distance(inflated_.row_view(), g.mean.data(), inverse_.data(),
+                                          {0, inflated_.stride()}, squared.data());
     return logarithm;
   }
 
@@ -200,9 +200,10 @@ class ReverseMppiSolver final : public SolverBase {
     const auto begin = detail::Clock::now();
     if (statistics.finite == 0) return false;
     const detail::Range range{0, samples_.stride()};
-    const detail::ReverseSums sums = detail::reverse_weights<float>(
-        samples_.totals().data(), options_.temperature, options_.negative_ratio,
-        reproduction().normaliser_offset, range, evaluated_.data(), rejected_.data());
+    const detail::ReverseSums sums = detail::reverse_weights(
+        samples_.totals().data(), static_cast<float>(options_.temperature),
+        static_cast<float>(options_.negative_ratio), static_cast<float>(reproduction().normaliser_offset),
+        range, evaluated_.data(), rejected_.data());
     if (!(sums.evaluated > 0)) {  // all costs are equal: no sample is better than another
       const float equal = 1.0f / statistics.finite;
       for (std::size_t k = 0; k < evaluated_.size(); ++k)
@@ -229,8 +230,8 @@ class ReverseMppiSolver final : public SolverBase {
       moment_mean_[r] = static_cast<float>(sums_[r * detail::moments + list]);
       moment_variance_[r] = static_cast<float>(sums_[r * detail::moments + list + 1] * scale);
     }
-    detail::mirror_descent<float>(options_.step, moment_mean_.data(), moment_variance_.data(), rows(),
-                                  g.mean.data(), g.variance.data());
+    detail::mirror_descent(static_cast<float>(options_.step), moment_mean_.data(), moment_variance_.data(),
+                           rows(), g.mean.data(), g.variance.data());
     for (std::size_t r = 0; r < size(); ++r) {
       const float least = std::min(min_variance_[r], first_variance_[r]);
       g.variance[r] = std::clamp(g.variance[r], least, 1e12f);
@@ -263,7 +264,7 @@ class ReverseMppiSolver final : public SolverBase {
       shifted_;                                       ///< [row]
   std::vector<double> sums_;                          ///< [row]
   std::vector<float> moment_mean_, moment_variance_;  ///< [row]
-  detail::PublishedRejection<float> rejection_;
+  detail::PublishedRejection rejection_;
   std::vector<float> own_distance_, rejected_distance_;  ///< [inflated sample]
   std::vector<float> keep_;                              ///< [inflated sample]
   detail::Resampler resampler_;

@@ -25,34 +25,31 @@ struct ReverseSums {
 /// The growing exponentials are relative to the largest J, so that they cannot overflow. A sample whose J is
 /// not finite has weight 0 in both. If a sum is 0, its weights remain 0. `range` starts at 0 and is a
 /// multiple of the lanes; J is infinite in the padding. Arrays are [sample].
-template <class Real>
-ReverseSums reverse_weights(const Real* totals, Real temperature, Real ratio, Real offset, Range range,
-                            Real* evaluated, Real* rejected) noexcept {
-  const Kernels<Real>& kernel_set = kernels<Real>();
-  constexpr Real infinite = std::numeric_limits<Real>::infinity();
+inline ReverseSums reverse_weights(const float* totals, float temperature, float ratio, float offset,
+                                   Range range, float* evaluated, float* rejected) noexcept {
+  constexpr float infinite = std::numeric_limits<float>::infinity();
   const int end = range.first + range.count;
   ReverseSums sums;
-  const Real least = kernel_set.minimum(totals, range);
-  std::fill(evaluated + range.first, evaluated + end, Real(0));
-  std::fill(rejected + range.first, rejected + end, Real(0));
+  const float least = kernels::minimum(totals, range);
+  std::fill(evaluated + range.first, evaluated + end, 0.0f);
+  std::fill(rejected + range.first, rejected + end, 0.0f);
   if (!(least < infinite)) return sums;
   sums.usable = true;
-  const Real falling =
-      kernel_set.exponential_weights(totals, totals, least, temperature, range, evaluated).weight + offset;
+  const float falling =
+      kernels::exponential_weights(totals, totals, least, temperature, range, evaluated).weight + offset;
   // exp((J - max) / lambda) = exp((min' - J') / lambda) with J' = -J.
   for (int k = range.first; k < end; ++k) rejected[k] = totals[k] < infinite ? -totals[k] : infinite;
-  const Real most = kernel_set.minimum(rejected, range);
-  Real growing =
-      kernel_set.exponential_weights(rejected, rejected, most, temperature, range, rejected).weight;
-  const Real spread = (-most - least) / temperature;
+  const float most = kernels::minimum(rejected, range);
+  float growing = kernels::exponential_weights(rejected, rejected, most, temperature, range, rejected).weight;
+  const float spread = (-most - least) / temperature;
   sums.log_growth = spread + std::log(growing);
   growing += offset * std::exp(-spread);
-  const WeightSums<Real> parts =
-      kernel_set.split_weights(falling, growing / ratio, range, evaluated, rejected);
+  const WeightSums<float> parts =
+      kernels::split_weights(falling, growing / ratio, range, evaluated, rejected);
   sums.evaluated = parts.weight;
   sums.rejected = parts.squared;
-  if (sums.evaluated > 0) kernel_set.scale(static_cast<Real>(1 / sums.evaluated), range, evaluated);
-  if (sums.rejected > 0) kernel_set.scale(static_cast<Real>(1 / sums.rejected), range, rejected);
+  if (sums.evaluated > 0) kernels::scale(static_cast<float>(1 / sums.evaluated), range, evaluated);
+  if (sums.rejected > 0) kernels::scale(static_cast<float>(1 / sums.rejected), range, rejected);
   return sums;
 }
 

@@ -3,10 +3,10 @@
 #include <limits>
 
 #include "slalom/solvers/sv_mpc_options.hpp"
+#include "solvers/kernels/kernels.hpp"
 #include "solvers/methods/stein.hpp"
 #include "solvers/published/published_stein.hpp"
-#include "solvers/sampling/rows.hpp"
-#include "solvers/sampling/sample_report.hpp"
+#include "solvers/sampling/sample_set.hpp"
 #include "solvers/sampling/spline.hpp"
 
 namespace slalom {
@@ -237,37 +237,37 @@ class SvMpcSolver final : public SolverBase {
   /// One SVGD step of all particles.
   void move(const BatchEvaluator& evaluator, int iteration) noexcept {
     pool().run(tiles(), [&](int t) { estimate_gradients(evaluator, iteration, range(t)); });
-    const detail::Rows<float> x = particles_.row_view();
+    const detail::Rows x = particles_.row_view();
     const int count = particles_.samples();
     const int values = reproduction().bandwidth == BandwidthModel::squared_norms
                            ? detail::squared_norms(x, count, distances_.data())
                            : detail::pair_distances(x, count, distances_.data());
     const float h = count > 1 ? detail::bandwidth(distances_.data(), values, count) : 1.0f;
     pool().run(tiles(), [&](int t) {
-      detail::kernels().stein_directions(x, detail::rows_of(gradient_), count, h, range(t),
-                                         detail::rows_of(phi_));
+      detail::kernels::stein_directions(x, detail::rows_of(gradient_), count, h, range(t),
+                                        detail::rows_of(phi_));
     });
     pool().run(tiles(), [&](int t) { step(range(t)); });
   }
 
   void estimate_gradients(const BatchEvaluator& evaluator, int iteration, detail::Range r) noexcept {
     const int stride = particles_.stride();
-    const detail::Rows<float> x = particles_.row_view(), v = detail::rows_of(gradient_batch_);
+    const detail::Rows x = particles_.row_view(), v = detail::rows_of(gradient_batch_);
     for (int s = 0; s < options_.gradient_samples; ++s)
       fill_normal(gradient_batch_, s * stride + r.first, r.count, key(iteration));
     const int biased = zero_mean_from(options_.gradient_samples, options_.zero_mean_share);
-    detail::kernels().sample_around(v, x, {nullptr, deviation_.data(), low().data(), high().data(), biased},
-                                    stride, options_.gradient_samples, r);
+    detail::kernels::sample_around(v, x, {nullptr, deviation_.data(), low().data(), high().data(), biased},
+                                   stride, options_.gradient_samples, r);
     for (int s = 0; s < options_.gradient_samples; ++s)
       evaluator.evaluate(gradient_batch_, s * stride + r.first, r.count, exponents_.data(), collided_.data());
-    const detail::GradientSettings<float> how{options_.gradient_samples,
-                                              stride,
-                                              static_cast<float>(options_.temperature),
-                                              reproduction().subtract_minimum,
-                                              static_cast<float>(reproduction().gradient_floor),
-                                              linear_.data(),
-                                              inverse_.data()};
-    detail::kernels().particle_gradients(how, v, x, r, exponents_.data(), detail::rows_of(gradient_));
+    const detail::GradientSettings how{options_.gradient_samples,
+                                       stride,
+                                       static_cast<float>(options_.temperature),
+                                       reproduction().subtract_minimum,
+                                       static_cast<float>(reproduction().gradient_floor),
+                                       linear_.data(),
+                                       inverse_.data()};
+    detail::kernels::particle_gradients(how, v, x, r, exponents_.data(), detail::rows_of(gradient_));
     for (int row = 0; row < rows(); ++row) {
       if (!(prior_inverse_[row] > 0)) continue;
       float* g = gradient_.data(row);

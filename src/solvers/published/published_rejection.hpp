@@ -4,29 +4,26 @@
 #include <numbers>
 
 #include "solvers/kernels/kernels.hpp"
-#include "solvers/sampling/rows.hpp"
 
 /// The rejection of samples in the published program of Honda et al. (ICRA 2024).
 namespace slalom::detail {
 
 /// The published program's density in place of the normal one: exp((x - mean)^2 / deviation) / sqrt(2 pi
 /// variance). Its exponent has the wrong sign and scale, so it grows with the distance.
-template <class Real>
-Real published_density(Real x, Real mean, Real variance) noexcept {
-  const Real difference = x - mean;
+inline float published_density(float x, float mean, float variance) noexcept {
+  const float difference = x - mean;
   return std::exp(difference * (difference / std::sqrt(variance))) /
-         std::sqrt(Real(2) * std::numbers::pi_v<Real> * variance);
+         std::sqrt(2.0f * std::numbers::pi_v<float> * variance);
 }
 
 /// The published program's probabilities of keeping samples: prod over rows of 1 / (base + density), where
 /// `base` is the density of the samples' distribution at the rejected mean, not at the sample.
-template <class Real>
 class PublishedRejection {
  public:
   explicit PublishedRejection(int rows) : values_(4, rows), rows_(rows) {}
 
-  void set(const Real* mean, const Real* variance, const Real* rejected_mean,
-           const Real* rejected_variance) noexcept {
+  void set(const float* mean, const float* variance, const float* rejected_mean,
+           const float* rejected_variance) noexcept {
     for (int r = 0; r < rows_; ++r) {
       values_[1][r] = rejected_mean[r];
       if (!(variance[r] > 0) || !(rejected_variance[r] > 0)) {  // an input that is not sampled has no effect
@@ -35,15 +32,15 @@ class PublishedRejection {
         continue;
       }
       values_[0][r] = published_density(rejected_mean[r], mean[r], variance[r]);
-      values_[2][r] = Real(1) / std::sqrt(rejected_variance[r]);
-      values_[3][r] = Real(1) / std::sqrt(Real(2) * std::numbers::pi_v<Real> * rejected_variance[r]);
+      values_[2][r] = 1.0f / std::sqrt(rejected_variance[r]);
+      values_[3][r] = 1.0f / std::sqrt(2.0f * std::numbers::pi_v<float> * rejected_variance[r]);
     }
   }
-  const Real* base() const noexcept { return values_[0]; }
-  RejectionRows<Real> rows() const noexcept { return {values_[0], values_[1], values_[2], values_[3]}; }
+  const float* base() const noexcept { return values_[0]; }
+  RejectionRows rows() const noexcept { return {values_[0], values_[1], values_[2], values_[3]}; }
 
  private:
-  Matrix<Real> values_;  ///< [base, mean, inverse, scale][row]
+  Matrix<float> values_;  ///< [base, mean, inverse, scale][row]
   int rows_;
 };
 

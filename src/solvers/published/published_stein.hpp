@@ -6,8 +6,7 @@
 namespace slalom::detail {
 
 /// Squared norms of the particles, from which the program takes its bandwidth. Returns their number.
-template <class Real>
-int squared_norms(const Rows<Real>& x, int count, Real* values) noexcept {
+inline int squared_norms(const Rows& x, int count, float* values) noexcept {
   for (int i = 0; i < count; ++i) {
     values[i] = 0;
     for (int r = 0; r < x.rows; ++r) values[i] += x.row(r)[i] * x.row(r)[i];
@@ -17,8 +16,7 @@ int squared_norms(const Rows<Real>& x, int count, Real* values) noexcept {
 
 /// The program's gradient of the log of a Gaussian prior: with the inverse of the inverse variance, and the
 /// wrong sign.
-template <class Real>
-Real published_prior_gradient(Real x, Real mean, Real inverse_variance) noexcept {
+inline float published_prior_gradient(float x, float mean, float inverse_variance) noexcept {
   return (x - mean) / inverse_variance;
 }
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "solvers/feedback/symmetric_matrix.hpp"
-#include "solvers/sampling/rows.hpp"
+#include "solvers/kernels/kernels.hpp"
 
 namespace slalom::detail {
 
@@ -150,17 +150,17 @@ void NoiseShape::interpolate(int knots) {
 }
 
 void NoiseShape::apply(SequenceBatch& z, Range range, RandomKey key) noexcept {
-  const Rows<float> rows = rows_of(z);
+  const Rows rows = rows_of(z);
   if (correlated_) {
     for (int i = 0; i < inputs_; ++i) {
       const std::vector<float>& factor = factor_float_[i];
-      if (!factor.empty()) kernels().colour(rows, factor.data(), i, inputs_, range);
+      if (!factor.empty()) kernels::colour(rows, factor.data(), i, inputs_, range);
     }
   }
   if (!spread_.empty()) {
     // The complement of the seed gives an independent stream.
     fill_normal(exponents_, range.first, range.count, {~key.seed, key.stream});
-    kernels().spread_log_normal(rows, exponents_.data(), spread_.data(), range);
+    kernels::spread_log_normal(rows, exponents_.data(), spread_.data(), range);
   }
 }
 

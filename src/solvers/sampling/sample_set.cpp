@@ -86,7 +86,7 @@ void SampleSet::finish(Range r, const BatchEvaluator* evaluator, const float* li
     costs_[i] = infinite;
     collided_[i] = 0;
   }
-  const CostStatistics<float> found = kernels().finish(row_view(), linear, r, costs_.data(), totals_.data());
+  const CostStatistics found = kernels::finish(row_view(), linear, r, costs_.data(), totals_.data());
   statistics.minimum_cost = found.min_cost;
   statistics.minimum_total = found.min_total;
   statistics.finite = found.finite;
@@ -154,7 +154,7 @@ void SampleSet::propose(const SequenceList& proposals) noexcept {
 }
 
 BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
-                                             const SamplingDistribution<float>& to, const float* linear,
+                                             const SamplingDistribution& to, const float* linear,
                                              ThreadPool& pool, const Deadline& deadline) noexcept {
   const Sampler* const sampler = evaluator.sampler();
   if (sampler || !prepared_for(key)) begin_prepare({});
@@ -179,11 +179,11 @@ BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, Ra
 
 /// Draws a range of the samples, from the prepared noise if `ready`. Proposals take the places of the last
 /// samples; a value of theirs that is not finite becomes that of the mean.
-void SampleSet::sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to,
+void SampleSet::sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution& to,
                              bool ready, Range r) noexcept {
   if (!ready) fill_noise(sampler, values_, r, key);
   SequenceBatch& from = ready ? noise_ : values_;
-  kernels().sample(rows_of(from), row_view(), to, r);
+  kernels::sample(rows_of(from), row_view(), to, r);
   const int first = samples() - proposed_, end = std::min(samples(), r.first + r.count);
   for (int k = std::max(first, r.first); k < end; ++k) {
     const float* proposal = proposals_ + static_cast<std::ptrdiff_t>(k - first) * rows();
@@ -194,7 +194,7 @@ void SampleSet::sample_range(const Sampler* sampler, RandomKey key, const Sampli
   }
 }
 
-void SampleSet::draw(RandomKey key, const SamplingDistribution<float>& to, ThreadPool& pool,
+void SampleSet::draw(RandomKey key, const SamplingDistribution& to, ThreadPool& pool,
                      const Sampler* sampler) noexcept {
   pool.run(tiles(), [&](int tile) { sample_range(sampler, key, to, false, range(tile)); });
 }
@@ -225,28 +225,28 @@ void SampleSet::keep_terms(const float* linear, ThreadPool& pool) noexcept {
   pool.run(tiles(), [&](int tile) {
     const Range r = range(tile);
     std::fill_n(terms_.data() + r.first, r.count, 0.0f);
-    kernels().add_linear(row_view(), linear, r, terms_.data());
+    kernels::add_linear(row_view(), linear, r, terms_.data());
   });
 }
 
 float SampleSet::mix_totals(float factor, ThreadPool& pool) noexcept {
   pool.run(tiles(), [&](int tile) {
     const Range r = range(tile);
-    kernels().add_scaled(costs_.data(), factor, terms_.data(), r, totals_.data());
-    kernels().make_finite(r, totals_.data());
-    least_[tile] = kernels().minimum(totals_.data(), r);
+    kernels::add_scaled(costs_.data(), factor, terms_.data(), r, totals_.data());
+    kernels::make_finite(r, totals_.data());
+    least_[tile] = kernels::minimum(totals_.data(), r);
   });
   return *std::min_element(least_.begin(), least_.end());
 }
 
 WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& pool, float index) noexcept {
-  const Kernels<float>& k = kernels();
   pool.run(tiles(), [&](int tile) {
     WeightSums<float>& sums = weight_sums_[tile];
     const float *totals = totals_.data(), *costs = costs_.data();
     sums = index == 1
-               ? k.exponential_weights(totals, costs, least, temperature, range(tile), weights_.data())
-               : k.tsallis_weights(totals, costs, least, temperature, index, range(tile), weights_.data());
+               ? kernels::exponential_weights(totals, costs, least, temperature, range(tile), weights_.data())
+               : kernels::tsallis_weights(totals, costs, least, temperature, index, range(tile),
+                                          weights_.data());
   });
   WeightSums<double> all;
   for (const WeightSums<float>& sums : weight_sums_) {
@@ -269,14 +269,14 @@ WeightSums<double> SampleSet::sum_weights() const noexcept {
 }
 
 void SampleSet::scale_weights(double factor) noexcept {
-  kernels().scale(static_cast<float>(factor), {0, values_.stride()}, weights_.data());
+  kernels::scale(static_cast<float>(factor), {0, values_.stride()}, weights_.data());
 }
 
 /// Multiplies the weights by `factor` unless it is 1, then sums over them.
 void SampleSet::sum_rows(RowSums kernel, double factor, const float* centre, double* sums,
                          ThreadPool& pool) noexcept {
   pool.run(tiles(), [&](int tile) {
-    if (factor != 1) kernels().scale(static_cast<float>(factor), range(tile), weights_.data());
+    if (factor != 1) kernels::scale(static_cast<float>(factor), range(tile), weights_.data());
     kernel(row_view(), weights_.data(), centre, range(tile), row_sums_[tile]);
   });
   std::fill_n(sums, rows(), 0.0);
@@ -285,26 +285,59 @@ void SampleSet::sum_rows(RowSums kernel, double factor, const float* centre, dou
 }
 
 void SampleSet::weighted_sums(const float* centre, double* sums, ThreadPool& pool) noexcept {
-  sum_rows(kernels().weighted_sums, 1, centre, sums, pool);
+  sum_rows(kernels::weighted_sums, 1, centre, sums, pool);
 }
 
 void SampleSet::scaled_sums(double factor, const float* centre, double* sums, ThreadPool& pool) noexcept {
-  sum_rows(kernels().weighted_sums, factor, centre, sums, pool);
+  sum_rows(kernels::weighted_sums, factor, centre, sums, pool);
 }
 
 void SampleSet::weighted_squares(const float* centre, double* sums, ThreadPool& pool) noexcept {
-  sum_rows(kernels().weighted_squares, 1, centre, sums, pool);
+  sum_rows(kernels::weighted_squares, 1, centre, sums, pool);
 }
 
 void SampleSet::two_moments(const float* first, const float* second, const float* centre, double* sums,
                             ThreadPool& pool) noexcept {
   const int count = rows() * moments;
   pool.run(tiles(), [&](int tile) {
-    kernels().two_moments(row_view(), first, second, centre, range(tile), moment_sums_[tile]);
+    kernels::two_moments(row_view(), first, second, centre, range(tile), moment_sums_[tile]);
   });
   std::fill_n(sums, count, 0.0);
   for (int tile = 0; tile < tiles(); ++tile)
     for (int i = 0; i < count; ++i) sums[i] += moment_sums_[tile][i];
+}
+
+void control_coefficients(double temperature, double discount, double inverse_variance_offset,
+                          const float* mean, const float* nominal, const float* variance, int rows,
+                          float* coefficients) noexcept {
+  const double factor = temperature * (1.0 - discount);
+  for (int r = 0; r < rows; ++r) {
+    const double u = mean[r], n = nominal[r];
+    const double inverse = inverse_variance<double>(variance[r], inverse_variance_offset);
+    coefficients[r] = static_cast<float>(factor * (u - n) * inverse);
+  }
+}
+
+void bind_samples(const SampleSet& set, SolveResult& result) noexcept {
+  result.samples = &set.values();
+  result.costs = set.costs();
+  result.collided = set.collided();
+  result.weights = set.weights();
+}
+
+void report_samples(const SampleSet& set, const BatchStatistics& statistics, const WeightSums<double>& sums,
+                    SolveResult& result) noexcept {
+  bind_samples(set, result);
+  result.minimum_cost = statistics.minimum_cost;
+  result.expected_cost = sums.weight > 0 ? sums.cost / sums.weight : 0;
+  result.effective_sample_size = sums.squared > 0 ? sums.weight * sums.weight / sums.squared : 0;
+  const bool few = sums.squared > 0 && result.effective_sample_size < SolveResult::few_samples;
+  // The count has a limit, so that it cannot overflow.
+  result.few_samples_solves = few ? std::min(result.few_samples_solves + 1, 1'000'000) : 0;
+  result.collided_share =
+      statistics.evaluated > 0 ? static_cast<double>(statistics.collided) / statistics.evaluated : 0;
+  result.times.draw += statistics.draw_time;
+  result.times.evaluate += statistics.evaluate_time;
 }
 
 }  // namespace slalom::detail

@@ -12,7 +12,6 @@
 #include "slalom/solvers/solver_base.hpp"
 #include "solvers/kernels/kernels.hpp"
 #include "solvers/sampling/noise_shape.hpp"
-#include "solvers/sampling/rows.hpp"
 
 namespace slalom::detail {
 
@@ -47,7 +46,7 @@ class SampleSet {
   const SequenceBatch& values() const noexcept { return values_; }
   SequenceBatch& values() noexcept { return values_; }
   int stride() const noexcept { return values_.stride(); }
-  Rows<float> row_view() noexcept { return rows_of(values_); }
+  Rows row_view() noexcept { return rows_of(values_); }
 
   /// Costs [sample]; infinite if the evaluator's cost is not finite or the deadline passed before.
   std::span<const float> costs() const noexcept { return {costs_.data(), count()}; }
@@ -77,11 +76,11 @@ class SampleSet {
   /// Draws and evaluates the samples. Their totals are cost + sum of linear[row] v[row]; `linear` may be
   /// null. Omits tiles that have not started at the deadline.
   BatchStatistics draw_and_evaluate(const BatchEvaluator& evaluator, RandomKey key,
-                                    const SamplingDistribution<float>& to, const float* linear,
-                                    ThreadPool& pool, const Deadline& deadline) noexcept;
+                                    const SamplingDistribution& to, const float* linear, ThreadPool& pool,
+                                    const Deadline& deadline) noexcept;
 
   /// Draws the samples without evaluating them, with normal noise or that of a problem's `sampler`.
-  void draw(RandomKey key, const SamplingDistribution<float>& to, ThreadPool& pool,
+  void draw(RandomKey key, const SamplingDistribution& to, ThreadPool& pool,
             const Sampler* sampler = nullptr) noexcept;
 
   /// Evaluates the present values.
@@ -115,7 +114,7 @@ class SampleSet {
                    ThreadPool& pool) noexcept;
 
  private:
-  using RowSums = void (*)(const Rows<float>&, const float*, const float*, Range, float*);
+  using RowSums = void (*)(const Rows&, const float*, const float*, Range, float*);
 
   std::size_t count() const noexcept { return static_cast<std::size_t>(values_.samples()); }
   bool prepared_for(RandomKey key) const noexcept {
@@ -126,7 +125,7 @@ class SampleSet {
   int part_size(int threads) const noexcept;
   bool prepared(Range range) const noexcept;
   void fill_noise(const Sampler* sampler, SequenceBatch& to, Range range, RandomKey key) noexcept;
-  void sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution<float>& to, bool ready,
+  void sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution& to, bool ready,
                     Range range) noexcept;
   template <class Each>
   BatchStatistics run_parts(ThreadPool& pool, const Deadline& deadline, Each&& each) noexcept;
@@ -153,5 +152,28 @@ class SampleSet {
   Matrix<float> row_sums_;                      ///< [tile][row]
   Matrix<float> moment_sums_;                   ///< [tile][row][moment]
 };
+
+/// 1 / variance + offset; 0 for an input that is not sampled (variance 0).
+template <class Real>
+Real inverse_variance(Real variance, Real offset) noexcept {
+  return variance > 0 ? Real(1) / variance + offset : Real(0);
+}
+
+/// Coefficients [row] of the control term (Honda et al., ICRA 2024, equation (8), where alpha = 0):
+///
+///     sum_row coefficient v = lambda (1 - alpha) sum_t (u - n)^T Sigma^-1 v
+///
+/// `temperature` is lambda, `discount` is alpha, `mean` is the samples' mean u and `nominal` is the nominal
+/// sequence n. All arrays have `rows` values.
+void control_coefficients(double temperature, double discount, double inverse_variance_offset,
+                          const float* mean, const float* nominal, const float* variance, int rows,
+                          float* coefficients) noexcept;
+
+/// Lets a result show the samples of `set`.
+void bind_samples(const SampleSet& set, SolveResult& result) noexcept;
+
+/// Writes the samples of `set`, their statistics and the sums of their weights to a result.
+void report_samples(const SampleSet& set, const BatchStatistics& statistics, const WeightSums<double>& sums,
+                    SolveResult& result) noexcept;
 
 }  // namespace slalom::detail

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "solvers/sampling/rows.hpp"
+#include "solvers/kernels/kernels.hpp"
 
 namespace slalom::detail {
 

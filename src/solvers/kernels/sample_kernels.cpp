@@ -1,0 +1,237 @@
+#include "solvers/kernels/kernels.hpp"
+
+#include <limits>
+
+#include "slalom/core/dispatch.hpp"
+#include "slalom/core/math.hpp"
+
+namespace slalom::detail::kernels {
+
+namespace {
+
+template <class F>
+SLALOM_INLINE float sum_of(const F& value) {
+  float total = 0;
+  for (int i = 0; i < F::lanes; ++i) total += value.v[i];
+  return total;
+}
+
+template <class F>
+SLALOM_INLINE float least_of(const F& value) {
+  float m = value.v[0];
+  for (int i = 1; i < F::lanes; ++i) m = value.v[i] < m ? value.v[i] : m;
+  return m;
+}
+
+struct Sample {
+  template <class Target>
+  SLALOM_KERNEL static void run(const Rows& noise, const Rows& samples, const SamplingDistribution& to,
+                                Range range) {
+    using F = Pack<Target>;
+    const int end = range.first + range.count;
+    for (int r = 0; r < samples.rows; ++r) {
+      const float* z = noise.row(r);
+      float* v = samples.row(r);
+      const F mean(to.mean[r]), deviation(to.deviation[r]), low(to.low[r]), high(to.high[r]);
+      int k = range.first;
+      for (; k < end && k + F::lanes <= to.zero_mean_from; k += F::lanes) {
+        clamp(mean + deviation * F::load(z + k), low, high).store(v + k);
+      }
+      if (k < end && k < to.zero_mean_from) {  // the pack that contains the first sample around zero
+        float centre[F::lanes];
+        for (int i = 0; i < F::lanes; ++i) centre[i] = k + i < to.zero_mean_from ? to.mean[r] : 0.0f;
+        clamp(F::load(centre) + deviation * F::load(z + k), low, high).store(v + k);
+        k += F::lanes;
+      }
+      for (; k < end; k += F::lanes) clamp(deviation * F::load(z + k), low, high).store(v + k);
+    }
+  }
+};
+
+/// `Colour` for `packs` packs that begin at sample k. They share each loaded entry of L.
+template <int packs, class F>
+SLALOM_INLINE void colour_packs(const Rows& z, const float* factor, int first, int step, int k) {
+  const int steps = (z.rows - first + step - 1) / step;
+  for (int t = steps - 1; t >= 0; --t) {
+    const float* row = factor + static_cast<std::ptrdiff_t>(t) * (t + 1) / 2;
+    F sum[packs];
+    for (int b = 0; b < packs; ++b) sum[b] = F(0.0f);
+    for (int s = 0; s <= t; ++s) {
+      const F entry(row[s]);
+      const float* from = z.row(first + s * step) + k;
+      for (int b = 0; b < packs; ++b) sum[b] = sum[b] + entry * F::load(from + b * F::lanes);
+    }
+    for (int b = 0; b < packs; ++b) sum[b].store(z.row(first + t * step) + k + b * F::lanes);
+  }
+}
+
+/// z <- L z over the rows first, first + step, ... of one input, from the last row to the first, in place.
+struct Colour {
+  template <class Target>
+  SLALOM_KERNEL static void run(const Rows& z, const float* factor, int first, int step, Range range) {
+    using F = Pack<Target>;
+    constexpr int lanes = F::lanes;
+    const int end = range.first + range.count;
+    int k = range.first;
+    for (; k + 4 * lanes <= end; k += 4 * lanes) colour_packs<4, F>(z, factor, first, step, k);
+    for (; k < end; k += lanes) colour_packs<1, F>(z, factor, first, step, k);
+  }
+};
+
+/// z <- z exp(s y - s^2). `y` has the layout of z; `spread` [row] is s.
+struct SpreadLogNormal {
+  template <class Target>
+  SLALOM_KERNEL static void run(const Rows& z, const float* y, const float* spread, Range range) {
+    using F = Pack<Target>;
+    for (int r = 0; r < z.rows; ++r) {
+      const F s(spread[r]), shift(-spread[r] * spread[r]);
+      float* to = z.row(r);
+      const float* from = y + r * z.stride;
+      for (int k = range.first; k < range.first + range.count; k += F::lanes) {
+        (F::load(to + k) * exp(s * F::load(from + k) + shift)).store(to + k);
+      }
+    }
+  }
+};
+
+struct AddLinear {
+  template <class Target>
+  SLALOM_KERNEL static void run(const Rows& v, const float* coefficient, Range range, float* totals) {
+    using F = Pack<Target>;
+    for (int k = range.first; k < range.first + range.count; k += F::lanes) {
+      F term0(0.0f), term1(0.0f);
+      int r = 0;
+      for (; r + 1 < v.rows; r += 2) {
+        term0 = term0 + F(coefficient[r]) * F::load(v.row(r) + k);
+        term1 = term1 + F(coefficient[r + 1]) * F::load(v.row(r + 1) + k);
+      }
+      if (r < v.rows) term0 = term0 + F(coefficient[r]) * F::load(v.row(r) + k);
+      (F::load(totals + k) + (term0 + term1)).store(totals + k);
+    }
+  }
+};
+
+struct AddSquaredDistance {
+  template <class Target>
+  SLALOM_KERNEL static void run(const Rows& v, const float* centre, const float* weight, Range range,
+                                float* totals) {
+    using F = Pack<Target>;
+    for (int k = range.first; k < range.first + range.count; k += F::lanes) {
+      F term(0.0f);
+      for (int r = 0; r < v.rows; ++r) {
+        const F difference = F::load(v.row(r) + k) - F(centre[r]);
+        term = term + F(weight[r]) * difference * difference;
+      }
+      (F::load(totals + k) + term).store(totals + k);
+    }
+  }
+};
+
+struct AddScaled {
+  template <class Target>
+  SLALOM_KERNEL static void run(const float* costs, float factor, const float* terms, Range range,
+                                float* totals) {
+    using F = Pack<Target>;
+    const F f(factor);
+    for (int k = range.first; k < range.first + range.count; k += F::lanes) {
+      (F::load(costs + k) + f * F::load(terms + k)).store(totals + k);
+    }
+  }
+};
+
+struct MakeFinite {
+  template <class Target>
+  SLALOM_KERNEL static void run(Range range, float* costs) {
+    using F = Pack<Target>;
+    const F largest(std::numeric_limits<float>::max()), infinite(std::numeric_limits<float>::infinity());
+    for (int k = range.first; k < range.first + range.count; k += F::lanes) {
+      const F cost = F::load(costs + k);
+      select(abs(cost) <= largest, cost, infinite).store(costs + k);
+    }
+  }
+};
+
+struct Finish {
+  template <class Target>
+  SLALOM_KERNEL static CostStatistics run(const Rows& v, const float* linear, Range range, float* costs,
+                                          float* totals) {
+    using F = Pack<Target>;
+    const F largest(std::numeric_limits<float>::max()), infinite(std::numeric_limits<float>::infinity());
+    const F zero(0.0f), one(1.0f);
+    F min_cost = infinite, min_total = infinite, finite = zero;
+    for (int k = range.first; k < range.first + range.count; k += F::lanes) {
+      const F given = F::load(costs + k);
+      const F cost = select(abs(given) <= largest, given, infinite);
+      cost.store(costs + k);
+      F total = cost;
+      if (linear) {
+        F term0 = zero, term1 = zero;
+        int r = 0;
+        for (; r + 1 < v.rows; r += 2) {
+          term0 = term0 + F(linear[r]) * F::load(v.row(r) + k);
+          term1 = term1 + F(linear[r + 1]) * F::load(v.row(r + 1) + k);
+        }
+        if (r < v.rows) term0 = term0 + F(linear[r]) * F::load(v.row(r) + k);
+        total = cost + (term0 + term1);
+        total = select(abs(total) <= largest, total, infinite);
+      }
+      total.store(totals + k);
+      min_cost = min(min_cost, cost);
+      min_total = min(min_total, total);
+      finite = finite + select(total < infinite, one, zero);
+    }
+    return {least_of(min_cost), least_of(min_total), static_cast<int>(sum_of(finite))};
+  }
+};
+
+struct Minimum {
+  template <class Target>
+  SLALOM_KERNEL static float run(const float* costs, Range range) {
+    using F = Pack<Target>;
+    F least(std::numeric_limits<float>::infinity());
+    for (int k = range.first; k < range.first + range.count; k += F::lanes)
+      least = min(least, F::load(costs + k));
+    return least_of(least);
+  }
+};
+
+}  // namespace
+
+void sample(const Rows& noise, const Rows& samples, const SamplingDistribution& to, Range range) {
+  simd::dispatch<Sample>(noise, samples, to, range);
+}
+
+void colour(const Rows& z, const float* factor, int first, int step, Range range) {
+  simd::dispatch<Colour>(z, factor, first, step, range);
+}
+
+void spread_log_normal(const Rows& z, const float* y, const float* spread, Range range) {
+  simd::dispatch<SpreadLogNormal>(z, y, spread, range);
+}
+
+void add_linear(const Rows& v, const float* coefficient, Range range, float* totals) {
+  simd::dispatch<AddLinear>(v, coefficient, range, totals);
+}
+
+void add_squared_distance(const Rows& v, const float* centre, const float* weight, Range range,
+                          float* totals) {
+  simd::dispatch<AddSquaredDistance>(v, centre, weight, range, totals);
+}
+
+void add_scaled(const float* costs, float factor, const float* terms, Range range, float* totals) {
+  simd::dispatch<AddScaled>(costs, factor, terms, range, totals);
+}
+
+void make_finite(Range range, float* costs) {
+  simd::dispatch<MakeFinite>(range, costs);
+}
+
+CostStatistics finish(const Rows& v, const float* linear, Range range, float* costs, float* totals) {
+  return simd::dispatch<Finish>(v, linear, range, costs, totals);
+}
+
+float minimum(const float* costs, Range range) {
+  return simd::dispatch<Minimum>(costs, range);
+}
+
+}  // namespace slalom::detail::kernels
