@@ -1,5 +1,5 @@
-"""Checks the documentation: its links resolve, its code compiles and runs, its patches
-apply, its commands and their options exist.
+"""Checks the documentation: its links resolve, its excerpts stand in their files, its code
+compiles and runs, its patches apply, its commands and their options exist.
 
 usage: check_docs.py links ROOT | cpp ROOT COMPILER... | python ROOT | patches ROOT | shell ROOT PROGRAM | site FOLDER
 """
@@ -12,6 +12,7 @@ import tempfile
 import urllib.parse
 from pathlib import Path
 
+EXCERPT = re.compile(r"\]\(([^)]+)\):\n\n```c\+\+\n(.*?)\n```", re.S)
 LINK = re.compile(r"(?<!\\)\[[^\]]*\]\(([^)\s]+)[^)]*\)")
 
 
@@ -56,6 +57,10 @@ def check_links(root):
                 errors.append(f"{page}: {target}: no such file")
             elif anchor and path.suffix == ".md" and anchor not in anchors(path):
                 errors.append(f"{page}: {target}: no such heading")
+        for target, excerpt in EXCERPT.findall(page.read_text()):
+            whole, part = (re.sub(r"^ +", "", t, flags=re.M) for t in ((page.parent / target).read_text(), excerpt))
+            if part not in whole:
+                errors.append(f"{page}: the code after the link to {target} is not in that file")
     return errors
 
 

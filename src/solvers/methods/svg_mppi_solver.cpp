@@ -12,10 +12,8 @@ namespace slalom {
 namespace {
 
 /// `svg_mppi` (Honda et al., "Stein Variational Guided Model Predictive Path Integral Control", ICRA 2024):
-/// (a) guides move to modes (equations (9) to (11)), (b) the best guide is the nominal sequence (equation
-/// (12)), (c) the variances are fitted to its path (equation (13)), (d) MPPI uses that nominal sequence and
-/// those variances (equations (7) and (8)). Where the samples are drawn around the nominal sequence, (7) has
-/// no control term.
+/// guides lead the closed form of MPPI to one mode. Where the samples are drawn around the nominal sequence,
+/// equation (8) has no control term.
 class SvgMppiSolver final : public SolverBase {
  public:
   SvgMppiSolver(const SvgMppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
@@ -65,19 +63,23 @@ class SvgMppiSolver final : public SolverBase {
     result_.times = {};
     if (shift_) shift(warm_start_shift(evaluator, request));
 
+    // (a) Guides move to modes (equations (9) to (11)); the last solution and proposals may join them.
     if (around_nominal_) guides_.take_in(evaluator, mean_.data());
     take_in(evaluator, request.proposals);
     guides_.restart_others(key(restarts));
     move_guides(evaluator, deadline);
+    // (b) The best guide is the nominal sequence (equation (12)).
     if (use_nominal_ && guides_.best_cost() < std::numeric_limits<float>::infinity()) {
       std::copy_n(guides_.best_sequence().data(), size(), nominal_.data());
     } else if (around_nominal_) {
       nominal_ = mean_;
     }
     if (around_nominal_) mean_ = nominal_;
+    // (c) The variances are fitted to its path (equation (13)).
     if (adapt_covariance_) guides_.fit_variance(variance_.data());
     result_.times.guide = detail::seconds(start, detail::Clock::now());
 
+    // (d) MPPI with that nominal sequence and those variances (equations (7) and (8)).
     result_.status = update_.update(evaluator, key(samples), nominal_.data(), variance_.data(), low().data(),
                                     high().data(), pool(), deadline, mean_.data(), result_);
     result_.guides = guides_.sequences();
