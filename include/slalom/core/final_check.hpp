@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-/// The last thing that happens to a control sequence before it leaves the library.
+/// The final check of a control sequence before it leaves the library.
 namespace slalom {
 
 /// Bounds of the inputs, [input]: finite values with `low` <= `high`, or infinities where an input has no

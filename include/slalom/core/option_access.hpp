@@ -9,8 +9,8 @@
 
 #include "slalom/core/options.hpp"
 
-/// Options by name and as text, for whatever does not know their types: configuration files, the command
-/// line, bindings, sliders. All of it follows from the declarations.
+/// Options by name and as text, for code that does not know their types: configuration files, the command
+/// line, bindings, sliders. All follows from the declarations.
 namespace slalom {
 
 /// The value of an option of any type; of an enumeration, the enumerator's name.

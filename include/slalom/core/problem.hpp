@@ -19,7 +19,7 @@
 ///
 /// `State<T>` is an aggregate of `T` (nested arrays are fine). Optional:
 ///  - `step` and `stage_cost` may take the step index `int k` (0 ... horizon - 1) as their last argument;
-///  - `template <class T> auto look_up(const State<T>& x) const`: whatever is read from maps at a state. It
+///  - `template <class T> auto look_up(const State<T>& x) const`: the values of maps at a state. It
 ///    is evaluated once a state and handed, after the state, to `step`, `stage_cost` and `terminal_cost`;
 ///  - a cost may be returned as `Cost<T>`, which also says whether the state collides, or as
 ///    `CostTerms<T, N>`, whose terms `static constexpr std::array cost_names{"distance", "effort"}` names:

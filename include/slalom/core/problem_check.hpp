@@ -15,7 +15,7 @@ concept HasInputs = requires {
   { P::inputs } -> std::convertible_to<int>;
   requires std::bool_constant<(P::inputs > 0)>::value;
 };
-/// Wide, so that whatever else is in a state shows in its size.
+/// Wide, so that every other member of a state shows in its size.
 struct StateProbe {
   char bytes[64];
 };

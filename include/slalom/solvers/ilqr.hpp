@@ -39,8 +39,8 @@ void visit_options(Options& o, Visit&& visit) {
 /// cost, the step is damped as by Levenberg and Marquardt. So the cost falls with every step, or the sequence
 /// stays as it is.
 ///
-/// `Ilqr` is this class for a problem struct. Construction allocates; `improve` does not, and throws only
-/// what the problem throws.
+/// `Ilqr` is this class for a problem struct. Construction allocates; `improve` does not, and throws only as
+/// the problem does.
 class IterativeLqr {
  public:
   /// Throws std::invalid_argument unless all numbers are at least 1, there are bounds for each input, the

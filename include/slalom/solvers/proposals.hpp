@@ -23,8 +23,8 @@ concept ControlLaw = C::has_problem &&
 }  // namespace detail
 
 /// Control sequences of other controllers that compete with the samples of a solve: a brake, a regulator, the
-/// output of a network (Biased-MPPI: Trevisan and Alonso-Mora, IEEE RA-L 9(6), 2024). A sample that is right
-/// at once is worth having where the method's own samples rarely are.
+/// output of a network (Biased-MPPI: Trevisan and Alonso-Mora, IEEE RA-L 9(6), 2024). A good proposal helps
+/// where the method's own samples rarely are good.
 ///
 ///     slalom::Proposals proposals{controller, 2};                          // room for two; allocates
 ///     proposals.clear();
@@ -71,7 +71,7 @@ class Proposals {
     return true;
   }
 
-  /// Adds what a control law does from state `x`: inputs `law(state, step)` at each step of the horizon,
+  /// Adds the inputs of a control law from state `x`: `law(state, step)` at each step of the horizon,
   /// moved into the bounds, with the states that the controller's problem predicts for them. Limits on rates
   /// are not applied. Returns false, and adds nothing, if there is no room.
   template <detail::ControlLaw<Controlled> Law>

@@ -10,8 +10,8 @@
 #include "slalom/solvers/solver_options.hpp"
 
 /// The methods that are known by name, and solvers by their options. The methods of the library are listed in
-/// src/solvers/registry.cpp; whatever is built on names (`slalom drive --method`, configuration files, the
-/// Python package, the contract tests) knows those and every method that was registered.
+/// src/solvers/registry.cpp; everything that works with names (`slalom drive --method`, configuration files,
+/// the Python package, the contract tests) knows those and every method that was registered.
 namespace slalom {
 
 /// The names of all methods, as configurations write them. The span is valid until the next registration.

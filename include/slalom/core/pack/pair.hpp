@@ -3,9 +3,9 @@
 #include "slalom/core/pack/functions.hpp"
 
 /// Two packs that take part in each operation together. A step of several hundred instructions is longer than
-/// what a processor looks ahead, so the next pack's step cannot hide the latencies of this one; the other
-/// half of a pair does. Each half has the bits that it has alone. Rollouts use pairs for problems that say
-/// `static constexpr bool long_steps = true`.
+/// a processor looks ahead, so the next pack's step cannot hide the latencies of this one; the other half of
+/// a pair does. Each half has the bits that it has alone. Rollouts use pairs for problems that say `static
+/// constexpr bool long_steps = true`.
 namespace slalom::simd {
 
 /// In place of an instruction set: pairs of its packs.

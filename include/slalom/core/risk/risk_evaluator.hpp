@@ -25,10 +25,10 @@ concept RandomizableProblem = Problem<P> && std::is_nothrow_copy_assignable_v<P>
 };
 
 /// Evaluates every control sequence in several variants of the world. Its cost is the mean of their costs, or
-/// what another risk measure makes of them; it collides if it collides in any. The first variant is the
-/// problem itself. The others are made anew at every `set_state`, in pairs from random numbers and their
-/// mirror images, so that an odd number of variants deviates to all sides alike. The numbers depend on the
-/// seed and the variant alone: all samples meet the same worlds, in every solve and on any number of threads.
+/// another risk measure of them; it collides if it collides in any. The first variant is the problem itself.
+/// The others are made anew at every `set_state`, in pairs from random numbers and their mirror images, so
+/// that an odd number of variants deviates to all sides alike. The numbers depend on the seed and the variant
+/// alone: all samples meet the same worlds, in every solve and on any number of threads.
 ///
 ///     Controller controller{RiskEvaluator{Glider{}, {.variants = 9, .measure = RiskMeasure::cvar}},
 ///                           SvgMppiOptions{.horizon = 40}};

@@ -10,7 +10,7 @@ struct VariantCosts {
   alignas(64) float values[max_variants][capacity];  ///< the costs
 };
 
-/// The risk of the first `count` samples: what `options.measure` makes of their costs in the first
+/// Writes the risk of the first `count` samples: `options.measure` of their costs in the first
 /// `options.variants` variants. A cost that is not a number counts as infinite. The order of the costs may
 /// change. `to` holds `count` values.
 ///
