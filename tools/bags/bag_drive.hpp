@@ -13,7 +13,7 @@ namespace slalom::tools {
 /// The data at the time of a scan, and the command that followed.
 struct BagTick {
   double time = 0;            ///< s since the first scan
-  maps::LaserScanView shape;  ///< of the scan, without its ranges
+  maps::LaserScanView shape;  ///< shape of the scan, without its ranges
   std::vector<float> ranges;
   vehicle::Odometry odometry;  ///< pose as localised, map frame; speed as the wheels say
   slalom::Command command;
@@ -21,7 +21,7 @@ struct BagTick {
 
 /// A drive of a car, from a bag that adapters/ros1/launch/record.launch has recorded.
 struct BagDrive {
-  std::vector<BagTick> ticks;  ///< of scans for which pose, speed and command are known
+  std::vector<BagTick> ticks;  ///< scans for which pose, speed and command are known
   int left_out = 0;            ///< other scans
   std::optional<maps::OccupancyGrid> map;
   std::vector<vehicle::Waypoint> path;  ///< empty if the bag holds none

@@ -124,7 +124,7 @@ class Follower {
     return options;
   }
 
-  /// Of the centre of gravity, as far as it was measured.
+  /// The path of the centre of gravity, as far as it was measured.
   sim::CarState state(const BagTick& tick) const {
     const maps::Pose& rear = tick.odometry.pose;
     const maps::Point centre = maps::transform(rear, {environment_.world_options().car.rear_length, 0});

@@ -54,7 +54,7 @@ std::vector<Waypoint> waypoints(std::string_view bytes);
 /// tf2_msgs/TFMessage
 struct Transform {
   std::string parent, child;
-  maps::Pose pose;  ///< of the child in the parent
+  maps::Pose pose;  ///< pose of the child in the parent
 };
 std::vector<Transform> transforms(std::string_view bytes);
 

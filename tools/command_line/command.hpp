@@ -77,7 +77,7 @@ class Subcommand {
   /// Whether the user gave no options but some of these.
   bool given_only(const std::vector<std::string>& names) const;
 
-  /// What the command does once its options are set. Returns the exit status of the program; may throw.
+  /// Runs the command once its options are set. Returns the exit status of the program; may throw.
   void action(std::function<int()> run) { action_ = std::move(run); }
   int run() const { return action_(); }
 

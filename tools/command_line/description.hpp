@@ -7,7 +7,7 @@
 
 namespace slalom::tools {
 
-/// What a command declares of an option.
+/// A command's declaration of an option.
 struct OptionDescription {
   std::string name;    ///< with its dashes; without any for a positional argument
   std::string help;    ///< one sentence or more, without a full stop at the end
@@ -16,7 +16,7 @@ struct OptionDescription {
   bool is_required = false;
 };
 
-/// What a command declares.
+/// The declaration of a command.
 struct CommandDescription {
   std::string name, summary, footer;
   std::vector<OptionDescription> options;  ///< in the order of their declaration, without --help

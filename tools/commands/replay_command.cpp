@@ -29,7 +29,7 @@ struct ReplayCommandArguments {
   bool lap_given = false;
 };
 
-/// What can be replayed; each kind has its own options.
+/// The kinds of records that can be replayed; each has its own options.
 enum Kind { lap_of_evaluation = 1, bag = 2, recording = 4 };
 constexpr const char* kind_name(Kind kind) {
   return kind == lap_of_evaluation ? "a lap of an evaluation" : kind == bag ? "a bag" : "a recording in MCAP";

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* fallback_course = "stag";
 constexpr const char* gap_driver = "follow_the_gap";
-/// Of a planner in the racing benchmark, unless given.
+/// The configuration of a planner in the racing benchmark, unless given.
 constexpr const char* racing_configuration = "racing_benchmark";
 
 struct ReproduceArguments {

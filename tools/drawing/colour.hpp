@@ -7,9 +7,9 @@ struct Colour {
   double red = 0, green = 0, blue = 0, opacity = 1;
 };
 
-inline constexpr Colour ink{0.13, 0.16, 0.22};        ///< of text and lines
-inline constexpr Colour faint_ink{0.42, 0.46, 0.54};  ///< of what is said in passing
-inline constexpr Colour rule{0.89, 0.91, 0.94};       ///< of the lines of a grid
+inline constexpr Colour ink{0.13, 0.16, 0.22};        ///< colour of text and lines
+inline constexpr Colour faint_ink{0.42, 0.46, 0.54};  ///< colour of remarks
+inline constexpr Colour rule{0.89, 0.91, 0.94};       ///< colour of the lines of a grid
 inline constexpr Colour white{1, 1, 1};
 
 /// `a` at share 0, `b` at share 1, linear between them.

@@ -11,7 +11,7 @@ namespace slalom::tools {
 
 /// The line a car has driven.
 struct DrivenLine {
-  std::vector<maps::Point> points;  ///< of the centre of gravity, map frame
+  std::vector<maps::Point> points;  ///< path of the centre of gravity, map frame
   std::vector<double> speeds;       ///< m/s
 };
 

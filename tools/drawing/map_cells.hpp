@@ -12,7 +12,7 @@ namespace slalom::tools {
 struct MapView {
   double scale = 1;
   double left = 0, top = 0;
-  int width = 0, height = 0;  ///< of the image, pixels
+  int width = 0, height = 0;  ///< size of the image, pixels
 
   /// The pixel coordinates of a point of the map frame.
   maps::Point pixel(const maps::Point& point) const {

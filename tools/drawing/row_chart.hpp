@@ -13,7 +13,8 @@ struct Span {
   double value = 0, low = 0, high = 0;
 };
 
-/// What a row of a panel shows: all values (a box), or one value with a span. Empty if there is no value.
+/// The contents of a row of a panel: all values (a box), or one value with a span. Empty if there is no
+/// value.
 struct Marks {
   std::vector<double> values;
   std::optional<Span> span;
@@ -36,7 +37,7 @@ struct Panel {
 struct RowChart {
   std::vector<std::string> names;
   std::vector<Panel> panels;
-  std::string our_key = "Slalom", their_key;  ///< what the two colours mean; no key without `their_key`
+  std::string our_key = "Slalom", their_key;  ///< names of the two colours; no key without `their_key`
 };
 
 Drawing draw_chart(const RowChart& chart);

@@ -63,7 +63,7 @@ void require_object(const std::filesystem::path& file) {
 Json interval_json(const Interval& i) {
   return {i.low, i.high};
 }
-/// What an evaluation says of its tracker.
+/// Writes the figures of an evaluation's tracker.
 Json tracking_json(const TrackingFigures& t, int laps) {
   const auto rate = [](int part, int whole) {
     return Json{{"rate", whole > 0 ? Json(static_cast<double>(part) / whole) : Json(nullptr)},
@@ -79,7 +79,7 @@ Json tracking_json(const TrackingFigures& t, int laps) {
           {"yaw_error_rad", t.yaw_error},
           {"update_p99_ms", t.update_p99}};
 }
-/// What an evaluation says of its opponents.
+/// Writes the figures of an evaluation's opponents.
 Json overtaking_json(const OvertakingFigures& o) {
   const int decided = o.overtaken + o.not_overtaken;
   return {{"met", o.met},

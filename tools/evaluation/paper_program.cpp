@@ -11,7 +11,7 @@ struct ProgramLaps {
   const char* row;
   const char* scenario;
   std::vector<double> ms;  ///< per lap
-  int collisions = 0;      ///< of all laps
+  int collisions = 0;      ///< collisions of all laps
 };
 
 /// Measured figures: one MS per lap. docs/logbook/evaluation.md says how they were driven.

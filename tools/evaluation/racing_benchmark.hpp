@@ -18,7 +18,7 @@ namespace slalom::tools {
 
 /// The maps, in the order of the published table.
 inline constexpr const char* racing_maps[] = {"aut", "esp", "gbr", "mco"};
-inline constexpr int racing_laps = 10;             ///< of each map
+inline constexpr int racing_laps = 10;             ///< laps of each map
 inline constexpr double racing_grip = 0.9 * 9.81;  ///< m/s^2, what a step is compared with
 
 /// A map of the benchmark with the centre line that its program uses.

@@ -38,7 +38,7 @@ std::vector<evaluation::Experiment> paper_experiments(const std::vector<std::str
 /// Whether an experiment is that of a row.
 bool drives(const evaluation::Experiment& experiment, const PaperRow& row);
 
-/// What a verdict begins with; figures and reasons follow after a colon.
+/// The first words of a verdict; figures and reasons follow after a colon.
 namespace verdicts {
 inline constexpr const char* log = "agrees with the log";  ///< no significant difference
 /// A significant difference from the log, and none from the paper's program in this simulator.

@@ -14,7 +14,7 @@ struct StoredEvaluation {
   std::filesystem::path folder;
   std::string settings;  ///< as settings.json has them
   std::vector<evaluation::Experiment> experiments;
-  std::vector<evaluation::LapRow> rows;  ///< of a run that is not done: those it has so far
+  std::vector<evaluation::LapRow> rows;  ///< rows of the run, so far if it is not done
   bool complete = false;
   bool checked = false;  ///< whether settings and rows have checksums; those of earlier versions have not
 

@@ -19,7 +19,7 @@ struct TuningArguments {
   std::vector<std::string> scenarios{"oa"}, set;
   int obstacles = 5;
   int budget = 400;  ///< laps of the search
-  int laps = 4;      ///< of every candidate to begin with, in every scenario on every course
+  int laps = 4;      ///< laps of every candidate to begin with, in every scenario on every course
   int rounds = 2;
   int held_out = 30;  ///< laps of the final figure, in every scenario on every course; 0: none
 };
@@ -45,7 +45,7 @@ class TuningJob {
  private:
   /// The results of the candidates in a step.
   struct Driven {
-    std::vector<std::vector<double>> values;  ///< of each candidate: of its laps, in the same order for all
+    std::vector<std::vector<double>> values;  ///< values of each candidate's laps, in the same order for all
     Json results = Json::array();
   };
 
@@ -61,7 +61,7 @@ class TuningJob {
   evaluation::Objective objective_;
   std::vector<Scenario> courses_;
   std::vector<evaluation::SearchDimension> dimensions_;
-  std::vector<evaluation::Rung> rungs_;  ///< of every round
+  std::vector<evaluation::Rung> rungs_;  ///< rungs of every round
   evaluation::Candidate best_;           ///< at first the configuration as it stands, which sets nothing
   Json result_;
 };

@@ -40,7 +40,7 @@ Colour cost_colour(double share, double opacity) {
 /// One method's part of the picture.
 struct Cell {
   const Explanation& e;
-  double left, top;  ///< of the plot in space, pixels
+  double left, top;  ///< corner of the plot in space, pixels
 
   double length() const { return e.point.speed * e.point.dt * static_cast<double>(e.plan.size() - 1); }
   double x(double metres) const { return left + space_width * metres / length(); }

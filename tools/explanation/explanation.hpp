@@ -26,15 +26,15 @@ struct Explanation {
   int beside = 0;  ///< the state at which the point is beside the disc
   int solves = 0;
 
-  std::vector<ExplainedSample> samples;  ///< of the last solve
-  std::vector<std::vector<Way>> guides;  ///< of each guide, its ways after every step in all solves
-  Way plan;                              ///< of the sequence that would be sent
+  std::vector<ExplainedSample> samples;  ///< samples of the last solve
+  std::vector<std::vector<Way>> guides;  ///< ways of each guide after every step in all solves
+  Way plan;                              ///< way of the sequence that would be sent
   std::vector<double> inputs;            ///< m/s, that sequence
   double plan_cost = 0;
   bool plan_collides = false;
-  Way mean;                       ///< of the resulting distribution
-  std::vector<double> deviation;  ///< of it, m, at every state
-  double temperature = 0;         ///< of the optimal distribution beside it
+  Way mean;                       ///< mean of the resulting distribution
+  std::vector<double> deviation;  ///< standard deviation of the distribution, m, at every state
+  double temperature = 0;         ///< temperature of the optimal distribution beside it
   double effective_samples = 0;
 
   /// The optimal distribution of the place beside the disc, q*(v) ~ exp(-S(v) / lambda) N(v | 0, Sigma).

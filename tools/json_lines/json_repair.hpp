@@ -10,7 +10,7 @@ namespace slalom::tools {
 /// for what is not a regular file.
 bool is_json_recording(const std::string& file);
 
-/// What a recording in JSON lines that was cut still had.
+/// The rest of a recording in JSON lines that was cut.
 struct RepairedLines {
   std::uint64_t records = 0;  ///< whole lines
   std::uint64_t lost = 0;     ///< bytes of the last line, if it is not whole

@@ -9,7 +9,7 @@ namespace slalom::tools {
 /// The lines of a recording in JSON lines, one at a time.
 class RecordLines {
  public:
-  static constexpr std::uint64_t max_bytes = std::uint64_t{1} << 32;  ///< of a recording
+  static constexpr std::uint64_t max_bytes = std::uint64_t{1} << 32;  ///< size of a recording
   static constexpr std::size_t max_line = std::size_t{1} << 22;       ///< bytes of a line, without its end
 
   /// Throws IoError if the file does not exist or cannot be read, is not a regular file (a pipe could block
@@ -21,7 +21,7 @@ class RecordLines {
   bool next(std::string& line);
 
   const std::string& file() const noexcept { return file_; }
-  int number() const noexcept { return number_; }        ///< of the line that was read last, from 1
+  int number() const noexcept { return number_; }        ///< number of the line that was read last, from 1
   bool ended() const noexcept { return ended_; }         ///< whether that line had its end, a newline
   std::uint64_t size() const noexcept { return size_; }  ///< bytes of the file
 

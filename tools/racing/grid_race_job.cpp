@@ -23,7 +23,7 @@ namespace {
 
 using evaluation::GridRaceResult;
 
-/// What drives a car: a configuration by name or file, and a method.
+/// Reads a driver: a configuration by name or file, and a method.
 struct RaceDriver {
   std::string config, method;
   bool own = true;  ///< the configuration is that of --config, with every --set

@@ -8,12 +8,12 @@
 
 namespace slalom::tools {
 
-/// What `slalom race` is asked for with several cars.
+/// The arguments of `slalom race` with several cars.
 struct GridRaceArguments {
   int cars = 0;                      ///< 0: the own one and those of `against`
   std::vector<std::string> against;  ///< METHOD, CONFIG or CONFIG:METHOD
   int races = 1, laps = 5, jobs = 1;
-  std::uint64_t seed = 0;  ///< of the first race
+  std::uint64_t seed = 0;  ///< seed of the first race
   std::string json;        ///< a file, "-" or empty
 };
 

@@ -16,7 +16,7 @@ using evaluation::RacingLap;
 using evaluation::RacingSample;
 
 constexpr int along_steps = 100;
-constexpr double max_sample = 1e9;         // of any number of a sample that is read
+constexpr double max_sample = 1e9;         // largest number of a sample that is read
 constexpr double length_tolerance = 1e-6;  // share of the length
 
 /// A number of a sample, as it is named and rounded in results.

@@ -10,7 +10,7 @@ using evaluation::RacingEnd;
 using evaluation::RacingLap;
 using evaluation::RacingSample;
 
-constexpr int parts = 10;  // of the way, in the table of a lap
+constexpr int parts = 10;  // parts of the way in the table of a lap
 
 std::string seconds(double time) {
   if (!std::isfinite(time)) return "-";

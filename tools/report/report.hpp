@@ -38,10 +38,10 @@ struct Report {
 
 /// A figure with its caption.
 struct ReportFigure {
-  std::string name;     ///< of its files
+  std::string name;     ///< name of its files
   std::string section;  ///< below which it stands; empty: at the end
   std::string title, caption;
-  std::string mime, data;  ///< of the image
+  std::string mime, data;  ///< type and bytes of the image
   std::string table{};     ///< the data that it shows, as CSV with a header
 };
 

@@ -36,7 +36,8 @@ Json value_json(const OptionValue& value) {
   return std::visit(Convert{}, value);
 }
 
-/// What the course's files lack, and where its line and profile ask for more than the car can.
+/// Lists the gaps in the course's files, and the places where its line and profile ask for more than the car
+/// can.
 std::vector<std::string> notes_on(const evaluation::Environment& environment,
                                   const vehicle::Configuration& configuration) {
   const vehicle::Course& course = environment.course;

@@ -34,7 +34,7 @@ struct ScenarioArguments {
   int opponents = 0;
   double latency_ms = 0;
   bool hardware = false;          ///< the conditions of a real car
-  bool saturating_tyres = false;  ///< of the world, unless `set` has world.saturating_tyres
+  bool saturating_tyres = false;  ///< tyres of the world, unless `set` has world.saturating_tyres
   int threads = 1;
 };
 
@@ -47,7 +47,7 @@ void add_latency_option(Subcommand& command, double& latency_ms);
 void add_method_option(Subcommand& command, std::string& method);
 
 struct Scenario {
-  std::filesystem::path folder;  ///< of the course
+  std::filesystem::path folder;  ///< folder of the course
   std::shared_ptr<const evaluation::Environment> environment;
   vehicle::Configuration configuration;
   evaluation::LapSettings lap;

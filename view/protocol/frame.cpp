@@ -66,7 +66,7 @@ std::size_t states_of(const vehicle::Planner& planner, std::span<const float> in
   return inputs.size() / static_cast<std::size_t>(planner.solver().inputs()) + 1;
 }
 
-/// What the observer and the estimator of a car whose tyres slip say; NaN for other cars.
+/// Writes the estimates of a car whose tyres slip; NaN for other cars.
 std::array<double, 6> estimates(const vehicle::PlannerOutput& out) {
   const vehicle::ParameterEstimate& car = out.parameters;
   if (car.friction <= 0) {

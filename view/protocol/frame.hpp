@@ -52,7 +52,7 @@ class FrameEncoder {
 std::string encode_bodies(const sim::World& world);
 /// A second car on the same course, likewise.
 std::string encode_ghost(const sim::World& world, std::span<const maps::Pose> plan);
-/// What the second controller considers, likewise: `frame` is its control step with its bodies, a message.
+/// The second controller, likewise: `frame` is its control step with its bodies, a message.
 std::string encode_ghost_frame(std::string_view frame);
 /// The course's map and line as a message of its own.
 std::string encode_scene(const evaluation::Environment& environment);

@@ -40,7 +40,7 @@ struct OptionsFacts {
   const ScenarioNames& names;
   const vehicle::Configuration& now;
   const vehicle::Configuration& loaded;  ///< before anything was changed
-  const std::string& further_arguments;  ///< of the command line, begins with a space
+  const std::string& further_arguments;  ///< further arguments of the command line, begin with a space
   std::size_t undo = 0, redo = 0;        ///< how many steps there are
 };
 /// Declaration and value of every option, and the equivalent command line.
@@ -69,7 +69,7 @@ struct StateFacts {
   bool introduction = false;  ///< the scenario with which the program starts without arguments, unchanged
   double rate = 1;
   std::string ghost{};        ///< its method; empty if there is none
-  std::string ghost_label{};  ///< what it is called
+  std::string ghost_label{};  ///< name of the ghost
   int generation = 0;
   int clients = 0;
   std::uint64_t refused = 0;

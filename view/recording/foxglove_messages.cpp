@@ -96,7 +96,7 @@ std::string laser_scan(std::uint64_t time, const std::string& frame, const Scan&
 
 std::string grid(std::uint64_t time, const maps::Pose& corner, std::uint32_t columns, double cell_size,
                  const std::string& field, std::string_view cells) {
-  constexpr int uint8 = 1;  // of PackedElementField's types
+  constexpr int uint8 = 1;  // number of the type in PackedElementField
   std::string json = "{\"timestamp\":" + timestamp(time) +
                      ",\"frame_id\":\"map\",\"pose\":" + pose_json(corner, 0) +
                      ",\"column_count\":" + std::to_string(columns) + ",\"cell_size\":{\"x\":";

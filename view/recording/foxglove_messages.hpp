@@ -33,7 +33,7 @@ class Scene {
  public:
   explicit Scene(std::uint64_t time) : time_(time) {}
 
-  /// What is added from now on belongs to this entity.
+  /// Begins an entity, to which the following shapes belong.
   void begin(const std::string& id);
   void line(std::span<const maps::Point> points, const Color& color, double pixels, double height = 0);
   void box(const maps::Pose& pose, double length, double width, double height, const Color& color);

@@ -161,7 +161,7 @@ std::vector<Attachment> read_attachments(const std::string& name, std::string_vi
   }
   const std::string summary = file.summary();
   std::vector<Attachment> found;
-  std::uint64_t end = 0;  // of the attachment before: each is read once, so all fit into the file's size
+  std::uint64_t end = 0;  // end of the attachment before: each is read once, so all fit into the file's size
   for (Reader reader(summary, name); !reader.done();) {
     const auto op = reader.get<std::uint8_t>();
     Reader content(reader.take(reader.get<std::uint64_t>()), name);

@@ -29,7 +29,7 @@ class Reader {
     at_ += count;
     return bytes_.substr(at_ - count, count);
   }
-  /// What has not been read.
+  /// The rest that has not been read.
   std::string_view rest() const { return bytes_.substr(at_); }
   bool done() const { return at_ == bytes_.size(); }
 

@@ -6,7 +6,7 @@
 
 namespace slalom::view::mcap {
 
-/// What a recording that was cut still had.
+/// The rest of a recording that was cut.
 struct Repaired {
   std::uint64_t messages = 0, attachments = 0;  ///< that are whole
   std::uint64_t lost = 0;                       ///< bytes behind the last whole record

@@ -55,7 +55,7 @@ class Writer {
   std::ostream& stream_;
   std::size_t chunk_size_;
   std::uint64_t offset_ = 0;
-  std::uint32_t crc_ = 0;  ///< of all that was written
+  std::uint32_t crc_ = 0;  ///< checksum of all that was written
   Bytes chunk_;
   std::uint64_t chunk_first_ = 0, chunk_last_ = 0, first_ = 0, last_ = 0;
   bool chunk_has_messages_ = false;

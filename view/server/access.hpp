@@ -16,7 +16,7 @@ struct Request {
 
 /// The answer to a request.
 struct Answer {
-  unsigned status = 200;               ///< of HTTP; 101 if the connection becomes a WebSocket
+  unsigned status = 200;               ///< status of HTTP; 101 if the connection becomes a WebSocket
   const Resource* resource = nullptr;  ///< the body if the status is 200
   bool encoded = false;                ///< the body is sent in the encoding of the resource
   std::string_view reason{};           ///< the body if the request is refused

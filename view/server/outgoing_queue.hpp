@@ -9,7 +9,7 @@
 
 namespace slalom::view {
 
-/// What is to be sent to one client: messages in order, and after them the newest frame.
+/// The queue to one client: messages in order, and after them the newest frame.
 class OutgoingQueue {
  public:
   struct Item {
@@ -29,7 +29,7 @@ class OutgoingQueue {
 
  private:
   std::deque<Message> messages_;
-  std::size_t bytes_ = 0;  ///< of the messages
+  std::size_t bytes_ = 0;  ///< size of the messages
   std::shared_ptr<const std::string> frame_;
 };
 

@@ -22,13 +22,14 @@
 namespace slalom::view {
 
 struct ServerOptions {
-  std::string host = "127.0.0.1";    ///< address to listen on
-  std::uint16_t port = 0;            ///< 0: any that is free
-  std::string token{};               ///< if not empty, asked for as `?token=` of page and WebSocket
-  std::size_t max_message = 16384;   ///< bytes of a message from a client; a longer one ends the connection
-  int max_clients = 32;              ///< further connections are turned away
-  double messages_per_second = 120;  ///< of one client on average; messages beyond that are not delivered
-  double burst = 240;                ///< messages that a client may send at once after silence
+  std::string host = "127.0.0.1";   ///< address to listen on
+  std::uint16_t port = 0;           ///< 0: any that is free
+  std::string token{};              ///< if not empty, asked for as `?token=` of page and WebSocket
+  std::size_t max_message = 16384;  ///< bytes of a message from a client; a longer one ends the connection
+  int max_clients = 32;             ///< further connections are turned away
+  double messages_per_second =
+      120;             ///< messages of one client on average; messages beyond that are not delivered
+  double burst = 240;  ///< messages that a client may send at once after silence
 };
 
 /// A resource that is served under a path.

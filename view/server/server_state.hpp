@@ -11,8 +11,8 @@
 
 namespace slalom::view {
 
-/// What the connections of a server share. Options and resources do not change; counters and inbox may be
-/// used from any thread, the rest from the server's thread only.
+/// The state that the connections of a server share. Options and resources do not change; counters and inbox
+/// may be used from any thread, the rest from the server's thread only.
 struct ServerState {
   const ServerOptions options;
   const std::map<std::string, Resource> resources;
