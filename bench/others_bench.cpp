@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/workload/reference_workload.hpp"
+#include "slalom/evaluation/statistics.hpp"
 #include "slalom/tracking/predictor.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
@@ -77,13 +78,6 @@ class TimedSolver final : public Solver {
   std::vector<double>& times_;
 };
 
-double quantile(std::vector<double>& values, double share) {
-  const auto nth =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
-}
-
 void update(benchmark::State& state) {
   const auto course = reference_course();
   const auto configuration = vehicle::load_configuration(SLALOM_CONFIGS "/default.yaml");
@@ -102,8 +96,8 @@ void update(benchmark::State& state) {
     const auto& out = planner.update({.scan = scan.view(), .odometry = {pose, 4.0}, .others = others});
     if (!out.solve) state.SkipWithError("no plan");
   }
-  state.counters["solve_p50"] = quantile(solves, 0.5);
-  state.counters["solve_p99"] = quantile(solves, 0.99);
+  state.counters["solve_p50"] = evaluation::percentile(solves, 0.5);
+  state.counters["solve_p99"] = evaluation::percentile(solves, 0.99);
 }
 BENCHMARK(update)->ArgName("cars")->Arg(0)->Arg(1)->Arg(4)->Arg(8)->Unit(benchmark::kMillisecond);
 

@@ -95,7 +95,7 @@ struct LapDrive::State {
   std::uint64_t seed;
   CarDrive drive;
   SequenceCostMeter meter;
-  std::optional<OvertakingMeter> overtaking;  ///< with opponents
+  std::optional<OvertakingMeter> overtaking;  ///< meter of encounters with opponents
   sim::CollisionLog log;
   Sums sums;
   double length, timeout;  ///< m, s

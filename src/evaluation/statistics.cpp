@@ -32,11 +32,14 @@ Interval percentile_interval(std::vector<double>& values) {
 }
 
 template <class Number>
-double nearest_rank(std::span<const Number> sorted, double share) {
-  if (sorted.empty()) return not_a_number;
+double nearest_rank(std::span<const Number> values, double share) {
+  if (values.empty()) return not_a_number;
   // A product that is whole but for rounding is that rank.
-  const double count = static_cast<double>(sorted.size()), rank = std::ceil(share * count - 1e-9);
-  return static_cast<double>(sorted[static_cast<std::size_t>(std::clamp(rank, 1.0, count)) - 1]);
+  const double count = static_cast<double>(values.size()), rank = std::ceil(share * count - 1e-9);
+  std::vector<Number> ranked(values.begin(), values.end());
+  const auto at = ranked.begin() + static_cast<std::ptrdiff_t>(std::clamp(rank, 1.0, count)) - 1;
+  std::nth_element(ranked.begin(), at, ranked.end());
+  return static_cast<double>(*at);
 }
 
 struct Moments {
@@ -99,12 +102,12 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-double percentile(std::span<const double> sorted, double share) {
-  return nearest_rank(sorted, share);
+double percentile(std::span<const double> values, double share) {
+  return nearest_rank(values, share);
 }
 
-double percentile(std::span<const float> sorted, double share) {
-  return nearest_rank(sorted, share);
+double percentile(std::span<const float> values, double share) {
+  return nearest_rank(values, share);
 }
 
 Interval bootstrap_mean(std::span<const double> values, std::uint64_t seed, int resamples) {

@@ -12,7 +12,7 @@ namespace slalom::tracking {
 /// A manoeuvre of an object. The first two are also those of an object without a course.
 enum class Manoeuvre { keep, brake, follow, left, right };
 inline constexpr int manoeuvres = 5, manoeuvres_without_course = 2;
-/// Their weights before an object is known.
+/// Weights of the manoeuvres before an object is known.
 inline constexpr std::array<double, manoeuvres> usual_weights{0.4, 0.08, 0.36, 0.08, 0.08};
 
 /// The motion of an object from which hypotheses are drawn.

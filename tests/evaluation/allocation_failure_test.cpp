@@ -35,7 +35,7 @@ TEST(AllocationFailure, ACourseIsLoadedOrThrows) {
   EXPECT_GT(
       testing::fail_every_allocation(
           [&] { return load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {})->path.size(); },
-          testing::every_allocation),
+          50),
       100);
 }
 
@@ -55,15 +55,14 @@ TEST(AllocationFailure, ALapStartsOrThrows) {
   const LapSettings behind_another{.opponents = 1, .opponent_gap = 3, .tracking = TrackingMode::exact};
   for (const LapSettings& settings : {among_obstacles, behind_another}) {
     SCOPED_TRACE(std::to_string(settings.opponents) + " opponents");
-    EXPECT_GT(
-        testing::fail_every_allocation([&] { return start_of_lap(environment, configuration, settings); },
-                                       testing::every_allocation),
-        100);
+    EXPECT_GT(testing::fail_every_allocation(
+                  [&] { return start_of_lap(environment, configuration, settings); }, 50),
+              100);
   }
   const LapSettings behind_a_planner{
       .opponents = 1, .planning_opponents = 1, .opponent_gap = 3, .tracking = TrackingMode::exact};
   EXPECT_GT(testing::fail_every_allocation(
-                [&] { return start_of_lap(environment, configuration, behind_a_planner); }, 100),
+                [&] { return start_of_lap(environment, configuration, behind_a_planner); }, 50),
             100);
 }
 
@@ -80,7 +79,7 @@ TEST(AllocationFailure, ARaceAmongCarsStartsOrThrows) {
                       3, 0, [&](const GridRaceStep& step) { cancel = step.time > 0.03; }, &cancel);
                   return result.cars[0].last.x + result.cars[1].last.yaw;
                 },
-                testing::every_allocation),
+                50),
             100);
 }
 
@@ -91,8 +90,7 @@ TEST(AllocationFailure, ADriveInARoomStartsOrThrows) {
   driver.solver = options;
   const RoomScenario& scenario = room_scenario("oncoming-walker");
   EXPECT_GT(testing::fail_every_allocation(
-                [&] { return drive_room(scenario, driver, 3, {.timeout = 0.2}).trace.back().x; },
-                testing::every_allocation),
+                [&] { return drive_room(scenario, driver, 3, {.timeout = 0.2}).trace.back().x; }, 50),
             100);
 }
 

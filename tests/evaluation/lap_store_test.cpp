@@ -1,4 +1,4 @@
-// What is stored survives: damage shows, two stores do not mix, folders are synced.
+// Stored laps survive: damage shows, two stores do not mix, folders are synced.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>

@@ -1,4 +1,4 @@
-// What moves is known from scans alone: people are followed and predicted, and pallets are not.
+// MoverWatch knows what moves from scans alone: people are followed and predicted, and pallets are not.
 #include "evaluation/rooms/mover_watch.hpp"
 
 #include <gtest/gtest.h>

@@ -40,7 +40,7 @@ struct Drive {
   double weaving = 0;   ///< m to the left, then as far to the right, in 2 s
 };
 
-/// What is recorded of two cars that drive like this for so long (s), or until the lap times out then.
+/// Meters two cars that drive like this for a time (s), or until the lap times out then.
 OvertakingRecord record_of(const Drive& own, const Drive& other, double time, bool timed_out = false) {
   sim::World world({}, testing::ring_track());
   const auto at = [](const Drive& drive, double t) {

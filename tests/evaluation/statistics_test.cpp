@@ -86,7 +86,7 @@ TEST(Wilcoxon, ExactAndApproximate) {
 }
 
 TEST(PermutationTest, CountsArrangementsAtLeastAsExtreme) {
-  // Of the 20 ways to choose 3 of 6 two are as extreme as 1, 2, 3 beside 4, 5, 6.
+  // Two of the 20 ways to choose 3 of 6 are as extreme as 1, 2, 3 beside 4, 5, 6.
   const std::vector<double> low{1, 2, 3}, high{4, 5, 6};
   EXPECT_NEAR(permutation_difference_p(low, high), 0.1, 0.01);
   EXPECT_DOUBLE_EQ(permutation_difference_p(low, low), 1);

@@ -1,4 +1,4 @@
-// What happens when the system cannot start a thread.
+// Evaluations go on when the system cannot start a thread.
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -7,24 +7,12 @@
 #include "sim/rooms.hpp"
 #include "slalom/sim/placement.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
-#include "slalom/sim/script.hpp"
 #include "slalom/sim/world.hpp"
 
 namespace slalom::sim {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-TEST(CommandScript, HoldsEachCommandUntilTheNext) {
-  const Script script({{0.5, {0.1, 2}}, {1.0, {-0.1, 3}}});
-  EXPECT_EQ(script.command(0.2).speed, 0);
-  EXPECT_EQ(script.command(0.5).speed, 2);
-  EXPECT_EQ(script.command(0.99).steer, 0.1);
-  EXPECT_EQ(script.command(7).speed, 3);
-  EXPECT_THROW(Script(std::vector<Script::Line>{{1, {}}, {1, {}}}), std::invalid_argument);
-  EXPECT_THROW(Script(std::vector<Script::Line>{{nan, {}}}), std::invalid_argument);
-  EXPECT_THROW(Script(std::vector<Script::Line>{{0, {nan, 0}}}), std::invalid_argument);
-}
 
 TEST(PurePursuit, StaysNearThePathAndReturnsToIt) {
   std::vector<PathPoint> path;

@@ -7,7 +7,6 @@
 
 #include "sim/rooms.hpp"
 #include "slalom/sim/pure_pursuit.hpp"
-#include "slalom/sim/recording.hpp"
 #include "slalom/sim/world.hpp"
 #include "support/allocations.hpp"
 
@@ -114,25 +113,6 @@ TEST(WorldProperty, AnotherThreadMovesIdentically) {
   b.join();
   EXPECT_TRUE(same_bits(here, *first));
   EXPECT_TRUE(same_bits(here, *second));
-}
-
-TEST(WorldProperty, ReplayEqualsRecordingBitForBit) {
-  const auto track = testing::ring_track();
-  Recording recording{
-      .seed = 11, .cars = {two_cars.begin(), two_cars.end()}, .parked = {parked.begin(), parked.end()}};
-  World world({}, track);
-  recording.begin(world);
-  for (int k = 0; k < 700; ++k) recording.step(world, wander(k));
-  World again({}, track);
-  recording.replay(again);
-  EXPECT_TRUE(same_bits(world, again));
-  // And once more by way of text.
-  const Recording read = Recording::from_text(recording.to_text());
-  World third({}, track);
-  read.replay(third);
-  EXPECT_TRUE(same_bits(world, third));
-  EXPECT_THROW(Recording::from_text("slalom recording 1\ncommands 2 x"), std::invalid_argument);
-  EXPECT_THROW(Recording::from_text("something else"), std::invalid_argument);
 }
 
 TEST(WorldProperty, MirroredInputsGiveMirroredMotion) {

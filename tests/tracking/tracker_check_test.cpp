@@ -13,7 +13,7 @@
 #include "support/promise.hpp"
 #include "support/repetitions.hpp"
 
-/// What leaves a tracker and a predictor is finite, whatever enters them.
+/// Tracker and predictor return finite values, whatever enters them.
 namespace slalom::tracking {
 namespace {
 

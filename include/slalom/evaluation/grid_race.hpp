@@ -80,7 +80,7 @@ struct GridRaceResult {
   std::uint64_t seed = 0;            ///< seed of the random numbers
   bool cancelled = false;            ///< ended by the caller
   double time = 0;                   ///< s, when it ended
-  std::vector<CarResult> cars;       ///< in the order of the entries
+  std::vector<CarResult> cars;       ///< results in the order of the entries
   std::vector<int> standings;        ///< indices of the entries, the winner first
   std::vector<CarContact> contacts;  ///< in order of time
   std::vector<Overtake> overtakes;   ///< in order of time
@@ -89,7 +89,7 @@ struct GridRaceResult {
   bool has_winner() const noexcept;
 };
 
-/// A control step of a race, before the commands are applied. The references are valid until the callback
+/// A control step of a race, before the drivers decide. The references are valid until the callback
 /// returns.
 struct GridRaceStep {
   double time = 0;                ///< s
@@ -97,9 +97,9 @@ struct GridRaceStep {
   int contacts = 0;               ///< so far
   int driving = 0;                ///< cars on the track
   const sim::World& world;        ///< the simulated world; its cars are numbered by their place on the grid
-  std::span<const int> entry_of;  ///< for each car of the world, the index of its entry
+  std::span<const int> entry_of;  ///< index of the entry of each car of the world
 };
-/// Called in every control step.
+/// Function that is called in every control step.
 using GridRaceCallback = std::function<void(const GridRaceStep&)>;
 
 /// Races of several cars on a closed course, each with a planner, a LiDAR that sees the others, and, with

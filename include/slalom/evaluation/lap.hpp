@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "slalom/evaluation/environment.hpp"
-#include "slalom/evaluation/estimation_record.hpp"
 #include "slalom/evaluation/lap_settings.hpp"
 #include "slalom/evaluation/overtaking_record.hpp"
 #include "slalom/evaluation/sequence_cost.hpp"
@@ -54,8 +53,17 @@ struct ControlStep {
   /// Input of the planner: the other cars that are tracked, with their hypotheses, in the map frame.
   std::span<const maps::PredictedObstacle> others{};
 };
-/// Called in every control step.
+/// Function that is called in every control step.
 using ControlStepCallback = std::function<void(const ControlStep&)>;
+
+/// Errors of the planner's estimates of state and parameters in a lap; empty where tyres do not slip.
+struct EstimationRecord {
+  std::vector<float> yaw_rate_error;  ///< rad/s, of each control step, absolute
+  std::vector<float> slip_error;      ///< rad, the same
+  std::vector<float> speed_error;     ///< m/s, the same
+  vehicle::ParameterEstimate last;    ///< parameters of car and ground at the end of the lap
+  double informed_time = -1;          ///< s, when the confidence first reached 0.5; -1 if never
+};
 
 /// A lap that has ended. Costs and other means are over its control steps.
 struct LapResult {
@@ -63,7 +71,7 @@ struct LapResult {
   bool finished = false;          ///< whether the car reached the finish in time
   bool timeout = false;           ///< stopped after the timeout of the lap
   bool cancelled = false;         ///< stopped by the caller
-  int collisions = 0;             ///< as the protocol counts them
+  int collisions = 0;             ///< collisions as the protocol counts them
   int collided_bodies = 0;        ///< number of different bodies hit, all walls as one
   bool wall = false;              ///< whether the car hit a wall
   double time = 0;                ///< s, of the lap; if it was not finished, until it ended
@@ -92,10 +100,10 @@ struct LapResult {
   int impassable = 0;                       ///< number of obstacles in impassable_obstacles
   std::vector<float> solve_ms;              ///< wall-clock time of each solve
   std::vector<float> tick_ms;               ///< wall-clock time of each planner update
-  LocalisationRecord localisation;          ///< with LapSettings::hardware
-  EstimationRecord estimation;              ///< with vehicle models whose tyres slip
-  TrackingRecord tracking;                  ///< with LapSettings::tracking
-  OvertakingRecord overtaking;              ///< with LapSettings::opponents
+  LocalisationRecord localisation;          ///< figures of the localiser, with LapSettings::hardware
+  EstimationRecord estimation;  ///< figures of the observers, with vehicle models whose tyres slip
+  TrackingRecord tracking;      ///< figures of the tracker, with LapSettings::tracking
+  OvertakingRecord overtaking;  ///< figures of encounters, with LapSettings::opponents
 };
 
 /// Describes a lap: where it is driven, by whom and under which conditions. All random numbers of a lap
@@ -142,11 +150,11 @@ class LapDrive {
   /// std::invalid_argument if an option is out of range or the control period differs.
   void change_driver(const Driver& driver);
 
-  const LapSetup& setup() const noexcept;  ///< with the present driver
+  const LapSetup& setup() const noexcept;  ///< setup with the present driver
   int steps() const noexcept;              ///< control steps so far
   sim::World& world() noexcept;            ///< may be changed between steps
   const sim::World& world() const noexcept;
-  int collisions() const noexcept;  ///< so far, as the protocol counts them
+  int collisions() const noexcept;  ///< collisions so far, as the protocol counts them
   /// The first collision with each body so far, in order of time.
   std::span<const Collision> first_collisions() const noexcept;
 

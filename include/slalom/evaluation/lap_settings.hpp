@@ -100,7 +100,7 @@ bool has_planner(const LapSettings& settings, int index) noexcept;
 /// The sensors and actuators of a real car that a lap has, if it has them: `hardware`, or with `localised`
 /// HardwareConditions::sensors.
 std::optional<HardwareConditions> hardware_of(const LapSettings& settings);
-/// How opponent `index` drives if it has no planner.
+/// The driver of opponent `index` if it has no planner.
 sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept;
 
 /// Sets the option that `key` names, for instance "world.friction", from text. Returns false if `key` does

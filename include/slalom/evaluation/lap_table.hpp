@@ -18,7 +18,7 @@ struct Experiment {
   std::string method;                                    ///< name of the method
   std::vector<std::pair<std::string, std::string>> set;  ///< key (section.option) and value, as text
   std::string scenario;                                  ///< "pt" (no obstacles) or "oa"
-  int obstacles = 0;                                     ///< per lap
+  int obstacles = 0;                                     ///< parked cars per lap
   int laps = 0;                                          ///< number
 
   /// The options that differ, for instance "svg_mppi.variance=0.05 vehicle.dead_time=0"; empty without any.
@@ -37,9 +37,9 @@ struct Experiment {
 /// The figures of TrackingRecord for a lap with `world.tracking`.
 struct TrackingFigures {
   int in_view = 0;        ///< bodies in view, summed over control steps
-  int detected = 0;       ///< those of them that were detected
+  int detected = 0;       ///< detected ones of these
   int long_in_view = 0;   ///< bodies that have been in view for 0.2 s without a break
-  int long_detected = 0;  ///< those of them that were detected
+  int long_detected = 0;  ///< detected ones of these
   int false_objects = 0;  ///< objects that were reported as seen where no body is
   double position_error = 0, speed_error = 0, yaw_error = 0;  ///< m, m/s, rad
   double update_p99 = 0;                                      ///< ms, wall-clock; column `wall_tracking_p99`
@@ -84,8 +84,8 @@ struct LapRow {
   std::string contact_points;  ///< "x:y" in m, the car's position at its first collision with each body
   double solve_p50 = 0, solve_p99 = 0;  ///< ms
   double wall_time = 0;                 ///< s, to compute the lap
-  TrackingFigures tracking;             ///< in tables of evaluations with `world.tracking` only
-  OvertakingFigures overtaking;         ///< in tables of evaluations with `world.opponents` only
+  TrackingFigures tracking;             ///< columns only in evaluations with `world.tracking`
+  OvertakingFigures overtaking;         ///< columns only in evaluations with `world.opponents`
 
   /// MS = state_cost + collision_cost
   double mean_sequence_cost() const { return state_cost + collision_cost; }

@@ -20,12 +20,12 @@ struct Encounter {
   int opponent = 0;                       ///< from 0, in the order of LapSettings::opponent_speed
   double time = 0;                        ///< s, when it was met
   double duration = 0;                    ///< s, until it ended
-  EncounterEnd end = EncounterEnd::open;  ///< how it ended
-  int contacts = 0;                       ///< with this opponent while it lasted
-  int caused = 0;                         ///< those of them at which the car is at fault
-  /// How often the car has moved from one side of the opponent to the other while it was between 4 m behind
-  /// and 1 m ahead. It is on a side if it is a car's width or more to the left or right, from middle to
-  /// middle; between, it is still on the side on which it was.
+  EncounterEnd end = EncounterEnd::open;  ///< reason why it ended
+  int contacts = 0;                       ///< contacts with this opponent while it lasted
+  int caused = 0;                         ///< contacts at which the car is at fault
+  /// The number of times that the car has moved from one side of the opponent to the other while it was
+  /// between 4 m behind and 1 m ahead. It is on a side if it is a car's width or more to the left or right,
+  /// from middle to middle; between, it is still on the side on which it was.
   int side_changes = 0;
 };
 
@@ -35,9 +35,9 @@ struct Encounter {
 /// Then it is the car that moves towards the other faster, across the course. Both are judged 0.05 to 0.1 s
 /// before the contact.
 struct OvertakingRecord {
-  std::vector<Encounter> encounters;  ///< in order of time
-  int contacts = 0;                   ///< with opponents, in encounters or not
-  int caused = 0;                     ///< those of them at which the car is at fault
+  std::vector<Encounter> encounters;  ///< encounters in order of time
+  int contacts = 0;                   ///< contacts with opponents, in encounters or not
+  int caused = 0;                     ///< contacts at which the car is at fault
 };
 
 }  // namespace slalom::evaluation

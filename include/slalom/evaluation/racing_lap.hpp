@@ -21,7 +21,7 @@ struct RacingSample {
   double lateral = 0;       ///< m/s^2, to its left
 };
 
-/// How a lap ended.
+/// The end of a lap against the clock.
 enum class RacingEnd {
   completed,  ///< the car crossed the line
   collision,  ///< it hit a wall or another body

@@ -16,7 +16,7 @@ namespace slalom::evaluation {
 /// configuration `published` it equals the planner's own costs.
 class SequenceCostMeter {
  public:
-  static constexpr int states = 15;          ///< that a cost is summed over
+  static constexpr int states = 15;          ///< states that a cost is summed over
   static constexpr double time_step = 0.05;  ///< s
 
   /// A cost and its two terms.

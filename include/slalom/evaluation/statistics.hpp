@@ -22,11 +22,11 @@ Interval poisson_interval(std::int64_t count);
 
 double mean(std::span<const double> values);  ///< NaN without values
 
-/// A percentile of ascending values by the nearest rank: the smallest of them that at least a share (0 to 1)
-/// of all do not exceed. NaN without values.
-double percentile(std::span<const double> sorted, double share);
+/// A percentile of values in any order by the nearest rank: the smallest of them that at least a share (0 to
+/// 1) of all do not exceed. NaN without values.
+double percentile(std::span<const double> values, double share);
 /// The same.
-double percentile(std::span<const float> sorted, double share);
+double percentile(std::span<const float> values, double share);
 
 /// Percentile bootstrap of the mean (Efron & Tibshirani 1993, chapter 13). NaN without values or resamples.
 Interval bootstrap_mean(std::span<const double> values, std::uint64_t seed = 1, int resamples = 10000);

@@ -8,9 +8,9 @@ namespace slalom::evaluation {
 /// given what its objects will do.
 enum class TrackingMode {
   off,
-  exact,      ///< with the map and the true pose
-  localised,  ///< with the map and the pose of a localiser, which has scans and wheel odometry
-  mapless,    ///< without the map, with the pose of wheel odometry and gyro
+  exact,      ///< tracker with the map and the true pose
+  localised,  ///< tracker with the map and the pose of a localiser, which has scans and wheel odometry
+  mapless,    ///< tracker without the map, with the pose of wheel odometry and gyro
 };
 inline const char* const* enum_names(TrackingMode) {
   static constexpr const char* names[] = {"off", "exact", "localised", "mapless", nullptr};
@@ -24,9 +24,9 @@ inline const char* const* enum_names(TrackingMode) {
 /// localisation, but not the drift of the wheel odometry.
 struct TrackingRecord {
   int in_view = 0;               ///< bodies in view, summed over control steps
-  int detected = 0;              ///< those of them that were detected
+  int detected = 0;              ///< detected ones of these
   int long_in_view = 0;          ///< bodies that have been in view for 0.2 s without a break
-  int long_detected = 0;         ///< those of them that were detected
+  int long_detected = 0;         ///< detected ones of these
   int false_objects = 0;         ///< objects that were reported as seen where no body is
   double position_error = 0;     ///< m, root mean square over `detected`
   double speed_error = 0;        ///< m/s, the same

@@ -38,7 +38,7 @@ std::string option_text(const vehicle::Configuration& configuration, const std::
 
 /// A candidate of the search.
 struct Candidate {
-  std::vector<double> place;                             ///< in the unit cube
+  std::vector<double> place;                             ///< point of the unit cube
   std::vector<std::pair<std::string, std::string>> set;  ///< keys and values
 };
 
@@ -50,8 +50,8 @@ std::vector<Candidate> design(const std::vector<SearchDimension>& dimensions,
 
 /// A step of successive halving.
 struct Rung {
-  int candidates = 0;  ///< that are compared
-  int laps = 0;        ///< that each of them has driven at the end of the step
+  int candidates = 0;  ///< candidates that are compared
+  int laps = 0;        ///< laps that each has driven at the end of the step
 };
 /// The steps of a round: half of the candidates continue with twice the laps, until one is left.
 std::vector<Rung> halving(int candidates, int laps);

@@ -24,7 +24,6 @@ class CollisionLog {
   std::span<const int> bodies() const noexcept {
     return bodies_;
   }  ///< bodies with which it collided, ascending
-  int collision_steps() const noexcept { return collision_steps_; }  ///< steps with any collision
   /// Number of different patterns of the fixed bodies' collision flags seen while the car collided, as the
   /// evaluation of K. Honda et al. (proj-svg_mppi) counts them. A wall alone is the pattern of no flag, two
   /// bodies at once are a pattern of their own.
@@ -34,7 +33,6 @@ class CollisionLog {
   std::vector<int> bodies_;
   std::vector<std::vector<std::uint8_t>> patterns_;
   bool wall_ = false;
-  int collision_steps_ = 0;
 };
 
 }  // namespace slalom::sim

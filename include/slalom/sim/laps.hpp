@@ -67,7 +67,6 @@ class LapTimer {
   int laps() const noexcept { return laps_; }             ///< whole laps driven
   double progress() const noexcept { return progress_; }  ///< m since the start, backwards counts down
   double last_lap_time() const noexcept { return last_lap_time_; }  ///< s; 0 before the first is complete
-  double best_lap_time() const noexcept { return best_lap_time_; }  ///< s; 0 before the first is complete
   double lap_start_time() const noexcept { return lap_start_; }     ///< s, when the present lap began
   /// Times (s) from the lap's start to the end of each sector, of the present lap as far as it has come and
   /// of the last one beyond that.
@@ -81,7 +80,6 @@ class LapTimer {
   double time_ = 0;
   double lap_start_ = 0;
   double last_lap_time_ = 0;
-  double best_lap_time_ = 0;
   int laps_ = 0;
   int sectors_done_ = 0;
   std::vector<double> splits_;

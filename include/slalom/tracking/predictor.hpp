@@ -51,7 +51,7 @@ class Predictor {
 
   /// Predictions of the objects that move, as they are at `stamp` (s), in their frame, which is that of the
   /// course. An object moves if its speed is at least `min_speed` and above three of its standard deviations.
-  /// Of more than `max_objects` those that come later are left out, and so are objects with numbers that are
+  /// Objects beyond the first `max_objects` are left out, and so are objects with numbers that are
   /// not finite or absurdly large. Valid until the next call.
   std::span<const maps::PredictedObstacle> update(std::span<const TrackedObject> objects,
                                                   double stamp) noexcept;

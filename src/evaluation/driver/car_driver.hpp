@@ -65,7 +65,7 @@ class PlanningDriver {
   vehicle::Planner planner_;
   std::optional<HardwareModel> hardware_;
   std::optional<TrackingMeter> tracking_;
-  std::optional<tracking::Predictor> predictor_;  ///< with `tracking_`
+  std::optional<tracking::Predictor> predictor_;  ///< predictor of what `tracking_` sees
   Command applied_;                               ///< the command that the car executes now
   /// Commands that were sent but not yet applied, each with the step of the world in which it takes effect.
   std::vector<std::pair<std::int64_t, Command>> pending_;
@@ -81,7 +81,7 @@ class CarDriver {
   PlannerUpdate decide(const sim::World& world);
   /// The command for the next step of the world.
   Command command(const sim::World& world);
-  /// To be called after each step of the world.
+  /// Moves the sensors after a step of the world.
   void moved(const sim::World& world) noexcept;
   /// The driver with a planner, which this one must be.
   PlanningDriver& planning() noexcept { return std::get<PlanningDriver>(law_); }

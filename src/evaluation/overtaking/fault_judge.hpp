@@ -32,7 +32,7 @@ class FaultJudge {
   };
   static Place place(const sim::World& world, std::size_t car);
 
-  std::vector<Place> before_, long_before_;  ///< per car: 0 to 0.05 s ago, and 0.05 s before that
+  std::vector<Place> before_, long_before_;  ///< places of each car: 0 to 0.05 s ago, and 0.05 s before that
   double snapshot_ = 0;                      ///< s, when `before_` was
   double length_;                            ///< m, of the course
   double wheelbase_;                         ///< m

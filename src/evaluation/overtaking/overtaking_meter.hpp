@@ -25,7 +25,7 @@ class OvertakingMeter {
   struct Opponent {
     double start_gap = 0;     ///< m ahead of the first car at the start
     double collided = -1e9;   ///< s, when the cars last collided
-    int encounter = -1;       ///< that is not over, -1 for none
+    int encounter = -1;       ///< index of the encounter that is not over, -1 for none
     double met_gap = 0;       ///< m, whole turns between the cars when they met
     double met_progress = 0;  ///< m, of the first car
     int side = 0;             ///< side of it on which the first car was last: 1 left, -1 right, 0 none yet

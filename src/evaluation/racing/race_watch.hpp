@@ -24,8 +24,12 @@ class RaceWatch {
   }
   /// s, when a car last collided with another.
   double last_collision(std::size_t car) const noexcept;
-  const std::vector<CarContact>& contacts() const noexcept { return contacts_; }  ///< in order of time
-  const std::vector<Overtake>& overtakes() const noexcept { return overtakes_; }  ///< in order of time
+  const std::vector<CarContact>& contacts() const noexcept {
+    return contacts_;
+  }  ///< contacts in order of time
+  const std::vector<Overtake>& overtakes() const noexcept {
+    return overtakes_;
+  }  ///< overtakes in order of time
 
  private:
   /// The state of two cars.

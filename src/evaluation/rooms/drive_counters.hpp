@@ -65,11 +65,7 @@ class Stopwatch {
     return result;
   }
   /// s; 0 without times. evaluation::percentile has the rule.
-  double percentile(double share) const {
-    std::vector<double> sorted = times_;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted.empty() ? 0 : evaluation::percentile(sorted, share);
-  }
+  double percentile(double share) const { return times_.empty() ? 0 : evaluation::percentile(times_, share); }
 
  private:
   std::vector<double> times_;

@@ -53,10 +53,10 @@ class TrackingMeter {
   tracking::ObjectTracker tracker_;
 
   std::vector<float> ranges_, body_ranges_;            ///< m, without noise: of everything, and of one body
-  std::vector<std::uint8_t> in_view_;                  ///< per body
+  std::vector<std::uint8_t> in_view_;                  ///< flag per body
   std::vector<double> in_view_since_;                  ///< s, per body
-  std::vector<const tracking::TrackedObject*> pairs_;  ///< per body: its object, null for none
-  std::vector<std::uint8_t> taken_;                    ///< per object
+  std::vector<const tracking::TrackedObject*> pairs_;  ///< object of each body, null for none
+  std::vector<std::uint8_t> taken_;                    ///< flag per object
   std::vector<int> false_ids_;                         ///< ascending
   TrackingRecord record_;                              ///< errors as sums of squares
 };

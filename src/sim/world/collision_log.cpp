@@ -8,13 +8,11 @@ void CollisionLog::reset() noexcept {
   bodies_.clear();
   patterns_.clear();
   wall_ = false;
-  collision_steps_ = 0;
 }
 
 void CollisionLog::update(const World& world, std::size_t car) {
   const Observation seen = world.observe(car);
   if (!seen.collides()) return;
-  ++collision_steps_;
   wall_ = wall_ || seen.wall;
   for (const int body : seen.colliding) {
     const auto at = std::lower_bound(bodies_.begin(), bodies_.end(), body);

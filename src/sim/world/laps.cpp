@@ -79,7 +79,7 @@ void LapTimer::reset(const LapPath& path, const maps::Point& position, double ti
   place_ = path.project(position);
   progress_ = 0;
   time_ = lap_start_ = time;
-  last_lap_time_ = best_lap_time_ = 0;
+  last_lap_time_ = 0;
   laps_ = sectors_done_ = 0;
   std::fill(splits_.begin(), splits_.end(), 0.0);
 }
@@ -102,7 +102,6 @@ void LapTimer::update(const LapPath& path, const maps::Point& position, double t
     splits_[static_cast<std::size_t>(sectors_done_)] = crossed - lap_start_;
     if (++sectors_done_ < sectors) continue;
     last_lap_time_ = crossed - lap_start_;
-    best_lap_time_ = laps_ == 0 ? last_lap_time_ : std::min(best_lap_time_, last_lap_time_);
     lap_start_ = crossed;
     sectors_done_ = 0;
     ++laps_;

@@ -9,7 +9,7 @@
 
 namespace slalom::evaluation {
 
-/// How a drive in a room ended.
+/// The end of a drive in a room.
 enum class RoomOutcome {
   reached,    ///< the robot stands at the goal
   blocked,    ///< it said that there is no way, and stands; if the scenario has one, the drive goes on
@@ -23,10 +23,10 @@ constexpr const char* name(RoomOutcome outcome) noexcept {
   return names[static_cast<int>(outcome)];
 }
 
-/// Who drives.
+/// The driver of a robot.
 struct RoomDriver {
   navigation::NavigatorOptions navigator{};  ///< its base is replaced by the scenario's
-  /// For that base. It has an option `seed`, as every registered method does, which is replaced.
+  /// The method, for that base. Its option `seed` is replaced.
   SolverOptions solver = navigation::svg_mppi_options({});
   bool predict_movers =
       true;  ///< follow and predict moving objects; otherwise they are obstacles of the scans

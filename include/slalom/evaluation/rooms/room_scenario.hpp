@@ -30,7 +30,7 @@ struct RoomScenario {
 /// The scenarios.
 std::span<const RoomScenario> room_scenarios();
 
-/// The one of this name. Throws std::invalid_argument that lists the names if there is none.
+/// The scenario of this name. Throws std::invalid_argument that lists the names if there is none.
 const RoomScenario& room_scenario(std::string_view name);
 
 }  // namespace slalom::evaluation
