@@ -1,53 +1,75 @@
 import type { Past } from "./past";
-import type { LapRow, State } from "./protocol";
-import type { Pose } from "./scene/shapes";
+import type { LapRow, Pose, State } from "./protocol";
 
-/** A lap by its control steps: the share of the way round (0 to 1), the time since its start (s), and the pose. */
-interface Driven { row: LapRow; progress: number[]; times: number[]; poses: Pose[] }
+/** The control steps of a lap: share of the way round (0 to 1), time since its start (s), and pose. */
+interface Driven {
+  row: LapRow;
+  progress: number[];
+  times: number[];
+  poses: Pose[];
+}
 
 const atEnds = 0.05; // share of the way within which the steps of a whole lap begin and end
 
 const isSame = (a: LapRow, b: LapRow) => a.lap === b.lap && a.time === b.time;
 
-/** The best lap of the car without a collision: a flying one if there is any, since a standing start takes longer. */
+/** The best lap without a collision: a flying one if there is any, since a standing start takes longer. */
 function bestOf(laps: LapRow[]): LapRow | undefined {
-  const own = laps.filter((lap) => !lap.ghost && lap.contacts === 0), flying = own.filter((lap) => lap.lap > 1);
-  return (flying.length ? flying : own).reduce<LapRow | undefined>((best, lap) => (best && best.time <= lap.time ? best : lap), undefined);
+  const own = laps.filter((lap) => !lap.ghost && lap.contacts === 0);
+  const flying = own.filter((lap) => lap.lap > 1);
+  return (flying.length ? flying : own).reduce<LapRow | undefined>(
+    (best, lap) => (best && best.time <= lap.time ? best : lap),
+    undefined,
+  );
 }
 
 /** Between two values of rising `keys`: the index before `key` and the share of the way to the next. */
 function between(keys: number[], key: number): [number, number] {
-  const after = Math.max(1, keys.findIndex((each) => each >= key));
+  const after = Math.max(
+    1,
+    keys.findIndex((each) => each >= key),
+  );
   if (key > keys.at(-1)!) return [keys.length - 2, 1];
-  return [after - 1, Math.min(1, Math.max(0, (key - keys[after - 1]) / (keys[after] - keys[after - 1] || 1)))];
+  return [
+    after - 1,
+    Math.min(1, Math.max(0, (key - keys[after - 1]) / (keys[after] - keys[after - 1] || 1))),
+  ];
 }
 
-/** The best lap of the drive, once the page knows all its steps: how far behind it the car is, and where it would be. */
+/** The best lap of the drive, once the page knows all its steps, to compare the car with. */
 export class BestLap {
   private lap?: Driven;
 
   /** The number of the lap that is compared with. */
-  get number() { return this.lap?.row.lap; }
-  forget() { this.lap = undefined; }
+  get number() {
+    return this.lap?.row.lap;
+  }
+  forget() {
+    this.lap = undefined;
+  }
 
   /** To be called when laps or steps may have become known, or unknown since the drive went back. */
   update(state: State, past: Past, scalars: string[]) {
     if (this.lap && !state.laps.some((row) => isSame(row, this.lap!.row))) this.lap = undefined;
     const best = bestOf(state.laps);
-    if (best && !(this.lap && isSame(best, this.lap.row))) this.lap = collected(best, past, scalars) ?? this.lap;
+    if (best && !(this.lap && isSame(best, this.lap.row)))
+      this.lap = collected(best, past, scalars) ?? this.lap;
   }
 
-  /** s, by which the car is behind (above 0) at this share of the way, so long after the start of its lap. */
+  /** The time (s) by which a car is behind at this share of the way, `time` after the start of its lap. */
   behind(progress: number, time: number): number | undefined {
     if (!this.lap) return undefined;
-    const [i, share] = between(this.lap.progress, progress), { times } = this.lap;
+    const [i, share] = between(this.lap.progress, progress);
+    const { times } = this.lap;
     return time - (times[i] + share * (times[i + 1] - times[i]));
   }
 
-  /** Where the best lap was so long (s) after its start. */
+  /** The pose of the best lap at a time (s) after its start. */
   at(time: number): Pose | undefined {
     if (!this.lap) return undefined;
-    const [i, share] = between(this.lap.times, time), a = this.lap.poses[i], b = this.lap.poses[i + 1];
+    const [i, share] = between(this.lap.times, time);
+    const a = this.lap.poses[i];
+    const b = this.lap.poses[i + 1];
     const turn = Math.atan2(Math.sin(b.yaw - a.yaw), Math.cos(b.yaw - a.yaw));
     return { x: a.x + share * (b.x - a.x), y: a.y + share * (b.y - a.y), yaw: a.yaw + share * turn };
   }
@@ -55,7 +77,9 @@ export class BestLap {
 
 /** The steps of a lap, or undefined where one of them is not known. */
 function collected(row: LapRow, past: Past, scalars: string[]): Driven | undefined {
-  const [lap, progress, time, x, y, yaw] = ["lap", "progress", "lap_time", "x", "y", "yaw"].map((name) => scalars.indexOf(name));
+  const [lap, progress, time, x, y, yaw] = ["lap", "progress", "lap_time", "x", "y", "yaw"].map((name) =>
+    scalars.indexOf(name),
+  );
   const driven: Driven = { row, progress: [], times: [], poses: [] };
   let isWithin = false;
   for (let position = past.oldest; position <= past.newest; ++position) {
@@ -72,5 +96,7 @@ function collected(row: LapRow, past: Past, scalars: string[]): Driven | undefin
     driven.times.push(step[time]);
     driven.poses.push({ x: step[x], y: step[y], yaw: step[yaw] });
   }
-  return driven.times.length > 1 && driven.progress[0] < atEnds && driven.progress.at(-1)! > 1 - atEnds ? driven : undefined;
+  return driven.times.length > 1 && driven.progress[0] < atEnds && driven.progress.at(-1)! > 1 - atEnds
+    ? driven
+    : undefined;
 }

@@ -1,5 +1,6 @@
 import type { Handlers, Link } from "./link";
-import { decode, type Text } from "./protocol";
+import { decode } from "./decode";
+import type { Text } from "./protocol";
 
 /** Keeps a WebSocket open: reconnects by itself, with a wait that grows to three seconds. */
 export class Connection implements Link {
@@ -10,9 +11,13 @@ export class Connection implements Link {
   private arrived = 0; // frames of this socket
   private acknowledged = 0; // of these
 
-  constructor(private readonly handlers: Handlers) { this.open(); }
+  constructor(private readonly handlers: Handlers) {
+    this.open();
+  }
 
-  get connected() { return this.socket?.readyState === WebSocket.OPEN; }
+  get connected() {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
 
   send(command: Record<string, unknown>) {
     if (this.connected) this.socket!.send(JSON.stringify(command));
@@ -21,14 +26,18 @@ export class Connection implements Link {
   ask(command: Record<string, unknown>): Promise<void> {
     if (!this.connected) return Promise.reject(new Error("There is no connection to the server."));
     const id = ++this.asked;
-    return new Promise((done, fail) => { this.questions.set(id, { done, fail }); this.send({ ...command, id }); });
+    return new Promise((done, fail) => {
+      this.questions.set(id, { done, fail });
+      this.send({ ...command, id });
+    });
   }
   private asked = 0;
   private readonly questions = new Map<number, { done(): void; fail(error: Error): void }>();
 
   /** Whether a message answers a command; the asker deals with it then. */
   private answers(message: Text) {
-    const question = message.type === "done" || message.type === "error" ? this.questions.get(message.id ?? 0) : undefined;
+    const question =
+      message.type === "done" || message.type === "error" ? this.questions.get(message.id ?? 0) : undefined;
     if (!question) return false;
     this.questions.delete((message as { id: number }).id);
     if (message.type === "error") question.fail(new Error(message.message));
@@ -36,7 +45,9 @@ export class Connection implements Link {
     return true;
   }
 
-  get waiting() { return this.arrived - this.acknowledged; }
+  get waiting() {
+    return this.arrived - this.acknowledged;
+  }
 
   /** Acknowledges the frames: the server has at most two under way that are not acknowledged. */
   drawn() {
@@ -59,7 +70,11 @@ export class Connection implements Link {
     const socket = new WebSocket(address);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
-    socket.onopen = () => { this.attempts = 0; this.arrived = this.acknowledged = 0; this.handlers.status(true, 0); };
+    socket.onopen = () => {
+      this.attempts = 0;
+      this.arrived = this.acknowledged = 0;
+      this.handlers.status(true, 0);
+    };
     socket.onmessage = (event) => this.got(event.data);
     socket.onclose = () => {
       this.attempts += 1;
@@ -81,6 +96,10 @@ export class Connection implements Link {
     if (message.file) this.handlers.file(message.file.name, message.file.content);
     else if (message.past) this.handlers.past(message.past);
     else if (message.scene) this.handlers.scene(message.scene);
-    else if (message.frame) { this.received += 1; this.arrived += 1; this.handlers.frame(message.frame); }
+    else if (message.frame) {
+      this.received += 1;
+      this.arrived += 1;
+      this.handlers.frame(message.frame);
+    }
   }
 }

@@ -1,7 +1,7 @@
+import { get } from "./dom";
 import type { Hello, State } from "./protocol";
 import { toast } from "./toast";
 
-const get = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
 const numbers = ["obstacles", "opponents"];
 
 function fill(id: string, names: string[], none = "") {
@@ -15,18 +15,33 @@ function choose(id: string, value: string) {
 
 /** The fields of the scenario, in the header and in its sheet. */
 export class ScenarioFields {
-  constructor(send: (command: Record<string, unknown>) => void, ask: (command: Record<string, unknown>) => Promise<void>) {
+  constructor(
+    send: (command: Record<string, unknown>) => void,
+    ask: (command: Record<string, unknown>) => Promise<void>,
+  ) {
     // A field keeps what was typed while it is not valid.
     for (const key of ["course", "config", "seed", ...numbers]) {
-      const field = get<HTMLInputElement>(key), mark = (bad: boolean) => field.setAttribute("aria-invalid", String(bad));
-      field.onchange = () => void ask({ do: "scenario", [key]: numbers.includes(key) ? Number(field.value) : field.value }).then(() => mark(false), (error: Error) => { mark(true); toast(error.message, true); });
+      const field = get<HTMLInputElement>(key);
+      const mark = (isBad: boolean) => field.setAttribute("aria-invalid", String(isBad));
+      field.onchange = async () => {
+        const value = numbers.includes(key) ? Number(field.value) : field.value;
+        try {
+          await ask({ do: "scenario", [key]: value });
+          mark(false);
+        } catch (error) {
+          mark(true);
+          toast((error as Error).message, true);
+        }
+      };
     }
-    for (const key of ["method", "ghost"]) get(key).onchange = () => send({ do: key, method: get<HTMLSelectElement>(key).value });
+    for (const key of ["method", "ghost"])
+      get(key).onchange = () => send({ do: key, method: get<HTMLSelectElement>(key).value });
     get("rate").onchange = () => send({ do: "rate", rate: Number(get<HTMLSelectElement>("rate").value) });
-    get("real-time").onchange = () => send({ do: "real_time", on: get<HTMLInputElement>("real-time").checked });
+    get("real-time").onchange = () =>
+      send({ do: "real_time", on: get<HTMLInputElement>("real-time").checked });
   }
 
-  /** Fills in what can be chosen. */
+  /** Fills in the choices. */
   offer(hello: Hello) {
     fill("course", hello.courses);
     fill("method", hello.methods);
@@ -36,9 +51,9 @@ export class ScenarioFields {
 
   show(state: State) {
     for (const key of ["course", "method", "config", "ghost"] as const) choose(key, state[key]);
-    for (const [id, value] of [["seed", state.seed], ["obstacles", String(state.obstacles)], ["opponents", String(state.opponents)]]) {
-      const input = get<HTMLInputElement>(id);
-      if (document.activeElement !== input && input.ariaInvalid !== "true") input.value = value;
+    for (const key of ["seed", "obstacles", "opponents"] as const) {
+      const input = get<HTMLInputElement>(key);
+      if (document.activeElement !== input && input.ariaInvalid !== "true") input.value = String(state[key]);
     }
     get<HTMLSelectElement>("rate").value = String(state.rate);
     get<HTMLInputElement>("real-time").checked = state.real_time;

@@ -1,27 +1,36 @@
+import { all, get } from "./dom";
 import { modesOf, verdict } from "./modes";
 import type { Frame, Hello } from "./protocol";
-
-const get = (id: string) => document.getElementById(id)!;
+import type { Camera } from "./scene/camera";
 
 /** Layers that the introduction does not explain. */
 const hidden = ["spread", "nominal"];
 
-/** The first thing that a new user sees: two controllers before the same obstacle, and what each of them does. */
+/** The first thing that a new user sees: two controllers before the same obstacle. */
 export class Introduction {
   private readonly box = get("introduction");
   private hasJudged = false; // a caption has said what a controller does
   private tick = 0;
 
   /** `again` drives from the start; `close` shows the ordinary view. */
-  constructor(again: () => void, private readonly close: () => void) {
+  constructor(
+    again: () => void,
+    private readonly close: () => void,
+  ) {
     get("introduction-again").onclick = again;
     get("introduction-close").onclick = () => this.end();
   }
 
-  get isOpen() { return !this.box.hidden; }
-  open() {
+  get isOpen() {
+    return !this.box.hidden;
+  }
+  /** Opens, with a camera that turns with the car, if motion is welcome, and sees about 7 m. */
+  open(camera: Camera) {
     this.box.hidden = false;
     this.setLayers(false);
+    get<HTMLDetailsElement>("layers").open = false;
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) camera.follow = "heading";
+    camera.zoom = Math.max(30, camera.room / 7);
   }
   end() {
     if (!this.isOpen) return;
@@ -30,23 +39,33 @@ export class Introduction {
     this.close();
   }
   private setLayers(on: boolean) {
-    for (const box of document.querySelectorAll<HTMLInputElement>("[data-layer]")) if (hidden.includes(box.dataset.layer!) && box.checked !== on) box.click();
+    for (const box of all<HTMLInputElement>("[data-layer]"))
+      if (hidden.includes(box.dataset.layer!) && box.checked !== on) box.click();
   }
 
   /** Says what is to be seen in a frame. */
   show(frame: Frame, hello: Hello) {
     if (!this.isOpen || !frame.ghostFrame) return;
-    const both = [frame, frame.ghostFrame], modes = both.map(modesOf);
-    const scalar = (of: Frame, name: string) => of.scalars[hello.scalars.indexOf(name)], method = (of: Frame) => hello.methods[scalar(of, "method")];
+    const both = [frame, frame.ghostFrame];
+    const modes = both.map(modesOf);
+    const scalar = (of: Frame, name: string) => of.scalars[hello.scalars.indexOf(name)];
+    const method = (of: Frame) => hello.methods[scalar(of, "method")];
     if (scalar(frame, "tick") < this.tick) this.hasJudged = false;
     this.tick = scalar(frame, "tick");
-    const isPassing = modes.some(Boolean), collisions = (of: Frame) => { const n = scalar(of, "contacts"); return n === 0 ? "without a collision" : n === 1 ? "with 1 collision" : `with ${n} collisions`; };
     this.hasJudged ||= modes.some((each) => verdict(each) !== undefined);
-    const text = isPassing
-      ? "Slow motion. Lines are samples: the wider and the more opaque, the more weight. The line with dots is the plan."
+    const outcome = (of: Frame) => `${method(of)} ${collisions(scalar(of, "contacts"))}`;
+    const passing =
+      "Lines are samples: the wider and the more opaque, the more weight. The line with dots is the plan.";
+    const drivers = both.map(method).join(" and ");
+    const text = modes.some(Boolean)
+      ? `Slow motion. ${passing}`
       : this.hasJudged
-        ? `Passed: ${both.map((of) => `${method(of)} ${collisions(of)}`).join(", ")}. Now both drive on.`
-        : `${both.map(method).join(" and ")} drive the same car with the same seed. A parked car stands in the middle of the road.`;
+        ? `Passed: ${both.map(outcome).join(", ")}. Now both drive on.`
+        : `${drivers} drive the same car with the same seed. A parked car stands in the middle of the road.`;
     if (get("introduction-text").textContent !== text) get("introduction-text").textContent = text;
   }
+}
+
+function collisions(n: number): string {
+  return n === 0 ? "without a collision" : n === 1 ? "with 1 collision" : `with ${n} collisions`;
 }

@@ -1,10 +1,9 @@
+import { get } from "./dom";
+
 /** Controls that use keys themselves. */
 const controls = "button, input, select, textarea, summary, a[href], [role=tab], [role=tabpanel]";
 
-/**
- * Calls the function of a key while neither a control nor a dialog has the focus. Ctrl Z and Ctrl Y call `undo` and
- * `redo`.
- */
+/** Calls the function of a key, undo (Ctrl Z) or redo (Ctrl Y) unless a control or dialog has the focus. */
 export function attachKeys(keys: Record<string, () => void>, undo: () => void, redo: () => void) {
   addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;
@@ -25,19 +24,38 @@ export function returnFocus(scene: HTMLElement) {
   const used = (event: Event) => {
     const target = event.target as HTMLElement;
     const keeps = target.closest("dialog, .menu > div, [aria-expanded], [type=text], [type=number]");
-    const focused = document.activeElement, isFree = focused === document.body || target.closest("button, summary, label, select, input")?.contains(focused);
-    if (byPointer && !keeps && isFree && !document.querySelector("dialog[open]")) scene.focus({ preventScroll: true });
+    const focused = document.activeElement;
+    const isOwn = target.closest("button, summary, label, select, input")?.contains(focused);
+    const isFree = focused === document.body || isOwn;
+    if (byPointer && !keeps && isFree && !document.querySelector("dialog[open]"))
+      scene.focus({ preventScroll: true });
   };
   document.addEventListener("change", used);
-  document.addEventListener("click", (event) => { if ((event.target as HTMLElement).closest("button, summary, label")) used(event); });
+  document.addEventListener("click", (event) => {
+    if ((event.target as HTMLElement).closest("button, summary, label")) used(event);
+  });
 }
 
-/** Arrow keys, Home and End move between the tabs of a list. */
-export function attachTabs(list: HTMLElement, show: (pane: string) => void) {
+/** Shows the pane of the tab that is chosen by pointer or keys. Returns a function that shows a pane. */
+export function attachPanes(list: HTMLElement, changed: (pane: string) => void) {
   const tabs = () => [...list.querySelectorAll<HTMLElement>('[role="tab"]:not([hidden])')];
-  list.addEventListener("click", (event) => { const tab = (event.target as HTMLElement).closest<HTMLElement>('[role="tab"]'); if (tab) show(tab.dataset.pane!); });
+  const show = (name: string) => {
+    for (const tab of list.querySelectorAll<HTMLElement>('[role="tab"]')) {
+      const isShown = tab.dataset.pane === name;
+      tab.classList.toggle("on", isShown);
+      tab.setAttribute("aria-selected", String(isShown));
+      tab.tabIndex = isShown ? 0 : -1;
+      get("pane-" + tab.dataset.pane).hidden = !isShown;
+    }
+    changed(name);
+  };
+  list.addEventListener("click", (event) => {
+    const tab = (event.target as HTMLElement).closest<HTMLElement>('[role="tab"]');
+    if (tab) show(tab.dataset.pane!);
+  });
   list.addEventListener("keydown", (event) => {
-    const all = tabs(), at = all.indexOf(document.activeElement as HTMLElement);
+    const all = tabs();
+    const at = all.indexOf(document.activeElement as HTMLElement);
     const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: all.length - 1 }[event.key];
     if (to === undefined) return;
     const tab = all[(to + all.length) % all.length];
@@ -45,4 +63,5 @@ export function attachTabs(list: HTMLElement, show: (pane: string) => void) {
     tab.focus();
     event.preventDefault();
   });
+  return show;
 }

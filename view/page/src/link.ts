@@ -5,7 +5,7 @@ export interface Handlers {
   /** `position`: in the past, if it is not the tick. */
   frame(frame: Frame, position?: number): void;
   scene(scene: Scene): void;
-  /** The scalars of several steps, one after the other; with the position of the first if they are not live. */
+  /** The scalars of several steps in a row; `from`: the position of the first if they are not live. */
   past(scalars: Float64Array, from?: number): void;
   text(message: Text): void;
   file(name: string, content: Uint8Array): void;

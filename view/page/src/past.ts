@@ -1,8 +1,8 @@
 import type { State } from "./protocol";
 
 /**
- * The scalars of the control steps of the last minute, by their position: the tick, or the index of the frame in a
- * recording. Some arrive late: those of frames that this page was not sent.
+ * The scalars of the control steps of the last minute, by their position: the tick, or the index of the frame
+ * in a recording. Some arrive late, since the page was too slow for their frames or opened later.
  */
 export class Past {
   private rows: (Float64Array | undefined)[] = [];
@@ -11,12 +11,21 @@ export class Past {
   /** `most`: the number of steps that are kept. */
   constructor(public most: number) {}
 
-  get oldest() { return this.first; }
-  get newest() { return this.first + this.rows.length - 1; }
-  at(position: number): Float64Array | undefined { return this.rows[position - this.first]; }
+  get oldest() {
+    return this.first;
+  }
+  get newest() {
+    return this.first + this.rows.length - 1;
+  }
+  at(position: number): Float64Array | undefined {
+    return this.rows[position - this.first];
+  }
 
   set(position: number, scalars: Float64Array) {
-    if (!this.rows.length || position > this.newest + this.most) { this.rows = []; this.first = position; }
+    if (!this.rows.length || position > this.newest + this.most) {
+      this.rows = [];
+      this.first = position;
+    }
     if (position < this.first) {
       if (this.newest - position >= this.most) return;
       this.rows = [...new Array<undefined>(this.first - position), ...this.rows];
@@ -25,14 +34,34 @@ export class Past {
     while (this.newest < position) this.rows.push(undefined);
     this.rows[position - this.first] = scalars;
     const surplus = this.rows.length - this.most;
-    if (surplus > 0) { this.rows.splice(0, surplus); this.first += surplus; }
+    if (surplus > 0) {
+      this.rows.splice(0, surplus);
+      this.first += surplus;
+    }
   }
 
-  /** For a drive that went back to a position and continues from there. */
-  forgetAfter(position: number) { this.rows.length = Math.max(0, Math.min(this.rows.length, position - this.first + 1)); }
-  clear() { this.rows = []; }
+  /** Forgets the steps after a position: the drive went back and continues from there. */
+  forgetAfter(position: number) {
+    this.rows.length = Math.max(0, Math.min(this.rows.length, position - this.first + 1));
+  }
+  clear() {
+    this.rows = [];
+  }
 
-  /** The newest `most` steps from `oldest` to `newest` of which some are not known, without known ones at their ends. */
+  /** The line that was driven, as x and y (m) one after the other, up to a position. */
+  line(scalars: string[], position: number): number[] {
+    const [x, y] = [scalars.indexOf("x"), scalars.indexOf("y")];
+    const line: number[] = [];
+    for (const row of this.rows.slice(0, Math.max(0, position - this.first + 1))) {
+      if (!row) continue;
+      const [dx, dy] = [row[x] - line[line.length - 2], row[y] - line[line.length - 1]];
+      if (Math.hypot(dx, dy) > 2) line.length = 0; // the car was put elsewhere
+      line.push(row[x], row[y]);
+    }
+    return line;
+  }
+
+  /** The newest steps between two positions of which some are not known; at most `most`. */
   missing(oldest: number, newest: number, most: number): { from: number; to: number } | undefined {
     let to = newest;
     while (to >= oldest && this.at(to)) --to;
@@ -47,7 +76,7 @@ const pause = 400; // ms between two questions
 const patience = 4000; // ms until an answer that did not come is asked for again
 const many = 800; // steps in one answer
 
-/** Asks the server for the scalars of steps whose frames did not come: the page was too slow, or opened later. */
+/** Asks the server for the scalars of steps whose frames did not come. */
 export class Gaps {
   private isAsking = false;
   private askedAt = -Infinity;
@@ -64,5 +93,7 @@ export class Gaps {
     this.send({ do: "past", ...gap });
   }
 
-  answered() { this.isAsking = false; }
+  answered() {
+    this.isAsking = false;
+  }
 }

@@ -1,5 +1,6 @@
 import type { Handlers, Link } from "./link";
-import { decode, type State, type Text } from "./protocol";
+import { decode } from "./decode";
+import type { State, Text } from "./protocol";
 
 /** The recording inside this page, if there is one. */
 export function recordings(): HTMLScriptElement[] {
@@ -7,7 +8,8 @@ export function recordings(): HTMLScriptElement[] {
 }
 
 async function unpacked(script: HTMLScriptElement): Promise<ArrayBuffer> {
-  const text = atob(script.textContent!.trim()), packed = new Uint8Array(text.length);
+  const text = atob(script.textContent!.trim());
+  const packed = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
   return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
 }
@@ -17,7 +19,7 @@ function scalarsOf(frame: ArrayBuffer): Float64Array {
   return new Float64Array(frame.slice(12, 12 + new DataView(frame).getUint32(8, true)));
 }
 
-/** Plays a recording: gives the page what a server would have sent, and handles the commands that concern time. */
+/** Plays a recording: takes the place of a server, and handles the commands that concern time. */
 export class Player implements Link {
   received = 0;
   readonly waiting = 0;
@@ -30,7 +32,10 @@ export class Player implements Link {
   private last = 0;
   private loading = true;
 
-  constructor(private readonly handlers: Handlers, scripts: HTMLScriptElement[]) {
+  constructor(
+    private readonly handlers: Handlers,
+    scripts: HTMLScriptElement[],
+  ) {
     void this.load(scripts);
     requestAnimationFrame((now) => this.turn(now));
   }
@@ -47,8 +52,10 @@ export class Player implements Link {
 
   private take(bytes: ArrayBuffer) {
     const view = new DataView(bytes);
-    for (let at = 0; at + 5 <= bytes.byteLength; ) {
-      const kind = view.getUint8(at), length = view.getUint32(at + 1, true), content = bytes.slice(at + 5, at + 5 + length);
+    for (let at = 0; at + 5 <= bytes.byteLength;) {
+      const kind = view.getUint8(at);
+      const length = view.getUint32(at + 1, true);
+      const content = bytes.slice(at + 5, at + 5 + length);
       at += 5 + length;
       if (kind === 0) this.takeText(JSON.parse(new TextDecoder().decode(content)) as Text);
       else if (new DataView(content).getUint16(4, true) >= 20) this.handlers.scene(decode(content).scene!);
@@ -62,14 +69,22 @@ export class Player implements Link {
 
   private takeText(message: Text) {
     if (message.type === "state") this.states.push({ from: this.frames.length, state: message });
-    else this.handlers.text(message.type === "hello" ? { ...message, replay: true } : message);
+    else this.handlers.text(message);
   }
 
   private tell() {
     const index = Math.max(0, Math.min(this.frames.length - 1, Math.floor(this.at)));
     const held = this.states.filter((s) => s.from <= index).at(-1) ?? this.states[0];
     if (!held) return;
-    this.handlers.text({ ...held.state, paused: this.paused, real_time: false, rate: this.rate, tick: index, newest: this.frames.length - 1, oldest: 0 });
+    this.handlers.text({
+      ...held.state,
+      paused: this.paused,
+      real_time: false,
+      rate: this.rate,
+      tick: index,
+      newest: this.frames.length - 1,
+      oldest: 0,
+    });
   }
 
   private show() {
@@ -83,13 +98,17 @@ export class Player implements Link {
   }
 
   private turn(now: number) {
-    const period = this.states[0]?.state.control_period ?? 0.025, passed = Math.min(0.1, (now - this.last) / 1000);
+    const period = this.states[0]?.state.control_period ?? 0.025;
+    const passed = Math.min(0.1, (now - this.last) / 1000);
     this.last = now;
     if (!this.paused && this.frames.length) {
       this.at += (passed * this.rate) / period;
       if (this.at >= this.frames.length - 1) {
         this.at = this.frames.length - 1;
-        if (!this.loading) { this.paused = true; this.tell(); }
+        if (!this.loading) {
+          this.paused = true;
+          this.tell();
+        }
       }
     }
     this.show();
@@ -101,18 +120,40 @@ export class Player implements Link {
     return Promise.resolve();
   }
 
-  drawn() { /* frames come from this page */ }
+  drawn() {
+    // Nobody waits for it: frames come from this page.
+  }
 
   send(command: Record<string, unknown>) {
     const end = this.frames.length - 1;
     switch (command.do) {
-      case "play": if (this.at >= end) this.at = 0; this.paused = false; break;
-      case "pause": this.paused = true; break;
-      case "restart": this.at = 0; this.paused = false; break;
-      case "step": this.at = Math.min(end, Math.floor(this.at) + Number(command.ticks ?? 1)); this.paused = true; break;
-      case "seek": this.at = Math.min(end, Math.max(0, Number(command.tick))); this.paused = true; break;
-      case "rate": this.rate = Number(command.rate) || 4; break;
-      default: this.handlers.text({ type: "error", message: "This is a recording: it shows what was, and cannot be changed." }); return;
+      case "play":
+        if (this.at >= end) this.at = 0;
+        this.paused = false;
+        break;
+      case "pause":
+        this.paused = true;
+        break;
+      case "restart":
+        this.at = 0;
+        this.paused = false;
+        break;
+      case "step":
+        this.at = Math.min(end, Math.floor(this.at) + Number(command.ticks ?? 1));
+        this.paused = true;
+        break;
+      case "seek":
+        this.at = Math.min(end, Math.max(0, Number(command.tick)));
+        this.paused = true;
+        break;
+      case "rate":
+        this.rate = Number(command.rate) || 4;
+        break;
+      default:
+        return this.handlers.text({
+          type: "error",
+          message: "This is a recording, which cannot be changed.",
+        });
     }
     this.show();
     this.tell();

@@ -1,13 +1,25 @@
-/** A panel that a button opens and closes: Escape and a click elsewhere close it, and the focus returns to the button. */
+/** A panel that a button opens and closes. Escape and a click elsewhere close it, too. */
 export class Popover {
-  constructor(private readonly button: HTMLElement, private readonly panel: HTMLElement) {
+  constructor(
+    private readonly button: HTMLElement,
+    private readonly panel: HTMLElement,
+  ) {
     button.setAttribute("aria-expanded", "false");
     button.setAttribute("aria-controls", panel.id);
     panel.hidden = true;
     button.addEventListener("click", () => this.toggle());
-    document.addEventListener("pointerdown", (event) => { const at = event.target as Node; if (!panel.contains(at) && !button.contains(at)) this.close(); });
+    document.addEventListener("pointerdown", (event) => {
+      const at = event.target as Node;
+      if (!panel.contains(at) && !button.contains(at)) this.close();
+    });
     for (const part of [button, panel])
-      part.addEventListener("keydown", (event) => { if (event.key === "Escape" && !panel.hidden) { this.close(); button.focus(); event.stopPropagation(); } });
+      part.addEventListener("keydown", (event) => {
+        if (event.key === "Escape" && !panel.hidden) {
+          this.close();
+          button.focus();
+          event.stopPropagation();
+        }
+      });
   }
 
   toggle() {

@@ -1,47 +1,62 @@
 import type { BestLap } from "./best_lap";
+import { get } from "./dom";
 import type { Frame, Hello, State } from "./protocol";
 
-/** The limits of SolveResult::has_few_samples, and how many frames in a row are below the first before it is said. */
-const fewSamples = 3, fewFrames = 20;
+const fewSamples = 3; // limit of SolveResult::has_few_samples
+const fewFrames = 20; // in a row with few samples, before it is said
 
 function signed(value: number, digits: number) {
   const amount = Math.abs(value).toFixed(digits);
   return (value >= 0 || Number(amount) === 0 ? "+" : "−") + amount;
 }
 
-/** The figures over the scene, and the label of the car. */
+/** Sets the value of a figure, which stands before its unit. */
+function figure(
+  id: string,
+  value: number,
+  digits: number,
+  text = Number.isFinite(value) ? value.toFixed(digits) : "–",
+) {
+  get(id).firstChild!.textContent = text;
+}
+
+/** The figures over the scene, and the labels of car and ghost. */
 export class Readout {
   private frames = 0; // with few samples, in a row
 
   show(frame: Frame, hello: Hello, state: State | undefined, best: BestLap) {
-    const get = (id: string) => document.getElementById(id)!, scalar = (name: string) => frame.scalars[hello.scalars.indexOf(name)];
-    const n = (name: string, digits: number) => { const v = scalar(name); return Number.isFinite(v) ? v.toFixed(digits) : "–"; };
-    get("speed").firstChild!.textContent = n("speed", 1);
-    get("lap-time").firstChild!.textContent = n("lap_time", 1);
+    const scalar = (name: string) => frame.scalars[hello.scalars.indexOf(name)];
+    figure("speed", scalar("speed"), 1);
+    figure("lap-time", scalar("lap_time"), 1);
+    figure("clearance", scalar("clearance"), 2);
+    figure("solve", scalar("tick_ms"), 2);
+    figure("contacts", scalar("contacts"), 0);
     get("lap-number").textContent = `lap ${scalar("lap") + 1}`;
-    get("clearance").firstChild!.textContent = n("clearance", 2);
-    get("solve").firstChild!.textContent = n("tick_ms", 2);
     get("solve").hidden = get("solve-label").hidden = !Number.isFinite(scalar("tick_ms"));
-    get("contacts").textContent = n("contacts", 0);
-    this.label(get("label"), hello, scalar);
+    this.label(hello, scalar);
     const behind = best.behind(scalar("progress"), scalar("lap_time"));
     get("best").hidden = get("best-label").hidden = behind === undefined;
     get("best-label").textContent = `to best lap (${best.number})`;
-    if (behind !== undefined) get("best").firstChild!.textContent = signed(behind, 2);
+    if (behind !== undefined) figure("best", behind, 2, signed(behind, 2));
     const ghost = frame.ghost;
     get("gap").hidden = get("gap-label").hidden = !ghost;
     if (!ghost || !state) return;
     const ahead = (scalar("lap") + scalar("progress") - ghost.laps) * state.length;
-    get("gap").firstChild!.textContent = signed(ahead, 1);
+    figure("gap", ahead, 1, signed(ahead, 1));
     get("ghost-label").textContent = "ghost · " + (state.ghost_label || state.ghost);
   }
 
-  private label(label: HTMLElement, hello: Hello, scalar: (name: string) => number) {
+  private label(hello: Hello, scalar: (name: string) => number) {
+    const label = get("label");
     const status = hello.statuses[scalar("status")] ?? "";
     this.frames = scalar("effective_samples") < fewSamples ? this.frames + 1 : 0;
-    const few = this.frames >= fewFrames;
-    label.textContent = `${hello.methods[scalar("method")] ?? ""}${status && status !== "ok" ? " · " + status.replace(/_/g, " ") : ""}${few ? " · few samples" : ""}`;
-    label.title = few ? `The effective sample size stays below ${fewSamples}: raise the temperature or reduce the variances.` : "";
+    const isFew = this.frames >= fewFrames;
+    const parts = [hello.methods[scalar("method")] ?? ""];
+    if (status && status !== "ok") parts.push(status.replace(/_/g, " "));
+    if (isFew) parts.push("few samples");
+    const advice = "raise the temperature or reduce the variances";
+    label.textContent = parts.join(" · ");
+    label.title = isFew ? `The effective sample size stays below ${fewSamples}: ${advice}.` : "";
     label.classList.toggle("blocked", status === "blocked");
   }
 }

@@ -1,23 +1,33 @@
-import { rampCss, themes, type Theme } from "./scene/palette";
-import { layers } from "./scene/layers";
+import { get } from "./dom";
+import { css, rampCss, themes, type Theme } from "./scene/palette";
 
 type Name = "dark" | "light";
 const key = "slalom-theme";
 
 /** The theme chosen before. A page opened from disk may not be allowed to store it. */
 function stored(): Name | null {
-  try { return localStorage.getItem(key) as Name | null; } catch { return null; }
+  try {
+    return localStorage.getItem(key) as Name | null;
+  } catch {
+    return null;
+  }
 }
 
-/** Dark or light: what was chosen before, else what the system prefers. */
+/** The dark or the light theme: the one chosen before, else the one that the system prefers. */
 export class Themes {
   private name: Name = stored() ?? (matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark");
 
-  get now(): Theme { return themes[this.name]; }
+  get now(): Theme {
+    return themes[this.name];
+  }
 
   toggle() {
     this.name = this.name === "dark" ? "light" : "dark";
-    try { localStorage.setItem(key, this.name); } catch { /* storage is not available */ }
+    try {
+      localStorage.setItem(key, this.name);
+    } catch {
+      // The choice is forgotten.
+    }
     this.apply();
   }
 
@@ -25,11 +35,15 @@ export class Themes {
   apply() {
     const t = this.now;
     document.documentElement.dataset.theme = this.name;
-    document.getElementById("ramp")!.style.background = rampCss(t);
-    const colours = { costMap: t.cost, path: t.path, scan: t.scan, candidates: undefined, guides: t.guide, nominal: t.nominal, plan: t.plan, spread: t.spread, driven: t.driven, obstacles: t.obstacle, opponents: t.opponent, modes: t.nominal, ghost: t.ghost, minimap: t.path };
-    for (const [layer] of layers) {
-      const swatch = document.querySelector<HTMLElement>(`[data-swatch="${layer}"]`), c = colours[layer];
-      if (swatch) swatch.style.background = c ? `rgb(${c.slice(0, 3).map((v) => Math.round(255 * v)).join(" ")} / ${Math.max(0.45, c[3])})` : rampCss(t);
+    get("ramp").style.background = rampCss(t);
+    const colours = {
+      ...{ costMap: t.cost, path: t.path, scan: t.scan, guides: t.guide, nominal: t.nominal, plan: t.plan },
+      ...{ spread: t.spread, driven: t.driven, obstacles: t.obstacle, opponents: t.opponent },
+      ...{ modes: t.nominal, ghost: t.ghost },
+    };
+    for (const swatch of document.querySelectorAll<HTMLElement>("[data-swatch]")) {
+      const c = colours[swatch.dataset.swatch as keyof typeof colours];
+      swatch.style.background = c ? css([c[0], c[1], c[2], Math.max(0.45, c[3])]) : rampCss(t);
     }
   }
 }

@@ -1,14 +1,24 @@
+import { get } from "./dom";
 import type { State } from "./protocol";
+
+const thumb = 16; // px, width of the slider's thumb
 
 /** The slider over the stored steps, with a mark at the time under the pointer. */
 export class Timeline {
   private scrubbing = false;
-  private readonly slider = document.getElementById("timeline") as HTMLInputElement;
-  private readonly mark = document.getElementById("timeline-mark")!;
-  private readonly text = document.getElementById("time")!;
+  private readonly slider = get<HTMLInputElement>("timeline");
+  private readonly mark = get("timeline-mark");
+  private readonly text = get("time");
 
-  constructor(private readonly isReplay: boolean, seek: (position: number) => void, hovered: (position: number | undefined) => void) {
-    this.slider.oninput = () => { this.scrubbing = true; seek(Number(this.slider.value)); };
+  constructor(
+    private readonly isReplay: boolean,
+    seek: (position: number) => void,
+    hovered: (position: number | undefined) => void,
+  ) {
+    this.slider.oninput = () => {
+      this.scrubbing = true;
+      seek(Number(this.slider.value));
+    };
     this.slider.onchange = () => (this.scrubbing = false);
     this.slider.addEventListener("pointermove", (e) => hovered(this.under(e)));
     this.slider.addEventListener("pointerleave", () => hovered(undefined));
@@ -17,27 +27,31 @@ export class Timeline {
 
   /** `newest`: position of the newest frame; `time`: s, of the frame that is shown. */
   show(state: State, newest: number, time: number) {
-    const { slider } = this, shown = state.paused || this.isReplay ? state.tick : newest;
+    const { slider } = this;
+    const shown = state.paused || this.isReplay ? state.tick : newest;
     slider.min = String(Math.max(0, state.oldest));
     slider.max = String(Math.max(1, newest));
     if (!this.scrubbing) slider.value = String(shown);
+    const seconds = (steps: number) => (steps * state.control_period).toFixed(1);
     const back = (newest - Number(slider.value)) * state.control_period;
-    if (this.isReplay) this.text.textContent = `${(state.tick * state.control_period).toFixed(1)} of ${(newest * state.control_period).toFixed(1)} s`;
+    if (this.isReplay) this.text.textContent = `${seconds(state.tick)} of ${seconds(newest)} s`;
     else this.text.textContent = back > 1e-6 ? `−${back.toFixed(2)} s` : `${(time || 0).toFixed(2)} s`;
     slider.setAttribute("aria-valuetext", this.text.textContent);
   }
 
   showCursor(position: number | undefined) {
-    const from = Number(this.slider.min), to = Number(this.slider.max);
+    const from = Number(this.slider.min);
+    const to = Number(this.slider.max);
     this.mark.hidden = position === undefined || position < from || position > to;
-    if (position !== undefined) this.mark.style.left = `calc(${thumb / 2}px + ${(position - from) / (to - from)} * (100% - ${thumb}px))`;
+    const share = ((position ?? from) - from) / (to - from);
+    this.mark.style.left = `calc(${thumb / 2}px + ${share} * (100% - ${thumb}px))`;
   }
 
   private under(e: PointerEvent): number {
-    const box = this.slider.getBoundingClientRect(), share = (e.clientX - box.left - thumb / 2) / (box.width - thumb);
-    const from = Number(this.slider.min), to = Number(this.slider.max);
+    const box = this.slider.getBoundingClientRect();
+    const share = (e.clientX - box.left - thumb / 2) / (box.width - thumb);
+    const from = Number(this.slider.min);
+    const to = Number(this.slider.max);
     return Math.round(from + Math.min(1, Math.max(0, share)) * (to - from));
   }
 }
-
-const thumb = 16; // px, width of the slider's thumb

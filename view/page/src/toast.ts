@@ -13,6 +13,10 @@ export function toast(message: string, bad = false) {
 /** Copies a text; shows it where the clipboard is not available. */
 export function copy(text: string, what: string) {
   const done = navigator.clipboard?.writeText(text);
-  if (done) done.then(() => toast(`Copied as ${what}.`), () => toast(text));
+  if (done)
+    done.then(
+      () => toast(`Copied as ${what}.`),
+      () => toast(text),
+    );
   else toast(text);
 }

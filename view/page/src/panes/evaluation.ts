@@ -1,14 +1,25 @@
-import { html, Markup } from "../html";
+import { get, make } from "../dom";
 import type { Evaluation, EvaluationLap, State } from "../protocol";
 
 /** A list of an evaluation's laps; a click on a collision shows the two seconds before it. */
 export class EvaluationPane {
   private evaluation?: Evaluation;
   private experiment = 0;
-  private onlyContacts = true;
   private shown = "";
 
-  constructor(private readonly root: HTMLElement, private readonly send: (command: Record<string, unknown>) => void, private readonly changed: () => void) {}
+  private readonly select = get<HTMLSelectElement>("experiment");
+  private readonly only = get<HTMLInputElement>("only-contacts");
+
+  constructor(
+    private readonly send: (command: Record<string, unknown>) => void,
+    private readonly changed: () => void,
+  ) {
+    this.select.onchange = () => {
+      this.experiment = Number(this.select.value);
+      this.render();
+    };
+    this.only.onchange = () => this.render();
+  }
 
   show(evaluation: Evaluation) {
     this.evaluation = evaluation;
@@ -18,56 +29,62 @@ export class EvaluationPane {
   }
 
   showState(state: State) {
-    const shown = state.contact ? `${state.contact.experiment}/${state.contact.lap}/${state.contact.contact}` : "";
+    const shown = state.contact ? nameOf(state.contact, state.contact.contact) : "";
     if (shown === this.shown) return;
     this.shown = shown;
     this.render();
   }
 
-  private laps(experiment: number): EvaluationLap[] { return this.evaluation!.laps.filter((l) => l.experiment === experiment); }
+  private laps(experiment: number): EvaluationLap[] {
+    return this.evaluation!.laps.filter((l) => l.experiment === experiment);
+  }
 
   /** The collisions of the chosen experiment, which are drawn on the map and can be clicked. */
   marks(): { x: number; y: number; lap: EvaluationLap; contact: number; shown: boolean }[] {
     if (!this.evaluation) return [];
-    return this.laps(this.experiment).flatMap((lap) => lap.points.map(([x, y], contact) => ({ x, y, lap, contact, shown: this.shown === `${lap.experiment}/${lap.lap}/${contact}` })));
+    return this.laps(this.experiment).flatMap((lap) =>
+      lap.points.map(([x, y], i) => ({ x, y, lap, contact: i, shown: this.shown === nameOf(lap, i) })),
+    );
   }
 
-  go(lap: EvaluationLap, contact: number) { this.send({ do: "lap", experiment: lap.experiment, lap: lap.lap, contact }); }
+  go(lap: EvaluationLap, contact: number) {
+    this.send({ do: "lap", experiment: lap.experiment, lap: lap.lap, contact });
+  }
 
   private render() {
-    const all = this.evaluation;
-    if (!all) return;
-    const laps = this.laps(this.experiment), contacts = laps.reduce((n, l) => n + l.points.length, 0), finished = laps.filter((l) => l.finished).length;
-    this.root.innerHTML = html`<p>${all.folder}: ${all.laps.length} laps on ${all.course}. Click a collision, here or on the map, to drive its lap again and see the two seconds before it.</p>
-      <div class="row"><select id="experiment" aria-label="experiment" style="flex:1;max-width:none"></select></div>
-      <div class="row"><label><input type="checkbox" id="only-contacts"${new Markup(this.onlyContacts ? " checked" : "")}> only laps with collisions</label></div>
-      <p><b>${laps.length}</b> laps, <b>${finished}</b> finished, <b>${contacts}</b> collisions</p>
-      <table><thead><tr><th>Lap</th><th class="n">Time, s</th><th>Collisions</th></tr></thead><tbody></tbody></table>`.text;
-    const select = this.root.querySelector<HTMLSelectElement>("#experiment")!;
-    select.append(...all.experiments.map((e, i) => new Option(`${e.label} · ${e.scenario}`, String(i), false, i === this.experiment)));
-    select.onchange = () => { this.experiment = Number(select.value); this.render(); };
-    const only = this.root.querySelector<HTMLInputElement>("#only-contacts")!;
-    only.onchange = () => { this.onlyContacts = only.checked; this.render(); };
-    const body = this.root.querySelector("tbody")!;
-    for (const lap of laps) {
-      if (this.onlyContacts && !lap.points.length) continue;
-      const row = body.insertRow(), name = row.insertCell(), time = row.insertCell(), collisions = row.insertCell();
-      const whole = document.createElement("button");
-      whole.textContent = String(lap.lap);
-      whole.title = "drive this lap from its start";
-      whole.onclick = () => this.go(lap, -1);
-      name.append(whole);
-      time.textContent = lap.finished ? lap.time.toFixed(2) : "not finished";
-      time.className = "n";
-      lap.points.forEach(([x, y], i) => {
-        const button = document.createElement("button");
-        button.dataset.contact = `${lap.experiment}/${lap.lap}/${i}`;
-        button.className = button.dataset.contact === this.shown ? "on" : "";
-        button.textContent = `${x.toFixed(1)}, ${y.toFixed(1)} m`;
-        button.onclick = () => this.go(lap, i);
-        collisions.append(button, " ");
-      });
-    }
+    const evaluation = this.evaluation;
+    if (!evaluation) return;
+    const laps = this.laps(this.experiment);
+    const contacts = laps.reduce((n, l) => n + l.points.length, 0);
+    const finished = laps.filter((l) => l.finished).length;
+    get("evaluation-folder").textContent =
+      `${evaluation.folder}: ${evaluation.laps.length} laps on ${evaluation.course}.`;
+    get("evaluation-counts").textContent =
+      `${laps.length} laps, ${finished} finished, ${contacts} collisions`;
+    const names = evaluation.experiments.map((e) => `${e.label} · ${e.scenario}`);
+    this.select.replaceChildren(
+      ...names.map((n, i) => new Option(n, String(i), false, i === this.experiment)),
+    );
+    const shown = laps.filter((lap) => lap.points.length || !this.only.checked);
+    get("evaluation-laps").replaceChildren(...shown.map((lap) => this.row(lap)));
     this.changed();
   }
+
+  private row(lap: EvaluationLap): HTMLElement {
+    const whole = make("button", { title: "drive this lap from its start" }, String(lap.lap));
+    whole.onclick = () => this.go(lap, -1);
+    const collisions = lap.points.flatMap(([x, y], i) => {
+      const button = make("button", {}, `${x.toFixed(1)}, ${y.toFixed(1)} m`);
+      button.dataset.contact = nameOf(lap, i);
+      button.className = nameOf(lap, i) === this.shown ? "on" : "";
+      button.onclick = () => this.go(lap, i);
+      return [button, " "];
+    });
+    const time = make("td", { className: "n" }, lap.finished ? lap.time.toFixed(2) : "not finished");
+    return make("tr", {}, make("td", {}, whole), time, make("td", {}, ...collisions));
+  }
 }
+
+/** A collision of a lap as a text to compare. */
+const nameOf = (lap: { experiment: number; lap: number }, contact: number) =>
+  `${lap.experiment}/${lap.lap}/${contact}`;

@@ -1,20 +1,73 @@
-export interface Line { name: string; label: string; colour: string; dash?: number[]; right?: boolean; digits?: number; scale?: number }
-/** A chart over time. One without a finite value is hidden: estimates exist only for cars whose tyres slip. */
-export interface Strip { title: string; unit: string; lines: Line[] }
+/** A line of a chart: the scalar that it shows, its label, the colour's CSS variable, and how it is drawn. */
+export interface Line {
+  name: string;
+  label: string;
+  colour: string;
+  dash?: number[];
+  right?: boolean; // has the axis on the right
+  digits?: number;
+  scale?: number; // from the scalar to what is shown
+}
+/** A chart over time. */
+export interface Strip {
+  title: string;
+  lines: Line[];
+}
 
-// Colours tell apart with any colour vision: they differ in lightness as well, and one of each pair is dashed.
+const dash = [5, 3];
+
+/** Names its lines as "label: scalar in colour". */
+const strip = (
+  title: string,
+  ...lines: [name: string, label: string, colour: string, look?: Partial<Line>][]
+): Strip => ({
+  title,
+  lines: lines.map(([name, label, colour, look]) => ({ name, label, colour: `--${colour}`, ...look })),
+});
+
+// Lines can be told apart with any colour vision: they differ in lightness, too, and some are dashed.
 export const strips: Strip[] = [
-  { title: "Cost of the plan", unit: "", lines: [{ name: "distance_cost", label: "distance", colour: "--blue" }, { name: "yaw_cost", label: "yaw", colour: "--violet", dash: [6, 3] }, { name: "collision_cost", label: "collision", colour: "--bad", dash: [2, 2] }] },
-  { title: "Steering", unit: "rad", lines: [{ name: "command_steer", label: "command", colour: "--accent", digits: 3 }, { name: "steer", label: "wheels", colour: "--text", dash: [5, 3], digits: 3 }] },
-  { title: "Speed", unit: "m/s", lines: [{ name: "command_speed", label: "command", colour: "--accent" }, { name: "speed", label: "car", colour: "--text", dash: [5, 3] }] },
-  { title: "Slip angle", unit: "rad", lines: [{ name: "slip_estimate", label: "estimate", colour: "--accent", digits: 3 }, { name: "slip", label: "car", colour: "--text", dash: [5, 3], digits: 3 }] },
-  { title: "Grip used", unit: "% of friction times gravity", lines: [{ name: "grip_used", label: "to the side", colour: "--warn", digits: 0, scale: 100 }] },
-  { title: "Friction", unit: "", lines: [{ name: "friction_estimate", label: "estimate", colour: "--accent" }, { name: "friction_relied_on", label: "relied on", colour: "--blue", dash: [5, 3] }] },
-  { title: "Steering", unit: "estimates", lines: [{ name: "steering_gain_estimate", label: "gain", colour: "--accent", digits: 3 }, { name: "delay_estimate", label: "delay, ms", colour: "--violet", dash: [5, 3], right: true, digits: 0, scale: 1000 }] },
-  { title: "Samples", unit: "", lines: [{ name: "effective_samples", label: "ESS", colour: "--blue", digits: 0 }, { name: "temperature", label: "temperature", colour: "--warn", dash: [5, 3], right: true }] },
-  { title: "Collided candidates", unit: "%", lines: [{ name: "collided_share", label: "share", colour: "--bad", digits: 0, scale: 100 }] },
-  { title: "Clearance", unit: "m", lines: [{ name: "clearance", label: "to wall or obstacle", colour: "--accent" }] },
+  strip(
+    "Cost of the plan",
+    ["distance_cost", "distance", "blue"],
+    ["yaw_cost", "yaw", "violet", { dash: [6, 3] }],
+    ["collision_cost", "collision", "bad", { dash: [2, 2] }],
+  ),
+  strip(
+    "Steering, rad",
+    ["command_steer", "command", "accent", { digits: 3 }],
+    ["steer", "wheels", "text", { dash, digits: 3 }],
+  ),
+  strip("Speed, m/s", ["command_speed", "command", "accent"], ["speed", "car", "text", { dash }]),
+  strip(
+    "Slip angle, rad",
+    ["slip_estimate", "estimate", "accent", { digits: 3 }],
+    ["slip", "car", "text", { dash, digits: 3 }],
+  ),
+  strip("Grip used, % of friction times gravity", [
+    "grip_used",
+    "to the side",
+    "warn",
+    { digits: 0, scale: 100 },
+  ]),
+  strip(
+    "Friction",
+    ["friction_estimate", "estimate", "accent"],
+    ["friction_relied_on", "relied on", "blue", { dash }],
+  ),
+  strip(
+    "Steering, estimates",
+    ["steering_gain_estimate", "gain", "accent", { digits: 3 }],
+    ["delay_estimate", "delay, ms", "violet", { dash, right: true, digits: 0, scale: 1000 }],
+  ),
+  strip(
+    "Samples",
+    ["effective_samples", "ESS", "blue", { digits: 0 }],
+    ["temperature", "temperature", "warn", { dash, right: true }],
+  ),
+  strip("Collided candidates, %", ["collided_share", "share", "bad", { digits: 0, scale: 100 }]),
+  strip("Clearance, m", ["clearance", "to wall or obstacle", "accent"]),
 ];
 
-/** Lines that have no value where tyres do not slip; `slip` is the simulator's and stands with its estimate. */
-export const needsEstimates = (strip: Strip) => strip.lines.some((line) => line.name.endsWith("_estimate") || line.name === "grip_used");
+/** Whether a line has no value where tyres do not slip. */
+export const isEstimate = (line: Line) => line.name.endsWith("_estimate") || line.name === "grip_used";

@@ -1,12 +1,12 @@
+import { get } from "../dom";
 import { Caption } from "../modes";
 import type { Camera } from "./camera";
 import type { Frame, Hello } from "../protocol";
 import type { SceneView } from "./scene";
 
-const get = (id: string) => document.getElementById(id)!;
 const margin = 12; // pixels
 
-/** What stands over the lanes while the ghost is shown beside the car: titles, captions, and the line between them. */
+/** Titles and captions of the lanes, and the line between them, while the ghost is shown beside the car. */
 export class Lanes {
   readonly captions = [new Caption(get("modes")), new Caption(get("ghost-modes"))];
   private readonly titles = [get("lane-title"), get("ghost-lane-title")];
@@ -15,32 +15,47 @@ export class Lanes {
 
   /** Shows what a frame says at a time (s). */
   show(frame: Frame, hello: Hello, time: number) {
-    const isShown = this.scene.visible.has("modes"), both = this.scene.isSideBySide ? [frame, frame.ghostFrame!] : [frame, undefined];
+    const isShown = this.scene.visible.has("modes");
+    const both = this.scene.isSideBySide ? [frame, frame.ghostFrame!] : [frame, undefined];
     both.forEach((each, i) => {
-      const scalar = (name: string) => each!.scalars[hello.scalars.indexOf(name)], method = each && hello.methods[scalar("method")];
+      const scalar = (name: string) => each!.scalars[hello.scalars.indexOf(name)];
+      const method = each && hello.methods[scalar("method")];
       this.captions[i].show(method ?? "", isShown ? each : undefined, time);
-      if (each) this.titles[i].textContent = `${method} · ${scalar("contacts") === 1 ? "1 collision" : `${scalar("contacts")} collisions`}`;
+      if (each)
+        this.titles[i].textContent =
+          `${method} · ${scalar("contacts") === 1 ? "1 collision" : `${scalar("contacts")} collisions`}`;
     });
   }
 
   /** Puts all to their places, after the cameras have been put to theirs. */
   place() {
-    const { scene } = this, on = scene.isSideBySide, stage = get("stage");
+    const { scene } = this;
+    const on = scene.isSideBySide;
+    const stage = get("stage");
     stage.classList.toggle("split", on);
-    [scene.camera, scene.ghostCamera].forEach((camera, i) => {
-      const { title, caption } = { title: this.titles[i], caption: i ? get("ghost-modes") : get("modes") };
+    [scene.camera, scene.stage.ghostCamera].forEach((camera, i) => {
+      const title = this.titles[i];
+      const caption = get(i ? "ghost-modes" : "modes");
       title.hidden = !on;
-      caption.style.cssText = on ? this.box(camera, stage) + `bottom:${stage.clientHeight - camera.top - camera.height + margin}px` : "";
+      caption.style.cssText = on
+        ? this.box(camera, stage) + `bottom:${stage.clientHeight - camera.top - camera.height + margin}px`
+        : "";
       if (on) title.style.cssText = this.box(camera, stage) + `top:${camera.top + camera.covered.top - 32}px`;
     });
-    const divider = get("divider"), c = scene.ghostCamera, isBelow = c.top > 0;
+    const divider = get("divider");
+    const c = scene.stage.ghostCamera;
+    const isBelow = c.top > 0;
     divider.hidden = !on;
-    if (on) divider.style.cssText = isBelow ? `top:${c.top}px;left:0;right:0;height:1px` : `left:${c.left}px;top:0;bottom:0;width:1px`;
+    if (on)
+      divider.style.cssText = isBelow
+        ? `top:${c.top}px;left:0;right:0;height:1px`
+        : `left:${c.left}px;top:0;bottom:0;width:1px`;
   }
 
   /** The middle of what panels leave free of a lane. */
   private box(camera: Camera, stage: HTMLElement) {
     const free = camera.width - camera.covered.left - camera.covered.right;
-    return `left:${Math.min(camera.middleX, stage.clientWidth)}px;max-width:${Math.max(120, free - 2 * margin)}px;`;
+    const width = Math.max(120, free - 2 * margin);
+    return `left:${Math.min(camera.middleX, stage.clientWidth)}px;max-width:${width}px;`;
   }
 }

@@ -10,10 +10,9 @@ export const layers = [
   ["spread", "Spread", "two standard deviations of the plan, from the solver's covariance"],
   ["driven", "Driven line", "the path of the car"],
   ["obstacles", "Obstacles", "parked cars, boxes and poles"],
-  ["opponents", "Opponents", "other cars that drive; outlines and dots: where the planner has tracked them and expects them"],
+  ["opponents", "Opponents", "other cars; outlines and dots: where the planner tracks and expects them"],
   ["modes", "Caption", "which way around the next obstacle the samples and the plan take"],
   ["ghost", "Ghost", "the second controller, in a world of its own; as an outline, the best lap"],
-  ["minimap", "Minimap", "the whole course, while only a part of it is in view"],
 ] as const;
 export type Layer = (typeof layers)[number][0];
 

@@ -2,10 +2,14 @@ import type { Camera } from "./camera";
 import type { Rgba } from "./palette";
 
 const lineVertex = `#version 300 es
-layout(location=0) in vec4 ends; layout(location=1) in vec4 tint; layout(location=2) in float width; // width below 0: no round ends
+layout(location=0) in vec4 ends; layout(location=1) in vec4 tint;
+layout(location=2) in float width; // below 0: no round ends
 uniform vec4 view; uniform vec2 size; uniform vec2 turn;
 out vec4 colour; out vec2 local; flat out float len; flat out float halfWidth; flat out float roundEnds;
-vec2 pixel(vec2 p) { vec2 d = p * view.z; return vec2(turn.x * d.x - turn.y * d.y, turn.y * d.x + turn.x * d.y); }
+vec2 pixel(vec2 p) {
+  vec2 d = p * view.z;
+  return vec2(turn.x * d.x - turn.y * d.y, turn.y * d.x + turn.x * d.y);
+}
 void main() {
   vec2 corner = vec2(gl_VertexID & 1, (gl_VertexID >> 1) & 1);
   vec2 a = pixel(ends.xy), b = pixel(ends.zw), d = b - a;
@@ -20,7 +24,8 @@ void main() {
 }`;
 const lineFragment = `#version 300 es
 precision highp float;
-in vec4 colour; in vec2 local; flat in float len; flat in float halfWidth; flat in float roundEnds; out vec4 result;
+in vec4 colour; in vec2 local; out vec4 result;
+flat in float len; flat in float halfWidth; flat in float roundEnds;
 void main() {
   float beyond = roundEnds > 0.5 ? max(max(-local.x, local.x - len), 0.0) : 0.0;
   float cover = clamp(halfWidth + 0.5 - length(vec2(beyond, local.y)), 0.0, 1.0) * min(1.0, 2.0 * halfWidth);
@@ -47,7 +52,8 @@ void main() {
   gl_Position = vec4(2.0 * p / size + view.xy, 0, 1);
 }`;
 const cellFragment = `#version 300 es
-precision highp float; in vec2 uv; out vec4 result; uniform sampler2D cells; uniform vec4 inside, outside, edge; uniform float edgeWidth;
+precision highp float; in vec2 uv; out vec4 result;
+uniform sampler2D cells; uniform vec4 inside, outside, edge; uniform float edgeWidth;
 void main() {
   float v = texture(cells, uv).r, w = max(fwidth(v), 1e-4);
   float wall = smoothstep(0.5 - w, 0.5 + w, v);
@@ -63,17 +69,22 @@ const bytes = (c: Rgba) => (byte(c[0]) | (byte(c[1]) << 8) | (byte(c[2]) << 16) 
 /** Takes the place of a context that the browser does not have. */
 const nothing = new Proxy({}, { get: () => () => 1 }) as unknown as WebGL2RenderingContext;
 
-interface Program { program: WebGLProgram; view: WebGLUniformLocation | null; size: WebGLUniformLocation | null; turn: WebGLUniformLocation | null }
+interface Program {
+  program: WebGLProgram;
+  view: WebGLUniformLocation | null;
+  size: WebGLUniformLocation | null;
+  turn: WebGLUniformLocation | null;
+}
 
 const vertexWords = 6; // of a line: ends, colour, width
 const lineWords = 4 * vertexWords;
 
 /**
- * Collects lines and triangles in layers and draws them in order; positions in m of the map frame. Each line has four
- * vertices of its own: without a graphics card, instanced drawing takes a hundred times as long.
+ * Collects lines and triangles in layers and draws them in order; positions in m of the map frame. Each line
+ * has four vertices of its own: without a graphics card, instanced drawing takes a hundred times as long.
  */
 export class Painter {
-  readonly gl: WebGL2RenderingContext;
+  private readonly gl: WebGL2RenderingContext;
   /** Whether there is WebGL 2. Without it nothing is drawn, and the rest of the page works. */
   readonly canDraw: boolean;
   private readonly line: Program;
@@ -92,10 +103,11 @@ export class Painter {
   private fills = new Float32Array(6 * 1024);
   private fillCount = 0;
   private camera!: Camera;
-  ratio = 1;
+  private ratio = 1;
 
-  constructor(readonly canvas: HTMLCanvasElement) {
-    const gl = canvas.getContext("webgl2", { alpha: false, antialias: true, preserveDrawingBuffer: true }) ?? nothing;
+  constructor(private readonly canvas: HTMLCanvasElement) {
+    const gl =
+      canvas.getContext("webgl2", { alpha: false, antialias: true, preserveDrawingBuffer: true }) ?? nothing;
     this.canDraw = gl !== nothing;
     this.gl = gl;
     this.line = this.compile(lineVertex, lineFragment);
@@ -130,17 +142,23 @@ export class Painter {
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  compile(vertex: string, fragment: string): Program {
-    const gl = this.gl, program = gl.createProgram()!;
-    for (const [kind, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]] as const) {
+  private compile(vertex: string, fragment: string): Program {
+    const gl = this.gl;
+    const program = gl.createProgram()!;
+    for (const [kind, source] of [
+      [gl.VERTEX_SHADER, vertex],
+      [gl.FRAGMENT_SHADER, fragment],
+    ] as const) {
       const shader = gl.createShader(kind)!;
       gl.shaderSource(shader, source);
       gl.compileShader(shader);
-      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader) ?? "shader");
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
+        throw new Error(gl.getShaderInfoLog(shader) ?? "shader");
       gl.attachShader(program, shader);
     }
     gl.linkProgram(program);
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program) ?? "program");
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS))
+      throw new Error(gl.getProgramInfoLog(program) ?? "program");
     const at = (name: string) => gl.getUniformLocation(program, name);
     return { program, view: at("view"), size: at("size"), turn: at("turn") };
   }
@@ -149,7 +167,8 @@ export class Painter {
   begin(ground: Rgba) {
     const gl = this.gl;
     this.ratio = Math.min(2, window.devicePixelRatio || 1);
-    const width = Math.max(1, Math.round(this.canvas.clientWidth * this.ratio)), height = Math.max(1, Math.round(this.canvas.clientHeight * this.ratio));
+    const width = Math.max(1, Math.round(this.canvas.clientWidth * this.ratio));
+    const height = Math.max(1, Math.round(this.canvas.clientHeight * this.ratio));
     if (this.canvas.width !== width || this.canvas.height !== height) {
       this.canvas.width = width;
       this.canvas.height = height;
@@ -163,16 +182,29 @@ export class Painter {
 
   /** What follows is drawn into the part of the canvas that a camera covers. */
   look(camera: Camera) {
-    const r = this.ratio, at = [camera.left * r, this.canvas.height - (camera.top + camera.height) * r, camera.width * r, camera.height * r].map(Math.round) as [number, number, number, number];
+    const r = this.ratio;
+    const at = [
+      camera.left * r,
+      this.canvas.height - (camera.top + camera.height) * r,
+      camera.width * r,
+      camera.height * r,
+    ].map(Math.round) as [number, number, number, number];
     this.camera = camera;
     this.gl.viewport(...at);
     this.gl.scissor(...at);
   }
 
   private use(p: Program) {
-    const gl = this.gl, c = this.camera;
+    const gl = this.gl;
+    const c = this.camera;
     gl.useProgram(p.program);
-    gl.uniform4f(p.view, (2 * (c.middleX - c.left)) / c.width - 1, 1 - (2 * (c.middleY - c.top)) / c.height, c.zoom * this.ratio, this.ratio);
+    gl.uniform4f(
+      p.view,
+      (2 * (c.middleX - c.left)) / c.width - 1,
+      1 - (2 * (c.middleY - c.top)) / c.height,
+      c.zoom * this.ratio,
+      this.ratio,
+    );
     gl.uniform2f(p.size, c.width * this.ratio, c.height * this.ratio);
     gl.uniform2f(p.turn, Math.cos(c.turn), Math.sin(c.turn));
   }
@@ -184,9 +216,16 @@ export class Painter {
       this.lines = larger;
       this.colours = new Uint32Array(larger.buffer);
     }
-    const d = this.lines, from = lineWords * this.lineCount++, ox = this.camera.x, oy = this.camera.y, packed = bytes(colour);
+    const d = this.lines;
+    const from = lineWords * this.lineCount++;
+    const ox = this.camera.x;
+    const oy = this.camera.y;
+    const packed = bytes(colour);
     for (let i = from; i < from + lineWords; i += vertexWords) {
-      d[i] = x0 - ox; d[i + 1] = y0 - oy; d[i + 2] = x1 - ox; d[i + 3] = y1 - oy;
+      d[i] = x0 - ox;
+      d[i + 1] = y0 - oy;
+      d[i + 2] = x1 - ox;
+      d[i + 3] = y1 - oy;
       this.colours[i + 4] = packed;
       d[i + 5] = round ? width : -width;
     }
@@ -214,7 +253,15 @@ export class Painter {
 
   convex(points: [number, number][], colour: Rgba) {
     for (let i = 2; i < points.length; ++i)
-      this.triangle(points[0][0], points[0][1], points[i - 1][0], points[i - 1][1], points[i][0], points[i][1], colour);
+      this.triangle(
+        points[0][0],
+        points[0][1],
+        points[i - 1][0],
+        points[i - 1][1],
+        points[i][0],
+        points[i][1],
+        colour,
+      );
   }
 
   outline(points: [number, number][], colour: Rgba, width: number) {
@@ -224,7 +271,9 @@ export class Painter {
     });
   }
 
-  dot(x: number, y: number, diameter: number, colour: Rgba) { this.segment(x, y, x, y, colour, diameter); }
+  dot(x: number, y: number, diameter: number, colour: Rgba) {
+    this.segment(x, y, x, y, colour, diameter);
+  }
 
   /** Draws what was collected; triangles first. */
   flush() {
@@ -251,13 +300,15 @@ export class Painter {
   private index(lines: number) {
     if (lines <= this.indexed) return;
     this.indexed = 2 * lines;
-    const corners = [0, 1, 2, 2, 1, 3], all = new Uint32Array(6 * this.indexed);
+    const corners = [0, 1, 2, 2, 1, 3];
+    const all = new Uint32Array(6 * this.indexed);
     for (let i = 0; i < all.length; ++i) all[i] = 4 * Math.floor(i / 6) + corners[i % 6];
     this.gl.bufferData(this.gl.ELEMENT_ARRAY_BUFFER, all, this.gl.STATIC_DRAW);
   }
 
   texture(): WebGLTexture {
-    const gl = this.gl, texture = gl.createTexture()!;
+    const gl = this.gl;
+    const texture = gl.createTexture()!;
     gl.bindTexture(gl.TEXTURE_2D, texture);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
@@ -273,15 +324,20 @@ export class Painter {
     gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, width, height, 0, gl.RED, gl.UNSIGNED_BYTE, cells);
   }
 
-  /** Cells with the corner of the first at (x, y, yaw), `width` x `height` m; the border runs where the value is a half. */
-  cells(texture: WebGLTexture, x: number, y: number, yaw: number, width: number, height: number, inside: Rgba, outside: Rgba, edge: Rgba, edgeWidth: number) {
-    const gl = this.gl, at = (name: string) => gl.getUniformLocation(this.cell.program, name);
+  /** Draws cells with their first corner at a pose; the border runs where the value is a half. */
+  cells(
+    texture: WebGLTexture,
+    place: { x: number; y: number; yaw: number; width: number; height: number },
+    colours: { inside: Rgba; outside: Rgba; edge: Rgba },
+    edgeWidth: number,
+  ) {
+    const gl = this.gl;
+    const at = (name: string) => gl.getUniformLocation(this.cell.program, name);
+    const { x, y, yaw } = place;
     this.use(this.cell);
     gl.uniform4f(at("place"), x - this.camera.x, y - this.camera.y, Math.cos(yaw), Math.sin(yaw));
-    gl.uniform2f(at("extent"), width, height);
-    gl.uniform4fv(at("inside"), inside);
-    gl.uniform4fv(at("outside"), outside);
-    gl.uniform4fv(at("edge"), edge);
+    gl.uniform2f(at("extent"), place.width, place.height);
+    for (const [name, colour] of Object.entries(colours)) gl.uniform4fv(at(name), colour);
     gl.uniform1f(at("edgeWidth"), edgeWidth * this.ratio);
     gl.bindTexture(gl.TEXTURE_2D, texture);
     gl.bindVertexArray(this.cellArray);

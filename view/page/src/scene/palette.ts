@@ -1,10 +1,11 @@
-// Colours computed in OKLab (B. Ottosson, 2020), where equal steps look equal. The cost ramp runs from blue to yellow
-// with lightness that only rises, so it reads the same with any kind of colour vision and in grey.
+// Colours computed in OKLab (B. Ottosson, 2020), where equal steps look equal. The cost ramp runs from blue
+// to yellow with lightness that only rises, so it reads the same with any kind of colour vision and in grey.
 
 export type Rgba = [number, number, number, number];
 
 function oklch(lightness: number, chroma: number, hue: number): [number, number, number] {
-  const a = chroma * Math.cos(hue), b = chroma * Math.sin(hue);
+  const a = chroma * Math.cos(hue);
+  const b = chroma * Math.sin(hue);
   const l = (lightness + 0.3963377774 * a + 0.2158037573 * b) ** 3;
   const m = (lightness - 0.1055613458 * a - 0.0638541728 * b) ** 3;
   const s = (lightness - 0.0894841775 * a - 1.291485548 * b) ** 3;
@@ -34,36 +35,48 @@ function ramp(dark: boolean): Float32Array {
   return table;
 }
 
-export interface Theme {
+/** The colours of the scene in the dark and in the light theme: #rrggbb, or #rrggbbaa with an opacity. */
+const colours = {
+  ground: ["#0a0d12", "#cfd7e0"],
+  free: ["#1b222c", "#fbfcfd"],
+  wall: ["#0a0d12", "#cfd7e0"],
+  wallEdge: ["#6b7d95", "#3b4858"],
+  cost: ["#e2663a33", "#d1491b26"],
+  path: ["#7f8ea399", "#6b7a8d99"],
+  scan: ["#8fd3ffd9", "#0069b4cc"],
+  collided: ["#ff5a366b", "#c9341066"],
+  guide: ["#f4a8fff2", "#a01bb0f2"],
+  nominal: ["#ffffffbf", "#20262eb2"],
+  plan: ["#3ff2c8", "#00876c"],
+  spread: ["#3ff2c81c", "#00876c1c"],
+  driven: ["#7b8cffe6", "#4353d8d9"],
+  car: ["#f3f6fa", "#1d2530"],
+  carEdge: ["#0b0e13", "#ffffff"],
+  wheel: ["#2b3340", "#66738a"],
+  obstacle: ["#e8a13a", "#d98518"],
+  obstacleEdge: ["#fff1d6", "#5c3500"],
+  ghost: ["#9060b4d9", "#4a1470d9"],
+  selected: ["#ffffff", "#000000"],
+  opponent: ["#59b7f0", "#1273b8"],
+  mark: ["#ff5a36f2", "#c93410f2"],
+} satisfies Record<string, [dark: string, light: string]>;
+
+export interface Theme extends Record<keyof typeof colours, Rgba> {
   dark: boolean;
   ramp: Float32Array; // best to worst
-  ground: Rgba; free: Rgba; wall: Rgba; wallEdge: Rgba; unknown: Rgba; cost: Rgba;
-  path: Rgba; scan: Rgba; collided: Rgba; guide: Rgba; nominal: Rgba; plan: Rgba; spread: Rgba; driven: Rgba;
-  car: Rgba; carEdge: Rgba; wheel: Rgba; obstacle: Rgba; obstacleEdge: Rgba; ghost: Rgba; selected: Rgba; grid: Rgba; opponent: Rgba; mark: Rgba;
 }
 
-const hex = (text: string, alpha = 1): Rgba => [
-  parseInt(text.slice(1, 3), 16) / 255, parseInt(text.slice(3, 5), 16) / 255, parseInt(text.slice(5, 7), 16) / 255, alpha,
-];
+function parsed(hex: string): Rgba {
+  const at = (i: number) => parseInt(hex.slice(i, i + 2) || "ff", 16) / 255;
+  return [at(1), at(3), at(5), at(7)];
+}
 
-export const themes: Record<"dark" | "light", Theme> = {
-  dark: {
-    dark: true, ramp: ramp(true),
-    ground: hex("#0a0d12"), free: hex("#1b222c"), wall: hex("#0a0d12"), wallEdge: hex("#6b7d95"), unknown: hex("#0b0e13"), cost: hex("#e2663a", 0.2),
-    path: hex("#7f8ea3", 0.6), scan: hex("#8fd3ff", 0.85), collided: hex("#ff5a36", 0.42), guide: hex("#f4a8ff", 0.95),
-    nominal: hex("#ffffff", 0.75), plan: hex("#3ff2c8"), spread: hex("#3ff2c8", 0.11), driven: hex("#7b8cff", 0.9),
-    car: hex("#f3f6fa"), carEdge: hex("#0b0e13"), wheel: hex("#2b3340"), obstacle: hex("#e8a13a"), obstacleEdge: hex("#fff1d6"),
-    ghost: hex("#9060b4", 0.85), selected: hex("#ffffff"), grid: hex("#ffffff", 0.045), opponent: hex("#59b7f0"), mark: hex("#ff5a36", 0.95),
-  },
-  light: {
-    dark: false, ramp: ramp(false),
-    ground: hex("#cfd7e0"), free: hex("#fbfcfd"), wall: hex("#cfd7e0"), wallEdge: hex("#3b4858"), unknown: hex("#dfe4ea"), cost: hex("#d1491b", 0.15),
-    path: hex("#6b7a8d", 0.6), scan: hex("#0069b4", 0.8), collided: hex("#c93410", 0.4), guide: hex("#a01bb0", 0.95),
-    nominal: hex("#20262e", 0.7), plan: hex("#00876c"), spread: hex("#00876c", 0.11), driven: hex("#4353d8", 0.85),
-    car: hex("#1d2530"), carEdge: hex("#ffffff"), wheel: hex("#66738a"), obstacle: hex("#d98518"), obstacleEdge: hex("#5c3500"),
-    ghost: hex("#4a1470", 0.85), selected: hex("#000000"), grid: hex("#000000", 0.05), opponent: hex("#1273b8"), mark: hex("#c93410", 0.95),
-  },
-};
+function themeOf(dark: boolean): Theme {
+  const entries = Object.entries(colours).map(([name, pair]) => [name, parsed(pair[dark ? 0 : 1])]);
+  return { ...(Object.fromEntries(entries) as Record<keyof typeof colours, Rgba>), dark, ramp: ramp(dark) };
+}
+
+export const themes = { dark: themeOf(true), light: themeOf(false) };
 
 /** The colour of a value in [0, 1], best to worst. */
 export function rampColour(theme: Theme, value: number, alpha: number): Rgba {
@@ -75,7 +88,17 @@ export function rampCss(theme: Theme): string {
   const stops = [];
   for (let i = 0; i <= 8; ++i) {
     const c = rampColour(theme, i / 8, 1);
-    stops.push(`rgb(${c.slice(0, 3).map((v) => Math.round(255 * v)).join(" ")}) ${(100 * i) / 8}%`);
+    stops.push(
+      `rgb(${c
+        .slice(0, 3)
+        .map((v) => Math.round(255 * v))
+        .join(" ")}) ${(100 * i) / 8}%`,
+    );
   }
   return `linear-gradient(90deg, ${stops.join(", ")})`;
+}
+
+/** A colour as CSS has it. */
+export function css([r, g, b, alpha]: Rgba): string {
+  return `rgb(${[r, g, b].map((v) => Math.round(255 * v)).join(" ")} / ${alpha})`;
 }

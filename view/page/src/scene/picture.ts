@@ -9,14 +9,17 @@ export function download(name: string, content: BlobPart, type: string) {
 
 /** The scene as a picture, with the labels and figures that stand over it. */
 export function picture(scene: HTMLCanvasElement, stage: HTMLElement): Promise<Blob> {
-  const ratio = scene.width / scene.clientWidth, canvas = document.createElement("canvas"), to = canvas.getContext("2d")!;
+  const ratio = scene.width / scene.clientWidth;
+  const canvas = document.createElement("canvas");
+  const to = canvas.getContext("2d")!;
   canvas.width = scene.width;
   canvas.height = scene.height;
   to.drawImage(scene, 0, 0);
   to.scale(ratio, ratio);
   const origin = stage.getBoundingClientRect();
   for (const element of stage.querySelectorAll<HTMLElement>(".tag, #readout, #ruler")) {
-    const box = element.getBoundingClientRect(), style = getComputedStyle(element);
+    const box = element.getBoundingClientRect();
+    const style = getComputedStyle(element);
     if (!box.width) continue;
     if (style.backgroundColor !== "rgba(0, 0, 0, 0)") {
       to.fillStyle = style.backgroundColor;
@@ -31,11 +34,14 @@ export function picture(scene: HTMLCanvasElement, stage: HTMLElement): Promise<B
     to.strokeStyle = getComputedStyle(stage).color;
     to.strokeRect(bar.x - origin.x, bar.bottom - origin.y, bar.width, 0);
   }
-  return new Promise((done, fail) => canvas.toBlob((blob) => (blob ? done(blob) : fail(new Error("no picture"))), "image/png"));
+  return new Promise((done, fail) =>
+    canvas.toBlob((blob) => (blob ? done(blob) : fail(new Error("no picture"))), "image/png"),
+  );
 }
 
 function drawText(to: CanvasRenderingContext2D, element: HTMLElement, origin: DOMRect) {
-  const words = document.createTreeWalker(element, NodeFilter.SHOW_TEXT), range = document.createRange();
+  const words = document.createTreeWalker(element, NodeFilter.SHOW_TEXT);
+  const range = document.createRange();
   for (let node = words.nextNode(); node; node = words.nextNode()) {
     const text = node.textContent!.trim();
     range.selectNodeContents(node);

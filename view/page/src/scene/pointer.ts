@@ -32,12 +32,16 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
   let inGhostLane = false; // where the first pointer went down
   /** Where the pointer is, in the lane of the car. */
   const place = (e: PointerEvent | MouseEvent) => {
-    const box = canvas.getBoundingClientRect(), p = { x: e.clientX - box.left, y: e.clientY - box.top };
-    if (!pointers.size) inGhostLane = scene.isInGhostLane(p);
-    return inGhostLane ? scene.fromGhostLane(p) : p;
+    const box = canvas.getBoundingClientRect();
+    const p = { x: e.clientX - box.left, y: e.clientY - box.top };
+    if (!pointers.size) inGhostLane = scene.isSideBySide && scene.stage.isInGhostLane(p);
+    return inGhostLane ? scene.stage.fromGhostLane(p) : p;
   };
   /** What can be grasped at a point of the map frame. The driven car is not in the lane of the ghost. */
-  const bodyAt = (x: number, y: number) => { const body = scene.bodyAt(x, y); return inGhostLane && body?.kind === 0 ? undefined : body; };
+  const bodyAt = (x: number, y: number) => {
+    const body = scene.bodyAt(x, y);
+    return inGhostLane && body?.kind === 0 ? undefined : body;
+  };
   const remove = (body: Body | undefined) => {
     if (!body || body.kind === 0 || body.kind === 4 || fixed) return false;
     send({ do: "remove", body: body.id });
@@ -54,24 +58,34 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
     const p = place(e);
     pointers.set(e.pointerId, p);
     clearTimeout(pressed);
-    if (pointers.size > 1) { dragged = undefined; moved = true; return; }
+    if (pointers.size > 1) {
+      dragged = undefined;
+      moved = true;
+      return;
+    }
     if (e.button !== 0) return;
     start = p;
     moved = false;
-    const [x, y] = scene.toMap(p);
+    const [x, y] = scene.camera.toMap(p.x, p.y);
     dragged = bodyAt(x, y);
     if (fixed || dragged?.kind === 4) dragged = undefined; // opponents drive themselves
     scene.selected = dragged && dragged.kind !== 0 ? dragged.id : -1;
     drag = 1 + Math.floor(1e9 * Math.random()); // other pages drag too
     if (dragged) grip = { x: dragged.x - x, y: dragged.y - y };
-    if (e.pointerType === "touch") pressed = window.setTimeout(() => { if (start && !moved && remove(dragged)) start = dragged = undefined; }, longPress);
+    if (e.pointerType === "touch")
+      pressed = window.setTimeout(() => {
+        if (start && !moved && remove(dragged)) start = dragged = undefined;
+      }, longPress);
     redraw();
   });
 
   canvas.addEventListener("pointermove", (e) => {
-    const p = place(e), before = pointers.get(e.pointerId);
+    const p = place(e);
+    const before = pointers.get(e.pointerId);
     if (!before) {
-      const [x, y] = scene.toMap(p), over = bodyAt(x, y), kind = { disc: 3, box: 2, car: 1, pan: 0 }[tool()];
+      const [x, y] = scene.camera.toMap(p.x, p.y);
+      const over = bodyAt(x, y);
+      const kind = { disc: 3, box: 2, car: 1, pan: 0 }[tool()];
       canvas.style.cursor = over ? "grab" : tool() === "pan" ? "default" : "crosshair";
       scene.preview = over || !kind || e.pointerType === "touch" ? undefined : { x, y, kind };
       redraw();
@@ -79,17 +93,24 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
     }
     if (pointers.size === 2) {
       const other = [...pointers].find(([id]) => id !== e.pointerId)![1];
-      const was = Math.hypot(before.x - other.x, before.y - other.y), is = Math.hypot(p.x - other.x, p.y - other.y);
-      if (was > 1) scene.zoomAt((p.x + other.x) / 2, (p.y + other.y) / 2, is / was);
-      scene.drag((p.x - before.x) / 2, (p.y - before.y) / 2);
+      const was = Math.hypot(before.x - other.x, before.y - other.y);
+      const is = Math.hypot(p.x - other.x, p.y - other.y);
+      if (was > 1) scene.camera.zoomAt((p.x + other.x) / 2, (p.y + other.y) / 2, is / was);
+      scene.camera.pan((p.x - before.x) / 2, (p.y - before.y) / 2);
     } else if (start) {
-      if (Math.hypot(p.x - start.x, p.y - start.y) > slack) { moved = true; clearTimeout(pressed); }
+      if (Math.hypot(p.x - start.x, p.y - start.y) > slack) {
+        moved = true;
+        clearTimeout(pressed);
+      }
       if (moved && dragged) {
-        const [x, y] = scene.toMap(p);
-        if (performance.now() - sent > gap) { sent = performance.now(); move(dragged, x + grip.x, y + grip.y); }
+        const [x, y] = scene.camera.toMap(p.x, p.y);
+        if (performance.now() - sent > gap) {
+          sent = performance.now();
+          move(dragged, x + grip.x, y + grip.y);
+        }
       } else if (moved) {
         canvas.classList.add("panning");
-        scene.drag(p.x - before.x, p.y - before.y);
+        scene.camera.pan(p.x - before.x, p.y - before.y);
       }
     }
     scene.preview = undefined;
@@ -103,28 +124,45 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
     clearTimeout(pressed);
     canvas.classList.remove("panning");
     if (!start || pointers.size) return;
-    const [x, y] = scene.toMap(p);
+    const [x, y] = scene.camera.toMap(p.x, p.y);
     if (dragged && moved) move(dragged, x + grip.x, y + grip.y);
-    else if (!moved && e.type === "pointerup" && !clicked(x, y) && !dragged && tool() !== "pan") drop(x, y); // a mark may lie on a body
+    else if (!moved && e.type === "pointerup" && !clicked(x, y) && !dragged && tool() !== "pan") drop(x, y);
     start = dragged = undefined;
     redraw();
   };
   const drop = (x: number, y: number) => {
-    const kind = tool(), car = scene.frame?.bodies[0];
-    send({ do: "add", kind, x, y, yaw: kind === "car" && car ? car.yaw : 0, length: kind === "disc" ? 0.3 : 0.4, width: 0.4 });
+    const kind = tool();
+    const car = scene.frame?.bodies[0];
+    send({
+      do: "add",
+      kind,
+      x,
+      y,
+      yaw: kind === "car" && car ? car.yaw : 0,
+      length: kind === "disc" ? 0.3 : 0.4,
+      width: 0.4,
+    });
   };
   canvas.addEventListener("pointerup", up);
   canvas.addEventListener("pointercancel", up);
-  canvas.addEventListener("pointerleave", () => { scene.preview = undefined; redraw(); });
+  canvas.addEventListener("pointerleave", () => {
+    scene.preview = undefined;
+    redraw();
+  });
   canvas.addEventListener("contextmenu", (e) => {
     e.preventDefault();
-    const p = place(e), [x, y] = scene.toMap(p);
+    const p = place(e);
+    const [x, y] = scene.camera.toMap(p.x, p.y);
     remove(bodyAt(x, y));
   });
-  canvas.addEventListener("wheel", (e) => {
-    e.preventDefault();
-    const p = place(e);
-    scene.zoomAt(p.x, p.y, Math.exp(-e.deltaY * (e.deltaMode === 1 ? 0.05 : 0.0015)));
-    redraw();
-  }, { passive: false });
+  canvas.addEventListener(
+    "wheel",
+    (e) => {
+      e.preventDefault();
+      const p = place(e);
+      scene.camera.zoomAt(p.x, p.y, Math.exp(-e.deltaY * (e.deltaMode === 1 ? 0.05 : 0.0015)));
+      redraw();
+    },
+    { passive: false },
+  );
 }

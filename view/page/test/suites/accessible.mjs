@@ -1,71 +1,113 @@
-// Keyboard, roles, contrast and colour vision.
-import { readFileSync } from "node:fs";
+// Keyboard, touch, roles, contrast and colour vision.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { similarColours } from "../colour_vision.mjs";
 
-const axe = createRequire(import.meta.url).resolve("axe-core");
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core"), "utf8");
 
-/** What axe-core finds wrong, in one line each. */
-async function violations(page) {
-  await page.evaluate(readFileSync(axe, "utf8")); // the page's policy lets no script be added
+/** The violations that axe-core finds, in one line each. */
+function violations(page) {
   return page.evaluate(async () => {
     const result = await globalThis.axe.run(document, { resultTypes: ["violations"] });
-    return result.violations.flatMap((v) => v.nodes.map((n) => `${v.id}: ${n.target.join(" ")} ${n.any[0]?.message ?? ""}`));
+    const line = (v) => v.nodes.map((n) => `${v.id}: ${n.target.join(" ")} ${n.any[0]?.message ?? ""}`);
+    return result.violations.flatMap(line);
   });
 }
 
 export default async function (h) {
   const { page } = h;
-  const press = async (id, key) => { await page.focus(id); await page.keyboard.press(key); };
+  const click = (id) => page.evaluate((i) => document.getElementById(i).click(), id);
 
   await h.test("axe-core finds no violation in either theme, with every pane and dialog", async () => {
     await h.pause();
     await h.hideLayers();
+    await page.evaluate(axe); // the page's policy lets no script be added
     const found = [];
+    const check = async (what) => found.push(...(await violations(page)).map((v) => `${what}: ${v}`));
     for (const theme of ["dark", "light"]) {
-      await page.evaluate((name) => { if (document.documentElement.dataset.theme !== name) document.getElementById("theme").click(); }, theme);
-      for (const pane of ["charts", "options", "laps"]) {
-        await page.evaluate((name) => document.getElementById("tab-" + name).click(), pane);
-        found.push(...(await violations(page)).map((v) => `${theme}, ${pane}: ${v}`));
+      await h.until((name) => document.documentElement.dataset.theme === name, theme);
+      for (const pane of ["options", "laps", "charts"]) {
+        await click("tab-" + pane);
+        await check(`${theme}, ${pane}`);
       }
-      for (const [opens, closes] of [["help", "help-box"], ["fork", "fork-box"]]) {
-        await page.evaluate((id) => document.getElementById(id).click(), opens);
-        found.push(...(await violations(page)).map((v) => `${theme}, ${opens}: ${v}`));
-        await page.evaluate((id) => document.getElementById(id).close(), closes);
+      for (const dialog of ["help", "fork"]) {
+        await click(dialog);
+        await check(`${theme}, ${dialog}`);
+        await page.evaluate((id) => document.getElementById(id).close(), dialog + "-box");
       }
       for (const menu of ["save-open", "scenario-open"]) {
-        await page.evaluate((id) => document.getElementById(id).click(), menu);
-        found.push(...(await violations(page)).map((v) => `${theme}, ${menu}: ${v}`));
-        await page.evaluate((id) => document.getElementById(id).click(), menu);
+        await click(menu);
+        await check(`${theme}, ${menu}`);
+        await click(menu);
       }
+      await click("theme");
     }
-    await page.evaluate(() => { if (document.documentElement.dataset.theme !== "dark") document.getElementById("theme").click(); document.getElementById("tab-charts").click(); });
     await h.showLayers();
     assert.deepEqual([...new Set(found)], []);
   });
 
   await h.test("keys act only where no control and no dialog has the focus", async () => {
-    const generation = (await h.state()).generation;
+    const press = async (id, key) => {
+      await page.focus(id);
+      await page.keyboard.press(key);
+    };
+    const { generation } = await h.state();
     await press('[data-layer="scan"]', "Space");
     assert.equal(await page.isChecked('[data-layer="scan"]'), false, "Space switches the layer");
     assert.equal((await h.state()).paused, true, "and does not continue the drive");
     await press('[data-layer="scan"]', "Space");
-    await page.focus("#scene");
-    await page.keyboard.press("?");
+    await press("#scene", "?");
+    await h.until(() => document.getElementById("help-box").open);
     await page.keyboard.press("r");
     await page.keyboard.press("Escape");
     assert.equal((await h.state()).generation, generation, "R under the help does not restart");
-    await page.focus("#scene");
-    await page.keyboard.press("s");
+    await press("#scene", "s");
     assert.equal(await page.getAttribute("#save-open", "aria-expanded"), "true");
     await page.keyboard.press("Escape");
     assert.equal(await page.getAttribute("#save-open", "aria-expanded"), "false");
-    assert.equal(await page.evaluate(() => document.activeElement.id), "save-open", "Escape closes the menu and returns the focus");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "save-open", "the focus returns");
     await press("#tab-charts", "ArrowRight");
     assert.equal(await page.getAttribute("#tab-options", "aria-selected"), "true");
     await page.keyboard.press("Home");
     assert.equal(await page.getAttribute("#tab-charts", "aria-selected"), "true");
+  });
+
+  await h.test("a long press deletes an obstacle", async () => {
+    const server = await h.start(
+      "view",
+      "--course",
+      "stag",
+      "--obstacles",
+      "4",
+      "--seed",
+      "3",
+      "--port",
+      "0",
+    );
+    const touch = await h.open(server.address, { hasTouch: true, viewport: { width: 400, height: 800 } });
+    await h.until(() => window.slalom?.frame?.bodies.length > 1 && slalom.state, undefined, touch);
+    await h.pause(touch);
+    await touch.evaluate(() => slalom.scene.fit());
+    const tools = await touch.context().newCDPSession(touch);
+    const bodies = await touch.evaluate(() => slalom.frame.bodies.length);
+    const isDeleted = (n) => slalom.frame.bodies.length === n - 1; // the others are numbered anew
+    // Panels that open may move the scene between a look and a touch: then the press is repeated.
+    for (let press = 0; press < 5 && !(await touch.evaluate(isDeleted, bodies)); ++press) {
+      await h.drawn(touch);
+      const point = await touch.evaluate(() => {
+        const body = slalom.frame.bodies.find((o) => o.kind !== 0);
+        const [x, y] = slalom.scene.camera.toScreen(body.x, body.y);
+        const box = document.getElementById("scene").getBoundingClientRect();
+        return { x: box.x + x, y: box.y + y };
+      });
+      await tools.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: [point] });
+      await touch.waitForFunction(isDeleted, bodies, { timeout: 15_000 }).catch(() => undefined);
+      await tools.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+    }
+    await h.until(isDeleted, bodies, touch);
+    await touch.close();
+    await server.stop();
   });
 
   await h.test("the colours of layers differ for every kind of colour vision", async () => {

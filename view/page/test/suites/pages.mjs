@@ -1,0 +1,57 @@
+// Several pages, a slow one, foreign ones, and a lost connection.
+import assert from "node:assert/strict";
+
+export default async function (h) {
+  const { page } = h;
+
+  await h.test("a slow browser pauses at the tick that it shows, and frames do not pile up", async () => {
+    const tools = await page.context().newCDPSession(page);
+    await tools.send("Emulation.setCPUThrottlingRate", { rate: 6 });
+    await h.play();
+    await page.evaluate(() => {
+      Object.assign(window, { from: slalom.received, most: 0 });
+      const measure = () => {
+        window.most = Math.max(window.most, slalom.waiting);
+        requestAnimationFrame(measure);
+      };
+      measure();
+    });
+    await h.until(() => slalom.received > window.from + 10); // long enough that frames would pile up
+    const tick = await page.evaluate(() => {
+      const shown = slalom.scalar("tick");
+      document.getElementById("play").click();
+      return shown;
+    });
+    await h.until(() => slalom.state.paused && slalom.state.tick === slalom.scalar("tick"));
+    const seen = await h.state();
+    assert.ok((await page.evaluate(() => window.most)) <= 2, "at most two frames wait in the page");
+    const lag = (seen.tick - tick) * seen.control_period;
+    assert.ok(Math.abs(lag) <= 0.3, `the pause holds ${lag.toFixed(2)} s after the tick shown`);
+    await tools.send("Emulation.setCPUThrottlingRate", { rate: 1 });
+    await h.play();
+  });
+
+  await h.test("the page of another origin cannot connect", async () => {
+    const other = await h.browser.newPage();
+    await other.goto("data:text/html,<p>elsewhere</p>");
+    const outcome = await other.evaluate((port) => {
+      const socket = new WebSocket(`ws://127.0.0.1:${port}/ws`);
+      return new Promise((done) => {
+        socket.onopen = () => done("open");
+        socket.onerror = () => done("refused");
+      });
+    }, h.server.port);
+    assert.equal(outcome, "refused");
+    await other.close();
+  });
+
+  await h.test("says that the connection is lost, and shows what a new server drives", async () => {
+    const problems = h.problems.length;
+    await h.server.stop();
+    await h.until(() => !document.getElementById("lost").hidden);
+    h.server = await h.start("view", "--course", "stag", "--seed", "5", "--port", h.server.port);
+    await h.until(() => document.getElementById("lost").hidden && slalom.state?.seed === "5");
+    await h.until(() => location.hash.includes("seed=5"));
+    h.problems.length = problems; // Chromium reports the attempts to connect in the console
+  });
+}

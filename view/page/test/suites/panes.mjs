@@ -1,0 +1,105 @@
+// The panes and what the page knows of the past.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+
+export default async function (h) {
+  const { page } = h;
+  /** Whether a page knows every stored step. */
+  const isWhole = () =>
+    window.slalom?.state &&
+    slalom.frame &&
+    !slalom.past.missing(Math.max(0, slalom.state.oldest), slalom.state.newest, 1);
+
+  await h.test("the scalars of steps without a frame arrive late instead of never", async () => {
+    await h.pause();
+    await h.step(120); // of 120 steps in one go, few frames can be sent
+    await h.until(isWhole);
+    const tick = (await h.state()).newest - 60;
+    const late = await page.evaluate((t) => [...slalom.past.at(t)], tick);
+    await h.seek(tick);
+    assert.deepEqual(late, await page.evaluate(() => [...slalom.frame.scalars]));
+  });
+
+  await h.test("a page that is opened later knows the minute before", async () => {
+    const other = await h.open(page.url());
+    await h.until(isWhole, undefined, other);
+    await h.drawn(other);
+    const [points, steps] = await other.evaluate(() => {
+      const { oldest } = slalom.state;
+      return [slalom.scene.driven.length / 2, slalom.scalar("tick") - Math.max(0, oldest) + 1];
+    });
+    assert.ok(points > 0.9 * steps, `${points} points of ${steps} steps`);
+    await other.close();
+  });
+
+  await h.test("one cursor shows the same time in charts, scene and slider; a click goes there", async () => {
+    await h.seek((await h.state()).newest);
+    await h.drawn();
+    const over = await page.locator("#charts .u-over").first().boundingBox();
+    const place = [over.x + 0.5 * over.width, over.y + 20];
+    await page.mouse.move(...place);
+    await h.until(() => slalom.scene.probe);
+    const [at, speed] = await page.evaluate(() => {
+      const of = (i, name) => slalom.past.at(i)?.[slalom.hello.scalars.indexOf(name)];
+      let i = slalom.state.newest;
+      while (i >= 0 && of(i, "x") !== slalom.scene.probe.x) --i;
+      return [i, of(i, "speed")];
+    });
+    assert.ok(at > 0 && at < (await h.state()).newest);
+    const isShown = (text) =>
+      [...document.querySelectorAll("#charts em")].some((e) => e.textContent === text);
+    await h.until(isShown, `car ${speed.toFixed(2)}`);
+    assert.equal(await page.isVisible("#timeline-mark"), true);
+    await h.picture("cursor");
+    await page.mouse.click(...place);
+    await h.until((t) => slalom.state.paused && slalom.scalar("tick") === t, at);
+    await page.mouse.move(5, 5);
+    await h.until(() => !slalom.scene.probe);
+  });
+
+  await h.test("the charts are saved as CSV", async () => {
+    await h.until(isWhole);
+    const [file] = await Promise.all([page.waitForEvent("download"), page.click("#csv")]);
+    const rows = readFileSync(await file.path(), "utf8")
+      .trim()
+      .split("\n");
+    const [head, ...cells] = rows.map((row) => row.split(","));
+    assert.deepEqual(head.slice(0, 3), ["tick", "time", "distance_cost"]);
+    assert.ok(cells.length > 10 && cells.every((row) => row.length === head.length));
+    const known = (t) => slalom.past.at(t)[slalom.hello.scalars.indexOf("speed")];
+    assert.equal(Number(cells[5][head.indexOf("speed")]), await page.evaluate(known, Number(cells[5][0])));
+  });
+
+  await h.test("a short list of options comes first, and the search finds the others", async () => {
+    await page.click("#tab-options");
+    const keys = () =>
+      page.evaluate(() =>
+        [...document.querySelectorAll("#option-list [data-key]")].map((e) => e.dataset.key),
+      );
+    const first = await keys();
+    assert.ok(first.length <= 12 && first.includes("svg_mppi.samples"), `${first}`);
+    await page.fill("#filter", "steer_limit");
+    assert.deepEqual(await keys(), ["planner.steer_limit"]);
+    await page.fill("#filter", "");
+    await page.click("#all-options");
+    assert.ok((await keys()).length > 60);
+    await page.click("#all-options");
+    await page.click("#tab-charts");
+  });
+
+  await h.test("a field keeps what was typed while it is not valid", async () => {
+    const isMarked = (value) => document.getElementById("obstacles").ariaInvalid === value;
+    await page.click("#scenario-open");
+    const { obstacles } = await h.state();
+    for (const [value, mark] of [
+      ["99", "true"],
+      [String(obstacles), "false"],
+    ]) {
+      await page.fill("#obstacles", value);
+      await page.keyboard.press("Enter");
+      await h.until(isMarked, mark);
+      assert.equal(await page.inputValue("#obstacles"), value);
+    }
+    await page.keyboard.press("Escape");
+  });
+}
