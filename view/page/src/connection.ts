@@ -9,7 +9,7 @@ export class Connection implements Link {
   private timer = 0;
   received = 0;
   private arrived = 0; // frames of this socket
-  private acknowledged = 0; // of these
+  private acknowledged = 0; // acknowledged frames
 
   constructor(private readonly handlers: Handlers) {
     this.open();

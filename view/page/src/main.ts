@@ -36,7 +36,7 @@ foldHeader();
 let hello: Hello | undefined;
 let state: State | undefined;
 let frame: Frame | undefined;
-let position = 0; // of the frame that is shown, in the past
+let position = 0; // number of the shown frame, in the past
 let dirty = true; // the page is to be drawn again
 let changedOptions: string[] = [];
 

@@ -6,7 +6,7 @@ export type Pose = Numbers<"x" | "y" | "yaw">;
 
 export interface Trajectories {
   count: number;
-  points: number; // of each trajectory
+  points: number; // points of each trajectory
   xy: Float32Array; // [trajectory][point][2]
 }
 export interface Candidates extends Trajectories {
@@ -34,7 +34,7 @@ export interface CostMap extends Pose, Numbers<"rows" | "columns" | "resolution"
 }
 /** A car that is tracked: its box now, and the places where it is expected, for each hypothesis. */
 export interface Other extends Pose, Numbers<"length" | "width" | "points"> {
-  weights: Float32Array; // of the hypotheses
+  weights: Float32Array; // weights of the hypotheses
   xy: Float32Array; // [hypothesis][time][2]
 }
 export interface Ghost extends Pose, Numbers<"steer" | "speed" | "laps" | "lapTime"> {
@@ -52,7 +52,7 @@ export interface Frame {
   bodies: Body[];
   others?: Other[];
   ghost?: Ghost;
-  ghostFrame?: Frame; // of the ghost's controller, in the ghost's world
+  ghostFrame?: Frame; // frame of the ghost's controller, in the ghost's world
 }
 /** The map, with the corner of its first cell at a pose. */
 export interface Grid extends Pose, Numbers<"width" | "height" | "resolution"> {

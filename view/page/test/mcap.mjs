@@ -12,7 +12,7 @@ import schemas from "@foxglove/schemas/jsonschema.js";
 const program = process.argv[2];
 const decompressHandlers = await loadDecompressHandlers();
 
-/** What a schema demands, without what it explains. */
+/** The demands of a schema, without its explanations. */
 function bare(schema) {
   if (Array.isArray(schema)) return schema.map(bare);
   if (schema === null || typeof schema !== "object") return schema;

@@ -6,8 +6,8 @@ import { axis, Chart, css, padded, vertical } from "./plots";
 import { isEstimate, strips, type Strip } from "./strips";
 
 const span = 20; // s that the strips show
-const max_ticks = 500; // of the histogram
-const bins = 36; // of the histogram
+const max_ticks = 500; // ticks in the histogram
+const bins = 36; // bins of the histogram
 
 /** A strip chart with its columns of values. */
 interface Plotted {

@@ -1,4 +1,4 @@
-/** What can be shown: its name, its title, and what it is. */
+/** A layer that can be shown: its name, its title, and its description. */
 export const layers = [
   ["costMap", "Cost map", "where the rear axle would mean a collision, from the scan"],
   ["path", "Course line", "the line to follow"],

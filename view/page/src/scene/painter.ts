@@ -76,7 +76,7 @@ interface Program {
   turn: WebGLUniformLocation | null;
 }
 
-const vertexWords = 6; // of a line: ends, colour, width
+const vertexWords = 6; // words of a line: ends, colour, width
 const lineWords = 4 * vertexWords;
 
 /**
@@ -180,7 +180,7 @@ export class Painter {
     this.lineCount = this.fillCount = 0;
   }
 
-  /** What follows is drawn into the part of the canvas that a camera covers. */
+  /** Limits the following drawings to the part of the canvas that a camera covers. */
   look(camera: Camera) {
     const r = this.ratio;
     const at = [

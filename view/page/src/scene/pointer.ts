@@ -37,7 +37,7 @@ export function attachPointer({ canvas, scene, send, tool, redraw, clicked, fixe
     if (!pointers.size) inGhostLane = scene.isSideBySide && scene.stage.isInGhostLane(p);
     return inGhostLane ? scene.stage.fromGhostLane(p) : p;
   };
-  /** What can be grasped at a point of the map frame. The driven car is not in the lane of the ghost. */
+  /** Finds the thing to grasp at a point of the map frame. The driven car is not in the ghost's lane. */
   const bodyAt = (x: number, y: number) => {
     const body = scene.bodyAt(x, y);
     return inGhostLane && body?.kind === 0 ? undefined : body;

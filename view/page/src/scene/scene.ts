@@ -27,7 +27,7 @@ export class SceneView {
   hello?: Hello;
   frame?: Frame;
   selected = -1; // body
-  costRange: [number, number] = [0, 1]; // of the colours of the candidates
+  costRange: [number, number] = [0, 1]; // costs of the candidates' first and last colour
   /** Whether the ghost is to be shown beside the car, in a lane of its own. */
   isSplit = false;
   /** x and y (m) of the paths that car and ghost have driven, one after the other. */
@@ -37,7 +37,7 @@ export class SceneView {
   best?: Pose;
   /** The pose of the car at the time under the pointer. */
   probe?: Pose;
-  preview?: { x: number; y: number; kind: number }; // of the body that a click places
+  preview?: { x: number; y: number; kind: number }; // place of the body that a click adds
   marks: Mark[] = [];
   private scene: Scene = {};
   private readonly painter: Painter;

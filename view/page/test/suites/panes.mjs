@@ -12,7 +12,7 @@ export default async function (h) {
 
   await h.test("the scalars of steps without a frame arrive late instead of never", async () => {
     await h.pause();
-    await h.step(120); // of 120 steps in one go, few frames can be sent
+    await h.step(120); // few frames of 120 steps in one go can be sent
     await h.until(isWhole);
     const tick = (await h.state()).newest - 60;
     const late = await page.evaluate((t) => [...slalom.past.at(t)], tick);
