@@ -7,11 +7,11 @@
 #include <map>
 #include <system_error>
 
+#include "evaluation/json.hpp"
 #include "evaluation/system_files.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/evaluation.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/result_folder.hpp"
 
 namespace slalom::evaluation {
@@ -30,7 +30,7 @@ constexpr const char* checksum_key = "checksum";
 /// The 64-bit FNV-1a hash of the settings, written with their keys in order.
 std::string checksum_of(const Json& settings) {
   std::uint64_t hash = 14695981039346656037ULL;
-  for (const char c : settings.dump()) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  for (const char c : json_text(settings)) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
   char digits[20];
   std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash));
   return digits;
@@ -61,13 +61,13 @@ std::string differences(const Json& stored, const Json& requested) {
   for (const auto& [key, value] : a) {
     const auto other = b.find(key);
     if (other == b.end()) {
-      note(key, value.dump(), "nothing");
+      note(key, json_text(value), "nothing");
     } else if (!(other->second == value)) {
-      note(key, value.dump(), other->second.dump());
+      note(key, json_text(value), json_text(other->second));
     }
   }
   for (const auto& [key, value] : b) {
-    if (!a.contains(key)) note(key, "nothing", value.dump());
+    if (!a.contains(key)) note(key, "nothing", json_text(value));
   }
   return text;
 }
@@ -83,26 +83,26 @@ StoredSettings check_settings(const fs::path& file, const std::string& requested
   StoredSettings result;
   Json stored;
   try {
-    const std::string text = read_file(file, Json::max_bytes);
+    const std::string text = read_file(file, max_json_bytes);
     result.checked = verify_checksum(text);
-    stored = Json::parse(text);
+    stored = parse_json(text);
   } catch (const std::invalid_argument& error) {
     throw IoError(file.string(), 0, error.what());
   }
-  if (const Json* build = stored.find("build"); build != nullptr && build->is_string())
+  if (const auto build = stored.find("build"); build != stored.end() && build->is_string())
     result.build = build->get<std::string>();
   stored.erase("build");
   stored.erase(checksum_key);
-  const std::string differing = differences(stored, Json::parse(requested));
+  const std::string differing = differences(stored, parse_json(requested));
   if (!differing.empty())
     throw IoError(file.string(), 0, "the folder contains an evaluation with other settings: " + differing);
   return result;
 }
 
 std::string with_build(const std::string& settings, const std::string& build) {
-  Json json = Json::parse(settings);
+  Json json = parse_json(settings);
   if (!build.empty()) json["build"] = build;
-  return with_checksum(json.dump());
+  return with_checksum(json_text(json));
 }
 
 bool is_table_order(const LapRow& a, const LapRow& b) {
@@ -134,24 +134,19 @@ bool all_checked(const fs::path& settings, bool settings_checked, bool laps_chec
 }  // namespace
 
 std::string with_checksum(const std::string& settings) {
-  Json json = Json::parse(settings);
+  Json json = parse_json(settings);
   json.erase(checksum_key);
   json[checksum_key] = checksum_of(json);
-  return json.dump(2);
+  return json_text(json, 2);
 }
 
 bool verify_checksum(const std::string& stored_settings) {
-  Json json;
-  try {
-    json = Json::parse(stored_settings);
-  } catch (const JsonError& error) {
-    throw std::invalid_argument(error.what());
-  }
+  Json json = parse_json(stored_settings);
   if (!json.is_object()) throw std::invalid_argument("is not a JSON object");
   if (!json.contains(checksum_key)) return false;
   const Json stored = json.at(checksum_key);
   json.erase(checksum_key);
-  if (!(stored == Json(checksum_of(json))))
+  if (stored != checksum_of(json))
     throw std::invalid_argument(
         "key checksum: is not that of the settings: the file is damaged or was edited");
   return true;

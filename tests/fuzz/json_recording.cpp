@@ -3,7 +3,7 @@
 
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "support/identification_promise.hpp"
 #include "tools/recorded_drives/driven_samples.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
+#include "src/evaluation/json.hpp"
 
 namespace slalom::fuzz {
 namespace {

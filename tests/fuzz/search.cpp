@@ -3,6 +3,7 @@
 
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/evaluation/tuning_job.hpp"
 
 namespace slalom::fuzz {
@@ -62,7 +63,7 @@ bool resume(std::string_view stored) {
   } catch (const IoError&) {
     return false;
   }
-  const Json there = Json::parse(stored), here = plan();
+  const Json there = parse_json(stored), here = plan();
   for (const auto& [key, expected] : here.items())
     require(there.at(key) == expected, "a plan that is continued is that of the search");
   return true;

@@ -4,7 +4,7 @@
 #include <initializer_list>
 
 #include "fuzz/target.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "view/web_client.hpp"
 
 namespace slalom::fuzz {
@@ -43,7 +43,7 @@ std::vector<std::string> seeds() {
 
 /// Whether JSON can hold the text as it is.
 bool is_utf8(const std::string& text) {
-  return Json::parse(Json(text).dump()).get<std::string>() == text;
+  return parse_json(json_text(text)).get<std::string>() == text;
 }
 
 /// What the server has received is what it may hand over. Whether there was a client.

@@ -2,7 +2,7 @@
 // they are read, as a fuzzer does not find it.
 #include "fuzz/target.hpp"
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 
 namespace slalom::fuzz {
@@ -27,9 +27,9 @@ std::vector<std::string> seeds() {
 }
 
 void check_json(std::string_view bytes) {
-  const Json json = Json::parse_or_null(bytes);
-  const std::string text = json.dump();
-  require(Json::parse(text).dump() == text, "JSON that is written reads back as the same");
+  const Json json = parse_json_or_null(bytes);
+  const std::string text = json_text(json);
+  require(json_text(parse_json(text)) == text, "JSON that is written reads back as the same");
   json.flatten();
 }
 
@@ -62,7 +62,7 @@ bool run(std::string_view bytes) {
   check_json(bytes);
   scratch_file("laps.csv", evaluation::checked_header() + "\n");
   const std::string text(bytes);
-  const bool is_object = Json::parse_or_null(bytes).is_object();
+  const bool is_object = parse_json_or_null(bytes).is_object();
   scratch_file("settings.json", is_object ? evaluation::with_checksum(text) : text);
   const bool valid = load(scratch_folder());
   scratch_file("laps.journal.csv", evaluation::checked_header() + "\n");

@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/sim/collision_log.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/bags/bag_drive.hpp"
 #include "tools/recording/recording.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "bench/workload/measurements.hpp"
 #include "bench/workload/peak.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/bench_plot.hpp"
 #include "tools/scenario/scenario.hpp"

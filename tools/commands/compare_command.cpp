@@ -6,8 +6,8 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/results.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/terminal/json_output.hpp"
@@ -232,9 +232,9 @@ int compare(const CompareArguments& arguments) {
   for (const std::string& place : places_of(arguments)) {
     const StoredEvaluation a = load_evaluation(fs::path(arguments.first) / place),
                            b = load_evaluation(fs::path(arguments.second) / place);
-    const Json sa = Json::parse(a.settings), sb = Json::parse(b.settings);
-    const bool same_world = sa["course_hash"] == sb["course_hash"] && sa["evaluation"] == sb["evaluation"] &&
-                            sa["seed0"] == sb["seed0"];
+    const Json sa = parse_json(a.settings), sb = parse_json(b.settings);
+    const auto is_same = [&](const char* key) { return sa.value(key, Json()) == sb.value(key, Json()); };
+    const bool same_world = is_same("course_hash") && is_same("evaluation") && is_same("seed0");
     auto found = match_all(place, a, b, same_world);
     if (found.empty())
       throw IoError(b.folder.string(), 0, "has no scenario that " + a.folder.string() + " has");
@@ -252,8 +252,8 @@ int compare(const CompareArguments& arguments) {
       if (std::find(settings.begin(), settings.end(), d) == settings.end()) settings.push_back(d);
   }
   for (const auto& d : settings)
-    std::fprintf(words, "%s: %s | %s\n", d["setting"].get<std::string>().c_str(), d["first"].dump().c_str(),
-                 d["second"].dump().c_str());
+    std::fprintf(words, "%s: %s | %s\n", d["setting"].get<std::string>().c_str(),
+                 json_text(d["first"]).c_str(), json_text(d["second"]).c_str());
   const auto sums = together(matches);
   matches.insert(matches.end(), sums.begin(), sums.end());
   print(matches, words);

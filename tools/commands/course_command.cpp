@@ -9,9 +9,9 @@
 #include <string>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/course_picture.hpp"

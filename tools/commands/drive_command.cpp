@@ -4,8 +4,8 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/statistics.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/lap_picture.hpp"
 #include "tools/recording/recording.hpp"

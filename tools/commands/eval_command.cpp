@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/evaluation_check.hpp"
 #include "tools/evaluation/evaluation_job.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "slalom/core/option_access.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/explanation/explain_picture.hpp"
 #include "tools/explanation/explanation.hpp"

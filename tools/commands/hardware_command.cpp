@@ -5,9 +5,9 @@
 #include <mutex>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/statistics.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/report/lap_json.hpp"
 #include "tools/scenario/scenario.hpp"

@@ -1,9 +1,9 @@
 #include <memory>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/model/identification.hpp"
 #include "slalom/vehicle/model/tyre_identification.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/recorded_drives/driven_samples.hpp"
 #include "tools/scenario/scenario.hpp"

@@ -9,6 +9,7 @@
 #include "slalom/core/error.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
 #include "slalom/solvers/registry.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/commands/navigate_picture.hpp"
 #include "tools/commands/navigate_report.hpp"

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "slalom/evaluation/statistics.hpp"
+#include "src/evaluation/json.hpp"
 
 namespace slalom::tools {
 namespace {

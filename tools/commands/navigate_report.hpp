@@ -1,10 +1,10 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <ostream>
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/rooms/room_drive.hpp"
 
 namespace slalom::tools {
@@ -20,7 +20,7 @@ struct RoomSeries {
 bool collided(const evaluation::RoomDrive& drive);
 
 /// Means, intervals and every drive.
-Json summary_of(const RoomSeries& series);
+nlohmann::ordered_json summary_of(const RoomSeries& series);
 /// The names of the columns of print_row, in one line.
 void print_heading(std::ostream& out);
 /// The means of a series in one line, for the terminal.

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/course/course.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/bags/replay_bag.hpp"
 #include "tools/bags/ros_bag.hpp"
 #include "tools/commands/commands.hpp"
@@ -94,7 +94,7 @@ int replay_lap(const ReplayCommandArguments& arguments) {
   const std::uint64_t seed = lap_seed(evaluation.seed0, arguments.lap, experiment.obstacles);
   std::unique_ptr<Recording> recording;
   if (!arguments.record.empty()) {
-    const auto settings = Json::parse(stored.settings);
+    const auto settings = parse_json(stored.settings);
     const ScenarioArguments told = evaluation_arguments(stored, arguments.course);
     recording = make_recording(arguments.record, {.arguments = told,
                                                   .scenario = scenario,

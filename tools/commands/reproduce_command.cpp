@@ -2,8 +2,8 @@
 #include <memory>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/course/course.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/evaluation_job.hpp"

@@ -6,6 +6,7 @@
 #include <memory>
 #include <system_error>
 
+#include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/soak/soak.hpp"
 #include "tools/terminal/interrupt.hpp"

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/course/track_generator.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/track_picture.hpp"

@@ -9,7 +9,7 @@
 #include "slalom/core/instruction_set.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/core/version.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/command_line/command.hpp"
 #include "tools/evaluation/build_id.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
@@ -56,7 +56,7 @@ Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
 /// Rejects settings that are JSON but not an object. The store itself rejects a text that is not JSON.
 void require_object(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return;
-  const Json there = Json::parse_or_null(read_file(file, Json::max_bytes));
+  const Json there = parse_json_or_null(read_file(file, max_json_bytes));
   if (!there.is_null() && !there.is_object()) throw IoError(file.string(), 0, "is not a JSON object");
 }
 
@@ -213,7 +213,7 @@ Json Evaluated::summary() const {
   }
   return {{"program", std::string("slalom ") + version()},
           {"build", build_id()},
-          {"settings", Json::parse(evaluation.settings)},
+          {"settings", parse_json(evaluation.settings)},
           {"machine", machine_json()},
           {"results", list},
           {"comparisons", pairs}};
@@ -226,7 +226,7 @@ Evaluation make_evaluation(const EvaluationArguments& arguments, const Scenario&
           .experiments = experiments,
           .seed0 = arguments.seed0,
           .latency = scenario.lap.latency,
-          .settings = settings_of(arguments, scenario, experiments).dump(2),
+          .settings = json_text(settings_of(arguments, scenario, experiments), 2),
           .build = build_id(),
           .any_build = arguments.any_build};
 }

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <atomic>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "slalom/evaluation/evaluation.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/results.hpp"
 #include "tools/command_line/command.hpp"
 #include "tools/scenario/scenario.hpp"
@@ -50,7 +50,7 @@ struct Evaluated {
   std::vector<evaluation::LapRow> rows;
   std::vector<evaluation::ExperimentResult> results;
   std::filesystem::path course_folder;
-  Json summary() const;
+  nlohmann::ordered_json summary() const;
   /// The laps of an experiment in which an obstacle stands where the car starts.
   std::vector<int> laps_begun_in_contact(int experiment) const;
 };

@@ -12,6 +12,7 @@
 #include "slalom/maps/ros_map.hpp"
 #include "slalom/sim/follow_the_gap.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
+#include "src/evaluation/json.hpp"
 
 namespace slalom::tools {
 namespace {

@@ -3,11 +3,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/json.hpp"
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/sim/racing_benchmark.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
@@ -71,6 +71,6 @@ std::vector<BenchmarkLap> drive_benchmark_laps(const RacingMap& map, RacingDrive
 
 /// `mean_s` (of completed laps, null without any), `completed`, `at_time_limit` (of the completed), `laps`,
 /// `beyond_grip` (share of all steps), `lap_times_s` (null for a collision).
-Json racing_results(const std::vector<BenchmarkLap>& laps);
+nlohmann::ordered_json racing_results(const std::vector<BenchmarkLap>& laps);
 
 }  // namespace slalom::tools

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/evaluation/paper_program.hpp"
 
 namespace slalom::tools {

@@ -2,11 +2,11 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/lap_log.hpp"
 
 /// The simulations of Honda et al. (ICRA 2024, section V-B) as experiments, and what the authors
@@ -78,6 +78,6 @@ std::vector<Reference> find_references(const LogFolders& folders,
                                        const std::vector<evaluation::LapRow>& rows);
 
 /// `published`, `paper_program`, `lockstep`, `verdict` and `note` of an entry of a summary's results.
-void add_reference(Json& result, const Reference& reference);
+void add_reference(nlohmann::ordered_json& result, const Reference& reference);
 
 }  // namespace slalom::tools

@@ -5,7 +5,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 
 namespace slalom::tools {
@@ -39,7 +39,7 @@ std::vector<std::pair<std::string, std::string>> parse_set(const std::string& te
 
 std::string value_text(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
-  if (!value.is_array()) return value.dump();
+  if (!value.is_array()) return json_text(value);
   std::string text = "[";
   for (const auto& each : value) text += (text.size() > 1 ? ", " : "") + value_text(each);
   return text + "]";
@@ -47,19 +47,19 @@ std::string value_text(const Json& value) {
 
 /// A whole number in [least, most].
 int count_of(const Json& experiment, const char* key, int least, int most) {
-  const int count = experiment.at(key).get<int>();
+  const int count = member<int>(experiment, key);
   if (count < least || count > most)
-    throw JsonError(std::string(key) + ": " + std::to_string(count) + " must be in [" +
-                    std::to_string(least) + ", " + std::to_string(most) + "]");
+    throw std::invalid_argument(std::string(key) + ": " + std::to_string(count) + " must be in [" +
+                                std::to_string(least) + ", " + std::to_string(most) + "]");
   return count;
 }
 
 /// The course's folder where it was kept and is still there, else its name.
 std::string stored_course(const Json& settings) {
   if (settings.contains("course_folder"))
-    if (const auto folder = settings.at("course_folder").get<std::string>(); fs::is_directory(folder))
+    if (const auto folder = member<std::string>(settings, "course_folder"); fs::is_directory(folder))
       return folder;
-  return settings.at("course").get<std::string>();
+  return member<std::string>(settings, "course");
 }
 
 }  // namespace
@@ -75,24 +75,22 @@ StoredEvaluation load_evaluation(const fs::path& folder) {
   const fs::path file = folder / "settings.json";
   if (!fs::exists(file))
     throw IoError(file.string(), 0, "cannot be read; the folder must be the output folder of slalom eval");
-  stored.settings = read_file(file, Json::max_bytes);
+  stored.settings = read_file(file, max_json_bytes);
   bool settings_checked = false;
   std::uint64_t seed0 = 0;
   try {
-    const auto settings = Json::parse(stored.settings);
+    const auto settings = parse_json(stored.settings);
     settings_checked = evaluation::verify_checksum(stored.settings);
-    for (const auto& e : settings.at("experiments")) {
-      stored.experiments.push_back({e.at("method").get<std::string>(),
-                                    parse_set(e.at("set").get<std::string>()),
-                                    e.at("scenario").get<std::string>(), count_of(e, "obstacles", 0, 1000),
+    for (const auto& e : member(settings, "experiments")) {
+      stored.experiments.push_back({member<std::string>(e, "method"),
+                                    parse_set(member<std::string>(e, "set")),
+                                    member<std::string>(e, "scenario"), count_of(e, "obstacles", 0, 1000),
                                     count_of(e, "laps", 1, 1000000)});
     }
-    if (stored.experiments.empty()) throw JsonError("experiments: must be at least one");
-    seed0 = settings.at("seed0").get<std::uint64_t>();
-  } catch (const JsonError& error) {
-    throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());
+    if (stored.experiments.empty()) throw std::invalid_argument("experiments: must be at least one");
+    seed0 = member<std::uint64_t>(settings, "seed0");
   } catch (const std::invalid_argument& error) {
-    throw IoError(file.string(), 0, error.what());
+    throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());
   }
   const fs::path table = folder / "laps.csv", journal = folder / "laps.journal.csv";
   stored.complete = fs::exists(table);
@@ -136,16 +134,16 @@ ScenarioArguments evaluation_arguments(const StoredEvaluation& stored, const std
   const fs::path file = stored.folder / "settings.json";
   ScenarioArguments arguments;
   try {
-    const auto settings = Json::parse(stored.settings);
+    const auto settings = parse_json(stored.settings);
     arguments.course = course.empty() ? stored_course(settings) : course;
-    arguments.config = settings.at("config").get<std::string>();
-    arguments.evaluation = settings.at("evaluation").get<std::string>();
-    arguments.latency_ms = settings.at("latency_ms").get<double>();
+    arguments.config = member<std::string>(settings, "config");
+    arguments.evaluation = member<std::string>(settings, "evaluation");
+    arguments.latency_ms = member<double>(settings, "latency_ms");
     // The file may say something else by now: every option is set as it was.
-    for (const auto& [section, options] : settings.at("options").items())
+    for (const auto& [section, options] : member(settings, "options").items())
       for (const auto& [key, value] : options.items())
         arguments.set.push_back(section + "." + key + "=" + value_text(value));
-  } catch (const JsonError& error) {
+  } catch (const std::invalid_argument& error) {
     throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());
   }
   return arguments;
@@ -156,19 +154,19 @@ evaluation::Evaluation rebuild_evaluation(const StoredEvaluation& stored, const 
   const fs::path file = stored.folder / "settings.json";
   evaluation::Evaluation evaluation;
   try {
-    const auto settings = Json::parse(stored.settings);
+    const auto settings = parse_json(stored.settings);
     const ScenarioArguments arguments = evaluation_arguments(stored, course);
     scenario = load_scenario(arguments, stored.experiments.front().method);
-    if (const auto hash = settings.at("course_hash").get<std::string>();
+    if (const auto hash = member<std::string>(settings, "course_hash");
         hash != course_hash(*scenario.environment))
       throw IoError(scenario.folder.string(), 0, "is not the course of " + stored.folder.string());
     evaluation.environment = scenario.environment;
     evaluation.configuration = scenario.configuration;
     evaluation.experiments = stored.experiments;
-    evaluation.seed0 = settings.at("seed0").get<std::uint64_t>();
+    evaluation.seed0 = member<std::uint64_t>(settings, "seed0");
     evaluation.latency = scenario.lap.latency;
     evaluation.settings = stored.settings;
-  } catch (const JsonError& error) {
+  } catch (const std::invalid_argument& error) {
     throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());
   }
   return evaluation;

@@ -7,9 +7,9 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/result_folder.hpp"
 #include "slalom/evaluation/results.hpp"
+#include "src/evaluation/json.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -47,9 +47,10 @@ std::vector<std::string> split(const std::string& text) {
 std::string differences(const Json& there, const Json& here) {
   std::string text;
   for (const auto& [key, value] : here.items()) {
-    if (there.contains(key) && there[key] == value) continue;
-    text += (text.empty() ? "" : "; ") + key + ": " + (there.contains(key) ? there[key].dump() : "nothing") +
-            " there, " + value.dump() + " here";
+    if (there.contains(key) && there.at(key) == value) continue;
+    text += (text.empty() ? "" : "; ") + key + ": " +
+            (there.contains(key) ? json_text(there.at(key)) : "nothing") + " there, " + json_text(value) +
+            " here";
   }
   return text;
 }
@@ -57,14 +58,14 @@ std::string differences(const Json& there, const Json& here) {
 }  // namespace
 
 void keep_plan(const std::filesystem::path& file, const Json& plan, bool resume) {
-  if (!fs::exists(file)) return replace_file(file, plan.dump(2) + "\n");
+  if (!fs::exists(file)) return replace_file(file, json_text(plan, 2) + "\n");
   if (!resume)
     throw IoError(file.parent_path().string(), 0,
                   "contains a search; continue it with --resume, or use another folder");
   Json there;
   try {
-    there = Json::parse(read_file(file, Json::max_bytes));
-  } catch (const JsonError& failure) {
+    there = parse_json(read_file(file, max_json_bytes));
+  } catch (const std::invalid_argument& failure) {
     throw IoError(file.string(), 0, failure.what());
   }
   const std::string differing = differences(there, plan);
@@ -301,7 +302,7 @@ bool TuningJob::run(const std::atomic<bool>& cancel, std::FILE* words) {
   result_["best"] = set_json(best_);
   if (!hold_out(cancel, words)) return false;
   write_best();
-  replace_file(arguments_.evaluation.out + "/tune.json", result_.dump(2) + "\n");
+  replace_file(arguments_.evaluation.out + "/tune.json", json_text(result_, 2) + "\n");
   std::fprintf(words, "\nbest: %s\n%s/best.yaml\n", label(best_).c_str(), arguments_.evaluation.out.c_str());
   return true;
 }

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/tuning.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 
 namespace slalom::tools {

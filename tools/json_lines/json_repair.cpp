@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/json_lines/record_lines.hpp"
 
 namespace slalom::tools {
@@ -21,10 +21,10 @@ RepairedLines repair_json_recording(const std::string& file, std::ostream& out) 
   std::string line;
   while (lines.next(line)) {
     try {
-      const auto type = Json::parse(line).at("type").get<std::string>();
+      const auto type = member<std::string>(parse_json(line), "type");
       if (lines.number() == 1 && type != "recording")
         throw IoError(file, 1, "must be the first line of a recording");
-    } catch (const JsonError& error) {
+    } catch (const std::invalid_argument& error) {
       if (lines.ended())
         throw IoError(file, lines.number(), std::string("must be a record of a recording: ") + error.what());
       done.lost = line.size();

@@ -3,7 +3,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/live_view/view_setup.hpp"
 

@@ -8,9 +8,9 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/solvers/registry.hpp"
 #include "slalom/vehicle/course/course.hpp"
+#include "src/evaluation/json.hpp"
 
 namespace slalom::tools {
 namespace {

@@ -11,6 +11,7 @@
 #include "slalom/core/version.hpp"
 #include "slalom/evaluation/worker_threads.hpp"
 #include "slalom/solvers/registry.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/racing/grid_race_result.hpp"
 #include "tools/report/lap_json.hpp"
 #include "tools/terminal/interrupt.hpp"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "src/evaluation/json.hpp"
+
 namespace slalom::tools {
 namespace {
 

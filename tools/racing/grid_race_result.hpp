@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdio>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "slalom/evaluation/grid_race.hpp"
-#include "slalom/evaluation/json.hpp"
 
 /// Races of several cars in words and as JSON.
 namespace slalom::tools {
@@ -26,6 +26,6 @@ void print_race_line(std::FILE* out, const std::vector<std::string>& names,
 void print_race_summary(std::FILE* out, const GridRaces& races);
 
 /// `races` and `summary`. Nothing in it depends on the clock of the wall.
-Json grid_races_json(const GridRaces& races);
+nlohmann::ordered_json grid_races_json(const GridRaces& races);
 
 }  // namespace slalom::tools

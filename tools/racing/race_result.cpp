@@ -7,6 +7,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
+#include "src/evaluation/json.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -80,29 +81,31 @@ Json statistics_json(const RaceStatistics& statistics) {
 
 /// The lap that `best_lap` of the statistics `key` names; none if the run has no such lap.
 std::optional<RacingLap> best_of(const Json& run, const char* key) {
-  const Json& number = run.at(key).at("best_lap");
-  if (number.is_null()) return std::nullopt;
-  const int which = number.get<int>();
-  if (which < 1) throw JsonError("best_lap: " + std::to_string(which) + " must be at least 1");
-  const Json& lap = run.at("laps")[which - 1];
+  if (member(member(run, key), "best_lap").is_null()) return std::nullopt;
+  const int which = member<int>(member(run, key), "best_lap");
+  const Json& laps = member(run, "laps");
+  if (which < 1 || which > static_cast<int>(laps.size()))
+    throw std::invalid_argument("best_lap: " + std::to_string(which) + " must be the number of a lap");
+  const Json& samples = member(laps.at(static_cast<std::size_t>(which - 1)), "samples");
   RacingLap read;
   read.standing = std::string_view(key) == "standing";
   read.sector.fill(std::numeric_limits<double>::quiet_NaN());
-  read.samples.resize(lap.at("samples").at("distance_m").size());
+  read.samples.resize(member(samples, "distance_m").size());
   for (const SampleField& field : sample_fields) {
-    const Json& values = lap.at("samples").at(field.key);
-    if (values.size() != read.samples.size())
-      throw JsonError(std::string(field.key) + ": has " + std::to_string(values.size()) +
-                      " values, must have " + std::to_string(read.samples.size()) + " as distance_m");
+    const Json& values = member(samples, field.key);
+    if (!values.is_array() || values.size() != read.samples.size())
+      throw std::invalid_argument(std::string(field.key) + ": has " + std::to_string(values.size()) +
+                                  " values, must have " + std::to_string(read.samples.size()) +
+                                  " as distance_m");
     for (std::size_t i = 0; i < read.samples.size(); ++i) {
-      const double value = values[i].get<double>();
+      const double value = values[i].is_number() ? values[i].get<double>() : max_sample + 1;
       if (!(std::abs(value) <= max_sample))
-        throw JsonError(std::string(field.key) + ": " + values[i].dump() +
-                        " must be at most 1e9 in magnitude");
+        throw std::invalid_argument(std::string(field.key) + ": " + json_text(values[i]) +
+                                    " must be a number of at most 1e9 in magnitude");
       read.samples[i].*field.value = value;
     }
   }
-  if (read.samples.size() < 2) throw JsonError("samples: at least 2 are needed");
+  if (read.samples.size() < 2) throw std::invalid_argument("samples: at least 2 are needed");
   return read;
 }
 
@@ -185,22 +188,22 @@ Json along_json(const RaceResult& race, const RacingLap& lap, const RacingLap* o
 OtherRun read_run(const std::string& file, const Json& settings, double length) {
   OtherRun other{file, {}, {}};
   try {
-    const Json run = Json::parse(read_file(file, Json::max_bytes));
+    const Json run = parse_json(read_file(file, max_json_bytes));
     for (const char* key : {"course", "start"}) {
-      const Json &theirs = run.at("settings").at(key), &ours = settings.at(key);
+      const Json &theirs = member(member(run, "settings"), key), &ours = settings.at(key);
       if (!(theirs == ours))
         throw IoError(file, 0,
-                      std::string("settings.") + key + ": " + theirs.dump() + " must be " + ours.dump() +
-                          ", as in this run");
+                      std::string("settings.") + key + ": " + json_text(theirs) + " must be " +
+                          json_text(ours) + ", as in this run");
     }
-    if (const double theirs = run.at("length_m").get<double>();
+    if (const double theirs = member<double>(run, "length_m");
         !(std::abs(theirs - length) <= length_tolerance * length))
       throw IoError(
           file, 0,
           "length_m: " + std::to_string(theirs) + " must be " + std::to_string(length) + ", as in this run");
     other.flying = best_of(run, "flying");
     other.standing = best_of(run, "standing");
-  } catch (const JsonError& error) {
+  } catch (const std::invalid_argument& error) {
     throw IoError(file, 0, std::string("must be a result of slalom race --json: ") + error.what());
   }
   if (!other.flying && !other.standing) throw IoError(file, 0, "has no completed lap");

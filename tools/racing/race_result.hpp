@@ -1,11 +1,11 @@
 #pragma once
 
 #include <array>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/race.hpp"
 
 namespace slalom::tools {
@@ -39,10 +39,11 @@ const evaluation::RacingLap* best_lap(const RaceResult& race);
 
 /// `length_m`, `friction_circle_mps2`, `profile` and `profile_from_rest`, `flying` and `standing`
 /// (statistics), and `laps`, each with its samples.
-Json race_json(const RaceResult& race);
+nlohmann::ordered_json race_json(const RaceResult& race);
 
 /// The way of a lap in equal steps, with the time behind the profile and behind `other`, which may be null.
-Json along_json(const RaceResult& race, const evaluation::RacingLap& lap, const evaluation::RacingLap* other);
+nlohmann::ordered_json along_json(const RaceResult& race, const evaluation::RacingLap& lap,
+                                  const evaluation::RacingLap* other);
 
 /// The best laps of another run on the same course.
 struct OtherRun {
@@ -52,6 +53,6 @@ struct OtherRun {
 
 /// Reads a result of `slalom race --json`. Throws IoError if the file is not one, if it has no completed lap,
 /// or if its course, start or length differs from that of `settings` and `length` (m).
-OtherRun read_run(const std::string& file, const Json& settings, double length);
+OtherRun read_run(const std::string& file, const nlohmann::ordered_json& settings, double length);
 
 }  // namespace slalom::tools

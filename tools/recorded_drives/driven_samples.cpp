@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/bags/bag_drive.hpp"
 #include "tools/bags/ros_bag.hpp"
 #include "tools/json_lines/record_lines.hpp"
@@ -13,8 +13,10 @@ namespace {
 
 /// An element of a tick's list, NaN where it is null.
 double entry(const Json& tick, const char* key, std::size_t index) {
-  const Json& value = tick.at(key)[index];
-  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+  const Json& values = member(tick, key);
+  if (!values.is_array() || values.size() <= index || !(values[index].is_number() || values[index].is_null()))
+    throw std::invalid_argument("key '" + std::string(key) + "' must be a list of numbers");
+  return values[index].is_null() ? std::numeric_limits<double>::quiet_NaN() : values[index].get<double>();
 }
 
 /// The ticks of a bag.
@@ -42,14 +44,14 @@ std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& file) 
                     "is an MCAP recording; must be JSON lines, which slalom drive --record writes to a file "
                     "whose name does not end in .mcap");
     try {
-      const Json record = Json::parse(line);
-      const auto type = record.at("type").get<std::string>();
+      const Json record = parse_json(line);
+      const auto type = member<std::string>(record, "type");
       if (number == 1 && type != "recording") throw IoError(file, 1, "must be the first line of a recording");
       if (type != "tick") continue;
-      samples.push_back({record.at("time").get<double>(), entry(record, "odometry", 0),
+      samples.push_back({member<double>(record, "time"), entry(record, "odometry", 0),
                          entry(record, "odometry", 1), entry(record, "odometry", 2),
                          entry(record, "odometry", 3), entry(record, "command", 0)});
-    } catch (const JsonError& error) {
+    } catch (const std::invalid_argument& error) {
       if (!lines.ended() && number > 1)
         throw IoError(
             file, number,

@@ -5,7 +5,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/report/lap_json.hpp"
 
 namespace slalom::tools {

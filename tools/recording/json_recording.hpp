@@ -1,9 +1,9 @@
 #pragma once
 
 #include <fstream>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "slalom/evaluation/json.hpp"
 #include "tools/recording/recording.hpp"
 
 namespace slalom::tools {
@@ -13,7 +13,7 @@ namespace slalom::tools {
 class JsonRecording : public Recording {
  public:
   /// Throws IoError.
-  JsonRecording(const std::string& file, const Json& settings);
+  JsonRecording(const std::string& file, const nlohmann::ordered_json& settings);
 
   void begin_lap(int number, std::uint64_t seed) override;
   void add(const evaluation::ControlStep& tick) override;

@@ -2,7 +2,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/live_view/view_setup.hpp"
 
 namespace slalom::tools {
@@ -11,7 +11,7 @@ namespace {
 view::RecorderOptions recorder_options(const RecordingFacts& facts) {
   const sim::WorldOptions world = facts.scenario.environment->world_options();
   return {.program = std::string("slalom ") + version(),
-          .settings = {{"settings", facts.settings.dump()}},
+          .settings = {{"settings", json_text(facts.settings)}},
           .lidar_angle_min = world.lidar.angle_min(),
           .lidar_angle_increment = world.lidar.angle_increment(),
           .wall_clock = facts.times};

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/lap.hpp"
 #include "tools/scenario/scenario.hpp"
 
@@ -26,9 +26,9 @@ struct RecordingFacts {
   const Scenario& scenario;
   const std::string& method;
   std::uint64_t seed = 0;
-  double control_period = 0;  ///< s
-  const Json& settings;       ///< kept in the recording
-  bool times = false;         ///< with figures of the wall clock, MCAP only
+  double control_period = 0;               ///< s
+  const nlohmann::ordered_json& settings;  ///< kept in the recording
+  bool times = false;                      ///< with figures of the wall clock, MCAP only
 };
 
 /// As MCAP where the file's name ends in .mcap, otherwise as JSON lines (docs/recording.md). Throws IoError.

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/lap.hpp"
+#include "src/evaluation/json.hpp"
 
 namespace slalom::tools {
 

@@ -8,7 +8,7 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/report/report_text.hpp"
 #include "view/recording/encodings.hpp"
 
@@ -140,7 +140,7 @@ std::string tiles(const Report& report) {
 }
 
 std::string page(const Report& report, const std::vector<ReportFigure>& figures) {
-  const auto settings = Json::parse(report.evaluated.evaluation.settings);
+  const auto settings = parse_json(report.evaluated.evaluation.settings);
   const auto word = [&](const char* key) { return escaped(settings[key].get<std::string>()); };
   std::string html =
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "

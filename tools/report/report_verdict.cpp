@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/report/report_text.hpp"
 
 namespace slalom::tools {
@@ -153,8 +153,8 @@ std::string glossary_html(const Report& report) {
         "(with fewer than 10 laps a permutation test) nor Fisher's exact test of collisions distinguishes "
         "them. The <b>log</b> has the authors' laps; the <b>paper's program</b> was also driven in this "
         "simulator.</p>";
-  const auto settings = Json::parse(report.evaluated.evaluation.settings);
-  return html + "<details><summary>All settings</summary><pre>" + escaped(settings.dump(1)) +
+  const auto settings = parse_json(report.evaluated.evaluation.settings);
+  return html + "<details><summary>All settings</summary><pre>" + escaped(json_text(settings, 1)) +
          "</pre></details></section>\n";
 }
 

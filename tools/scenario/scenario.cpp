@@ -5,8 +5,8 @@
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/option_access.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/course/course_check.hpp"
+#include "src/evaluation/json.hpp"
 #include "tools/command_line/command.hpp"
 #include "tools/scenario/start_pose.hpp"
 

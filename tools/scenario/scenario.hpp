@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "slalom/evaluation/environment.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/lap.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "tools/command_line/command.hpp"
@@ -73,9 +73,10 @@ vehicle::Configuration load_configuration(const ScenarioArguments& arguments, co
 Scenario load_scenario(const ScenarioArguments& arguments, const std::string& method);
 
 /// Every option as it is set: {section: {option: value}}; infinite values as text.
-Json options_json(const vehicle::Configuration& configuration, const std::string& method);
+nlohmann::ordered_json options_json(const vehicle::Configuration& configuration, const std::string& method);
 
 /// The settings that go with a result: course, evaluation, method, obstacles, start, options ...
-Json settings_json(const ScenarioArguments& arguments, const Scenario& scenario, const std::string& method);
+nlohmann::ordered_json settings_json(const ScenarioArguments& arguments, const Scenario& scenario,
+                                     const std::string& method);
 
 }  // namespace slalom::tools

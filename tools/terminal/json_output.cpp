@@ -4,12 +4,12 @@
 #include <iostream>
 
 #include "slalom/core/error.hpp"
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 
 namespace slalom::tools {
 
 void write_json(const Json& result, const std::string& file) {
-  const std::string text = result.dump(2) + "\n";
+  const std::string text = json_text(result, 2) + "\n";
   if (file == "-") {
     std::cout << text << std::flush;
     return;

@@ -3,16 +3,12 @@
 #include <cmath>
 
 #include "slalom/core/option_access.hpp"
-#include "slalom/evaluation/json.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
+#include "src/evaluation/json.hpp"
 #include "view/protocol/frame.hpp"
 
 namespace slalom::view {
 namespace {
-
-std::string text_of(const Json& json) {
-  return json.dump();
-}
 
 /// A lap's seed and the program's threads take their place.
 bool is_shown(const std::string& section, const std::string& option, const std::string& method) {
@@ -85,25 +81,25 @@ std::string hello_message(const evaluation::Environment& environment, const Choi
   for (int i = 0; i <= static_cast<int>(vehicle::PlannerStatus::solver_degenerate); ++i)
     statuses.push_back(vehicle::name(static_cast<vehicle::PlannerStatus>(i)));
   const sim::CarParameters& car = world.car;
-  return text_of({{"type", "hello"},
-                  {"protocol", 1},
-                  {"scalars", names},
-                  {"statuses", statuses},
-                  {"courses", choices.courses},
-                  {"methods", choices.methods},
-                  {"configurations", choices.configurations},
-                  {"car",
-                   {{"length", car.length},
-                    {"width", car.width},
-                    {"front", car.front_length},
-                    {"rear", car.rear_length}}},
-                  {"lidar",
-                   {{"angle_min", world.lidar.angle_min()},
-                    {"angle_increment", world.lidar.angle_increment()},
-                    {"range_max", world.lidar.range_max}}},
-                  {"session", facts.session},
-                  {"history_seconds", facts.history},
-                  {"control_period", facts.control_period}});
+  return json_text({{"type", "hello"},
+                    {"protocol", 1},
+                    {"scalars", names},
+                    {"statuses", statuses},
+                    {"courses", choices.courses},
+                    {"methods", choices.methods},
+                    {"configurations", choices.configurations},
+                    {"car",
+                     {{"length", car.length},
+                      {"width", car.width},
+                      {"front", car.front_length},
+                      {"rear", car.rear_length}}},
+                    {"lidar",
+                     {{"angle_min", world.lidar.angle_min()},
+                      {"angle_increment", world.lidar.angle_increment()},
+                      {"range_max", world.lidar.range_max}}},
+                    {"session", facts.session},
+                    {"history_seconds", facts.history},
+                    {"control_period", facts.control_period}});
 }
 
 std::string state_message(const StateFacts& facts) {
@@ -146,7 +142,7 @@ std::string state_message(const StateFacts& facts) {
                         {"lap", facts.contact[1]},
                         {"contact", facts.contact[2]},
                         {"tick", facts.contact[3]}};
-  return text_of(state);
+  return json_text(state);
 }
 
 std::string options_message(const OptionsFacts& facts) {
@@ -165,13 +161,13 @@ std::string options_message(const OptionsFacts& facts) {
     sections.insert(place, Json{{"name", now[i].name}, {"options", options}});
   }
   const auto changed = changed_options(facts);
-  return text_of({{"type", "options"},
-                  {"sections", sections},
-                  {"changed", changed},
-                  {"command_line", line_of(facts, changed)},
-                  {"yaml", changed_yaml(facts, changed)},
-                  {"undo", facts.undo},
-                  {"redo", facts.redo}});
+  return json_text({{"type", "options"},
+                    {"sections", sections},
+                    {"changed", changed},
+                    {"command_line", line_of(facts, changed)},
+                    {"yaml", changed_yaml(facts, changed)},
+                    {"undo", facts.undo},
+                    {"redo", facts.redo}});
 }
 
 }  // namespace slalom::view

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "view/recording/encodings.hpp"
 
 namespace slalom::view::foxglove {
@@ -18,7 +18,7 @@ std::string timestamp(std::uint64_t time) {
 }
 
 std::string quoted(const std::string& text) {
-  return Json(text).dump();
+  return json_text(text);
 }
 
 void append_vector(std::string& to, double x, double y, double z) {

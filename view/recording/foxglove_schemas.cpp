@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 
 namespace slalom::view::foxglove {
 namespace {

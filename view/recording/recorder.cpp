@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/recording/foxglove_schemas.hpp"
 

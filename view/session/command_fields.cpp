@@ -2,11 +2,13 @@
 
 #include <cmath>
 
+#include "src/evaluation/json.hpp"
+
 namespace slalom::view::field {
 
 double number(const Json& command, const char* key) {
-  const Json* found = command.find(key);
-  if (found == nullptr || !found->is_number() || !std::isfinite(found->get<double>()))
+  const auto found = command.find(key);
+  if (found == command.end() || !found->is_number() || !std::isfinite(found->get<double>()))
     throw MalformedCommand(std::string(key) + ": must be a finite number");
   return found->get<double>();
 }
@@ -23,14 +25,15 @@ int integer(const Json& command, const char* key) {
 }
 
 std::string text(const Json& command, const char* key) {
-  const Json* found = command.find(key);
-  if (found == nullptr || !found->is_string()) throw MalformedCommand(std::string(key) + ": must be text");
+  const auto found = command.find(key);
+  if (found == command.end() || !found->is_string())
+    throw MalformedCommand(std::string(key) + ": must be text");
   return found->get<std::string>();
 }
 
 bool flag(const Json& command, const char* key) {
-  const Json* found = command.find(key);
-  if (found == nullptr || !found->is_boolean())
+  const auto found = command.find(key);
+  if (found == command.end() || !found->is_boolean())
     throw MalformedCommand(std::string(key) + ": must be true or false");
   return found->get<bool>();
 }

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <stdexcept>
 #include <string>
 
-#include "slalom/evaluation/json.hpp"
 #include "slalom/maps/pose.hpp"
 
 namespace slalom::view {
@@ -18,15 +18,15 @@ struct MalformedCommand : std::invalid_argument {
 namespace field {
 
 /// A finite number.
-double number(const Json& command, const char* key);
+double number(const nlohmann::ordered_json& command, const char* key);
 /// The same, or `otherwise` where the field is missing.
-double number(const Json& command, const char* key, double otherwise);
+double number(const nlohmann::ordered_json& command, const char* key, double otherwise);
 /// A whole number in [-1e9, 1e9].
-int integer(const Json& command, const char* key);
-std::string text(const Json& command, const char* key);
-bool flag(const Json& command, const char* key);
+int integer(const nlohmann::ordered_json& command, const char* key);
+std::string text(const nlohmann::ordered_json& command, const char* key);
+bool flag(const nlohmann::ordered_json& command, const char* key);
 /// The fields x and y in m and, in rad, yaw, which is 0 where it is missing.
-maps::Pose pose(const Json& command);
+maps::Pose pose(const nlohmann::ordered_json& command);
 
 }  // namespace field
 }  // namespace slalom::view

@@ -4,7 +4,7 @@
 #include <random>
 #include <utility>
 
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 
 namespace slalom::view {
 namespace {

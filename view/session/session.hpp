@@ -11,9 +11,9 @@
 #include <thread>
 #include <vector>
 
-#include "slalom/evaluation/json.hpp"
 #include "slalom/evaluation/lap.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
+#include "src/evaluation/json.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/protocol/messages.hpp"
 #include "view/server/server.hpp"

@@ -4,7 +4,7 @@
 
 #include "view/session/session.hpp"
 
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "view/session/command_fields.hpp"
 
 namespace slalom::view {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "view/protocol/frame_writer.hpp"
 
 namespace slalom::view {

@@ -3,7 +3,7 @@
 #include <system_error>
 #include <utility>
 
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "view/protocol/frame_writer.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/recorder.hpp"

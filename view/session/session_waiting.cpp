@@ -6,7 +6,7 @@
 
 #include "view/session/session.hpp"
 
-#include "slalom/evaluation/json.hpp"
+#include "src/evaluation/json.hpp"
 #include "view/session/command_fields.hpp"
 
 /// Which commands wait, so that none delays those of other clients.
@@ -29,14 +29,14 @@ bool is_among(const auto& names, const std::string& name) {
 
 /// The text of a field; empty if it is missing or no text.
 std::string text_or_empty(const Json& command, const char* key) {
-  const Json* found = command.is_object() ? command.find(key) : nullptr;
-  return found != nullptr && found->is_string() ? found->get<std::string>() : std::string();
+  const auto found = command.find(key);
+  return found != command.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
 /// The identifier to be repeated in the answer; null if the command has none.
 Json id_of(const Json& command) {
-  const Json* given = command.is_object() ? command.find("id") : nullptr;
-  return given != nullptr && given->is_integer() ? *given : Json();
+  const auto given = command.find("id");
+  return given != command.end() && given->is_number_integer() ? *given : Json();
 }
 
 /// Whether a newer command of the same client makes a waiting one void: it shows another tick or another
@@ -94,7 +94,7 @@ void Session::cancel_replaced(const Received& newer) {
   const auto waiting = std::ranges::find_if(
       redrives_, [&](const Redrive& each) { return each.received.client == newer.client; });
   if (newer.kind != Received::Kind::message || waiting == redrives_.end()) return;
-  const std::string what = text_or_empty(Json::parse_or_null(newer.text), "do");
+  const std::string what = text_or_empty(parse_json_or_null(newer.text), "do");
   if (!replaces(what, *waiting)) return;
   std::vector<Received> cancelled{std::move(waiting->received)};
   redrives_.erase(waiting);
@@ -102,7 +102,7 @@ void Session::cancel_replaced(const Received& newer) {
     if (each.client == newer.client) cancelled.push_back(each);
   std::erase_if(deferred_, [&](const Received& each) { return each.client == newer.client; });
   for (const Received& each : cancelled) {
-    const Json command = Json::parse_or_null(each.text);
+    const Json command = parse_json_or_null(each.text);
     refuse(each.client,
            text_or_empty(command, "do").substr(0, 40) + ": cancelled, since '" + what +
                "' came before it was executed",
@@ -116,7 +116,7 @@ void Session::handle(const Received& received) {
     state_changed_ = true;
     return;
   }
-  const Json command = Json::parse_or_null(received.text);
+  const Json command = parse_json_or_null(received.text);
   if (!command.is_object()) {
     ++refused_;
     return refuse(received.client, "a command must be a JSON object");
@@ -136,8 +136,8 @@ Redrive Session::redrive_for(const Received& received, const std::string& what, 
   if (is_among(continuing, what)) redrive.view = viewed_;
   redrive.copies = simulation_->ticks() > 0 &&
                    (what == "fork" || (what == "ghost" && !text_or_empty(command, "method").empty()));
-  const Json* contact = what == "lap" && options_.load_lap ? command.find("contact") : nullptr;
-  redrive.is_lap = contact != nullptr && contact->is_number() && contact->get<double>() >= 0;
+  const auto contact = what == "lap" && options_.load_lap ? command.find("contact") : command.end();
+  redrive.is_lap = contact != command.end() && contact->is_number() && contact->get<double>() >= 0;
   return redrive;
 }
 
@@ -149,7 +149,7 @@ void Session::drive_again() {
   const std::uint64_t client = first.received.client;
   RedriveBudget budget;
   bool is_ready = false;
-  const Json command = Json::parse_or_null(first.received.text);
+  const Json command = parse_json_or_null(first.received.text);
   const bool is_valid = attempt(client, command, [&] {
     if (first.is_lap && !first.search) search_contact(first, command);
     is_ready = first.advance(*simulation_, ghost_ ? &*ghost_ : nullptr, budget);
@@ -168,7 +168,7 @@ void Session::execute_prepared() {
   const Redrive& prepared = prepared_.value();
   const int shown = viewed_;
   if (!prepared.is_lap) viewed_ = prepared.view;
-  const bool is_done = execute(prepared.received.client, Json::parse_or_null(prepared.received.text));
+  const bool is_done = execute(prepared.received.client, parse_json_or_null(prepared.received.text));
   if (prepared.is_lap || viewed_ != prepared.view) return;
   if (!is_done) {
     viewed_ = shown;

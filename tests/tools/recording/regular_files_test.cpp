@@ -13,6 +13,7 @@
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "slalom/vehicle/racing/race_course.hpp"
+#include "src/evaluation/json.hpp"
 #include "support/temporary_folder.hpp"
 #include "tools/bags/ros_bag.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
