@@ -276,8 +276,8 @@ TEST_F(CommandLine, NamesEmptyEvaluations) {
   refuses("compare ev none", {"none", "has no lap of mppi"});
   refuses("compare none ev", {"none", "has no lap of mppi"});
   std::ofstream(folder_ / "ev/settings.json") << "[]";
-  refuses(evaluation("ev") + " --resume", {"ev/settings.json: is not a JSON object"});
-  refuses("replay ev --lap 0", {"ev/settings.json: is not a JSON object"});
+  refuses(evaluation("ev") + " --resume", {"ev/settings.json: ", "is not a JSON object"});
+  refuses("replay ev --lap 0", {"ev/settings.json: ", "is not a JSON object"});
   std::ofstream(folder_ / "ev/settings.json") << settings;
   remove_checksums(folder_ / "ev");
   const std::string unchecked = content(folder_ / "ev/settings.json");
@@ -287,9 +287,9 @@ TEST_F(CommandLine, NamesEmptyEvaluations) {
   changed(R"re("experiments": \[[^\]]*\])re", R"("experiments": [])");
   refuses("view --eval ev", {"ev/settings.json: is invalid: experiments: must be at least one"});
   changed(R"re("laps": \d+)re", R"("laps": 4294967298)");
-  refuses("view --eval ev", {"ev/settings.json: is invalid: 4294967298 must be a whole number"});
+  refuses("view --eval ev", {"ev/settings.json: is invalid: key 'laps': 4294967298 must be a whole number"});
   changed(R"re("seed0": \d+)re", R"("seed0": 1e30)");
-  refuses("compare ev ev", {"ev/settings.json: is invalid: 1e+30 must be a whole number"});
+  refuses("compare ev ev", {"ev/settings.json: is invalid: key 'seed0': 1e+30 must be a whole number"});
 }
 
 TEST_F(CommandLine, IdentifyPrintsItsInputs) {
