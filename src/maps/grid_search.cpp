@@ -71,8 +71,8 @@ void GridSearch::spread(int from) noexcept {
   }
 }
 
-/// Whether the straight line between two cells costs no more than the least price but for what the first one
-/// costs: it may go along an obstacle, but not towards it.
+/// Whether no cell on the straight line between two cells is closed or has a higher price than both of them:
+/// the line may go along an obstacle, but not nearer to it.
 bool GridSearch::is_clear(int from, int to) const noexcept {
   const Point a = centre_of(from), b = centre_of(to);
   const float most = std::max(prices_[static_cast<std::size_t>(from)], prices_[static_cast<std::size_t>(to)]);

@@ -108,7 +108,7 @@ void MovingObstacles::set_following_costs(std::span<const double> costs) noexcep
   for (std::size_t i = 0; i < count; ++i) {
     const MovingObstaclesView::Reach& reach = reaches_[static_cast<std::size_t>(steps_) * taken().size() + i];
     const auto& box = boxes_[static_cast<std::size_t>(reach.first + taken_[i]->likeliest())];
-    // One that would be far away by then, or turned by an angle without a sine, is not followed.
+    // Skips boxes that are far away by then or whose angle has no sine.
     const bool near = std::hypot(box.x, box.y) < 1e6F && std::isfinite(box.sine + box.cosine);
     if (!(costs[i] > 0) || !near) continue;
     followed_[static_cast<std::size_t>(view_.followed_++)] = {box.x, box.y, box.sine, box.cosine,

@@ -67,7 +67,7 @@ class Reader {
   }
 
  private:
-  /// yaml-cpp keeps one of them without an error.
+  /// Repeated keys are an error, though yaml-cpp keeps one of them.
   void refuse_repeated_keys() const {
     std::set<std::string> seen;
     for (const auto& entry : root_)

@@ -50,7 +50,7 @@ class Limiter final : public YAML::EventHandler {
   [[noreturn]] void refuse_document(const YAML::Mark& at) const {
     fail(at, "must have only one YAML document, this is a second one");
   }
-  /// Every node comes here first. A second document is told at its first node.
+  /// Checks a node. A second document is reported at its first node.
   void check(const YAML::Mark& at, YAML::anchor_t anchor) const {
     if (documents_ > 1) refuse_document(at);
     if (anchor != 0) refuse_alias(at);
@@ -65,7 +65,7 @@ class Limiter final : public YAML::EventHandler {
   int documents_ = 0, depth_ = 0;
 };
 
-/// yaml-cpp does not mention that a tab must not indent.
+/// A hint for a line that a tab indents, which yaml-cpp does not give.
 std::string tab_hint(const std::string& text, int line) {
   std::istringstream stream(text);
   std::string found;

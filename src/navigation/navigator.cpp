@@ -188,8 +188,8 @@ bool Navigator::Implementation::find_way(const maps::Pose& pose, const Costmap& 
   return true;
 }
 
-/// Takes a way past somebody who comes along the path or goes ahead, as round an obstacle at the place where
-/// they are met. If there is none, the plans alone avoid them.
+/// Takes a way past somebody on the path, as around an obstacle at the place where they meet. If there is
+/// none, the plans alone avoid them.
 void Navigator::Implementation::avoid_meeting(const maps::Pose& pose, const Costmap& costmap,
                                               double elapsed) noexcept {
   since_meeting_ += elapsed;
@@ -202,7 +202,7 @@ void Navigator::Implementation::avoid_meeting(const maps::Pose& pose, const Cost
   if (closed < guide_.points().size()) find_way(pose, costmap, closed, guide_.remaining() + longest_way_past);
 }
 
-/// Sees to it that the path ahead is open. Returns false if there has been no way for longer than patience.
+/// Keeps the path ahead open. Returns false if there has been no way for longer than patience.
 bool Navigator::Implementation::keep_way(const maps::Pose& pose, const Costmap& costmap,
                                          double elapsed) noexcept {
   watch_progress(position(pose), elapsed);

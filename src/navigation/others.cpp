@@ -36,7 +36,7 @@ maps::MovingObstacleOptions without_margins(maps::MovingObstacleOptions options)
   return options;
 }
 
-/// Whether a pose of the plan collides, up to the one with this index, if that of now does not.
+/// Whether the plan collides up to the pose with this index, unless its first pose does already.
 bool collides(const maps::MovingObstaclesView& seen, std::span<const maps::Pose> plan, std::size_t last) {
   const auto meets = [&](std::size_t i) {
     const maps::Pose& at = plan[i];

@@ -34,9 +34,9 @@ class Others {
   /// that comes towards it or goes ahead of it, and the room that passing there takes. Objects that cross the
   /// path are left to the plans: they are gone soon.
   std::optional<ClosedPlace> meeting(std::span<const maps::Pose> path, double step) const noexcept;
-  /// Whether a pose of the plan meets one of them, up to the one with this index: comes into their margins,
-  /// or collides with them. A robot that is within the margins may leave them, and one that collides may move
-  /// away, but one within the margins must not collide.
+  /// Whether the plan, up to the pose with this index, comes into the margins of an object or collides with
+  /// one. A robot that is within the margins already may leave them, and one that collides may move away, but
+  /// a robot within the margins must not collide.
   bool meet(std::span<const maps::Pose> plan, std::size_t last) const noexcept;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace slalom::navigation::detail {
 
-/// Places where no way leads although the costmap shows room: dead ends, and one where somebody is met.
+/// Places that count as closed although the costmap shows room: dead ends, and the place of a meeting.
 class ClosedPlaces {
  public:
   bool has_dead_ends() const noexcept { return dead_ends_ > 0; }
@@ -87,7 +87,7 @@ class PathAhead {
  private:
   std::span<const maps::Pose> points() const noexcept { return guide_.points(); }
   maps::Point place(std::size_t i) const noexcept { return {points()[i].x, points()[i].y}; }
-  /// Whether the body is known to have no room at a point, or that is closed for another reason.
+  /// Whether a point is closed: the body has no room there, or it is in a closed place.
   bool is_closed(std::size_t i) const noexcept {
     return (planner_.knows(costmap_, place(i)) && !planner_.has_room(costmap_, place(i))) ||
            places_.contain(place(i));

@@ -33,7 +33,7 @@ class PathGuide {
   void advance(const maps::Point& robot) noexcept;
   std::size_t nearest() const noexcept { return nearest_; }  ///< index of that point
   double step() const noexcept { return step_; }             ///< m, between points
-  /// How many points further on a point lies that is so far along the path (m).
+  /// The number of points that a length (m) of path takes, rounded up.
   std::size_t points_for(double length) const noexcept {
     return static_cast<std::size_t>(length / std::max(step_, 1e-3)) + 1;
   }
