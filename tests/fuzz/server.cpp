@@ -61,7 +61,7 @@ bool check_received(view::Server& server) {
 
 bool run(std::string_view bytes) {
   static view::Server server({.max_message = max_message},
-                             {{"/", {"text/html", "gzip", "compressed", "plain"}}});
+                             {{"/", {"text/html", "compressed", true}}});
   if (bytes.empty()) return false;
   std::string answer;
   {

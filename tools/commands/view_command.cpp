@@ -7,9 +7,7 @@
 #include "tools/live_view/view_setup.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
-#include "view/recording/encodings.hpp"
 #include "view/server/page_data.hpp"
-#include "view/server/page_policy.hpp"
 #include "view/server/server.hpp"
 #include "view/session/session.hpp"
 
@@ -66,8 +64,7 @@ view::SessionOptions session_options(const ViewArguments& arguments) {
 
 int view(const ViewArguments& arguments) {
   const view::ServerOptions options = server_options(arguments.host, arguments.port, arguments.token);
-  const std::string page = view::page_gzip();
-  view::Server server(options, {{"/", view::page_resource(view::gunzip(page), page)}});
+  view::Server server(options, {{"/", {"text/html; charset=utf-8", view::page_gzip(), true}}});
   view::SessionOptions session_of = session_options(arguments);
   if (!arguments.evaluation.empty()) open_evaluation(arguments.evaluation, session_of);
   view::Session session(std::move(session_of), server);

@@ -13,7 +13,6 @@
 #include "view/recording/mcap_repair.hpp"
 #include "view/recording/replay.hpp"
 #include "view/server/page_data.hpp"
-#include "view/server/page_policy.hpp"
 #include "view/server/server.hpp"
 
 namespace slalom::tools {
@@ -92,7 +91,7 @@ int replay_recording(const ReplayArguments& arguments) {
     return 0;
   }
   view::ServerOptions options = server_options(arguments.host, arguments.port, "");
-  view::Server server(options, {{"/", view::page_resource(page)}});
+  view::Server server(options, {{"/", {"text/html; charset=utf-8", page}}});
   const InterruptFlag interrupt;
   print_address(server, options);
   while (!interrupt.raised()) {

@@ -1,31 +1,112 @@
 #include "view/server/server.hpp"
 
-#include <mutex>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
 #include <utility>
 
-#include "view/server/network.hpp"
-#include "view/server/server_state.hpp"
+#include "view/server/connections.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 
 namespace slalom::view {
+namespace {
+
+constexpr std::chrono::milliseconds retry_time{100};  // after a connection could not be accepted
+
+asio::ip::address parse_address(const std::string& host) {
+  error_code error;
+  const auto address = asio::ip::make_address(host == "localhost" ? "127.0.0.1" : host, error);
+  if (error) throw std::invalid_argument("host '" + host + "' must be an IP address");
+  return address;
+}
+
+}  // namespace
+
+bool is_loopback(const std::string& host) {
+  return parse_address(host).is_loopback();
+}
 
 struct Server::Implementation {
-  ServerState state;
-
-  std::mutex frame_mutex;
-  std::shared_ptr<const std::string> frame;  ///< published and not yet offered to the clients
-
-  Network network{state};  // last, as its thread uses the others
+  Connections all;
+  asio::io_context context{1};
+  tcp::acceptor acceptor{context};
+  asio::steady_timer retry{context};
+  std::uint16_t port = 0;
+  std::thread thread;
 
   Implementation(const ServerOptions& options, std::map<std::string, Resource> resources)
-      : state{options, std::move(resources)} {}
-
-  void offer_frame() {
-    std::shared_ptr<const std::string> latest;
-    {
-      const std::lock_guard lock(frame_mutex);
-      latest.swap(frame);
+      : all{options, std::move(resources)} {
+    listen();
+    accept();
+    try {
+      thread = std::thread([this] { run(); });
+    } catch (const std::system_error& error) {
+      throw std::runtime_error("the system cannot start the thread of the server (" + error.code().message() +
+                               ")");
     }
-    if (latest) state.clients.offer(latest);
+  }
+
+  ~Implementation() {
+    context.stop();
+    thread.join();
+    all.clients.clear();  // before the context, which their sockets use
+  }
+
+  void listen() {
+    const ServerOptions& options = all.options;
+    const tcp::endpoint endpoint(parse_address(options.host), options.port);
+    try {
+      acceptor.open(endpoint.protocol());
+      acceptor.set_option(asio::socket_base::reuse_address(true));
+      acceptor.bind(endpoint);
+      acceptor.listen();
+      port = acceptor.local_endpoint().port();
+    } catch (const std::exception& error) {
+      throw std::runtime_error("cannot listen on " + options.host + ":" + std::to_string(options.port) +
+                               ": " + error.what());
+    }
+  }
+
+  void accept() {
+    acceptor.async_accept([this](error_code error, tcp::socket socket) {
+      if (error) return accept_later();
+      if (all.open < 4 * all.options.max_clients)
+        std::make_shared<HttpConnection>(all, std::move(socket))->begin();
+      else
+        ++all.refused;
+      accept();
+    });
+  }
+
+  /// Accepting fails at once and again while the process has no file descriptor left.
+  void accept_later() {
+    ++all.refused;
+    retry.expires_after(retry_time);
+    retry.async_wait([this](error_code error) {
+      if (!error) accept();
+    });
+  }
+
+  void run() {
+    while (!context.stopped()) {
+      try {
+        context.run();
+      } catch (const std::exception&) {
+        ++all.refused;  // a failure of one client must not end the others
+      }
+    }
+  }
+
+  /// Calls a function for one client, or for all with 0, on the server's thread, after those posted before.
+  void post(std::uint64_t client, std::function<void(WebSocketClient&)> call) {
+    asio::post(context, [this, client, call = std::move(call)] {
+      const auto clients = all.clients;  // a call may remove a client
+      for (const auto& [id, each] : clients)
+        if (client == 0 || id == client) call(*each);
+    });
   }
 };
 
@@ -34,50 +115,43 @@ Server::Server(const ServerOptions& options, std::map<std::string, Resource> res
 Server::~Server() = default;
 
 std::uint16_t Server::port() const noexcept {
-  return implementation_->network.port();
+  return implementation_->port;
 }
 
 void Server::publish(std::shared_ptr<const std::string> frame) {
-  bool is_posted = false;
-  {
-    const std::lock_guard lock(implementation_->frame_mutex);
-    is_posted = implementation_->frame != nullptr;
-    implementation_->frame = std::move(frame);
-  }
-  if (!is_posted) implementation_->network.post([i = implementation_.get()] { i->offer_frame(); });
+  publish(0, std::move(frame));
 }
 
 void Server::publish(std::uint64_t client, std::shared_ptr<const std::string> frame) {
-  implementation_->network.post([i = implementation_.get(), client, frame = std::move(frame)] {
-    i->state.clients.offer(client, frame);
-  });
+  implementation_->post(client, [frame = std::move(frame)](WebSocketClient& to) { to.offer(frame); });
 }
 
 void Server::send(std::uint64_t client, Message message) {
-  implementation_->network.post([i = implementation_.get(), client, message = std::move(message)] {
-    i->state.clients.send(client, message);
-  });
+  implementation_->post(client, [message = std::move(message)](WebSocketClient& to) { to.send(message); });
 }
 
 void Server::broadcast(Message message) {
-  implementation_->network.post(
-      [i = implementation_.get(), message = std::move(message)] { i->state.clients.broadcast(message); });
+  send(0, std::move(message));
 }
 
 std::vector<Received> Server::take() {
-  return implementation_->state.inbox.take();
+  const std::lock_guard lock(implementation_->all.mutex);
+  return std::exchange(implementation_->all.inbox, {});
 }
 
 void Server::wait(std::chrono::nanoseconds at_most) {
-  implementation_->state.inbox.wait(at_most);
+  Connections& all = implementation_->all;
+  std::unique_lock lock(all.mutex);
+  all.arrived.wait_for(lock, at_most, [&] { return !all.inbox.empty(); });
 }
 
 int Server::clients() const noexcept {
-  return implementation_->state.clients.size();
+  return implementation_->all.client_count;
 }
 
 ServerCounters Server::counters() const {
-  return implementation_->state.counters.snapshot();
+  const Connections& all = implementation_->all;
+  return {all.messages, all.frames_sent, all.frames_dropped, all.refused};
 }
 
 }  // namespace slalom::view

@@ -110,7 +110,6 @@ export default async function (h) {
     await look.close();
     if (process.env.SLALOM_PAGE) return;
     const answer = await fetch(h.server.address);
-    const [, policy] = (await answer.text()).match(/Content-Security-Policy" content="([^"]*)"/);
-    assert.equal(answer.headers.get("content-security-policy"), policy + "; frame-ancestors 'none'");
+    assert.equal(answer.headers.get("content-security-policy"), "frame-ancestors 'none'");
   });
 }

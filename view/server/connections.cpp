@@ -1,0 +1,277 @@
+#include "view/server/connections.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "view/server/access.hpp"
+
+namespace slalom::view {
+namespace {
+
+constexpr std::uint32_t max_request = 8192;         // bytes of a request
+constexpr std::size_t max_received = 1024;          // messages in the inbox
+constexpr std::size_t max_queue = 256;              // messages that wait for a client
+constexpr std::size_t max_queued_bytes = 64 << 20;  // a single message may be larger: a recording has 70 MB
+constexpr std::uint32_t max_frames_under_way = 2;
+constexpr std::chrono::seconds request_time{10};  // for a request, an answer or a handshake
+constexpr std::chrono::seconds closing_time{2};   // for the other side to close
+constexpr std::chrono::seconds silent_time{30};   // without a byte from a client; a ping is sent after half
+constexpr int send_buffer = 1 << 18;  // bytes; small, so that a slow client does not see old frames
+
+std::string_view view_of(beast::string_view text) {
+  return {text.data(), text.size()};
+}
+
+/// Whether a text whose characters are otherwise valid UTF-8 ends within one.
+bool ends_within_character(std::string_view text) {
+  for (std::size_t bytes = 1; bytes <= std::min<std::size_t>(3, text.size()); ++bytes) {
+    const auto last = static_cast<unsigned char>(text[text.size() - bytes]);
+    if ((last & 0xC0u) != 0x80u)
+      return bytes < (last >= 0xF0u ? 4u : last >= 0xE0u ? 3u : last >= 0xC0u ? 2u : 1u);
+  }
+  return false;
+}
+
+}  // namespace
+
+void Connections::deliver(Received received) {
+  const bool is_message = received.kind == Received::Kind::message;
+  {
+    const std::lock_guard lock(mutex);
+    if (is_message && inbox.size() >= max_received) {
+      ++refused;
+      return;
+    }
+    inbox.push_back(std::move(received));
+  }
+  if (is_message) ++messages;
+  arrived.notify_all();
+}
+
+HttpConnection::HttpConnection(Connections& all, tcp::socket&& socket)
+    : all_(all), stream_(std::move(socket)), buffer_(2 * max_request) {
+  ++all_.open;
+  parser_.header_limit(max_request);
+}
+
+HttpConnection::~HttpConnection() {
+  if (!is_handed_over_) --all_.open;
+}
+
+void HttpConnection::begin() {
+  stream_.expires_after(request_time);
+  http::async_read(stream_, buffer_, parser_, [self = shared_from_this()](error_code error, std::size_t) {
+    if (!error)
+      self->answer();
+    else if (error != http::error::end_of_stream && error != beast::error::timeout)
+      ++self->all_.refused;
+  });
+}
+
+void HttpConnection::answer() {
+  const auto& request = parser_.get();
+  const std::string_view target = view_of(request.target());
+  const Verdict verdict =
+      judge(all_.options, all_.resources,
+            {.method = view_of(request.method_string()),
+             .target = target,
+             .host = view_of(request[http::field::host]),
+             .origin = view_of(request[http::field::origin]),
+             .is_upgrade = websocket::is_upgrade(request),
+             .is_ambiguous = request.count(http::field::host) > 1 || request.count(http::field::origin) > 1},
+            all_.client_count);
+  if (verdict.status == 101) {
+    const bool acknowledges = query_value(target, "acknowledge") == "1";
+    stream_.expires_never();  // the WebSocket has its own timeouts
+    is_handed_over_ = true;
+    std::make_shared<WebSocketClient>(all_, std::move(stream_), acknowledges)->open(parser_.release());
+    return;
+  }
+  response_.result(verdict.status);
+  std::string_view body = verdict.reason;
+  if (verdict.status == 200) {
+    const Resource& resource = all_.resources.at(path_of(target));
+    response_.set(http::field::content_type, resource.type);
+    if (resource.is_gzip) response_.set(http::field::content_encoding, "gzip");
+    // The page declares its policy in its head, but browsers take this part of it from the header alone.
+    response_.set("Content-Security-Policy", "frame-ancestors 'none'");
+    body = resource.body;
+  } else {
+    ++all_.refused;
+    response_.set(http::field::content_type, "text/plain; charset=utf-8");
+  }
+  response_.body() = {body.data(), body.size()};
+  respond();
+}
+
+void HttpConnection::respond() {
+  response_.set(http::field::cache_control, "no-store");
+  response_.set("X-Content-Type-Options", "nosniff");
+  response_.set("Referrer-Policy", "no-referrer");
+  response_.keep_alive(false);
+  response_.prepare_payload();
+  if (parser_.get().method() == http::verb::head) response_.body() = {};
+  stream_.expires_after(request_time);
+  http::async_write(stream_, response_, [self = shared_from_this()](error_code error, std::size_t) {
+    if (error) return;
+    self->stream_.socket().shutdown(tcp::socket::shutdown_send, error);
+    self->stream_.expires_after(closing_time);
+    self->read_to_end();
+  });
+}
+
+/// Reads until the other side closes: closing with unread bytes would discard the response.
+void HttpConnection::read_to_end() {
+  stream_.async_read_some(asio::buffer(rest_), [self = shared_from_this()](error_code error, std::size_t) {
+    if (!error) self->read_to_end();
+  });
+}
+
+WebSocketClient::WebSocketClient(Connections& all, beast::tcp_stream&& stream, bool acknowledges)
+    : all_(all),
+      socket_(std::move(stream)),
+      id_(all.next_client++),
+      acknowledges_(acknowledges),
+      allowance_(all.options.burst) {}
+
+WebSocketClient::~WebSocketClient() {
+  --all_.open;
+}
+
+void WebSocketClient::open(http::request<http::empty_body> request) {
+  request_ = std::move(request);
+  socket_.set_option(websocket::stream_base::timeout{request_time, silent_time, true});
+  socket_.auto_fragment(false);  // each message is one WebSocket frame
+  socket_.read_message_max(all_.options.max_message);
+  socket_.async_accept(request_, [self = shared_from_this()](error_code error) {
+    if (error)
+      ++self->all_.refused;
+    else
+      self->opened();
+  });
+}
+
+void WebSocketClient::opened() {
+  error_code ignored;
+  auto& socket = beast::get_lowest_layer(socket_).socket();
+  socket.set_option(tcp::no_delay(true), ignored);
+  socket.set_option(asio::socket_base::send_buffer_size(send_buffer), ignored);
+  is_open_ = true;
+  all_.clients.emplace(id_, shared_from_this());
+  ++all_.client_count;
+  all_.deliver({Received::Kind::joined, id_, {}});
+  read();
+}
+
+void WebSocketClient::send(const Message& message) {
+  if (!is_open_) return;
+  if (queue_.size() < max_queue && queued_bytes_ < max_queued_bytes) {
+    queued_bytes_ += message.body->size();
+    queue_.push_back(message);
+    return write_next();
+  }
+  error_code ignored;
+  beast::get_lowest_layer(socket_).socket().close(ignored);
+  leave();
+}
+
+void WebSocketClient::offer(const std::shared_ptr<const std::string>& frame) {
+  if (!is_open_) return;
+  if (std::exchange(frame_, frame)) ++all_.frames_dropped;
+  write_next();
+}
+
+void WebSocketClient::read() {
+  socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
+    if (error) {
+      if (error == websocket::error::message_too_big || error == websocket::error::buffer_overflow ||
+          error == websocket::condition::protocol_violation)
+        ++self->all_.refused;
+      return self->leave();
+    }
+    if (self->got_message()) {
+      self->buffer_.clear();
+      return self->read();
+    }
+    ++self->all_.refused;
+    self->leave();
+    self->socket_.async_close(websocket::close_code::bad_payload, [self](error_code) {});
+  });
+}
+
+/// Takes a message. False if it is a text that is not UTF-8.
+bool WebSocketClient::got_message() {
+  // Acknowledgements do not count as messages: there are never more of them than frames.
+  if (socket_.got_binary() && acknowledge()) {
+    write_next();
+    return true;
+  }
+  std::string message = beast::buffers_to_string(buffer_.data());
+  // Beast does not check the end of a message whose last frame is empty.
+  if (socket_.got_text() && ends_within_character(message)) return false;
+  if (is_within_rate() && socket_.got_text())
+    all_.deliver({Received::Kind::message, id_, std::move(message)});
+  else
+    ++all_.refused;
+  return true;
+}
+
+/// Takes an acknowledgement: the number of frames shown so far, little-endian. False if it is none.
+bool WebSocketClient::acknowledge() {
+  const auto bytes = buffer_.cdata();
+  if (!acknowledges_ || bytes.size() != 4) return false;
+  const auto* digits = static_cast<const unsigned char*>(bytes.data());
+  std::uint32_t frames = 0;
+  for (int i = 3; i >= 0; --i) frames = frames << 8 | digits[i];
+  if (frames > frames_sent_ || frames <= frames_acknowledged_) return false;
+  frames_acknowledged_ = frames;
+  return true;
+}
+
+/// Counts a message. False if the client sends more than it may.
+bool WebSocketClient::is_within_rate() {
+  const auto now = std::chrono::steady_clock::now();
+  const double passed = std::chrono::duration<double>(now - std::exchange(last_message_, now)).count();
+  allowance_ = std::min(all_.options.burst, allowance_ + passed * all_.options.messages_per_second);
+  if (allowance_ < 1) return false;
+  allowance_ -= 1;
+  return true;
+}
+
+void WebSocketClient::write_next() {
+  if (is_writing_ || !is_open_) return;
+  Message next;
+  const bool is_frame = queue_.empty();
+  if (!is_frame) {
+    next = std::move(queue_.front());
+    queue_.pop_front();
+    queued_bytes_ -= next.body->size();
+  } else if (frame_ && (!acknowledges_ || frames_sent_ - frames_acknowledged_ < max_frames_under_way)) {
+    next = {std::exchange(frame_, nullptr), true};
+    ++frames_sent_;  // it may be acknowledged before the handler below is called
+  } else {
+    return;
+  }
+  is_writing_ = true;
+  socket_.binary(next.binary);
+  const auto bytes = asio::buffer(*next.body);
+  // The handler keeps the message until it is sent.
+  socket_.async_write(bytes, [self = shared_from_this(), next, is_frame](error_code error, std::size_t) {
+    self->is_writing_ = false;
+    if (error) return self->leave();
+    if (is_frame) ++self->all_.frames_sent;
+    self->write_next();
+  });
+}
+
+void WebSocketClient::leave() {
+  if (!is_open_) return;
+  is_open_ = false;
+  queue_.clear();
+  frame_ = nullptr;
+  all_.clients.erase(id_);
+  --all_.client_count;
+  all_.deliver({Received::Kind::left, id_, {}});
+}
+
+}  // namespace slalom::view
