@@ -143,7 +143,7 @@ TickSpeed measure_tick(const vehicle::Configuration& configuration, double secon
   // A planner with slipping tyres estimates the motion of the car. So its poses are those of a steady drive,
   // longer than the window of the identification, and it starts anew where they do: otherwise it would see a
   // car that makes no progress, and reverse.
-  const bool estimates = model->has_dynamics();
+  const bool estimates = model->traits().friction > 0;
   const int places = estimates ? 48 : 16;
   vehicle::Planner planner(configuration.planner, std::move(model), course,
                            make_solver(configuration, "svg_mppi", 1));

@@ -131,7 +131,7 @@ vehicle::Planner make_planner(const LapSetup& setup) {
   vehicle::PlannerOptions options = configuration.planner;
   // A planner that estimates the car's motion must know the time between two updates. The paper's program
   // does not: its planner assumes 0.025 s where its simulator takes steps of 0.01 s.
-  if (model->has_dynamics()) options.control_period = setup.control_period();
+  if (model->traits().friction > 0) options.control_period = setup.control_period();
   std::vector<maps::ReferencePoint> path = path_of(setup);
   for (maps::ReferencePoint& point : path) point.speed *= setup.driver.speed_share;
   return {options, std::move(model), path,

@@ -93,13 +93,18 @@ void MovingObstacles::update(std::span<const PredictedObstacle> predicted, const
     for (int i = 0; i < count; ++i)
       place(*taken_[static_cast<std::size_t>(i)], first + k * time_step,
             reaches_[static_cast<std::size_t>(k * count + i)]);
-  view_.boxes_ = boxes_.data();
-  view_.reaches_ = reaches_.data();
-  view_.followed_at_ = followed_.data();
   view_.obstacles_ = count;
   view_.followed_ = 0;
   view_.x_ = -origin.x;
   view_.y_ = -origin.y;
+}
+
+MovingObstaclesView MovingObstacles::view() const noexcept {
+  MovingObstaclesView made = view_;
+  made.boxes_ = boxes_.data();
+  made.reaches_ = reaches_.data();
+  made.followed_at_ = followed_.data();
+  return made;
 }
 
 void MovingObstacles::set_following_costs(std::span<const double> costs) noexcept {

@@ -150,8 +150,7 @@ TEST(SingleTrack, IsFiniteForAnyInput) {
     own.tyres = tyres;
     SingleTrack model(car_options(), own);
     for (int n = 0; n < 2000; ++n) {
-      model.set_friction(uniform(0.1, 1.5));
-      model.set_reverse(n % 3 == 0 ? 1 : 0);
+      model.set_conditions({.friction = uniform(0.1, 1.5), .reverse = n % 3 == 0 ? 1.0 : 0.0});
       const double speed = uniform(-5, 20);
       SingleTrackState<double> s{
           0, 0, 0, speed, uniform(-0.4, 0.4), uniform(-5, 5), 0.3 * speed * uniform(-1, 1)};
@@ -238,7 +237,7 @@ TEST(SingleTrack, ForTheLapTimeDrivesAtItsShareOfThePathsSpeed) {
   own.objective = Objective::lap_time;
   own.speed_share = 1.1;
   SingleTrack car(car_options(), own);
-  car.set_top_speed(6);
+  car.set_conditions({.friction = own.friction, .top_speed = 6});
   const SingleTrackState<double> s{0, 0, 0, 5, 0, 0, 0};
   EXPECT_NEAR(car.limited(s, 4.6, 9.0), (1.1 * 4.6 - 5) / 0.05, 1e-9);
   EXPECT_NEAR(car.limited({0, 0, 0, 5.9, 0, 0, 0}, 9.0, 9.0), (6 - 5.9) / 0.05, 1e-9)

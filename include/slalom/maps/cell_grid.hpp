@@ -2,10 +2,9 @@
 
 #include <bit>
 #include <cstddef>
-#include <memory>
-#include <new>
 
 #include "slalom/core/grid_view.hpp"
+#include "slalom/core/sequence_batch.hpp"
 
 namespace slalom::maps {
 
@@ -55,16 +54,15 @@ class CellGrid {
   CellGrid(int rows, int columns)
       : rows_(rows),
         stride_log2_(std::bit_width(static_cast<unsigned>(columns + 1))),
-        cells_(new (
-            std::align_val_t{64}) float[(static_cast<std::size_t>(rows + 2) << stride_log2_) * Layers]()) {}
+        cells_((std::ptrdiff_t{rows + 2} << stride_log2_) * Layers) {}
 
   /// The values of a cell; row -1 .. rows, column -1 .. columns.
-  float* at(int row, int column) { return cells_.get() + offset(row, column); }
+  float* at(int row, int column) { return cells_.data() + offset(row, column); }
   /// The values of a cell; row -1 .. rows, column -1 .. columns.
-  const float* at(int row, int column) const { return cells_.get() + offset(row, column); }
+  const float* at(int row, int column) const { return cells_.data() + offset(row, column); }
 
   /// The ring's first cell; one row has 2^stride_log2() cells.
-  const float* data() const { return cells_.get(); }
+  const float* data() const { return cells_.data(); }
   /// Base-2 logarithm of the number of cells from one row to the next.
   int stride_log2() const { return stride_log2_; }
 
@@ -77,16 +75,13 @@ class CellGrid {
 
   /// Sets every cell, the ring included.
   void fill(const float (&values)[Layers]) {
-    float* cell = cells_.get();
+    float* cell = cells_.data();
     for (std::size_t i = 0, count = static_cast<std::size_t>(rows_ + 2) << stride_log2_; i < count; ++i) {
       for (int layer = 0; layer < Layers; ++layer) *cell++ = values[layer];
     }
   }
 
  private:
-  struct Free {
-    void operator()(float* p) const { ::operator delete[](p, std::align_val_t{64}); }
-  };
   std::size_t offset(int row, int column) const {
     return ((static_cast<std::size_t>(row + 1) << stride_log2_) + static_cast<std::size_t>(column + 1)) *
            Layers;
@@ -94,7 +89,7 @@ class CellGrid {
 
   int rows_;
   int stride_log2_;
-  std::unique_ptr<float[], Free> cells_;
+  AlignedBuffer cells_;
 };
 
 }  // namespace slalom::maps

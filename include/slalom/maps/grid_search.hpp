@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/pose.hpp"
 
 namespace slalom::maps {
@@ -51,12 +52,12 @@ class GridSearch {
   double cell_size_;  ///< m
   std::size_t max_points_;
   Point corner_;
-  std::vector<float> prices_;   ///< price of driving 1 m in each cell
-  std::vector<float> costs_;    ///< cost of reaching each cell
-  std::vector<int> previous_;   ///< cell before each on the cheapest path; -1 at its start
-  std::vector<Reached> queue_;  ///< a heap
-  std::vector<int> corners_;
-  std::vector<Point> path_, smoothed_;
+  std::vector<float> prices_;      ///< price of driving 1 m in each cell
+  std::vector<float> costs_;       ///< cost of reaching each cell
+  std::vector<int> previous_;      ///< cell before each on the cheapest path; -1 at its start
+  ReservedVector<Reached> queue_;  ///< a heap
+  ReservedVector<int> corners_;
+  ReservedVector<Point> path_, smoothed_;
 };
 
 }  // namespace slalom::maps

@@ -216,10 +216,6 @@ class MovingObstacles {
 
   /// For `steps` steps. Throws std::invalid_argument on options out of range and on `steps` < 1.
   explicit MovingObstacles(const MovingObstacleOptions& options, int steps);
-  /// Views stay valid where obstacles are moved; they cannot be copied.
-  MovingObstacles(MovingObstacles&&) noexcept = default;
-  /// As above.
-  MovingObstacles& operator=(MovingObstacles&&) noexcept = default;
 
   /// Forgets all obstacles.
   void clear() noexcept { view_.obstacles_ = view_.followed_ = 0; }
@@ -238,8 +234,8 @@ class MovingObstacles {
     return {taken_.data(), static_cast<std::size_t>(view_.obstacles_)};
   }
 
-  /// The obstacles in the frame in which they are given.
-  MovingObstaclesView view() const noexcept { return view_; }
+  /// The obstacles in the frame in which they are given; valid until the next update.
+  MovingObstaclesView view() const noexcept;
 
  private:
   void place(const PredictedObstacle& obstacle, double time, MovingObstaclesView::Reach& reach) noexcept;
@@ -251,8 +247,8 @@ class MovingObstacles {
   std::vector<MovingObstaclesView::Reach> reaches_;
   std::vector<MovingObstaclesView::Followed> followed_;
   std::array<const PredictedObstacle*, max_count> taken_{};
-  int count_ = 0;  ///< boxes
-  MovingObstaclesView view_;
+  int count_ = 0;             ///< boxes
+  MovingObstaclesView view_;  ///< without its pointers
 };
 
 /// Sets the readings of a scan that end on an obstacle as it is now to NaN, so that maps made of the scan do

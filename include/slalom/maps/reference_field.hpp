@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slalom/core/options.hpp"
+#include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/cell_grid.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/maps/reference_path.hpp"
@@ -151,8 +152,8 @@ class ReferenceField {
   ReferenceFieldOptions options_;
   GridGeometry geometry_;
   CellGrid<4> cells_;
-  std::vector<ReferencePoint> path_;
-  std::vector<double> path_x_, path_y_;
+  ReservedVector<ReferencePoint> path_;
+  ReservedVector<double> path_x_, path_y_;
   std::vector<double> curvature_;  ///< 1/m; empty if unknown
   bool closed_ = true;             ///< whether the path is closed, where curvatures are known
   std::vector<double> column_y_;   ///< m, of the columns' cells

@@ -68,18 +68,18 @@ const Command& StateObserver::acting(double time, double delay) const noexcept {
   return sent_[static_cast<std::size_t>(std::clamp(periods, 0.0, static_cast<double>(sent_.size() - 1)))];
 }
 
-/// From `begin` to `end`, s after the last measurements.
-void StateObserver::move(const VehicleModel& model, VehicleStart& car, double begin,
+/// Moves the car from `begin` to `end`, s after the last measurements.
+void StateObserver::move(const DynamicVehicleModel& model, VehicleStart& car, double begin,
                          double end) const noexcept {
   const int pieces = static_cast<int>(std::ceil((end - begin) / piece - 1e-9));
   for (int i = 0; i < pieces; ++i) {
     const double dt = (end - begin) / pieces, middle = begin + (i + 0.5) * dt;
-    car = model.advance(car, {acting(middle, delay_).steer, acting(middle, latency_).speed}, dt);
+    car = model.advance(car, {acting(middle, delay_).steer, acting(middle, latency_).speed}, dt, friction_);
   }
 }
 
 /// The state one period after `from`; `steer` (rad) is that of the wheels.
-StateObserver::Vector StateObserver::moved(const VehicleModel& model, const Vector& from,
+StateObserver::Vector StateObserver::moved(const DynamicVehicleModel& model, const Vector& from,
                                            double& steer) const noexcept {
   VehicleStart car{{from[x], from[y], from[yaw]},
                    from[speed],
@@ -92,8 +92,8 @@ StateObserver::Vector StateObserver::moved(const VehicleModel& model, const Vect
           from[bias]};
 }
 
-/// As a car whose tyres do not slip.
-void StateObserver::begin(const VehicleModel& model, const ObserverInput& input) noexcept {
+/// Begins anew, as a car whose tyres do not slip.
+void StateObserver::begin(const DynamicVehicleModel& model, const ObserverInput& input) noexcept {
   const VehicleTraits traits = model.traits();
   const double slope = std::tan(now_.steer) / traits.wheelbase;
   const double gyro = known_ ? state_[bias] : 0;
@@ -112,8 +112,8 @@ void StateObserver::begin(const VehicleModel& model, const ObserverInput& input)
   covariance_[bias][bias] = bias_variance;
 }
 
-/// One period on: F P F' + Q, with the accelerometers' share.
-void StateObserver::predict(const VehicleModel& model, const std::optional<ImuReading>& imu) noexcept {
+/// Predicts one period: F P F' + Q, with the accelerometers' share.
+void StateObserver::predict(const DynamicVehicleModel& model, const std::optional<ImuReading>& imu) noexcept {
   const Vector before = state_;
   const double steer_before = now_.steer;
   Matrix f{};
@@ -168,7 +168,7 @@ void StateObserver::predict(const VehicleModel& model, const std::optional<ImuRe
   covariance_ = made;
 }
 
-/// One measurement that is `row` times the state, `difference` above what the state says.
+/// Takes one measurement of `row` times the state, which differs by `difference` from what the state says.
 void StateObserver::correct(const Vector& row, double difference, double variance) noexcept {
   Vector shared{};
   double total = variance;
@@ -180,8 +180,8 @@ void StateObserver::correct(const Vector& row, double difference, double varianc
     for (std::size_t j = 0; j < size; ++j) covariance_[i][j] -= shared[i] * shared[j] / total;
 }
 
-/// The pose as three measurements whose errors do not depend on each other: with its covariance L D L^T (L
-/// with ones on its diagonal), L^-1 times the pose has the variances D.
+/// Takes the pose as three measurements whose errors do not depend on each other: with its covariance L D L^T
+/// (L with ones on its diagonal), L^-1 times the pose has the variances D.
 void StateObserver::correct_pose(const ObserverInput& input) noexcept {
   const PoseCovariance c = with_noise(input.covariance, options_);
   const double yx = c[1][0] / c[0][0], hx = c[2][0] / c[0][0];
@@ -201,7 +201,9 @@ void StateObserver::correct_pose(const ObserverInput& input) noexcept {
   }
 }
 
-void StateObserver::update(const VehicleModel& model, const ObserverInput& input) noexcept {
+void StateObserver::update(const DynamicVehicleModel& model, const ObserverInput& input,
+                           double friction) noexcept {
+  friction_ = friction;
   const bool missed = sent_since_ > 1;
   sent_since_ = 0;
   if (!known_ || missed || std::abs(input.speed) < slow) {
@@ -229,13 +231,13 @@ void StateObserver::update(const VehicleModel& model, const ObserverInput& input
   state_[yaw] = now_.pose.yaw;
 }
 
-VehicleStart StateObserver::ahead(const VehicleModel& model) const noexcept {
+VehicleStart StateObserver::ahead(const DynamicVehicleModel& model) const noexcept {
   VehicleStart car = now_;
   move(model, car, 0, delay_);
   return car;
 }
 
-double StateObserver::speed_ahead(const VehicleModel& model) const noexcept {
+double StateObserver::speed_ahead(const DynamicVehicleModel& model) const noexcept {
   VehicleStart car = now_;
   move(model, car, 0, latency_);
   return car.speed;

@@ -13,6 +13,7 @@
 namespace slalom::vehicle {
 namespace {
 
+using detail::FreeCells;
 using detail::Motion;
 using detail::Particles;
 using detail::ScanBeams;
@@ -84,9 +85,10 @@ struct Localiser::Implementation {
   Implementation(const maps::OccupancyGrid& map, const LocaliserOptions& o)
       : options(checked(o)),
         origin(checked(map).origin),
-        sensor(map, options),
-        particles(map, options),
-        search(map, options),
+        sensor(std::make_shared<SensorTables>(map, options)),
+        free_cells(std::make_shared<FreeCells>(map)),
+        particles(options, free_cells),
+        search(options, free_cells),
         beams(options.beams) {
     start_everywhere();
   }
@@ -124,7 +126,8 @@ struct Localiser::Implementation {
 
   LocaliserOptions options;
   maps::Pose origin;  ///< origin of the grid, map frame
-  SensorTables sensor;
+  std::shared_ptr<const SensorTables> sensor;
+  std::shared_ptr<const FreeCells> free_cells;
   Particles particles;
   detail::Search search;
   ScanBeams beams;
@@ -184,7 +187,7 @@ LocaliserStatus Localiser::Implementation::move(const LocaliserInput& input) noe
 
 void Localiser::Implementation::estimate() noexcept {
   const Particles::Estimate found = particles.estimate();
-  const auto explained = sensor.explain(found.pose, beams);
+  const auto explained = sensor->explain(found.pose, beams);
   output.fit = explained.share;
   fit = explained.fit;
   output.share = found.share;
@@ -206,7 +209,7 @@ void Localiser::Implementation::estimate() noexcept {
 /// Weights the particles by the scan, computes the estimate, and resamples if necessary (Table 8.3).
 void Localiser::Implementation::use_scan() noexcept {
   output.particles = particles.count();
-  output.effective_samples = particles.weigh(sensor, beams, options.beam.beam_exponent);
+  output.effective_samples = particles.weigh(*sensor, beams, options.beam.beam_exponent);
   estimate();
   slow = slow == 0 ? fit : slow + options.recovery.slow_rate * (fit - slow);
   fast = fast == 0 ? fit : fast + options.recovery.fast_rate * (fit - fast);
@@ -238,9 +241,9 @@ void Localiser::Implementation::look_elsewhere() noexcept {
 
   const maps::Pose place = relative(origin, output.pose);
   const double memory = std::exp(-std::max(0.0, elapsed) / options.recovery.search_memory);
-  const double now = search.log_fit_at(place, sensor, beams);
+  const double now = search.log_fit_at(place, *sensor, beams);
   place_log_fit = was_searching ? memory * place_log_fit + (1 - memory) * now : now;
-  search.update(step, sensor, beams, memory, next_key());
+  search.update(step, *sensor, beams, memory, next_key());
   const detail::Search::Hypothesis* best = search.best();
   const double margin = settled ? options.recovery.rival_margin * (1 + trust / trust_unit) : 0;
   if (!best || best->log_fit < place_log_fit + margin) return;
@@ -258,6 +261,11 @@ void Localiser::Implementation::look_elsewhere() noexcept {
 Localiser::Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options)
     : implementation_(std::make_unique<Implementation>(map, options)) {}
 Localiser::~Localiser() = default;
+Localiser::Localiser(const Localiser& other)
+    : implementation_(std::make_unique<Implementation>(*other.implementation_)) {}
+Localiser& Localiser::operator=(const Localiser& other) {
+  return *this = Localiser(other);
+}
 Localiser::Localiser(Localiser&&) noexcept = default;
 Localiser& Localiser::operator=(Localiser&&) noexcept = default;
 

@@ -38,9 +38,9 @@ maps::Pose FreeCells::random_pose(RandomStream& random) const noexcept {
   return {x, y, random.uniform(-std::numbers::pi, std::numbers::pi)};
 }
 
-Particles::Particles(const maps::OccupancyGrid& map, const LocaliserOptions& options)
+Particles::Particles(const LocaliserOptions& options, std::shared_ptr<const FreeCells> free_cells)
     : options_(options),
-      free_cells_(map),
+      free_cells_(std::move(free_cells)),
       now_(1, 3, options.particles.max_particles),
       next_(1, 3, options.particles.max_particles),
       noise_(1, 3, options.particles.max_particles),
@@ -75,7 +75,7 @@ void Particles::spread_about(const maps::Pose& pose, double deviation, double ya
 
 void Particles::spread_everywhere(RandomKey key) noexcept {
   RandomStream random(key);
-  for (int i = 0; i < options_.particles.max_particles; ++i) put(now_, i, free_cells_.random_pose(random));
+  for (int i = 0; i < options_.particles.max_particles; ++i) put(now_, i, free_cells_->random_pose(random));
   make_uniform(options_.particles.max_particles);
 }
 

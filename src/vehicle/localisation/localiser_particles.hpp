@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -39,8 +40,7 @@ struct Motion {
 /// done to them. Nothing allocates after construction.
 class Particles {
  public:
-  /// `map` has been checked and has a free cell.
-  Particles(const maps::OccupancyGrid& map, const LocaliserOptions& options);
+  Particles(const LocaliserOptions& options, std::shared_ptr<const FreeCells> free_cells);
 
   void spread_about(const maps::Pose& pose, double deviation, double yaw_deviation, RandomKey key) noexcept;
   void spread_everywhere(RandomKey key) noexcept;
@@ -76,7 +76,7 @@ class Particles {
   int draw(double uniform) const noexcept;
 
   LocaliserOptions options_;
-  FreeCells free_cells_;
+  std::shared_ptr<const FreeCells> free_cells_;
   SequenceBatch now_, next_, noise_;  ///< [1][x, y, yaw][particle]
   AlignedBuffer log_fit_;
   std::vector<double> weights_, cumulative_;

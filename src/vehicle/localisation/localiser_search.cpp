@@ -20,9 +20,9 @@ bool same(const maps::Pose& a, const maps::Pose& b) {
 
 }  // namespace
 
-Search::Search(const maps::OccupancyGrid& map, const LocaliserOptions& options)
+Search::Search(const LocaliserOptions& options, std::shared_ptr<const FreeCells> free_cells)
     : options_(options),
-      free_cells_(map),
+      free_cells_(std::move(free_cells)),
       poses_(1, 3, options.recovery.max_hypotheses * (copies + options.recovery.search_factor)),
       noise_(1, 3, options.recovery.max_hypotheses * copies),
       log_fit_(static_cast<std::size_t>(poses_.stride())),
@@ -56,7 +56,7 @@ void Search::place_copies(RandomKey key) noexcept {
 
 void Search::place_random(RandomKey key) noexcept {
   RandomStream random(key);
-  for (int i = count_ * copies; i < poses_.samples(); ++i) put(i, free_cells_.random_pose(random));
+  for (int i = count_ * copies; i < poses_.samples(); ++i) put(i, free_cells_->random_pose(random));
 }
 
 void Search::take_best_copies(double memory) noexcept {

@@ -13,7 +13,7 @@ namespace slalom::vehicle::detail {
 /// poses from all of the free space are weighted, and the best become hypotheses.
 class Search {
  public:
-  Search(const maps::OccupancyGrid& map, const LocaliserOptions& options);
+  Search(const LocaliserOptions& options, std::shared_ptr<const FreeCells> free_cells);
 
   struct Hypothesis {
     maps::Pose pose;     ///< grid's frame
@@ -43,7 +43,7 @@ class Search {
   void put(int i, const maps::Pose& pose) noexcept;
 
   LocaliserOptions options_;
-  FreeCells free_cells_;
+  std::shared_ptr<const FreeCells> free_cells_;
   SequenceBatch poses_, noise_;  ///< [1][x, y, yaw][pose]
   AlignedBuffer log_fit_;
   std::vector<Hypothesis> hypotheses_;

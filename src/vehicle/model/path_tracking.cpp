@@ -18,9 +18,12 @@ TrackingCost::TrackingCost(const PathTrackingOptions& options)
       speed_weight_(options.cost.speed_weight),
       collision_weight_(options.cost.collision_weight) {}
 
-void TrackingCost::set_urgency(Urgency urgency) noexcept {
-  const double share = urgency == Urgency::passing ? 0.1 : 1;
-  const double time = urgency == Urgency::passing ? 4 : urgency == Urgency::detour ? 10 : 1;
+void TrackingCost::set_conditions(const DrivingConditions& conditions) noexcept {
+  way_ = conditions.reverse > 0 ? -1.0 : 1.0;
+  fastest_ = conditions.reverse > 0 ? conditions.reverse : 1e3;
+  const bool passing = conditions.urgency == Urgency::passing;
+  const double share = passing ? 0.1 : 1;
+  const double time = passing ? 4 : conditions.urgency == Urgency::detour ? 10 : 1;
   distance_weight_ = share * options_.distance_weight;
   terminal_distance_weight_ = share * options_.terminal_distance_weight;
   speed_weight_ = time * options_.speed_weight;

@@ -19,21 +19,29 @@ auto with_model(const VehicleOptions& options, Use&& use) {
   return use.template operator()<i>();
 }
 
+/// A vehicle model of the problem that this evaluator rolls out.
+template <class P, class Evaluator>
+std::unique_ptr<VehicleModel> make_model(Evaluator evaluator) {
+  if constexpr (DynamicVehicleProblem<P>) {
+    return std::make_unique<DynamicProblemModel<P, Evaluator>>(std::move(evaluator));
+  } else {
+    return std::make_unique<ProblemModel<P, Evaluator>>(std::move(evaluator));
+  }
+}
+
 template <std::size_t i>
 std::unique_ptr<VehicleModel> make_indexed(const VehicleOptions& options, simd::Target target) {
   using Model = VehicleModels::At<i>;
   const auto make = [&]<class P>(P problem) -> std::unique_ptr<VehicleModel> {
     if constexpr (RandomizableProblem<P>) {
-      using Evaluator = RiskEvaluator<P>;
       if (options.risk.variants > 1)
-        return std::make_unique<ProblemModel<P, Evaluator>>(
-            Evaluator(std::move(problem), options.risk, target));
+        return make_model<P>(RiskEvaluator<P>(std::move(problem), options.risk, target));
     } else if (options.risk.variants > 1) {
       throw std::invalid_argument("vehicle.risk_variants: " + std::to_string(options.risk.variants) +
                                   " must be 1 for vehicle.model '" + Model::name +
                                   "', which has no variants of the world");
     }
-    return std::make_unique<ProblemModel<P>>(std::move(problem), target);
+    return make_model<P>(ProblemEvaluator<P>(std::move(problem), target));
   };
   if constexpr (requires { Model::with_problem(options, std::get<i>(options.own), make); }) {
     return Model::with_problem(options, std::get<i>(options.own), make);
@@ -42,7 +50,7 @@ std::unique_ptr<VehicleModel> make_indexed(const VehicleOptions& options, simd::
   }
 }
 
-/// An option of another model would be set without any effect.
+/// Throws where an option of another model is set, which would have no effect.
 template <std::size_t i = 0>
 void check_own_options(const VehicleOptions& options) {
   using Own = std::tuple_element_t<i, VehicleModels::Options>;
@@ -82,18 +90,6 @@ std::string input_names(const VehicleOptions& options) {
     return text;
   });
 }
-
-VehicleStart VehicleModel::advance(const VehicleStart& start, const Command&, double) const noexcept {
-  return start;
-}
-Command VehicleModel::command(std::span<const float> inputs, double speed, double) const noexcept {
-  return {static_cast<double>(inputs[0]), speed};
-}
-void VehicleModel::set_friction(double) noexcept {}
-void VehicleModel::set_reverse(double) noexcept {}
-void VehicleModel::set_top_speed(double) noexcept {}
-void VehicleModel::set_urgency(Urgency) noexcept {}
-void VehicleModel::set_margin_share(double) noexcept {}
 
 std::unique_ptr<VehicleModel> make_vehicle_model(const VehicleOptions& options, simd::Target target) {
   validate_options(options, "vehicle");

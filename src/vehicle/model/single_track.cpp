@@ -108,11 +108,11 @@ void SingleTrack::randomize(RandomStream& random) noexcept {
   dynamics_.scale_stiffness(std::exp(own_.cornering_deviation * random.normal()));
 }
 
-VehicleStart SingleTrack::advance(const VehicleStart& start, const Command& command,
-                                  double duration) const noexcept {
+VehicleStart SingleTrack::advance(const VehicleStart& start, const Command& command, double duration,
+                                  double friction) const noexcept {
   State<double> s = this->start(start, 0);
   const int pieces = static_cast<int>(std::ceil(duration / max_step - 1e-9));
-  const double dt = duration / pieces, friction = double(friction_);
+  const double dt = duration / pieces;
   for (int i = 0; i < pieces; ++i) {
     double acceleration = 0;
     if (std::isfinite(command.speed)) {

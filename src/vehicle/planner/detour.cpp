@@ -130,9 +130,4 @@ bool Detour::search(const maps::ClearanceMap& obstacles, const maps::Pose& pose,
   return field_.set_path(path_);
 }
 
-const maps::ReferenceField& Detour::field_around(const maps::Point& position) noexcept {
-  field_.update(position);
-  return field_;
-}
-
 }  // namespace slalom::vehicle::detail

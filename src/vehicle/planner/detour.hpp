@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/grid_search.hpp"
 #include "slalom/maps/reference_field.hpp"
@@ -37,8 +38,10 @@ class Detour {
 
   /// The path of the last search that found one, with speeds of at most 1.5 m/s.
   std::span<const maps::ReferencePoint> path() const noexcept { return path_; }
-  /// The field of that path around a position (m).
-  const maps::ReferenceField& field_around(const maps::Point& position) noexcept;
+  /// Computes the field of that path around a position (m).
+  void update_field(const maps::Point& position) noexcept { field_.update(position); }
+  /// That field.
+  const maps::ReferenceField& field() const noexcept { return field_; }
 
  private:
   void set_prices(const maps::ClearanceMap& obstacles, const maps::Pose& pose) noexcept;
@@ -54,7 +57,7 @@ class Detour {
   double front_;   ///< m, from the pose to the car's front
   double needed_;  ///< m, from the car's middle to an obstacle
   maps::GridSearch grid_;
-  std::vector<maps::ReferencePoint> path_;
+  ReservedVector<maps::ReferencePoint> path_;
   maps::ReferenceField field_;
   std::array<maps::Point, 4> dead_ends_{};
   std::size_t dead_end_count_ = 0;

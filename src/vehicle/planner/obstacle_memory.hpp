@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <vector>
 
+#include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/laser_scan.hpp"
 #include "slalom/maps/local_cost_map.hpp"
 #include "slalom/maps/pose.hpp"
@@ -100,7 +100,7 @@ class ObstacleMemory {
   std::size_t next_ = 0;
   double age_ = interval;
   double reach_;  ///< m, of points that are kept
-  std::vector<maps::Point> blind_;
+  ReservedVector<maps::Point> blind_;
 };
 
 }  // namespace slalom::vehicle::detail

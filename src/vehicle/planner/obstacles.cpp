@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "slalom/maps/moving_obstacles.hpp"
-#include "vehicle/planner/car_estimator.hpp"
 #include "vehicle/planner/map_options.hpp"
 
 namespace slalom::vehicle::detail {
@@ -36,7 +35,7 @@ Obstacles::Obstacles(const PlannerOptions& options, const VehicleTraits& traits,
     : laser_{options.laser_x, options.laser_y, options.laser_yaw},
       control_period_(options.control_period),
       time_step_(traits.time_step),
-      delay_(delay_of(options, traits)),
+      delay_(options.latency + traits.dead_time),
       has_clearance_(traits.obstacle_map == ObstacleMap::clearance),
       slips_(traits.friction > 0),
       meets_others_(options.predict_others && traits.meets_others),

@@ -9,7 +9,8 @@ namespace slalom::vehicle::detail {
 
 namespace {
 
-/// Of the largest deceleration, what a braking car reaches among curves, and what it accelerates with.
+/// Shares of the largest deceleration: the one that a braking car reaches among curves, and the one with
+/// which it accelerates.
 constexpr double braking_share = 0.8, accelerating_share = 0.4;
 
 /// m, by which the nearest of many noisy readings is nearer than a wall.
@@ -77,7 +78,7 @@ PredictedCost SequenceChoice::predict(const VehicleModel& model, std::span<const
   return cost;
 }
 
-/// As VehicleModel::predict says it: states before the first free one do not count.
+/// Whether the body collides after the first free state, as VehicleModel::predict has it.
 bool SequenceChoice::body_collides(std::span<const PredictedState> states) const noexcept {
   bool was_free = false;
   for (const PredictedState& s : states) {
@@ -89,7 +90,7 @@ bool SequenceChoice::body_collides(std::span<const PredictedState> states) const
   return !was_free;
 }
 
-/// Likewise: where it begins near another car, it collides with one only after it has been free of them.
+/// Whether it collides with another car after the first state that is free of them.
 bool SequenceChoice::others_collide(std::span<const PredictedState> states) const noexcept {
   if (others_.empty()) return false;
   bool was_free = false;
@@ -108,9 +109,9 @@ void SequenceChoice::sent(std::span<const float> inputs) noexcept {
   if (has_previous_) std::copy(inputs.begin(), inputs.end(), previous_.begin());
 }
 
-SequenceChoice::Choice SequenceChoice::choose(const VehicleModel& model, const SolveResult& result,
-                                              const Choice& solution, bool reversing,
-                                              std::vector<PredictedState>& states) noexcept {
+SequenceChoice::Choice SequenceChoice::cheapest(const VehicleModel& model, const SolveResult& result,
+                                                const Choice& solution,
+                                                std::vector<PredictedState>& states) noexcept {
   Choice best = solution;
   const auto consider = [&](std::span<const float> inputs) {
     if (inputs.size() != candidate_.size()) return;
@@ -127,12 +128,15 @@ SequenceChoice::Choice SequenceChoice::choose(const VehicleModel& model, const S
           result.samples->at(static_cast<int>(row / inputs_), static_cast<int>(row % inputs_), sample);
     consider(candidate_);
   }
-  if (!best.cost.collided || !model.has_dynamics()) return best;
-  const bool begins_free = body_ ? !body_collides({states.data(), 1}) && !others_collide({states.data(), 1})
-                                 : !model.start_collides();
-  if (body_ && !reversing && begins_free) return least_harm(model, result, best, states);
-  brake(model, result, reversing, best, states);
   return best;
+}
+
+SequenceChoice::Choice SequenceChoice::stop(const VehicleModel& model, const SolveResult& result,
+                                            const Choice& solution, bool reversing,
+                                            std::vector<PredictedState>& states) noexcept {
+  const bool begins_free = body_ && !body_collides({states.data(), 1}) && !others_collide({states.data(), 1});
+  if (begins_free && !reversing) return least_harm(model, result, solution, states);
+  return brake(model, result, solution, reversing, states);
 }
 
 SequenceChoice::Choice SequenceChoice::kept(const VehicleModel& model, const Choice& solution, double elapsed,
@@ -175,8 +179,8 @@ SequenceChoice::Choice SequenceChoice::slower(const VehicleModel& model, const C
   return best;
 }
 
-/// The inputs that brake for these steps, then accelerate, with the wheels' angles of `path_` at the same
-/// places.
+/// Sets `candidate_` to inputs that brake for these steps, then accelerate, with the wheels' angles of
+/// `path_` at the same places.
 void SequenceChoice::follow_slower(int braking_steps) noexcept {
   const double dt = traits_.time_step;
   const std::size_t steps = path_.size() - 1;
@@ -199,8 +203,11 @@ void SequenceChoice::follow_slower(int braking_steps) noexcept {
   }
 }
 
-void SequenceChoice::brake(const VehicleModel& model, const SolveResult& result, bool reversing, Choice& best,
-                           std::vector<PredictedState>& states) noexcept {
+/// The cheapest full stop, along one of the known sequences.
+SequenceChoice::Choice SequenceChoice::brake(const VehicleModel& model, const SolveResult& result,
+                                             const Choice& solution, bool reversing,
+                                             std::vector<PredictedState>& states) noexcept {
+  Choice best = solution;
   bool first = true;
   const auto consider = [&](std::span<const float> steering) {
     if (steering.size() != candidate_.size()) return;
@@ -220,6 +227,7 @@ void SequenceChoice::brake(const VehicleModel& model, const SolveResult& result,
   if (has_previous_) consider(previous_);
   consider(result.nominal);
   for_each_guide(result, candidate_.size(), consider);
+  return best;
 }
 
 /// The harm of a sequence: the squared speed (m^2/s^2) at which it first collides, times the share of its
@@ -240,10 +248,10 @@ double SequenceChoice::harm(const VehicleModel& model, std::span<const float> in
   return left * square(candidate_states_[collided].speed);
 }
 
-/// Of sequences that all collide the one with the least harm: the solution, the sequence sent before moved by
-/// the time since (`kept_`), the nominal sequence or a guide, each as it is and with brakes, or a stop with
-/// straight wheels, which has all the grip for braking. One with brakes must do clearly less harm: brakes
-/// take grip from the turn that the car is in.
+/// The least harmful of sequences that all collide: the solution, the sequence sent before moved by the time
+/// since (`kept_`), the nominal sequence or a guide, each as it is and with brakes, or a stop with straight
+/// wheels, which has all the grip for braking. One with brakes must do clearly less harm: brakes take grip
+/// from the turn that the car is in.
 SequenceChoice::Choice SequenceChoice::least_harm(const VehicleModel& model, const SolveResult& result,
                                                   const Choice& solution,
                                                   std::vector<PredictedState>& states) noexcept {

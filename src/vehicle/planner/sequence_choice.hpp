@@ -10,10 +10,10 @@
 
 namespace slalom::vehicle::detail {
 
-/// What is sent where the solution collides.
+/// Chooses the sequence that is sent, where another one is better than the solution.
 class SequenceChoice {
  public:
-  /// A sequence that is chosen: its inputs, valid until the next choice, and its cost.
+  /// A sequence, valid until the next choice, and its cost.
   struct Choice {
     std::span<const float> inputs;
     PredictedCost cost;
@@ -22,8 +22,8 @@ class SequenceChoice {
   /// For sequences of `horizon` steps with so many inputs each, of a car with these traits.
   SequenceChoice(int horizon, int inputs, const VehicleTraits& traits);
 
-  /// The clearances (m, robot's frame) of what the car sees, and what moves (in the frame of predictions),
-  /// until the next call.
+  /// Sets the clearances (m, robot's frame) around the car, and the obstacles that move (in the frame of
+  /// predictions), until the next call.
   void sees(const GridView<1>& clearances, const maps::MovingObstaclesView& others) noexcept;
 
   /// The prediction of a sequence, with which all choices compare. Where plans seek the shortest time and the
@@ -36,29 +36,32 @@ class SequenceChoice {
 
   /// The cheapest of the solution and of driving along it more slowly, which brakes first for some steps and
   /// keeps the path, or faster. Samples of the solver rarely brake for long, so it finds late that it must;
-  /// and around a solution that stands still none of them drives. For models that have the car's dynamics.
-  /// `states` as in `choose`.
+  /// and around a solution that stands still none of them drives. For models whose tyres slip. `states` as in
+  /// `cheapest`.
   Choice slower(const VehicleModel& model, const Choice& solution,
                 std::vector<PredictedState>& states) noexcept;
 
   /// The cheaper of the solution and the sequence sent last, moved forward by `elapsed` (s), with its last
   /// inputs held. A solution is a mean over few samples that count; where it is worse than to go on as
-  /// planned, collisions first, nothing has changed that calls for it. `states` as in `choose`.
+  /// planned, collisions first, nothing has changed that calls for it. `states` as in `cheapest`.
   Choice kept(const VehicleModel& model, const Choice& solution, double elapsed,
               std::vector<PredictedState>& states) noexcept;
 
-  /// The cheaper of the solution and another sequence, collisions first; `states` as in `choose`.
+  /// The cheaper of the solution and another sequence, collisions first; `states` as in `cheapest`.
   Choice better(const VehicleModel& model, const Choice& solution, std::span<const float> other,
                 std::vector<PredictedState>& states) noexcept;
 
-  /// The cheapest of the nominal sequence, the guides and the best sample that does not collide. If there is
-  /// none and the model has the car's dynamics, a full stop: along the solution, the sequence sent last, the
-  /// nominal one or a guide, as hard as the tyres allow; the cheapest that does not collide, else the
-  /// cheapest of all. Where plans seek the shortest time with a margin, what is sent then is the sequence
-  /// that does least harm instead: see `least_harm`. `states` holds the prediction of the solution,
-  /// afterwards that of the choice.
-  Choice choose(const VehicleModel& model, const SolveResult& result, const Choice& solution, bool reversing,
-                std::vector<PredictedState>& states) noexcept;
+  /// The cheapest of the solution, the nominal sequence, the guides and the best sample, collisions first.
+  /// `states` holds the prediction of the solution, afterwards that of the choice.
+  Choice cheapest(const VehicleModel& model, const SolveResult& result, const Choice& solution,
+                  std::vector<PredictedState>& states) noexcept;
+
+  /// A full stop where every sequence collides: along the solution, the sequence sent last, the nominal one
+  /// or a guide, as hard as the tyres allow; the cheapest that does not collide, else the cheapest of all.
+  /// Where plans seek the shortest time with a margin, the sequence that does least harm instead: see
+  /// `least_harm`. For models whose tyres slip. `states` as in `cheapest`.
+  Choice stop(const VehicleModel& model, const SolveResult& result, const Choice& solution, bool reversing,
+              std::vector<PredictedState>& states) noexcept;
 
   /// Keeps the sequence that is sent.
   void sent(std::span<const float> inputs) noexcept;
@@ -67,9 +70,8 @@ class SequenceChoice {
 
  private:
   void follow_slower(int braking_steps) noexcept;
-  void brake(const VehicleModel& model, const SolveResult& result, bool reversing, Choice& best,
-             std::vector<PredictedState>& states) noexcept;
-
+  Choice brake(const VehicleModel& model, const SolveResult& result, const Choice& solution, bool reversing,
+               std::vector<PredictedState>& states) noexcept;
   Choice least_harm(const VehicleModel& model, const SolveResult& result, const Choice& solution,
                     std::vector<PredictedState>& states) noexcept;
   double harm(const VehicleModel& model, std::span<const float> inputs) noexcept;

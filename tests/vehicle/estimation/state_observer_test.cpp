@@ -42,7 +42,15 @@ PoseCovariance covariance_of(double along, double across, double yaw, double yaw
            {0, 0, yaw_deviation * yaw_deviation}}};
 }
 
-std::unique_ptr<VehicleModel> model_with(double friction) {
+/// The single-track model and its friction.
+struct Model {
+  std::unique_ptr<VehicleModel> owner;
+  double friction;
+
+  const DynamicVehicleModel& operator*() const { return dynamic_cast<const DynamicVehicleModel&>(*owner); }
+};
+
+Model model_with(double friction) {
   VehicleOptions options;
   options.model = vehicle_model("single_track");
   options.hold_first_input = false;
@@ -50,7 +58,7 @@ std::unique_ptr<VehicleModel> model_with(double friction) {
   options.dead_time = 0.02;
   options.max_acceleration = options.max_deceleration = 9;
   options.own_of<SingleTrackOptions>().friction = friction;
-  return make_vehicle_model(options);
+  return {make_vehicle_model(options), friction};
 }
 
 Errors errors_of(const Drive& drive) {
@@ -85,7 +93,7 @@ Errors errors_of(const Drive& drive) {
     input.pose.yaw += drive.yaw_noise * noise.normal();
     input.speed += drive.speed_noise * noise.normal();
     if (drive.imu) input.imu = imu.read();
-    observer.update(*model, input);
+    observer.update(*model, input, model.friction);
     if (time > 1) {
       ++count;
       sum.yaw_rate += std::pow(observer.now().yaw_rate - state.yaw_rate, 2);
@@ -171,7 +179,7 @@ TEST(StateObserver, ToleratesAnInvalidCovariance) {
   for (const PoseCovariance& covariance : hostile) {
     StateObserver observer({}, period, 0, 0.02);
     for (int i = 0; i < 40; ++i) {
-      observer.update(*model, {{0.1 * i, 0, 0}, 4, covariance});
+      observer.update(*model, {{0.1 * i, 0, 0}, 4, covariance}, model.friction);
       observer.send({0, 4});
       const VehicleStart& now = observer.now();
       ASSERT_TRUE(
@@ -184,15 +192,15 @@ TEST(StateObserver, BeginsAnewAfterAJumpAndAtAStandstill) {
   const auto model = model_with(1);
   StateObserver observer({}, period, 0, 0.02);
   for (int i = 0; i < 40; ++i) {
-    observer.update(*model, {{0.1 * i, 0, 0}, 4});
+    observer.update(*model, {{0.1 * i, 0, 0}, 4}, model.friction);
     observer.send({0, 4});
   }
   EXPECT_NEAR(observer.now().pose.x, 3.9, 0.01);
   EXPECT_NEAR(observer.now().yaw_rate, 0, 0.01);
-  observer.update(*model, {{20, 5, 1}, 4});
+  observer.update(*model, {{20, 5, 1}, 4}, model.friction);
   EXPECT_EQ(observer.now().pose.x, 20);
   observer.send({0, 0});
-  observer.update(*model, {{20, 5, 1}, 0});
+  observer.update(*model, {{20, 5, 1}, 0}, model.friction);
   EXPECT_EQ(observer.now().speed, 0);
   EXPECT_EQ(observer.now().slip, 0);
 }
@@ -202,7 +210,7 @@ TEST(StateObserver, DoesNotAllocate) {
   StateObserver observer({}, period, 0, 0.02);
   const auto before = testing::allocations();
   for (int i = 0; i < 40; ++i) {
-    observer.update(*model, {{0.1 * i, 0, 0}, 4, {}, ImuReading{}});
+    observer.update(*model, {{0.1 * i, 0, 0}, 4, {}, ImuReading{}}, model.friction);
     observer.send({0.1, 4});
   }
   EXPECT_EQ(testing::allocations(), before);

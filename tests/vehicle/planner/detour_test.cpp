@@ -83,7 +83,8 @@ TEST(Detour, LeadsThroughTheGapAndBackToTheCourse) {
     EXPECT_EQ(path[i].speed, 1.5);
     EXPECT_GT(walls.distance(path[i]), body.width / 2 + body.margin - 0.1) << "but for a cell";
   }
-  const maps::ReferenceField& field = detour.field_around({car.x, car.y});
+  detour.update_field({car.x, car.y});
+  const maps::ReferenceField& field = detour.field();
   EXPECT_LT(field.at(path[20].x, path[20].y).distance, 0.1);
   EXPECT_NEAR(field.at(path[20].x, path[20].y).speed, 1.5, 1e-6);
 }
@@ -150,7 +151,7 @@ TEST(Detour, AllocatesNothing) {
   const long before = testing::allocations();
   for (int k = 0; k < 5; ++k) {
     EXPECT_TRUE(detour.search(walls.map(), {car.x + 0.1 * k, 0.05 * k, 0.1 * k}, nearest + k));
-    detour.field_around({car.x, car.y});
+    detour.update_field({car.x, car.y});
   }
   EXPECT_EQ(testing::allocations(), before);
 }

@@ -1,4 +1,4 @@
-// What is sent where the solution is not the best sequence known.
+// The choice of the sequence that is sent, where the solution is not the best one known.
 #include "vehicle/planner/sequence_choice.hpp"
 
 #include <gtest/gtest.h>
@@ -125,7 +125,8 @@ class PlanNearAWall : public ::testing::Test {
     EXPECT_TRUE(cost.collided);
     choice_->sent(solution);
     const auto best = choice_->kept(*model_, {solution, cost}, 0, states_);
-    return choice_->choose(*model_, {}, best, false, states_);
+    const auto cheapest = choice_->cheapest(*model_, {}, best, states_);
+    return cheapest.cost.collided ? choice_->stop(*model_, {}, cheapest, false, states_) : cheapest;
   }
 
   maps::ReferenceField field_;

@@ -5,12 +5,14 @@
 
 #include "slalom/maps/imu_reading.hpp"
 #include "slalom/vehicle/estimation/estimation_options.hpp"
-#include "slalom/vehicle/estimation/pose_covariance.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
 
 namespace slalom::vehicle {
 
-/// The measurements of the car at one moment.
+/// The covariance of a pose: x, y (m, map frame) and yaw (rad). All 0 where it is not known.
+using PoseCovariance = std::array<std::array<double, 3>, 3>;
+
+/// The readings of the sensors at one moment.
 struct ObserverInput {
   maps::Pose pose;                  ///< pose of the rear axle, map frame
   double speed = 0;                 ///< m/s
@@ -35,8 +37,9 @@ class StateObserver {
   /// Forgets everything.
   void reset() noexcept;
 
-  /// Takes the measurements of one control period after the last.
-  void update(const VehicleModel& model, const ObserverInput& input) noexcept;
+  /// Takes the measurements of one control period after the last; predictions are for ground of this
+  /// friction.
+  void update(const DynamicVehicleModel& model, const ObserverInput& input, double friction) noexcept;
 
   /// Records the command that is sent now; for the next update.
   void send(const Command& command) noexcept;
@@ -48,25 +51,26 @@ class StateObserver {
   const VehicleStart& now() const noexcept { return now_; }
 
   /// The state when the next command takes effect on the steering.
-  VehicleStart ahead(const VehicleModel& model) const noexcept;
+  VehicleStart ahead(const DynamicVehicleModel& model) const noexcept;
   /// The speed (m/s) when the next command takes effect on it.
-  double speed_ahead(const VehicleModel& model) const noexcept;
+  double speed_ahead(const DynamicVehicleModel& model) const noexcept;
 
  private:
   static constexpr int size = 7;  ///< x, y, yaw, speed, yaw rate, sideways velocity, bias of the gyro
   using Vector = std::array<double, size>;
   using Matrix = std::array<Vector, size>;
 
-  void begin(const VehicleModel& model, const ObserverInput& input) noexcept;
-  void predict(const VehicleModel& model, const std::optional<ImuReading>& imu) noexcept;
+  void begin(const DynamicVehicleModel& model, const ObserverInput& input) noexcept;
+  void predict(const DynamicVehicleModel& model, const std::optional<ImuReading>& imu) noexcept;
   void correct(const Vector& row, double difference, double variance) noexcept;
   void correct_pose(const ObserverInput& input) noexcept;
-  void move(const VehicleModel& model, VehicleStart& car, double begin, double end) const noexcept;
-  Vector moved(const VehicleModel& model, const Vector& from, double& steer) const noexcept;
+  void move(const DynamicVehicleModel& model, VehicleStart& car, double begin, double end) const noexcept;
+  Vector moved(const DynamicVehicleModel& model, const Vector& from, double& steer) const noexcept;
   const Command& acting(double time, double delay) const noexcept;
 
   ObserverOptions options_;
-  double period_, latency_, delay_;
+  double period_, latency_, delay_;  ///< s
+  double friction_ = 0;
   std::array<Command, 36> sent_;
   VehicleStart now_;
   Vector state_{};

@@ -107,6 +107,9 @@ class Localiser {
   /// positive; and if the table of ranges would have more than 2^27 entries.
   explicit Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options = {});
   ~Localiser();
+  /// Copies everything: the copy goes on with the same bits. The tables of the map are shared.
+  Localiser(const Localiser& other);
+  Localiser& operator=(const Localiser& other);
   Localiser(Localiser&&) noexcept;
   Localiser& operator=(Localiser&&) noexcept;
 

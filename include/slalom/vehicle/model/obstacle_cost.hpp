@@ -22,8 +22,8 @@ class ObstacleCost {
   /// free, 100 occupied), for discs the map of clearances (m, up to `clearance_reach`). Its ring is negative.
   void set_map(const GridView<1>& obstacles, const maps::Pose& robot) noexcept;
 
-  /// Collisions count up to this share (0 to 1) of the margin around the body. Only with discs: the map for a
-  /// box has its margin in it.
+  /// Counts collisions up to this share (0 to 1) of the margin around the body. It matters with discs alone:
+  /// the map for a box has its margin in it.
   void set_margin_share(double share) noexcept { collision_clearance_ = radius_ + share * margin_; }
 
   /// The robot's pose at the time of the scan, map frame.

@@ -76,7 +76,7 @@ class PathTracking {
   /// The options given at construction.
   const PathTrackingOptions& options() const { return options_; }
   double time_step() const { return options_.time_step; }  ///< s
-  /// The traits of the model for the planner.
+  /// The properties of the model.
   VehicleTraits traits() const {
     VehicleTraits traits = traits_of(options_, plans_speed);
     traits.meets_others = true;
@@ -99,22 +99,15 @@ class PathTracking {
   void randomize(RandomStream& random) noexcept requires requires(Motion& m) { m.randomize(random); }
   { motion_.randomize(random); }
 
-  /// See VehicleModel.
-  void set_reverse(double speed) noexcept requires requires(Motion& m) { m.set_reverse(1.0); }
-  {
-    motion_.set_reverse(speed);
-    cost_.set_reverse(speed);
+  /// Sets what the next rollouts assume.
+  void set_conditions(const DrivingConditions& now) noexcept requires requires(Motion& m) {
+    m.set_conditions(now);
   }
-
-  /// See VehicleModel.
-  void set_top_speed(double speed) noexcept requires requires(Motion& m) { m.set_top_speed(1.0); }
-  { motion_.set_top_speed(speed); }
-
-  /// See VehicleModel.
-  void set_urgency(Urgency urgency) noexcept { cost_.set_urgency(urgency); }
-
-  /// See VehicleModel.
-  void set_margin_share(double share) noexcept { obstacles_.set_margin_share(share); }
+  {
+    motion_.set_conditions(now);
+    cost_.set_conditions(now);
+    obstacles_.set_margin_share(now.margin_share);
+  }
 
   /// The state at the start; `reference_speed` (m/s) is the path's there.
   State<double> start(const VehicleStart& start, double reference_speed) noexcept {
@@ -133,7 +126,7 @@ class PathTracking {
     return made;
   }
 
-  /// The values that the maps hold at a state.
+  /// Looks up the maps at a state.
   template <class T>
   Surroundings<T> look_up(const State<T>& s) const {
     const T obstacle = obstacles_.in_map_frame(s.x, s.y, s.yaw);

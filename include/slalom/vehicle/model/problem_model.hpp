@@ -8,33 +8,22 @@
 
 namespace slalom::vehicle {
 
-/// Any vehicle problem as a vehicle model. Maps, start and predicted poses are in the map frame. The problem
-/// itself runs in a parallel frame that begins at the start's position, which is subtracted in double:
-/// float32 rollouts are as exact at UTM coordinates (5e6 m) as near the origin.
-///
-///     Planner planner(options, std::make_unique<ProblemModel<MyProblem>>(MyProblem{}), path, solver);
-///
-/// `Evaluator` rolls out: a ProblemEvaluator, or a RiskEvaluator, whose cost is that of several variants of
-/// the world. What is predicted is the problem itself.
-template <VehicleProblem P, class Evaluator = ProblemEvaluator<P>>
-class ProblemModel final : public VehicleModel {
-  using State = typename Evaluator::State;  ///< the problem's state in double
+namespace detail {
 
-  /// Whether the problem has a motion model with tyres that slip.
-  static constexpr bool dynamic = requires(const P& p, State s) {
-    p.motion().advance(VehicleStart{}, Command{}, 0.1);
-    p.motion().limited(s, 1.0, 1.0);
-  };
+/// The functions that ProblemModel and DynamicProblemModel have in common.
+template <VehicleProblem P, class Evaluator, class Interface>
+class ProblemModelBase : public Interface {
+  using State = typename Evaluator::State;  ///< the problem's state in double
 
  public:
   /// A vehicle model of `problem`, whose rollouts use the instruction set `target`.
-  explicit ProblemModel(P problem, simd::Target target = simd::active_target())
+  explicit ProblemModelBase(P problem, simd::Target target = simd::active_target())
       : evaluator_(std::move(problem), target) {}
   /// With rollouts by `evaluator`.
-  explicit ProblemModel(Evaluator evaluator) : evaluator_(std::move(evaluator)) {}
+  explicit ProblemModelBase(Evaluator evaluator) : evaluator_(std::move(evaluator)) {}
 
   int inputs() const noexcept override { return P::inputs; }
-  /// The traits of the model for the planner.
+  /// The properties of the model.
   VehicleTraits traits() const noexcept override { return evaluator_.problem().traits(); }
   /// Sets the maps that rollouts look up.
   void set_maps(const VehicleMaps& maps) noexcept override {
@@ -58,51 +47,6 @@ class ProblemModel final : public VehicleModel {
     const auto seen = slalom::detail::look_up<P, double>(problem, start_);
     return slalom::detail::stage_cost<P, double>(problem, start_, seen, Input<double, P::inputs>{}, 0)
         .collided;
-  }
-
-  bool has_dynamics() const noexcept override { return dynamic; }
-  const SingleTrackDynamics* dynamics() const noexcept override {
-    if constexpr (dynamic) {
-      return &evaluator_.problem().motion().dynamics();
-    } else {
-      return nullptr;
-    }
-  }
-  VehicleStart advance(const VehicleStart& start, const Command& command,
-                       double duration) const noexcept override {
-    if constexpr (dynamic) {
-      return evaluator_.problem().motion().advance(start, command, duration);
-    } else {
-      return VehicleModel::advance(start, command, duration);
-    }
-  }
-  Command command(std::span<const float> inputs, double speed, double period) const noexcept override {
-    if constexpr (dynamic) {
-      const P& problem = evaluator_.problem();
-      const auto seen = slalom::detail::look_up<P, double>(problem, start_);
-      const double steering = static_cast<double>(inputs[0]), wanted = static_cast<double>(inputs[1]);
-      const double acceleration = problem.motion().limited(start_, seen.speed, wanted);
-      return {problem.motion().steering(start_, steering),
-              problem.motion().commanded_speed(speed, acceleration, period)};
-    } else {
-      return VehicleModel::command(inputs, speed, period);
-    }
-  }
-  void set_friction([[maybe_unused]] double friction) noexcept override {
-    if constexpr (dynamic) evaluator_.problem().motion().set_friction(friction);
-  }
-  void set_reverse([[maybe_unused]] double speed) noexcept override {
-    if constexpr (dynamic) evaluator_.problem().set_reverse(speed);
-  }
-  void set_top_speed([[maybe_unused]] double speed) noexcept override {
-    if constexpr (dynamic) evaluator_.problem().set_top_speed(speed);
-  }
-  void set_urgency([[maybe_unused]] Urgency urgency) noexcept override {
-    if constexpr (dynamic) evaluator_.problem().set_urgency(urgency);
-  }
-
-  void set_margin_share([[maybe_unused]] double share) noexcept override {
-    if constexpr (dynamic) evaluator_.problem().set_margin_share(share);
   }
 
   PredictedCost predict(std::span<const float> inputs,
@@ -137,11 +81,63 @@ class ProblemModel final : public VehicleModel {
     return total;
   }
 
+ protected:
+  Evaluator evaluator_;  ///< rolls out the problem
+  State start_{};        ///< start of rollouts, in the problem's frame
+
  private:
-  Evaluator evaluator_;
   VehicleMaps maps_;
-  maps::Point origin_;  ///< origin of the problem's frame, in the map frame
-  State start_{};
+  maps::Point origin_;  ///< of the problem's frame, in the map frame
+};
+
+}  // namespace detail
+
+/// Any vehicle problem as a vehicle model. Maps, start and predicted poses are in the map frame. The problem
+/// itself runs in a parallel frame that begins at the start's position, which is subtracted in double:
+/// float32 rollouts are as exact at UTM coordinates (5e6 m) as near the origin.
+///
+///     Planner planner(options, std::make_unique<ProblemModel<MyProblem>>(MyProblem{}), path, solver);
+///
+/// `Evaluator` rolls out: a ProblemEvaluator, or a RiskEvaluator, whose cost is that of several variants of
+/// the world. `predict` uses the problem itself.
+template <VehicleProblem P, class Evaluator = ProblemEvaluator<P>>
+class ProblemModel final : public detail::ProblemModelBase<P, Evaluator, VehicleModel> {
+ public:
+  using detail::ProblemModelBase<P, Evaluator, VehicleModel>::ProblemModelBase;
+
+  std::unique_ptr<VehicleModel> clone() const override { return std::make_unique<ProblemModel>(*this); }
+};
+
+/// The same for the problem of a car whose tyres slip.
+template <DynamicVehicleProblem P, class Evaluator = ProblemEvaluator<P>>
+class DynamicProblemModel final : public detail::ProblemModelBase<P, Evaluator, DynamicVehicleModel> {
+  using Base = detail::ProblemModelBase<P, Evaluator, DynamicVehicleModel>;
+  using Base::evaluator_, Base::start_;
+
+ public:
+  using Base::ProblemModelBase;
+
+  std::unique_ptr<VehicleModel> clone() const override {
+    return std::make_unique<DynamicProblemModel>(*this);
+  }
+  const SingleTrackDynamics& dynamics() const noexcept override {
+    return evaluator_.problem().motion().dynamics();
+  }
+  void set_conditions(const DrivingConditions& conditions) noexcept override {
+    evaluator_.problem().set_conditions(conditions);
+  }
+  VehicleStart advance(const VehicleStart& start, const Command& command, double duration,
+                       double friction) const noexcept override {
+    return evaluator_.problem().motion().advance(start, command, duration, friction);
+  }
+  Command command(std::span<const float> inputs, double speed, double period) const noexcept override {
+    const P& problem = evaluator_.problem();
+    const auto seen = slalom::detail::look_up<P, double>(problem, start_);
+    const double steering = static_cast<double>(inputs[0]), wanted = static_cast<double>(inputs[1]);
+    const double acceleration = problem.motion().limited(start_, seen.speed, wanted);
+    return {problem.motion().steering(start_, steering),
+            problem.motion().commanded_speed(speed, acceleration, period)};
+  }
 };
 
 }  // namespace slalom::vehicle

@@ -10,8 +10,8 @@
 namespace slalom::vehicle {
 
 /// The single-track model with slipping tyres as a motion model; steering and acceleration are the inputs.
-/// Of the acceleration no more takes effect than motor, brakes and the grip that turning leaves allow, and
-/// the path's speed is a limit unless plans seek the shortest time.
+/// No more acceleration takes effect than motor, brakes and the grip that turning leaves allow, and the
+/// path's speed is a limit unless plans seek the shortest time.
 class SingleTrack {
  public:
   template <class T>
@@ -36,31 +36,25 @@ class SingleTrack {
   /// Adds the facts about tyres and motor that the planner needs.
   void complete(VehicleTraits& traits) const noexcept;
 
-  /// The friction between tyres and road that rollouts assume.
-  void set_friction(double friction) noexcept { friction_ = friction; }
+  /// Sets the friction and the range of speeds that rollouts assume.
+  void set_conditions(const DrivingConditions& conditions) noexcept {
+    friction_ = conditions.friction;
+    slowest_ = -conditions.reverse;
+    fastest_ = conditions.reverse > 0 ? 0.0 : conditions.top_speed;
+  }
 
   /// Multiplies friction and cornering stiffness by log-normal factors of the deviations in the options: a
   /// variant of the world (see RandomizableProblem).
   void randomize(RandomStream& random) noexcept;
 
-  /// The car `duration` (s) later, where this command acts all the time; with a speed that is not finite it
-  /// rolls.
-  VehicleStart advance(const VehicleStart& start, const Command& command, double duration) const noexcept;
+  /// The car `duration` (s) later on ground of this friction, where this command acts all the time; with a
+  /// speed that is not finite it rolls.
+  VehicleStart advance(const VehicleStart& start, const Command& command, double duration,
+                       double friction) const noexcept;
 
   /// The speed (m/s) to command at `speed` (m/s), so that the car's speed control brings about this mean
   /// acceleration (m/s^2) over `period` (s).
   double commanded_speed(double speed, double acceleration, double period) const noexcept;
-
-  /// See VehicleModel.
-  void set_reverse(double speed) noexcept {
-    slowest_ = -speed;
-    fastest_ = speed > 0 ? 0.0 : top_speed_;
-  }
-  /// See VehicleModel.
-  void set_top_speed(double speed) noexcept {
-    top_speed_ = speed;
-    fastest_ = speed;
-  }
 
   /// Whether plans seek the shortest time.
   bool seeks_lap_time() const noexcept { return own_.objective == Objective::lap_time; }
@@ -136,7 +130,6 @@ class SingleTrack {
   Coefficient max_path_speed_share_;  ///< times the path's speed: what plans do not exceed
   Coefficient inverse_speeding_up_;   ///< s^2/m over time steps, times the friction
   Coefficient squared_half_steer_speed_;
-  double top_speed_ = 1e3;                 ///< m/s
   Coefficient slowest_{0}, fastest_{1e3};  ///< m/s
   Coefficient max_deceleration_;
   Coefficient usable_grip_, grip_weight_;

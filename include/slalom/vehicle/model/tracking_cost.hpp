@@ -8,7 +8,7 @@
 
 namespace slalom::vehicle {
 
-/// The values that the maps hold at a state.
+/// The values of the maps at a state.
 template <class T>
 struct Surroundings {
   T distance;  ///< m to the path
@@ -27,16 +27,10 @@ class TrackingCost {
   /// Cells {distance, yaw, speed, outside} in the map frame, as Surroundings has them.
   void set_reference(const GridView<4>& reference) noexcept { reference_ = reference; }
 
-  /// Progress counts forwards, or with a speed (m/s, > 0) backwards at most at it.
-  void set_reverse(double speed) noexcept {
-    way_ = speed > 0 ? -1.0 : 1.0;
-    fastest_ = speed > 0 ? speed : 1e3;
-  }
+  /// Sets direction and urgency. In reverse, progress counts backwards, up to the speed of reverse.
+  void set_conditions(const DrivingConditions& conditions) noexcept;
 
-  /// See VehicleModel.
-  void set_urgency(Urgency urgency) noexcept;
-
-  /// Progress beyond the path's speed counts as time won. The sum over a plan's steps is then, but for a
+  /// Counts progress beyond the path's speed as time won. The sum over a plan's steps is then, but for a
   /// constant, the time from its end to the finish at the path's speeds.
   void set_lap_time() noexcept { min_lost_ = -1e3; }
 

@@ -20,54 +20,51 @@ struct PredictedCost {
   bool collided = false;  ///< a state after the first free one collides, or none is free
 };
 
-/// A vehicle problem whose type is not known: what the planner drives with.
+/// A vehicle problem of any type, as the planner uses it. A copy goes on with the same bits.
 class VehicleModel {
  public:
   virtual ~VehicleModel() = default;
 
+  /// Copies the model; the copy looks up the same maps.
+  virtual std::unique_ptr<VehicleModel> clone() const = 0;
   virtual int inputs() const noexcept = 0;  ///< per step; the first is the steering
-  /// The traits of the model for the planner.
+  /// The properties of the model.
   virtual VehicleTraits traits() const noexcept = 0;
   /// Sets the maps that rollouts look up; they must outlive their use.
   virtual void set_maps(const VehicleMaps& maps) noexcept = 0;
-  /// Sets the start of the rollouts; `reference_speed` (m/s) is that of the path there.
+  /// Sets where rollouts start; `reference_speed` (m/s) is that of the path there.
   virtual void set_start(const VehicleStart& start, double reference_speed) noexcept = 0;
   /// Rollouts from the start over the maps.
   virtual const BatchEvaluator& evaluator() const noexcept = 0;
   /// Whether the start itself collides.
   virtual bool start_collides() const noexcept = 0;
-  /// Whether the model predicts the car by its tyres and speed control. If not, the setters below have no
-  /// effect, `advance` returns the start, and `command` the first steering angle with the given speed.
-  virtual bool has_dynamics() const noexcept { return false; }
-  /// The dynamics of a car whose tyres slip; null where they do not.
-  virtual const SingleTrackDynamics* dynamics() const noexcept { return nullptr; }
-  /// The car `duration` (s) after `start`, where this command acts; with a speed that is not finite it rolls.
-  virtual VehicleStart advance(const VehicleStart& start, const Command& command,
-                               double duration) const noexcept;
-  /// The command for `period` (s) to a car at `speed` (m/s) by which the sequence begins; `inputs` as in
-  /// `predict`.
-  virtual Command command(std::span<const float> inputs, double speed, double period) const noexcept;
-  /// The friction that predictions assume from now on.
-  virtual void set_friction(double friction) noexcept;
-  /// With 0, predictions from now on drive forwards. With a speed above 0 (m/s), they drive backwards, at
-  /// most at this speed and against the direction of the path.
-  virtual void set_reverse(double speed) noexcept;
-  /// The highest speed (m/s) of predictions from now on.
-  virtual void set_top_speed(double speed) noexcept;
-  /// The urgency of predictions from now on.
-  virtual void set_urgency(Urgency urgency) noexcept;
-  /// The share (0 to 1) of the margin around the body within which predictions from now on collide.
-  virtual void set_margin_share(double share) noexcept;
-
-  /// The states (one more than steps) of one control sequence, [step][input], and its cost. A car that
-  /// collides at the start must be able to leave, so the states before the first free one do not count as a
-  /// collision.
+  /// Writes the states (one more than steps) of one control sequence, [step][input], and returns its cost. A
+  /// car that collides at the start must be able to leave, so the states before the first free one do not
+  /// count as a collision.
   virtual PredictedCost predict(std::span<const float> inputs,
                                 std::span<PredictedState> states) const noexcept = 0;
 };
 
-/// The model that `options` name, with their values; rollouts use instruction set `target`. Throws
-/// std::invalid_argument on an option out of range and on an option of another model that is set.
+/// The model of a car whose tyres slip. It predicts the car by its tyres and speed control.
+class DynamicVehicleModel : public VehicleModel {
+ public:
+  /// The equations of motion.
+  virtual const SingleTrackDynamics& dynamics() const noexcept = 0;
+  /// Sets what predictions assume from the next `set_start` on; before the first call, the friction is that
+  /// of the options and all else as in `DrivingConditions`.
+  virtual void set_conditions(const DrivingConditions& conditions) noexcept = 0;
+  /// Returns the car `duration` (s) after `start`, on ground of this friction, where this command acts; with
+  /// a speed that is not finite the car rolls.
+  virtual VehicleStart advance(const VehicleStart& start, const Command& command, double duration,
+                               double friction) const noexcept = 0;
+  /// Returns the command for `period` (s) to a car at `speed` (m/s) by which the sequence, [step][input],
+  /// begins.
+  virtual Command command(std::span<const float> inputs, double speed, double period) const noexcept = 0;
+};
+
+/// Makes the model that `options` name; rollouts use the instruction set `target`. It is a
+/// DynamicVehicleModel where tyres slip (`traits().friction` above 0). Throws std::invalid_argument on an
+/// option out of range and on an option of another model that is set.
 std::unique_ptr<VehicleModel> make_vehicle_model(const VehicleOptions& options,
                                                  simd::Target target = simd::active_target());
 

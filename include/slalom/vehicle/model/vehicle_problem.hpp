@@ -4,11 +4,12 @@
 
 #include "slalom/core/grid_view.hpp"
 #include "slalom/core/problem.hpp"
+#include "slalom/maps/command.hpp"
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
 
-/// The interface of a vehicle problem to the planner, which can drive any of them.
+/// The functions by which a planner drives any vehicle problem.
 namespace slalom::vehicle {
 
 /// The start of a rollout, from odometry and observers.
@@ -49,21 +50,30 @@ struct VehicleMaps {
   }
 };
 
-/// The contents of the map of obstacles.
+/// The content of the map of obstacles.
 enum class ObstacleMap {
   inflated,  ///< cost map: 100 where the body of now, in its heading of now, would collide
   clearance  ///< distance to the nearest obstacle, m, up to `clearance_reach`
 };
 
-/// How much a plan gives to get on. A car that stands usually pays less than one that passes close to an
-/// obstacle or far from the path, which is right for a moment and wrong for good.
+/// The price of lost time. A car that stands usually pays less than one that passes close to an obstacle or
+/// far from the path, which is right for a moment and wrong for good.
 enum class Urgency {
   usual,    ///< the weights of the options
   passing,  ///< any way that leads on: lost time costs 4 times as much, the distance to the path a tenth
   detour    ///< the path is a way around an obstacle, to be followed: lost time costs 10 times as much
 };
 
-/// Facts about a model that the planner needs besides its rollouts.
+/// The ground, and how a car whose tyres slip is to drive on it. The defaults are those of an open road.
+struct DrivingConditions {
+  double friction = 1;     ///< coefficient between tyres and ground, > 0
+  double top_speed = 1e3;  ///< m/s, the highest speed of predictions
+  double reverse = 0;      ///< m/s; above 0, the car drives backwards along the path, at most so fast
+  Urgency urgency = Urgency::usual;  ///< price of lost time
+  double margin_share = 1;           ///< 0 to 1, of the body's margin, within which predictions collide
+};
+
+/// Properties of a model besides its rollouts.
 struct VehicleTraits {
   double time_step = 0;         ///< s, of the prediction, > 0
   double wheelbase = 0;         ///< m, > 0
@@ -94,15 +104,16 @@ struct VehicleTraits {
 /// The traits of models that take these options as they are.
 VehicleTraits traits_of(const PathTrackingOptions& options, bool plans_speed);
 
-/// A vehicle problem: a Problem whose input 0 is the steering angle, rad (a further one may be the
-/// acceleration, m/s^2), whose costs are `Cost<T>` with the collision, and which has besides
+/// A Problem whose input 0 is the steering angle, rad (a further one may be the acceleration, m/s^2), whose
+/// costs are `Cost<T>` with the collision, and which has besides
 ///  - `set_maps(const VehicleMaps&)`: the maps for the next rollouts;
 ///  - `start(const VehicleStart&, double reference_speed)`: the state in which they start; the reference
 ///  speed
 ///    (m/s) is that of the path there;
 ///  - `predicted(state)`: the pose, speed and steering angle of a state;
 ///  - `collision_part(seen, last)`, `distance_part(seen, last)`: the parts of a state's cost that collisions
-///    and the distance to the path make, of what `look_up` returned and for the last state of a sequence;
+///    and the distance to the path make; `seen` was returned by `look_up`, `last` says whether the state is
+///    the last one of a sequence;
 ///  - `traits()`.
 /// The layout of the state is the problem's own. `ProblemModel` gives it maps and start in a frame that
 /// begins at the start's position, so "map frame" means that one in a problem.
@@ -115,6 +126,16 @@ concept VehicleProblem = Problem<P> && requires(P& p, const P& c, const slalom::
   { c.collision_part(slalom::detail::look_up<P, double>(c, x), true) } -> std::convertible_to<double>;
   { c.distance_part(slalom::detail::look_up<P, double>(c, x), true) } -> std::convertible_to<double>;
   { c.traits() } -> std::same_as<VehicleTraits>;
+};
+
+/// A vehicle problem of a car whose tyres slip. Its function `set_conditions` sets what the next rollouts
+/// assume, and `motion()` returns a motion model like SingleTrack.
+template <class P>
+concept DynamicVehicleProblem = VehicleProblem<P> &&
+    requires(P& p, const P& c, const VehicleStart& start, const slalom::detail::StateOf<P, double>& x) {
+  p.set_conditions(DrivingConditions{});
+  { c.motion().advance(start, Command{}, 0.1, 1.0) } -> std::same_as<VehicleStart>;
+  { c.motion().limited(x, 1.0, 1.0) } -> std::convertible_to<double>;
 };
 
 }  // namespace slalom::vehicle

@@ -14,7 +14,7 @@
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/solvers/solver.hpp"
 #include "slalom/vehicle/estimation/parameter_estimator.hpp"
-#include "slalom/vehicle/estimation/pose_covariance.hpp"
+#include "slalom/vehicle/estimation/state_observer.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
 #include "slalom/vehicle/planner/planner_options.hpp"
 
@@ -26,6 +26,10 @@
 ///       send(command.steer, command.speed);
 ///     }
 namespace slalom::vehicle {
+
+namespace detail {
+class PlannerBase;
+}
 
 /// Pose (of the rear axle, map frame) and speed (m/s) as odometry or localisation gives them.
 struct Odometry {
@@ -70,7 +74,7 @@ constexpr const char* name(PlannerStatus status) noexcept {
   return "unknown";
 }
 
-/// The inputs of an update.
+/// The input of an update.
 struct PlannerInput {
   maps::LaserScanView scan;                  ///< the scan, in the frame of the laser
   Odometry odometry;                         ///< at the time of the scan
@@ -116,6 +120,9 @@ class Planner {
   Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
           std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver);
   ~Planner();
+  /// Copies everything: the copy goes on with the same bits. The threads of the solver are shared.
+  Planner(const Planner& other);
+  Planner& operator=(const Planner& other);
   Planner(Planner&&) noexcept;
   Planner& operator=(Planner&&) noexcept;
 
@@ -132,13 +139,12 @@ class Planner {
 
   /// The solver in use.
   const Solver& solver() const noexcept;
-  /// The map of the last scan. Where the model takes a map of distances (`vehicle.body: discs`), it has only
-  /// the points.
+  /// The cost map of the last scan. Where the model takes a map of distances (`vehicle.body: discs`), only
+  /// its points.
   const maps::LocalCostMap& cost_map() const noexcept;
 
  private:
-  struct Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  std::unique_ptr<detail::PlannerBase> implementation_;
 };
 
 }  // namespace slalom::vehicle

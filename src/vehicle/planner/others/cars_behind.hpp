@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "slalom/core/reserved_vector.hpp"
 #include "slalom/maps/moving_obstacles.hpp"
 
 namespace slalom::vehicle::detail {
@@ -33,7 +34,7 @@ class CarsBehind {
   void give_way(maps::PredictedObstacle& other, std::span<maps::PredictedPose> poses) const noexcept;
 
   double wheelbase_;  ///< m
-  std::vector<maps::PredictedObstacle> predicted_;
+  ReservedVector<maps::PredictedObstacle> predicted_;
   std::vector<maps::PredictedPose> poses_;  ///< [car][hypothesis][time]
 };
 

@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <cmath>
+
+#include "vehicle/planner/car_estimator.hpp"
+#include "vehicle/planner/detour.hpp"
+#include "vehicle/planner/feasible_speeds.hpp"
+#include "vehicle/planner/map_options.hpp"
+#include "vehicle/planner/planner_base.hpp"
+#include "vehicle/planner/recovery.hpp"
+#include "vehicle/planner/sight.hpp"
+#include "vehicle/planner/ways_around.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+/// The planner of a car whose tyres slip. It plans steering and acceleration with the car's dynamics, and
+/// learns friction and steering while it drives.
+class DynamicPlanner final : public PlannerBase {
+ public:
+  DynamicPlanner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
+                 const maps::Point& origin, std::span<const maps::ReferencePoint> path,
+                 std::unique_ptr<Solver> solver)
+      : PlannerBase(options, std::move(model), origin, path, std::move(solver)),
+        car_(options, this->model()),
+        speeds_(limited_path(path, options, traits_), options.grip_shares.values()),
+        sight_(path, speeds_.length() > 0, reach_, options, traits_.body),
+        detour_(limited_path(path, options, traits_), speeds_.length() > 0, traits_.body),
+        ways_(path, speeds_.length() > 0, solver_->horizon(), solver_->inputs(), traits_,
+              options.steer_limit) {
+    conditions_.top_speed = options.max_speed;
+    set_friction(traits_.friction);
+    if (traits_.seeks_lap_time) field_.set_curvatures(speeds_.curvatures(), speeds_.length() > 0);
+  }
+  std::unique_ptr<PlannerBase> clone() const override { return std::make_unique<DynamicPlanner>(*this); }
+
+ private:
+  void plan(const PlannerInput& input) noexcept override {
+    // Estimate: the car when the next command takes effect, and the ground.
+    const Odometry& odometry = input.odometry;
+    car_.update(model(), {odometry.pose, odometry.speed, odometry.covariance, input.imu});
+    const VehicleStart start = car_.state().ahead(model());
+    const double speed_ahead = car_.state().speed_ahead(model());
+    set_friction(car_.parameters().cautious_friction);
+
+    // Maps: the path and the obstacles around, as far as the car can get and stop.
+    const maps::Pose scan_pose = pose_of_scan(odometry);
+    const double furthest = std::max(std::abs(odometry.speed), 1.0);
+    field_.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), time_in_view());
+    obstacles_.charge_time_behind(field_, origin_, start.pose);
+    const maps::ReferenceCell here = field_.at(start.pose.x, start.pose.y);
+    if (traits_.seeks_lap_time && options_.sight_deceleration > 0) look_ahead(input.scan, scan_pose);
+    if (options_.back_up) recover(odometry, start.pose);
+    if (must_stop(here)) return stop(PlannerStatus::off_course);
+    model().set_conditions(conditions_);
+    begin_rollouts(scan_pose, start, here.speed);
+    choice_.sees(obstacles_.clearance_map().view(), obstacles_.others(origin_));
+
+    // Solve.
+    const SolveResult& result = solve();
+
+    // Choose: the solution, the last plan, a slower sequence or a way around; and where all collide, a stop.
+    Choice chosen{result.inputs, choice_.predict(*model_, result.inputs, states_)};
+    if (options_.verify_plan) chosen = choose(result, chosen, start);
+
+    // Command.
+    publish(chosen);
+    output_.command = model().command(chosen.inputs, speed_ahead, options_.control_period);
+    output_.command.steer = std::clamp(output_.command.steer, -options_.steer_limit, options_.steer_limit);
+    choice_.sent(chosen.inputs);
+    if (chosen.cost.collided || recovery_.reversing()) output_.status = PlannerStatus::blocked;
+  }
+
+  /// Plans for ground of this friction. The path's speeds follow in steps of 2 %.
+  void set_friction(double friction) noexcept {
+    conditions_.friction = friction;
+    if (std::abs(friction - path_friction_) <= 0.02 * path_friction_) return;
+    path_friction_ = friction;
+    speeds_.update(driving_limits(traits_, friction));
+    field_.set_speeds(speeds_.speeds());
+  }
+
+  /// The place of the scan. A pose with a covariance is an estimate, and plans begin where the filter says;
+  /// if the scan were taken from elsewhere, they would keep a wrong distance from walls.
+  maps::Pose pose_of_scan(const Odometry& odometry) const noexcept {
+    return odometry.covariance[0][0] > 0 ? car_.state().now().pose : odometry.pose;
+  }
+
+  /// The time of a plan and of stopping after it, s.
+  double time_in_view() const noexcept {
+    return horizon_time() + stopping_time_ * traits_.friction / path_friction_;
+  }
+
+  /// Limits the speed to one at which the car stops within the part of the path that is in sight.
+  void look_ahead(const maps::LaserScanView& scan, const maps::Pose& scan_pose) noexcept {
+    seen_ = sight_.look(scan, scan_pose, field_.nearest());
+    obstacles_.add(sight_.unknown());
+    conditions_.top_speed = std::min(sight_.stopping_speed(seen_.way), options_.max_speed);
+  }
+
+  /// Decides whether plans reverse, how urgent they are, and whether they follow a detour.
+  void recover(const Odometry& odometry, const maps::Pose& start) noexcept {
+    const int nearest = field_.nearest();
+    recovery_.update(speeds_.arc(nearest), speeds_.length(), odometry.speed,
+                     speeds_.speeds()[static_cast<std::size_t>(nearest)], options_.control_period,
+                     obstacles_.one_drives_ahead(odometry.pose, origin_));
+    detour_.note(recovery_, odometry.pose);
+    conditions_.reverse = recovery_.reversing() ? Recovery::speed : 0;
+    conditions_.margin_share = recovery_.margin_share();
+    on_detour_ =
+        recovery_.tries_again() && detour_.search(obstacles_.clearance_map(), odometry.pose, nearest);
+    if (on_detour_) {
+      detour_.update_field({start.x, start.y});
+      conditions_.urgency = Urgency::detour;
+    } else {
+      const bool passes =
+          (recovery_.leaving() || seen_.obstacle < PathInSight::all) && !recovery_.reversing();
+      conditions_.urgency = passes ? Urgency::passing : Urgency::usual;
+    }
+  }
+
+  /// The sequence to send.
+  Choice choose(const SolveResult& result, Choice solution, const VehicleStart& start) noexcept {
+    Choice chosen = solution;
+    if (!recovery_.reversing()) {
+      ways_.draw(start, field_.nearest(), speeds_.speeds(), path_friction_);
+      if (traits_.seeks_lap_time) chosen = choice_.kept(*model_, chosen, options_.control_period, states_);
+      chosen = choice_.slower(*model_, chosen, states_);
+      chosen = choice_.better(*model_, chosen, ways_.cheapest(model_->evaluator()), states_);
+    }
+    if (chosen.cost.collided) chosen = choice_.cheapest(*model_, result, chosen, states_);
+    if (chosen.cost.collided) chosen = choice_.stop(*model_, result, chosen, recovery_.reversing(), states_);
+    if (solution.cost.collided && !chosen.cost.collided) output_.status = PlannerStatus::fallback_plan;
+    return chosen;
+  }
+
+  /// Sends the angle by which this car's steering turns its wheels to the planned one.
+  void send() noexcept override {
+    const VehicleStart& now = car_.state().now();
+    output_.speed_estimate = now.speed;
+    output_.yaw_rate_estimate = now.yaw_rate;
+    output_.slip_estimate = now.slip;
+    output_.parameters = car_.parameters();
+    output_.command = car_.send(output_.command, options_.steer_limit);
+  }
+  void forget() noexcept override {
+    car_.reset();
+    path_friction_ = 0;
+    set_friction(traits_.friction);
+    recovery_.reset();
+  }
+  double steer_estimate() const noexcept override { return car_.state().now().steer; }
+  double slowest() const noexcept override { return recovery_.reversing() ? -1.5 * Recovery::speed : 0; }
+  GridView<4> followed() const noexcept override {
+    return on_detour_ ? detour_.field().view() : field_.view();
+  }
+
+  DynamicVehicleModel& model() noexcept { return static_cast<DynamicVehicleModel&>(*model_); }
+
+  CarEstimator car_;
+  FeasibleSpeeds speeds_;
+  Sight sight_;
+  PathInSight seen_;  ///< with `sight_deceleration`
+  Recovery recovery_;
+  Detour detour_;
+  WaysAround ways_;
+  DrivingConditions conditions_;
+  double path_friction_ = 0;  ///< of the path's speeds
+  bool on_detour_ = false;    ///< plans follow the detour, not the path
+};
+
+}  // namespace
+
+std::unique_ptr<PlannerBase> make_dynamic_planner(const PlannerOptions& options,
+                                                  std::unique_ptr<VehicleModel> model,
+                                                  const maps::Point& origin,
+                                                  std::span<const maps::ReferencePoint> path,
+                                                  std::unique_ptr<Solver> solver) {
+  return std::make_unique<DynamicPlanner>(options, std::move(model), origin, path, std::move(solver));
+}
+
+}  // namespace slalom::vehicle::detail

@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <cmath>
+
+#include "vehicle/planner/back_up.hpp"
+#include "vehicle/planner/command_history.hpp"
+#include "vehicle/planner/planner_base.hpp"
+
+namespace slalom::vehicle::detail {
+namespace {
+
+/// The planner of a car whose tyres do not slip. It plans the steering; the speed is that of the path, or of
+/// the plan where the acceleration is an input.
+class KinematicPlanner final : public PlannerBase {
+ public:
+  KinematicPlanner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
+                   const maps::Point& origin, std::span<const maps::ReferencePoint> path,
+                   std::unique_ptr<Solver> solver)
+      : PlannerBase(options, std::move(model), origin, path, std::move(solver)),
+        history_(options.control_period, options.latency + traits_.dead_time, options.observer_time_constant,
+                 traits_.wheelbase) {}
+  std::unique_ptr<PlannerBase> clone() const override { return std::make_unique<KinematicPlanner>(*this); }
+
+ private:
+  void plan(const PlannerInput& input) noexcept override {
+    // Estimate: where the car is when the next command takes effect.
+    const Odometry& odometry = input.odometry;
+    const VehicleStart start = history_.lead_ahead({odometry.pose, odometry.speed, history_.steer()});
+
+    // Maps: the path and the obstacles around, as far as the car can get.
+    const bool jumps = traits_.unlimited_acceleration;
+    const double gain = jumps ? 0 : traits_.max_acceleration * horizon_time();
+    const double furthest = std::max(std::abs(odometry.speed), 1.0) + gain;
+    field_.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? horizon_time() : 0);
+    const maps::ReferenceCell here = field_.at(start.pose.x, start.pose.y);
+    if (must_stop(here)) return stop(PlannerStatus::off_course);
+    begin_rollouts(odometry.pose, start, here.speed);
+
+    // Solve.
+    const SolveResult& result = solve();
+
+    // Choose: where the solution collides, another sequence.
+    Choice chosen{result.inputs, choice_.predict(*model_, result.inputs, states_)};
+    if (options_.verify_plan && chosen.cost.collided) {
+      chosen = choice_.cheapest(*model_, result, chosen, states_);
+      if (!chosen.cost.collided) output_.status = PlannerStatus::fallback_plan;
+    }
+
+    // Command.
+    publish(chosen);
+    planned_steer_ = without_turns(static_cast<double>(chosen.inputs[0]));
+    output_.command = {limited(planned_steer_), command_speed(here.speed)};
+    if (options_.verify_plan && options_.stop_when_blocked) slow_down(chosen.cost, odometry.speed);
+  }
+
+  /// The speed to command where that of the path is `here`.
+  double command_speed(double here) const noexcept {
+    if (!traits_.follows_path) return std::min(traits_.reference_speed, options_.max_speed);
+    const bool planned = traits_.plans_speed;
+    if (options_.speed_lookahead <= 0 && !planned) return here;
+    const double last = static_cast<double>(states_.size() - 1),
+                 step = std::clamp(options_.speed_lookahead / traits_.time_step, planned ? 1.0 : 0.0, last);
+    const PredictedState& ahead = states_[static_cast<std::size_t>(std::round(step))];
+    if (planned) return ahead.speed;
+    const maps::ReferenceCell cell = field_.at(ahead.pose.x, ahead.pose.y);
+    return cell.distance < field_.options().outside.distance ? cell.speed : here;
+  }
+
+  /// Brakes where every plan collides. Where the start itself collides, braking does not help: the car
+  /// follows the best plan, slowly once it is slow, and if it stays where it is it reverses.
+  void slow_down(const PredictedCost& cost, double speed) noexcept {
+    constexpr double creep = 0.5;  // m/s
+    const bool too_near = model_->start_collides();
+    if (options_.back_up && back_up_.update(!cost.collided && !too_near, speed, options_.control_period)) {
+      output_.command = {0, -BackUp::speed};
+    } else if (too_near && speed < 2 * creep) {
+      output_.command.speed = std::min(output_.command.speed, creep);
+    } else if (cost.collided && !too_near) {
+      brakes_ = true;
+      output_.command.speed = std::max(0.0, speed - 2 * traits_.max_deceleration * options_.control_period);
+    }
+    if (cost.collided) output_.status = PlannerStatus::blocked;
+  }
+
+  /// Records the angle that the observer follows: that of the command. The paper's program does not limit it;
+  /// if only the limit made the difference, it is that of the plan.
+  void send() noexcept override {
+    const double sent = output_.command.steer;
+    const bool unlimited =
+        options_.published.wrap_steer && !output_.inputs.empty() && sent == limited(planned_steer_);
+    history_.send(unlimited ? planned_steer_ : sent);
+  }
+  void forget() noexcept override {
+    history_.reset();
+    back_up_.reset();
+  }
+  double steer_estimate() const noexcept override { return history_.steer(); }
+  double slowest() const noexcept override { return -BackUp::speed; }
+
+  double limited(double steer) const noexcept {
+    return std::clamp(steer, -options_.steer_limit, options_.steer_limit);
+  }
+  /// The paper's program sends the planned angle less whole turns, as a float32.
+  double without_turns(double angle) const noexcept {
+    if (!options_.published.wrap_steer) return angle;
+    return static_cast<double>(static_cast<float>(std::atan2(std::sin(angle), std::cos(angle))));
+  }
+
+  CommandHistory history_;
+  BackUp back_up_;
+  double planned_steer_ = 0;  ///< rad, before it was limited
+};
+
+}  // namespace
+
+std::unique_ptr<PlannerBase> make_kinematic_planner(const PlannerOptions& options,
+                                                    std::unique_ptr<VehicleModel> model,
+                                                    const maps::Point& origin,
+                                                    std::span<const maps::ReferencePoint> path,
+                                                    std::unique_ptr<Solver> solver) {
+  return std::make_unique<KinematicPlanner>(options, std::move(model), origin, path, std::move(solver));
+}
+
+}  // namespace slalom::vehicle::detail

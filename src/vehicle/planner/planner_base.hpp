@@ -1,0 +1,107 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "slalom/core/polymorphic.hpp"
+#include "slalom/maps/reference_field.hpp"
+#include "slalom/vehicle/planner/planner.hpp"
+#include "vehicle/planner/obstacles.hpp"
+#include "vehicle/planner/sequence_choice.hpp"
+
+namespace slalom::vehicle::detail {
+
+/// The parts and steps that both planners have: KinematicPlanner for a car whose tyres do not slip, and
+/// DynamicPlanner for one whose tyres do. A copy shares nothing with the original but threads.
+class PlannerBase {
+ public:
+  /// `path` is in the frame that begins at `origin` (m, map frame).
+  PlannerBase(const PlannerOptions& options, std::unique_ptr<VehicleModel> model, const maps::Point& origin,
+              std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver);
+  virtual ~PlannerBase() = default;
+  virtual std::unique_ptr<PlannerBase> clone() const = 0;
+
+  const PlannerOutput& update(const PlannerInput& input) noexcept;
+  void reset(std::uint64_t seed) noexcept;
+  PredictedCost predict(std::span<const float> inputs, std::span<PredictedState> states) const noexcept;
+  const Solver& solver() const noexcept { return *solver_; }
+  const maps::LocalCostMap& cost_map() const noexcept { return obstacles_.cost_map(); }
+
+  /// Makes rollouts use the maps of this object; to be called on a copy, whose model still has the maps of
+  /// the original.
+  void take_own_maps() noexcept;
+
+ protected:
+  using Choice = SequenceChoice::Choice;
+
+  /// Plans from scan and odometry, whose pose is in the frame that begins at `origin_`.
+  virtual void plan(const PlannerInput& input) noexcept = 0;
+  /// Records the output's command as sent.
+  virtual void send() noexcept = 0;
+  /// Forgets all but the solver's state and obstacles.
+  virtual void forget() noexcept = 0;
+  /// The angle of the wheels now, rad.
+  virtual double steer_estimate() const noexcept = 0;
+  /// The lowest speed of a command now, m/s.
+  virtual double slowest() const noexcept = 0;
+  /// The field that plans follow.
+  virtual GridView<4> followed() const noexcept { return field_.view(); }
+
+  /// Keeps the wheels' angle and stops, without a plan.
+  void stop(PlannerStatus status) noexcept;
+  /// Whether the car is further from the path than the field reaches, and must stop.
+  bool must_stop(const maps::ReferenceCell& here) const noexcept;
+  /// Begins rollouts at `start`, where the path has this speed (m/s), among the obstacles of a scan from
+  /// `robot`.
+  void begin_rollouts(const maps::Pose& robot, const VehicleStart& start, double path_speed) noexcept;
+  /// Solves.
+  const SolveResult& solve() noexcept;
+  /// Writes a choice, whose prediction is in `states_`, into the output.
+  void publish(const Choice& chosen) noexcept;
+  /// The duration of a plan, s.
+  double horizon_time() const noexcept { return traits_.time_step * solver_->horizon(); }
+
+  PlannerOptions options_;
+  maps::Point origin_;  ///< of the frame in which all is done, in the map frame
+  Polymorphic<VehicleModel> model_;
+  VehicleTraits traits_;
+  Polymorphic<Solver> solver_;
+  double stopping_time_;  ///< s, by which maps reach beyond plans at the given friction
+  double reach_;          ///< m, of maps
+  Obstacles obstacles_;
+  maps::ReferenceField field_;
+  SequenceChoice choice_;
+  std::vector<PredictedState> states_;  ///< of the plan
+  bool brakes_ = false;                 ///< the command must not be faster than the car
+  PlannerOutput output_;
+
+ private:
+  /// The begin of the last rollouts.
+  struct Rollouts {
+    maps::Pose robot;
+    VehicleStart start;
+    double path_speed = 0;  ///< m/s
+  };
+
+  int check_command(const Odometry& odometry, double wheels) noexcept;
+  void check_output(const Odometry& odometry) noexcept;
+
+  std::optional<Rollouts> rollouts_;
+};
+
+/// Makes the planner of a car whose tyres do not slip. The arguments are those of PlannerBase.
+std::unique_ptr<PlannerBase> make_kinematic_planner(const PlannerOptions& options,
+                                                    std::unique_ptr<VehicleModel> model,
+                                                    const maps::Point& origin,
+                                                    std::span<const maps::ReferencePoint> path,
+                                                    std::unique_ptr<Solver> solver);
+/// Makes the planner of a car whose tyres slip; `model` is a DynamicVehicleModel.
+std::unique_ptr<PlannerBase> make_dynamic_planner(const PlannerOptions& options,
+                                                  std::unique_ptr<VehicleModel> model,
+                                                  const maps::Point& origin,
+                                                  std::span<const maps::ReferencePoint> path,
+                                                  std::unique_ptr<Solver> solver);
+
+}  // namespace slalom::vehicle::detail
