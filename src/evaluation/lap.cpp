@@ -210,6 +210,10 @@ void LapDrive::State::conclude() {
 LapDrive::LapDrive(const LapSetup& setup, std::uint64_t seed)
     : state_(std::make_unique<State>(setup, seed)) {}
 LapDrive::~LapDrive() = default;
+LapDrive::LapDrive(const LapDrive& other) : state_(std::make_unique<State>(*other.state_)) {}
+LapDrive& LapDrive::operator=(const LapDrive& other) {
+  return *this = LapDrive(other);
+}
 LapDrive::LapDrive(LapDrive&&) noexcept = default;
 LapDrive& LapDrive::operator=(LapDrive&&) noexcept = default;
 

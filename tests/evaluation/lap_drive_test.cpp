@@ -80,6 +80,43 @@ TEST(LapDrive, AnOpponentKeepsItsPlannerWhenTheControllerOfTheCarChanges) {
   EXPECT_GT(opponent.speed, 0.5);
 }
 
+TEST(LapDrive, ACopyGoesOnWithTheSameBits) {
+  // Every kind of driver, and sensors with localiser and tracker.
+  const LapSettings among_all{.obstacles = 1,
+                              .opponents = 3,
+                              .opponent_driver = sim::OpponentDriver::pursuit,
+                              .erratic_opponents = 1,
+                              .planning_opponents = 1,
+                              .opponent_gap = 3,
+                              .localised = true,
+                              .tracking = TrackingMode::localised};
+  const auto figures = [](const LapDrive& drive) {
+    std::vector<double> all;
+    for (std::size_t car = 0; car < drive.world().cars(); ++car) {
+      const sim::CarState& state = drive.world().state(car);
+      all.insert(all.end(), {state.x, state.y, state.yaw, state.speed, state.steer});
+    }
+    return all;
+  };
+  LapDrive drive(lap("svg_mppi", among_all), 7);
+  for (int i = 0; i < 40; ++i) drive.step();
+  LapDrive copy = drive, assigned(lap("mppi"), 1);
+  assigned = copy;
+  for (int i = 0; i < 40; ++i) drive.step();
+  const LapResult whole = drive.finish();
+  for (LapDrive* other : {&copy, &assigned}) {
+    for (int i = 0; i < 40; ++i) other->step();
+    const LapResult same = other->finish();
+    EXPECT_EQ(figures(*other), figures(drive));
+    EXPECT_EQ(same.time, whole.time);
+    EXPECT_EQ(same.steps, whole.steps);
+    EXPECT_EQ(same.mean_sequence_cost, whole.mean_sequence_cost);
+    EXPECT_EQ(same.localisation.error, whole.localisation.error);
+    EXPECT_EQ(same.tracking.position_error, whole.tracking.position_error);
+    EXPECT_EQ(same.overtaking.encounters.size(), whole.overtaking.encounters.size());
+  }
+}
+
 TEST(LapDrive, RejectsAnotherControlPeriod) {
   LapDrive drive(lap("mppi"), 1);
   Driver slower = lap("mppi").driver;

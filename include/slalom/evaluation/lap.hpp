@@ -134,9 +134,10 @@ class LapDrive {
   /// obstacle or opponent overlaps the start, and std::runtime_error if there is no room for them.
   LapDrive(const LapSetup& setup, std::uint64_t seed);
   ~LapDrive();
-  /// Moves the state; the source can only be destroyed or assigned to.
+  /// Copies everything: the copy goes on with the same bits. Environment, maps and threads are shared.
+  LapDrive(const LapDrive& other);
+  LapDrive& operator=(const LapDrive& other);
   LapDrive(LapDrive&&) noexcept;
-  /// Moves the state; the source can only be destroyed or assigned to.
   LapDrive& operator=(LapDrive&&) noexcept;
 
   /// Drives one control period, beyond the finish, too. The command takes effect `extra_latency` (s) later
