@@ -122,7 +122,7 @@ class FaultyDrive {
   int command_period_ = 1;  ///< steps of the world
   std::vector<float> ranges_;
   const Fault *fault_ = nullptr,
-              *ended_ = nullptr;  ///< of now, and the last one until the planner plans again
+              *ended_ = nullptr;  ///< fault of now, and the last one until the planner plans again
   double ended_at_ = 0;           ///< s
   FaultRecord record_;
 };

@@ -8,7 +8,7 @@
 
 namespace slalom::tools {
 
-/// What a drive with sensor faults showed.
+/// The result of a drive with sensor faults.
 struct FaultRecord {
   int faults = 0;             ///< periods with a fault
   double slowest_return = 0;  ///< s, from the end of a fault until the planner plans again

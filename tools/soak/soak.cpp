@@ -43,7 +43,7 @@ int descriptors() {
   return static_cast<int>(std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator()));
 }
 
-/// What of a lap does not depend on the clock, as text.
+/// The figures of a lap that do not depend on the clock, as text.
 std::string figures(const evaluation::LapResult& lap) {
   char text[256];
   std::snprintf(text, sizeof text, "%d steps, %a s, cost %a, mean speed %a m/s, %d collisions", lap.steps,

@@ -10,9 +10,9 @@
 
 namespace slalom::tools {
 
-/// What to drive, and for how long.
+/// The scenario to drive, and for how long.
 struct SoakArguments {
-  ScenarioArguments scenario;  ///< of which course, config, set and obstacles count
+  ScenarioArguments scenario;  ///< scenario, whose course, config, set and obstacles count
   std::string method = "svg_mppi";
   std::uint64_t seed = 0;
   double hours = 1;
@@ -39,7 +39,7 @@ struct SoakResult {
   double longest_tick = 0;  ///< s
   long memory_first = 0, memory_last = 0;           ///< bytes resident, after one round and at the end
   int descriptors_first = 0, descriptors_last = 0;  ///< open, likewise
-  double seconds = 0;                               ///< of wall clock
+  double seconds = 0;                               ///< seconds of wall clock
   bool interrupted = false;
 
   bool passed() const;

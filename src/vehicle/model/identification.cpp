@@ -26,7 +26,7 @@ struct Turn {
   double turned = 0;          ///< rad
   double speed = 0;           ///< m/s, mean of the two samples
   std::size_t sample = 0;     ///< index of the first of the two
-  bool first = false;         ///< of a segment
+  bool first = false;         ///< whether it is the first of a segment
   bool counts = false;        ///< whether the fit uses it
 };
 

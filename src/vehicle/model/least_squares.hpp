@@ -9,7 +9,7 @@ namespace slalom::vehicle::detail {
 /// A parameter of a least-squares fit.
 struct FitParameter {
   double low = 0, high = 0;  ///< its range
-  double step = 0;           ///< of the central differences, > 0
+  double step = 0;           ///< step of the central differences, > 0
   bool sought = true;        ///< false: keeps its value
 };
 
@@ -18,9 +18,9 @@ using Residuals = std::function<void(std::span<const double> parameters, std::ve
 
 /// A minimum of the sum of squared residuals.
 struct Fit {
-  std::vector<double> values;  ///< of the parameters
+  std::vector<double> values;  ///< values of the parameters
   std::vector<double> normal;  ///< J^T J, [parameter][parameter]
-  double sum = 0;              ///< of squared residuals
+  double sum = 0;              ///< sum of squared residuals
 };
 
 /// The minimum near `start`, by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963) with slopes from

@@ -6,7 +6,7 @@ namespace slalom::vehicle {
 
 namespace {
 
-/// Of three equal discs that cover the body's rectangle, m.
+/// The radius of three equal discs that cover the body's rectangle, m.
 double disc_radius(const BodyOptions& options) {
   return std::hypot((options.front + options.rear) / 6, options.width / 2);
 }

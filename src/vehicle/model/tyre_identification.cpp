@@ -44,7 +44,7 @@ struct Step {
   double begin = 0, end = 0;         ///< s
   double speed = 0, next_speed = 0;  ///< m/s
   double acceleration = 0;           ///< m/s^2
-  bool first = false;                ///< of a segment
+  bool first = false;                ///< whether it is the first of a segment
 };
 
 /// A stretch that is compared with the poses.
@@ -173,7 +173,7 @@ class Drive {
       const double time = step.begin + k * dt;
       s.speed = step.speed + (step.next_speed - step.speed) * k / pieces;
       const double angle = servo(s.steer, time, time + dt, step.sample, p, acting);
-      // What the speed gains is what the motor gives and tyres that slip take.
+      // The gain of the speed is the motor's force less that of tyres that slip.
       const double motor = step.acceleration - drag;
       const double before = s.speed;
       s = dynamics.advance(s, angle, motor, p[At::friction], dt);

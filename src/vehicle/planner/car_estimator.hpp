@@ -40,7 +40,7 @@ class CarEstimator {
     observer_.set_dead_time(std::max(0.0, parameters_.estimate().delay - latency_));
   }
 
-  /// Records what is sent for this command of the wheels' angle, and returns it: an angle at which the
+  /// Records the command that is sent for this angle of the wheels, and returns it: an angle at which the
   /// steering settles.
   Command send(const Command& wheels, double steer_limit) noexcept {
     Command command = wheels;

@@ -11,8 +11,8 @@ constexpr double cell_size = 0.1;             // m
 constexpr int columns = 80, rows = 80;        // along the car's x and y
 constexpr double first_x = -2, first_y = -4;  // m, robot's frame, corner of the grid
 constexpr double speed_limit = 1.5;           // m/s on the detour
-constexpr double cautious = 0.2;              // m beyond what the car needs, in which driving costs more
-constexpr double nearness_price = 4;          // times as much at the inner end of it
+constexpr double cautious = 0.2;              // m beside the car's corridor in which driving costs more
+constexpr double nearness_price = 4;          // times as much at its inner edge
 constexpr double start_reach = 0.5;           // m around the car that counts as free
 constexpr double spacing = 0.1, min_path_length = 3;  // m between points, and along the course to the end
 constexpr double dead_end_radius = 0.4;               // m

@@ -14,7 +14,7 @@
 
 namespace slalom::vehicle::detail {
 
-/// A path around what blocks the course, found by a search in the map of obstacles. Plans look one horizon
+/// A path around an obstacle on the course, found by a search in the map of obstacles. Plans look one horizon
 /// ahead, and from there the side of an obstacle that is a dead end can look better than the one that is
 /// open.
 ///
@@ -27,8 +27,8 @@ class Detour {
   /// On this course, which may be closed, by a car with this body.
   Detour(std::span<const maps::ReferencePoint> course, bool closed, const BodyOptions& body);
 
-  /// To be called once a control period, with what the recovery does and where the car is (frame of the
-  /// course). A place where the car on a detour had to reverse is a dead end to the next searches, until the
+  /// Notes the state of the recovery and the place of the car (frame of the course). Call it once a control
+  /// period. A place where the car on a detour had to reverse is a dead end to the next searches, until the
   /// car is past it.
   void note(const Recovery& recovery, const maps::Pose& pose) noexcept;
 

@@ -70,8 +70,8 @@ void FeasibleSpeeds::update(const DrivingLimits& limits) noexcept {
   look_ahead(limits.lead);
 }
 
-/// A car that follows late must find what it needs a little earlier: the least speed of the way that it
-/// drives in the delay.
+/// The least speed of the way that the car drives within its delay: a car that follows late must find a limit
+/// earlier.
 void FeasibleSpeeds::anticipate(double delay) noexcept {
   const std::size_t n = speed_.size();
   for (std::size_t i = 0; i < n; ++i) {

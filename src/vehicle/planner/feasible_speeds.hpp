@@ -8,18 +8,18 @@
 
 namespace slalom::vehicle::detail {
 
-/// What a car can do on a ground.
+/// The limits of a car on a ground.
 struct DrivingLimits {
   double grip = 9;           ///< m/s^2, of the tyres in any direction
   double acceleration = 9;   ///< m/s^2, of the motor below `switch_speed`
   double braking = 9;        ///< m/s^2
-  double braking_share = 1;  ///< of the grip that turning leaves, for braking
+  double braking_share = 1;  ///< share of the grip that turning leaves, for braking
   double delay = 0;          ///< s, by which the car follows the speeds late
   double lead = 0;           ///< s, from where a speed is looked up to where the car has it
   double switch_speed = 7;   ///< m/s, above it the motor's power is the limit
 };
 
-/// Those of a model with tyres that slip, on ground of this friction.
+/// The limits of a model with tyres that slip, on ground of this friction.
 DrivingLimits driving_limits(const VehicleTraits& traits, double friction);
 
 /// The highest speeds along a path that a car can drive, no higher than the path's own:
@@ -60,7 +60,7 @@ class FeasibleSpeeds {
   std::vector<double> profile_;      ///< m/s, before they are looked up ahead
   std::vector<double> arc_;          ///< m
   std::vector<double> curvature_;    ///< 1/m, positive to the left
-  std::vector<double> share_;        ///< of the grip, a point each
+  std::vector<double> share_;        ///< share of the grip at each point
   std::vector<double> gap_;          ///< m, from each point to the next; 0 where the path is not joined
 };
 

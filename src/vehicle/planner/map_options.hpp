@@ -16,25 +16,26 @@ namespace slalom::vehicle::detail {
 std::vector<maps::ReferencePoint> limited_path(std::span<const maps::ReferencePoint> path,
                                                const PlannerOptions& options, const VehicleTraits& traits);
 
-/// By how much cells and lengths of maps are larger than those of a 1/10-scale car.
+/// The factor by which cells and lengths of maps are larger than those of a 1/10-scale car.
 double map_scale(const PlannerOptions& options);
 
-/// s, in which a car at the path's highest speed drives as far as it needs to stop, where plans must be able
-/// to; else 0.
+/// The time (s) in which a car at the path's highest speed drives its stopping distance, where plans must be
+/// able to stop; else 0.
 double stopping_time(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                      const VehicleTraits& traits);
 
-/// m, how far the car can get in this time (s).
+/// The way (m) that the car can drive in this time (s).
 double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                   const VehicleTraits& traits, double duration);
 
 maps::LocalCostMapOptions cost_map_options(const PlannerOptions& options, const VehicleTraits& traits);
 
-/// As long as a plan (`reach`, m) for a car with slipping tyres, whose plans are longer.
+/// Options of the map of clearances. For a car with slipping tyres the map reaches as far as a plan (`reach`,
+/// m).
 maps::ClearanceMapOptions clearance_options(const PlannerOptions& options, const VehicleTraits& traits,
                                             double reach);
 
-/// As large as a plan's reach (m) for a car with slipping tyres.
+/// Options of the reference field. For a car with slipping tyres it reaches as far as a plan (`reach`, m).
 maps::ReferenceFieldOptions field_options(const PlannerOptions& options, const VehicleTraits& traits,
                                           double reach);
 

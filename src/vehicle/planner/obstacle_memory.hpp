@@ -13,7 +13,7 @@
 namespace slalom::vehicle::detail {
 
 /// The obstacle points of the last seconds in the frame of the odometry, so that a car that reverses knows
-/// what it has passed: where the scan does not reach, they are obstacles still.
+/// the obstacles behind it: where the scan does not reach, old points still count.
 class ObstacleMemory {
  public:
   /// With maps whose lengths are `scale` times those of a 1/10-scale car.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double tracking_error = 0.12;  // m, between readings of a car and its box
 
-/// m, of distances to other cars: where they will be is known less well than where walls are.
+/// Least margins (m) to other cars, whose predictions are less certain than walls.
 constexpr double least_margin = 0.05, least_soft_margin = 0.25;
 
 constexpr double close_ahead = 3,

@@ -12,16 +12,16 @@
 
 namespace slalom::vehicle::detail {
 
-/// What the planner must not hit: the maps that it makes of scans, and other cars where they will be.
+/// The obstacles of the planner: the maps that it makes of scans, and the predictions of other cars.
 class Obstacles {
  public:
   /// For a model with these traits and plans of `horizon` steps; maps reach `reach` (m).
   Obstacles(const PlannerOptions& options, const VehicleTraits& traits, int horizon, double reach);
 
-  /// Takes the scan and what else an input says. Readings of cars whose future is known are left out of the
-  /// maps. `placed`: the odometry can be used.
+  /// Takes the scan and the other inputs of an update. Readings of predicted cars are left out of the maps.
+  /// `placed`: the odometry can be used.
   maps::ScanReport update(const PlannerInput& input, bool placed) noexcept;
-  /// Adds what no scan shows, m, in the frame of the robot; after `update`.
+  /// Adds obstacles that no scan shows (m, frame of the robot). Call it after `update`.
   void add(std::span<const maps::Point> points) noexcept { clearance_map_.add(points); }
   /// Makes plans that end behind a slower car cost the time that is lost there; after `update`. The car is
   /// at `own` in the field's frame, which begins at `origin` (m, map frame).
@@ -58,7 +58,7 @@ class Obstacles {
   maps::MovingObstacles others_;
   CarsBehind behind_;
   PaceOfOthers pace_;
-  std::vector<float> ranges_;  ///< of a scan without the readings of other cars
+  std::vector<float> ranges_;  ///< ranges of a scan without the readings of other cars
 };
 
 }  // namespace slalom::vehicle::detail

@@ -64,7 +64,7 @@ class PlannerBase {
   double horizon_time() const noexcept { return traits_.time_step * solver_->horizon(); }
 
   PlannerOptions options_;
-  maps::Point origin_;  ///< of the frame in which all is done, in the map frame
+  maps::Point origin_;  ///< origin of the frame of all computations, in the map frame
   Polymorphic<VehicleModel> model_;
   VehicleTraits traits_;
   Polymorphic<Solver> solver_;
@@ -73,7 +73,7 @@ class PlannerBase {
   Obstacles obstacles_;
   maps::ReferenceField field_;
   SequenceChoice choice_;
-  std::vector<PredictedState> states_;  ///< of the plan
+  std::vector<PredictedState> states_;  ///< predicted states of the plan
   bool brakes_ = false;                 ///< the command must not be faster than the car
   PlannerOutput output_;
 

@@ -5,10 +5,10 @@
 
 namespace slalom::vehicle::detail {
 
-/// When to drive backwards: where the car makes no progress along the course, whatever its plans say. Then it
-/// reverses, steered by the same solver, and drives on; if that did not help, it reverses further. From when
-/// it crawls or stands until it is past that place, plans are urgent: a way around must not cost more than to
-/// stand.
+/// Decides when to drive backwards: where the car makes no progress along the course, whatever its plans say.
+/// Then it reverses, steered by the same solver, and drives on; if that did not help, it reverses further.
+/// Plans are urgent from the moment when it crawls or stands until it is past that place: a way around must
+/// not cost more than standing.
 class Recovery {
  public:
   /// m/s at most, in reverse. Slow, since a car that reverses steers with its rear; and the car of
@@ -18,9 +18,9 @@ class Recovery {
   void reset() noexcept { *this = {}; }
 
   bool reversing() const noexcept { return reversing_; }
-  /// Whether the car makes its way out of a place where it crawled or stood: until it is well past it.
+  /// Whether the car is not yet well past a place where it crawled or stood.
   bool leaving() const noexcept { return leaving_; }
-  /// Whether it drives on after it had to reverse, and is not yet well past the place where that was.
+  /// Whether it drives on after reversing and is not yet well past that place.
   bool tries_again() const noexcept { return trying_again_ && !reversing_; }
 
   /// Whether the car stood too near to obstacles to reverse at all, until it is well past that place. A car
@@ -32,8 +32,8 @@ class Recovery {
 
   /// Advances by one control period (s), with where the car is along the course (m) of this length (m), 0
   /// where it is not closed, its speed (m/s) and the one at which it would drive if the path were free.
-  /// `waits`: a car that drives is close ahead; what blocks the way then drives off, so that the car is not
-  /// stuck. Returns whether to reverse now.
+  /// `waits`: a moving car is close ahead, which will drive off, so that the own car is not stuck. Returns
+  /// whether to reverse now.
   bool update(double arc, double length, double speed_now, double free_speed, double period,
               bool waits = false) noexcept {
     if (!started_) furthest_ = arc, started_ = true;
@@ -51,7 +51,7 @@ class Recovery {
   static constexpr double progress = 0.5;                 ///< m, that counts as getting on
   static constexpr double patience = 3;                   ///< s without progress
   static constexpr double standing = 0.15;                ///< m/s, a slower car stands
-  static constexpr double crawling = 0.4;                 ///< of the free speed, a slower car crawls
+  static constexpr double crawling = 0.4;                 ///< share of the free speed: a slower car crawls
   static constexpr double hesitation = 0.5;               ///< s of crawling
   static constexpr double stand_still = 0.7;              ///< s of standing
   static constexpr double shortest = 0.8, longest = 3.0;  ///< m to reverse

@@ -27,23 +27,23 @@ class SequenceChoice {
   void sees(const GridView<1>& clearances, const maps::MovingObstaclesView& others) noexcept;
 
   /// The prediction of a sequence, with which all choices compare. Where plans seek the shortest time and the
-  /// body has a margin, it collides with what stands only where the body itself does: nearness is a matter of
-  /// cost. Scans are noisy, so at a wall that a plan passes closely each of them decides anew whether the
+  /// body has a margin, it collides with fixed obstacles only where the body itself does: nearness has a cost
+  /// instead. Scans are noisy, so at a wall that a plan passes closely each of them decides anew whether the
   /// margin is kept. A car that brakes for it at the limit of grip turns in, and hits the wall that it would
   /// have passed.
   PredictedCost predict(const VehicleModel& model, std::span<const float> inputs,
                         std::vector<PredictedState>& states) const noexcept;
 
-  /// The cheapest of the solution and of driving along it more slowly, which brakes first for some steps and
-  /// keeps the path, or faster. Samples of the solver rarely brake for long, so it finds late that it must;
-  /// and around a solution that stands still none of them drives. For models whose tyres slip. `states` as in
-  /// `cheapest`.
+  /// The cheapest of the solution and of sequences along its path at other speeds: slower ones, which brake
+  /// first for some steps, and faster ones. Samples of the solver rarely brake for long, so it would brake
+  /// too late; and around a solution that stands still no sample drives. For models whose tyres slip.
+  /// `states` as in `cheapest`.
   Choice slower(const VehicleModel& model, const Choice& solution,
                 std::vector<PredictedState>& states) noexcept;
 
   /// The cheaper of the solution and the sequence sent last, moved forward by `elapsed` (s), with its last
-  /// inputs held. A solution is a mean over few samples that count; where it is worse than to go on as
-  /// planned, collisions first, nothing has changed that calls for it. `states` as in `cheapest`.
+  /// inputs held. A solution is a mean over the few samples that count; if it is worse than the last plan,
+  /// collisions first, nothing calls for a change. `states` as in `cheapest`.
   Choice kept(const VehicleModel& model, const Choice& solution, double elapsed,
               std::vector<PredictedState>& states) noexcept;
 

@@ -34,8 +34,8 @@ double reading(const maps::LaserScanView& scan, double bearing) noexcept {
   return longest;
 }
 
-/// What hides a place (m, frame of the car) from the laser; none where it is in sight. The laser itself where
-/// no beam points there.
+/// Returns the point that hides a place (m, frame of the car) from the laser; none where the place is in
+/// sight, the laser itself where no beam points there.
 std::optional<maps::Point> hidden_by(const maps::LaserScanView& scan, const maps::Pose& laser,
                                      const maps::Point& place) noexcept {
   const maps::Point local = maps::inverse_transform(laser, place);

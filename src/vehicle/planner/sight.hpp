@@ -12,7 +12,7 @@
 
 namespace slalom::vehicle::detail {
 
-/// What a scan shows of the path ahead.
+/// The part of the path ahead that a scan shows.
 struct PathInSight {
   static constexpr double all = std::numeric_limits<double>::infinity();
   double way = all;       ///< m along the path, to the first place that something beside the path hides
@@ -20,16 +20,16 @@ struct PathInSight {
 };
 
 /// How far the path ahead is in sight. A car that drives faster than it can stop within this way cannot avoid
-/// what stands behind the next corner.
+/// an obstacle behind the next corner.
 class Sight {
  public:
-  /// Along this path, up to `reach` (m) ahead, for a car with this body and a laser as in the options. What
-  /// its body would meet on the path stands on it.
+  /// Along this path, up to `reach` (m) ahead, for a car with this body and a laser as in the options. An
+  /// obstacle that its body would meet stands on the path.
   Sight(std::span<const maps::ReferencePoint> path, bool closed, double reach, const PlannerOptions& options,
         const BodyOptions& body);
 
-  /// From a pose in the frame of the path, with its nearest point. A beam without a reading shows all. What
-  /// stands on the path hides nothing: plans that pass it see what is behind it on their way.
+  /// From a pose in the frame of the path, with its nearest point. A beam without a reading shows everything.
+  /// Obstacles on the path hide nothing: plans that pass them see the path behind them on their way.
   PathInSight look(const maps::LaserScanView& scan, const maps::Pose& pose, int nearest) noexcept;
   /// m, in the frame of the car: points beside the part of the path that the last scan did not show, where it
   /// showed nothing either. There only the path is known to be free, and a car that leaves it for a shorter

@@ -9,11 +9,11 @@ namespace slalom::vehicle::detail {
 
 namespace {
 
-constexpr double gravity = 9.81;                             // m/s^2
-constexpr double side_step = 0.75;                           // car widths from one way to the next
-constexpr double slow_speeds[] = {1.5, 3, 1e3};              // m/s at most
-constexpr double turning_share = 0.6;                        // of the usable grip
-constexpr double braking = 0.8, accelerating = 0.5;          // of the largest deceleration and acceleration
+constexpr double gravity = 9.81;                     // m/s^2
+constexpr double side_step = 0.75;                   // car widths from one way to the next
+constexpr double slow_speeds[] = {1.5, 3, 1e3};      // m/s at most
+constexpr double turning_share = 0.6;                // share of the usable grip
+constexpr double braking = 0.8, accelerating = 0.5;  // shares of the largest deceleration and acceleration
 constexpr double look_ahead_time = 0.4, min_wheelbases = 2;  // s, and wheelbases on top of it
 
 }  // namespace

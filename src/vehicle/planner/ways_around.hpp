@@ -12,8 +12,8 @@
 namespace slalom::vehicle::detail {
 
 /// Plans that drive beside the path, to either side of it and at several speeds: the ways around an obstacle
-/// on it. A solver searches near its last solution, and around one that stands in front of an obstacle hardly
-/// a sample steers out, passes and gains by it within the horizon.
+/// on it. A solver samples near its last solution: if that stands in front of an obstacle, hardly a sample
+/// drives around it within the horizon.
 class WaysAround {
  public:
   /// For sequences of `horizon` steps with so many inputs each, along this path, by a car with these traits

@@ -87,7 +87,7 @@ class ProblemModelBase : public Interface {
 
  private:
   VehicleMaps maps_;
-  maps::Point origin_;  ///< of the problem's frame, in the map frame
+  maps::Point origin_;  ///< origin of the problem's frame, in the map frame
 };
 
 }  // namespace detail

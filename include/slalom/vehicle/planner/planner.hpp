@@ -81,7 +81,7 @@ struct PlannerInput {
   std::span<const maps::Point> obstacles{};  ///< further obstacle points, robot frame, m
   std::optional<ImuReading> imu{};  ///< mean since the last update, where there is a unit; it is used
                                     ///< with models whose tyres slip, if it is `plausible`
-  /// Other cars with what they will do from the time of the scan on, map frame; with `predict_others`. The
+  /// Other cars and their predictions from the time of the scan on, map frame; with `predict_others`. The
   /// readings that end on them are not obstacles, and count as invalid in the report of the scan.
   std::span<const maps::PredictedObstacle> others{};
 };

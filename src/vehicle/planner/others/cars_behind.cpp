@@ -55,8 +55,7 @@ bool CarsBehind::is_behind(const maps::PredictedObstacle& other, const maps::Pos
   return maps::inverse_transform(own, {now.x, now.y}).x < -0.5 * wheelbase_;
 }
 
-/// Its likeliest hypothesis, driven with brakes, in the place of the least likely one if there are as many as
-/// there can be.
+/// Adds its likeliest hypothesis, driven with brakes, in place of the least likely one if there is no room.
 void CarsBehind::give_way(maps::PredictedObstacle& other,
                           std::span<maps::PredictedPose> poses) const noexcept {
   const maps::PredictedObstacle before = other;

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double memory = 3;              // s, time constant of the mean of a car's speed
 constexpr double short_memory = 0.15;     // s, time constant by which a share that rises is recognised
-constexpr double rising = 0.05;           // of the path's speed, above the mean over the short memory
-constexpr double largest_share = 0.25;    // of the time, that counts as lost: a car that stands need not be
-                                          // passed at any risk
+constexpr double rising = 0.05;           // share of the path's speed, above the mean over the short memory
+constexpr double largest_share = 0.25;    // largest share of the time that counts as lost: a car that stands
+                                          // need not be passed at any risk
 constexpr double behind = 10, ahead = 1;  // m along the other car, where the own car is taken to follow it
 constexpr double beside = 3;              // m across it
 constexpr double same_way = 1;            // rad, between the cars, and between a car and the path
@@ -55,7 +55,8 @@ std::span<const double> PaceOfOthers::steps_lost(std::span<const maps::Predicted
   return {lost_.data(), others.size()};
 }
 
-/// What is known of this car; of one not seen before, in the place of the one that was seen longest ago.
+/// Returns the memory of this car; a car not seen before takes the place of the one that was seen longest
+/// ago.
 PaceOfOthers::Pace& PaceOfOthers::pace_of(int id) noexcept {
   auto found = std::find_if(paces_.begin(), paces_.end(),
                             [id](const Pace& each) { return each.noted > 0 && each.id == id; });

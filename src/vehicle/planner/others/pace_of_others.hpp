@@ -29,7 +29,7 @@ class PaceOfOthers {
  private:
   static constexpr auto max_count = static_cast<std::size_t>(maps::MovingObstacles::max_count);
 
-  /// What is known of a car.
+  /// The memory of a car.
   struct Pace {
     int id = 0;
     double share = 1;   ///< mean of its speed as a share of the path's
