@@ -23,11 +23,12 @@ namespace slalom::evaluation {
 ///     bool moved(World&)                                // after each step; false ends the period early
 template <class World, class Driver>
 struct Drive {
+  /// A command of a driver.
   using Command =
       std::remove_cvref_t<decltype(std::declval<Driver&>().command(std::declval<const World&>()))>;
 
-  World world;
-  std::vector<Driver> drivers;
+  World world;                      ///< world that moves
+  std::vector<Driver> drivers;      ///< one for each car or robot of the world
   long long steps_per_command = 1;  ///< steps of the world in a control period
   std::vector<Command> commands{};  ///< commands of the last step of the world, one per driver
 
@@ -49,8 +50,8 @@ struct Drive {
 /// An observer of two functions.
 template <class Decided, class Moved>
 struct Observer {
-  Decided decided;
-  Moved moved;
+  Decided decided;  ///< called after each decision
+  Moved moved;      ///< called after each step of the world
 };
 
 }  // namespace slalom::evaluation

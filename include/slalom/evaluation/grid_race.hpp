@@ -112,10 +112,10 @@ using GridRaceCallback = std::function<void(const GridRaceStep&)>;
 /// timeout of a lap of its cars (LapSetup::timeout) times the laps. Standings: cars that finished, by time,
 /// then the others, by how far they came.
 struct GridRace {
-  std::shared_ptr<const Environment> environment;
-  std::vector<Driver> drivers;  ///< drivers of the entries, two to `most_race_cars`
-  LapSettings settings{};       ///< without obstacles, opponents or further rounds
-  GridRaceOptions options{};
+  std::shared_ptr<const Environment> environment;  ///< course of the race
+  std::vector<Driver> drivers;                     ///< drivers of the entries, two to `most_race_cars`
+  LapSettings settings{};                          ///< without obstacles, opponents or further rounds
+  GridRaceOptions options{};                       ///< rules of the race
 
   /// Throws std::invalid_argument as LapSetup::validate does for each driver, and on a course that is not
   /// closed, another protocol than Protocol::true_physics, control periods that differ, and settings and

@@ -110,9 +110,9 @@ struct LapResult {
 /// follow from its seed, so laps can be driven in any order and in any number of threads, with the same
 /// results bit for bit.
 struct LapSetup {
-  std::shared_ptr<const Environment> environment;
-  Driver driver;
-  LapSettings settings{};
+  std::shared_ptr<const Environment> environment;  ///< course of the lap
+  Driver driver;                                   ///< driver of the first car
+  LapSettings settings{};                          ///< conditions of the lap
 
   /// Throws std::invalid_argument if the environment is null, the method is unknown, an option or a setting
   /// is out of range, or the start is off the map or less than 0.15 m from a wall.
@@ -151,11 +151,11 @@ class LapDrive {
   /// std::invalid_argument if an option is out of range or the control period differs.
   void change_driver(const Driver& driver);
 
-  const LapSetup& setup() const noexcept;  ///< setup with the present driver
-  int steps() const noexcept;              ///< control steps so far
-  sim::World& world() noexcept;            ///< may be changed between steps
-  const sim::World& world() const noexcept;
-  int collisions() const noexcept;  ///< collisions so far, as the protocol counts them
+  const LapSetup& setup() const noexcept;    ///< setup with the present driver
+  int steps() const noexcept;                ///< control steps so far
+  sim::World& world() noexcept;              ///< may be changed between steps
+  const sim::World& world() const noexcept;  ///< world after the last step
+  int collisions() const noexcept;           ///< collisions so far, as the protocol counts them
   /// The first collision with each body so far, in order of time.
   std::span<const Collision> first_collisions() const noexcept;
 
