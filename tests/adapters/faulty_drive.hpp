@@ -90,7 +90,7 @@ class Drive {
     });
   }
 
-  /// How often a line with these words has been logged since a time.
+  /// The number of lines with these words that were logged since a time.
   long count_said(const std::string& words, double since) const {
     return std::count_if(said_.begin(), said_.end(), [&](const Line& line) {
       return line.time >= since && line.text.find(words) != std::string::npos;

@@ -9,10 +9,10 @@
 #include <string>
 #include <utility>
 
+#include "faulty_car.hpp"
 #include "logic/localiser_core.hpp"
 #include "logic/planner_core.hpp"
 #include "support/allocations.hpp"
-#include "test/faulty_car.hpp"
 
 namespace slalom::nodes::testing {
 

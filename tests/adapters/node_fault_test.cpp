@@ -1,5 +1,5 @@
-// Planner and localiser of the ROS nodes, without their transport, with every fault of
-// adapters/ros2/test/faults.csv: with a simulated car, simulated clocks, and a stand-in for tf2.
+// Planner and localiser of the ROS nodes, without their transport, with every fault of faults.csv:
+// with a simulated car, simulated clocks, and a stand-in for tf2.
 #include "faulty_drive.hpp"
 
 namespace slalom::nodes::testing {

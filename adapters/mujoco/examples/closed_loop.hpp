@@ -31,7 +31,7 @@ class World {
   std::unique_ptr<mjData, Delete> data_;
 };
 
-/// The sum of the runs of all seeds.
+/// The results of the runs of all seeds.
 struct Summary {
   int runs = 0, succeeded = 0;
   long rollouts = 0, invalid = 0;

@@ -7,7 +7,7 @@
 namespace slalom::mujoco {
 namespace {
 
-/// Where an error of MuJoCo on this thread returns to.
+/// The call to which an error of MuJoCo on this thread returns.
 thread_local std::jmp_buf* failed_call = nullptr;
 
 /// The handler that was installed before this one; null: MuJoCo's own behaviour.

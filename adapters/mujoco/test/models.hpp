@@ -28,7 +28,7 @@ inline std::string ball(
   </mujoco>)";
 }
 
-/// Costs where the ball is.
+/// A task that costs the distance of the ball to a goal.
 struct Reach {
   static constexpr int positions = 2, velocities = 2, inputs = 1;
   double goal = 0.5;  ///< m

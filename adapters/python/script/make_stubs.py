@@ -59,7 +59,7 @@ def signature(function):
     match = re.match(r"\w+\((.*)\) -> (.*)$", (function.__doc__ or "").split("\n")[0])
     if not match:
         plain = inspect.signature(function)
-        return ", ".join(plain.parameters), "str" if function.__name__ in ("__repr__", "_repr_html_") else "Any"
+        return ", ".join(plain.parameters), "Any"
     return ", ".join(map(argument, split(match[1]))), translate(match[2], False)
 
 
@@ -103,8 +103,6 @@ def class_lines(name, cls):
                 yield f"    @{member}.setter\n    def {member}(self, value: {setter}) -> None: ..."
         elif member == "__init__" and "->" in (value.__doc__ or ""):
             yield f"    def __init__({constructor(name, cls)}) -> None: ..."
-        elif member == "_repr_html_":
-            yield "    def _repr_html_(self) -> str: ..."
         elif not member.startswith("_") and callable(getattr(value, "__func__", value)):
             arguments, result = signature(getattr(value, "__func__", value))
             if isinstance(value, staticmethod):

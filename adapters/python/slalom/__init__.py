@@ -20,7 +20,7 @@ if importlib.util.find_spec("slalom._driving"):
 else:  # built without the layers for cars
     _driving = None  # type: ignore[assignment]
 
-_DRIVING = ("Course", "Planner", "RacingCar", "World", "courses", "drive_lap", "race_course", "raceline", "racing_speeds")
+_DRIVING = ("Course", "Planner", "World", "courses", "drive_lap")
 
 
 class FewSamplesWarning(RuntimeWarning):
@@ -34,6 +34,6 @@ def __getattr__(name: str) -> object:
     raise AttributeError(f"module 'slalom' has no attribute '{name}'")
 
 
-display.install(_slalom, _driving)
+display.install(_slalom)
 __all__ = [name for module in (_slalom, _driving) if module for name in dir(module) if not name.startswith("_")]
 __all__ += ["FewSamplesWarning", "__version__"]

@@ -87,53 +87,6 @@ class Mlp:
             return cls(layers, str(arrays["activation"]), residual=bool(arrays.get("residual", False)), **normalisation)
 
 
-class MlpChain:
-    """Puts an Mlp together from the parts of a network of another library, in the order in which they are evaluated.
-
-    Affine maps that follow each other, such as a normalisation and a layer, become one layer.
-    """
-
-    def __init__(self, inputs: int) -> None:
-        self._layers: list[tuple[Array, Array]] = []
-        self._map: tuple[Array, Array] = np.eye(inputs), np.zeros(inputs)
-        self._activation: str | None = None
-
-    @property
-    def width(self) -> int:
-        """The number of values after the last part."""
-        return len(self._map[1])
-
-    def affine(self, weights: ArrayLike, biases: ArrayLike) -> None:
-        """y <- weights y + biases; weights [outputs, inputs]."""
-        weights, biases = np.asarray(weights, np.float64), np.asarray(biases, np.float64)
-        if weights.ndim != 2 or weights.shape[1] != self.width or biases.shape != weights.shape[:1]:
-            raise ValueError(f"weights {weights.shape} and biases {biases.shape} do not fit to {self.width} values")
-        self._map = weights @ self._map[0], weights @ self._map[1] + biases
-
-    def scale_and_shift(self, scale: ArrayLike, shift: ArrayLike) -> None:
-        """y <- scale y + shift, for each value or for all of them."""
-        self.affine(np.diag(self._row(scale)), self._row(shift))
-
-    def _row(self, values: ArrayLike) -> Array:
-        values = np.asarray(values, np.float64)
-        if values.size not in (1, self.width):
-            raise ValueError(f"a constant of the shape {values.shape} does not fit to {self.width} values")
-        result: Array = np.broadcast_to(values.reshape(-1), self.width)
-        return result
-
-    def activate(self, activation: str) -> None:
-        """y <- activation(y); all activations of a network must be the same."""
-        if self._activation not in (None, activation):
-            raise ValueError(f"an Mlp has one activation for all hidden layers, not {self._activation} and {activation}")
-        self._activation = activation
-        self._layers.append(self._map)
-        self._map = np.eye(self.width), np.zeros(self.width)
-
-    def network(self, residual: bool = False) -> Mlp:
-        """The network of all parts. With `residual`, its first inputs are added to its outputs."""
-        return Mlp([*self._layers, self._map], self._activation or "tanh", residual=residual)
-
-
 def train_mlp(inputs: ArrayLike, outputs: ArrayLike, *, hidden: Sequence[int] = (32, 32), activation: str = "tanh",
               residual: bool = False, epochs: int = 200, batch: int = 256, learning_rate: float = 3e-3,
               seed: int = 0) -> Mlp:

@@ -8,7 +8,7 @@ from typing import Any, Callable
 import numpy as np
 import torch
 
-from .mlp import Mlp, MlpChain
+from .mlp import Mlp
 
 _ACTIVATIONS = {torch.nn.Tanh: "tanh", torch.nn.ReLU: "relu", torch.nn.Softplus: "softplus", torch.nn.SiLU: "silu"}
 
@@ -16,26 +16,24 @@ _ACTIVATIONS = {torch.nn.Tanh: "tanh", torch.nn.ReLU: "relu", torch.nn.Softplus:
 def to_mlp(network: torch.nn.Sequential, *, residual: bool = False) -> Mlp:
     """The Mlp of a trained network, for instance to save it for slalom::load_mlp in C++.
 
-    network: torch.nn.Sequential of Linear, one kind of Tanh, ReLU, Softplus or SiLU, and Identity or Dropout (which has
-        no effect after training)
+    network: torch.nn.Sequential of Linear, with the same one of Tanh, ReLU, Softplus or SiLU after each but the last.
+        Identity and Dropout, which has no effect after training, are left out.
     residual: whether the network was trained to predict the change of its first inputs
     """
-    parts = list(network)
-    linear = [part for part in parts if isinstance(part, torch.nn.Linear)]
-    if not linear:
-        raise ValueError("to_mlp: the network has no torch.nn.Linear")
-    chain = MlpChain(linear[0].in_features)
-    for i, part in enumerate(parts):
-        if isinstance(part, torch.nn.Linear):
+    layers: list[tuple[Any, Any]] = []
+    activations: list[str] = []
+    for i, part in enumerate(network):
+        if isinstance(part, torch.nn.Linear) and len(layers) == len(activations):
             weights = part.weight.detach().numpy()
-            chain.affine(weights, np.zeros(len(weights)) if part.bias is None else part.bias.detach().numpy())
-        elif isinstance(part, torch.nn.Softplus) and part.beta != 1:
-            raise ValueError(f"to_mlp: part {i}: {part} must have beta=1")
-        elif type(part) in _ACTIVATIONS:
-            chain.activate(_ACTIVATIONS[type(part)])
+            layers.append((weights, np.zeros(len(weights)) if part.bias is None else part.bias.detach().numpy()))
+        elif type(part) in _ACTIVATIONS and len(layers) > len(activations) and getattr(part, "beta", 1) == 1:
+            activations.append(_ACTIVATIONS[type(part)])
         elif not isinstance(part, (torch.nn.Identity, torch.nn.Dropout)):
-            raise ValueError(f"to_mlp: part {i}: {part} must be Linear, Tanh, ReLU, Softplus, SiLU, Identity or Dropout")
-    return chain.network(residual)
+            raise ValueError(f"to_mlp: part {i}: {part} must be Linear, followed by Tanh, ReLU, Softplus with beta=1 or SiLU")
+    if len(layers) != len(activations) + 1 or len(set(activations)) > 1:
+        raise ValueError(f"to_mlp: {len(layers)} Linear with {activations} must have the same activation after each but "
+                         "the last")
+    return Mlp(layers, activations[0] if activations else "tanh", residual=residual)
 
 
 def on_tensors(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -29,6 +29,40 @@ void check_proposals(const Solver& solver, const Sequences& proposals) {
     if (!std::isfinite(proposals.data()[i])) throw std::invalid_argument("proposals: must be finite");
 }
 
+py::dict options_of(const Controller& controller) {
+  py::dict all;
+  for (const OptionEntry& entry : list_options(controller.options()))
+    all[entry.declaration.name] = to_python(entry.value);
+  return all;
+}
+
+std::unique_ptr<Controller> make_controller(const std::string& method, const AnyProblem& problem,
+                                            const py::kwargs& keywords) {
+  SolverOptions options = solver_options(method);
+  set_from_keywords(options, keywords, method);
+  return std::make_unique<Controller>(problem, options);
+}
+
+/// Returns the state of a pickled controller: method, problem and options.
+py::object state_of(const py::object& self) {
+  const auto& controller = self.cast<const Controller&>();
+  return py::make_tuple(controller.solver().name(), self.attr("problem"), options_of(controller));
+}
+/// Makes a controller from the state of a pickled one, or as a copy of another one.
+std::unique_ptr<Controller> from_state(const py::object& state) {
+  if (py::isinstance<Controller>(state)) return state.cast<Controller&>().copy();
+  const py::tuple parts = state;
+  return make_controller(parts[0].cast<std::string>(), parts[1].cast<const AnyProblem&>(),
+                         py::kwargs(py::dict(parts[2])));
+}
+/// Returns a copy of the same class.
+py::object copy(const py::object& self) {
+  const py::object cls = self.attr("__class__");
+  py::object made = cls.attr("__new__")(cls);
+  made.attr("__setstate__")(self);
+  return made;
+}
+
 /// The class of a method: svg_mppi -> SvgMppi.
 std::string class_name(std::string_view method) {
   std::string name;
@@ -70,12 +104,7 @@ void bind_method(py::module_& module, const py::object& controller, const std::s
 void bind_controllers(py::module_& module) {
   bind_plan(module);
   py::class_<Controller> base(module, "Controller", "Base class of all controllers.");
-  base.def(py::init([](const std::string& method, const AnyProblem& problem, const py::kwargs& keywords) {
-             SolverOptions options = solver_options(method);
-             set_from_keywords(options, keywords, method);
-             return std::make_unique<Controller>(problem, options);
-           }),
-           py::arg("method"), py::arg("problem"))
+  base.def(py::init(&make_controller), py::arg("method"), py::arg("problem"))
       .def(
           "solve",
           [](const py::object& self, std::vector<double> state, double elapsed, double deadline,
@@ -94,6 +123,9 @@ void bind_controllers(py::module_& module) {
           "last solve. After `deadline` (s) the best plan so far is returned. `proposals` are control "
           "sequences of other controllers that compete with the samples, an array (sequences, horizon, "
           "inputs), or (horizon, inputs) for one.")
+      .def(py::pickle(&state_of, &from_state))
+      .def("__copy__", &copy)
+      .def("__deepcopy__", [](const py::object& self, const py::dict&) { return copy(self); })
       .def("reset", &Controller::reset, py::arg("seed") = 0,
            "Discards all state and starts the random numbers from `seed`.")
       .def("set_previous_input", &Controller::set_previous_input, py::arg("input"),
@@ -108,15 +140,7 @@ void bind_controllers(py::module_& module) {
           "the name of the method")
       .def_property_readonly(
           "horizon", [](const Controller& c) { return c.solver().horizon(); }, "steps")
-      .def_property_readonly(
-          "options",
-          [](const Controller& c) {
-            py::dict all;
-            for (const OptionEntry& entry : list_options(c.options()))
-              all[entry.declaration.name] = to_python(entry.value);
-            return all;
-          },
-          "the options in use, by name");
+      .def_property_readonly("options", &options_of, "the options in use, by name");
   for (const char* method : solver_names()) bind_method(module, base, method);
   module.def(
       "methods",

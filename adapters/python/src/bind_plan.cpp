@@ -8,12 +8,8 @@ namespace {
 template <class T>
 py::array view(const Plan& plan, const T* data, std::vector<py::ssize_t> shape,
                std::vector<py::ssize_t> strides = {}) {
-  if (strides.empty()) {
-    py::array array(py::dtype::of<T>(), shape, data, plan.owner);
-    py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-    return array;
-  }
-  py::array array(py::dtype::of<T>(), shape, strides, data, plan.owner);
+  py::array array = strides.empty() ? py::array(py::dtype::of<T>(), shape, data, plan.owner)
+                                    : py::array(py::dtype::of<T>(), shape, strides, data, plan.owner);
   py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return array;
 }
@@ -62,56 +58,59 @@ py::dict times(const Plan& plan) {
   return all;
 }
 
-/// Binds the figures of a plan's solve, in a class of that plan and in that of its `stats`.
-template <class Base>
-void bind_statistics(py::class_<Base>& bound) {
-  bound
-      .def_property_readonly(
-          "nominal", [](const Base& p) { return sequence(p, p.result().nominal); },
+/// Adds the results of the solver.
+void bind_results(py::class_<Plan>& plan) {
+  plan.def_property_readonly(
+          "nominal", [](const Plan& p) { return sequence(p, p.result().nominal); },
           "float32 [horizon, inputs]; svg_mppi: the best guide")
       .def_property_readonly(
-          "variances", [](const Base& p) { return sequence(p, p.result().variances); },
+          "variances", [](const Plan& p) { return sequence(p, p.result().variances); },
           "float32 [horizon, inputs], variances of the distribution")
       .def_property_readonly(
-          "samples", [](const Base& p) { return samples(p); },
+          "samples", [](const Plan& p) { return samples(p); },
           "float32 [samples, horizon, inputs], the last samples")
       .def_property_readonly(
-          "costs", [](const Base& p) { return per_sample(p, p.result().costs); }, "float32 [samples]")
+          "costs", [](const Plan& p) { return per_sample(p, p.result().costs); }, "float32 [samples]")
       .def_property_readonly(
-          "weights", [](const Base& p) { return per_sample(p, p.result().weights); },
+          "weights", [](const Plan& p) { return per_sample(p, p.result().weights); },
           "float32 [samples]; they sum to 1")
       .def_property_readonly(
-          "guides", [](const Base& p) { return sequences(p, p.result().guides); },
+          "guides", [](const Plan& p) { return sequences(p, p.result().guides); },
           "float32 [guides, horizon, inputs], the final guides")
       .def_property_readonly(
-          "guide_path", [](const Base& p) { return sequences(p, p.result().guide_path); },
+          "guide_path", [](const Plan& p) { return sequences(p, p.result().guide_path); },
           "float32 [iterations x guides, horizon, inputs]")
       .def_property_readonly(
-          "minimum_cost", [](const Base& p) { return p.result().minimum_cost; },
+          "minimum_cost", [](const Plan& p) { return p.result().minimum_cost; },
           "the lowest cost of a sample")
       .def_property_readonly(
-          "expected_cost", [](const Base& p) { return p.result().expected_cost; },
+          "expected_cost", [](const Plan& p) { return p.result().expected_cost; },
           "weighted mean of the samples' costs")
       .def_property_readonly(
-          "effective_sample_size", [](const Base& p) { return p.result().effective_sample_size; },
+          "effective_sample_size", [](const Plan& p) { return p.result().effective_sample_size; },
           "1 / sum of squared weights")
       .def_property_readonly(
-          "gradient_kinks", [](const Base& p) { return p.result().gradient_kinks; },
+          "gradient_kinks", [](const Plan& p) { return p.result().gradient_kinks; },
           "exact gradients of guides in this solve that were taken at a kink, or were not finite")
       .def_property_readonly(
-          "few_samples_solves", [](const Base& p) { return p.result().few_samples_solves; },
+          "few_samples_solves", [](const Plan& p) { return p.result().few_samples_solves; },
           "solves in a row, with this one, whose effective sample size was below 3")
       .def_property_readonly(
-          "has_few_samples", [](const Base& p) { return p.result().has_few_samples(); },
+          "has_few_samples", [](const Plan& p) { return p.result().has_few_samples(); },
           "whether there were 20 or more of them; a FewSamplesWarning says so once")
       .def_property_readonly(
-          "collided_share", [](const Base& p) { return p.result().collided_share; },
+          "collided_share", [](const Plan& p) { return p.result().collided_share; },
           "fraction of the samples that collide, 0 ... 1")
       .def_property_readonly(
-          "iterations", [](const Base& p) { return p.result().iterations; },
+          "iterations", [](const Plan& p) { return p.result().iterations; },
           "number of guide or distribution updates")
       .def_property_readonly(
-          "times", [](const Base& p) { return times(p); }, "wall-clock time (s) of each stage");
+          "times", [](const Plan& p) { return times(p); }, "wall-clock time (s) of each stage")
+      .def_property_readonly(
+          "mean", [](const Plan& p) { return sequence(p, p.result().mean); },
+          "float32 [horizon, inputs], mean of the resulting distribution")
+      .def_property_readonly(
+          "temperature", [](const Plan& p) { return p.result().temperature; }, "the temperature in use");
 }
 
 py::dict to_numpy(const py::object& plan) {
@@ -125,28 +124,11 @@ py::dict to_numpy(const py::object& plan) {
 }  // namespace
 
 void bind_plan(py::module_& module) {
-  py::class_<Stats> stats(
-      module, "SolveResult",
-      "What a solve found: samples, weights, guides, times. The names are those of C++, where it is "
-      "`plan.stats`, too.");
-  bind_statistics(stats);
-  stats
-      .def_property_readonly(
-          "status", [](const Stats& s) { return std::string(name(s.result().status)); },
-          "how the solve ended, before the check of the plan")
-      .def_property_readonly(
-          "mean", [](const Stats& s) { return sequence(s, s.result().mean); },
-          "float32 [horizon, inputs], mean of the resulting distribution")
-      .def_property_readonly(
-          "collided", [](const Stats& s) { return per_sample(s, s.result().collided); },
-          "uint8 [samples], 1 where a sample collides")
-      .def_property_readonly(
-          "temperature", [](const Stats& s) { return s.result().temperature; }, "the temperature in use");
   py::class_<Plan> plan(
       module, "Plan",
       "The solution of a controller. Arrays are views of the controller's memory, valid until it solves "
       "again; `to_numpy` copies them.");
-  bind_statistics(plan);
+  bind_results(plan);
   plan.def_property_readonly(
           "status", [](const Plan& p) { return std::string(name(p.controller().status())); },
           "'ok', 'deadline', 'all_collided', 'degenerate' or 'non_finite_state'")
@@ -190,9 +172,6 @@ void bind_plan(py::module_& module) {
           "uint8 [samples], 1 where a sample collides")
       .def_property_readonly(
           "controller", [](const Plan& p) { return p.owner; }, "the controller that made the plan")
-      .def_property_readonly(
-          "stats", [](const Plan& p) { return Stats{p}; },
-          "what the solve found, under the names of C++; most of it is also in the plan itself")
       .def("to_numpy", &to_numpy,
            "Copies of all arrays by name, which stay valid: inputs, states, nominal, variances, samples, "
            "costs, weights, samples_collided, guides.");

@@ -93,7 +93,7 @@ std::vector<double> to_values(const Limits& bound) {
   return {};
 }
 
-/// The same as Python gave it.
+/// The values as Python gave them.
 py::object to_limits(const std::vector<double>& values) {
   if (values.empty()) return py::none();
   return values.size() == 1 ? py::object(py::float_(values[0])) : py::object(py::cast(values));

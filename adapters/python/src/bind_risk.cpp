@@ -75,8 +75,6 @@ class RiskProblem final : public AnyProblem, public BatchEvaluator {
     result.terms = {{"total", result.cost}};
     return result;
   }
-  Derivatives derivatives(std::span<const double>, std::span<const double>) override { throw_derivatives(); }
-  Derivatives terminal_derivatives(std::span<const double>) override { throw_derivatives(); }
 
   void evaluate(const SequenceBatch& batch, int first, int count, float* costs,
                 std::uint8_t* collided) const noexcept override {
@@ -100,22 +98,19 @@ class RiskProblem final : public AnyProblem, public BatchEvaluator {
   }
 
   const AnyProblem& problem() const noexcept { return *variants_.front(); }
-  /// 0: the problem itself.
+  /// The problem (0) or one of its variants.
   AnyProblem& variant(std::size_t index) const { return *variants_.at(index); }
   const py::object& randomize() const noexcept { return randomize_; }
   const RiskOptions& options() const noexcept { return options_; }
 
  private:
-  [[noreturn]] static void throw_derivatives() {
-    throw std::invalid_argument("RiskEvaluator: has no derivatives; use those of its problem");
-  }
-
   Variants variants_;
   py::object randomize_;
   RiskOptions options_;
 };
 
-/// The problem and what `randomize` makes of it; variants 2m and 2m + 1 from mirrored random numbers.
+/// Makes the variants: the problem, and those that `randomize` returns; variants 2m and 2m + 1 from mirrored
+/// random numbers.
 RiskProblem::Variants make_variants(const AnyProblem& problem, const py::object& randomize,
                                     const RiskOptions& options) {
   if (!PyCallable_Check(randomize.ptr()))

@@ -183,10 +183,6 @@ void CallableProblem::add_values_of(const char* what, const py::object& values, 
   }
 }
 
-// For callable_derivatives.cpp.
-template void CallableProblem::add_cost(const char*, const py::object&, py::ssize_t, double*, std::uint8_t*,
-                                        Prediction*) const;
-
 /// Moves the inputs of all samples, `held` [input][sample], towards those of step `k`, no faster than
 /// allowed.
 void CallableProblem::hold_step(const SequenceBatch& batch, int k, int first, int count,

@@ -37,9 +37,6 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   void set_state(std::span<const double> state) override;
   std::vector<double> step(std::span<const double> state, std::span<const double> input) override;
   Prediction predict(std::span<const double> state, std::span<const double> inputs) override;
-  /// By central differences in double. Throws py::type_error if a callable computes in float32.
-  Derivatives derivatives(std::span<const double> state, std::span<const double> input) override;
-  Derivatives terminal_derivatives(std::span<const double> state) override;
   void begin(py::handle owner) override;
   /// Rethrows the first exception of a callable during the solve.
   void finish() override;
@@ -55,9 +52,6 @@ class CallableProblem final : public AnyProblem, public BatchEvaluator, private 
   void set_dt(double dt);
 
  private:
-  /// The values at a batch of points, [point]: of the cost and, if `next` is given, the states that follow.
-  std::vector<double> values_at(const py::array& x, const py::array& u, std::vector<double>* next) const;
-  std::vector<double> terminal_values_at(const py::array& x) const;
   void roll_out(const SequenceBatch& batch, int first, int count, float* costs, std::uint8_t* collided) const;
   template <class Real>
   void add_values_of(const char* what, const py::object& values, py::ssize_t count, Real* costs) const;

@@ -11,7 +11,7 @@ namespace slalom::python {
 /// Marks a controller as in use. Throws std::runtime_error if another thread uses it.
 class Controller::Busy {
  public:
-  explicit Busy(std::atomic<bool>& flag) : flag_(flag) {
+  explicit Busy(Usage& usage) : flag_(usage.busy) {
     if (flag_.exchange(true)) throw std::runtime_error("controller: another thread is using it");
   }
   ~Busy() { flag_ = false; }
@@ -80,7 +80,7 @@ Controller::Controller(const AnyProblem& problem, const SolverOptions& options)
   rest();
 }
 
-/// The state before the first solve: every input at the value in its bounds that is nearest to 0.
+/// Sets the state before the first solve: every input at the value in its bounds that is nearest to 0.
 void Controller::rest() {
   for (std::size_t i = 0; i < previous_.size(); ++i) previous_[i] = bounds_.nearest(i, 0);
   for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i] = previous_[i % previous_.size()];
@@ -104,7 +104,7 @@ void Controller::set_previous_input(std::vector<double> input) {
   for (const double value : input)
     if (!std::isfinite(value))
       throw std::invalid_argument("input: " + std::to_string(value) + " must be finite");
-  const Busy busy(busy_);
+  const Busy busy(usage_);
   for (std::size_t i = 0; i < input.size(); ++i) previous_[i] = bounds_.nearest(i, input[i]);
   previous_known_ = true;
 }
@@ -113,7 +113,7 @@ void Controller::solve(py::handle owner, std::vector<double> state, const SolveR
   if (static_cast<int>(state.size()) != problem_->states())
     throw std::invalid_argument("state: has " + std::to_string(state.size()) + " values, must have " +
                                 std::to_string(problem_->states()));
-  const Busy busy(busy_);
+  const Busy busy(usage_);
   ++solves_;
   corrections_ = 0;
   if (!std::all_of(state.begin(), state.end(), [](double v) { return std::isfinite(v); })) {
@@ -128,28 +128,33 @@ void Controller::solve(py::handle owner, std::vector<double> state, const SolveR
   problem_->begin(owner);
   {
     const py::gil_scoped_release unlock;
-    result_ = solver_->solve(problem_->evaluator(), request);
+    solver_->solve(problem_->evaluator(), request);
   }
-  std::copy(result_.inputs.begin(), result_.inputs.end(), inputs_.begin());
+  std::copy(result().inputs.begin(), result().inputs.end(), inputs_.begin());
   problem_->hold_rates(previous_, inputs_);
   std::vector<double> before = previous_;
   const auto any = [](std::size_t) { return std::numeric_limits<double>::infinity(); };  // rates hold by now
   for (std::size_t at = 0; at < inputs_.size(); at += before.size())
     corrections_ += check_inputs(std::span(inputs_).subspan(at, before.size()), before, bounds_, any);
-  status_ = result_.status;
+  status_ = result().status;
   problem_->finish();
-  if (result_.few_samples_solves == SolveResult::few_samples_patience) warn_of_few_samples();
+  if (result().few_samples_solves == SolveResult::few_samples_patience) warn_of_few_samples();
+}
+
+std::unique_ptr<Controller> Controller::copy() {
+  const Busy busy(usage_);
+  return std::unique_ptr<Controller>(new Controller(*this));
 }
 
 void Controller::reset(std::uint64_t seed) {
-  const Busy busy(busy_);
+  const Busy busy(usage_);
   ++solves_;
   solver_->reset(seed);
   rest();
 }
 
 void Controller::prepare() {
-  const Busy busy(busy_);
+  const Busy busy(usage_);
   const py::gil_scoped_release unlock;
   solver_->prepare();
 }

@@ -6,14 +6,19 @@
 #include "keywords.hpp"
 #include "problem.hpp"
 #include "slalom/core/final_check.hpp"
+#include "slalom/core/polymorphic.hpp"
 #include "slalom/solvers/registry.hpp"
 
 namespace slalom::python {
 
-/// A problem and a method that solves it.
+/// A problem and a method that solves it. A copy goes on with the same bits; it shares the threads and the
+/// callables of the problem.
 class Controller {
  public:
   Controller(const AnyProblem& problem, const SolverOptions& options);
+
+  /// Returns a copy. Throws std::runtime_error if another thread uses the controller.
+  std::unique_ptr<Controller> copy();
 
   /// Solves without the interpreter lock. `owner` is the Python object of this controller.
   void solve(py::handle owner, std::vector<double> state, const SolveRequest& request);
@@ -24,9 +29,8 @@ class Controller {
 
   AnyProblem& problem() noexcept { return *problem_; }
   const Solver& solver() const noexcept { return *solver_; }
-  const InputBounds& bounds() const noexcept { return bounds_; }
   const SolverOptions& options() const noexcept { return options_; }
-  const SolveResult& result() const noexcept { return result_; }
+  const SolveResult& result() const noexcept { return solver_->result(); }
   /// The status of the last solve. A cost that is not finite shows when the prediction is first asked for.
   Status status() const noexcept { return status_; }
   /// The number of values that the final check changed in the last solve.
@@ -40,28 +44,32 @@ class Controller {
 
  private:
   class Busy;
+  /// Whether a thread uses the controller. A copy is not in use.
+  struct Usage {
+    Usage() = default;
+    Usage(const Usage&) {}
+    std::atomic<bool> busy = false;
+  };
+
+  Controller(const Controller&) = default;
 
   void update_previous_input(double elapsed);
   void rest();
 
-  std::unique_ptr<AnyProblem> problem_;
+  Polymorphic<AnyProblem> problem_;
   SolverOptions options_;
-  std::unique_ptr<Solver> solver_;
+  Polymorphic<Solver> solver_;
   InputBounds bounds_;
-  SolveResult result_;
   Status status_ = Status::ok;
   int corrections_ = 0;
   std::uint64_t solves_ = 0;
   std::vector<double> state_, inputs_, previous_;
   bool previous_known_ = true;  ///< whether `previous_` has been set for the next solve
   std::optional<Prediction> prediction_;
-  std::atomic<bool> busy_ = false;
+  Usage usage_;
 };
 
 void bind_controllers(py::module_& module);
-void bind_feedback(py::module_& module);
-void bind_ilqr(py::module_& module);
-void bind_linearization(py::module_& module);
 void bind_maps(py::module_& module);
 void bind_problems(py::module_& module);
 void bind_risk(py::module_& module);

@@ -13,8 +13,8 @@ namespace slalom::python {
 
 using Folders = std::vector<std::filesystem::path>;
 
-/// Where a program in the package's folder looks, then what lies above it: `what` of the source tree it was
-/// built in, or share/slalom/`what` of the package or of the prefix it was installed to.
+/// The folders that `search` finds from the package's folder, then those above it: `what` in the source tree
+/// that the package was built in, or share/slalom/`what` in the package or in its prefix.
 Folders folders_of(Folders (*search)(const std::filesystem::path&), const char* what);
 Folders course_folders();
 
@@ -27,7 +27,6 @@ inline maps::Pose to_pose(const std::array<double, 3>& pose) {
 }
 
 void bind_driving(py::module_& module);
-void bind_racing(py::module_& module);
 void bind_world(py::module_& module);
 
 }  // namespace slalom::python

@@ -8,9 +8,6 @@ PYBIND11_MODULE(_slalom, module) {
   slalom::python::bind_problems(module);
   slalom::python::bind_risk(module);
   slalom::python::bind_controllers(module);
-  slalom::python::bind_linearization(module);
-  slalom::python::bind_ilqr(module);
-  slalom::python::bind_feedback(module);
   slalom::python::bind_maps(module);
   module.attr("__version__") = slalom::version();
 }

@@ -20,9 +20,6 @@ struct Plan {
   const SolveResult& result() const { return controller().result(); }
 };
 
-/// The statistics of a plan's solve in Python.
-struct Stats : Plan {};
-
 void bind_plan(py::module_& module);
 
 }  // namespace slalom::python

@@ -36,17 +36,6 @@ struct Prediction {
   }
 };
 
-/// Derivatives of a step and its cost, or of the terminal cost, at a state and inputs; matrices row by row.
-struct Derivatives {
-  std::vector<double> next;            ///< the state after the step; with both Jacobians empty at the end
-  std::vector<double> state_jacobian;  ///< [states][states]
-  std::vector<double> input_jacobian;  ///< [states][inputs]
-  double cost = 0;
-  std::vector<double> gradient;  ///< gradient of the cost: by the states, then by the inputs
-  std::vector<double> hessian;   ///< Hessian of the cost, [states + inputs][states + inputs]
-  bool kink = false;             ///< whether a function has no derivative here
-};
-
 /// A problem in Python: a built-in one, or one made of callables.
 class AnyProblem {
  public:
@@ -62,10 +51,6 @@ class AnyProblem {
   virtual std::vector<double> step(std::span<const double> state, std::span<const double> input) = 0;
   /// `inputs` [step][input].
   virtual Prediction predict(std::span<const double> state, std::span<const double> inputs) = 0;
-  /// Derivatives of the step and the stage cost.
-  virtual Derivatives derivatives(std::span<const double> state, std::span<const double> input) = 0;
-  /// Derivatives of the terminal cost.
-  virtual Derivatives terminal_derivatives(std::span<const double> state) = 0;
   /// Bounds of the problem for an input; infinite if it has none.
   virtual double input_min(int /*input*/) const { return -std::numeric_limits<double>::infinity(); }
   virtual double input_max(int /*input*/) const { return std::numeric_limits<double>::infinity(); }
@@ -117,35 +102,6 @@ class BuiltIn final : public AnyProblem {
     for (const CostTerm& term : terms) result.terms.emplace_back(term.name, term.value);
     std::memcpy(result.states.data(), states.data(), result.states.size() * sizeof(double));
     return result;
-  }
-
-  Derivatives derivatives(std::span<const double> state, std::span<const double> input) override {
-    const auto l = linearize(problem(), to_state(state), to_input(input));
-    const auto cost = expand_stage_cost(problem(), to_state(state), to_input(input));
-    constexpr int nx = state_count, nu = P::inputs;
-    Derivatives d;
-    d.next.resize(nx);
-    std::memcpy(d.next.data(), &l.next, sizeof l.next);
-    d.state_jacobian.assign(l.state_jacobian[0], l.state_jacobian[0] + nx * nx);
-    d.input_jacobian.assign(l.input_jacobian[0], l.input_jacobian[0] + nx * nu);
-    d.cost = cost.value;
-    d.gradient.assign(cost.state_gradient, cost.state_gradient + nx);
-    d.gradient.insert(d.gradient.end(), cost.input_gradient, cost.input_gradient + nu);
-    d.hessian.resize((nx + nu) * (nx + nu));
-    slalom::detail::copy_hessian(cost, d.hessian.data());
-    d.kink = l.kink || cost.kink;
-    return d;
-  }
-
-  Derivatives terminal_derivatives(std::span<const double> state) override {
-    const auto cost = expand_terminal_cost(problem(), to_state(state));
-    constexpr int nx = state_count;
-    Derivatives d;
-    d.cost = cost.value;
-    d.gradient.assign(cost.state_gradient, cost.state_gradient + nx);
-    d.hessian.assign(cost.state_hessian[0], cost.state_hessian[0] + nx * nx);
-    d.kink = cost.kink;
-    return d;
   }
 
   double input_min(int input) const override { return slalom::detail::min_input(problem(), input); }

@@ -1,10 +1,9 @@
-"""How objects print, are pickled and copied; the type stubs; callables of torch."""
+"""The text, pickles and copies of objects; the type stubs; callables of torch."""
 
 import ast
 import copy
 import pathlib
 import pickle
-import re
 import shutil
 import subprocess
 import sys
@@ -45,57 +44,48 @@ def test_controllers_print_what_differs_from_the_defaults():
     assert eval(repr(controller)).options == controller.options
     general = slalom.Controller("mppi", slalom.CartPole(), samples=10)
     assert repr(general) == "slalom.Controller('mppi', slalom.CartPole(), samples=10)"
-    page = controller._repr_html_()
-    assert page.startswith("<table>") and "<th style='text-align:left'>temperature</th>" in page
 
 
 def test_plans_print_their_outcome_and_do_not_break_once_they_are_old():
     controller = slalom.Mppi(slalom.CartPole(), horizon=12, samples=100)
     plan = controller.solve([0, 0, 0.1, 0])
     assert repr(plan).startswith(f"<slalom.Plan 'ok' by mppi: 12 steps, cost {plan.cost:.6g}, ")
-    assert "of 100" in repr(plan) and "<table>" in plan._repr_html_() and "float64 [13, 4]" in plan._repr_html_()
-    assert "effective sample size" in repr(plan.stats) and "float32 [100, 12, 1]" in plan.stats._repr_html_()
+    assert "of 100" in repr(plan)
     controller.solve([0, 0, 0.1, 0])
-    assert repr(plan) == "<slalom.Plan of an earlier solve>" and "<table>" in plan._repr_html_()
+    assert repr(plan) == "<slalom.Plan of an earlier solve>"
 
 
-def test_names_are_escaped_in_html():
-    def evil(x, u):
-        return dynamics(x, u)
-
-    evil.__qualname__ = "<script>"
-    assert "<script>" not in point(dynamics=evil)._repr_html_()
+PROBLEMS = [slalom.CartPole(track=3.5), slalom.Arm(ball_radius=0.2), point(), point(dt=0)]
 
 
-def test_everything_public_prints_its_name():
-    course = slalom.Course("wren") if hasattr(slalom, "Course") else None
-    controller = slalom.Mppi(slalom.Pendulum(), horizon=5, samples=10)
-    controller.solve([1, 0])
-    shown = [slalom.linearize(slalom.Pendulum(), [1, 0], [0]), slalom.expand_terminal_cost(slalom.Pendulum(), [1, 0]),
-             slalom.Feedback(controller), slalom.Ilqr(controller), slalom.OccupancyGrid(np.zeros((2, 3), bool), 0.1)]
-    if course:
-        shown += [course, slalom.World(course), slalom.RacingCar()]
-    for each in shown:
-        assert f"slalom.{type(each).__name__}" in repr(each) and "object at" not in repr(each)
-
-
-@pytest.mark.parametrize("problem", [slalom.CartPole(track=3.5), slalom.Arm(ball_radius=0.2), point(), point(dt=0)])
-@pytest.mark.parametrize("again", [lambda x: pickle.loads(pickle.dumps(x)), copy.deepcopy])
-def test_problems_and_controllers_are_pickled(problem, again):
-    assert repr(again(problem)) == repr(problem)
+@pytest.mark.parametrize("problem", PROBLEMS)
+def test_problems_and_controllers_are_pickled(problem):
+    assert repr(pickle.loads(pickle.dumps(problem))) == repr(copy.deepcopy(problem)) == repr(problem)
     state = np.full(problem.states, 0.1)
     controller = slalom.SvgMppi(problem, horizon=8, samples=64, input_max=1, seed=3)
-    same = again(controller)
+    same = pickle.loads(pickle.dumps(controller))
     assert type(same) is slalom.SvgMppi and same.options == controller.options
     assert np.array_equal(same.solve(state).inputs, controller.solve(state).inputs)
-    general = again(slalom.Controller("mppi", problem, samples=10))
+    general = pickle.loads(pickle.dumps(slalom.Controller("mppi", problem, samples=10)))
     assert type(general) is slalom.Controller and general.options["samples"] == 10
 
 
-def test_options_are_pickled():
-    controller = slalom.Mppi(slalom.Pendulum(), samples=10)
-    options = pickle.loads(pickle.dumps(controller.options))
-    assert options == controller.options and slalom.Mppi(slalom.Pendulum(), **options).options == options
+@pytest.mark.parametrize("method", slalom.methods())
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy])
+@pytest.mark.parametrize("problem", [PROBLEMS[0], point(input_rate_max=3)])
+def test_a_copy_of_a_controller_goes_on_with_the_same_bits(method, again, problem):
+    state = np.full(problem.states, 0.1)
+    controller = slalom.Controller(method, problem, horizon=8, samples=64, input_min=-1, input_max=1)
+    for _ in range(3):
+        controller.solve(state, elapsed=0.1)
+    same = again(controller)
+    assert type(same) is type(controller) and same.problem is not controller.problem
+    for _ in range(3):
+        first, second = (each.solve(state, elapsed=0.1) for each in (controller, same))
+        assert np.array_equal(first.inputs, second.inputs) and np.array_equal(first.samples, second.samples)
+        assert second.controller is same
+        state = problem.step(state, first.inputs[0])
+    assert type(again(slalom.SvgMppi(problem))) is slalom.SvgMppi
 
 
 def test_what_cannot_be_pickled_says_so():
@@ -117,20 +107,6 @@ def test_copies_of_a_plan_stay_valid():
         plan.to_numpy()
 
 
-def test_statistics_have_the_names_of_cpp():
-    header = (pathlib.Path(__file__).resolve().parents[3] / "include/slalom/solvers/solver.hpp").read_text()
-    body = header[header.index("struct SolveResult {"):header.index("class Solver {")]
-    names = set(re.findall(r"^  (?!static)[^/;(]*?\b(\w+)(?: = [^;]*)?;\s+///<", body, re.M))
-    assert {"weights", "effective_sample_size", "temperature", "times"} <= names
-    controller = slalom.SvgMppi(slalom.CartPole(), horizon=8, samples=64)
-    plan = controller.solve([0, 0, 0.1, 0])
-    missing = [name for name in sorted(names - {"inputs"}) if not hasattr(plan.stats, name)]
-    assert not missing
-    assert plan.stats.effective_sample_size == plan.effective_sample_size
-    assert np.array_equal(plan.stats.collided, plan.samples_collided) and plan.stats.mean.shape == (8, 1)
-    assert plan.controller is controller
-
-
 def test_the_stubs_name_everything():
     names = set()
     for stub in FOLDER.glob("*.pyi"):
@@ -147,7 +123,7 @@ from slalom.mlp import Mlp
 
 controller = slalom.SvgMppi(slalom.CartPole(track=3.0), horizon=10, input_min=-10, input_max=[10])
 plan = controller.solve(np.zeros(4), elapsed=0.1)
-size: float = plan.stats.effective_sample_size
+size: float = plan.effective_sample_size
 inputs: list[float] = plan.inputs[0].tolist()
 terms: dict[str, float] = plan.cost_terms
 step = controller.problem.step([0, 0, 0, 0], [1.0])

@@ -10,7 +10,7 @@
 
 namespace slalom::nodes {
 
-/// How a base moves, by the names of nav2's MPPI controller; in the order of navigation::BaseKind.
+/// The kinds of bases with the names of nav2's MPPI controller, in the order of navigation::BaseKind.
 enum class MotionModel { DiffDrive, Omni, Ackermann };
 inline const char* const* enum_names(MotionModel) {
   static constexpr const char* const names[] = {"DiffDrive", "Omni", "Ackermann", nullptr};

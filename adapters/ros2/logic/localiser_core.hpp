@@ -53,7 +53,7 @@ class LocaliserCore {
     std::function<void(const std::string&)> warn, inform;  ///< the log
   };
 
-  /// Without the map of a course yet.
+  /// Makes the localiser, without the map of the course yet.
   LocaliserCore(const Settings& settings, Clocks clocks, Transforms transforms, Outputs outputs);
 
   std::vector<NamedOption> options() const;
@@ -74,7 +74,7 @@ class LocaliserCore {
   /// To be called every few milliseconds.
   void tick();
 
-  /// The events since the last report.
+  /// Reports the events since the last report.
   Report report();
   /// The last place of the base frame that could be relied on, as long as it can.
   std::optional<KnownPlace> reliable() const;

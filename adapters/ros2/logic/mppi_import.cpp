@@ -92,7 +92,7 @@ class Import {
   std::string text_of(const Given& given) const {
     if (!given.value.IsScalar()) refuse(given.line, given.key, "must be one value");
     const std::string& text = given.value.Scalar();
-    // As YAML allows them; options are written in small letters.
+    // YAML allows these; options are written in small letters.
     if (text == "True" || text == "TRUE") return "true";
     if (text == "False" || text == "FALSE") return "false";
     return text;

@@ -11,7 +11,7 @@ namespace {
 namespace nav = navigation;
 using Problem = FollowerAnswer::Problem;
 
-/// As nav2_costmap_2d defines them.
+/// The costs of nav2_costmap_2d with a special meaning.
 constexpr unsigned char lethal = 254, unknown = 255;
 
 constexpr double longest_period = 1;   ///< s; after a longer one the robot was not controlled in between

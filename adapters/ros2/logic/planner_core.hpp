@@ -58,7 +58,8 @@ class PlannerCore {
     std::function<void(const std::string&)> warn, inform;                 ///< the log
   };
 
-  /// Without the path of a course yet. Throws std::exception with a message for the user.
+  /// Makes the planner, without the path of the course yet. Throws std::exception with a message for the
+  /// user.
   PlannerCore(const Settings& settings, Clocks clocks, Transforms transforms, Outputs outputs);
 
   /// The options of vehicle, planner and method.
@@ -90,7 +91,7 @@ class PlannerCore {
   /// Sends speed 0 once and forgets all inputs.
   void halt();
 
-  /// The events since the last report.
+  /// Reports the events since the last report.
   Report report();
 
  private:

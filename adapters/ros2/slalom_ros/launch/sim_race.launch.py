@@ -64,19 +64,16 @@ def in_gym(given):
 
 def in_slalom(given):
     world = {"autostart": True, "course": given["course"], "obstacles": int(given["obstacles"]), "seed": int(given["seed"])}
-    track = {"autostart": True, "course": given["course"]}
-    parts = (("world", "WorldNode", world), ("track", "TrackNode", track))
-    car = {name: given[name] for name in ("configuration", "method", "max_speed")}
-    car.update(course="", localise="true", everywhere="true", pose_file="")
+    car = {name: given[name] for name in ("course", "configuration", "method", "max_speed")}
+    car.update(localise="true", everywhere="true", pose_file="")
     if given["composed"] == "true":
         return [ComposableNodeContainer(name="slalom", namespace="", package="rclcpp_components",
                                         executable="component_container_isolated", output="screen",
                                         composable_node_descriptions=[
-                                            ComposableNode(package="slalom_ros", plugin=f"slalom_ros::{plugin}", name=name,
-                                                           parameters=[own]) for name, plugin, own in parts]),
+                                            ComposableNode(package="slalom_ros", plugin="slalom_ros::WorldNode",
+                                                           name="world", parameters=[world])]),
                 include("slalom_ros", "car.launch.py", container="slalom", **car)]
-    return [*(Node(package="slalom_ros", executable=f"{name}_node", name=name, parameters=[own], output="screen")
-              for name, _, own in parts),
+    return [Node(package="slalom_ros", executable="world_node", name="world", parameters=[world], output="screen"),
             include("slalom_ros", "car.launch.py", **car)]
 
 

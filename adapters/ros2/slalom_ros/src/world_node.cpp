@@ -1,7 +1,7 @@
 // The simulator as a car: subscribes to `drive` and publishes `scan`, `odom` (wheel odometry) with its
 // transforms, the parked cars, and the true state as `ground_truth`, `laps` and `contacts` (number of
 // collisions). Like a real car it must brake without a finite command for a while, or when two nodes command
-// it. The node `track` publishes map and path.
+// it.
 #include <cmath>
 #include <cstdio>
 #include <map>

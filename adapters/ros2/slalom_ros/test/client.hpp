@@ -35,14 +35,13 @@ class Client {
     executor_.add_node(node);
     drive_in_ = node->create_subscription<AckermannDriveStamped>(
         "drive", rclcpp::QoS(50), [this](const AckermannDriveStamped::ConstSharedPtr m) {
-          steer = static_cast<double>(m->drive.steering_angle);
           speed = static_cast<double>(m->drive.speed);
           commanded_at = steady_seconds();
           commands_.emplace_back(commanded_at, speed);
         });
     log_in_ =
         node->create_subscription<Log>("/rosout", rclcpp::QoS(1000), [this](const Log::ConstSharedPtr m) {
-          log_.push_back({steady_seconds(), m->level, m->name, m->msg});
+          log_.push_back({steady_seconds(), m->name, m->msg});
         });
     diagnostics_in_ = node->create_subscription<DiagnosticArray>(
         "/diagnostics", rclcpp::QoS(20), [this](const DiagnosticArray::ConstSharedPtr m) {
@@ -51,7 +50,7 @@ class Client {
         });
   }
 
-  /// Lets everything run until something holds. Throws if it does not within this time (s).
+  /// Runs until something holds. Throws if it does not within this time (s).
   void wait(const std::string& what, const std::function<bool()>& holds, double seconds) {
     const double begin = steady_seconds();
     while (!holds()) {
@@ -65,7 +64,7 @@ class Client {
     for (const double begin = steady_seconds(); steady_seconds() - begin < seconds;) spin();
   }
 
-  /// The answer of a service. Throws if there is none within 10 s.
+  /// Calls a service and returns its answer. Throws if there is none within 10 s.
   template <class Service>
   typename Service::Response::SharedPtr call(
       const std::string& name, const typename Service::Request& request = typename Service::Request()) {
@@ -86,17 +85,6 @@ class Client {
   bool stops() const {
     return all_of_last(0.3, [](double v) { return v == 0; });
   }
-  /// Whether commands to stop have lasted for 0.15 s since a time.
-  bool has_stopped_since(double since) const {
-    double first = 0, last = 0;
-    for (const auto& [time, v] : commands_) {
-      if (time < since || v != 0) continue;
-      if (first == 0) first = time;
-      last = time;
-    }
-    return last - first > 0.15;
-  }
-
   /// The first reason with these words that a node has logged since a time; empty if there is none.
   std::string reason(const std::string& words, double since) const {
     for (const Line& line : log_)
@@ -104,29 +92,13 @@ class Client {
         return line.node + ": " + line.text;
     return "";
   }
-  /// Throws if a node logged two reasons within a second. A node that began at one of `starts` (s, name) may.
-  void expect_a_reason_per_second(const std::vector<std::pair<double, std::string>>& starts) const {
-    std::map<std::string, double> last;
-    for (const Line& line : log_) {
-      if (!is_reason(line.text)) continue;
-      const double before = last.count(line.node) > 0 ? last[line.node] : -1e9;
-      bool again = false;
-      for (const auto& [time, name] : starts)
-        again |= name == line.node && before < time && time <= line.time;
-      expect(again || line.time - before > 0.9, line.node + " logs too often: " + line.text);
-      last[line.node] = line.time;
-    }
-  }
-
   rclcpp::Node::SharedPtr node;
-  std::function<void()> each_turn;                ///< is called all the time
-  double steer = 0, speed = 0, commanded_at = 0;  ///< last command: rad, m/s; s, steady
+  double speed = 0, commanded_at = 0;  ///< of the last command: m/s; s, steady
   std::map<std::string, std::map<std::string, std::string>> diagnostics;  ///< by status and key
 
  private:
   struct Line {
     double time;  // s, steady
-    int level;
     std::string node, text;
   };
 
@@ -154,7 +126,6 @@ class Client {
 
   void spin() {
     executor_.spin_some();
-    if (each_turn) each_turn();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 

@@ -37,9 +37,8 @@ class NodeTest {
  public:
   explicit NodeTest(Nodes::Place place) : client_("node_test"), nodes_(place) {
     nodes_.start("world", "world", {"autostart:=true", "course:=wren", "obstacles:=0"});
-    nodes_.start("track", "track", {"autostart:=true", "course:=wren"});
-    nodes_.start("localiser", "localiser", {"autostart:=true", "everywhere:=true"});
-    nodes_.start("planner", "planner", {"svg_mppi.samples:=500"});
+    nodes_.start("localiser", "localiser", {"autostart:=true", "course:=wren"});
+    nodes_.start("planner", "planner", {"course:=wren", "svg_mppi.samples:=500"});
     nodes_.start("planner", "wrong", {"planner.max_sped:=1.0"});
     nodes_.start("planner", "wild", {"svg_mppi.samples:=-5"});
   }

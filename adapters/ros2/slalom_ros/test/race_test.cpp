@@ -1,5 +1,5 @@
-// Laps among parked cars: simulator, course, localiser and planner, each a process or all composed in one.
-// What they publish is recorded and read back.
+// Laps among parked cars: simulator, localiser and planner, each a process or all composed in one.
+// Their messages are recorded and read back.
 //
 // usage: race_test processes|composed [LAPS [OBSTACLES]]
 #include <cmath>
@@ -32,7 +32,6 @@ void record_all(Recording& recording) {
   recording.add("laps", "std_msgs/msg/Int32", rclcpp::QoS(10));
   recording.add("mppi/eval_metrics", "slalom_msgs/msg/PlannerMetrics", rclcpp::QoS(10));
   recording.add("map", "nav_msgs/msg/OccupancyGrid", latched);
-  recording.add("reference_waypoint", "slalom_msgs/msg/Waypoints", latched);
   recording.add("reference_path", "nav_msgs/msg/Path", latched);
   recording.add("obstacles", "visualization_msgs/msg/MarkerArray", latched);
   recording.add("planner_markers", "visualization_msgs/msg/MarkerArray", rclcpp::QoS(10));
@@ -87,8 +86,7 @@ void check_diagnostics(const Client& client) {
                                     {"planner: plans", "latency from scan to command, p50, ms"},
                                     {"planner: plans", "latency from scan to command, p99, ms"},
                                     {"localiser: localisation", "health"},
-                                    {"world: simulated car", "laps"},
-                                    {"track: course", "waypoints"}}) {
+                                    {"world: simulated car", "laps"}}) {
     const auto found = client.diagnostics.find(status);
     expect(found != client.diagnostics.end() && found->second.count(key) > 0,
            std::string("diagnostics have ") + status + ", " + key);
@@ -105,9 +103,8 @@ void test(int argc, char** argv) {
   record_all(recording);
   Nodes nodes(place_of(argv[1]));
   nodes.start("world", "world", {"autostart:=true", "course:=wren", "obstacles:=" + obstacles});
-  nodes.start("track", "track", {"autostart:=true", "course:=wren"});
-  nodes.start("localiser", "localiser", {"autostart:=true", "everywhere:=true"});
-  nodes.start("planner", "planner", {"autostart:=true", "planner.max_speed:=100.0"});
+  nodes.start("localiser", "localiser", {"autostart:=true", "course:=wren", "everywhere:=true"});
+  nodes.start("planner", "planner", {"autostart:=true", "course:=wren", "planner.max_speed:=100.0"});
   client.wait(
       "the car drives", [&] { return client.drives(); }, 60);
   client.wait(
@@ -119,7 +116,7 @@ void test(int argc, char** argv) {
       },
       90.0 * laps);
   expect(last_number<std_msgs::msg::Int32>(recording, "contacts") == 0, "no contacts");
-  for (const char* topic : {"map", "reference_waypoint", "reference_path", "obstacles", "planner_markers"})
+  for (const char* topic : {"map", "reference_path", "obstacles", "planner_markers"})
     expect(recording.count(topic) > 0, std::string("something on ") + topic);
   expect(recording.count("mppi/eval_metrics") > recording.count("scan") / 2, "plans for most scans");
   check_stamps(recording);

@@ -41,7 +41,8 @@ concept Task = requires(const T& task, const mjModel& model, const mjData& data)
   task.terminal_cost(model, data);
 };
 
-/// How many control sequences were simulated, and how many of them led to a simulation that is not valid.
+/// The number of control sequences that were simulated, and of those among them that led to a simulation that
+/// is not valid.
 struct RolloutCount {
   long simulated = 0;  ///< all
   long invalid = 0;    ///< those that diverged, or whose contacts or constraints did not fit into the memory
@@ -85,7 +86,7 @@ class Evaluator final : public BatchEvaluator {
       mujoco::State<T::positions, T::velocities, detail::activations_of<T>()>;  ///< state of the model
   static constexpr int input_count = T::inputs;                                 ///< inputs per step
 
-  /// The facts about the inputs that a controller needs.
+  /// The properties of the inputs that a controller needs.
   struct Inputs {
     static constexpr int inputs = T::inputs;    ///< inputs per step
     std::array<double, T::inputs> input_min{};  ///< lower bounds
@@ -126,7 +127,7 @@ class Evaluator final : public BatchEvaluator {
     return all;
   }
 
-  /// Where the next sequences start.
+  /// Sets the start of the next sequences.
   void set_state(const State& state) noexcept { state_ = state; }
 
   int inputs() const noexcept override { return T::inputs; }
@@ -156,7 +157,7 @@ class Evaluator final : public BatchEvaluator {
   }
 
  private:
-  /// The data that one thread overwrites in every rollout.
+  /// The memory that one thread overwrites in every rollout.
   struct Worker {
     Simulation simulation;
     RolloutCount rollouts;

@@ -24,9 +24,9 @@ class Model {
   /// The index of a named element, for instance id(mjOBJ_BODY, "torso"). Throws std::invalid_argument, which
   /// names the file and the element, if there is none.
   int id(mjtObj type, const std::string& name) const;
-  /// The index of a named element in what states hold: where the positions or velocities of a joint start.
+  /// The index at which the positions of a joint start.
   int position_of(const std::string& joint) const { return model_->jnt_qposadr[id(mjOBJ_JOINT, joint)]; }
-  /// As `position_of`, in the velocities.
+  /// The index at which the velocities of a joint start.
   int velocity_of(const std::string& joint) const { return model_->jnt_dofadr[id(mjOBJ_JOINT, joint)]; }
 
  private:

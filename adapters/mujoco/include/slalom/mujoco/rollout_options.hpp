@@ -4,7 +4,7 @@
 
 namespace slalom::mujoco {
 
-/// How a model is rolled out.
+/// Options of the rollouts of a model.
 /// `visit_options` below describes the fields.
 struct RolloutOptions {
   int physics_steps = 1;

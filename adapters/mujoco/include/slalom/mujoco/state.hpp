@@ -5,7 +5,7 @@
 namespace slalom::mujoco {
 
 /// The state of a MuJoCo model with as many positions (nq), velocities (nv) and activations (na): together
-/// with the inputs it determines what happens next.
+/// with the inputs it determines the next states.
 template <int Positions, int Velocities, int Activations = 0>
 struct State {
   static constexpr int size = Positions + Velocities + Activations;  ///< values beside the time

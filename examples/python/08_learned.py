@@ -1,6 +1,6 @@
 """A boat holds its place in a river whose current and drag nobody has modelled: a network learns them from recorded trips.
 
-With a second argument, writes the network to that file: examples/learned/boat.npz, which 12_learned.cpp reads.
+With a second argument, writes the network to that file: examples/learned/boat.npz, which 08_learned.cpp reads.
 """
 
 import sys

@@ -55,7 +55,7 @@ struct Chase {
   }
 };
 
-/// Where the goal is at a time (s), and how it moves: to and fro in 8 s, on both sides of the disc.
+/// Moves the goal to its place at a time (s): it goes to and fro in 8 s, on both sides of the disc.
 void move_goal(Chase::State<double>& s, double time) {
   const double turning = 2 * std::numbers::pi / 8;  // rad/s
   const double cosine = std::cos(turning * time), sine = std::sin(turning * time);

@@ -1,5 +1,5 @@
 // A boat holds its place in a river whose current and drag nobody has modelled. A network has learned them
-// from recorded trips: examples/python/12_learned.py trains it and writes examples/learned/boat.npz.
+// from recorded trips: examples/python/08_learned.py trains it and writes examples/learned/boat.npz.
 
 #include <algorithm>
 #include <array>
