@@ -10,7 +10,7 @@ def succeeded(run):
 
 
 def report(what, mppi, svg_mppi, required, compare=False):
-    """`required` of 20."""
+    """Prints the figures and fails unless svg_mppi succeeds for `required` of 20 seeds."""
     print(f"{what}: mppi {mppi} of {SEEDS} seeds, svg_mppi {svg_mppi} of {SEEDS}")
     if svg_mppi < required * SEEDS / 20 or (compare and svg_mppi < mppi):
         sys.exit(1)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Each package.xml of the ROS adapters is one that catkin and ament take.
+"""Checks that ament takes each package.xml of the ROS 2 packages.
 
 usage: package_files_test.py FILE...
 

@@ -1,4 +1,4 @@
-"""Checks what script/sbom writes for a build: its form, and libraries that the program is known to use.
+"""Checks the output of script/sbom for a build: its form, and libraries that the program is known to use.
 
   bill_of_materials_test.py SCRIPT BUILD
 """

@@ -13,7 +13,7 @@ def readelf(option, file):
 
 
 def faults(file):
-    """What is wrong with a program or shared library."""
+    """The faults of a program or shared library."""
     segments, dynamic, symbols = (readelf(option, file) for option in ("-l", "-d", "--dyn-syms"))
     stack = re.search(r"GNU_STACK.* (R\S*) +0x", segments)
     if not stack or "E" in stack[1]:

@@ -31,7 +31,7 @@ def split(text):
 
 
 def translate(kind, argument):
-    """The type of pybind11's signature as one of an argument or of a result."""
+    """The Python type for a type in a signature of pybind11, of an argument or of a result."""
     kind = re.sub(r"(slalom\.)?(_slalom|_driving)\.", "", kind)
     if kind.startswith("numpy.ndarray") or kind.startswith("List[") and argument:
         return "ArrayLike" if argument else "NDArray[Any]"

@@ -1,4 +1,4 @@
-"""The loops that docs/comparison.md compares with compute what `mppi` computes: the same samples give the same plan."""
+"""The loops of docs/comparison.md compute the same as `mppi`: the same samples give the same plan."""
 
 import os
 import sys

@@ -37,7 +37,7 @@ class LocaliserCore {
         start;  ///< pose of the base frame; otherwise the start of the course, or everywhere
     std::optional<KnownPlace> earlier;  ///< last place of the base frame by an earlier node; comes first
     int trust_scans = 10;               ///< see PoseTrust
-    double trust_health = 0.7;          ///< likewise
+    double trust_health = 0.7;          ///< see PoseTrust
     double transform_tolerance = 0.1;   ///< s, how far the stamps of transforms are in the future
     double rear_axle = 0;               ///< m, x of the middle of the rear axle in the base frame
     WatchLimits limits;
@@ -49,7 +49,7 @@ class LocaliserCore {
     std::function<void(const maps::Pose& base, const vehicle::LocaliserOutput& estimate, Stamp scan)> pose;
     /// The pose of the odometry frame in the map frame, with the stamp to publish it with.
     std::function<void(const maps::Pose& odometry_frame, Stamp stamp)> transform;
-    std::function<void(const maps::OccupancyGrid&)> map;   ///< that of the course, once
+    std::function<void(const maps::OccupancyGrid&)> map;   ///< the map of the course, once
     std::function<void(const std::string&)> warn, inform;  ///< the log
   };
 
@@ -108,7 +108,7 @@ class LocaliserCore {
   std::size_t oldest_ = 0, count_ = 0;       ///< oldest entry and number of entries of `odometry_`
   Stamp last_scan_ = 0;
   std::optional<maps::Pose> course_start_;  ///< pose of the rear axle
-  std::optional<KnownPlace> known_;         ///< likewise
+  std::optional<KnownPlace> known_;         ///< the last reliable place of the rear axle
   vehicle::LocaliserOutput estimate_;
   double slowest_ = 0;  ///< s, since the last report
 };

@@ -10,7 +10,7 @@ struct ImportedKey {
   enum class Fate { taken, changed, dropped, unknown };
   int line = 0;       ///< from 1, of the key
   std::string key;    ///< below the section, with dots between sections
-  std::string value;  ///< as it was; only a description if it is a list or a map
+  std::string value;  ///< value in the file; only a description if it is a list or a map
   Fate fate = Fate::taken;
   std::string result;  ///< name and value here, where it was changed
   std::string why;     ///< in a few words, unless it was taken
@@ -22,7 +22,7 @@ const char* name(ImportedKey::Fate fate);
 struct ImportedSection {
   std::string name;
   int line = 0;      ///< from 1, of its name
-  std::string yaml;  ///< the same section for slalom_nav2::Controller
+  std::string yaml;  ///< section for slalom_nav2::Controller
   std::vector<ImportedKey> keys;
 };
 

@@ -1,4 +1,4 @@
-"""Records everything that goes in and comes out of the nodes.
+"""Records all topics of the nodes.
 
     ros2 launch slalom_ros record.launch.py file:=/tmp/first
 """

@@ -93,7 +93,7 @@ class Client {
     return "";
   }
   rclcpp::Node::SharedPtr node;
-  double speed = 0, commanded_at = 0;  ///< of the last command: m/s; s, steady
+  double speed = 0, commanded_at = 0;  ///< speed (m/s) and time (s, steady clock) of the last command
   std::map<std::string, std::map<std::string, std::string>> diagnostics;  ///< by status and key
 
  private:
