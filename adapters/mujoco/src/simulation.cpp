@@ -59,6 +59,10 @@ Simulation::Simulation(const Model& model) : model_(model) {
   forget_warnings(*data_);
 }
 
+Simulation::Simulation(const Simulation& other) : Simulation(other.model_) {
+  mj_copyData(data_.get(), &model_.get(), other.data_.get());
+}
+
 void Simulation::restart(double time, const double* state) noexcept {
   const mjModel& m = model_.get();
   mjData& d = *data_;

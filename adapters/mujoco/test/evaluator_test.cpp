@@ -132,6 +132,17 @@ TEST_F(ModelTest, ASolveAllocatesNothingAndGivesTheSamePlanOnAnyNumberOfThreads)
   mju_user_malloc = nullptr;
 }
 
+TEST_F(ModelTest, ACopyOfAControllerGoesOnWithTheSameBits) {
+  Controller controller{Evaluator{load(ball()), Reach{}, {.physics_steps = 5, .threads = 2}},
+                        SvgMppiOptions{.horizon = 20, .samples = 64}};
+  controller.solve({}, {.elapsed = 0.01});
+  Controller copy = controller;
+  for (int solve = 0; solve < 3; ++solve) {
+    const auto plan = controller.solve({}, {.elapsed = 0.01}), same = copy.solve({}, {.elapsed = 0.01});
+    for (std::size_t k = 0; k < plan.inputs.size(); ++k) ASSERT_EQ(plan.inputs[k][0], same.inputs[k][0]);
+  }
+}
+
 /// Expects that sequence 1 of 3 has an infinite cost and collides, and that those beside it are as if alone.
 void expect_second_invalid(const Model& model, float input) {
   const SequenceBatch quiet = some_inputs(3, 0);

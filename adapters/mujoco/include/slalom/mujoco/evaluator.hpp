@@ -78,7 +78,8 @@ std::pair<double, double> input_range(const Model& model, int input);
 ///
 /// The inputs are the model's `ctrl`, within its `ctrlrange`. A rollout ends where the simulation is no
 /// longer valid (simulation.hpp): it collides, and its cost is infinite. Every rollout starts without a warm
-/// start, so the same seed gives the same plan on any number of threads.
+/// start, so the same seed gives the same plan on any number of threads. A copy has simulations of its own
+/// and shares the threads.
 template <Task T>
 class Evaluator final : public BatchEvaluator {
  public:
@@ -208,7 +209,7 @@ class Evaluator final : public BatchEvaluator {
   Inputs inputs_;
   State state_;
   mutable std::vector<Worker> workers_;  ///< one for each thread
-  std::unique_ptr<ThreadPool> pool_;
+  std::shared_ptr<ThreadPool> pool_;     ///< shared by copies
 };
 
 }  // namespace slalom::mujoco

@@ -3,6 +3,7 @@
 #include <mujoco/mujoco.h>
 
 #include <memory>
+#include <utility>
 
 #include "slalom/mujoco/model.hpp"
 
@@ -16,6 +17,15 @@ class Simulation {
   /// of errors (`mju_user_error`) is one that returns to the call that failed; an error outside such a call
   /// reaches the handler before it.
   explicit Simulation(const Model& model);
+  /// Makes a simulation in the same state. Throws std::bad_alloc.
+  Simulation(const Simulation& other);
+  Simulation(Simulation&&) noexcept = default;
+  /// Copies or moves.
+  Simulation& operator=(Simulation other) noexcept {
+    model_ = std::move(other.model_);
+    data_ = std::move(other.data_);
+    return *this;
+  }
 
   /// The simulation as MuJoCo has it.
   const mjData& data() const noexcept { return *data_; }
