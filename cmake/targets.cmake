@@ -47,9 +47,9 @@ function(slalom_compile_options target)
   endif()
 endfunction()
 
-# Source files of the current folder that hold kernels: these read no input, and the check of the stack would take 1.5 %
-# of a solve. Fuzzers do not follow them: to instrument what was compiled for every instruction set takes half an hour.
-function(slalom_set_kernel_sources)
+# Options of code that holds kernels: it reads no input, and the check of the stack would take 1.5 % of a solve. Fuzzers do
+# not follow it: to instrument code that is compiled for every instruction set takes half an hour.
+function(slalom_kernel_options variable)
   set(options -fno-stack-protector)
   if(SLALOM_SANITIZE MATCHES fuzzer)
     list(APPEND options -fno-sanitize=all)
@@ -61,6 +61,11 @@ function(slalom_set_kernel_sources)
       list(APPEND options "SHELL:-mllvm -asan-stack=0")
     endif()
   endif()
+  set(${variable} "${options}" PARENT_SCOPE)
+endfunction()
+# Source files of the current folder that hold kernels.
+function(slalom_set_kernel_sources)
+  slalom_kernel_options(options)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "${options}")
 endfunction()
 

@@ -13,14 +13,14 @@ namespace slalom {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// The double integrator with a limit of its input's rate.
 struct RateLimited : testing::DoubleIntegrator {
   double input_rate_max = 0.5;  // 1/s
 };
 
-const RateLimited::State<double> start{1, 0};
+const RateLimited::State<double> at_rest{1, 0};
 
 /// Checks a plan of one input against its bounds and its rate; `previous` was applied before it.
 template <class Plan>
@@ -39,36 +39,36 @@ void expect_valid(const Plan& plan, double low, double high, double reach, doubl
 
 TEST(FinalCheck, ARateLimitStartsFromWithinTheBounds) {
   Mppi controller{RateLimited{}, {.horizon = 10, .samples = 64, .input_min = 0.5, .input_max = 1}};
-  expect_valid(controller.solve(start), 0.5, 1, 0.05, 0.5);
+  expect_valid(controller.solve(at_rest), 0.5, 1, 0.05, 0.5);
 }
 
 TEST(FinalCheck, APreviousInputOutsideTheBoundsIsMovedIntoThem) {
   Mppi controller{RateLimited{}, {.horizon = 10, .samples = 64, .input_min = 0.5, .input_max = 1}};
   controller.set_previous_input({{5}});
-  expect_valid(controller.solve(start), 0.5, 1, 0.05, 1);
+  expect_valid(controller.solve(at_rest), 0.5, 1, 0.05, 1);
   controller.set_previous_input({{-infinite}});
-  const auto plan = controller.solve(start);
+  const auto plan = controller.solve(at_rest);
   expect_valid(plan, 0.5, 1, 1, plan.inputs[0][0]);
 }
 
 TEST(FinalCheck, IgnoresAPreviousInputThatIsNotANumber) {
   Mppi controller{RateLimited{}, {.horizon = 10, .samples = 64, .input_min = 0.5, .input_max = 1}};
-  const double before = controller.solve(start).inputs[0][0];
-  controller.set_previous_input({{nan}});
-  const auto plan = controller.solve(start);
+  const double before = controller.solve(at_rest).inputs[0][0];
+  controller.set_previous_input({{not_a_number}});
+  const auto plan = controller.solve(at_rest);
   expect_valid(plan, 0.5, 1, 0.05, before);
   EXPECT_GT(plan.corrections, 0);
-  EXPECT_EQ(controller.solve(start).corrections, 0);
+  EXPECT_EQ(controller.solve(at_rest).corrections, 0);
 }
 
 TEST(FinalCheck, TheAnswerBeforeTheFirstSolveIsWithinTheBounds) {
   Mppi controller{RateLimited{}, {.horizon = 4, .samples = 64, .input_min = 0.5, .input_max = 1}};
-  const auto plan = controller.solve({nan, 0});
+  const auto plan = controller.solve({not_a_number, 0});
   EXPECT_EQ(plan.status, Status::non_finite_state);
   expect_valid(plan, 0.5, 1, 0, 0.5);
-  controller.solve(start);
+  controller.solve(at_rest);
   controller.reset(1);
-  expect_valid(controller.solve({nan, 0}), 0.5, 1, 0, 0.5);
+  expect_valid(controller.solve({not_a_number, 0}), 0.5, 1, 0, 0.5);
 }
 
 TEST(FinalCheck, ASolverOfOnesOwnIsHeldWithinTheProblemsBounds) {
@@ -90,16 +90,16 @@ TEST(FinalCheck, ACostThatIsNotFiniteIsNotOk) {
     EXPECT_EQ(plan.status, Status::degenerate) << far;
     expect_valid(plan, -1, 1, 2, plan.inputs[0][0]);
   }
-  EXPECT_EQ(controller.solve(start).status, Status::ok);
+  EXPECT_EQ(controller.solve(at_rest).status, Status::ok);
 }
 
 TEST(FinalCheck, AParameterThatChangesToNonsenseStopsTheInputs) {
   Mppi controller{RateLimited{}, {.horizon = 8, .samples = 64, .input_min = -1, .input_max = 1}};
-  const double before = controller.solve(start).inputs[0][0];
-  for (const double rate : {nan, -1.0, -infinite}) {
+  const double before = controller.solve(at_rest).inputs[0][0];
+  for (const double rate : {not_a_number, -1.0, -infinite}) {
     controller.problem().input_rate_max = rate;
     controller.set_previous_input({{before}});
-    expect_valid(controller.solve(start), -1, 1, 0, before);
+    expect_valid(controller.solve(at_rest), -1, 1, 0, before);
   }
 }
 
@@ -125,7 +125,7 @@ TEST(FinalCheck, RejectsBoundsThatNoInputCanKeep) {
       EXPECT_NE(error(-far, 1).find("input_min: "), std::string::npos) << method << far;
       EXPECT_NE(error(-1, far).find("input_max: "), std::string::npos) << method << far;
     }
-    EXPECT_NE(error(nan, 1), "") << method;
+    EXPECT_NE(error(not_a_number, 1), "") << method;
     EXPECT_NE(error(infinite, infinite), "") << method;
     EXPECT_NE(error(-infinite, -infinite), "") << method;
     EXPECT_EQ(error(-infinite, infinite), "") << method;
@@ -140,13 +140,13 @@ TEST(FinalCheck, WhatAProblemSaysOfItsInputsIsValidated) {
   };
   const auto error = [&](const Bounded& problem) { return error_of([&] { Mppi controller(problem, {}); }); };
   EXPECT_EQ(error({}), "");
-  EXPECT_NE(error({{}, nan, 1, 1}).find("problem.input_min: nan"), std::string::npos);
-  EXPECT_NE(error({{}, -1, nan, 1}).find("problem.input_max: nan"), std::string::npos);
+  EXPECT_NE(error({{}, not_a_number, 1, 1}).find("problem.input_min: nan"), std::string::npos);
+  EXPECT_NE(error({{}, -1, not_a_number, 1}).find("problem.input_max: nan"), std::string::npos);
   EXPECT_NE(error({{}, 2, 1, 1}).find("input_min: 2 must be at most input_max, 1"), std::string::npos);
-  EXPECT_NE(error({{}, -1, 1, nan}).find("problem.input_rate_max: nan"), std::string::npos);
+  EXPECT_NE(error({{}, -1, 1, not_a_number}).find("problem.input_rate_max: nan"), std::string::npos);
   EXPECT_NE(error({{}, -1, 1, -2}).find("problem.input_rate_max: -2"), std::string::npos);
   EXPECT_EQ(error({{}, -1, 1, 0}), "");
-  EXPECT_NE(error({{.dt = nan}, -1, 1, 1}).find("problem: duration of a step"), std::string::npos);
+  EXPECT_NE(error({{.dt = not_a_number}, -1, 1, 1}).find("problem: duration of a step"), std::string::npos);
   EXPECT_NE(error({{.dt = -0.1}, -1, 1, 1}).find("problem: duration of a step"), std::string::npos);
 }
 

@@ -67,7 +67,6 @@ inline std::vector<OptionSet> option_sets() {
   sets.push_back({"mppi_tsallis_elite", MppiOptions{.weighting = {.tsallis_index = 0.5}}});
   sets.push_back({"mppi_tsallis_heavy", MppiOptions{.weighting = {.tsallis_index = 1.3}}});
   sets.push_back({"mppi_target_ess_fraction", MppiOptions{.weighting = {.target_ess_fraction = 0.03}}});
-  sets.push_back({"mppi_nominal_from_proposals", MppiOptions{.nominal_from_proposals = true}});
   sets.push_back({"mppi_smoothed", MppiOptions{.smoothing = {.half_width = 3, .degree = 2}}});
   sets.push_back(
       {"svg_mppi_all_parts", SvgMppiOptions{.noise = {.exponent = 1, .log_normal_spread = 0.3},

@@ -165,7 +165,6 @@ TEST_P(SolverContract, ControlTermDrawsTowardsTheNominal) {
     set_if_any(o, "temperature", 1);
     set_if_any(o, "control_cost_discount", 0.5);
     set_if_any(o, "use_nominal", false);
-    set_if_any(o, "nominal_from_proposals", false);
     set_if_any(o, "adapt_covariance", false);
     set_if_any(o, "reject_samples", false);
   });

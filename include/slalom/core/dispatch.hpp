@@ -1,5 +1,7 @@
 #pragma once
 
+#include <stdexcept>
+
 #include "slalom/core/simd_operations.hpp"
 
 /// The one mechanism by which batch loops run at the full width of the processor.
@@ -67,11 +69,17 @@ using FunctionsOf = decltype(functions_of<Kernel>(&Kernel::template run<Generic>
 template <class Kernel>
 using KernelPointer = typename detail::FunctionsOf<Kernel>::Pointer;
 
-/// A kernel's function for an instruction set, which the processor has to support.
+/// A kernel's function for an instruction set, which the processor has to support. Code that is compiled with
+/// SLALOM_ONLY_TARGET (avx512, avx2, sse4 or generic) has kernels for that instruction set alone, which takes
+/// a fraction of the time, and throws std::logic_error for another one: for tests.
 template <class Kernel>
-KernelPointer<Kernel> kernel(Target target) noexcept {
+KernelPointer<Kernel> kernel(Target target) {
   using Functions = detail::FunctionsOf<Kernel>;
-#if SLALOM_X86
+#if defined(SLALOM_ONLY_TARGET)
+  if (target != Target::SLALOM_ONLY_TARGET)
+    throw std::logic_error("this program has kernels for one instruction set alone");
+  return Functions::SLALOM_ONLY_TARGET;
+#elif SLALOM_X86
   switch (target) {
     case Target::avx512:
       return Functions::avx512;
@@ -82,10 +90,11 @@ KernelPointer<Kernel> kernel(Target target) noexcept {
     case Target::generic:
       break;
   }
+  return Functions::generic;
 #else
   static_cast<void>(target);
-#endif
   return Functions::generic;
+#endif
 }
 
 /// A kernel's function for `active_target()`, chosen at the first call. Throws as `active_target()` does.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "slalom/core/final_check.hpp"
+#include "slalom/core/polymorphic.hpp"
 
 namespace slalom {
 
@@ -42,6 +43,11 @@ class FeedbackGains {
   /// Throws std::invalid_argument unless all numbers are at least 1 and there are bounds for each input, the
   /// lower ones at most the upper ones.
   FeedbackGains(int states, int inputs, int steps, const InputBounds& bounds);
+  FeedbackGains(const FeedbackGains&);
+  FeedbackGains(FeedbackGains&&) noexcept;
+  FeedbackGains& operator=(const FeedbackGains&);
+  FeedbackGains& operator=(FeedbackGains&&) noexcept;
+  ~FeedbackGains();
 
   int states() const noexcept { return states_; }  ///< scalars of a state
   int inputs() const noexcept { return inputs_; }  ///< inputs of a step
@@ -89,11 +95,10 @@ class FeedbackGains {
   bool recurse(bool change_inputs, double damping) noexcept;
   void begin_step(int k) noexcept;
   int choose_free_inputs(int k) noexcept;
-  bool factorise_free(int& free, double damping) noexcept;
-  bool solve_change(int k, int& free, double damping) noexcept;
-  bool solve_gain(int k, int free) noexcept;
+  bool solve_inputs(int k, bool change_inputs, double damping) noexcept;
   void end_step(int k) noexcept;
-  void make_semidefinite(std::span<double> matrix, int size) noexcept;
+
+  struct Workspace;
 
   int states_, inputs_, steps_;
   InputBounds bounds_;
@@ -101,11 +106,9 @@ class FeedbackGains {
   double linear_ = 0, quadratic_ = 0;              ///< terms of the expected change of the cost
   std::vector<double> plan_states_, plan_inputs_;  ///< [steps + 1][states], [steps][inputs]
   std::vector<double> jacobians_, gradients_, hessians_, gains_;  ///< values of all steps
-  std::vector<double> value_, value_gradient_;                    ///< cost to go: Hessian and gradient
-  std::vector<double> hessian_, gradient_;          ///< derivatives of the cost-to-go by state and inputs
-  std::vector<double> changes_;                     ///< [steps][inputs]
-  std::vector<double> product_, matrix_, vectors_;  ///< working memory
-  std::vector<int> free_;                           ///< inputs that may move
+  std::vector<double> changes_;                                   ///< [steps][inputs]
+  std::vector<int> free_;                                         ///< inputs that may move
+  Polymorphic<Workspace> workspace_;
 };
 
 }  // namespace slalom

@@ -27,8 +27,6 @@ struct MppiOptions {
   double control_cost_discount = 0;
   double zero_mean_share = 0;
   bool shift_warm_start = true;
-  /// The best is the nominal sequence, too, so that there is no control term.
-  bool nominal_from_proposals = false;
   std::uint64_t seed = 0;
   int threads = 1;
   PublishedMppi published{};  ///< only to reproduce the program of proj-svg_mppi
@@ -42,9 +40,6 @@ void visit_options(Options& o, Visit&& visit) {
   detail::visit_weighting_options(o.weighting, visit);
   detail::visit_smoothing_options(o.smoothing, visit);
   detail::visit_control_cost_options(o, visit);
-  visit(o.nominal_from_proposals, {"nominal_from_proposals", "",
-                                   "draw the samples around the best of the proposals and the last solution; "
-                                   "otherwise proposals are samples"});
   visit_run_options(o, visit);
   visit_options(o.published, visit);
 }

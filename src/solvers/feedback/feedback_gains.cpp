@@ -1,5 +1,7 @@
 #include "slalom/solvers/feedback_gains.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -8,13 +10,11 @@
 #include "slalom/core/option_access.hpp"
 #include "slalom/solvers/differentiable_problem.hpp"
 #include "solvers/all_finite.hpp"
-#include "solvers/feedback/symmetric_matrix.hpp"
 
 namespace slalom {
 namespace {
 
 using detail::all_finite;
-using detail::SquareMatrix;
 
 std::size_t count(int a, int b = 1, int c = 1) {
   return static_cast<std::size_t>(a) * static_cast<std::size_t>(b) * static_cast<std::size_t>(c);
@@ -27,7 +27,54 @@ std::span<double> part(std::vector<double>& all, int index, std::size_t size) {
 /// Added to the diagonal of a matrix that may be singular, relative to its largest entry there.
 constexpr double ridge = 1e-10;
 
+// Views of vectors, and a factor in place: nothing allocates. Nor do lazy products.
+using Map = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
+using Vector = Eigen::Map<Eigen::VectorXd>;
+using Cholesky = Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>;
+
+/// Replaces a symmetric matrix by the nearest positive semidefinite one: negative eigenvalues become 0.
+/// `work` is of the same size.
+void make_semidefinite(Map a, Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>& eigen, Eigen::MatrixXd& work) {
+  const double largest = a.diagonal().cwiseAbs().maxCoeff();
+  work = 0.5 * (a + a.transpose());
+  work.diagonal().array() += ridge * largest;
+  if (Cholesky(work).info() == Eigen::Success) return;
+  work = 0.5 * (a + a.transpose());
+  eigen.compute(work);
+  a = (eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal())
+          .lazyProduct(eigen.eigenvectors().transpose());
+}
+
 }  // namespace
+
+/// Matrices of the recursion, in double; n states, m inputs.
+struct FeedbackGains::Workspace {
+  Workspace(int n, int m)
+      : value(n, n),
+        hessian(n + m, n + m),
+        product(n, n + m),
+        of_states(n, n),
+        of_all(n + m, n + m),
+        inputs_gain(m, n),
+        quu(m, m),
+        qux(m, n),
+        value_gradient(n),
+        gradient(n + m),
+        inputs_change(m),
+        solution(m),
+        eigen_of_states(n),
+        eigen_of_all(n + m) {}
+  std::unique_ptr<Workspace> clone() const { return std::make_unique<Workspace>(*this); }
+
+  Eigen::MatrixXd value;                       ///< Hessian of the cost to go, by the state
+  Eigen::MatrixXd hessian;                     ///< of the cost to go, by state and inputs
+  Eigen::MatrixXd product, of_states, of_all;  ///< working memory
+  Eigen::MatrixXd inputs_gain;                 ///< Quu K
+  Eigen::MatrixXd quu, qux;                    ///< for the free inputs
+  Eigen::VectorXd value_gradient, gradient;    ///< of `value` and `hessian`
+  Eigen::VectorXd inputs_change, solution;     ///< Quu times the change; the change of the free inputs
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_of_states, eigen_of_all;
+};
 
 FeedbackGains::FeedbackGains(int states, int inputs, int steps, const InputBounds& bounds)
     : states_(states), inputs_(inputs), steps_(steps), bounds_(bounds) {
@@ -57,15 +104,15 @@ FeedbackGains::FeedbackGains(int states, int inputs, int steps, const InputBound
   hessians_.resize(count(steps, all, all) + count(states, states));
   gains_.resize(count(steps, inputs, states));
   changes_.resize(count(steps, inputs));
-  value_.resize(count(states, states));
-  value_gradient_.resize(count(states));
-  hessian_.resize(count(all, all));
-  gradient_.resize(count(all));
-  product_.resize(count(states, all));
-  matrix_.resize(count(all, all));
-  vectors_.resize(count(all, all));
   free_.resize(count(inputs));
+  workspace_ = std::make_unique<Workspace>(states, inputs);
 }
+
+FeedbackGains::FeedbackGains(const FeedbackGains&) = default;
+FeedbackGains::FeedbackGains(FeedbackGains&&) noexcept = default;
+FeedbackGains& FeedbackGains::operator=(const FeedbackGains&) = default;
+FeedbackGains& FeedbackGains::operator=(FeedbackGains&&) noexcept = default;
+FeedbackGains::~FeedbackGains() = default;
 
 FeedbackGains::Step FeedbackGains::step(int k) noexcept {
   const int all = states_ + inputs_;
@@ -95,65 +142,33 @@ bool FeedbackGains::expand(DifferentiableProblem& problem) {
   return kink;
 }
 
-/// The nearest positive semidefinite matrix: negative eigenvalues become 0.
-void FeedbackGains::make_semidefinite(std::span<double> matrix, int size) noexcept {
-  const SquareMatrix a{matrix, size}, copy{std::span(matrix_).first(matrix.size()), size};
-  double largest = 0;
-  for (int i = 0; i < size; ++i) largest = std::max(largest, std::abs(a(i, i)));
-  const auto take = [&] {
-    for (int i = 0; i < size; ++i)
-      for (int j = 0; j < size; ++j) copy(i, j) = 0.5 * (a(i, j) + a(j, i));
-  };
-  take();
-  for (int i = 0; i < size; ++i) copy(i, i) += ridge * largest;
-  if (factorise(copy)) return;
-  take();
-  const SquareMatrix v{std::span(vectors_).first(matrix.size()), size};
-  diagonalise(copy, v);
-  for (int i = 0; i < size; ++i) {
-    for (int j = 0; j < size; ++j) {
-      a(i, j) = 0;
-      for (int k = 0; k < size; ++k) a(i, j) += v(i, k) * std::max(copy(k, k), 0.0) * v(j, k);
-    }
-  }
-}
-
 /// Hessian and gradient of the cost to go by state and inputs of step `k`: those of its stage cost plus those
 /// of the cost to go from the next state.
 void FeedbackGains::begin_step(int k) noexcept {
-  const int n = states_, all = states_ + inputs_;
+  const int n = states_, m = inputs_;
+  Workspace& w = *workspace_;
   const Step s = step(k);
-  make_semidefinite(s.hessian, all);
-  const auto jacobian = [&](int row, int column) {  // [A B]
-    return column < n ? s.state_jacobian[count(row, n) + count(column)]
-                      : s.input_jacobian[count(row, inputs_) + count(column - n)];
-  };
-  for (int row = 0; row < n; ++row) {
-    for (int column = 0; column < all; ++column) {
-      double sum = 0;
-      for (int i = 0; i < n; ++i) sum += value_[count(row, n) + count(i)] * jacobian(i, column);
-      product_[count(row, all) + count(column)] = sum;
-    }
-  }
-  for (int row = 0; row < all; ++row) {
-    for (int column = 0; column < all; ++column) {
-      double sum = s.hessian[count(row, all) + count(column)];
-      for (int i = 0; i < n; ++i) sum += jacobian(i, row) * product_[count(i, all) + count(column)];
-      hessian_[count(row, all) + count(column)] = sum;
-    }
-    double sum = s.gradient[count(row)];
-    for (int i = 0; i < n; ++i) sum += jacobian(i, row) * value_gradient_[count(i)];
-    gradient_[count(row)] = sum;
-  }
+  const Map stage(s.hessian.data(), n + m, n + m), a(s.state_jacobian.data(), n, n),
+      b(s.input_jacobian.data(), n, m);
+  make_semidefinite(stage, w.eigen_of_all, w.of_all);
+  w.product.leftCols(n) = w.value.lazyProduct(a);
+  w.product.rightCols(m) = w.value.lazyProduct(b);
+  w.hessian = stage;
+  w.hessian.topRows(n) += a.transpose().lazyProduct(w.product);
+  w.hessian.bottomRows(m) += b.transpose().lazyProduct(w.product);
+  w.gradient = Vector(s.gradient.data(), n + m);
+  w.gradient.head(n) += a.transpose().lazyProduct(w.value_gradient);
+  w.gradient.tail(m) += b.transpose().lazyProduct(w.value_gradient);
 }
 
-/// Lists the inputs that may move: all but those at a bound beyond which the cost would fall.
+/// Lists the inputs that may move: all but those at a bound beyond which the cost would fall. Returns their
+/// number.
 int FeedbackGains::choose_free_inputs(int k) noexcept {
   const std::span<const double> u = part(plan_inputs_, k, count(inputs_));
   int free = 0;
   for (int i = 0; i < inputs_; ++i) {
     const double low = bounds_.low[count(i)], high = bounds_.high[count(i)],
-                 slope = gradient_[count(states_ + i)];
+                 slope = workspace_->gradient[states_ + i];
     const auto near = [&](double bound) {  // the plan's inputs were computed in float32
       return std::isfinite(bound) && std::abs(u[count(i)] - bound) <= 1e-6 * (1 + std::abs(bound));
     };
@@ -163,117 +178,98 @@ int FeedbackGains::choose_free_inputs(int k) noexcept {
   return free;
 }
 
-/// The Cholesky factor of Quu for the free inputs, in `matrix_`. Returns false if there is none. If the cost
-/// does not depend on them, no input is free.
-bool FeedbackGains::factorise_free(int& free, double damping) noexcept {
-  const SquareMatrix h{hessian_, states_ + inputs_}, quu{std::span(matrix_).first(count(free, free)), free};
-  double largest = 0;
-  for (int i = 0; i < free; ++i) {
-    for (int j = 0; j < free; ++j) quu(i, j) = h(states_ + free_[count(i)], states_ + free_[count(j)]);
-    largest = std::max(largest, quu(i, i));
-  }
-  if (largest == 0) free = 0;
-  for (int i = 0; i < free; ++i) quu(i, i) += damping * quu(i, i) + ridge * largest;
-  return free == 0 || factorise(quu);
-}
-
-/// The change of the inputs -Quu^-1 Qu. Inputs that it would move out of their bounds end at them and are no
-/// longer free; then the others are solved for again.
-bool FeedbackGains::solve_change(int k, int& free, double damping) noexcept {
-  const SquareMatrix h{hessian_, states_ + inputs_};
-  const std::span<double> change = part(changes_, k, count(inputs_));
-  const std::span<const double> u = part(plan_inputs_, k, count(inputs_));
-  double* const solution = vectors_.data();
-  while (free > 0) {
-    if (!factorise_free(free, damping)) return false;
-    for (int i = 0; i < free; ++i) {
-      const int row = states_ + free_[count(i)];
-      solution[i] = -gradient_[count(row)];
-      for (int j = 0; j < inputs_; ++j) solution[i] -= h(row, states_ + j) * change[count(j)];
-    }
-    const SquareMatrix quu{std::span(matrix_).first(count(free, free)), free};
-    solve_factorised(quu, solution, 1);
-    int inside = 0;
-    for (int i = 0; i < free; ++i) {
-      const int input = free_[count(i)];
-      const double wanted = u[count(input)] + solution[i], nearest = bounds_.nearest(count(input), wanted);
-      if (!std::isfinite(wanted)) return false;
-      if (nearest == wanted) {
-        free_[count(inside++)] = input;
-      } else {
-        change[count(input)] = nearest - u[count(input)];
+/// Gain and, if wanted, change of the inputs of step `k`: K = -Quu^-1 Qux and -Quu^-1 Qu for the free inputs,
+/// 0 for the others. Inputs that the change would move out of their bounds end at them and are no longer
+/// free; then the others are solved for again. Returns false if there is no finite solution. If the cost does
+/// not depend on the free inputs, they get neither gain nor change.
+bool FeedbackGains::solve_inputs(int k, bool change_inputs, double damping) noexcept {
+  const int n = states_, m = inputs_;
+  Workspace& w = *workspace_;
+  const std::span<double> change = part(changes_, k, count(m));
+  const std::span<const double> u = part(plan_inputs_, k, count(m));
+  for (int free = choose_free_inputs(k); free > 0;) {
+    auto quu = w.quu.topLeftCorner(free, free);
+    for (int i = 0; i < free; ++i)
+      for (int j = 0; j < free; ++j) quu(i, j) = w.hessian(n + free_[count(i)], n + free_[count(j)]);
+    const double largest = quu.diagonal().maxCoeff();
+    if (!(largest > 0)) return true;
+    quu.diagonal().array() += damping * quu.diagonal().array() + ridge * largest;
+    const Cholesky factor(quu);
+    if (factor.info() != Eigen::Success) return false;
+    if (change_inputs) {
+      auto solution = w.solution.head(free);
+      for (int i = 0; i < free; ++i) {
+        const int row = n + free_[count(i)];
+        solution[i] = -w.gradient[row] - w.hessian.row(row).tail(m).dot(Vector(change.data(), m));
       }
+      factor.solveInPlace(solution);
+      int inside = 0;
+      for (int i = 0; i < free; ++i) {
+        const int input = free_[count(i)];
+        const double wanted = u[count(input)] + solution[i], nearest = bounds_.nearest(count(input), wanted);
+        if (!std::isfinite(wanted)) return false;
+        if (nearest == wanted) {
+          free_[count(inside++)] = input;
+        } else {
+          change[count(input)] = nearest - u[count(input)];
+        }
+      }
+      if (inside < free) {
+        free = inside;
+        continue;
+      }
+      for (int i = 0; i < free; ++i) change[count(free_[count(i)])] = solution[i];
     }
-    if (inside == free) break;
-    free = inside;
+    Map gain(part(gains_, k, count(m, n)).data(), m, n);
+    auto qux = w.qux.topRows(free);
+    for (int i = 0; i < free; ++i) qux.row(i) = -w.hessian.row(n + free_[count(i)]).head(n);
+    for (int column = 0; column < n; ++column) factor.solveInPlace(qux.col(column));
+    for (int i = 0; i < free; ++i) gain.row(free_[count(i)]) = qux.row(i);
+    return gain.allFinite();
   }
-  for (int i = 0; i < free; ++i) change[count(free_[count(i)])] = solution[i];
   return true;
-}
-
-/// K = -Quu^-1 Qux for the free inputs, whose Quu is factorised in `matrix_`, and 0 for the others.
-bool FeedbackGains::solve_gain(int k, int free) noexcept {
-  const int n = states_;
-  const SquareMatrix h{hessian_, n + inputs_}, quu{std::span(matrix_).first(count(free, free)), free};
-  const std::span<double> gain = part(gains_, k, count(inputs_, n));
-  for (int column = 0; column < n; ++column) {
-    double* const rhs = vectors_.data();
-    for (int i = 0; i < free; ++i) rhs[i] = -h(n + free_[count(i)], column);
-    solve_factorised(quu, rhs, 1);
-    for (int i = 0; i < free; ++i) gain[count(free_[count(i)], n) + count(column)] = rhs[i];
-  }
-  return all_finite(gain);
 }
 
 /// The cost to go from the states of step `k`, if the inputs change and follow the gain.
 void FeedbackGains::end_step(int k) noexcept {
   const int n = states_, m = inputs_;
-  const SquareMatrix h{hessian_, n + m};
-  const std::span<const double> gain = this->gain(k), change = this->change(k);
-  const auto at = [&](int input, int state) { return gain[count(input, n) + count(state)]; };
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      double sum = 0.5 * (h(i, j) + h(j, i));
-      for (int a = 0; a < m; ++a) {
-        sum += at(a, i) * h(n + a, j) + h(n + a, i) * at(a, j);
-        for (int b = 0; b < m; ++b) sum += at(a, i) * h(n + a, n + b) * at(b, j);
-      }
-      value_[count(i, n) + count(j)] = value_[count(j, n) + count(i)] = sum;
-    }
-    double sum = gradient_[count(i)];
-    for (int a = 0; a < m; ++a) {
-      double slope = h(n + a, i);
-      for (int b = 0; b < m; ++b) slope += at(b, i) * h(n + b, n + a);
-      sum += at(a, i) * gradient_[count(n + a)] + slope * change[count(a)];
-    }
-    value_gradient_[count(i)] = sum;
-  }
-  for (int a = 0; a < m; ++a) {
-    linear_ += change[count(a)] * gradient_[count(n + a)];
-    for (int b = 0; b < m; ++b) quadratic_ += change[count(a)] * h(n + a, n + b) * change[count(b)];
-  }
+  Workspace& w = *workspace_;
+  const Map gain(part(gains_, k, count(m, n)).data(), m, n);
+  const Vector change(part(changes_, k, count(m)).data(), m);
+  const auto qxx = w.hessian.topLeftCorner(n, n);
+  const auto qux = w.hessian.bottomLeftCorner(m, n);
+  const auto quu = w.hessian.bottomRightCorner(m, m);
+  w.inputs_gain = quu.lazyProduct(gain);
+  w.inputs_change = quu.lazyProduct(change);
+  w.value = 0.5 * (qxx + qxx.transpose());
+  w.value += gain.transpose().lazyProduct(qux);
+  w.value += qux.transpose().lazyProduct(gain);
+  w.value += gain.transpose().lazyProduct(w.inputs_gain);
+  w.value.triangularView<Eigen::StrictlyUpper>() = w.value.transpose();
+  w.value_gradient = w.gradient.head(n);
+  w.value_gradient += gain.transpose().lazyProduct(w.gradient.tail(m) + w.inputs_change);
+  w.value_gradient += qux.transpose().lazyProduct(change);
+  linear_ += change.dot(w.gradient.tail(m));
+  quadratic_ += change.dot(w.inputs_change);
 }
 
 /// The recursion from the end of the plan to its start, with or without changes of the inputs.
 bool FeedbackGains::recurse(bool change_inputs, double damping) noexcept {
+  Workspace& w = *workspace_;
   linear_ = quadratic_ = 0;
   std::fill(gains_.begin(), gains_.end(), 0.0);
   std::fill(changes_.begin(), changes_.end(), 0.0);
   bool valid = all_finite(jacobians_) && all_finite(gradients_) && all_finite(hessians_);
   if (valid) {
     const Terminal end = terminal();
-    make_semidefinite(end.hessian, states_);
-    std::copy(end.hessian.begin(), end.hessian.end(), value_.begin());
-    std::copy(end.gradient.begin(), end.gradient.end(), value_gradient_.begin());
+    const Map hessian(end.hessian.data(), states_, states_);
+    make_semidefinite(hessian, w.eigen_of_states, w.of_states);
+    w.value = hessian;
+    w.value_gradient = Vector(end.gradient.data(), states_);
   }
   for (int k = steps_ - 1; valid && k >= 0; --k) {
     begin_step(k);
-    int free = choose_free_inputs(k);
-    valid = all_finite(hessian_) && all_finite(gradient_);
-    if (valid && free > 0) {
-      valid = (change_inputs ? solve_change(k, free, damping) : factorise_free(free, damping)) &&
-              solve_gain(k, free);
-    }
+    valid = w.hessian.allFinite() && w.gradient.allFinite() && solve_inputs(k, change_inputs, damping);
     if (valid) end_step(k);
   }
   if (valid) return true;

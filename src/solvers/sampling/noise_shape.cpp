@@ -1,5 +1,6 @@
 #include "solvers/sampling/noise_shape.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -7,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "solvers/feedback/symmetric_matrix.hpp"
 #include "solvers/kernels/kernels.hpp"
 
 namespace slalom::detail {
@@ -87,19 +87,14 @@ std::vector<double> coloured_correlation(double exponent, int steps) {
 std::vector<double> knot_weights(int steps, int knots) {
   const double distance = knots > 1 ? (steps - 1.0) / (knots - 1) : 1;
   const auto kernel = [](double a, double b) { return std::exp(-0.5 * (a - b) * (a - b)); };
-  std::vector<double> between(static_cast<std::size_t>(knots) * knots), weights;
-  for (int k = 0; k < knots; ++k)
-    for (int j = 0; j < knots; ++j) between[k * knots + j] = kernel(k, j);
-  const SquareMatrix factor{between, knots};
-  factorise(factor);
-  for (int t = 0; t < steps; ++t) {
-    std::vector<double> row;
-    for (int k = 0; k < knots; ++k) row.push_back(knots > 1 ? kernel(t / distance, k) : 1);
-    solve_factorised(factor, row.data(), 1);
-    const double length = std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0));
-    for (const double w : row) weights.push_back(w / length);
+  Eigen::MatrixXd between(knots, knots), to_steps(knots, steps);
+  for (int k = 0; k < knots; ++k) {
+    for (int j = 0; j < knots; ++j) between(k, j) = kernel(k, j);
+    for (int t = 0; t < steps; ++t) to_steps(k, t) = knots > 1 ? kernel(t / distance, k) : 1;
   }
-  return weights;
+  Eigen::MatrixXd weights = between.llt().solve(to_steps);
+  weights.colwise().normalize();
+  return {weights.data(), weights.data() + weights.size()};
 }
 
 NoiseShape::NoiseShape(const NoiseOptions& options, int steps, int inputs, int samples)
@@ -139,14 +134,9 @@ void NoiseShape::interpolate(int knots) {
   knots_ = knots;
   const std::vector<double> weights = knot_weights(steps_, knots);
   std::fill(factor_.begin(), factor_.end(), orthogonal_factor(weights, steps_, knots));
-  std::vector<double> gram(static_cast<std::size_t>(knots) * knots);
-  for (int t = 0; t < steps_; ++t)
-    for (int k = 0; k < knots; ++k)
-      for (int j = 0; j < knots; ++j) gram[k * knots + j] += weights[t * knots + k] * weights[t * knots + j];
-  const SquareMatrix factor{gram, knots};
-  factorise(factor);
-  projection_ = weights;
-  for (int t = 0; t < steps_; ++t) solve_factorised(factor, &projection_[t * knots], 1);
+  const Eigen::Map<const Eigen::MatrixXd> transposed(weights.data(), knots, steps_);
+  const Eigen::MatrixXd projection = (transposed * transposed.transpose()).llt().solve(transposed);
+  projection_.assign(projection.data(), projection.data() + projection.size());
 }
 
 void NoiseShape::apply(SequenceBatch& z, Range range, RandomKey key) noexcept {

@@ -1,9 +1,9 @@
 #include "solvers/sampling/spline.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "slalom/solvers/solver_base.hpp"
-#include "solvers/feedback/symmetric_matrix.hpp"
 
 namespace slalom::detail {
 
@@ -40,7 +40,7 @@ Spline::Spline(int steps, int points, int inputs)
       sequence_(steps * inputs),
       moved_(sequence_.size()) {
   const int intervals = points_ - count_ + 1;
-  std::vector<double> all(static_cast<std::size_t>(points_) * steps);  // W' [point][step]
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(points_, steps);  // W' [point][step]
   for (int t = 0; t < steps; ++t) {
     const double x = steps > 1 ? intervals * (t / (steps - 1.0)) : 0;
     first_[t] = std::min(static_cast<int>(x), intervals - 1);
@@ -48,17 +48,12 @@ Spline::Spline(int steps, int points, int inputs)
     basis(x, first_[t], intervals, count_ - 1, weights);
     for (int k = 0; k < count_; ++k) {
       weights_[t * count_ + k] = static_cast<float>(weights[k]);
-      all[(first_[t] + k) * steps + t] = weights[k];
+      all(first_[t] + k, t) = weights[k];
     }
   }
-  std::vector<double> gram(static_cast<std::size_t>(points_) * points_);  // W' W
-  for (int a = 0; a < points_; ++a)
-    for (int b = 0; b < points_; ++b)
-      for (int t = 0; t < steps; ++t) gram[a * points_ + b] += all[a * steps + t] * all[b * steps + t];
-  const SquareMatrix factor{gram, points_};
-  factorise(factor);
-  for (int t = 0; t < steps; ++t) solve_factorised(factor, &all[t], steps);
-  std::copy(all.begin(), all.end(), fit_.begin());
+  const Eigen::MatrixXd fit = (all * all.transpose()).llt().solve(all);  // (W' W)^-1 W'
+  for (int p = 0; p < points_; ++p)
+    for (int t = 0; t < steps; ++t) fit_[p * steps + t] = static_cast<float>(fit(p, t));
 }
 
 void Spline::expand(const float* points, float* sequence) const noexcept {

@@ -89,13 +89,13 @@ TEST(GradientEvaluator, TellsKinksAndDoesNotSeeJumps) {
   EXPECT_EQ(gradient_at(evaluator, {1, 0, 0}).quality, GradientQuality::not_finite);
 }
 
-struct Slow : DoubleIntegrator {
+struct Sluggish : DoubleIntegrator {
   double input_rate_max = 1;
 };
 
 TEST(GradientEvaluator, HasNoneWhereRatesAreLimited) {
   EXPECT_NE(GradientEvaluator<DoubleIntegrator>{DoubleIntegrator{}}.gradient(), nullptr);
-  EXPECT_EQ(GradientEvaluator<Slow>{Slow{}}.gradient(), nullptr);
+  EXPECT_EQ(GradientEvaluator<Sluggish>{Sluggish{}}.gradient(), nullptr);
   EXPECT_EQ(ProblemEvaluator<DoubleIntegrator>{DoubleIntegrator{}}.gradient(), nullptr);
 }
 
@@ -266,7 +266,7 @@ TEST(GuideGradient, WhatAProblemLacksIsSaidWhenTheControllerIsMade) {
   };
   const std::string needs = "guide_gradient: exact needs a problem with derivatives";
   EXPECT_EQ(message([] { SvgMppi(DoubleIntegrator{}, exact_options()); }).substr(0, needs.size()), needs);
-  EXPECT_EQ(message([] { exact_controller(Slow{}, exact_options()); }).substr(0, needs.size()), needs);
+  EXPECT_EQ(message([] { exact_controller(Sluggish{}, exact_options()); }).substr(0, needs.size()), needs);
   EXPECT_EQ(message([] {
               SvgMppiOptions options = exact_options();
               options.guides.weight = GuideWeight::importance;

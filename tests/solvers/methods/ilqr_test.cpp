@@ -153,7 +153,7 @@ TEST(Ilqr, ByItselfItSwingsThePendulumUp) {
 }
 
 /// Costs for tests of what has no derivative.
-struct Odd {
+struct OddCost {
   template <class T>
   struct State {
     T x;
@@ -178,7 +178,7 @@ struct Odd {
 };
 
 TEST(Ilqr, NeverPaysForAJumpOfTheCost) {
-  const Odd problem;
+  const OddCost problem;
   Ilqr ilqr{problem, 8};
   const auto u = ilqr.improve(problem, {0});
   EXPECT_LE(ilqr.result().cost(), ilqr.result().first_cost());
@@ -190,7 +190,7 @@ TEST(Ilqr, NeverPaysForAJumpOfTheCost) {
 }
 
 TEST(Ilqr, WhatHasNoDerivativeIsToldAndNeverHarms) {
-  Odd problem;
+  OddCost problem;
   problem.bent = true;
   Ilqr ilqr{problem, 8};
   ilqr.improve(problem, {0});

@@ -8,13 +8,13 @@
 namespace slalom {
 namespace {
 
-constexpr int steps = 8, inputs = 2, rows = steps * inputs, guides = 3;
+constexpr int horizon = 8, inputs = 2, rows = horizon * inputs, guides = 3;
 constexpr std::uint64_t seed = 5;
 
 /// A point mass in the plane that comes to the origin past a hill; smooth, with a cost for its inputs.
 double cost(const reference::Sequence& u) {
   double x = 1.5, y = 0.2, speed_x = -0.5, speed_y = 0, total = 0;
-  for (int k = 0; k < steps; ++k) {
+  for (int k = 0; k < horizon; ++k) {
     total += x * x + y * y + 0.05 * (u[2 * k] * u[2 * k] + u[2 * k + 1] * u[2 * k + 1]);
     total += 3 * std::exp(-4 * ((x - 0.7) * (x - 0.7) + y * y));
     x += 0.2 * speed_x;
@@ -27,7 +27,7 @@ double cost(const reference::Sequence& u) {
 
 /// The normal values of a stage of a solve.
 SequenceBatch noise(int solve, int stage, int samples) {
-  SequenceBatch z(steps, inputs, samples);
+  SequenceBatch z(horizon, inputs, samples);
   fill_normal(z, 0, z.stride(),
               {seed, static_cast<std::uint64_t>(solve) << 16 | static_cast<std::uint64_t>(stage)});
   return z;
@@ -50,24 +50,24 @@ TEST(SvgMppi, IsThatOfThePaper) {
                            .Sigma_0 = 0.8,
                            .Sigma_min = 0.005,
                            .Sigma_max = 0.9};
-  const auto solver = make_solver(SvgMppiOptions{.horizon = steps,
-                                                 .samples = paper.K,
-                                                 .temperature = paper.lambda,
-                                                 .guides = {.count = guides,
-                                                            .iterations = paper.L,
-                                                            .step = paper.epsilon,
-                                                            .variance = paper.Sigma_0,
-                                                            .gradient_samples = paper.N,
-                                                            .gradient_variance = paper.Sigma_g,
-                                                            .gradient_temperature = paper.lambda,
-                                                            .weight = GuideWeight::importance,
-                                                            .restart = false,
-                                                            .sample_around = SampleCentre::solution},
-                                                 .variance_min = paper.Sigma_min,
-                                                 .variance_max = paper.Sigma_max,
-                                                 .shift_warm_start = false,
-                                                 .seed = seed},
-                                  inputs);
+  SvgMppiOptions options;
+  options.horizon = horizon;
+  options.samples = paper.K;
+  options.temperature = options.guides.gradient_temperature = paper.lambda;
+  options.guides.count = guides;
+  options.guides.iterations = paper.L;
+  options.guides.step = paper.epsilon;
+  options.guides.variance = paper.Sigma_0;
+  options.guides.gradient_samples = paper.N;
+  options.guides.gradient_variance = paper.Sigma_g;
+  options.guides.weight = GuideWeight::importance;
+  options.guides.restart = false;
+  options.guides.sample_around = SampleCentre::solution;
+  options.variance_min = paper.Sigma_min;
+  options.variance_max = paper.Sigma_max;
+  options.shift_warm_start = false;
+  options.seed = seed;
+  const auto solver = make_solver(options, inputs);
   const testing::FunctionEvaluator evaluator(inputs, [](const SequenceBatch& batch, int k) {
     reference::Sequence u;
     for (int r = 0; r < rows; ++r) u.push_back(static_cast<double>(batch.data(r)[k]));

@@ -11,7 +11,7 @@
 namespace slalom {
 namespace {
 
-constexpr int steps = 8;
+constexpr int sample_steps = 8;
 constexpr double stiffness = 0.5, wanted = 3, temperature = 0.4;
 
 /// The cost 0.5 stiffness (v - wanted)^2, summed over the steps.
@@ -28,7 +28,7 @@ auto spring() {
 
 SvgMppiOptions options(SampleCentre centre) {
   SvgMppiOptions o;
-  o.horizon = steps;
+  o.horizon = sample_steps;
   o.samples = 60000;
   o.temperature = temperature;
   o.variance_min = o.variance_max = 0.09;
@@ -52,7 +52,7 @@ TEST(SampleCentre, BothFormsEstimateTheMeanOfTheSameDistribution) {
     for (int i = 0; i < 60; ++i) solver->solve(evaluator, {});
     const SolveResult& result = solver->solve(evaluator, {});
     ASSERT_GT(result.effective_sample_size, 1000);
-    for (std::size_t t = 0; t < steps; ++t) {
+    for (std::size_t t = 0; t < sample_steps; ++t) {
       const double n = result.nominal[t], precision = 1 / static_cast<double>(result.variances[t]);
       const double mean =
           (n * precision + stiffness * wanted / temperature) / (precision + stiffness / temperature);
@@ -62,7 +62,8 @@ TEST(SampleCentre, BothFormsEstimateTheMeanOfTheSameDistribution) {
 }
 
 TEST(SampleCentre, SamplesKeepTheirWeightsFarFromTheLastSolution) {
-  // In the first solve the last solution is 0, and guides that take large steps are ten deviations away.
+  // In the first solve the last solution is 0, and guides that take large sample_steps are ten deviations
+  // away.
   SvgMppiOptions o = options(SampleCentre::nominal);
   o.samples = 1024;
   o.guides.iterations = 40;
@@ -86,7 +87,7 @@ TEST(SampleCentre, TheLastSolutionJoinsTheGuides) {
 }
 
 TEST(FewSamples, AreReportedWhenTheyStay) {
-  MppiOptions o{.horizon = steps, .samples = 256, .temperature = 1e-6, .control_cost_discount = 1};
+  MppiOptions o{.horizon = sample_steps, .samples = 256, .temperature = 1e-6, .control_cost_discount = 1};
   const auto solver = make_solver(o, 1);
   const auto evaluator = spring();
   for (int i = 1; i < SolveResult::few_samples_patience; ++i) {

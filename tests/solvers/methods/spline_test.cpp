@@ -14,17 +14,18 @@ namespace slalom {
 namespace {
 
 using detail::Spline;
-constexpr int steps = 31;
+constexpr int spline_steps = 31;
 
-std::vector<float> expanded(const Spline& spline, const std::vector<float>& points, int length = steps) {
+std::vector<float> expanded(const Spline& spline, const std::vector<float>& points,
+                            int length = spline_steps) {
   std::vector<float> sequence(static_cast<std::size_t>(length));
   spline.expand(points.data(), sequence.data());
   return sequence;
 }
 
 TEST(Spline, IsAMeanOfItsControlPointsThatStartsAndEndsAtThem) {
-  for (const int points : {1, 2, 3, 4, 7, steps}) {
-    const Spline spline(steps, points, 1);
+  for (const int points : {1, 2, 3, 4, 7, spline_steps}) {
+    const Spline spline(spline_steps, points, 1);
     std::vector<float> values;
     for (int p = 0; p < points; ++p) values.push_back(p % 2 == 0 ? 3.0f : -1.0f);
     for (const float v : expanded(spline, std::vector<float>(values.size(), 3.0f))) EXPECT_NEAR(v, 3, 1e-5);
@@ -36,10 +37,10 @@ TEST(Spline, IsAMeanOfItsControlPointsThatStartsAndEndsAtThem) {
 }
 
 TEST(Spline, IsTheCubicThatTheBernsteinPolynomialsGive) {
-  const Spline spline(steps, 4, 1);
+  const Spline spline(spline_steps, 4, 1);
   const std::vector<float> points{1, -2, 5, 3}, sequence = expanded(spline, points);
-  for (int t = 0; t < steps; ++t) {
-    const double x = t / (steps - 1.0), y = 1 - x;
+  for (int t = 0; t < spline_steps; ++t) {
+    const double x = t / (spline_steps - 1.0), y = 1 - x;
     const double value = y * y * y * 1 + 3 * y * y * x * -2 + 3 * y * x * x * 5 + x * x * x * 3;
     EXPECT_NEAR(sequence[static_cast<std::size_t>(t)], value, 1e-5);
   }
@@ -56,26 +57,28 @@ TEST(Spline, HasSmoothSlopes) {
 }
 
 TEST(Spline, MovesForwardAsItsSequence) {
-  Spline spline(steps, 8, 2);
+  Spline spline(spline_steps, 8, 2);
   std::vector<float> points;
   for (int p = 0; p < 8; ++p) {
     points.push_back(static_cast<float>(std::sin(0.7 * p)));
     points.push_back(static_cast<float>(0.1 * p));
   }
-  std::vector<float> still = points, sequence(2 * steps), wanted(2 * steps), got(2 * steps);
+  std::vector<float> still = points, sequence(2 * spline_steps), shifted(2 * spline_steps),
+                     got(2 * spline_steps);
   spline.shift(still.data(), 0);
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_NEAR(still[i], points[i], 1e-4);
   spline.expand(points.data(), sequence.data());
-  shift_sequence(sequence.data(), steps, 2, 1.5, wanted.data());
+  shift_sequence(sequence.data(), spline_steps, 2, 1.5, shifted.data());
   spline.shift(points.data(), 1.5);
   spline.expand(points.data(), got.data());
-  for (std::size_t i = 0; i < 2 * (steps - 4); ++i)  // the held end has a corner, which splines round off
-    EXPECT_NEAR(got[i], wanted[i], 0.06) << i;
+  for (std::size_t i = 0; i < 2 * (spline_steps - 4);
+       ++i)  // the held end has a corner, which splines round off
+    EXPECT_NEAR(got[i], shifted[i], 0.06) << i;
 }
 
 TEST(Spline, ABatchHasTheSameSequences) {
-  const Spline spline(steps, 6, 1);
-  SequenceBatch points(6, 1, 20), sequences(steps, 1, 20);
+  const Spline spline(spline_steps, 6, 1);
+  SequenceBatch points(6, 1, 20), sequences(spline_steps, 1, 20);
   for (int p = 0; p < 6; ++p)
     for (int k = 0; k < 20; ++k) points.at(p, 0, k) = static_cast<float>(std::cos(p * (k + 1)));
   spline.expand(points, sequences, {0, points.stride()});
@@ -83,7 +86,7 @@ TEST(Spline, ABatchHasTheSameSequences) {
     std::vector<float> one(6);
     points.get_sample(k, one);
     const std::vector<float> sequence = expanded(spline, one);
-    for (int t = 0; t < steps; ++t)
+    for (int t = 0; t < spline_steps; ++t)
       EXPECT_NEAR(sequences.at(t, 0, k), sequence[static_cast<std::size_t>(t)], 1e-6);
   }
 }
