@@ -25,7 +25,7 @@ std::vector<std::string> seeds() {
 {"do":"fork","method":"svg_mppi","set":["svg_mppi.samples=16"]}
 {"do":"ghost","method":"mppi"}
 {"do":"step"}
-{"do":"preset","set":["samples=20"]}
+{"do":"take_over"}
 {"do":"reset_options"}
 {"do":"method","method":"cem"}
 )",

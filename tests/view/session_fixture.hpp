@@ -116,6 +116,12 @@ class ViewSession : public ::testing::Test {
     tell({{"do", "step"}, {"ticks", tick - newest}});
     return frame(tick);
   }
+  /// Drives from the tick that is shown, which becomes the newest one, up to another.
+  std::string step_to_newest(int tick) {
+    const int shown = last_state_ticks()["tick"];
+    tell({{"do", "step"}, {"ticks", tick - shown}});
+    return frame(tick);
+  }
   json last_state_ticks() {
     tell({{"do", "pause"}});
     json last;

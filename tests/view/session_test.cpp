@@ -43,11 +43,33 @@ TEST_F(ViewSession, RestoresAnEarlierStateExactly) {
   const std::string before = step_to(60);
   tell({{"do", "seek"}, {"tick", 30}});
   EXPECT_EQ(scalar(frame(30), "tick"), 30);
-  tell({{"do", "step"}, {"ticks", 30}});
-  const std::string again = frame(60);
+  const std::string again = step_to_newest(60);
   // Wall-clock figures differ; what happened does not.
   for (const char* name : {"x", "y", "yaw", "speed", "command_steer", "minimum_cost", "effective_samples"})
     EXPECT_EQ(scalar(before, name), scalar(again, name)) << name;
+}
+
+TEST_F(ViewSession, GoesBackToTheStateOfEveryAction) {
+  // A second has 40 ticks: none of these states is that of a copy.
+  step_to(50);
+  tell({{"do", "ghost"}, {"method", "mppi"}});
+  step_to(55);
+  tell({{"do", "set"}, {"key", "svg_mppi.samples"}, {"value", "64"}});
+  step_to(57);
+  tell({{"do", "nudge"}, {"left", 0.05}});
+  const std::string before = step_to(70);
+  const std::string_view ghost = FrameReader(before).block(Block::ghost_frame);
+  ASSERT_FALSE(ghost.empty());
+  tell({{"do", "seek"}, {"tick", 60}});
+  const std::string again = step_to_newest(70);
+  for (const char* name : {"x", "y", "speed", "samples", "minimum_cost"})
+    EXPECT_EQ(scalar(before, name), scalar(again, name)) << name;
+  EXPECT_EQ(scalar(ghost, "x"), scalar(FrameReader(again).block(Block::ghost_frame), "x"));
+  tell({{"do", "seek"}, {"tick", 52}});
+  EXPECT_EQ(scalar(step_to_newest(58), "samples"), 128) << "before the option was set";
+  tell({{"do", "seek"}, {"tick", 45}});
+  EXPECT_TRUE(FrameReader(step_to_newest(46)).block(Block::ghost_frame).empty()) << "before the ghost";
+  EXPECT_EQ(last_state_ticks()["ghost"], "");
 }
 
 TEST_F(ViewSession, AnObstacleInTheWayChangesThePlan) {
@@ -127,17 +149,6 @@ TEST_F(ViewSession, SendsThePastThatIsAskedFor) {
   EXPECT_EQ(next("error")["id"], 5);
 }
 
-TEST_F(ViewSession, SetsAPresetAsOneChange) {
-  tell({{"do", "set"}, {"key", "svg_mppi.samples"}, {"value", "64"}});
-  tell({{"do", "preset"}, {"set", {"svg_mppi.temperature=5", "mppi.samples=32"}}});
-  EXPECT_EQ(scalar(step_to(2), "samples"), 128) << "the rest is as in the configuration";
-  tell({{"do", "undo"}});
-  EXPECT_EQ(scalar(step_to(3), "samples"), 64);
-  tell({{"do", "preset"}, {"set", {"svg_mppi.samples=32", "svg_mppi.nothing=1"}}});
-  EXPECT_NE(next("error")["message"].get<std::string>().find("nothing"), std::string::npos);
-  EXPECT_EQ(scalar(step_to(4), "samples"), 64) << "a preset with an error changes nothing";
-}
-
 TEST_F(ViewSession, ShowsTheStatesOfTrajectoriesWithTwoInputs) {
   tell({{"do", "set"}, {"key", "vehicle.model"}, {"value", "kinematic_acceleration"}});
   const std::string shown = step_to(3);
@@ -204,6 +215,30 @@ TEST_F(ViewSession, APauseHoldsAtTheTickThatASlowClientShows) {
   const json state = last_state_ticks();
   EXPECT_EQ(state["tick"], 20);
   EXPECT_EQ(state["newest"], 40);
+}
+
+TEST_F(ViewSession, OneClientDrivesAndAnotherTakesOver) {
+  testing::WebClient other(server_.port());
+  other.get("/ws", true);
+  for (int i = 0; i < 1000 && server_.clients() < 2; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  session_.turn();
+  EXPECT_EQ(next(other, "role")["drives"], false);
+  const auto tell_from_other = [&](const json& command) {
+    other.send_message(command.dump());
+    server_.wait(std::chrono::seconds(5));
+    session_.turn();
+  };
+  tell_from_other({{"do", "step"}, {"id", 1}});
+  EXPECT_NE(next(other, "error")["message"].get<std::string>().find("take over"), std::string::npos);
+  tell_from_other({{"do", "past"}, {"from", 0}, {"to", 0}, {"id", 2}});
+  EXPECT_EQ(next(other, "done")["id"], 2);
+  tell_from_other({{"do", "take_over"}});
+  EXPECT_EQ(next(other, "role")["drives"], true);
+  tell_from_other({{"do", "step"}, {"id", 3}});
+  EXPECT_EQ(next(other, "done")["id"], 3);
+  tell({{"do", "step"}, {"id", 4}});
+  EXPECT_EQ(next("error")["id"], 4);
 }
 
 TEST_F(ViewSession, LoadsOnlyListedCourses) {

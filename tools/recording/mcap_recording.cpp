@@ -35,7 +35,7 @@ McapRecording::McapRecording(const std::string& file, const RecordingFacts& fact
       stream_(file, std::ios::binary),
       recorder_(stream_, recorder_options(facts)) {
   if (!stream_) throw IoError(file, 0, "cannot be written");
-  recorder_.add_text(view::hello_message(*environment_, choices_, {.control_period = control_period_}));
+  recorder_.add_text(view::hello_message(*environment_, choices_, 0, control_period_));
   recorder_.add_course(view::encode_scene(*environment_));
   recorder_.add_text(view::options_message({.names = names_,
                                             .now = configuration_,

@@ -73,8 +73,8 @@ std::string command_line(const OptionsFacts& facts) {
   return line_of(facts, changed_options(facts));
 }
 
-std::string hello_message(const evaluation::Environment& environment, const Choices& choices,
-                          const HelloFacts& facts) {
+std::string hello_message(const evaluation::Environment& environment, const Choices& choices, double history,
+                          double control_period) {
   const sim::WorldOptions world = environment.world_options();
   Json names = Json::array(), statuses = Json::array();
   for (const char* each : scalar_names()) names.push_back(each);
@@ -97,9 +97,8 @@ std::string hello_message(const evaluation::Environment& environment, const Choi
                      {{"angle_min", world.lidar.angle_min()},
                       {"angle_increment", world.lidar.angle_increment()},
                       {"range_max", world.lidar.range_max}}},
-                    {"session", facts.session},
-                    {"history_seconds", facts.history},
-                    {"control_period", facts.control_period}});
+                    {"history_seconds", history},
+                    {"control_period", control_period}});
 }
 
 std::string state_message(const StateFacts& facts) {
@@ -133,8 +132,6 @@ std::string state_message(const StateFacts& facts) {
                 {"ghost", facts.ghost},
                 {"ghost_label", facts.ghost_label},
                 {"generation", facts.generation},
-                {"clients", facts.clients},
-                {"refused", facts.refused},
                 {"edited", facts.edited},
                 {"introduction", facts.introduction}};
   if (facts.contact[0] >= 0)

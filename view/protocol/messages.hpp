@@ -27,17 +27,13 @@ struct Choices {
   std::vector<std::string> courses, methods, configurations;
 };
 
-struct HelloFacts {
-  std::string session{};      ///< another one after each start of the server
-  double history = 0;         ///< s of steps that are stored and can be shown again
-  double control_period = 0;  ///< s
-};
-/// Names and sizes that do not change while a server runs.
-std::string hello_message(const evaluation::Environment& environment, const Choices& choices,
-                          const HelloFacts& facts);
+/// Names and sizes that do not change while a server runs. `history`: s of the drive that are stored;
+/// `control_period`: s.
+std::string hello_message(const evaluation::Environment& environment, const Choices& choices, double history,
+                          double control_period);
 
 struct OptionsFacts {
-  const ScenarioNames& names;
+  ScenarioNames names;
   const vehicle::Configuration& now;
   const vehicle::Configuration& loaded;  ///< before anything was changed
   const std::string& further_arguments;  ///< further arguments of the command line, begin with a space
@@ -60,7 +56,7 @@ struct LapNote {
 };
 
 struct StateFacts {
-  const ScenarioNames& names;
+  ScenarioNames names;
   const evaluation::Environment& environment;
   const std::vector<LapNote>& laps;
   double time = 0, control_period = 0;      ///< s
@@ -71,8 +67,6 @@ struct StateFacts {
   std::string ghost{};        ///< its method; empty if there is none
   std::string ghost_label{};  ///< name of the ghost
   int generation = 0;
-  int clients = 0;
-  std::uint64_t refused = 0;
   /// The part of an evaluation that is shown: experiment, lap, collision (-1: the whole lap) and its tick.
   std::array<int, 4> contact{-1, -1, -1, -1};
 };

@@ -1,129 +1,132 @@
-
-#include "view/session/session.hpp"
-
 #include <algorithm>
-#include <string_view>
+#include <stdexcept>
+#include <utility>
 
 #include "src/evaluation/json.hpp"
 #include "view/protocol/frame_writer.hpp"
+#include "view/session/session.hpp"
 
 namespace slalom::view {
 namespace {
 
-constexpr int max_ticks_per_message = 800;  // ticks in one message
-
-/// The values of the scalars of a frame, as they stand in it.
-std::string_view scalars_of(const std::string& frame) {
-  return std::string_view(frame).substr(FrameWriter::head_bytes, 8 * scalar_names().size());
-}
+constexpr int max_ticks_per_message = 800;
 
 }  // namespace
 
-void Session::greet(std::uint64_t client) {
-  server_.send(client, {std::make_shared<const std::string>(hello()), false});
+/// Sends a message to one client, or to all with 0.
+void Session::tell(std::uint64_t client, const Json& message) {
+  tell_text(client, json_text(message));
+}
+
+void Session::tell_text(std::uint64_t client, std::string text) {
+  server_.send(client, {std::make_shared<const std::string>(std::move(text)), false});
+}
+
+void Session::join(std::uint64_t client) {
+  clients_.push_back(client);
+  tell_text(client, hello());
   server_.send(client, {scene_, true});
-  server_.send(client, {std::make_shared<const std::string>(options()), false});
-  server_.send(client, {std::make_shared<const std::string>(state()), false});
-  if (!options_.evaluation.empty())
-    server_.send(client, {std::make_shared<const std::string>(options_.evaluation), false});
-  if (waiting_) {
-    waiting_ = false;
-    due_ = Clock::now();
-  }
-  if (!history_.empty()) {
-    const auto at =
-        viewed_ >= 0 ? static_cast<std::size_t>(viewed_ - history_.front().tick) : history_.size() - 1;
-    server_.publish(client, history_[at].frame);
-  }
-  state_changed_ = true;
+  tell_text(client, options_message(options_facts()));
+  tell_text(client, state());
+  if (!options_.evaluation.empty()) tell_text(client, options_.evaluation);
+  if (driving_client_ == 0) driving_client_ = client;
+  tell_roles();
+  if (std::exchange(waiting_, false)) due_ = Clock::now();
+  if (!timeline_.empty())
+    server_.publish(client, timeline_.at(viewed_ >= 0 ? viewed_ : timeline_.newest()).frame);
 }
 
-void Session::refuse(std::uint64_t client, const std::string& why, const Json& id) {
-  Json message = {{"type", "error"}, {"message", why}};
-  if (!id.is_null()) message["id"] = id;
-  server_.send(client, {std::make_shared<const std::string>(message.dump()), false});
+/// If the client that drives has left, the one that has watched longest drives.
+void Session::leave(std::uint64_t client) {
+  std::erase(clients_, client);
+  if (client != driving_client_) return;
+  driving_client_ = clients_.empty() ? 0 : clients_.front();
+  tell_roles();
 }
 
-/// Answers a command that has an `id`.
-void Session::tell_done(std::uint64_t client, const Json& id) {
-  const Json message = {{"type", "done"}, {"id", id}};
-  server_.send(client, {std::make_shared<const std::string>(message.dump()), false});
+/// Tells each client whether it drives or watches.
+void Session::tell_roles() {
+  for (const std::uint64_t client : clients_)
+    tell(client, {{"type", "role"}, {"drives", client == driving_client_}});
 }
 
 /// Sends the scalars of past ticks, of as many as a message holds and as are still known.
 void Session::tell_past(std::uint64_t client, int from, int to) {
   FrameWriter past;
   past.begin(Block::past);
-  if (!history_.empty()) {
-    const int oldest = history_.front().tick;
-    to = std::min(to, history_.back().tick);
-    from = std::max({from, oldest, to - max_ticks_per_message + 1});
-    for (int tick = from; tick <= to; ++tick)
-      past.append(scalars_of(history_[static_cast<std::size_t>(tick - oldest)].without_bodies));
-  }
+  to = std::min(to, timeline_.newest());
+  from = std::max({from, timeline_.oldest(), to - max_ticks_per_message + 1});
+  for (int tick = timeline_.empty() ? to + 1 : from; tick <= to; ++tick)
+    past.append(std::string_view(*timeline_.at(tick).frame)
+                    .substr(FrameWriter::head_bytes, 8 * scalar_names().size()));
   past.end();
   server_.send(client, {std::make_shared<const std::string>(past.take()), true});
 }
 
-void Session::note(const std::string& what) {
-  const Json json = {{"type", "note"}, {"message", what}};
-  server_.broadcast({std::make_shared<const std::string>(json.dump()), false});
-}
-
-void Session::tell_state() {
-  state_changed_ = false;
-  server_.broadcast({std::make_shared<const std::string>(state()), false});
-}
-
-void Session::tell_options() {
-  server_.broadcast({std::make_shared<const std::string>(options()), false});
-}
-
 std::string Session::hello() const {
-  return hello_message(*scenario_.environment, options_.choices,
-                       {.session = number_,
-                        .history = options_.history,
-                        .control_period = simulation_->loop().setup().control_period()});
+  return hello_message(*scenario_.environment, options_.choices, options_.history, control_period());
 }
 
 std::string Session::state() const {
-  const int newest = history_.empty() ? -1 : history_.back().tick;
-  return state_message({.names = names_,
+  ScenarioNames names = names_;
+  names.method = driver().method;
+  const auto& ghost = drives_->ghost;
+  return state_message({.names = names,
                         .environment = *scenario_.environment,
                         .laps = laps_,
-                        .time = simulation_->loop().world().time(),
-                        .control_period = simulation_->loop().setup().control_period(),
-                        .tick = viewed_ >= 0 ? viewed_ : newest,
-                        .newest = newest,
-                        .oldest = history_.empty() ? -1 : history_.front().tick,
+                        .time = std::as_const(drives_->car).world().time(),
+                        .control_period = control_period(),
+                        .tick = viewed_ >= 0 ? viewed_ : timeline_.newest(),
+                        .newest = timeline_.newest(),
+                        .oldest = timeline_.oldest(),
                         .paused = paused_,
                         .real_time = real_time_,
-                        .edited = simulation_->edited(),
+                        .edited = drives_->edited,
                         .introduction = introduces_,
                         .rate = rate_,
-                        .ghost = ghost_method_,
-                        .ghost_label = ghost_label_,
+                        .ghost = ghost ? ghost->setup().driver.method : "",
+                        .ghost_label = drives_->ghost_label,
                         .generation = generation_,
-                        .clients = server_.clients(),
-                        .refused = refused_,
                         .contact = contact_});
 }
 
 OptionsFacts Session::options_facts() const {
-  return {.names = names_,
-          .now = configuration_,
+  ScenarioNames names = names_;
+  names.method = driver().method;
+  return {.names = names,
+          .now = driver().configuration,
           .loaded = scenario_.configuration,
           .further_arguments = options_.further_arguments,
           .undo = undo_.undos(),
           .redo = undo_.redos()};
 }
 
-std::string Session::options() const {
-  return options_message(options_facts());
-}
-
-std::string Session::command_line() const {
-  return view::command_line(options_facts());
+/// Sends the last minute to a client as a file.
+void Session::save(std::uint64_t client, const std::string& what) {
+  if (what != "recording" && what != "replay")
+    throw std::invalid_argument("what: must be recording or replay");
+  if (timeline_.empty()) throw std::invalid_argument("nothing has been driven yet");
+  SavedDrive drive{hello(), options_message(options_facts()), state(), scene_, {}};
+  for (const Timeline::Step& step : timeline_.steps()) drive.frames.push_back(step.frame);
+  const sim::WorldOptions world = scenario_.environment->world_options();
+  const Json settings = {{"command_line", command_line(options_facts())}};
+  RecorderOptions recorder{.program = options_.program,
+                           .settings = {{"settings", json_text(settings)}},
+                           .lidar_angle_min = world.lidar.angle_min(),
+                           .lidar_angle_increment = world.lidar.angle_increment(),
+                           .wall_clock = options_.record_times};
+  const bool is_replay = what == "replay";
+  const std::string name = "slalom-" + scenario_.environment->course.name + "-" + driver().method + "-" +
+                           std::to_string(timeline_.newest()) + (is_replay ? ".html" : ".mcap");
+  saver_.save(
+      is_replay ? FileSaver::Kind::replay : FileSaver::Kind::recording, name, std::move(drive),
+      std::move(recorder),
+      [this, client](std::string file) {
+        server_.send(client, {std::make_shared<const std::string>(std::move(file)), true});
+      },
+      [this, client](std::string why) {
+        tell(client, {{"type", "error"}, {"message", why}});
+      });
 }
 
 }  // namespace slalom::view

@@ -6,61 +6,41 @@
 namespace slalom::view {
 namespace {
 
-constexpr std::size_t most = 200;  // changes that are remembered
+constexpr std::size_t max_changes = 200;
 
-std::optional<Replaced> take(std::vector<Replaced>& from, const SetBodies& present) {
-  while (!from.empty()) {
-    Replaced last = std::move(from.back());
-    from.pop_back();
-    const auto* bodies = std::get_if<SetBodies>(&last);
-    if (!bodies || !is_same(*bodies, present)) return last;
-  }
-  return {};
+bool is_same(const AddBody& a, const AddBody& b) {
+  return a.kind == b.kind && a.pose.x == b.pose.x && a.pose.y == b.pose.y && a.pose.yaw == b.pose.yaw &&
+         a.length == b.length && a.width == b.width;
 }
 
 }  // namespace
 
-bool is_same(const SetBodies& a, const SetBodies& b) noexcept {
-  return std::ranges::equal(a.bodies, b.bodies, [](const AddBody& x, const AddBody& y) {
-    return x.kind == y.kind && x.pose.x == y.pose.x && x.pose.y == y.pose.y && x.pose.yaw == y.pose.yaw &&
-           x.length == y.length && x.width == y.width;
-  });
-}
-
-void UndoHistory::remember(Replaced before) {
-  undo_.push_back(std::move(before));
-  if (undo_.size() > most) undo_.erase(undo_.begin());
-  redo_.clear();
-  drag_ = 0;
-}
-
-void UndoHistory::remember_drag(SetBodies before, int drag) {
-  if (drag != 0 && drag == drag_) return;
-  remember(std::move(before));
+void UndoHistory::remember(Replaced before, int drag) {
+  if (drag != 0 && drag == std::exchange(drag_, drag)) return;
   drag_ = drag;
+  undo_.push_back(std::move(before));
+  if (undo_.size() > max_changes) undo_.erase(undo_.begin());
+  redo_.clear();
 }
 
-std::optional<Replaced> UndoHistory::take_undo(const SetBodies& present) {
-  return take(undo_, present);
-}
-
-std::optional<Replaced> UndoHistory::take_redo(const SetBodies& present) {
-  return take(redo_, present);
-}
-
-void UndoHistory::replaced(Replaced before, bool again) {
-  (again ? undo_ : redo_).push_back(std::move(before));
-  drag_ = 0;
+std::optional<Replaced> UndoHistory::take(bool again, const vehicle::Configuration& options,
+                                          const SetBodies& bodies) {
+  auto& from = again ? redo_ : undo_;
+  while (!from.empty()) {
+    Replaced last = std::move(from.back());
+    from.pop_back();
+    const auto* before = std::get_if<SetBodies>(&last);
+    if (before && std::ranges::equal(before->bodies, bodies.bodies, is_same)) continue;
+    (again ? undo_ : redo_).push_back(before ? Replaced(bodies) : Replaced(options));
+    drag_ = 0;
+    return last;
+  }
+  return {};
 }
 
 void UndoHistory::forget_bodies() {
   for (auto* changes : {&undo_, &redo_})
     std::erase_if(*changes, [](const Replaced& each) { return std::holds_alternative<SetBodies>(each); });
-}
-
-void UndoHistory::clear() {
-  undo_.clear();
-  redo_.clear();
 }
 
 }  // namespace slalom::view

@@ -19,13 +19,13 @@ import { Player, recordings } from "./player";
 import { Popover } from "./popover";
 import type { Frame, Hello, State, Text } from "./protocol";
 import { Readout } from "./readout";
-import { attachSaveMenu } from "./save";
+import { attachSaveMenu, saveFile } from "./save";
 import { Lanes } from "./scene/lanes";
 import { coveredBy, place, showRuler } from "./scene/overlay";
 import { download } from "./scene/picture";
 import { attachPointer } from "./scene/pointer";
 import { SceneView } from "./scene/scene";
-import { showConnection, showStatus } from "./status";
+import { showConnection, showRole, showStatus } from "./status";
 import { Themes } from "./theme";
 import { Timeline } from "./timeline";
 import { toast } from "./toast";
@@ -79,11 +79,7 @@ const handlers: Handlers = {
     redraw();
   },
   text: got,
-  file(name, content) {
-    const type = name.endsWith(".html") ? "text/html" : "application/octet-stream";
-    download(name, content as BlobPart, type);
-    toast(`Saved ${name}, ${(content.length / 1e6).toFixed(1)} MB.`);
-  },
+  file: saveFile,
   status(connected, attempts) {
     showConnection(connected, attempts);
     if (connected) state = undefined; // it may be that of another server
@@ -128,6 +124,9 @@ function got(message: Text) {
     fork.takeOptions(message);
     changedOptions = message.changed;
     showAddress();
+  } else if (message.type === "role") {
+    showRole(message.drives);
+    if (!message.drives) for (const key of [...wanted.keys()]) wanted.delete(key);
   } else if (message.type === "error") toast(message.message, true);
   else if (message.type === "note") toast(message.message);
   else if (message.type === "evaluation") {
@@ -287,6 +286,7 @@ click("theme", () => {
   showTheme();
 });
 click("help", help);
+click("take-over", () => send({ do: "take_over" }));
 click("split", () => {
   if (introduction.isOpen) introduction.end();
   else if (frame?.ghostFrame) setSplit(!scene.isSplit);

@@ -122,6 +122,11 @@ export interface Done {
   type: "done";
   id: number;
 }
+/** Tells a page whether it drives or watches. */
+export interface Role {
+  type: "role";
+  drives: boolean;
+}
 export interface Note {
   type: "note";
   message: string;
@@ -138,4 +143,4 @@ export interface Evaluation {
   experiments: { label: string; scenario: string; obstacles: number }[];
   laps: EvaluationLap[];
 }
-export type Text = Hello | State | Options | Problem | Done | Note | Evaluation;
+export type Text = Hello | State | Options | Problem | Done | Role | Note | Evaluation;

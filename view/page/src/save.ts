@@ -14,6 +14,13 @@ async function saveThisPage() {
   }
 }
 
+/** Saves a file that the server has made. */
+export function saveFile(name: string, content: Uint8Array) {
+  const type = name.endsWith(".html") ? "text/html" : "application/octet-stream";
+  download(name, content as BlobPart, type);
+  toast(`Saved ${name}, ${(content.length / 1e6).toFixed(1)} MB.`);
+}
+
 /** The menu that saves a picture, the last minute as a replay or a recording, or a link. Returns the menu. */
 export function attachSaveMenu(
   send: (command: Record<string, unknown>) => void,

@@ -11,6 +11,12 @@ export function showConnection(connected: boolean, attempts: number) {
   get("connection-text").textContent = connected ? "connected" : "connection lost";
 }
 
+/** Shows whether this page drives, or watches and can take over. */
+export function showRole(drives: boolean) {
+  get("take-over").hidden = drives;
+  for (const id of ["primary", "scenario-menu", "options", "bar"]) get(id).inert = !drives;
+}
+
 /** How the time of a drive passes: its name and what it means. */
 function modeOf(state: State, isReplay: boolean): [name: string, meaning: string] {
   if (isReplay) return ["replay", "A recording of an earlier drive"];

@@ -31,6 +31,25 @@ export default async function (h) {
     await h.play();
   });
 
+  await h.test("one page drives; another watches, and takes over", async () => {
+    const other = await h.open(page.url());
+    await h.until(() => window.slalom?.frame && slalom.state, undefined, other);
+    await h.until(() => !document.getElementById("take-over").hidden, undefined, other);
+    const { generation } = await h.state();
+    await h.send({ do: "restart" }, other);
+    await h.until(() => /take over/.test(document.getElementById("toast").textContent), undefined, other);
+    assert.equal((await h.state()).generation, generation, "a page that watches cannot restart");
+    await h.picture("watching", other);
+    await other.click("#take-over");
+    await h.until(() => document.getElementById("take-over").hidden, undefined, other);
+    await h.until(() => !document.getElementById("take-over").hidden);
+    await other.click("#restart");
+    await h.until((g) => slalom.state.generation > g, generation);
+    await other.close();
+    await h.until(() => document.getElementById("take-over").hidden); // the page that is left drives
+    await h.restart();
+  });
+
   await h.test("the page of another origin cannot connect", async () => {
     const other = await h.browser.newPage();
     await other.goto("data:text/html,<p>elsewhere</p>");

@@ -1,0 +1,126 @@
+#include "view/session/commands.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "src/evaluation/json.hpp"
+
+namespace slalom::view {
+namespace field {
+namespace {
+
+void require(bool holds, const char* key, const char* rule) {
+  if (!holds) throw MalformedCommand(std::string(key) + ": must be " + rule);
+}
+
+}  // namespace
+
+double number(const Json& command, const char* key) {
+  const auto found = command.find(key);
+  const bool is_number = found != command.end() && found->is_number();
+  require(is_number && std::isfinite(found->get<double>()), key, "a finite number");
+  return found->get<double>();
+}
+
+double number(const Json& command, const char* key, double otherwise) {
+  return command.contains(key) ? number(command, key) : otherwise;
+}
+
+int integer(const Json& command, const char* key) {
+  const double value = number(command, key);
+  require(std::floor(value) == value && std::abs(value) <= 1e9, key, "an integer");
+  return static_cast<int>(value);
+}
+
+int integer(const Json& command, const char* key, int otherwise) {
+  return command.contains(key) ? integer(command, key) : otherwise;
+}
+
+std::string text(const Json& command, const char* key) {
+  const auto found = command.find(key);
+  require(found != command.end() && found->is_string(), key, "text");
+  return found->get<std::string>();
+}
+
+bool flag(const Json& command, const char* key) {
+  const auto found = command.find(key);
+  require(found != command.end() && found->is_boolean(), key, "true or false");
+  return found->get<bool>();
+}
+
+}  // namespace field
+
+namespace {
+
+maps::Pose pose_of(const Json& command) {
+  return {field::number(command, "x"), field::number(command, "y"), field::number(command, "yaw", 0)};
+}
+
+AddBody body_of(const Json& command) {
+  AddBody body{.pose = pose_of(command)};
+  const std::string kind = field::text(command, "kind");
+  field::require(kind == "car" || kind == "box" || kind == "disc", "kind", "car, box or disc");
+  body.kind = kind == "car" ? BodyKind::parked_car : kind == "box" ? BodyKind::box : BodyKind::disc;
+  body.length = field::number(command, "length", body.length);
+  body.width = field::number(command, "width", body.length);
+  const double least = std::min(body.length, body.width), most = std::max(body.length, body.width);
+  field::require(least >= 0.02 && most <= 10, "length and width", "in [0.02, 10] m");
+  return body;
+}
+
+std::uint64_t seed_of(const std::string& digits) {
+  const bool is_number = digits.find_first_not_of("0123456789") == std::string::npos;
+  field::require(!digits.empty() && digits.size() <= 19 && is_number, "seed", "a whole number from 0");
+  return std::stoull(digits);
+}
+
+int count_of(const Json& command, const char* key, int present, int most) {
+  const int count = field::integer(command, key, present);
+  field::require(count >= 0 && count <= most, key, ("in [0, " + std::to_string(most) + "]").c_str());
+  return count;
+}
+
+}  // namespace
+
+std::optional<Action> edit_of(const std::string& what, const Json& command, const sim::CarState& car) {
+  if (what == "add") return body_of(command);
+  if (what == "move") return MoveBody{field::integer(command, "body"), pose_of(command)};
+  if (what == "remove") return RemoveBody{field::integer(command, "body")};
+  if (what == "place_car") return MoveCar{pose_of(command)};
+  if (what != "nudge") return {};
+  const double aside = field::number(command, "left", 0), turn = field::number(command, "turn", 0);
+  field::require(std::abs(aside) <= 2 && std::abs(turn) <= 3.2, "nudge", "at most 2 m and 3.2 rad");
+  return MoveCar{{car.x - aside * std::sin(car.yaw), car.y + aside * std::cos(car.yaw), car.yaw + turn}};
+}
+
+bool apply_settings(vehicle::Configuration& configuration, const Json& command, const std::string& method) {
+  const Json set = command.contains("set") ? command.at("set") : Json::array();
+  field::require(set.is_array() && set.size() <= 200, "set", "a list of at most 200 key=value");
+  for (const Json& each : set) {
+    const std::string assignment = each.is_string() ? each.get<std::string>() : "";
+    const auto equals = assignment.find('=');
+    field::require(equals != std::string::npos, "set", "a list of key=value");
+    vehicle::set_option(configuration, assignment.substr(0, equals), assignment.substr(equals + 1), method);
+  }
+  return !set.empty();
+}
+
+ScenarioNames chosen_scenario(ScenarioNames names, const Json& command, const Choices& choices) {
+  const auto choose = [&](const char* key, std::string& name, const std::vector<std::string>& all) {
+    if (!command.contains(key)) return;
+    const std::string wanted = field::text(command, key);
+    // A page must not make the server read other folders than those that are listed or already open.
+    if (wanted != name && std::ranges::find(all, wanted) == all.end())
+      throw std::invalid_argument(std::string(key) + ": '" + wanted + "' is unknown");
+    name = wanted;
+  };
+  choose("course", names.course, choices.courses);
+  choose("config", names.config, choices.configurations);
+  if (command.contains("method")) names.method = field::text(command, "method");
+  if (command.contains("seed")) names.seed = seed_of(field::text(command, "seed"));
+  names.obstacles = count_of(command, "obstacles", names.obstacles, 60);
+  names.opponents = count_of(command, "opponents", names.opponents, 16);
+  return names;
+}
+
+}  // namespace slalom::view

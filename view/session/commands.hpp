@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "view/session/drives.hpp"
+#include "view/session/scenario.hpp"
+
+/// Reads the commands of a page. The functions throw MalformedCommand, which names the key, where a field is
+/// missing, of another type or out of range.
+namespace slalom::view {
+
+/// A malformed command, in contrast to one that cannot be executed.
+struct MalformedCommand : std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
+};
+
+namespace field {
+
+double number(const nlohmann::ordered_json& command, const char* key);  ///< finite
+double number(const nlohmann::ordered_json& command, const char* key, double otherwise);
+int integer(const nlohmann::ordered_json& command, const char* key);  ///< in [-1e9, 1e9]
+int integer(const nlohmann::ordered_json& command, const char* key, int otherwise);
+std::string text(const nlohmann::ordered_json& command, const char* key);
+bool flag(const nlohmann::ordered_json& command, const char* key);
+
+}  // namespace field
+
+/// The action of the commands add, move, remove, place_car and nudge; nothing for others. `car`: present
+/// state of the car.
+std::optional<Action> edit_of(const std::string& what, const nlohmann::ordered_json& command,
+                              const sim::CarState& car);
+
+/// Applies the settings `set` of a command, a list of key=value. False if there are none.
+bool apply_settings(vehicle::Configuration& configuration, const nlohmann::ordered_json& command,
+                    const std::string& method);
+
+/// The scenario that the command scenario chooses; only the listed courses and configurations are allowed.
+ScenarioNames chosen_scenario(ScenarioNames present, const nlohmann::ordered_json& command,
+                              const Choices& choices);
+
+}  // namespace slalom::view

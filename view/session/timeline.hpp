@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "view/session/drives.hpp"
+
+namespace slalom::view {
+
+/// The past of a drive: the frame of each tick, the actions of the user, and a copy of the drives every
+/// second, from which any stored tick is reached again exactly.
+class Timeline {
+ public:
+  /// A tick that was driven.
+  struct Step {
+    int tick = 0;
+    Delays delays;
+    std::shared_ptr<const std::string> frame;  ///< message to the page
+  };
+
+  /// Forgets everything. `seconds`: the time that is stored; `control_period`: s per tick.
+  void begin(double seconds, double control_period);
+
+  /// Keeps a copy of the drives if the last one is a second old. To be called before each tick;
+  /// `copy_bytes`: about the size of a copy, of which 1 GiB is kept at most.
+  void checkpoint(const Drives& drives, std::size_t copy_bytes);
+  /// Notes an action after `ticks` ticks.
+  void note(int ticks, Action action) { actions_.push_back({ticks, std::move(action)}); }
+  /// Adds the tick that was driven last.
+  void keep(Step step);
+
+  bool empty() const noexcept { return steps_.empty(); }
+  int oldest() const noexcept { return empty() ? -1 : steps_.front().tick; }
+  int newest() const noexcept { return empty() ? -1 : steps_.back().tick; }
+  const std::deque<Step>& steps() const noexcept { return steps_; }
+  /// A stored tick.
+  const Step& at(int tick) const { return steps_.at(static_cast<std::size_t>(tick - oldest())); }
+  /// Replaces the frame of the newest tick.
+  void show(std::shared_ptr<const std::string> frame);
+
+  /// The drives as they were right after a stored tick: the copy before it, driven on.
+  Drives after(int tick) const;
+  /// Forgets everything after a tick.
+  void forget_after(int tick);
+
+ private:
+  struct Noted {
+    int ticks;
+    Action action;
+  };
+  void thin_out();
+  void forget_oldest();
+
+  std::size_t most_steps_ = 0;
+  int ticks_per_copy_ = 1;
+  std::size_t most_copies_ = 0, bytes_ = 0;  ///< bytes of the frames
+  std::deque<Step> steps_;                   ///< from the first tick after the oldest copy on
+  std::vector<Noted> actions_;               ///< in order
+  std::deque<Drives> copies_;                ///< by age
+};
+
+}  // namespace slalom::view
