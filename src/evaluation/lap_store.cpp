@@ -1,30 +1,17 @@
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <map>
-#include <system_error>
+#include <set>
 
 #include "evaluation/json.hpp"
-#include "evaluation/system_files.hpp"
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/evaluation/evaluation.hpp"
-#include "slalom/evaluation/result_folder.hpp"
 
 namespace slalom::evaluation {
-
 namespace {
 
 namespace fs = std::filesystem;
-using detail::throw_system;
-using detail::write_all;
 constexpr const char* journal_name = "laps.journal.csv";
-constexpr const char* table_name = "laps.csv";
-constexpr const char* settings_name = "settings.json";
-
 constexpr const char* checksum_key = "checksum";
 
 /// The 64-bit FNV-1a hash of the settings, written with their keys in order.
@@ -36,67 +23,42 @@ std::string checksum_of(const Json& settings) {
   return digits;
 }
 
-/// The rows as a table with checksums.
-std::string table_text(const std::vector<LapRow>& rows, const std::vector<Experiment>& experiments) {
-  std::string text = checked_header(experiments) + "\n";
-  for (const LapRow& row : rows) text += checked_line(csv_line(row, experiments)) + "\n";
-  return text;
-}
-
-/// The values below `json` by their paths, in the order of the paths.
-std::map<std::string, Json> values_by_path(const Json& json) {
-  const Json flat = json.flatten();
-  std::map<std::string, Json> values;
-  for (const auto& [path, value] : flat.items()) values.emplace(path, value);
-  return values;
-}
-
 /// "key: 1 stored, 2 requested; ..." for every value that differs.
 std::string differences(const Json& stored, const Json& requested) {
-  std::string text;
-  const auto a = values_by_path(stored), b = values_by_path(requested);
-  const auto note = [&](const std::string& key, const std::string& x, const std::string& y) {
-    text += (text.empty() ? "" : "; ") + key.substr(1) + ": " + x + " stored, " + y + " requested";
+  const Json a = stored.flatten(), b = requested.flatten();
+  std::set<std::string> paths;
+  for (const Json* flat : {&a, &b})
+    for (const auto& each : flat->items()) paths.insert(each.key());
+  const auto text_of = [](const Json& flat, const std::string& path) {
+    return flat.contains(path) ? json_text(flat.at(path)) : "nothing";
   };
-  for (const auto& [key, value] : a) {
-    const auto other = b.find(key);
-    if (other == b.end()) {
-      note(key, json_text(value), "nothing");
-    } else if (!(other->second == value)) {
-      note(key, json_text(value), json_text(other->second));
-    }
-  }
-  for (const auto& [key, value] : b) {
-    if (!a.contains(key)) note(key, "nothing", json_text(value));
+  std::string text;
+  for (const std::string& path : paths) {
+    const std::string x = text_of(a, path), y = text_of(b, path);
+    if (x != y)
+      text += (text.empty() ? "" : "; ") + path.substr(1) + ": " + x + " stored, " + y + " requested";
   }
   return text;
 }
 
-/// The contents of settings.json besides the settings.
-struct StoredSettings {
-  std::string build;     ///< that drove the laps; "" if it is unknown
-  bool checked = false;  ///< whether they have a checksum
-};
-
-/// Throws IoError if the stored settings are damaged or others than those requested.
-StoredSettings check_settings(const fs::path& file, const std::string& requested) {
-  StoredSettings result;
+/// The builds that drove the laps of a folder. Throws IoError if the stored settings are damaged or others
+/// than those requested.
+std::string stored_builds(const fs::path& file, const std::string& requested) {
   Json stored;
   try {
     const std::string text = read_file(file, max_json_bytes);
-    result.checked = verify_checksum(text);
+    verify_checksum(text);
     stored = parse_json(text);
   } catch (const std::invalid_argument& error) {
     throw IoError(file.string(), 0, error.what());
   }
-  if (const auto build = stored.find("build"); build != stored.end() && build->is_string())
-    result.build = build->get<std::string>();
+  const std::string builds = stored.value("build", "unknown");
   stored.erase("build");
   stored.erase(checksum_key);
   const std::string differing = differences(stored, parse_json(requested));
   if (!differing.empty())
     throw IoError(file.string(), 0, "the folder contains an evaluation with other settings: " + differing);
-  return result;
+  return builds;
 }
 
 std::string with_build(const std::string& settings, const std::string& build) {
@@ -105,30 +67,11 @@ std::string with_build(const std::string& settings, const std::string& build) {
   return with_checksum(json_text(json));
 }
 
-bool is_table_order(const LapRow& a, const LapRow& b) {
-  return std::pair(a.experiment, a.lap) < std::pair(b.experiment, b.lap);
-}
-
-/// laps.csv is written when all laps are there. If some are missing, somebody has edited it.
-void check_complete(const fs::path& table, const std::vector<LapRow>& sorted,
-                    const std::vector<Experiment>& experiments) {
-  std::size_t at = 0;
-  for (int e = 0; e < static_cast<int>(experiments.size()); ++e) {
-    const Experiment& experiment = experiments[static_cast<std::size_t>(e)];
-    for (int lap = 0; lap < experiment.laps; ++lap, ++at) {
-      if (at < sorted.size() && sorted[at].experiment == e && sorted[at].lap == lap) continue;
-      throw IoError(table.string(), 0,
-                    "lap " + std::to_string(lap) + " of " + experiment.label() + ", " + experiment.scenario +
-                        ": is missing; rename the file to " + journal_name + " to continue the evaluation");
-    }
-  }
-}
-
-/// Whether both the settings and the laps have checksums. Throws IoError where only the laps have them.
-bool all_checked(const fs::path& settings, bool settings_checked, bool laps_checked, bool has_laps) {
-  if (laps_checked && !settings_checked && has_laps)
-    throw IoError(settings.string(), 0, "has no checksum, but the laps have: it is damaged or was replaced");
-  return laps_checked && settings_checked;
+/// The rows as a table with checksums.
+std::string table_text(const std::vector<LapRow>& rows, const std::vector<Experiment>& experiments) {
+  std::string text = checked_header(experiments) + "\n";
+  for (const LapRow& row : rows) text += checked_line(csv_line(row, experiments)) + "\n";
+  return text;
 }
 
 }  // namespace
@@ -140,85 +83,71 @@ std::string with_checksum(const std::string& settings) {
   return json_text(json, 2);
 }
 
-bool verify_checksum(const std::string& stored_settings) {
+void verify_checksum(const std::string& stored_settings) {
   Json json = parse_json(stored_settings);
   if (!json.is_object()) throw std::invalid_argument("is not a JSON object");
-  if (!json.contains(checksum_key)) return false;
-  const Json stored = json.at(checksum_key);
+  const Json stored = json.value(checksum_key, Json());
   json.erase(checksum_key);
-  if (stored != checksum_of(json))
+  if (stored != Json(checksum_of(json)))
     throw std::invalid_argument(
         "key checksum: is not that of the settings: the file is damaged or was edited");
-  return true;
 }
 
 LapStore::LapStore(const fs::path& folder, const Evaluation& evaluation, bool resume)
-    : folder_(folder), experiments_(evaluation.experiments) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw IoError(folder.string(), 0, "cannot create the folder: " + error.message());
-  lock_ = std::make_unique<FolderLock>(folder);
-  const fs::path settings = folder / settings_name, journal = folder / journal_name,
-                 table = folder / table_name;
-  std::string settings_to_write;
-  bool settings_checked = true;
-  const bool has_laps = fs::exists(journal) || fs::exists(table);
-  if (has_laps && !resume) {
-    throw IoError(folder.string(), 0,
-                  "contains the laps of an evaluation: give --resume to continue it, or another folder");
+    : folder_(folder), lock_(folder), experiments_(evaluation.experiments) {
+  const fs::path settings = folder / "settings.json", journal = folder / journal_name,
+                 table = folder / "laps.csv";
+  const bool complete = fs::exists(table);
+  std::string builds = evaluation.build;
+  if (complete || fs::exists(journal)) {
+    if (!resume)
+      throw IoError(folder.string(), 0,
+                    "contains the laps of an evaluation: give --resume to continue it, or another folder");
+    builds = stored_builds(settings, evaluation.settings);
+    if (!builds.ends_with(evaluation.build)) {
+      if (!complete && !evaluation.any_build)
+        throw IoError(settings.string(), 0,
+                      "the laps were driven by another build of the program (build " + builds + ", this is " +
+                          evaluation.build +
+                          "), whose laps may differ. Continue with that build, choose another folder, or "
+                          "give --any-build to mix them");
+      builds += " " + evaluation.build;
+    }
+    rows_ = read_rows(complete ? table : journal, experiments_, !complete, evaluation.seed0);
   }
-  if (has_laps && !fs::exists(settings))
-    throw IoError(settings.string(), 0, "is missing, but the folder contains laps");
-  if (has_laps) {
-    const auto [stored_build, checked] = check_settings(settings, evaluation.settings);
-    settings_checked = checked;
-    const bool same = stored_build.ends_with(evaluation.build);
-    if (!same && !fs::exists(table)) check_build(evaluation, stored_build);
-    const std::string builds =
-        same ? stored_build : (stored_build.empty() ? "unknown" : stored_build) + " " + evaluation.build;
-    if (!fs::exists(table) && !(same && checked)) settings_to_write = with_build(evaluation.settings, builds);
-  } else {
-    replace_file(settings, with_build(evaluation.settings, evaluation.build));
-  }
-  if (fs::exists(table)) {
-    rows_ = read_rows(table, experiments_, false, evaluation.seed0, &checked_);
-    std::sort(rows_.begin(), rows_.end(), is_table_order);
-    check_complete(table, rows_, experiments_);
-    checked_ = all_checked(settings, settings_checked, checked_, !rows_.empty());
+  if (complete) {
+    std::size_t laps = 0;
+    for (const Experiment& each : experiments_) laps += static_cast<std::size_t>(each.laps);
+    sort();
+    if (rows_.size() < laps)
+      throw IoError(table.string(), 0,
+                    std::to_string(laps - rows_.size()) + " laps are missing; rename the file to " +
+                        journal_name + " to continue the evaluation");
     return;
   }
-  if (fs::exists(journal)) rows_ = read_rows(journal, experiments_, true, evaluation.seed0, &checked_);
-  checked_ = all_checked(settings, settings_checked, checked_, !rows_.empty());
-  if (!settings_to_write.empty()) replace_file(settings, settings_to_write);
+  replace_file(settings, with_build(evaluation.settings, builds));
   replace_file(journal, table_text(rows_, experiments_));  // without a truncated line
-  journal_ = ::open(journal.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-  if (journal_ < 0) throw_system(journal, "cannot be written");
+  journal_.open(journal, std::ios::binary | std::ios::app);
+  if (!journal_) throw_system_error(journal, "cannot be written");
 }
 
-void LapStore::check_build(const Evaluation& evaluation, const std::string& stored_build) const {
-  if (evaluation.any_build) return;
-  throw IoError((folder_ / settings_name).string(), 0,
-                "the laps were driven by another build of the program (build " +
-                    (stored_build.empty() ? "unknown" : stored_build) + ", this is " + evaluation.build +
-                    "), whose laps may differ. Continue with that build, choose another folder, or give "
-                    "--any-build to mix them");
-}
-
-LapStore::~LapStore() {
-  if (journal_ >= 0) ::close(journal_);
+void LapStore::sort() {
+  std::sort(rows_.begin(), rows_.end(), [](const LapRow& a, const LapRow& b) {
+    return std::pair(a.experiment, a.lap) < std::pair(b.experiment, b.lap);
+  });
 }
 
 void LapStore::add(const LapRow& row) {
-  write_all(journal_, checked_line(csv_line(row, experiments_)) + "\n", folder_ / journal_name);
+  journal_ << checked_line(csv_line(row, experiments_)) + "\n" << std::flush;
+  if (!journal_) throw_system_error(folder_ / journal_name, "cannot be written");
   rows_.push_back(row);
 }
 
 void LapStore::complete() {
-  if (journal_ < 0) return;
-  std::sort(rows_.begin(), rows_.end(), is_table_order);
-  replace_file(folder_ / table_name, table_text(rows_, experiments_));
-  ::close(journal_);
-  journal_ = -1;
+  if (!journal_.is_open()) return;
+  sort();
+  replace_file(folder_ / "laps.csv", table_text(rows_, experiments_));
+  journal_.close();
   fs::remove(folder_ / journal_name);
 }
 

@@ -25,7 +25,7 @@ LapRow row(int experiment, int lap) {
   LapRow r;
   r.experiment = experiment;
   r.lap = lap;
-  r.seed = 18446744073709551615ull;
+  r.seed = lap_seed(0, lap, experiment == 0 ? 0 : 5);
   r.success = true;
   r.collisions = 3;
   r.finished = true;
@@ -69,7 +69,7 @@ class LapTable : public testing::TemporaryFolder {
  protected:
   void write(const std::string& text) const { TemporaryFolder::write("laps.csv", text); }
   std::string complaint(const std::string& text, bool accept_truncated = false,
-                        std::optional<std::uint64_t> seed0 = {}) const {
+                        std::uint64_t seed0 = 0) const {
     write(text);
     try {
       read_rows(file_, experiments, accept_truncated, seed0);
@@ -80,24 +80,23 @@ class LapTable : public testing::TemporaryFolder {
   }
 
   const fs::path file_ = folder_ / "laps.csv";
-  std::string head_ = csv_header() + "\n", first_ = csv_line(row(0, 2), experiments) + "\n",
-              second_ = csv_line(row(1, 0), experiments) + "\n";
+  static std::string line(const LapRow& row) { return checked_line(csv_line(row, experiments)) + "\n"; }
+  std::string head_ = checked_header() + "\n", first_ = line(row(0, 2)), second_ = line(row(1, 0));
 };
 
 TEST_F(LapTable, ReadsBackToTheSameBits) {
   write(head_ + first_ + second_);
-  const auto rows = read_rows(file_, experiments, false);
+  const auto rows = read_rows(file_, experiments, false, 0);
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].experiment, 0);
   EXPECT_EQ(rows[0].lap, 2);
   EXPECT_EQ(rows[1].experiment, 1);
-  EXPECT_EQ(rows[1].seed, 18446744073709551615ull);
+  EXPECT_EQ(rows[0].seed, 10u);
   EXPECT_EQ(rows[1].state_cost, 0.1 + 0.2);
   EXPECT_EQ(rows[1].collision_cost, 1e-300);
   EXPECT_EQ(rows[1].lap_time, 1.0 / 3);
   EXPECT_EQ(rows[1].contact_points, "1.250:-3.000 0.500:2.125");
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    EXPECT_EQ(csv_line(rows[i], experiments) + "\n", i == 0 ? first_ : second_);
+  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(line(rows[i]), i == 0 ? first_ : second_);
 }
 
 TEST_F(LapTable, BeginsWithTheColumnsOfThePublishedLogs) {
@@ -110,45 +109,41 @@ TEST_F(LapTable, BeginsWithTheColumnsOfThePublishedLogs) {
 TEST_F(LapTable, AcceptsATruncatedLineOnlyAtTheEndOfAJournal) {
   const std::string cut = second_.substr(0, second_.size() / 2);
   write(head_ + first_ + cut);
-  EXPECT_EQ(read_rows(file_, experiments, true).size(), 1u);
+  EXPECT_EQ(read_rows(file_, experiments, true, 0).size(), 1u);
   EXPECT_NE(complaint(head_ + first_ + cut).find(":3: is truncated"), std::string::npos);
-  EXPECT_NE(complaint(head_ + cut + "\n" + first_, true).find(":2: has "), std::string::npos);
+  EXPECT_NE(complaint(head_ + cut + "\n" + first_, true).find(":2: checksum"), std::string::npos);
 }
 
 TEST_F(LapTable, NamesLineAndColumnOfAnInvalidValue) {
-  EXPECT_NE(complaint("lap,seed\n" + first_).find(":1: column method is missing"), std::string::npos);
+  const std::string plain = csv_line(row(0, 2), experiments), seed = ",,2,10,";
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = plain;
+    text.replace(text.find(from), from.size(), to);
+    return complaint(head_ + checked_line(text) + "\n");
+  };
+  EXPECT_NE(complaint("lap,seed\n" + first_).find(":1: the columns must be method,"), std::string::npos);
   EXPECT_NE(complaint(head_ + first_ + first_).find(":3: duplicate lap"), std::string::npos);
-  std::string other = first_;
-  other.replace(0, 4, "cem");
-  EXPECT_NE(complaint(head_ + other).find(":2: matches no experiment"), std::string::npos);
-  std::string lap = first_;
-  lap.replace(lap.find(",,2,"), 4, ",,3,");
-  EXPECT_NE(complaint(head_ + lap).find("lap: 3 must be in [0, 2]"), std::string::npos);
-  std::string word = first_;
-  word.replace(word.find("18446744073709551615"), 20, "twelve");
-  EXPECT_NE(complaint(head_ + word).find("seed: 'twelve' must be a number"), std::string::npos);
+  EXPECT_NE(changed("mppi", "cem").find(":2: matches no experiment"), std::string::npos);
+  EXPECT_NE(changed(seed, ",,3,10,").find("lap: 3 must be in [0, 2]"), std::string::npos);
+  EXPECT_NE(changed(seed, ",,2,twelve,").find("seed: 'twelve' must be a number"), std::string::npos);
 }
 
 TEST_F(LapTable, RejectsNonFiniteNumbers) {
   LapRow invalid = row(0, 2);
   for (const double number : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     invalid.state_cost = number;
-    EXPECT_NE(complaint(head_ + csv_line(invalid, experiments) + "\n").find(":2: state_cost: '"),
-              std::string::npos)
-        << number;
+    EXPECT_NE(complaint(head_ + line(invalid)).find(":2: state_cost: '"), std::string::npos) << number;
   }
   invalid = row(0, 2);
   invalid.minimum_clearance = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(complaint(head_ + csv_line(invalid, experiments) + "\n"), "") << "where there is no wall";
+  EXPECT_EQ(complaint(head_ + line(invalid)), "") << "where there is no wall";
 }
 
 TEST_F(LapTable, RejectsTheSeedOfAnotherLap) {
   LapRow plain = row(0, 2), among_obstacles = row(1, 1);
   plain.seed = 7 + 2 * 5;
   among_obstacles.seed = 7 + 1 * 10;
-  const auto text = [&] {
-    return head_ + csv_line(plain, experiments) + "\n" + csv_line(among_obstacles, experiments) + "\n";
-  };
+  const auto text = [&] { return head_ + line(plain) + line(among_obstacles); };
   EXPECT_EQ(complaint(text(), false, 7), "");
   EXPECT_NE(complaint(text(), false, 8).find(":2: seed: 17 must be 18"), std::string::npos);
   among_obstacles.seed = 7 + 1 * 5;
@@ -171,14 +166,14 @@ class LapStoreResume : public testing::TemporaryFolder {
   template <class Edit>
   std::string complaint_when_resumed(Edit&& edit) {
     fs::remove_all(folder_);
-    std::string text = csv_header() + "\n";
+    std::string text = checked_header() + "\n";
     {
       LapStore store(folder_, evaluation_, false);
       for (int lap = 0; lap < 2; ++lap) {
         LapRow r = row(0, lap);
         r.seed = lap_seed(0, lap, 0);
         store.add(r);
-        text += csv_line(r, evaluation_.experiments) + "\n";
+        text += checked_line(csv_line(r, evaluation_.experiments)) + "\n";
       }
       store.complete();
     }
@@ -201,8 +196,7 @@ TEST_F(LapStoreResume, ResumesOnlyFromAWholeTableOfItsOwn) {
   EXPECT_EQ(complaint_when_resumed([](const std::string& text) { return text; }), "");
   EXPECT_NE(complaint_when_resumed([](const std::string&) { return ""; }).find("laps.csv:1: the header"),
             std::string::npos);
-  EXPECT_NE(complaint_when_resumed(without_last).find("laps.csv: lap 1 of mppi, pt: is missing"),
-            std::string::npos);
+  EXPECT_NE(complaint_when_resumed(without_last).find("laps.csv: 1 laps are missing"), std::string::npos);
   evaluation_.seed0 = 5;
   EXPECT_NE(complaint_when_resumed([](const std::string& text) { return text; }).find("laps.csv:2: seed: 0"),
             std::string::npos);

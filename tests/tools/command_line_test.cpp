@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::contains;
 using testing::content;
-using testing::remove_checksums;
+using testing::write_settings;
 
 const std::string wren = SLALOM_COURSES "/wren";
 
@@ -279,10 +279,8 @@ TEST_F(CommandLine, NamesEmptyEvaluations) {
   refuses(evaluation("ev") + " --resume", {"ev/settings.json: ", "is not a JSON object"});
   refuses("replay ev --lap 0", {"ev/settings.json: ", "is not a JSON object"});
   std::ofstream(folder_ / "ev/settings.json") << settings;
-  remove_checksums(folder_ / "ev");
-  const std::string unchecked = content(folder_ / "ev/settings.json");
   const auto changed = [&](const std::string& pattern, const std::string& to) {
-    std::ofstream(folder_ / "ev/settings.json") << std::regex_replace(unchecked, std::regex(pattern), to);
+    write_settings(folder_ / "ev", std::regex_replace(settings, std::regex(pattern), to));
   };
   changed(R"re("experiments": \[[^\]]*\])re", R"("experiments": [])");
   refuses("view --eval ev", {"ev/settings.json: is invalid: experiments: must be at least one"});

@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <fstream>
-#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "slalom/evaluation/evaluation.hpp"
 #include "tools/program_test.hpp"
 
 /// Tests that run evaluations in a folder of their own.
@@ -49,12 +49,9 @@ inline std::string repeatable(const fs::path& file) {
   return text;
 }
 
-/// Makes `folder` an evaluation of a version that wrote no checksums, so that a test can change its files.
-inline void remove_checksums(const fs::path& folder) {
-  const std::string settings = content(folder / "settings.json"), table = content(folder / "laps.csv");
-  std::ofstream(folder / "settings.json")
-      << std::regex_replace(settings, std::regex(R"re(,\s*"checksum": "\w+")re"), "");
-  std::ofstream(folder / "laps.csv") << std::regex_replace(table, std::regex(",[^,\n]*\n"), "\n");
+/// Writes these settings of an evaluation, with their checksum.
+inline void write_settings(const fs::path& folder, const std::string& settings) {
+  std::ofstream(folder / "settings.json") << evaluation::with_checksum(settings);
 }
 
 inline std::size_t count_lines(const fs::path& file) {

@@ -251,7 +251,6 @@ bool drive_evaluation(const Evaluation& evaluation, const EvaluationArguments& a
   }
   require_object(std::filesystem::path(arguments.out) / "settings.json");
   LapStore store(arguments.out, evaluation, arguments.resume);
-  if (!store.checked()) print_unchecked(arguments.out);
   EvaluationProgressBar bar(title);
   EvaluationQueue work(
       evaluation, store, [&](const EvaluationProgress& p) { bar.show(p); }, cancel);

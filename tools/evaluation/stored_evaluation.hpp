@@ -16,18 +16,14 @@ struct StoredEvaluation {
   std::vector<evaluation::Experiment> experiments;
   std::vector<evaluation::LapRow> rows;  ///< rows of the run, so far if it is not done
   bool complete = false;
-  bool checked = false;  ///< whether settings and rows have checksums; those of earlier versions have not
 
   /// The experiment so named: by its label (method and options) or, where only one has it, by its method; an
   /// empty scenario fits any. Throws IoError naming those there are.
   int find(const std::string& name, const std::string& scenario) const;
 };
 
-/// Throws IoError if the folder does not contain a valid evaluation. Prints a note if it has no checksums.
+/// Throws IoError if the folder does not contain a valid evaluation.
 StoredEvaluation load_evaluation(const std::filesystem::path& folder);
-
-/// Prints the note that the laps of a folder have no checksums.
-void print_unchecked(const std::filesystem::path& folder);
 
 /// Whether two rows of the same lap agree, except for wall-clock times.
 bool same_lap(evaluation::LapRow a, const evaluation::LapRow& b,

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "slalom/evaluation/lap_table.hpp"
+#include "slalom/evaluation/result_folder.hpp"
 
 namespace slalom::evaluation {
 
@@ -64,13 +66,10 @@ class LapQueue {
 /// which thread drives which lap. Returns how many threads worked: fewer if the system could not start all.
 int drive_laps(const Evaluation& evaluation, LapQueue& queue, int jobs, const std::atomic<bool>& cancel);
 
-class FolderLock;
-
 /// The settings of an evaluation, as JSON text, with their checksum.
 std::string with_checksum(const std::string& settings);
-/// Whether stored settings have a checksum. Throws std::invalid_argument if it is not that of the settings,
-/// or if they are not a JSON object.
-bool verify_checksum(const std::string& stored_settings);
+/// Throws std::invalid_argument unless stored settings are a JSON object with the checksum of the settings.
+void verify_checksum(const std::string& stored_settings);
 
 /// Stores the laps of an evaluation in a folder: `settings.json`, `laps.csv` when all laps are there, and
 /// until then a journal to which each lap is appended when it ends. A run may be killed at any time; a later
@@ -79,20 +78,15 @@ bool verify_checksum(const std::string& stored_settings);
 class LapStore {
  public:
   /// Opens or makes `folder`. The evaluation must outlive the store. Throws IoError
-  /// - if the folder cannot be written, or is in use by another store (the message names its process),
+  /// - if the folder cannot be written, or is in use by another store,
   /// - if it contains laps and `resume` is false,
   /// - if it contains an evaluation with other settings (the message names the differences),
   /// - if its laps are corrupt, have other seeds, or are missing in laps.csv,
   /// - if laps are missing, another build has driven those that are there, and `any_build` is false.
   LapStore(const std::filesystem::path& folder, const Evaluation& evaluation, bool resume);
-  ~LapStore();
-  LapStore(const LapStore&) = delete;
-  LapStore& operator=(const LapStore&) = delete;
 
   /// The laps driven so far.
   const std::vector<LapRow>& rows() const noexcept { return rows_; }
-  /// Whether the laps that were there had checksums; those of earlier versions had not.
-  bool checked() const noexcept { return checked_; }
   /// Appends a lap to the journal. It survives the end of the process once this returns. Throws IoError if it
   /// cannot be written.
   void add(const LapRow& row);
@@ -101,14 +95,13 @@ class LapStore {
   void complete();
 
  private:
-  void check_build(const Evaluation& evaluation, const std::string& stored_build) const;
+  void sort();
 
   std::filesystem::path folder_;
-  std::unique_ptr<FolderLock> lock_;
+  FolderLock lock_;
   const std::vector<Experiment>& experiments_;
-  bool checked_ = true;
   std::vector<LapRow> rows_;
-  int journal_ = -1;  ///< file descriptor
+  std::ofstream journal_;
 };
 
 /// The laps that a store does not have yet, in order.

@@ -115,13 +115,11 @@ std::string checked_header(const std::vector<Experiment>& experiments = {});
 /// else is wrong with the line.
 LapRow parse_line(const std::string& line, const std::vector<Experiment>& experiments);
 
-/// Reads rows, with or without the column `checksum`; `checked` receives whether the table has it. Throws
-/// IoError with file and line if a checksum is not that of its row, and if the file cannot be read, the
-/// header is another one, a line is not a row of one of the experiments, a lap is duplicate, or, where
-/// `seed0` is given, its seed is not that of the lap. With `accept_truncated` an incomplete last line (the
-/// program was killed while it wrote) is ignored, and so is a missing header of an otherwise empty file.
+/// Reads a table with checksums. Throws IoError with file and line if a checksum is not that of its row, and
+/// if the file cannot be read, the header is another one, a line is not a row of one of the experiments, a
+/// lap is duplicate, or its seed is not lap_seed(seed0, ...). With `accept_truncated` an incomplete last line
+/// (the program was killed while it wrote) is ignored, and so is a missing header of an otherwise empty file.
 std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vector<Experiment>& experiments,
-                              bool accept_truncated, std::optional<std::uint64_t> seed0 = {},
-                              bool* checked = nullptr);
+                              bool accept_truncated, std::uint64_t seed0);
 
 }  // namespace slalom::evaluation

@@ -132,18 +132,6 @@ void parse_cell(const std::string& text, const char* column, Field& field) {
 
 constexpr std::size_t identity_columns = 4;  // method, scenario, set, lap
 
-/// The message about an invalid header.
-std::string header_error(const std::string& line, const std::vector<Experiment>& experiments) {
-  const auto found = split(line), expected = split(csv_header(experiments));
-  for (const std::string& column : found)
-    if (column != checksum_column && std::find(expected.begin(), expected.end(), column) == expected.end())
-      return "column '" + column + "' is unknown to this version";
-  for (const std::string& column : expected)
-    if (std::find(found.begin(), found.end(), column) == found.end())
-      return "column " + column + " is missing";
-  return "the columns must be in this order: " + csv_header(experiments);
-}
-
 }  // namespace
 
 std::string Experiment::set_text() const {
@@ -289,59 +277,50 @@ LapRow parse_line(const std::string& line, const std::vector<Experiment>& experi
 
 namespace {
 
-/// The line without its checksum. Throws std::invalid_argument if that is not the checksum of the line.
-std::string without_checksum(const std::string& line) {
+/// Parses a line of a stored table. Throws std::invalid_argument if it is damaged or has the seed of another
+/// lap.
+LapRow parse_checked_line(const std::string& line, const std::vector<Experiment>& experiments,
+                          std::uint64_t seed0) {
   const auto comma = line.rfind(',');
-  const std::string row = line.substr(0, comma);
-  if (comma == std::string::npos || checked_line(row) != line)
+  const std::string text = line.substr(0, comma);
+  if (comma == std::string::npos || checked_line(text) != line)
     throw std::invalid_argument("checksum: the row is damaged: it is not the row that was written");
-  return row;
-}
-
-void check_seed(const LapRow& row, const Experiment& experiment, std::uint64_t seed0) {
-  const std::uint64_t seed = lap_seed(seed0, row.lap, experiment.obstacles);
-  if (row.seed == seed) return;
+  LapRow row = parse_line(text, experiments);
+  const int obstacles = experiments[static_cast<std::size_t>(row.experiment)].obstacles;
+  const std::uint64_t seed = lap_seed(seed0, row.lap, obstacles);
+  if (row.seed == seed) return row;
   throw std::invalid_argument("seed: " + std::to_string(row.seed) + " must be " + std::to_string(seed) +
                               ", the seed of lap " + std::to_string(row.lap) + " with seed0 " +
-                              std::to_string(seed0) + " and " + std::to_string(experiment.obstacles) +
-                              " obstacles");
+                              std::to_string(seed0) + " and " + std::to_string(obstacles) + " obstacles");
 }
 
 }  // namespace
 
 std::vector<LapRow> read_rows(const std::filesystem::path& file, const std::vector<Experiment>& experiments,
-                              bool accept_truncated, std::optional<std::uint64_t> seed0, bool* checked) {
+                              bool accept_truncated, std::uint64_t seed0) {
   constexpr std::uint64_t max_bytes = std::uint64_t{1} << 30;
-  const std::string text = read_file(file, max_bytes);
-  bool has_checksums = false;
+  const std::string text = read_file(file, max_bytes), header = checked_header(experiments);
+  if (text.empty() && !accept_truncated) throw IoError(file.string(), 1, "the header is missing");
   std::vector<LapRow> rows;
   std::set<std::pair<int, int>> seen;
   int number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = text.find('\n', begin);
-    const bool complete = end != std::string::npos;
-    const std::string line = text.substr(begin, complete ? end - begin : std::string::npos);
-    begin = complete ? end + 1 : text.size();
     ++number;
-    if (!complete && accept_truncated) break;
-    if (!complete) throw IoError(file.string(), number, "is truncated");
-    if (number == 1) {
-      has_checksums = line == checked_header(experiments);
-      if (!has_checksums && line != csv_header(experiments))
-        throw IoError(file.string(), 1, header_error(line, experiments));
-      continue;
-    }
+    if (end == std::string::npos && accept_truncated) break;
+    if (end == std::string::npos) throw IoError(file.string(), number, "is truncated");
+    const std::string line = text.substr(begin, end - begin);
+    begin = end + 1;
     try {
-      LapRow row = parse_line(has_checksums ? without_checksum(line) : line, experiments);
-      if (!seen.insert({row.experiment, row.lap}).second) throw std::invalid_argument("duplicate lap");
-      if (seed0) check_seed(row, experiments[static_cast<std::size_t>(row.experiment)], *seed0);
-      rows.push_back(std::move(row));
+      if (number == 1 && line != header) throw std::invalid_argument("the columns must be " + header);
+      if (number == 1) continue;
+      rows.push_back(parse_checked_line(line, experiments, seed0));
+      if (!seen.insert({rows.back().experiment, rows.back().lap}).second)
+        throw std::invalid_argument("duplicate lap");
     } catch (const std::invalid_argument& error) {
       throw IoError(file.string(), number, error.what());
     }
   }
-  if (checked) *checked = has_checksums || number == 0;
-  if (number == 0 && !accept_truncated) throw IoError(file.string(), 1, "the header is missing");
   return rows;
 }
 
