@@ -109,15 +109,4 @@ LapSetup lap_setup(const Evaluation& evaluation, int index) {
   return setup;
 }
 
-bool run_evaluation(const Evaluation& evaluation, LapStore& store, int jobs,
-                    const std::function<void(const EvaluationProgress&)>& on_progress,
-                    const std::atomic<bool>& cancel) {
-  // Reports unknown methods and options before the first lap.
-  for (int i = 0; i < static_cast<int>(evaluation.experiments.size()); ++i)
-    lap_setup(evaluation, i).validate();
-  EvaluationQueue queue(evaluation, store, on_progress, cancel);
-  drive_laps(evaluation, queue, jobs, cancel);
-  return queue.finish();
-}
-
 }  // namespace slalom::evaluation

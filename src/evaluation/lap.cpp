@@ -223,6 +223,7 @@ void LapDrive::step(const ControlStepCallback& on_step, double extra_latency) {
 
 LapResult LapDrive::finish(const ControlStepCallback& on_step, const std::atomic<bool>* cancel) {
   State& lap = *state_;
+  lap.result.cancelled = false;
   while (!lap.at_finish() && lap.drive.world.time() <= lap.timeout) {
     if (cancel && cancel->load(std::memory_order_relaxed)) {
       lap.result.cancelled = true;

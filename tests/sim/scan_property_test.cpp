@@ -129,65 +129,6 @@ TEST(ScanProperty, EveryInstructionSetGivesTheSameBits) {
   }
 }
 
-/// One beam of f1tenth_gym's walk, written down beam by beam.
-double gym_walk(const Track& track, maps::Point at, double angle, double most) {
-  const maps::OccupancyGrid& grid = track.grid();
-  const double origin_cosine = std::cos(grid.origin.yaw), origin_sine = std::sin(grid.origin.yaw);
-  const auto distance = [&](const maps::Point& p) {
-    const double dx = p.x - grid.origin.x, dy = p.y - grid.origin.y;
-    const double gx = dx * origin_cosine + dy * origin_sine, gy = -dx * origin_sine + dy * origin_cosine;
-    const bool inside =
-        gx >= 0 && gy >= 0 && gx < grid.width * grid.resolution && gy < grid.height * grid.resolution;
-    if (!inside) return track.distance().distance.back();
-    return track.distance()
-        .distance[static_cast<std::size_t>(gy / grid.resolution) * static_cast<std::size_t>(grid.width) +
-                  static_cast<std::size_t>(gx / grid.resolution)];
-  };
-  double step = distance(at), total = step;
-  while (step > 1e-4 && total <= most) {
-    at = {at.x + step * std::cos(angle), at.y + step * std::sin(angle)};
-    step = distance(at);
-    total += step;
-  }
-  return std::min(total, most);
-}
-
-TEST(ScanProperty, TheGymWalkIsTheSameToTheBitOnEveryInstructionSet) {
-  const Track track(scattered(11));
-  const maps::OccupancyGrid& grid = track.grid();
-  constexpr std::size_t beams = detail::scan_padding;
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> along(0, 1);
-  for (int n = 0; n < 20; ++n) {
-    const maps::Point at = maps::transform(grid.origin, {9 * along(random), 7 * along(random)});
-    std::array<double, beams> cosines, sines, ranges;
-    const double turn = 6 * along(random);
-    for (std::size_t i = 0; i < beams; ++i) {
-      cosines[i] = std::cos(turn + 0.1 * static_cast<double>(i));
-      sines[i] = std::sin(turn + 0.1 * static_cast<double>(i));
-    }
-    for (const detail::ScanKernels& kernels : detail::all_scan_kernels()) {
-      kernels.gym_walk({.distance = track.distance().distance.data(),
-                        .width = grid.width,
-                        .height = grid.height,
-                        .resolution = grid.resolution,
-                        .origin_x = grid.origin.x,
-                        .origin_y = grid.origin.y,
-                        .origin_cosine = std::cos(grid.origin.yaw),
-                        .origin_sine = std::sin(grid.origin.yaw),
-                        .x = at.x,
-                        .y = at.y,
-                        .most = 6,
-                        .cosines = cosines.data(),
-                        .sines = sines.data(),
-                        .ranges = ranges.data()});
-      for (std::size_t i = 0; i < beams; ++i)
-        ASSERT_EQ(ranges[i], gym_walk(track, at, turn + 0.1 * static_cast<double>(i), 6))
-            << kernels.name << ", beam " << i;
-    }
-  }
-}
-
 TEST(ScanProperty, TheGymWindowReachesToTheNearestBeamOfEveryCorner) {
   LidarOptions options;
   options.gym.window = true;

@@ -134,11 +134,4 @@ class EvaluationQueue final : public LapQueue {
   std::exception_ptr error_;
 };
 
-/// Drives every lap that the store does not have yet on `jobs` threads, and completes the store. The laps
-/// depend neither on the number of jobs nor on interruptions. Returns false if `cancel` ended it early.
-/// Throws as a lap does.
-bool run_evaluation(const Evaluation& evaluation, LapStore& store, int jobs,
-                    const std::function<void(const EvaluationProgress&)>& on_progress,
-                    const std::atomic<bool>& cancel);
-
 }  // namespace slalom::evaluation

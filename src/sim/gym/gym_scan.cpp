@@ -77,40 +77,23 @@ double gym_distance(const Track& track, const maps::Point& point) {
 }
 
 void gym_scan(const Track& track, const maps::Pose& sensor, const LidarOptions& options,
-              std::span<const double> angles, const ScanKernels& kernels, std::span<double> ranges) {
-  constexpr std::size_t block = scan_padding;
-  std::array<double, block> cosines, sines, walked;
+              std::span<const double> angles, std::span<double> ranges) {
+  constexpr double close_enough = 1e-4;  // m, to a wall
   const Field field(track);
-  const GymWalkTask task{.distance = field.distance,
-                         .width = field.width,
-                         .height = field.height,
-                         .resolution = field.resolution,
-                         .origin_x = field.origin.x,
-                         .origin_y = field.origin.y,
-                         .origin_cosine = field.cosine,
-                         .origin_sine = field.sine,
-                         .x = sensor.x,
-                         .y = sensor.y,
-                         .most = options.range_max,
-                         .cosines = cosines.data(),
-                         .sines = sines.data(),
-                         .ranges = walked.data()};
+  const double from_start = field.at(sensor.x, sensor.y);
   GymDirections directions(sensor.yaw, options);
-  for (std::size_t first = 0; first < ranges.size(); first += block) {
-    const std::size_t here = std::min(block, ranges.size() - first);
-    for (std::size_t i = 0; i < here; ++i) {
-      const double angle = sensor.yaw + angles[first + i];
-      const maps::Point to =
-          options.gym.directions ? directions.next() : maps::Point{std::cos(angle), std::sin(angle)};
-      cosines[i] = to.x;
-      sines[i] = to.y;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const double angle = sensor.yaw + angles[i];
+    const maps::Point to =
+        options.gym.directions ? directions.next() : maps::Point{std::cos(angle), std::sin(angle)};
+    double x = sensor.x, y = sensor.y, step = from_start, total = from_start;
+    while (step > close_enough && total <= options.range_max) {
+      x += step * to.x;
+      y += step * to.y;
+      step = field.at(x, y);
+      total += step;
     }
-    for (std::size_t i = here; i < block; ++i) {
-      cosines[i] = cosines[here - 1];
-      sines[i] = sines[here - 1];
-    }
-    kernels.gym_walk(task);
-    std::copy_n(walked.begin(), here, ranges.begin() + static_cast<std::ptrdiff_t>(first));
+    ranges[i] = std::min(total, options.range_max);
   }
 }
 

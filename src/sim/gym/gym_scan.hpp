@@ -2,7 +2,6 @@
 
 #include <span>
 
-#include "sim/lidar/scan.hpp"
 #include "slalom/sim/lidar.hpp"
 
 namespace slalom::sim::detail {
@@ -20,7 +19,7 @@ class GymDirections {
 
 /// The scan of f1tenth_gym, with the directions that `options` ask for; `angles` are those of the beams.
 void gym_scan(const Track& track, const maps::Pose& sensor, const LidarOptions& options,
-              std::span<const double> angles, const ScanKernels& kernels, std::span<double> ranges);
+              std::span<const double> angles, std::span<double> ranges);
 
 /// Its distance (m) at a point of the map frame.
 double gym_distance(const Track& track, const maps::Point& point);

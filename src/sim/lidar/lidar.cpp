@@ -148,7 +148,7 @@ void Lidar::gym_directions_scan(const Track& track, const maps::Pose& sensor,
 }
 
 void Lidar::gym_scan(const Track& track, const maps::Pose& sensor, std::span<double> ranges) const noexcept {
-  detail::gym_scan(track, sensor, options_, angles_, *kernels_, ranges);
+  detail::gym_scan(track, sensor, options_, angles_, ranges);
 }
 
 }  // namespace slalom::sim

@@ -41,19 +41,6 @@ struct CastTask {
   float* ranges;  ///< ranges, in and out, m
 };
 
-/// Beams through f1tenth_gym's distance field, in double precision as it does.
-struct GymWalkTask {
-  const double* distance;  ///< m to the nearest wall, row-major, the first row lowest
-  int width, height;       ///< cells
-  double resolution;       ///< m per cell
-  double origin_x, origin_y, origin_cosine, origin_sine;
-  double x, y;            ///< m, of the sensor in the map frame
-  double most;            ///< m, longest range
-  const double* cosines;  ///< per beam, in the map frame; scan_padding of them
-  const double* sines;
-  double* ranges;  ///< out, m; scan_padding of them
-};
-
 struct NoiseTask {
   std::uint32_t key0, key1;
   float deviation;           ///< m
@@ -68,7 +55,6 @@ struct ScanKernels {
   void (*walls)(const ScanTask&);
   void (*cast)(const CastTask&);
   void (*noise)(const NoiseTask&);
-  void (*gym_walk)(const GymWalkTask&);
   const char* name;  ///< name of the instruction set
 };
 

@@ -1,7 +1,6 @@
 #include <array>
 #include <cstddef>
 
-#include "sim/gym/gym_walk.hpp"
 #include "sim/lidar/body_cast.hpp"
 #include "sim/lidar/range_noise.hpp"
 #include "sim/lidar/scan.hpp"
@@ -12,7 +11,7 @@ namespace {
 
 ScanKernels kernels_for(simd::Target target) {
   return {simd::kernel<ScanWalls>(target), simd::kernel<CastBody>(target),
-          simd::kernel<AddRangeNoise>(target), simd::kernel<GymWalk>(target), simd::name(target)};
+          simd::kernel<AddRangeNoise>(target), simd::name(target)};
 }
 
 struct Available {
