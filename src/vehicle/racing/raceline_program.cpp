@@ -4,14 +4,30 @@
 #include <cmath>
 #include <limits>
 
+#include "slalom/core/derivatives/dual_math.hpp"
 #include "vehicle/racing/definite_part.hpp"
-#include "vehicle/racing/jet.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
 
 constexpr int variables = 6;  // variables of a segment: four offsets, two speeds
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+using Slope = Dual<double, variables>;  ///< a value with its first derivatives
+using Curve = Dual<Slope, variables>;   ///< and with its second ones
+
+/// The variable of an index.
+Curve variable(double value, int index) {
+  Curve x(value);
+  x.value.derivative[index] = 1;
+  x.derivative[index] = Slope(1);
+  return x;
+}
+
+template <class T>
+T reciprocal(const T& x) {
+  return T(1.0) / x;
+}
 
 template <class T>
 struct Vector {
@@ -33,7 +49,7 @@ template <class T>
 T curvature_of(const Vector<T>& a, const Vector<T>& b, const Vector<T>& c) {
   const Vector<T> ab = between(a, b), bc = between(b, c);
   const T cross = ab.x * bc.y - ab.y * bc.x;
-  return (2.0 * cross) * reciprocal(square_root(squared(ab) * squared(bc) * squared(between(a, c))));
+  return (2.0 * cross) * reciprocal(slalom::sqrt(squared(ab) * squared(bc) * squared(between(a, c))));
 }
 
 /// Sums barriers. A broken constraint makes the sum infinite and stays so.
@@ -44,8 +60,8 @@ struct Barrier {
 
   /// `room` > 0 is the constraint.
   void add(const T& room) {
-    if (value_of(room) > 0)
-      sum = sum - logarithm(room);
+    if (slalom::detail::plain(room) > 0)
+      sum = sum - slalom::log(room);
     else
       broken = true;
   }
@@ -99,14 +115,14 @@ template <class T>
 T RacelineProgram::limit(const T& square, double GripAtSpeed::*member, double constant) const {
   const auto& rows = car_.grip;
   if (rows.empty()) return T(constant);
-  const double now = std::sqrt(value_of(square) * top_square_);
+  const double now = std::sqrt(slalom::detail::plain(square) * top_square_);
   if (now <= rows.front().speed) return T(rows.front().*member);
   if (now >= rows.back().speed) return T(rows.back().*member);
   std::size_t k = 1;
   while (rows[k].speed < now) ++k;
   const double slope = (rows[k].*member - rows[k - 1].*member) / (rows[k].speed - rows[k - 1].speed);
   return (rows[k - 1].*member - slope * rows[k - 1].speed) +
-         (slope * car_.limits.top_speed) * square_root(square);
+         (slope * car_.limits.top_speed) * slalom::sqrt(square);
 }
 
 template <class T>
@@ -122,14 +138,16 @@ T RacelineProgram::segment(int i, const T (&offset)[4], const T (&square)[2], do
   const Vector<T> step = between(p[1], p[2]);
   Barrier<T> barrier;
   // A line that turns back on itself is not a raceline.
-  if (!(value_of(step.x) * (to.x - from.x) + value_of(step.y) * (to.y - from.y) > 0)) return T(infinity);
-  if (!(value_of(square[0]) > 0 && value_of(square[1]) > 0)) return T(infinity);
+  if (!(slalom::detail::plain(step.x) * (to.x - from.x) + slalom::detail::plain(step.y) * (to.y - from.y) >
+        0))
+    return T(infinity);
+  if (!(slalom::detail::plain(square[0]) > 0 && slalom::detail::plain(square[1]) > 0)) return T(infinity);
 
-  const T way = square_root(squared(step)), per_metre = reciprocal(way);
-  const T speed[2] = {square_root(square[0]), square_root(square[1])};  // shares of the top speed
+  const T way = slalom::sqrt(squared(step)), per_metre = reciprocal(way);
+  const T speed[2] = {slalom::sqrt(square[0]), slalom::sqrt(square[1])};  // shares of the top speed
   const T time = (2 / car_.limits.top_speed) * (way * reciprocal(speed[0] + speed[1]));
   const T along = (0.5 * top_square_) * ((square[1] - square[0]) * per_metre);
-  const bool forwards = value_of(along) > 0;
+  const bool forwards = slalom::detail::plain(along) > 0;
   const bool bends[2] = {closed_ || i > 0, closed_ || i + 2 < count_};
   T curvature[2] = {T(0.0), T(0.0)};
   for (int k = 0; k < 2; ++k) {
@@ -188,7 +206,6 @@ double RacelineProgram::value(const RacelineState& state, double weight) const {
 
 void RacelineProgram::derivatives(const RacelineState& state, double weight, std::vector<double>& gradient,
                                   BandedMatrix& hessian) const {
-  using J = Jet<variables>;
   std::fill(gradient.begin(), gradient.end(), 0.0);
   hessian.clear();
   for (int i = 0; i < count_; ++i) {
@@ -203,24 +220,27 @@ void RacelineProgram::derivatives(const RacelineState& state, double weight, std
   int nodes[4], rows[variables];
   for (int i = 0; i < segments(); ++i) {
     segment_points(i, nodes);
-    J offset[4], square[2];
+    Curve offset[4], square[2];
     for (int k = 0; k < 4; ++k) {
-      offset[k] = J::variable(state.offset[nodes[k]], k);
+      offset[k] = variable(state.offset[nodes[k]], k);
       rows[k] = position(nodes[k]);
     }
     for (int k = 0; k < 2; ++k) {
-      square[k] = J::variable(state.square[nodes[k + 1]], 4 + k);
+      square[k] = variable(state.square[nodes[k + 1]], 4 + k);
       rows[4 + k] = position(nodes[k + 1]) + 1;
     }
-    J part = segment<J>(i, offset, square, weight);
-    make_positive<variables>(part.hessian);
+    const Curve part = segment<Curve>(i, offset, square, weight);
+    std::array<double, variables*(variables + 1) / 2> second;  // lower triangle
+    for (int a = 0, k = 0; a < variables; ++a)
+      for (int b = 0; b <= a; ++b, ++k) second[k] = part.derivative[a].derivative[b];
+    make_positive<variables>(second);
     for (int a = 0, k = 0; a < variables; ++a) {
-      gradient[rows[a]] += part.gradient[a];
+      gradient[rows[a]] += part.value.derivative[a];
       for (int b = 0; b <= a; ++b, ++k) {
-        if (part.hessian[k] == 0) continue;
+        if (second[k] == 0) continue;
         const int high = std::max(rows[a], rows[b]), low = std::min(rows[a], rows[b]);
         // Beyond the ends of an open line two variables may be the same; then both halves count.
-        hessian.at(high, low) += (a != b && high == low ? 2 : 1) * part.hessian[k];
+        hessian.at(high, low) += (a != b && high == low ? 2 : 1) * second[k];
       }
     }
   }
