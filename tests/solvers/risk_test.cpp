@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "slalom/core/risk/risk_evaluator.hpp"
-#include "slalom/solvers/mppi.hpp"
-#include "slalom/solvers/svg_mppi.hpp"
+#include "slalom/solvers/controllers.hpp"
 
 namespace slalom {
 namespace {

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "slalom/solvers/mppi.hpp"
+#include "slalom/solvers/controllers.hpp"
 #include "slalom/solvers/registry.hpp"
-#include "slalom/solvers/sv_mpc.hpp"
 #include "solvers/problems.hpp"
 #include "solvers/set_option.hpp"
 
