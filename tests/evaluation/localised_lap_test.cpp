@@ -20,12 +20,10 @@ vehicle::Configuration configuration(const char* name) {
   return made;
 }
 
-/// A lap, or its first seconds.
-LapResult lap(const char* name, LapSettings settings, double seconds = 0) {
-  static const auto fox =
-      load_environment(fs::path(SLALOM_COURSES) / "fox", Protocol::true_physics, {SLALOM_COURSES});
-  const auto environment = std::make_shared<Environment>(*fox);
-  environment->timeout = seconds > 0 ? seconds : fox->timeout;
+LapResult lap(const char* name, const LapSettings& settings, const char* course = "fox", double timeout = 0) {
+  auto environment = std::make_shared<Environment>(
+      *load_environment(fs::path(SLALOM_COURSES) / course, Protocol::true_physics, {SLALOM_COURSES}));
+  if (timeout > 0) environment->timeout = timeout;
   return run_lap({environment, {configuration(name)}, settings}, 3);
 }
 
@@ -50,12 +48,13 @@ TEST(LocalisedLap, TheEstimateHoldsNearTheLimitOfGrip) {
 }
 
 TEST(LocalisedLap, ItsSensorsAreThoseOfTheWorld) {
-  const LapResult usual = lap("default", {.localised = true}, 2);
-  const LapResult noisy = lap("default", {.range_noise = 0.05, .localised = true}, 2);
+  const LapResult usual = lap("default", {.localised = true}, "wren", 2);
+  const LapResult noisy = lap("default", {.range_noise = 0.05, .localised = true}, "wren", 2);
   EXPECT_NE(noisy.localisation.error, usual.localisation.error);
   const HardwareConditions real;
   LapSettings both{.hardware = real, .localised = true};
-  EXPECT_EQ(lap("default", both, 2).mean_speed, lap("default", {.hardware = real}, 2).mean_speed);
+  EXPECT_EQ(lap("default", both, "wren", 2).mean_speed,
+            lap("default", {.hardware = real}, "wren", 2).mean_speed);
 }
 
 TEST(TrackedLap, AnEstimatedPoseIsAsGoodAsTheTrueOne) {
