@@ -16,7 +16,7 @@ struct Request {
 
 /// The status of the answer to a request, and the reason if it is refused.
 struct Verdict {
-  unsigned status = 200;  ///< of HTTP; 101: the connection becomes a WebSocket
+  unsigned status = 200;  ///< status of HTTP; 101: the connection becomes a WebSocket
   std::string_view reason{};
 };
 

@@ -34,7 +34,7 @@ std::string frame_of(std::string_view car, std::string_view ghost, const Drives&
 
 /// The part of a message before its bodies.
 std::string_view before_bodies(std::string_view frame) {
-  constexpr std::size_t head = 8;  // of a block
+  constexpr std::size_t head = 8;  // length of the head of a block
   return frame.empty() ? frame : frame.substr(0, FrameReader(frame).offset(Block::bodies) - head);
 }
 

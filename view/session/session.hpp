@@ -124,7 +124,7 @@ class Session {
   std::size_t copy_bytes_ = 0;  ///< about the size of a copy of the drives
 
   bool waiting_ = true, paused_ = false, real_time_ = false;
-  double rate_ = 1;          ///< of simulated to real time; 0: as fast as possible
+  double rate_ = 1;          ///< ratio of simulated to real time; 0: as fast as possible
   int viewed_ = -1;          ///< tick that is shown while it is not the newest
   int stop_at_ = -1;         ///< tick at which to pause
   int steps_left_ = 0;       ///< ticks of a command "step" that are still to come

@@ -67,12 +67,13 @@ struct FeedbackGains::Workspace {
   std::unique_ptr<Workspace> clone() const { return std::make_unique<Workspace>(*this); }
 
   Eigen::MatrixXd value;                       ///< Hessian of the cost to go, by the state
-  Eigen::MatrixXd hessian;                     ///< of the cost to go, by state and inputs
+  Eigen::MatrixXd hessian;                     ///< Hessian of the cost to go, by state and inputs
   Eigen::MatrixXd product, of_states, of_all;  ///< working memory
   Eigen::MatrixXd inputs_gain;                 ///< Quu K
   Eigen::MatrixXd quu, qux;                    ///< for the free inputs
-  Eigen::VectorXd value_gradient, gradient;    ///< of `value` and `hessian`
-  Eigen::VectorXd inputs_change, solution;     ///< Quu times the change; the change of the free inputs
+  Eigen::VectorXd value_gradient,
+      gradient;  ///< gradients of the cost to go, by the state and by state and inputs
+  Eigen::VectorXd inputs_change, solution;  ///< Quu times the change; the change of the free inputs
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_of_states, eigen_of_all;
 };
 
