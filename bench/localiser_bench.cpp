@@ -39,7 +39,7 @@ void update(benchmark::State& state, SensorModel model, bool adaptive) {
   const Place place("wren");
   const std::vector<Seen> seen = record(place);
   LocaliserOptions options{.sensor_model = model};
-  if (!adaptive) options.particles.min_particles = options.particles.max_particles;
+  if (!adaptive) options.min_particles = options.max_particles;
   Localiser localiser(place.course.map, options);
   std::size_t i = 0;
   std::vector<double> times, errors;
@@ -50,7 +50,7 @@ void update(benchmark::State& state, SensorModel model, bool adaptive) {
     times.push_back(out.update_time);
     errors.push_back(error_of(out.pose, seen[i].truth).distance);
     particles += out.particles;
-    if (out.beams < 55 || (!adaptive && out.particles != options.particles.max_particles))
+    if (out.beams < 55 || (!adaptive && out.particles != options.max_particles))
       state.SkipWithError("too little work");
     i = (i + 1) % seen.size();
   }

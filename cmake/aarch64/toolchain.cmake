@@ -16,3 +16,4 @@ set(CMAKE_CROSSCOMPILING_EMULATOR
   "qemu-aarch64;-L;/usr/aarch64-linux-gnu;-E;LD_LIBRARY_PATH=${aarch64_packages}/usr/lib/aarch64-linux-gnu:${aarch64_packages}/lib/aarch64-linux-gnu")
 set(GTest_DIR ${CMAKE_CURRENT_LIST_DIR})
 set(nlohmann_json_DIR ${CMAKE_CURRENT_LIST_DIR})
+set(Eigen3_DIR /usr/share/eigen3/cmake)

@@ -1,4 +1,4 @@
-// What a sound course holds after loading, and how courses are found.
+// The content of a sound course after loading, and how courses are found.
 #include "slalom/vehicle/course/course.hpp"
 
 #include <gtest/gtest.h>

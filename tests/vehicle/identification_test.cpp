@@ -1,4 +1,4 @@
-// What identify finds of cars whose steering is known.
+// Results of identify for cars whose steering is known.
 #include "slalom/vehicle/model/identification.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What holds for every registered vehicle model.
+// Properties of every registered vehicle model.
 #include "slalom/vehicle/model/vehicle_model.hpp"
 
 #include <gtest/gtest.h>

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "slalom/core/gravity.hpp"
 #include "slalom/maps/reference_path.hpp"
 #include "slalom/sim/racing_benchmark.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
@@ -18,8 +19,8 @@ namespace slalom::tools {
 
 /// The maps, in the order of the published table.
 inline constexpr const char* racing_maps[] = {"aut", "esp", "gbr", "mco"};
-inline constexpr int racing_laps = 10;             ///< laps of each map
-inline constexpr double racing_grip = 0.9 * 9.81;  ///< m/s^2, what a step is compared with
+inline constexpr int racing_laps = 10;                ///< laps of each map
+inline constexpr double racing_grip = 0.9 * gravity;  ///< m/s^2, with which a step is compared
 
 /// A map of the benchmark with the centre line that its program uses.
 struct RacingMap {

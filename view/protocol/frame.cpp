@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "slalom/sim/dynamics.hpp"
+#include "slalom/core/gravity.hpp"
 #include "view/protocol/frame_writer.hpp"
 
 namespace slalom::view {
@@ -75,7 +75,7 @@ std::array<double, 6> estimates(const vehicle::PlannerOutput& out) {
     return none;
   }
   const double turning = std::abs(out.speed_estimate * out.yaw_rate_estimate);
-  return {out.slip_estimate, turning / (car.friction * sim::gravity),
+  return {out.slip_estimate, turning / (car.friction * gravity),
           car.friction,      car.cautious_friction,
           car.steering_gain, car.delay};
 }

@@ -32,7 +32,6 @@ struct DynamicsOptions {
 
 /// Speed (m/s) below which single_track and saturating fall back to the kinematic model.
 inline constexpr double kinematic_below = 0.5;
-inline constexpr double gravity = 9.81;  ///< m/s^2
 
 /// The steering rate that the actuator allows: none further outwards at its limit.
 double limit_steer_rate(const CarParameters& car, double steer, double steer_rate) noexcept;

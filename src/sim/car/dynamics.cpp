@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slalom/core/gravity.hpp"
+
 namespace slalom::sim {
 namespace {
 

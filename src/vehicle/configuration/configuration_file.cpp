@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <set>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
 #include "slalom/vehicle/configuration/configuration.hpp"
+#include "vehicle/known_folders.hpp"
 #include "vehicle/yaml_file.hpp"
 
 namespace slalom::vehicle {
@@ -13,8 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* folder_name = "configs";
-constexpr const char* marker = "published.yaml";  // every `configs` of this project has it
 constexpr int deepest_base = 8;
 
 using Lines = std::map<std::string, int>;  ///< line of each key that a file sets
@@ -73,11 +71,9 @@ void check_section(const Configuration& configuration, const fs::path& file, con
   std::vector<std::string> names = {"base"};
   visit_sections(configuration, [&](const char* section, const auto&) { names.emplace_back(section); });
   if (std::find(names.begin(), names.end(), name.Scalar()) != names.end()) return;
-  std::string all;
-  for (const auto& each : names) all += (all.empty() ? "" : ", ") + each;
   const std::string near = nearest_name(name.Scalar(), names);
   throw IoError(file.string(), line_of(name),
-                "key " + name.Scalar() + ": unknown section; must be one of " + all +
+                "key " + name.Scalar() + ": unknown section; must be one of " + detail::listed(names, "") +
                     (near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
@@ -166,18 +162,7 @@ Configuration load_configuration(const fs::path& file, const std::vector<fs::pat
 }
 
 std::vector<fs::path> configuration_roots(const fs::path& program_folder) {
-  std::vector<fs::path> candidates;
-  if (const char* chosen = std::getenv("SLALOM_CONFIGS_DIR"); chosen && *chosen)
-    candidates.emplace_back(chosen);
-  const fs::path program = fs::weakly_canonical(program_folder);
-  fs::path above = program;
-  for (int level = 0; level < 5 && above.has_parent_path(); ++level, above = above.parent_path())
-    if (fs::exists(above / folder_name / marker)) candidates.push_back(above / folder_name);
-  candidates.push_back(program.parent_path() / "share" / "slalom" / folder_name);
-  std::vector<fs::path> roots;
-  for (const auto& candidate : candidates)
-    if (fs::is_directory(candidate)) roots.push_back(candidate);
-  return roots;
+  return detail::known_folders(program_folder, "configs", "published.yaml", "SLALOM_CONFIGS_DIR");
 }
 
 fs::path find_configuration(const std::string& name_or_file, const std::vector<fs::path>& roots) {
@@ -185,19 +170,16 @@ fs::path find_configuration(const std::string& name_or_file, const std::vector<f
     throw IoError("config", 0, "is empty; must be a file or the name of a configuration");
   if (fs::is_regular_file(name_or_file)) return name_or_file;
   std::set<std::string> known;
-  std::string searched, names;
   for (const auto& root : roots) {
     if (const fs::path file = root / (name_or_file + ".yaml"); fs::is_regular_file(file)) return file;
-    searched += (searched.empty() ? "" : ", ") + root.string();
     if (!fs::is_directory(root)) continue;
     for (const fs::path& entry : list_folder(root))
       if (entry.extension() == ".yaml") known.insert(entry.stem().string());
   }
-  for (const auto& name : known) names += (names.empty() ? "" : ", ") + name;
-  throw IoError(
-      name_or_file, 0,
-      "is neither a file nor the name of a configuration (known: " + (names.empty() ? "none" : names) +
-          "; searched: " + (searched.empty() ? "nowhere" : searched) + ")");
+  throw IoError(name_or_file, 0,
+                "is neither a file nor the name of a configuration (known: " +
+                    detail::listed({known.begin(), known.end()}, "none") +
+                    "; searched: " + detail::listed(roots) + ")");
 }
 
 }  // namespace slalom::vehicle

@@ -1,4 +1,4 @@
-#include "vehicle/course/centre_line.hpp"
+#include "vehicle/course/track_parts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -43,7 +43,7 @@ double distance_to_wall(const maps::OccupancyGrid& map, const maps::Point& point
 /// Collects stretches from the pieces of a course, in order.
 class Stretches {
  public:
-  /// With `most`, the highest value of a stretch is its worst, else the lowest.
+  /// The worst value of a stretch is the highest with `most`, else the lowest.
   Stretches(double length, bool most) : length_(length), most_(most) {}
 
   void add(double begin, double end, const maps::Point& place, double value, bool broken) {

@@ -7,7 +7,7 @@
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/course/track_generator.hpp"
 
-/// The contents of the files of a course.
+/// The files of a course as text.
 namespace slalom::vehicle::detail {
 
 /// A number with this many decimals, never "-0".

@@ -5,12 +5,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/gravity.hpp"
 #include "vehicle/course/speed_passes.hpp"
 
 namespace slalom::vehicle {
 namespace {
-
-constexpr double gravity = 9.81;  // m/s^2
 
 void require_positive(const char* key, double value) {
   if (!(value > 0) || !std::isfinite(value))

@@ -5,10 +5,8 @@
 #include <stdexcept>
 
 #include "slalom/vehicle/course/raceline.hpp"
-#include "vehicle/course/centre_line.hpp"
 #include "vehicle/course/closed_curve.hpp"
-#include "vehicle/course/start_row.hpp"
-#include "vehicle/course/track_map.hpp"
+#include "vehicle/course/track_parts.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -65,8 +63,8 @@ std::vector<RacelinePoint> with_profile(Curve& line, const SpeedLimits& limits, 
   return raceline;
 }
 
-/// Where cars are parked: along the raceline, moved to one side so that there is room to pass on the other. A
-/// parked car has any heading, is up to 0.1 m off this path, and reaches 0.33 m from its centre.
+/// The places of parked cars: along the raceline, moved to one side so that there is room to pass on the
+/// other. A parked car has any heading, is up to 0.1 m off this path, and reaches 0.33 m from its centre.
 std::vector<maps::Point> make_obstacle_path(const Curve& centre_line, const Curve& line,
                                             const TrackGeneratorOptions& options) {
   constexpr double reach = 0.43, room = 1.0, off_wall = 0.25, switch_over = 0.1;  // m
@@ -86,6 +84,7 @@ std::vector<maps::Point> make_obstacle_path(const Curve& centre_line, const Curv
   return path;
 }
 
+/// The row of a curve that is nearest to a point.
 std::size_t nearest_row(const Curve& curve, maps::Point point) {
   std::size_t best = 0;
   for (std::size_t i = 1; i < curve.size(); ++i)
@@ -94,6 +93,20 @@ std::size_t nearest_row(const Curve& curve, maps::Point point) {
 }
 
 }  // namespace
+
+std::size_t detail::start_row(const std::vector<double>& speed) {
+  const std::size_t n = speed.size();
+  const double fast = 0.97 * *std::max_element(speed.begin(), speed.end());
+  std::size_t best = 0, best_run = 0, run = 0;
+  for (std::size_t i = 0; i < 2 * n; ++i) {
+    run = speed[i % n] >= fast ? std::min(run + 1, n) : 0;
+    if (run > best_run) {
+      best_run = run;
+      best = (i + n - run / 2) % n;
+    }
+  }
+  return best;
+}
 
 const char* name(TrackCharacter character) noexcept {
   switch (character) {

@@ -1,4 +1,4 @@
-#include "vehicle/course/track_map.hpp"
+#include "vehicle/course/track_parts.hpp"
 
 #include <algorithm>
 #include <cmath>

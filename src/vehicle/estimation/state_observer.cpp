@@ -1,8 +1,10 @@
 #include "slalom/vehicle/estimation/state_observer.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "slalom/core/math.hpp"
 
@@ -18,6 +20,21 @@ constexpr double max_slip = 1.2;        // rad
 constexpr double max_variance = 1e6;    // m^2 and rad^2, of a pose
 constexpr double bias_spread = 0.02, bias_drift = 1e-4;  // rad/s, at the start and in a period
 constexpr double max_bias = 0.5;  // rad/s, of a gyro that works; more is the trace of a wrong reading
+
+/// The values of an array as a vector of Eigen.
+template <std::size_t n>
+auto map(std::array<double, n>& values) {
+  return Eigen::Map<Eigen::Matrix<double, n, 1>>(values.data());
+}
+template <std::size_t n>
+auto map(const std::array<double, n>& values) {
+  return Eigen::Map<const Eigen::Matrix<double, n, 1>>(values.data());
+}
+/// The values of an array of rows as a matrix of Eigen.
+template <std::size_t n>
+auto map(std::array<std::array<double, n>, n>& rows) {
+  return Eigen::Map<Eigen::Matrix<double, n, n, Eigen::RowMajor>>(rows.front().data());
+}
 
 double slip_from(double sideways, double along) noexcept {
   const double safe = std::copysign(std::max(std::abs(along), 0.1), along);
@@ -156,28 +173,23 @@ void StateObserver::predict(const DynamicVehicleModel& model, const std::optiona
     derivative[speed] = 1;
     share_in(speed, before[speed] + dt * (imu->forward * c + imu->leftward * s), derivative);
   }
-  Matrix half{}, made{};
-  for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t k = 0; k < size; ++k)
-      for (std::size_t j = 0; j < size; ++j) half[i][j] += f[i][k] * covariance_[k][j];
-  for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t k = 0; k < size; ++k)
-      for (std::size_t j = 0; j < size; ++j) made[i][j] += half[i][k] * f[j][k];
-    made[i][i] += noise[i];
-  }
-  covariance_ = made;
+  Eigen::Matrix<double, size, size> half, made;
+  half.setZero();
+  made.setZero();
+  for (int k = 0; k < size; ++k) half += map(f).col(k) * map(covariance_).row(k);
+  for (int k = 0; k < size; ++k) made += half.col(k) * map(f).col(k).transpose();
+  map(covariance_) = made;
+  map(covariance_).diagonal() += map(noise);
 }
 
 /// Takes one measurement of `row` times the state, which differs by `difference` from what the state says.
 void StateObserver::correct(const Vector& row, double difference, double variance) noexcept {
-  Vector shared{};
-  double total = variance;
-  for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t k = 0; k < size; ++k) shared[i] += covariance_[i][k] * row[k];
-  for (std::size_t i = 0; i < size; ++i) total += row[i] * shared[i];
-  for (std::size_t i = 0; i < size; ++i) state_[i] += shared[i] * (difference / total);
-  for (std::size_t i = 0; i < size; ++i)
-    for (std::size_t j = 0; j < size; ++j) covariance_[i][j] -= shared[i] * shared[j] / total;
+  Eigen::Matrix<double, size, 1> shared;
+  shared.setZero();
+  for (int k = 0; k < size; ++k) shared += map(covariance_).col(k) * row[static_cast<std::size_t>(k)];
+  const double total = std::inner_product(row.begin(), row.end(), shared.begin(), variance);
+  map(state_) += shared * (difference / total);
+  map(covariance_) -= shared * shared.transpose() / total;
 }
 
 /// Takes the pose as three measurements whose errors do not depend on each other: with its covariance L D L^T

@@ -26,6 +26,20 @@ constexpr double jump_slack = 0.1;
 /// After a jump of the odometry the last motion is continued for at most this time, s.
 constexpr double max_prediction = 0.2;
 
+constexpr double max_yaw_rate = 12;  // rad/s, faster odometry is a jump
+/// Exponent of each beam's probability: errors of neighbouring beams are correlated.
+constexpr double beam_exponent = 0.2;
+constexpr double start_deviation = 0.3, start_yaw_deviation = 0.15;  // m, rad, around a given start
+constexpr double resample_below = 0.5;                               // effective sample size / particles
+constexpr double slow_rate = 0.01, fast_rate = 0.3;  // alpha_slow and alpha_fast, of averages of the fit
+constexpr double recovery_margin = 1.25;             // nu: a search starts where nu * fast < slow
+constexpr double min_fit = 0.6;                      // lower bound of the long-term average
+constexpr double search_time = 2;                    // s, of a search after its last cause
+constexpr double search_memory = 0.25;  // s, time constant of the fit by which places are compared
+constexpr double rival_margin = 0.05;   // difference in log fit by which another place must be better
+constexpr double good_share = 0.6,
+                 good_fit = 0.6;  // least share of the weight and fit of a reliable estimate
+
 /// A hypothesis within this distance (m, rad) is the same place.
 constexpr double near_place = 0.5, near_yaw = 0.3;
 /// The longer a place has fitted well, the larger the margin by which another one must fit better, since the
@@ -33,10 +47,6 @@ constexpr double near_place = 0.5, near_yaw = 0.3;
 /// doubtful update reduces it by a factor.
 constexpr double trust_unit = 0.3, max_trust = 5, doubt_keeps = 0.93, min_trust = 0.3;
 constexpr double relocated_deviation = 0.15, relocated_yaw_deviation = 0.08;
-
-bool is_finite(const maps::Pose& pose) {
-  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
-}
 
 /// Whether a pose is a number and as large as that of a car may be.
 bool is_plausible(const maps::Pose& pose) {
@@ -55,25 +65,6 @@ maps::Pose compose(const maps::Pose& frame, const maps::Pose& pose) {
   return {p.x, p.y, maps::wrap_angle(frame.yaw + pose.yaw)};
 }
 
-const maps::OccupancyGrid& checked(const maps::OccupancyGrid& map) {
-  const auto require = [](bool holds, const std::string& what) {
-    if (!holds) throw std::invalid_argument("localiser: " + what);
-  };
-  require(map.width >= 1 && map.height >= 1 && map.width <= 32766 && map.height <= 32766,
-          "map size: " + std::to_string(map.width) + " x " + std::to_string(map.height) +
-              ": must be 1 to 32766 each");
-  require(map.cells.size() == static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height),
-          "map cells: " + std::to_string(map.cells.size()) + ": must be width x height");
-  require(std::isfinite(map.resolution) && map.resolution > 0,
-          "map resolution: " + std::to_string(map.resolution) + ": must be finite and > 0");
-  require(is_finite(map.origin), "map origin: must be finite");
-  require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::free) > 0,
-          "map: must have a free cell");
-  require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::occupied) > 0,
-          "map: must have an occupied cell");
-  return map;
-}
-
 const LocaliserOptions& checked(const LocaliserOptions& options) {
   options.validate();
   return options;
@@ -84,11 +75,11 @@ const LocaliserOptions& checked(const LocaliserOptions& options) {
 struct Localiser::Implementation {
   Implementation(const maps::OccupancyGrid& map, const LocaliserOptions& o)
       : options(checked(o)),
-        origin(checked(map).origin),
+        origin(detail::checked(map).origin),
         sensor(std::make_shared<SensorTables>(map, options)),
         free_cells(std::make_shared<FreeCells>(map)),
         particles(options, free_cells),
-        search(options, free_cells),
+        search(free_cells),
         beams(options.beams) {
     start_everywhere();
   }
@@ -101,8 +92,7 @@ struct Localiser::Implementation {
     lost = true;
   }
   void start_at(const maps::Pose& pose) noexcept {
-    particles.spread_about(relative(origin, pose), options.start_deviation, options.start_yaw_deviation,
-                           next_key());
+    particles.spread_about(relative(origin, pose), start_deviation, start_yaw_deviation, next_key());
     forget();
     output.pose = pose;
     trust = max_trust;
@@ -157,8 +147,8 @@ LocaliserStatus Localiser::Implementation::move(const LocaliserInput& input) noe
     elapsed = input.stamp - stamp;
     motion.step = relative(odometry, input.odometry);
     const double distance = std::hypot(motion.step.x, motion.step.y);
-    const bool jumped = elapsed <= 0 || distance > options.motion.max_speed * elapsed + jump_slack ||
-                        std::abs(motion.step.yaw) > options.motion.max_yaw_rate * elapsed + jump_slack;
+    const bool jumped = elapsed <= 0 || distance > options.max_speed * elapsed + jump_slack ||
+                        std::abs(motion.step.yaw) > max_yaw_rate * elapsed + jump_slack;
     if (jumped) {
       const double guess = std::clamp(elapsed, 0.0, max_prediction);
       motion.step = {velocity.x * guess, velocity.y * guess, velocity.yaw * guess};
@@ -172,10 +162,10 @@ LocaliserStatus Localiser::Implementation::move(const LocaliserInput& input) noe
   }
   const double distance = std::hypot(motion.step.x, motion.step.y);
   const double doubt = status == LocaliserStatus::ok ? 1 : 3;
-  motion.along = doubt * (options.motion.along_noise * distance + options.motion.position_noise);
-  motion.across = doubt * (options.motion.across_noise * distance + options.motion.position_noise);
-  motion.turn = doubt * (options.motion.turn_noise * std::abs(motion.step.yaw) +
-                         options.motion.drift_noise * distance + options.motion.yaw_noise);
+  motion.along = doubt * (options.along_noise * distance + options.position_noise);
+  motion.across = doubt * (options.across_noise * distance + options.position_noise);
+  motion.turn = doubt * (options.turn_noise * std::abs(motion.step.yaw) + options.drift_noise * distance +
+                         options.yaw_noise);
   step = motion.step;
   particles.move(motion, next_key());
   output.pose = compose(output.pose, motion.step);
@@ -209,18 +199,18 @@ void Localiser::Implementation::estimate() noexcept {
 /// Weights the particles by the scan, computes the estimate, and resamples if necessary (Table 8.3).
 void Localiser::Implementation::use_scan() noexcept {
   output.particles = particles.count();
-  output.effective_samples = particles.weigh(*sensor, beams, options.beam.beam_exponent);
+  output.effective_samples = particles.weigh(*sensor, beams, beam_exponent);
   estimate();
-  slow = slow == 0 ? fit : slow + options.recovery.slow_rate * (fit - slow);
-  fast = fast == 0 ? fit : fast + options.recovery.fast_rate * (fit - fast);
-  output.resampled = output.effective_samples < options.particles.resample_below * particles.count();
+  slow = slow == 0 ? fit : slow + slow_rate * (fit - slow);
+  fast = fast == 0 ? fit : fast + fast_rate * (fit - fast);
+  output.resampled = output.effective_samples < resample_below * particles.count();
   if (output.resampled) particles.resample(next_key());
   look_elsewhere();
 }
 
 /// Searches other places while there is cause to, and moves the particles to one that fits better.
 void Localiser::Implementation::look_elsewhere() noexcept {
-  const bool doubtful = options.recovery.recovery_margin * fast < std::max(slow, options.recovery.min_fit);
+  const bool doubtful = recovery_margin * fast < std::max(slow, min_fit);
   const bool was_searching = output.searching;
   // A place that this search has found competes with the others on equal terms until the search is over.
   if (doubtful) {
@@ -231,7 +221,7 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   // The particles that fit the first scan best may all be in a wrong place.
   const bool cause = doubtful || lost;
   lost = false;
-  if (cause) search_until = stamp + options.recovery.search_time;
+  if (cause) search_until = stamp + search_time;
   output.searching = cause || (was_searching && stamp < search_until);
   if (!output.searching) {
     settled = true;
@@ -240,22 +230,34 @@ void Localiser::Implementation::look_elsewhere() noexcept {
   if (!was_searching) search.clear();
 
   const maps::Pose place = relative(origin, output.pose);
-  const double memory = std::exp(-std::max(0.0, elapsed) / options.recovery.search_memory);
+  const double memory = std::exp(-std::max(0.0, elapsed) / search_memory);
   const double now = search.log_fit_at(place, *sensor, beams);
   place_log_fit = was_searching ? memory * place_log_fit + (1 - memory) * now : now;
   search.update(step, *sensor, beams, memory, next_key());
   const detail::Search::Hypothesis* best = search.best();
-  const double margin = settled ? options.recovery.rival_margin * (1 + trust / trust_unit) : 0;
+  const double margin = settled ? rival_margin * (1 + trust / trust_unit) : 0;
   if (!best || best->log_fit < place_log_fit + margin) return;
   const double apart = std::hypot(best->pose.x - place.x, best->pose.y - place.y);
   const double turned = std::abs(maps::wrap_angle(best->pose.yaw - place.yaw));
-  if (output.share > options.good_share && apart < near_place && turned < near_yaw) return;
+  if (output.share > good_share && apart < near_place && turned < near_yaw) return;
   particles.spread_about(best->pose, relocated_deviation, relocated_yaw_deviation, next_key());
   place_log_fit = best->log_fit;
   trust = 0;
   settled = false;
   output.relocated = true;
   estimate();
+}
+
+void LocaliserOptions::validate() const {
+  validate_options(*this, "localiser");
+  if (max_particles < min_particles) {
+    throw std::invalid_argument("localiser.max_particles: " + std::to_string(max_particles) +
+                                " must be at least min_particles, " + std::to_string(min_particles));
+  }
+  if (min_beams > beams) {
+    throw std::invalid_argument("localiser.min_beams: " + std::to_string(min_beams) +
+                                " must be at most beams, " + std::to_string(beams));
+  }
 }
 
 Localiser::Localiser(const maps::OccupancyGrid& map, const LocaliserOptions& options)
@@ -304,8 +306,7 @@ const LocaliserOutput& Localiser::update(const LocaliserInput& input) noexcept {
   out.beams = self.beams.hits;
   self.use_scan();
   if (moved != LocaliserStatus::ok) return finish(moved);
-  const bool good =
-      out.share >= self.options.good_share && out.fit >= self.options.good_fit && self.trust >= min_trust;
+  const bool good = out.share >= good_share && out.fit >= good_fit && self.trust >= min_trust;
   return finish(good ? LocaliserStatus::ok : LocaliserStatus::uncertain);
 }
 

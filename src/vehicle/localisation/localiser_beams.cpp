@@ -21,9 +21,8 @@ bool choose_beams(const maps::LaserScanView& scan, const LocaliserOptions& optio
       !std::isfinite(scan.range_min) || std::isnan(scan.range_max)) {
     return false;
   }
-  if (options.scan_readings > 0 && readings != static_cast<std::size_t>(options.scan_readings)) return false;
   const std::size_t parts = std::min(readings, static_cast<std::size_t>(options.beams));
-  const double bins_per_turn = options.table_angles / (2 * std::numbers::pi);
+  const double bins_per_turn = table_angles / (2 * std::numbers::pi);
   const auto add = [&](std::size_t at, double range, std::size_t reading) {
     const double bearing =
         options.laser_yaw + scan.angle_min + static_cast<double>(reading) * scan.angle_increment;
@@ -37,8 +36,8 @@ bool choose_beams(const maps::LaserScanView& scan, const LocaliserOptions& optio
     beams.sideways_x[at] = static_cast<float>(-across * std::sin(bearing));
     beams.sideways_y[at] = static_cast<float>(across * std::cos(bearing));
     beams.steepest[at] = static_cast<float>(steepest_wall / across);
-    beams.bin[at] = std::min(static_cast<float>(bin < 0 ? bin + options.table_angles : bin),
-                             static_cast<float>(options.table_angles - 1e-3));
+    beams.bin[at] = std::min(static_cast<float>(bin < 0 ? bin + table_angles : bin),
+                             static_cast<float>(table_angles - 1e-3));
   };
   const double least = std::max(scan.range_min, 0.0), most = std::min(options.range_cap, scan.range_max);
   std::size_t lost = parts;  // those without return gather at the back

@@ -7,6 +7,11 @@
 namespace slalom::vehicle::detail {
 namespace {
 
+constexpr double kld_error = 0.05;  // epsilon, bound on the Kullback-Leibler divergence
+constexpr double kld_quantile =
+    2.326;  // quantile of the standard normal: the bound is kept in 99 % of the updates
+constexpr double bin_size = 0.25, bin_angle = 0.1745;  // m, rad, bins that determine the number of particles
+
 /// Bins among which the heaviest is looked for, and how far about it particles belong to it.
 constexpr double place_size = 0.5, place_angle = 0.5;  // m, rad
 constexpr double near_distance = 0.75, near_angle = 0.6;
@@ -41,15 +46,15 @@ maps::Pose FreeCells::random_pose(RandomStream& random) const noexcept {
 Particles::Particles(const LocaliserOptions& options, std::shared_ptr<const FreeCells> free_cells)
     : options_(options),
       free_cells_(std::move(free_cells)),
-      now_(1, 3, options.particles.max_particles),
-      next_(1, 3, options.particles.max_particles),
-      noise_(1, 3, options.particles.max_particles),
-      log_fit_(static_cast<std::size_t>(padded(options.particles.max_particles))),
-      weights_(static_cast<std::size_t>(options.particles.max_particles)),
+      now_(1, 3, options.max_particles),
+      next_(1, 3, options.max_particles),
+      noise_(1, 3, options.max_particles),
+      log_fit_(static_cast<std::size_t>(padded(options.max_particles))),
+      weights_(static_cast<std::size_t>(options.max_particles)),
       cumulative_(weights_.size()),
       guide_(weights_.size()),
-      bins_(options.particles.max_particles, options.particles.bin_size, options.particles.bin_angle),
-      places_(options.particles.max_particles, place_size, place_angle) {}
+      bins_(options.max_particles, bin_size, bin_angle),
+      places_(options.max_particles, place_size, place_angle) {}
 
 void Particles::put(SequenceBatch& to, int i, const maps::Pose& pose) noexcept {
   to.at(0, 0, i) = static_cast<float>(pose.x);
@@ -65,18 +70,18 @@ void Particles::make_uniform(int count) noexcept {
 void Particles::spread_about(const maps::Pose& pose, double deviation, double yaw_deviation,
                              RandomKey key) noexcept {
   fill_normal(noise_, 0, noise_.stride(), key);
-  for (int i = 0; i < options_.particles.max_particles; ++i) {
+  for (int i = 0; i < options_.max_particles; ++i) {
     put(now_, i,
         {pose.x + deviation * noise_.at(0, 0, i), pose.y + deviation * noise_.at(0, 1, i),
          maps::wrap_angle(pose.yaw + yaw_deviation * noise_.at(0, 2, i))});
   }
-  make_uniform(options_.particles.max_particles);
+  make_uniform(options_.max_particles);
 }
 
 void Particles::spread_everywhere(RandomKey key) noexcept {
   RandomStream random(key);
-  for (int i = 0; i < options_.particles.max_particles; ++i) put(now_, i, free_cells_->random_pose(random));
-  make_uniform(options_.particles.max_particles);
+  for (int i = 0; i < options_.max_particles; ++i) put(now_, i, free_cells_->random_pose(random));
+  make_uniform(options_.max_particles);
 }
 
 void Particles::move(const Motion& motion, RandomKey key) noexcept {
@@ -145,16 +150,15 @@ void Particles::resample(RandomKey key) noexcept {
   const double shift = RandomStream(key).uniform();
   bins_.clear();
   int drawn = 0;
-  double wanted = options_.particles.min_particles;
-  while (drawn < wanted && drawn < options_.particles.max_particles) {
+  double wanted = options_.min_particles;
+  while (drawn < wanted && drawn < options_.max_particles) {
     double uniform = radical_inverse(static_cast<std::uint32_t>(drawn)) + shift;
     uniform -= uniform >= 1;
     const maps::Pose chosen = pose(draw(uniform));
     put(next_, drawn++, chosen);
     if (bins_.add(chosen.x, chosen.y, chosen.yaw, 1))
-      wanted = std::max<double>(
-          options_.particles.min_particles,
-          kld_sample_size(bins_.occupied(), options_.particles.kld_error, options_.particles.kld_quantile));
+      wanted = std::max<double>(options_.min_particles,
+                                kld_sample_size(bins_.occupied(), kld_error, kld_quantile));
   }
   std::swap(now_, next_);
   make_uniform(drawn);

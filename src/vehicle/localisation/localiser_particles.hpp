@@ -28,7 +28,7 @@ class FreeCells {
   double resolution_;
 };
 
-/// How the car moved between two updates, in its frame at the first one, and how sure that is.
+/// The motion of the car between two updates, in its frame at the first one, and its uncertainty.
 struct Motion {
   maps::Pose step;    ///< m, rad
   double along = 0;   ///< m, standard deviations

@@ -6,6 +6,8 @@
 namespace slalom::vehicle::detail {
 namespace {
 
+constexpr int max_hypotheses = 96;
+constexpr int search_factor = 28;                               // random poses per hypothesis in each update
 constexpr int copies = 12;                                      // copies of a hypothesis, itself included
 constexpr int young = 6;                                        // updates: not yet to be compared with others
 constexpr int newcomers = 8;                                    // an update
@@ -20,13 +22,12 @@ bool same(const maps::Pose& a, const maps::Pose& b) {
 
 }  // namespace
 
-Search::Search(const LocaliserOptions& options, std::shared_ptr<const FreeCells> free_cells)
-    : options_(options),
-      free_cells_(std::move(free_cells)),
-      poses_(1, 3, options.recovery.max_hypotheses * (copies + options.recovery.search_factor)),
-      noise_(1, 3, options.recovery.max_hypotheses * copies),
+Search::Search(std::shared_ptr<const FreeCells> free_cells)
+    : free_cells_(std::move(free_cells)),
+      poses_(1, 3, max_hypotheses * (copies + search_factor)),
+      noise_(1, 3, max_hypotheses * copies),
       log_fit_(static_cast<std::size_t>(poses_.stride())),
-      hypotheses_(static_cast<std::size_t>(options.recovery.max_hypotheses)),
+      hypotheses_(static_cast<std::size_t>(max_hypotheses)),
       newcomers_(static_cast<std::size_t>(newcomers)) {}
 
 maps::Pose Search::batch_pose(int i) const noexcept {
@@ -71,7 +72,7 @@ void Search::take_best_copies(double memory) noexcept {
   }
 }
 
-/// Keeps the better one of hypotheses about the same place.
+/// Drops the worse of two hypotheses about the same place.
 void Search::drop_twins() noexcept {
   for (int a = 0; a < count_; ++a) {
     Hypothesis& first = hypotheses_[static_cast<std::size_t>(a)];
@@ -102,7 +103,7 @@ void Search::admit(int first) noexcept {
   for (int n = 0; n < chosen; ++n) {
     const int from = newcomers_[static_cast<std::size_t>(n)];
     int to = count_;
-    if (count_ < options_.recovery.max_hypotheses) {
+    if (count_ < max_hypotheses) {
       ++count_;
     } else {
       to = -1;

@@ -13,7 +13,7 @@ namespace slalom::vehicle::detail {
 /// poses from all of the free space are weighted, and the best become hypotheses.
 class Search {
  public:
-  Search(const LocaliserOptions& options, std::shared_ptr<const FreeCells> free_cells);
+  explicit Search(std::shared_ptr<const FreeCells> free_cells);
 
   struct Hypothesis {
     maps::Pose pose;     ///< grid's frame
@@ -42,7 +42,6 @@ class Search {
   maps::Pose batch_pose(int i) const noexcept;
   void put(int i, const maps::Pose& pose) noexcept;
 
-  LocaliserOptions options_;
   std::shared_ptr<const FreeCells> free_cells_;
   SequenceBatch poses_, noise_;  ///< [1][x, y, yaw][pose]
   AlignedBuffer log_fit_;

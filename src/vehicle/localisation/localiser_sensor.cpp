@@ -15,6 +15,11 @@ namespace {
 constexpr float log_in_wall = -1.0F;
 /// Standard deviations from a wall within which a beam counts as explained by it.
 constexpr double explained_within = 2.5;
+// Shares of readings from the map, from something in front of it, without a return, and of random ones; rate
+// of those in front (1/m): z_hit, z_short, z_max, z_rand and lambda_short.
+constexpr double hit_weight = 0.85, short_weight = 0.1, lost_weight = 0.05, random_weight = 0.1;
+constexpr double short_rate = 0.5;
+constexpr double table_cell = 0.1;  // m, of the table of ranges
 constexpr std::size_t max_entries = std::size_t{1} << 27;
 
 maps::GridGeometry geometry_of(const maps::OccupancyGrid& map, double resolution) {
@@ -26,10 +31,10 @@ maps::GridGeometry geometry_of(const maps::OccupancyGrid& map, double resolution
 
 /// Probability densities of a reading (1/m), as Tables 6.1 and 6.3 mix them.
 double hit_density(const LocaliserOptions& o) {
-  return o.beam.hit_weight / (o.beam.hit_deviation * std::sqrt(2 * std::numbers::pi));
+  return hit_weight / (o.hit_deviation * std::sqrt(2 * std::numbers::pi));
 }
 double random_density(const LocaliserOptions& o) {
-  return o.beam.random_weight / o.range_cap;
+  return random_weight / o.range_cap;
 }
 double highest_density(const LocaliserOptions& o) {
   return hit_density(o) + random_density(o);
@@ -53,6 +58,25 @@ double cast(const maps::DistanceField& walls, double x, double y, double dx, dou
 
 }  // namespace
 
+const maps::OccupancyGrid& checked(const maps::OccupancyGrid& map) {
+  const auto require = [](bool holds, const std::string& what) {
+    if (!holds) throw std::invalid_argument("localiser: " + what);
+  };
+  require(map.width >= 1 && map.height >= 1 && map.width <= 32766 && map.height <= 32766,
+          "map size: " + std::to_string(map.width) + " x " + std::to_string(map.height) +
+              ": must be 1 to 32766 each");
+  require(map.cells.size() == static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height),
+          "map cells: " + std::to_string(map.cells.size()) + ": must be width x height");
+  require(std::isfinite(map.resolution) && map.resolution > 0,
+          "map resolution: " + std::to_string(map.resolution) + ": must be finite and > 0");
+  require(std::isfinite(map.origin.x + map.origin.y + map.origin.yaw), "map origin: must be finite");
+  require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::free) > 0,
+          "map: must have a free cell");
+  require(std::count(map.cells.begin(), map.cells.end(), maps::Occupancy::occupied) > 0,
+          "map: must have an occupied cell");
+  return map;
+}
+
 SensorTables::SensorTables(const maps::OccupancyGrid& map, const LocaliserOptions& options)
     : options_(options),
       geometry_(geometry_of(map, map.resolution)),
@@ -66,10 +90,10 @@ void SensorTables::make_field(const maps::OccupancyGrid& map, const LocaliserOpt
   const maps::DistanceField walls = maps::distance_transform(map, false);
   const double hit = hit_density(options), random = random_density(options), most = hit + random;
   const auto log_probability = [&](double distance) {
-    const double off = distance / options.beam.hit_deviation;
+    const double off = distance / options.hit_deviation;
     return static_cast<float>(std::log((hit * std::exp(-0.5 * off * off) + random) / most));
   };
-  explained_from_ = log_probability(explained_within * options.beam.hit_deviation);
+  explained_from_ = log_probability(explained_within * options.hit_deviation);
   field_.fill({log_probability(1e9)});
   place_.fill({log_in_wall});
   for (int row = 0; row < geometry_.rows; ++row) {
@@ -85,8 +109,8 @@ void SensorTables::make_field(const maps::OccupancyGrid& map, const LocaliserOpt
 
 void SensorTables::make_ranges(const maps::OccupancyGrid& map, const LocaliserOptions& options) {
   const maps::DistanceField walls = maps::distance_transform(map, false);
-  table_.angles = options.table_angles;
-  table_.geometry = geometry_of(map, std::max(options.table_cell, map.resolution));
+  table_.angles = table_angles;
+  table_.geometry = geometry_of(map, std::max(table_cell, map.resolution));
   table_.rows = maps::CellGrid<1>(table_.geometry.rows, table_.geometry.columns);
   table_.range_unit = static_cast<float>(options.range_cap / 65535);
 
@@ -106,9 +130,9 @@ void SensorTables::make_ranges(const maps::OccupancyGrid& map, const LocaliserOp
   }
   const std::size_t angles = static_cast<std::size_t>(table_.angles);
   if (origins.size() * angles > max_entries) {
-    throw std::invalid_argument("localiser.table_cell: " + std::to_string(options.table_cell) +
-                                ": the table of ranges would have more than 2^27 entries; use a larger cell, "
-                                "fewer table_angles or the likelihood field");
+    throw std::invalid_argument(
+        "localiser.sensor_model: the table of ranges of this map would have more than 2^27 entries; use "
+        "likelihood_field");
   }
   table_.pairs.assign(origins.size() * angles, 0);
   std::vector<std::uint32_t> ranges(angles);
@@ -166,13 +190,13 @@ void SensorTables::weigh(const ParticlePoses& particles, const ScanBeams& beams,
   in.range_unit = table_.range_unit;
   in.laser_x = static_cast<float>(options_.laser_x);
   in.laser_y = static_cast<float>(options_.laser_y);
-  in.hit_scale = static_cast<float>(-0.5 / (options_.beam.hit_deviation * options_.beam.hit_deviation));
+  in.hit_scale = static_cast<float>(-0.5 / (options_.hit_deviation * options_.hit_deviation));
   in.hit = static_cast<float>(hit_density(options_) / highest);
   in.random = static_cast<float>(random_density(options_) / highest);
-  in.short_scale = static_cast<float>(options_.beam.short_weight * options_.beam.short_rate / highest);
-  in.short_rate = static_cast<float>(options_.beam.short_rate);
-  in.lost = static_cast<float>(std::log(std::max(1e-3, options_.beam.lost_weight)));
-  in.nothing_from = static_cast<float>(options_.range_cap - options_.beam.hit_deviation);
+  in.short_scale = static_cast<float>(short_weight * short_rate / highest);
+  in.short_rate = static_cast<float>(short_rate);
+  in.lost = static_cast<float>(std::log(std::max(1e-3, lost_weight)));
+  in.nothing_from = static_cast<float>(options_.range_cap - options_.hit_deviation);
   weigh_by_ranges(in);
 }
 

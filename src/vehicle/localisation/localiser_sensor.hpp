@@ -10,6 +10,8 @@
 
 namespace slalom::vehicle::detail {
 
+constexpr int table_angles = 180;  ///< angles of the table of ranges
+
 /// The beams of a scan that are used, in the frame of the rear axle, structure of arrays.
 struct ScanBeams {
   explicit ScanBeams(int capacity)
@@ -35,6 +37,9 @@ struct ScanBeams {
   int hits = 0;                               ///< number of beams with a return, which come first
   int count = 0;                              ///< number of all beams
 };
+
+/// Returns the map. Throws std::invalid_argument where a localiser cannot use it (see Localiser).
+const maps::OccupancyGrid& checked(const maps::OccupancyGrid& map);
 
 /// Chooses readings evenly over the scan: of every part of it the first usable one. False where the scan has
 /// an invalid geometry or fewer than `min_beams` usable readings.
@@ -74,10 +79,10 @@ class SensorTables {
   /// >= 1.
   void weigh(const ParticlePoses& particles, const ScanBeams& beams, float* log_fit) const noexcept;
 
-  /// As `weigh`, always by the likelihood field, which is smoother in the pose.
+  /// The same as `weigh`, always by the likelihood field, which is smoother in the pose.
   void weigh_by_field(const ParticlePoses& particles, const ScanBeams& beams, float* log_fit) const noexcept;
 
-  /// How well a pose explains the beams that came back.
+  /// The quality of a pose, by the beams that came back.
   struct Explained {
     double share = 0;  ///< share of beams that end near a wall, 0 .. 1
     double fit = 0;    ///< mean over beams of each one's probability over the highest possible one, 0 .. 1

@@ -29,8 +29,7 @@ struct ByField {
   }
 };
 
-/// The value of a table of ranges at an angle between two of its own: the range interpolated and the
-/// difference of the two, m.
+/// The range between two angles of a table, and the difference of the ranges at these angles, m.
 template <class Target>
 struct Expected {
   Pack<Target> range, difference;
@@ -51,7 +50,7 @@ SLALOM_INLINE Expected<Target> expected_range(const WeighInput& in,
   return {here * F(in.range_unit) + fraction * difference, difference};
 }
 
-/// Where in its cell a position lies: m from the cell's centre, along an axis that is counted against it.
+/// The distance (m) of a position from the centre of its cell, along an axis that is counted against it.
 template <class Target>
 SLALOM_INLINE Pack<Target> from_cell_center(const GridAxis& axis, double resolution,
                                             const Pack<Target>& position) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
 #include <span>
 #include <vector>
@@ -19,12 +20,13 @@ using Residuals = std::function<void(std::span<const double> parameters, std::ve
 /// A minimum of the sum of squared residuals.
 struct Fit {
   std::vector<double> values;  ///< values of the parameters
-  std::vector<double> normal;  ///< J^T J, [parameter][parameter]
+  Eigen::MatrixXd normal;      ///< J^T J
   double sum = 0;              ///< sum of squared residuals
 };
 
 /// The minimum near `start`, by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963) with slopes from
-/// central differences. Those that are sought stay within their ranges, also if `start` is outside.
+/// central differences. The parameters that are sought stay within their ranges, also if `start` is outside;
+/// Eigen's Levenberg-Marquardt has no ranges.
 Fit least_squares(const Residuals& residuals, std::span<const FitParameter> parameters,
                   std::vector<double> start);
 

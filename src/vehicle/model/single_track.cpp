@@ -5,11 +5,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "slalom/core/gravity.hpp"
+
 namespace slalom::vehicle {
 
 namespace {
 
-constexpr double gravity = 9.81;       // m/s^2
 constexpr double tyre_shape = 1.5;     // C of Pacejka's curve
 constexpr double max_step = 0.0125;    // s, of a prediction by commands
 constexpr double braking_share = 0.8;  // share of the usable grip that curves leave for braking

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "slalom/core/gravity.hpp"
 #include "slalom/core/math.hpp"
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/model/single_track_dynamics.hpp"
@@ -15,7 +16,6 @@
 namespace slalom::vehicle {
 namespace {
 
-constexpr double standard_gravity = 9.81;    // m/s^2
 constexpr double longest_gap = 0.2;          // s between samples
 constexpr double settling_time = 0.5;        // s at the begin of a segment
 constexpr double window_length = 0.2;        // s
@@ -300,7 +300,7 @@ TyreIdentification identify_tyres(std::span<const DrivenSample> samples, const P
           identified(At::lag),
           rest.yaw,
           rest.sideways,
-          grip_used(drive.windows(), best.values[At::friction] * standard_gravity),
+          grip_used(drive.windows(), best.values[At::friction] * gravity),
           static_cast<int>(drive.windows().size())};
 }
 

@@ -24,7 +24,7 @@ namespace slalom::vehicle::detail {
 /// allocates.
 class Detour {
  public:
-  /// On this course, which may be closed, by a car with this body.
+  /// Takes the course, which may be closed, and the body of the car.
   Detour(std::span<const maps::ReferencePoint> course, bool closed, const BodyOptions& body);
 
   /// Notes the state of the recovery and the place of the car (frame of the course). Call it once a control
@@ -40,7 +40,7 @@ class Detour {
   std::span<const maps::ReferencePoint> path() const noexcept { return path_; }
   /// Computes the field of that path around a position (m).
   void update_field(const maps::Point& position) noexcept { field_.update(position); }
-  /// That field.
+  /// The field of the path, as of the last `update_field`.
   const maps::ReferenceField& field() const noexcept { return field_; }
 
  private:
@@ -61,7 +61,7 @@ class Detour {
   maps::ReferenceField field_;
   std::array<maps::Point, 4> dead_ends_{};
   std::size_t dead_end_count_ = 0;
-  bool on_detour_ = false;  ///< in the last control period
+  bool on_detour_ = false;  ///< the car followed the path in the last control period
 };
 
 }  // namespace slalom::vehicle::detail

@@ -44,8 +44,8 @@ class DynamicPlanner final : public PlannerBase {
 
     // Maps: the path and the obstacles around, as far as the car can get and stop.
     const maps::Pose scan_pose = pose_of_scan(odometry);
-    const double furthest = std::max(std::abs(odometry.speed), 1.0);
-    field_.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), time_in_view());
+    const double fastest = std::max(std::abs(odometry.speed), 1.0);
+    field_.update({start.pose.x, start.pose.y}, 1 + fastest * horizon_time(), time_in_view());
     obstacles_.charge_time_behind(field_, origin_, start.pose);
     const maps::ReferenceCell here = field_.at(start.pose.x, start.pose.y);
     if (traits_.seeks_lap_time && options_.sight_deceleration > 0) look_ahead(input.scan, scan_pose);

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include "slalom/core/gravity.hpp"
 #include "slalom/vehicle/course/speed_profile.hpp"
 #include "vehicle/course/speed_passes.hpp"
 
 namespace slalom::vehicle::detail {
 
 DrivingLimits driving_limits(const VehicleTraits& traits, double friction) {
-  constexpr double gravity = 9.81;  // m/s^2
   return {.grip = friction * gravity * traits.usable_grip,
           .acceleration = traits.max_acceleration,
           .braking = traits.max_deceleration,

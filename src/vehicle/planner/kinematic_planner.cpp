@@ -29,8 +29,8 @@ class KinematicPlanner final : public PlannerBase {
     // Maps: the path and the obstacles around, as far as the car can get.
     const bool jumps = traits_.unlimited_acceleration;
     const double gain = jumps ? 0 : traits_.max_acceleration * horizon_time();
-    const double furthest = std::max(std::abs(odometry.speed), 1.0) + gain;
-    field_.update({start.pose.x, start.pose.y}, 1 + furthest * horizon_time(), jumps ? horizon_time() : 0);
+    const double fastest = std::max(std::abs(odometry.speed), 1.0) + gain;
+    field_.update({start.pose.x, start.pose.y}, 1 + fastest * horizon_time(), jumps ? horizon_time() : 0);
     const maps::ReferenceCell here = field_.at(start.pose.x, start.pose.y);
     if (must_stop(here)) return stop(PlannerStatus::off_course);
     begin_rollouts(odometry.pose, start, here.speed);

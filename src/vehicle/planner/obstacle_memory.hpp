@@ -16,7 +16,7 @@ namespace slalom::vehicle::detail {
 /// the obstacles behind it: where the scan does not reach, old points still count.
 class ObstacleMemory {
  public:
-  /// With maps whose lengths are `scale` times those of a 1/10-scale car.
+  /// The lengths of maps are `scale` times those for a 1/10-scale car.
   explicit ObstacleMemory(double scale) : reach_(4 * scale) { blind_.reserve(scans * max_points); }
 
   void reset() noexcept {

@@ -15,7 +15,7 @@ namespace slalom::vehicle::detail {
 /// The obstacles of the planner: the maps that it makes of scans, and the predictions of other cars.
 class Obstacles {
  public:
-  /// For a model with these traits and plans of `horizon` steps; maps reach `reach` (m).
+  /// Plans have `horizon` steps, and maps reach `reach` (m).
   Obstacles(const PlannerOptions& options, const VehicleTraits& traits, int horizon, double reach);
 
   /// Takes the scan and the other inputs of an update. Readings of predicted cars are left out of the maps.

@@ -9,8 +9,8 @@ namespace slalom::vehicle::detail {
 
 namespace {
 
-/// Shares of the largest deceleration: the one that a braking car reaches among curves, and the one with
-/// which it accelerates.
+/// Shares of the largest deceleration: that of a car which brakes among curves, and that of one which
+/// accelerates.
 constexpr double braking_share = 0.8, accelerating_share = 0.4;
 
 /// m, by which the nearest of many noisy readings is nearer than a wall.

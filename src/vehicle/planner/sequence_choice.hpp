@@ -19,7 +19,7 @@ class SequenceChoice {
     PredictedCost cost;
   };
 
-  /// For sequences of `horizon` steps with so many inputs each, of a car with these traits.
+  /// Sequences have `horizon` steps with so many inputs each, for a car with these traits.
   SequenceChoice(int horizon, int inputs, const VehicleTraits& traits);
 
   /// Sets the clearances (m, robot's frame) around the car, and the obstacles that move (in the frame of

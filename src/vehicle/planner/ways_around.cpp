@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slalom/core/gravity.hpp"
 #include "slalom/core/math.hpp"
 
 namespace slalom::vehicle::detail {
 
 namespace {
 
-constexpr double gravity = 9.81;                     // m/s^2
 constexpr double side_step = 0.75;                   // car widths from one way to the next
 constexpr double slow_speeds[] = {1.5, 3, 1e3};      // m/s at most
 constexpr double turning_share = 0.6;                // share of the usable grip

@@ -16,8 +16,8 @@ namespace slalom::vehicle::detail {
 /// drives around it within the horizon.
 class WaysAround {
  public:
-  /// For sequences of `horizon` steps with so many inputs each, along this path, by a car with these traits
-  /// whose wheels turn so far (rad).
+  /// Plans have `horizon` steps with so many inputs each, along this path, for a car with these traits whose
+  /// wheels turn as far as the limit (rad).
   WaysAround(std::span<const maps::ReferencePoint> path, bool closed, int horizon, int inputs,
              const VehicleTraits& traits, double steer_limit);
 

@@ -36,7 +36,7 @@ class Rays {
     return std::nullopt;
   }
 
-  /// How far the car can be moved from an offset to one side (1 left, -1 right).
+  /// The furthest offset that the car can have to one side (1 left, -1 right) of a given one.
   double last_offset(std::size_t i, double from, int side) const {
     double good = from;
     while (std::abs(good) < measure_.reach && free(i, good + side * march_)) good += side * march_;
@@ -104,7 +104,7 @@ Corridor measured_corridor(const FreeSpace& space, const std::vector<maps::Point
   corridor.normal = rays.normals();
   for (std::size_t i = 0; i < corridor.centre_line.size(); ++i) {
     const std::optional<double> begin = rays.free_offset(i);
-    // Where the car fits nowhere the corridor is closed.
+    // A place where the car does not fit closes the corridor.
     corridor.left.push_back(begin ? rays.last_offset(i, *begin, 1) + measure.keep : 0);
     corridor.right.push_back(begin ? measure.keep - rays.last_offset(i, *begin, -1) : 0);
   }

@@ -7,7 +7,7 @@
 
 namespace slalom::vehicle::detail {
 
-/// The measures of a corridor of a map.
+/// The measures with which a corridor of a map is found.
 struct CorridorMeasure {
   double keep = 0;   ///< m, that the centre of the car keeps from walls
   double step = 0;   ///< m between the points of the centre line

@@ -1,5 +1,6 @@
 #include "slalom/vehicle/racing/minimum_time.hpp"
 
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,7 +12,6 @@
 namespace slalom::vehicle {
 namespace {
 
-using detail::BandedMatrix;
 using detail::RacelineProgram;
 using detail::RacelineState;
 
@@ -71,11 +71,7 @@ void check(const Corridor& corridor, const RacingCar& car) {
 class BarrierMethod {
  public:
   BarrierMethod(const Corridor& corridor, const RacingCar& car)
-      : corridor_(corridor),
-        car_(car),
-        program_(corridor, car),
-        hessian_(2 * program_.points(), program_.band()),
-        gradient_(2 * static_cast<std::size_t>(program_.points())) {}
+      : corridor_(corridor), car_(car), program_(corridor, car) {}
 
   RacelineState solve() {
     RacelineState state = first_line();
@@ -145,27 +141,23 @@ class BarrierMethod {
   /// Computes Newton's step into `step_`; returns the decrease that its slope promises.
   double direction(const RacelineState& state, double weight) {
     program_.derivatives(state, weight, gradient_, hessian_);
-    double scale = 0;
-    for (int i = 0; i < hessian_.size(); ++i) scale = std::max(scale, hessian_.at(i, i));
     // Only rounding can make the matrix indefinite.
-    BandedMatrix factors = hessian_;
-    for (double shift = 1e-14 * scale; !factors.factorise(shift); shift *= 100) {
+    const double scale = hessian_.diagonal().maxCoeff();
+    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factors;
+    for (double shift = 1e-14 * scale;; shift *= 100) {
+      factors.setShift(shift).compute(hessian_);
+      if (factors.info() == Eigen::Success) break;
       if (!(shift < scale)) return 0;
-      factors = hessian_;
     }
-    step_ = gradient_;
-    factors.solve(step_);
-    double slope = 0;
-    for (std::size_t i = 0; i < step_.size(); ++i) slope += step_[i] * gradient_[i];
-    return slope;
+    step_ = factors.solve(gradient_);
+    return step_.dot(gradient_);
   }
 
   RacelineState moved(const RacelineState& state, double length) const {
     RacelineState result = state;
     for (int i = 0; i < program_.points(); ++i) {
-      const int row = program_.position(i);
-      result.offset[i] -= length * step_[row];
-      result.square[i] -= length * step_[row + 1];
+      result.offset[i] -= length * step_[2 * i];
+      result.square[i] -= length * step_[2 * i + 1];
     }
     return result;
   }
@@ -173,8 +165,8 @@ class BarrierMethod {
   const Corridor& corridor_;
   const RacingCar& car_;
   RacelineProgram program_;
-  BandedMatrix hessian_;
-  std::vector<double> gradient_, step_;
+  Eigen::SparseMatrix<double> hessian_;
+  Eigen::VectorXd gradient_, step_;
 };
 
 Raceline with_speeds(const std::vector<maps::Point>& line, bool closed, const RacingCar& car) {

@@ -21,7 +21,7 @@ std::vector<double> values_smoothed(const std::vector<double>& values, bool clos
 
 /// New points of a line and where they are on the old one.
 struct Resampling {
-  std::vector<maps::Point> points;  ///< at equal steps
+  std::vector<maps::Point> points;  ///< points at equal steps
   std::vector<std::size_t> row;     ///< row of the old point before each
   std::vector<double> share;        ///< share of the way to the next old point, 0..1
 };

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "vehicle/course/start_row.hpp"
+#include "vehicle/course/track_parts.hpp"
 #include "vehicle/racing/free_space.hpp"
 #include "vehicle/racing/loop_search.hpp"
 #include "vehicle/racing/map_corridor.hpp"
@@ -119,7 +119,7 @@ void complete(RaceCourse& course, const detail::FreeSpace& space, const RacingCa
   }
 }
 
-/// Returns the measures for the corridor of a course of a length.
+/// The measures of a corridor for a course of this length (m).
 detail::CorridorMeasure measure_for(const RacingCar& car, double length) {
   return {wall_distance(car), centre_line_step(car, length), 0.5 * widest * car.width};
 }

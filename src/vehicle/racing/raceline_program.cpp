@@ -1,32 +1,40 @@
 #include "vehicle/racing/raceline_program.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "slalom/core/derivatives/dual_math.hpp"
-#include "vehicle/racing/definite_part.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
 
+using slalom::detail::plain;
+using std::log;
+using std::sqrt;
+
 constexpr int variables = 6;  // variables of a segment: four offsets, two speeds
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-using Slope = Dual<double, variables>;  ///< a value with its first derivatives
-using Curve = Dual<Slope, variables>;   ///< and with its second ones
+/// A number with its first and second derivatives.
+using Number = Dual<Dual<double, variables>, variables>;
 
-/// The variable of an index.
-Curve variable(double value, int index) {
-  Curve x(value);
-  x.value.derivative[index] = 1;
-  x.derivative[index] = Slope(1);
-  return x;
+Number variable(double value, int index) {
+  Number made(value);
+  made.value.derivative[index] = 1;
+  made.derivative[index] = 1;
+  return made;
 }
 
-template <class T>
-T reciprocal(const T& x) {
-  return T(1.0) / x;
+/// The second derivatives without their negative eigenvalues.
+Eigen::Matrix<double, variables, variables> positive_part(const Number& f) {
+  Eigen::Matrix<double, variables, variables> second;
+  for (int a = 0; a < variables; ++a)
+    for (int b = 0; b < variables; ++b) second(a, b) = f.derivative[a].derivative[b];
+  const Eigen::SelfAdjointEigenSolver<decltype(second)> parts(second);
+  return parts.eigenvectors() * parts.eigenvalues().cwiseMax(0).asDiagonal() *
+         parts.eigenvectors().transpose();
 }
 
 template <class T>
@@ -49,7 +57,7 @@ template <class T>
 T curvature_of(const Vector<T>& a, const Vector<T>& b, const Vector<T>& c) {
   const Vector<T> ab = between(a, b), bc = between(b, c);
   const T cross = ab.x * bc.y - ab.y * bc.x;
-  return (2.0 * cross) * reciprocal(slalom::sqrt(squared(ab) * squared(bc) * squared(between(a, c))));
+  return 2.0 * cross / sqrt(squared(ab) * squared(bc) * squared(between(a, c)));
 }
 
 /// Sums barriers. A broken constraint makes the sum infinite and stays so.
@@ -60,8 +68,8 @@ struct Barrier {
 
   /// `room` > 0 is the constraint.
   void add(const T& room) {
-    if (slalom::detail::plain(room) > 0)
-      sum = sum - slalom::log(room);
+    if (plain(room) > 0)
+      sum = sum - log(room);
     else
       broken = true;
   }
@@ -92,16 +100,6 @@ std::vector<maps::Point> RacelineProgram::line(const RacelineState& state) const
   return points;
 }
 
-int RacelineProgram::band() const {
-  int most = 0, nodes[4];
-  for (int i = 0; i < segments(); ++i) {
-    segment_points(i, nodes);
-    for (const int a : nodes)
-      for (const int b : nodes) most = std::max(most, std::abs(position(a) - position(b)));
-  }
-  return most + 1;
-}
-
 /// The points i-1 .. i+2; beyond the ends of an open line the end point, which then does not count.
 void RacelineProgram::segment_points(int i, int (&nodes)[4]) const {
   for (int k = 0; k < 4; ++k) {
@@ -115,14 +113,13 @@ template <class T>
 T RacelineProgram::limit(const T& square, double GripAtSpeed::*member, double constant) const {
   const auto& rows = car_.grip;
   if (rows.empty()) return T(constant);
-  const double now = std::sqrt(slalom::detail::plain(square) * top_square_);
+  const double now = std::sqrt(plain(square) * top_square_);
   if (now <= rows.front().speed) return T(rows.front().*member);
   if (now >= rows.back().speed) return T(rows.back().*member);
   std::size_t k = 1;
   while (rows[k].speed < now) ++k;
   const double slope = (rows[k].*member - rows[k - 1].*member) / (rows[k].speed - rows[k - 1].speed);
-  return (rows[k - 1].*member - slope * rows[k - 1].speed) +
-         (slope * car_.limits.top_speed) * slalom::sqrt(square);
+  return (rows[k - 1].*member - slope * rows[k - 1].speed) + (slope * car_.limits.top_speed) * sqrt(square);
 }
 
 template <class T>
@@ -138,25 +135,22 @@ T RacelineProgram::segment(int i, const T (&offset)[4], const T (&square)[2], do
   const Vector<T> step = between(p[1], p[2]);
   Barrier<T> barrier;
   // A line that turns back on itself is not a raceline.
-  if (!(slalom::detail::plain(step.x) * (to.x - from.x) + slalom::detail::plain(step.y) * (to.y - from.y) >
-        0))
-    return T(infinity);
-  if (!(slalom::detail::plain(square[0]) > 0 && slalom::detail::plain(square[1]) > 0)) return T(infinity);
+  if (!(plain(step.x) * (to.x - from.x) + plain(step.y) * (to.y - from.y) > 0)) return T(infinity);
+  if (!(plain(square[0]) > 0 && plain(square[1]) > 0)) return T(infinity);
 
-  const T way = slalom::sqrt(squared(step)), per_metre = reciprocal(way);
-  const T speed[2] = {slalom::sqrt(square[0]), slalom::sqrt(square[1])};  // shares of the top speed
-  const T time = (2 / car_.limits.top_speed) * (way * reciprocal(speed[0] + speed[1]));
-  const T along = (0.5 * top_square_) * ((square[1] - square[0]) * per_metre);
-  const bool forwards = slalom::detail::plain(along) > 0;
+  const T way = sqrt(squared(step));
+  const T speed[2] = {sqrt(square[0]), sqrt(square[1])};  // shares of the top speed
+  const T time = (2 / car_.limits.top_speed) * way / (speed[0] + speed[1]);
+  const T along = (0.5 * top_square_) * (square[1] - square[0]) / way;
+  const bool forwards = plain(along) > 0;
   const bool bends[2] = {closed_ || i > 0, closed_ || i + 2 < count_};
   T curvature[2] = {T(0.0), T(0.0)};
   for (int k = 0; k < 2; ++k) {
     if (bends[k]) curvature[k] = curvature_of(p[k], p[k + 1], p[k + 2]);
-    const T across = top_square_ * (square[k] * curvature[k]) *
-                     reciprocal(limit(square[k], &GripAtSpeed::lateral, car_.limits.lateral_acceleration));
-    const T used =
-        along * reciprocal(forwards ? limit(square[k], &GripAtSpeed::acceleration, car_.limits.acceleration)
-                                    : limit(square[k], &GripAtSpeed::braking, car_.limits.braking));
+    const T across = top_square_ * square[k] * curvature[k] /
+                     limit(square[k], &GripAtSpeed::lateral, car_.limits.lateral_acceleration);
+    const T used = along / (forwards ? limit(square[k], &GripAtSpeed::acceleration, car_.limits.acceleration)
+                                     : limit(square[k], &GripAtSpeed::braking, car_.limits.braking));
     barrier.add(1.0 - (across * across + used * used));
   }
   if (std::isfinite(car_.power)) barrier.add(1.0 - (car_.limits.top_speed / car_.power) * (along * speed[0]));
@@ -166,7 +160,7 @@ T RacelineProgram::segment(int i, const T (&offset)[4], const T (&square)[2], do
   }
   if (bends[0] && bends[1]) {
     const T rate = (car_.limits.top_speed * car_.wheelbase / car_.max_steering_rate) *
-                   ((curvature[1] - curvature[0]) * per_metre * speed[0]);
+                   ((curvature[1] - curvature[0]) * speed[0] / way);
     barrier.add(1.0 - rate * rate);
   }
   if (barrier.broken) return T(infinity);
@@ -204,46 +198,39 @@ double RacelineProgram::value(const RacelineState& state, double weight) const {
   return sum;
 }
 
-void RacelineProgram::derivatives(const RacelineState& state, double weight, std::vector<double>& gradient,
-                                  BandedMatrix& hessian) const {
-  std::fill(gradient.begin(), gradient.end(), 0.0);
-  hessian.clear();
+void RacelineProgram::derivatives(const RacelineState& state, double weight, Eigen::VectorXd& gradient,
+                                  Eigen::SparseMatrix<double>& hessian) const {
+  gradient.setZero(2 * count_);
+  std::vector<Eigen::Triplet<double>> second;
   for (int i = 0; i < count_; ++i) {
-    const int row = position(i);
     const double below = 1 / (state.offset[i] - lower_[i]), above = 1 / (upper_[i] - state.offset[i]),
                  slower = 1 / (1 - state.square[i]);
-    gradient[row] += weight * (above - below);
-    hessian.at(row, row) += weight * (above * above + below * below);
-    gradient[row + 1] += weight * slower;
-    hessian.at(row + 1, row + 1) += weight * slower * slower;
+    gradient[2 * i] += weight * (above - below);
+    second.emplace_back(2 * i, 2 * i, weight * (above * above + below * below));
+    gradient[2 * i + 1] += weight * slower;
+    second.emplace_back(2 * i + 1, 2 * i + 1, weight * slower * slower);
   }
   int nodes[4], rows[variables];
   for (int i = 0; i < segments(); ++i) {
     segment_points(i, nodes);
-    Curve offset[4], square[2];
+    Number offset[4], square[2];
     for (int k = 0; k < 4; ++k) {
       offset[k] = variable(state.offset[nodes[k]], k);
-      rows[k] = position(nodes[k]);
+      rows[k] = 2 * nodes[k];
     }
     for (int k = 0; k < 2; ++k) {
       square[k] = variable(state.square[nodes[k + 1]], 4 + k);
-      rows[4 + k] = position(nodes[k + 1]) + 1;
+      rows[4 + k] = 2 * nodes[k + 1] + 1;
     }
-    const Curve part = segment<Curve>(i, offset, square, weight);
-    std::array<double, variables*(variables + 1) / 2> second;  // lower triangle
-    for (int a = 0, k = 0; a < variables; ++a)
-      for (int b = 0; b <= a; ++b, ++k) second[k] = part.derivative[a].derivative[b];
-    make_positive<variables>(second);
-    for (int a = 0, k = 0; a < variables; ++a) {
+    const Number part = segment<Number>(i, offset, square, weight);
+    const auto positive = positive_part(part);
+    for (int a = 0; a < variables; ++a) {
       gradient[rows[a]] += part.value.derivative[a];
-      for (int b = 0; b <= a; ++b, ++k) {
-        if (second[k] == 0) continue;
-        const int high = std::max(rows[a], rows[b]), low = std::min(rows[a], rows[b]);
-        // Beyond the ends of an open line two variables may be the same; then both halves count.
-        hessian.at(high, low) += (a != b && high == low ? 2 : 1) * second[k];
-      }
+      for (int b = 0; b < variables; ++b) second.emplace_back(rows[a], rows[b], positive(a, b));
     }
   }
+  hessian.resize(2 * count_, 2 * count_);
+  hessian.setFromTriplets(second.begin(), second.end());
 }
 
 }  // namespace slalom::vehicle::detail

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <vector>
 
 #include "slalom/vehicle/racing/corridor.hpp"
 #include "slalom/vehicle/racing/racing_car.hpp"
-#include "vehicle/racing/banded_matrix.hpp"
 
 namespace slalom::vehicle::detail {
 
@@ -38,17 +38,11 @@ class RacelineProgram {
   /// The time plus `weight` times the barrier, which is infinite where a constraint is broken.
   double value(const RacelineState& state, double weight) const;
 
-  /// The gradient of value() and a positive semi-definite matrix of second derivatives, in the order of
-  /// position(): that of each segment without its negative eigenvalues. The sum then needs no shift towards
-  /// the unit matrix, with which the steps would be short.
-  void derivatives(const RacelineState& state, double weight, std::vector<double>& gradient,
-                   BandedMatrix& hessian) const;
-
-  /// Where a point's offset stands in vectors and matrices; its speed follows. Points of both halves of a
-  /// closed line take turns, so that the matrix has no corners far from its diagonal.
-  int position(int i) const { return 2 * (i < (count_ + 1) / 2 ? 2 * i : 2 * (count_ - 1 - i) + 1); }
-  /// Diagonals of the matrix below the main one.
-  int band() const;
+  /// The gradient of value() and a positive semi-definite matrix of second derivatives: that of each segment
+  /// without its negative eigenvalues. The sum then needs no shift towards the unit matrix, with which the
+  /// steps would be short. The variables of point i are 2 i, its offset, and 2 i + 1, its squared speed.
+  void derivatives(const RacelineState& state, double weight, Eigen::VectorXd& gradient,
+                   Eigen::SparseMatrix<double>& hessian) const;
 
  private:
   template <class T>

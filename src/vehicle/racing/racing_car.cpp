@@ -4,12 +4,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "slalom/core/gravity.hpp"
 #include "vehicle/course/speed_passes.hpp"
 
 namespace slalom::vehicle {
 namespace {
-
-constexpr double gravity = 9.81;  // m/s^2
 
 void require(bool holds, const std::string& key, double value, const char* rule) {
   if (!holds) throw std::invalid_argument(key + ": " + std::to_string(value) + " must be " + rule);

@@ -34,7 +34,8 @@ struct Errors {
   double across = 0;                         ///< m, of the position, across the car
 };
 
-/// Of a position with these deviations (m) along and across a car with this yaw (rad), and of the yaw.
+/// The covariance of a position with these deviations (m) along and across a car with this yaw (rad), and of
+/// the yaw.
 PoseCovariance covariance_of(double along, double across, double yaw, double yaw_deviation) {
   const double c = std::cos(yaw), s = std::sin(yaw), a = along * along, b = across * across;
   return {{{c * c * a + s * s * b, c * s * (a - b), 0},

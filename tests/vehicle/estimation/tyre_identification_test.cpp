@@ -1,4 +1,4 @@
-// What identify_tyres finds of simulated cars whose tyres and steering are known.
+// Results of identify_tyres for simulated cars whose tyres and steering are known.
 #include "slalom/vehicle/model/tyre_identification.hpp"
 
 #include <gtest/gtest.h>

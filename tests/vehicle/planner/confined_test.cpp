@@ -28,7 +28,7 @@ Planner make_planner() {
           make_solver(testing::few_samples("svg_mppi"), 2)};
 }
 
-/// What the laser sees of the side of the box, 0.6 m long, on an empty plane.
+/// The ranges that the laser measures to the side of the box, 0.6 m long, on an empty plane.
 std::vector<float> beside_the_box() {
   std::vector<float> ranges(1081);
   for (std::size_t i = 0; i < ranges.size(); ++i) {

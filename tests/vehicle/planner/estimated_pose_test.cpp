@@ -24,7 +24,7 @@ Planner make_planner() {
           make_solver(testing::few_samples("svg_mppi"), 2)};
 }
 
-/// What a laser on the axis of a car along x sees of a wall to its left.
+/// The ranges that a laser on the axis of a car along x measures to a wall to its left.
 std::vector<float> beside_a_wall() {
   std::vector<float> ranges(1081);
   for (std::size_t i = 0; i < ranges.size(); ++i) {

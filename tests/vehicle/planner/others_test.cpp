@@ -37,8 +37,8 @@ Planner make_planner(const PlannerOptions& options = {}, VehicleOptions vehicle 
   return {options, make_vehicle_model(vehicle), path, make_solver(method, 1)};
 }
 
-/// What a laser 0.275 m ahead of the rear axle sees of a lane of this half width and of a car in its middle,
-/// whose rear end is `car` m ahead of the axle.
+/// The ranges that a laser 0.275 m ahead of the rear axle measures in a lane of this half width and of a car
+/// in its middle, whose rear end is `car` m ahead of the axle.
 struct Lane {
   double half_width = 1, car = 1e9;  // m
   std::vector<float> ranges = std::vector<float>(541);

@@ -36,7 +36,7 @@ inline SolverOptions few_samples(const char* method) {
   return options;
 }
 
-/// What was called.
+/// The numbers of calls.
 struct PlannerTally {
   long planners = 0, refused = 0, updates = 0, corrections = 0;
   long statuses[7] = {};

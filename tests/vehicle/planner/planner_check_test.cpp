@@ -7,7 +7,7 @@
 #include "support/repetitions.hpp"
 #include "vehicle/planner/planner_calls.hpp"
 
-/// What leaves a planner is a command that a car may take, whatever enters it.
+/// Every command of a planner is one that a car may take, whatever its inputs.
 namespace slalom::vehicle {
 namespace {
 

@@ -1,4 +1,4 @@
-// What a scan shows of the path, and the speed from which a car stops on it.
+// The part of the path that a scan shows, and the speed from which a car stops on it.
 #include "vehicle/planner/sight.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,8 @@ std::vector<maps::ReferencePoint> left_turn() {
   return path;
 }
 
-/// What a laser at (laser_x, 0) reads among boxes: the least distance at which a beam enters one.
+/// The range that a laser at (laser_x, 0) measures among boxes: the least distance at which a beam enters
+/// one.
 class Scan {
  public:
   explicit Scan(const std::vector<Box>& boxes, double angle_min = -field_of_view / 2)

@@ -9,7 +9,7 @@
 
 namespace slalom::vehicle {
 
-/// The limits that a course must keep.
+/// The car against which a course is checked.
 struct CourseCheckOptions {
   double half_width = 0.155;  ///< m, of the body
   double margin = 0.06;       ///< m, that the body keeps from walls

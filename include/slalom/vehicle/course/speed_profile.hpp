@@ -8,7 +8,7 @@
 
 namespace slalom::vehicle {
 
-/// Limits of a car's tyres, motor and brakes. All > 0.
+/// The limits of a car's tyres, motor and brakes. All > 0.
 struct SpeedLimits {
   double top_speed = 6.0;             ///< m/s
   double lateral_acceleration = 4.5;  ///< m/s^2
@@ -39,7 +39,7 @@ std::vector<double> speed_profile(const std::vector<double>& curvature, double s
 std::vector<double> feasible_speeds(std::span<const double> speed, std::span<const double> curvature,
                                     std::span<const double> step, bool closed, const SpeedLimits& limits);
 
-/// The geometry of a path, a polyline, on which its profile depends.
+/// The geometry of a polyline, on which its profile depends.
 struct PathGeometry {
   bool closed = true;             ///< whether the first point follows the last one
   std::vector<double> step;       ///< m, from each point to the next, from the last to the first

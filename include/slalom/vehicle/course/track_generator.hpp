@@ -70,7 +70,7 @@ struct GeneratedTrack {
 /// Throws std::invalid_argument for bad options, or where no track of the length and width is found.
 GeneratedTrack generate_track(const TrackGeneratorOptions& options);
 
-/// The description that save_track writes beside the geometry.
+/// The texts that save_track writes in addition to the geometry.
 struct TrackLabel {
   std::string name;         ///< the name
   std::string description;  ///< one sentence

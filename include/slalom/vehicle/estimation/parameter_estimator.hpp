@@ -9,7 +9,7 @@
 
 namespace slalom::vehicle {
 
-/// The estimate of car and ground from the drive so far.
+/// The estimate of the car and the ground.
 struct ParameterEstimate {
   double friction = 0;                 ///< mean
   double friction_deviation = 0;       ///< standard deviation
@@ -22,7 +22,7 @@ struct ParameterEstimate {
                           ///< drive has removed: 0 without turning
 };
 
-/// How the car moved, one control period after the last.
+/// The motion of the car, one control period after the last.
 struct MeasuredMotion {
   maps::Pose pose;      ///< pose of the rear axle, map frame
   double speed = 0;     ///< m/s
@@ -92,7 +92,7 @@ class ParameterEstimator {
     std::array<double, delays> angle{};  ///< rad, of the wheels at gain 1, for each delay
   };
 
-  /// The prior alone.
+  /// Moments of the prior alone.
   struct Prior {
     detail::Moments logarithm, gain,
         delay;  ///< moments of the friction's logarithm, the gain and the delay, s

@@ -44,7 +44,7 @@ class StateObserver {
   /// Records the command that is sent now; for the next update.
   void send(const Command& command) noexcept;
 
-  /// From now on the steering reacts `dead_time` (s) after `latency`.
+  /// Sets the time (s) after `latency` at which the steering reacts.
   void set_dead_time(double dead_time) noexcept { delay_ = latency_ + dead_time; }
 
   /// The state at the time of the measurements.

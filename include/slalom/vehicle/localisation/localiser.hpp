@@ -32,7 +32,7 @@
 /// place; until it is over, the estimate is uncertain. A rear axle in a wall counts as improbable.
 namespace slalom::vehicle {
 
-/// How reliable the estimate is.
+/// The reliability of the estimate.
 enum class LocaliserStatus {
   ok,
   uncertain,      ///< the particles are in several places, or the scan does not fit: do not rely on it

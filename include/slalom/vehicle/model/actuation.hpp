@@ -9,8 +9,8 @@ namespace slalom::vehicle {
 /// The steering between a command and the wheels: dead time and first-order lag.
 class SteeringActuator {
  public:
-  /// With `exact` the lag is discretised exactly for a command that is held during a step, otherwise by
-  /// explicit Euler.
+  /// Discretises the lag exactly for a command that is held during a step or, without `exact`, by explicit
+  /// Euler.
   explicit SteeringActuator(const PathTrackingOptions& options, bool exact = true);
 
   /// The command (rad) that acts in step `k`: the step's input, or the first one while that is held.
@@ -38,7 +38,7 @@ class SteeringActuator {
 /// The predicted speed of the next step.
 class SpeedPrediction {
  public:
-  /// With the options of the car.
+  /// Takes the options of the car.
   explicit SpeedPrediction(const PathTrackingOptions& options);
 
   /// The target of the linear model, m/s.
@@ -46,7 +46,7 @@ class SpeedPrediction {
   /// The change of speed in a step of the linear model above its target, m/s; positive slows down.
   void set_linear_loss(double loss) { linear_loss_ = loss; }
 
-  /// The speed after a step at `speed`, with this reference speed, if the speed is not an input; m/s.
+  /// The speed (m/s) after a step at `speed`, with this reference speed, where it is not an input.
   template <class T>
   SLALOM_INLINE T following(const T& speed, const T& reference) const {
     if (model_ == SpeedModel::constant) return speed;

@@ -25,7 +25,7 @@ struct DrivenSample {
   double steer_command = 0;  ///< rad, sent at `time`
 };
 
-/// The knowledge of the car in advance.
+/// The values that are known in advance.
 struct IdentificationOptions {
   double wheelbase = 0;    ///< m; 0: estimated as well
   double min_speed = 0.5;  ///< m/s, > 0; slower samples are not used

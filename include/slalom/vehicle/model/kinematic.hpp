@@ -26,7 +26,7 @@ class KinematicBicycle {
   };
   using Options = NoOptions;  ///< the model's own options
 
-  /// With the options of the car.
+  /// Takes the options of the car.
   explicit KinematicBicycle(const PathTrackingOptions& options);
 
   /// The state at the start; the reference speed (m/s) is the target of SpeedModel::linear.
@@ -68,7 +68,7 @@ class Kinematic : public KinematicBicycle {
   static constexpr int inputs = 1;                      ///< inputs of a step
   static constexpr std::array input_names{"steering"};  ///< names of the inputs
 
-  /// With the options of the car.
+  /// Takes the options of the car.
   explicit Kinematic(const PathTrackingOptions& options, const Options& = {}) : KinematicBicycle(options) {}
 
   /// The state after step `k`; `reference_speed` (m/s) is that of the path.
@@ -79,8 +79,8 @@ class Kinematic : public KinematicBicycle {
   }
 };
 
-/// The kinematic bicycle with steering and acceleration as its inputs. Of the acceleration no more than
-/// `max_deceleration` and `max_acceleration` takes effect, and the path's speed is a limit.
+/// The kinematic bicycle with steering and acceleration as its inputs. The acceleration is limited by
+/// `max_deceleration` and `max_acceleration`, and the path's speed is a limit.
 class KinematicAcceleration : public KinematicBicycle {
  public:
   static constexpr const char* name = "kinematic_acceleration";  ///< name in configurations
@@ -89,7 +89,7 @@ class KinematicAcceleration : public KinematicBicycle {
   static constexpr int inputs = 2;                                      ///< inputs of a step
   static constexpr std::array input_names{"steering", "acceleration"};  ///< names of the inputs
 
-  /// With the options of the car.
+  /// Takes the options of the car.
   explicit KinematicAcceleration(const PathTrackingOptions& options, const Options& = {})
       : KinematicBicycle(options) {}
 

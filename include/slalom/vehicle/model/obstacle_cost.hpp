@@ -12,7 +12,7 @@ namespace slalom::vehicle {
 /// negative off the map.
 class ObstacleCost {
  public:
-  /// With the options of the body.
+  /// Takes the options of the body.
   explicit ObstacleCost(const BodyOptions& options);
 
   /// The clearance up to which a map for discs must be right, m.
@@ -41,7 +41,7 @@ class ObstacleCost {
                                       T(to_local_[3]) * cosine + T(to_local_[4]) * sine));
     }
     if constexpr (is_pack<T>) {
-      // From the map frame to cells in one step.
+      // One step from the map frame to cells.
       return look_up_cell(obstacles_, T(to_cells_[0]) * x + (T(to_cells_[1]) * y + T(to_cells_[2])),
                           T(to_cells_[3]) * x + (T(to_cells_[4]) * y + T(to_cells_[5])));
     } else {

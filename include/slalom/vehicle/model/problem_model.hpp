@@ -19,7 +19,7 @@ class ProblemModelBase : public Interface {
   /// A vehicle model of `problem`, whose rollouts use the instruction set `target`.
   explicit ProblemModelBase(P problem, simd::Target target = simd::active_target())
       : evaluator_(std::move(problem), target) {}
-  /// With rollouts by `evaluator`.
+  /// A vehicle model whose rollouts are those of `evaluator`.
   explicit ProblemModelBase(Evaluator evaluator) : evaluator_(std::move(evaluator)) {}
 
   int inputs() const noexcept override { return P::inputs; }

@@ -26,7 +26,7 @@ class SingleTrack {
   static constexpr bool long_steps = true;                              ///< see Problem
   static constexpr std::array input_names{"steering", "acceleration"};  ///< names of the inputs
 
-  /// With the options of the car. Throws std::invalid_argument where `hold_first_input` is set, which this
+  /// Takes the options of the car. Throws std::invalid_argument where `hold_first_input` is set, which this
   /// model does not have, and where the radius of gyration, sqrt(inertia / mass), is not 0.1 to 1 wheelbase.
   explicit SingleTrack(const PathTrackingOptions& options, const Options& own = {});
 

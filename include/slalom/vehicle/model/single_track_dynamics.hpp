@@ -40,7 +40,7 @@ double slip_of(const SingleTrackState<double>& s) noexcept;
 /// docs/vehicle-model.md has the derivation and the measured errors.
 class SingleTrackDynamics {
  public:
-  /// With the geometry and limits of the car and the options of its tyres.
+  /// Takes the geometry and limits of the car and the options of its tyres.
   SingleTrackDynamics(const PathTrackingOptions& car, const SingleTrackOptions& own);
 
   /// The friction in the options.

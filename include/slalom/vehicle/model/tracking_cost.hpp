@@ -21,7 +21,7 @@ struct Surroundings {
 /// The cost of a state that follows a path (see PathTracking), and its look-ups in the reference field.
 class TrackingCost {
  public:
-  /// With the options of the car.
+  /// Takes the options of the car.
   explicit TrackingCost(const PathTrackingOptions& options);
 
   /// Cells {distance, yaw, speed, outside} in the map frame, as Surroundings has them.

@@ -8,7 +8,7 @@
 
 namespace slalom::vehicle {
 
-/// The identified tyres and steering.
+/// The parameters found of tyres and steering.
 struct TyreIdentification {
   Identified friction;           ///< mu
   Identified cornering_front;    ///< C_Sf, 1/rad
@@ -36,7 +36,7 @@ struct TyreIdentification {
 /// The deviations contain only the noise. Errors of the model add up to about 5 % (measured on the
 /// simulator's saturating tyres, without noise).
 ///
-/// As long as tyres are far from their limit, the drive determines only the products of friction and
+/// While tyres are far from their limit, the drive determines only the products of friction and
 /// stiffness: the deviation of the friction is then large. Drive curves close to the limit of grip.
 ///
 /// A gap of more than 0.2 s between samples, a time that does not increase, a speed below

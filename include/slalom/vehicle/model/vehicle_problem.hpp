@@ -86,11 +86,10 @@ struct VehicleTraits {
   bool meets_others = false;            ///< rollouts meet obstacles that move
   bool follows_path = true;             ///< false: drives by the obstacles alone, at `reference_speed`
   double reference_speed = 0;           ///< m/s, without a path
-  ObstacleMap obstacle_map = ObstacleMap::inflated;  ///< contents of the map of obstacles
+  ObstacleMap obstacle_map = ObstacleMap::inflated;  ///< content of the map of obstacles
   double clearance_reach = 0;                        ///< m
-  BodyOptions body;                                  ///< body by which obstacles are inflated
-  /// The friction (> 0) that the options of a model with slipping tyres give. The planner then predicts the
-  /// start with the model, and lowers the path's speeds to those that the car can drive.
+  BodyOptions body;                                  ///< the body that must not collide
+  /// The friction that the options give, > 0 where tyres slip, else 0.
   double friction = 0;
   double usable_grip = 0;       ///< the share of the friction that plans may use
   double braking_share = 1;     ///< the share of the usable grip that the mean deceleration may use

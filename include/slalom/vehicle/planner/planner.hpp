@@ -18,7 +18,7 @@
 #include "slalom/vehicle/model/vehicle_model.hpp"
 #include "slalom/vehicle/planner/planner_options.hpp"
 
-/// From scan and odometry to steering and speed:
+/// The planner: scan and odometry in, steering and speed out.
 ///
 ///     Planner planner({}, make_vehicle_model({}), path, make_solver(SvgMppiOptions{}, 1));
 ///     while (driving) {

@@ -13,7 +13,7 @@ namespace slalom::vehicle::published {
 /// The bicycle of the published program: one step of its pose and steering.
 class Bicycle {
  public:
-  /// With the options of the car and of the model.
+  /// Takes the options of the car and of the model.
   Bicycle(const PathTrackingOptions& options, const ModelOptions& own);
 
   /// The pose and wheels' angle after `travelled` (m) with this command (rad).
@@ -73,7 +73,7 @@ class OneTrajectory {
   /// The options given at construction.
   const PathTrackingOptions& options() const { return options_; }
   double time_step() const { return options_.time_step; }  ///< s
-  /// The traits of the model for the planner.
+  /// The properties of the model.
   VehicleTraits traits() const { return traits_of(options_, false); }
 
   /// Sets the maps that rollouts look up.
@@ -124,7 +124,8 @@ class OneTrajectory {
   }
 
  protected:
-  /// The parts of a step besides the motion: the command that acts, rad, and the way it is held for, m.
+  /// Sets the speed of the next state, and finds the command that acts (rad) and the way for which it is held
+  /// (m).
   template <class S, class T>
   SLALOM_INLINE void begin_step(const S& s, const Surroundings<T>& seen, const Input<T, 1>& u, int k, S& next,
                                 T& command, T& travelled) const {

@@ -15,7 +15,7 @@
 
 namespace slalom::vehicle {
 
-/// The start of a course and the direction in which it is driven.
+/// The start of a course, and the direction in which it is driven.
 struct RaceCourseOptions {
   /// Start pose of the car, for closed courses. Without one, a course that is found in a map starts at the
   /// origin of the map frame, where mapping programs start, if it passes there within 0.6 rad of +x; else it
@@ -38,7 +38,7 @@ struct RaceCourse {
   Raceline raceline;               ///< the minimum-time line; begins beside the start
   std::vector<double> distance;    ///< m from each point of the raceline to the nearest wall
   maps::Pose start;                ///< pose of the car
-  std::vector<std::string> notes;  ///< decisions, and things that were ignored and why, one sentence each
+  std::vector<std::string> notes;  ///< decisions, and things that were ignored, one sentence each
 };
 
 /// Makes a course from a map. Unknown cells are walls, but for spots that are no larger than the car is wide

@@ -20,7 +20,7 @@ struct GripAtSpeed {
   double lateral = 0;       ///< m/s^2, at constant speed
 };
 
-/// The limits of a car that determine its raceline. Lateral and longitudinal acceleration are inside an
+/// The properties of a car on which its raceline depends. Lateral and longitudinal acceleration are inside an
 /// ellipse with these limits as half axes.
 struct RacingCar {
   std::string name = "f1tenth";                ///< name of the car, for messages
@@ -31,7 +31,8 @@ struct RacingCar {
   double max_steering_rate = 3.2;              ///< rad/s
   SpeedLimits limits{8, 8.829, 8.829, 8.829};  ///< top speed and accelerations, where `grip` is empty
   double power = std::numeric_limits<double>::infinity();  ///< W/kg: v dv/dt is at most this
-  /// By rising speed; replaces the accelerations of `limits`. Linear between rows, constant beyond them.
+  /// Rows by rising speed, which replace the accelerations of `limits`. Linear between rows, constant beyond
+  /// them.
   std::vector<GripAtSpeed> grip;
 };
 

@@ -19,7 +19,7 @@ namespace slalom::vehicle::detail {
 /// on has the usual cost, but the probability of a collision is below the limit of the chance constraint.
 class CarsBehind {
  public:
-  /// For an own car with this wheelbase (m).
+  /// Takes the wheelbase of the own car (m).
   explicit CarsBehind(double wheelbase);
 
   /// The predictions, with other hypotheses for cars behind one whose rear axle is at `own`. Valid until the

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "slalom/vehicle/course/track_generator.hpp"
 #include "vehicle/course/closed_curve.hpp"
 
@@ -12,5 +15,13 @@ double min_radius(const TrackGeneratorOptions& options);
 /// A closed centre line as generate_track specifies it, in equal steps of about 0.1 m, with its longest
 /// extent about along x. Throws std::invalid_argument if none is found.
 Curve make_centre_line(const TrackGeneratorOptions& options);
+
+/// The map of a track: cells are free up to half the width from the centre line, occupied in the wall beyond,
+/// unknown elsewhere. Cell borders lie on multiples of the resolution.
+maps::OccupancyGrid draw_map(const Curve& centre_line, const TrackGeneratorOptions& options);
+
+/// The row in the middle of the longest part of a closed line at (nearly) the highest speed: a start with a
+/// free view.
+std::size_t start_row(const std::vector<double>& speed);
 
 }  // namespace slalom::vehicle::detail
