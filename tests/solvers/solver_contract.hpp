@@ -63,22 +63,17 @@ inline std::vector<OptionSet> option_sets() {
   sets.push_back({"cem_send_best", CemOptions{.send_best = true}});
   sets.push_back({"mppi_coloured", MppiOptions{.noise = {.exponent = 1.5}}});
   sets.push_back({"mppi_knots", MppiOptions{.noise = {.knots = 5}}});
-  sets.push_back({"mppi_log_normal", MppiOptions{.noise = {.log_normal_spread = 0.4}}});
-  sets.push_back({"mppi_tsallis_elite", MppiOptions{.weighting = {.tsallis_index = 0.5}}});
-  sets.push_back({"mppi_tsallis_heavy", MppiOptions{.weighting = {.tsallis_index = 1.3}}});
   sets.push_back({"mppi_target_ess_fraction", MppiOptions{.weighting = {.target_ess_fraction = 0.03}}});
   sets.push_back({"mppi_smoothed", MppiOptions{.smoothing = {.half_width = 3, .degree = 2}}});
-  sets.push_back(
-      {"svg_mppi_all_parts", SvgMppiOptions{.noise = {.exponent = 1, .log_normal_spread = 0.3},
-                                            .weighting = {.tsallis_index = 0.8, .target_ess_fraction = 0.03},
-                                            .smoothing = {.half_width = 2}}});
+  sets.push_back({"svg_mppi_all_parts", SvgMppiOptions{.noise = {.exponent = 1},
+                                                       .weighting = {.target_ess_fraction = 0.03},
+                                                       .smoothing = {.half_width = 2}}});
   sets.push_back({"icem_mean", IcemOptions{.send_best = false}});
-  sets.push_back(
-      {"dial_mpc_all_parts", DialMpcOptions{.noise = {.exponent = 1, .log_normal_spread = 0.3},
-                                            .weighting = {.tsallis_index = 0.8, .target_ess_fraction = 0.03},
-                                            .smoothing = {.half_width = 2}}});
+  sets.push_back({"dial_mpc_all_parts", DialMpcOptions{.noise = {.exponent = 1},
+                                                       .weighting = {.target_ess_fraction = 0.03},
+                                                       .smoothing = {.half_width = 2}}});
   sets.push_back({"svg_mppi_knots", SvgMppiOptions{.noise = {.knots = 5}}});
-  sets.push_back({"cem_coloured", CemOptions{.noise = {.exponent = 2, .log_normal_spread = 0.2}}});
+  sets.push_back({"cem_coloured", CemOptions{.noise = {.exponent = 2}}});
   return sets;
 }
 

@@ -36,70 +36,42 @@ struct Drawn {
   BatchStatistics statistics;
 };
 
-/// The q-exponential as its definition has it.
-double q_exponential(double x, double q) {
-  if (q == 1) return std::exp(x);
-  const double base = 1 + (1 - q) * x;
-  return base > 0 ? std::pow(base, 1 / (1 - q)) : 0;
-}
-
-TEST(Weighting, TsallisWeightsAreQExponentials) {
+TEST(Weighting, WeightsAreExponentials) {
   Drawn drawn([](double v) { return 10 + 2 * v * v; });
-  for (const double q : {-20.0, -1.0, 0.0, 0.5, 0.99, 0.9999, 1.0, 1.0001, 1.5, 2.0, 3.0}) {
-    Weighting weighting({1.7, q, 0});
-    const WeightSums<double> sums =
-        weighting.weigh(drawn.samples, drawn.statistics.minimum_total, drawn.pool);
-    double total = 0;
-    for (std::size_t k = 0; k < 1000; ++k) {
-      const double x = (static_cast<double>(drawn.statistics.minimum_total) -
-                        static_cast<double>(drawn.samples.costs()[k])) /
-                       1.7;
-      const double w = static_cast<double>(drawn.samples.weights()[k]);
-      EXPECT_NEAR(w, q_exponential(x, q), 1e-5) << "q " << q << " x " << x;
-      total += w;
-    }
-    EXPECT_NEAR(sums.weight, total, 1e-4 * total) << q;
+  Weighting weighting({1.7, 0});
+  const WeightSums<double> sums = weighting.weigh(drawn.samples, drawn.statistics.minimum_total, drawn.pool);
+  double total = 0;
+  for (std::size_t k = 0; k < 1000; ++k) {
+    const auto least = static_cast<double>(drawn.statistics.minimum_total);
+    const double w = static_cast<double>(drawn.samples.weights()[k]);
+    EXPECT_NEAR(w, std::exp((least - static_cast<double>(drawn.samples.costs()[k])) / 1.7), 1e-5) << k;
+    total += w;
   }
-}
-
-TEST(Weighting, TsallisWeightsByHand) {
-  // x = 1/2: q = 0: 1 - x; q = 2: 1 / (1 + x); q = 1/2: (1 - x/2)^2; q = -1: sqrt(1 - 2 x) = 0.
-  const float totals[64] = {4, 5}, costs[64] = {4, 5};
-  for (const auto& [q, expected] : {std::pair{0.0f, 0.5}, {2.0f, 2.0 / 3}, {0.5f, 0.5625}, {-1.0f, 0.0}}) {
-    alignas(64) float weights[64];
-    kernels::tsallis_weights(totals, costs, 4, 2, q, {0, 64}, weights);
-    EXPECT_EQ(weights[0], 1);
-    EXPECT_NEAR(weights[1], expected, 1e-6) << q;
-  }
+  EXPECT_NEAR(sums.weight, total, 1e-4 * total);
 }
 
 TEST(Weighting, InfiniteCostsHaveNoWeight) {
-  for (const double q : {0.0, 1.0, 2.0, 3.0}) {
-    Drawn drawn([](double v) { return v > 0 ? std::numeric_limits<double>::infinity() : v * v; });
-    Weighting weighting({1, q, 0});
-    const WeightSums<double> sums =
-        weighting.weigh(drawn.samples, drawn.statistics.minimum_total, drawn.pool);
-    EXPECT_TRUE(std::isfinite(sums.weight) && std::isfinite(sums.cost)) << q;
-    for (std::size_t k = 0; k < 1000; ++k) {
-      if (!std::isfinite(drawn.samples.costs()[k])) {
-        EXPECT_EQ(drawn.samples.weights()[k], 0) << q;
-      }
+  Drawn drawn([](double v) { return v > 0 ? std::numeric_limits<double>::infinity() : v * v; });
+  Weighting weighting({1, 0});
+  const WeightSums<double> sums = weighting.weigh(drawn.samples, drawn.statistics.minimum_total, drawn.pool);
+  EXPECT_TRUE(std::isfinite(sums.weight) && std::isfinite(sums.cost));
+  for (std::size_t k = 0; k < 1000; ++k) {
+    if (!std::isfinite(drawn.samples.costs()[k])) {
+      EXPECT_EQ(drawn.samples.weights()[k], 0);
     }
   }
 }
 
 TEST(Weighting, FindsTheTemperatureForAnEffectiveSampleSize) {
   for (const double scale : {1e-3, 1.0, 1e5}) {
-    for (const double q : {1.0, 0.5, 1.3}) {
-      for (const double share : {0.01, 0.1, 0.5}) {
-        Drawn drawn([scale](double v) { return scale * (v - 1) * (v - 1); });
-        const float none[1] = {0};
-        drawn.samples.keep_terms(none, drawn.pool);
-        Weighting weighting({1, q, share});
-        weighting.seek(drawn.samples, drawn.pool);
-        EXPECT_NEAR(drawn.effective(), share * 1000, 0.011 * share * 1000)
-            << "costs of " << scale << ", q " << q << ", lambda " << weighting.temperature();
-      }
+    for (const double share : {0.01, 0.1, 0.5}) {
+      Drawn drawn([scale](double v) { return scale * (v - 1) * (v - 1); });
+      const float none[1] = {0};
+      drawn.samples.keep_terms(none, drawn.pool);
+      Weighting weighting({1, share});
+      weighting.seek(drawn.samples, drawn.pool);
+      EXPECT_NEAR(drawn.effective(), share * 1000, 0.011 * share * 1000)
+          << "costs of " << scale << ", lambda " << weighting.temperature();
     }
   }
 }
@@ -109,7 +81,7 @@ TEST(Weighting, TemperatureScalesWithTheCosts) {
     Drawn drawn([scale](double v) { return scale * (v - 1) * (v - 1); });
     const float none[1] = {0};
     drawn.samples.keep_terms(none, drawn.pool);
-    Weighting weighting({1, 1, 0.2});
+    Weighting weighting({1, 0.2});
     weighting.seek(drawn.samples, drawn.pool);
     return weighting.temperature();
   };
@@ -121,7 +93,7 @@ TEST(Weighting, ControlTermIsInUnitsOfTheTemperature) {
   Drawn drawn([](double v) { return 50 * v * v; });
   const float linear[1] = {0.8f};
   drawn.samples.keep_terms(linear, drawn.pool);
-  Weighting weighting({1, 1, 0.3});
+  Weighting weighting({1, 0.3});
   weighting.seek(drawn.samples, drawn.pool);
   const auto& w = drawn.samples.weights();
   const auto exponent = [&](std::size_t k) {
@@ -139,7 +111,7 @@ TEST(Weighting, KeepsTheTemperatureWhereNoneFits) {
   Drawn equal([](double) { return 5.0; });
   const float none[1] = {0};
   equal.samples.keep_terms(none, equal.pool);
-  Weighting weighting({2.5, 1, 0.1});
+  Weighting weighting({2.5, 0.1});
   const WeightSums<double> sums = weighting.seek(equal.samples, equal.pool);
   EXPECT_DOUBLE_EQ(weighting.temperature(), 2.5);
   EXPECT_NEAR(sums.weight, 1000, 1e-3);

@@ -12,14 +12,12 @@ namespace slalom {
 /// `visit_noise_options` below describes the fields.
 struct NoiseOptions {
   PerInput exponent = 0;
-  PerInput log_normal_spread = 0;
   int knots = 0;
 };
 
 /// How costs become weights.
 /// `visit_weighting_options` below describes the fields.
 struct WeightingOptions {
-  double tsallis_index = 1;
   double target_ess_fraction = 0;
 };
 
@@ -65,10 +63,6 @@ void visit_noise_options(Options& o, Visit&& visit) {
   visit(o.exponent, {"noise_exponent", "",
                      "power 1/f^beta of the noise along the steps, per input; 0: white, 1: pink, 2: Brownian",
                      0, 4, "beta"});
-  visit(o.log_normal_spread,
-        {"log_normal_spread", "",
-         "log-normal factor of the noise at the same variance, per input; large: distant samples, 0: none", 0,
-         2, "sigma_ln"});
   visit(o.knots,
         {"noise_knots", "",
          "knots along the horizon between which the noise is interpolated; 0: none, independent steps", 0, 64,
@@ -77,10 +71,6 @@ void visit_noise_options(Options& o, Visit&& visit) {
 
 template <class Options, class Visit>
 void visit_weighting_options(Options& o, Visit&& visit) {
-  visit(o.tsallis_index, {"tsallis_index", "",
-                          "q of the weights, q-exponentials of -cost / temperature; 1: exp; below 1, costs "
-                          "above temperature / (1 - q) have weight 0; above 1, weights fall more slowly",
-                          -20, 3, "q"});
   visit(
       o.target_ess_fraction,
       {"target_ess_fraction", "",

@@ -128,9 +128,6 @@ float minimum(const float* costs, Range range);
 /// nothing, even if it is infinite.
 WeightSums<float> exponential_weights(const float* totals, const float* costs, float least, float temperature,
                                       Range range, float* weights);
-/// The same for the q-exponential with `index` q != 1: weights[k] = e_q((least - totals[k]) / temperature).
-WeightSums<float> tsallis_weights(const float* totals, const float* costs, float least, float temperature,
-                                  float index, Range range, float* weights);
 /// values[k] *= factor.
 void scale(float factor, Range range, float* values);
 /// sums[row] = sum over samples of w[k] (v[row][k] - centre[row]).
@@ -141,8 +138,6 @@ void weighted_squares(const Rows& v, const float* weights, const float* centre, 
 void add_scaled(const float* costs, float factor, const float* terms, Range range, float* totals);
 /// z <- L z over the rows first, first + step, ... `factor` is the lower triangular L, row by row.
 void colour(const Rows& z, const float* factor, int first, int step, Range range);
-/// z <- z exp(s y - s^2), where `y` has the layout of z and `spread` [row] is s.
-void spread_log_normal(const Rows& z, const float* y, const float* spread, Range range);
 /// Gradients [row][particle]. `exponents` holds the samples' costs and is replaced by their weights.
 void particle_gradients(const GradientSettings& how, const Rows& samples, const Rows& theta, Range particles,
                         float* exponents, const Rows& gradient);

@@ -78,22 +78,6 @@ struct Colour {
   }
 };
 
-/// z <- z exp(s y - s^2). `y` has the layout of z; `spread` [row] is s.
-struct SpreadLogNormal {
-  template <class Target>
-  SLALOM_KERNEL static void run(const Rows& z, const float* y, const float* spread, Range range) {
-    using F = Pack<Target>;
-    for (int r = 0; r < z.rows; ++r) {
-      const F s(spread[r]), shift(-spread[r] * spread[r]);
-      float* to = z.row(r);
-      const float* from = y + r * z.stride;
-      for (int k = range.first; k < range.first + range.count; k += F::lanes) {
-        (F::load(to + k) * exp(s * F::load(from + k) + shift)).store(to + k);
-      }
-    }
-  }
-};
-
 struct AddLinear {
   template <class Target>
   SLALOM_KERNEL static void run(const Rows& v, const float* coefficient, Range range, float* totals) {
@@ -203,10 +187,6 @@ void sample(const Rows& noise, const Rows& samples, const SamplingDistribution& 
 
 void colour(const Rows& z, const float* factor, int first, int step, Range range) {
   simd::dispatch<Colour>(z, factor, first, step, range);
-}
-
-void spread_log_normal(const Rows& z, const float* y, const float* spread, Range range) {
-  simd::dispatch<SpreadLogNormal>(z, y, spread, range);
 }
 
 void add_linear(const Rows& v, const float* coefficient, Range range, float* totals) {

@@ -44,34 +44,6 @@ struct ExponentialWeights {
   }
 };
 
-/// e_q(-x) = [1 - (1 - q) x]_+^(1 / (1 - q)) with x = (total - least) / temperature. The power is computed as
-/// exp(log1p(-(1 - q) x) / (1 - q)), where log1p(y) = y log(1 + y) / ((1 + y) - 1) is exact for small y
-/// (Kahan), so that the result is accurate for q near 1.
-struct TsallisWeights {
-  template <class Target>
-  SLALOM_KERNEL static WeightSums<float> run(const float* totals, const float* costs, float least,
-                                             float temperature, float index, Range range, float* weights) {
-    using F = Pack<Target>;
-    const F minimum_cost(least), inverse(1.0f / temperature), zero(0.0f), one(1.0f);
-    const F deformation(1.0f - index), power(1.0f / (1.0f - index));
-    const F infinite(std::numeric_limits<float>::infinity());
-    F weight(0.0f), squared(0.0f), cost(0.0f);
-    for (int k = range.first; k < range.first + range.count; k += F::lanes) {
-      const F total = F::load(totals + k);
-      const F y = deformation * ((minimum_cost - total) * inverse);
-      const F u = one + y;
-      const F gone = u - one;
-      const F logarithm = select(abs(gone) > zero, log(u) * (y / gone), y);
-      const F w = select((u > zero) & (total < infinite), exp(logarithm * power), zero);
-      w.store(weights + k);
-      weight = weight + w;
-      squared = squared + w * w;
-      cost = cost + select(w > zero, w * F::load(costs + k), zero);
-    }
-    return {sum_of(weight), sum_of(squared), sum_of(cost)};
-  }
-};
-
 struct Scale {
   template <class Target>
   SLALOM_KERNEL static void run(float factor, Range range, float* values) {
@@ -181,11 +153,6 @@ struct SplitWeights {
 WeightSums<float> exponential_weights(const float* totals, const float* costs, float least, float temperature,
                                       Range range, float* weights) {
   return simd::dispatch<ExponentialWeights>(totals, costs, least, temperature, range, weights);
-}
-
-WeightSums<float> tsallis_weights(const float* totals, const float* costs, float least, float temperature,
-                                  float index, Range range, float* weights) {
-  return simd::dispatch<TsallisWeights>(totals, costs, least, temperature, index, range, weights);
 }
 
 void scale(float factor, Range range, float* values) {

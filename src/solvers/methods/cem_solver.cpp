@@ -58,7 +58,7 @@ class CemSolver final : public SolverBase {
         sums_(size()) {
     for (const int samples : batch_sizes(options.samples, options.iterations, elites_, memory.sample_decay))
       batches_.emplace_back(options.horizon, inputs, samples,
-                            detail::NoiseShape(options.noise, options.horizon, inputs, samples));
+                            detail::NoiseShape(options.noise, options.horizon, inputs));
     reset(options.seed);
   }
 

@@ -21,7 +21,7 @@ double effective(const WeightSums<double>& sums) {
 }  // namespace
 
 WeightSums<double> Weighting::weigh(SampleSet& samples, float least, ThreadPool& pool) noexcept {
-  return samples.weigh(least, static_cast<float>(temperature_), pool, static_cast<float>(settings_.index));
+  return samples.weigh(least, static_cast<float>(temperature_), pool);
 }
 
 WeightSums<double> Weighting::try_temperature(SampleSet& samples, double logarithm,

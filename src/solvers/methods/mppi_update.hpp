@@ -9,10 +9,7 @@ namespace slalom::detail {
 
 /// Computes the weights of samples from their costs.
 ///
-/// w = e_q(-(J - min J) / lambda) with the q-exponential e_q(x) = [1 + (1 - q) x]_+^(1 / (1 - q)) (Wang et
-/// al., "Variational Inference MPC using Tsallis Divergence", RSS 2021, where r is 2 - q). q = 1 is exp. For
-/// q < 1, samples whose cost is lambda / (1 - q) or more above the lowest have weight 0, as in the
-/// cross-entropy method. For q > 1, the weights decrease as a power of the cost.
+/// w = exp(-(J - min J) / lambda).
 ///
 /// lambda is fixed, or adapted so that the effective sample size (sum w)^2 / sum w^2 (Kong 1992) is a
 /// fraction of the number of samples. The effective sample size grows with lambda from 1 to the number of
@@ -22,7 +19,6 @@ class Weighting {
  public:
   struct Settings {
     double temperature = 1;  ///< lambda
-    double index = 1;        ///< q
     double share = 0;        ///< effective sample size / samples; 0: lambda is fixed
   };
 
@@ -74,8 +70,8 @@ class MppiUpdate {
   MppiUpdate(const Options& o, int inputs)
       : MppiUpdate({o.control_cost_discount, o.published.inverse_variance_offset,
                     o.published.normaliser_offset, o.zero_mean_share},
-                   SampleSet(o.horizon, inputs, o.samples, NoiseShape(o.noise, o.horizon, inputs, o.samples)),
-                   Weighting({o.temperature, o.weighting.tsallis_index, o.weighting.target_ess_fraction}),
+                   SampleSet(o.horizon, inputs, o.samples, NoiseShape(o.noise, o.horizon, inputs)),
+                   Weighting({o.temperature, o.weighting.target_ess_fraction}),
                    o.smoothing.half_width > 0
                        ? Smoother(o.horizon, inputs, o.smoothing.half_width, o.smoothing.degree)
                        : Smoother()) {}

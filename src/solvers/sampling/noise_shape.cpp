@@ -97,18 +97,12 @@ std::vector<double> knot_weights(int steps, int knots) {
   return {weights.data(), weights.data() + weights.size()};
 }
 
-NoiseShape::NoiseShape(const NoiseOptions& options, int steps, int inputs, int samples)
+NoiseShape::NoiseShape(const NoiseOptions& options, int steps, int inputs)
     : steps_(steps), inputs_(inputs), factor_(inputs), factor_float_(inputs) {
   colour(options.exponent);
   if (options.knots > 0) interpolate(std::min(options.knots, steps));
   for (std::size_t i = 0; i < factor_.size(); ++i)
     factor_float_[i].assign(factor_[i].begin(), factor_[i].end());
-  bool spread = false;
-  for (int i = 0; i < inputs; ++i) spread = spread || options.log_normal_spread[i] > 0;
-  if (!spread) return;
-  for (int r = 0; r < steps * inputs; ++r)
-    spread_.push_back(static_cast<float>(options.log_normal_spread[r % inputs]));
-  exponents_ = SequenceBatch(steps, inputs, samples);
 }
 
 /// Throws std::invalid_argument if a sequence is too long for the factor of an option.
@@ -139,18 +133,11 @@ void NoiseShape::interpolate(int knots) {
   projection_.assign(projection.data(), projection.data() + projection.size());
 }
 
-void NoiseShape::apply(SequenceBatch& z, Range range, RandomKey key) noexcept {
+void NoiseShape::apply(SequenceBatch& z, Range range) const noexcept {
   const Rows rows = rows_of(z);
-  if (correlated_) {
-    for (int i = 0; i < inputs_; ++i) {
-      const std::vector<float>& factor = factor_float_[i];
-      if (!factor.empty()) kernels::colour(rows, factor.data(), i, inputs_, range);
-    }
-  }
-  if (!spread_.empty()) {
-    // The complement of the seed gives an independent stream.
-    fill_normal(exponents_, range.first, range.count, {~key.seed, key.stream});
-    kernels::spread_log_normal(rows, exponents_.data(), spread_.data(), range);
+  for (int i = 0; i < inputs_; ++i) {
+    const std::vector<float>& factor = factor_float_[i];
+    if (!factor.empty()) kernels::colour(rows, factor.data(), i, inputs_, range);
   }
 }
 

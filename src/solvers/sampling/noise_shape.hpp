@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "slalom/core/options.hpp"
-#include "slalom/core/random.hpp"
 #include "slalom/core/sequence_batch.hpp"
 #include "slalom/solvers/option_groups.hpp"
 #include "solvers/kernels/kernels.hpp"
@@ -28,25 +27,19 @@ namespace slalom::detail {
 ///     W ~ K(t, t_k) K(t_k, t_k)^-1,   each row of W has length 1,   z = W y,   C = W W^T
 ///
 /// It is drawn as z <- L z too, where W = L Q, Q has orthonormal rows, and L is lower triangular.
-///
-/// *Normal log-normal* (Mohamed, Yin and Liu, "Autonomous Navigation of AGVs in Unknown Cluttered
-/// Environments: log-MPPI Control Strategy", RA-L 2022): z <- z exp(s y - s^2), y standard normal. Its fourth
-/// moment is 3 exp(4 s^2): more samples are in the tails at the same variance.
 class NoiseShape {
  public:
   /// White normal noise.
   NoiseShape() = default;
   /// More knots than steps are as many as steps. Throws std::invalid_argument if a correlated sequence is too
   /// long, or if noise has both a colour and knots.
-  NoiseShape(const NoiseOptions& options, int steps, int inputs, int samples);
+  NoiseShape(const NoiseOptions& options, int steps, int inputs);
 
-  /// Whether noise is not shaped at all.
-  bool plain() const noexcept { return !correlated_ && spread_.empty(); }
   /// Whether the noise of any input is correlated along the steps: coloured or interpolated.
   bool correlated() const noexcept { return correlated_; }
 
-  /// Shapes the samples of a range of `z`, which holds white noise drawn with this key.
-  void apply(SequenceBatch& z, Range range, RandomKey key) noexcept;
+  /// Shapes the samples of a range of `z`, which holds white noise.
+  void apply(SequenceBatch& z, Range range) const noexcept;
 
   /// Multiplies a sequence [row] by C^-1, in place. Between knots, C has no inverse, and its pseudo-inverse
   /// is taken: only the part of the sequence counts along which samples differ.
@@ -65,8 +58,6 @@ class NoiseShape {
   std::vector<double> projection_;                ///< W (W^T W)^-1, [step][knot]
   std::vector<std::vector<double>> factor_;       ///< L of each input, row by row; empty: white
   std::vector<std::vector<float>> factor_float_;  ///< the same in float32
-  std::vector<float> spread_;                     ///< s [row]; empty: normal
-  SequenceBatch exponents_;                       ///< y
 };
 
 /// The correlations c(0) ... c(steps - 1) of noise with power 1/f^exponent.

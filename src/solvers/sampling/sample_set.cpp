@@ -53,7 +53,7 @@ void SampleSet::fill_noise(const Sampler* sampler, SequenceBatch& to, Range r, R
   } else {
     fill_normal(to, r.first, r.count, key);
   }
-  if (!shape_.plain()) shape_.apply(to, r, key);
+  if (shape_.correlated()) shape_.apply(to, r);
 }
 
 void SampleSet::prepare(RandomKey key, ThreadPool& pool) noexcept {
@@ -239,14 +239,10 @@ float SampleSet::mix_totals(float factor, ThreadPool& pool) noexcept {
   return *std::min_element(least_.begin(), least_.end());
 }
 
-WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& pool, float index) noexcept {
+WeightSums<double> SampleSet::weigh(float least, float temperature, ThreadPool& pool) noexcept {
   pool.run(tiles(), [&](int tile) {
-    WeightSums<float>& sums = weight_sums_[tile];
-    const float *totals = totals_.data(), *costs = costs_.data();
-    sums = index == 1
-               ? kernels::exponential_weights(totals, costs, least, temperature, range(tile), weights_.data())
-               : kernels::tsallis_weights(totals, costs, least, temperature, index, range(tile),
-                                          weights_.data());
+    weight_sums_[tile] = kernels::exponential_weights(totals_.data(), costs_.data(), least, temperature,
+                                                      range(tile), weights_.data());
   });
   WeightSums<double> all;
   for (const WeightSums<float>& sums : weight_sums_) {

@@ -92,9 +92,9 @@ class SampleSet {
   /// Sets the totals to cost + factor * term and returns the lowest.
   float mix_totals(float factor, ThreadPool& pool) noexcept;
 
-  /// Sets the weights to exp((least - total) / temperature), or with an `index` q != 1 to the q-exponential.
+  /// Sets the weights to exp((least - total) / temperature).
   /// They are not normalised. Returns their sums.
-  WeightSums<double> weigh(float least, float temperature, ThreadPool& pool, float index = 1) noexcept;
+  WeightSums<double> weigh(float least, float temperature, ThreadPool& pool) noexcept;
 
   /// Sums over the present weights.
   WeightSums<double> sum_weights() const noexcept;
