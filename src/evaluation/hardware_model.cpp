@@ -37,10 +37,10 @@ HardwareConditions HardwareConditions::sensors(double range_noise, double dropou
   // all ranges the localiser sees the next corner from far down a straight.
   conditions.wheels.yaw_from_gyro = true;
   conditions.localiser.range_cap = 30;
-  conditions.localiser.motion.drift_noise = 0.01;
-  conditions.localiser.motion.yaw_noise = 0.002;
-  conditions.localiser.motion.turn_noise = 0.03;
-  conditions.localiser.motion.across_noise = 0.15;
+  conditions.localiser.drift_noise = 0.01;
+  conditions.localiser.yaw_noise = 0.002;
+  conditions.localiser.turn_noise = 0.03;
+  conditions.localiser.across_noise = 0.15;
   return conditions;
 }
 
