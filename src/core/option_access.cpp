@@ -41,7 +41,7 @@ std::string full_name(std::string_view where, const Declaration& d) {
   return std::string(where) + (where.empty() ? "" : ".") + d.name;
 }
 
-/// How many single-letter changes lead from one word to the other.
+/// Number of single-letter changes from one word to the other.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

@@ -6,7 +6,7 @@
 /// Controllers as state machines: calls in any order with any values, and what every plan promises.
 namespace slalom::testing {
 
-/// What was called.
+/// Numbers of calls and of plans.
 struct ControllerTally {
   long calls = 0, plans = 0, ok = 0, other = 0, corrections = 0;
 };

@@ -8,7 +8,7 @@
 #include "slalom/slalom.hpp"
 #include "solvers/problems.hpp"
 
-/// What leaves a controller is finite, within the bounds and within the rates, whatever enters it.
+/// Plans of a controller are finite, within the bounds and within the rates, whatever enters it.
 namespace slalom {
 namespace {
 

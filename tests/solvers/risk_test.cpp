@@ -205,7 +205,7 @@ Flights fly(const RiskOptions& risk, int flights) {
   return result;
 }
 
-/// What the risk is for: the plan keeps the distance that gusts ask for.
+/// The purpose of the risk: the plan keeps the distance that gusts ask for.
 TEST(RiskEvaluator, KeepsDistanceFromWhatAGustCouldReach) {
   const Flights nominal = fly({}, 40), averse = fly({.variants = 9, .measure = RiskMeasure::cvar}, 40);
   EXPECT_GT(averse.height, nominal.height + 0.05);

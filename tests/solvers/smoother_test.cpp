@@ -8,7 +8,7 @@
 namespace slalom::detail {
 namespace {
 
-/// What a lone 1 at place `at` becomes: a column of the smoothing matrix.
+/// The smoothed sequence of zeros with a 1 at place `at`: a column of the smoothing matrix.
 std::vector<float> response(int steps, int half_width, int degree, int at) {
   Smoother smoother(steps, 1, half_width, degree);
   std::vector<float> u(static_cast<std::size_t>(steps));

@@ -18,7 +18,7 @@
 #include "solvers/problems.hpp"
 #include "solvers/set_option.hpp"
 
-/// What the contract tests share: the option sets that they run over, and the fixture.
+/// The option sets over which the contract tests run, and their fixture.
 namespace slalom::testing {
 
 inline constexpr double infinite = std::numeric_limits<double>::infinity();

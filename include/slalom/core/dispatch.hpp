@@ -31,7 +31,7 @@
 ///    `simd::Unfused<Target>`.
 namespace slalom::simd {
 
-/// On the function template `run` of a kernel.
+/// Marks the function template `run` of a kernel.
 #define SLALOM_KERNEL SLALOM_INLINE_CALLS
 
 namespace detail {

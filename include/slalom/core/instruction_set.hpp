@@ -38,7 +38,7 @@
 /// Attributes of a function that uses AVX-512.
 #define SLALOM_TARGET_AVX512 SLALOM_ISA_AVX512 __attribute__((flatten))
 
-/// On the functions that a kernel calls. g++ applies `flatten` to calls at every depth, but only to functions
+/// Marks functions that a kernel calls. g++ applies `flatten` to calls at every depth, but only to functions
 /// that are not `always_inline`: those it rejects early, because their callers lack the instruction set.
 /// clang applies `flatten` to direct calls only, so every function of a kernel is marked; those that call a
 /// user's function, or an operation of one instruction set, are marked `SLALOM_INLINE_CALLS`.

@@ -154,7 +154,7 @@ SLALOM_INLINE void accumulate(const CostTerms<T, N>& cost, T& total, mask_t<T>& 
   collided = collided | cost.collided;
 }
 
-/// How many scalars a state has.
+/// Number of scalars of a state.
 template <class P>
 inline constexpr int state_size = static_cast<int>(sizeof(StateOf<P, double>) / sizeof(double));
 

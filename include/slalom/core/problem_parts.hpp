@@ -39,7 +39,7 @@ inline constexpr int terms_in = 0;  ///< 0: a cost in one piece
 template <class T, int N>
 inline constexpr int terms_in<CostTerms<T, N>> = N;
 
-/// How many named terms a problem's costs have.
+/// Number of named terms of a problem's costs.
 template <class P>
 inline constexpr int named_terms =
     terms_in<StageCostOf<P>> > terms_in<TerminalCostOf<P>> ? terms_in<StageCostOf<P>>
@@ -170,7 +170,7 @@ InputBounds stated_bounds(const P& problem) {
   return bounds;
 }
 
-/// How far an input may move in a step.
+/// Returns how far an input may move in a step.
 template <class P>
 double input_step(const P& problem, int input) noexcept {
   if constexpr (limits_rates<P>) return entry(problem.input_rate_max, input) * time_step_of(problem);

@@ -53,7 +53,7 @@ struct RolloutStart {
   [[no_unique_address]] HeldInput<P, F> reach;     ///< how far an input may move in a step
 };
 
-/// How many values a rollout starts from: the state, then the inputs applied before where rates are limited.
+/// Size of the start of a rollout: the state, then the inputs applied before where rates are limited.
 template <class P>
 inline constexpr int start_size = state_size<P> + (limits_rates<P> ? P::inputs : 0);
 

@@ -107,7 +107,7 @@ struct Mask {
   Vector v;  ///< with `bits` one bit per lane; else all bits of a lane, 1 where true and 0 where false
 
   Mask() = default;
-  /// From a vector in this form.
+  /// Takes a vector in this form.
   SLALOM_INLINE Mask(const Vector& vector) : v(vector) {}
   SLALOM_INLINE Mask(const Mask& other) : v(other.v) {}
   SLALOM_INLINE Mask& operator=(const Mask& other) {
@@ -162,7 +162,7 @@ struct IntPack {
   IntPack() = default;
   /// Sets all lanes to `value`.
   SLALOM_INLINE explicit IntPack(int value) { v = Vector{} + value; }
-  /// From a vector.
+  /// Takes a vector.
   SLALOM_INLINE IntPack(const Vector& vector) : v(vector) {}
   SLALOM_INLINE IntPack(const IntPack& other) : v(other.v) {}
   SLALOM_INLINE IntPack& operator=(const IntPack& other) {
@@ -206,7 +206,7 @@ struct Pack {
   SLALOM_INLINE Pack(int value) : Pack(static_cast<float>(value)) {}
   /// Sets all lanes to a value that is already rounded.
   SLALOM_INLINE Pack(const Coefficient& value) : Pack(value.rounded()) {}
-  /// From a vector.
+  /// Takes a vector.
   SLALOM_INLINE Pack(const Vector& vector) : v(vector) {}
   SLALOM_INLINE Pack(const Pack& other) : v(other.v) {}
   SLALOM_INLINE Pack& operator=(const Pack& other) {

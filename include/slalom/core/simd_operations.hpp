@@ -183,7 +183,7 @@ struct Operations<Avx2> : PortableOperations<Avx2> {
   SLALOM_ISA_AVX2 static void round(const F& a, F& r) {
     r = (F)_mm256_round_ps((__m256)a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
   }
-  /// With a count for each lane: one micro-operation, where a count for all lanes takes two.
+  /// Takes a count for each lane: one micro-operation, where a count for all lanes takes two.
   SLALOM_ISA_AVX2 static void shift_left(I& a, int count) {
     a = (I)_mm256_sllv_epi32((__m256i)a, _mm256_set1_epi32(count));
   }

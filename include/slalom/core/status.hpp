@@ -2,7 +2,7 @@
 
 namespace slalom {
 
-/// How a solve ended. Whatever the status, the result holds finite inputs within their bounds.
+/// Outcome of a solve. Whatever the status, the result holds finite inputs within their bounds.
 enum class Status {
   ok,                ///< solved as asked
   deadline,          ///< stopped at the deadline; the result is the best found until then

@@ -79,7 +79,7 @@ struct Arm {
     turn(z, x, s.angle[5]);
     return {elbow, wrist, along(wrist, z, hand)};
   }
-  /// From the hand to the goal, m.
+  /// Distance from the hand to the goal, m.
   template <class T>
   T distance(const Posture<T>& arm) const {
     return sqrt(square(arm.hand.x - T(goal_x)) + square(arm.hand.y - T(goal_y)) +
@@ -109,7 +109,7 @@ struct Arm {
   static Point<T> along(const Point<T>& from, const Point<T>& axis, double length) {
     return {from.x + T(length) * axis.x, from.y + T(length) * axis.y, from.z + T(length) * axis.z};
   }
-  /// From the ball's centre to the segment from a to b, squared.
+  /// Squared distance from the ball's centre to the segment from a to b.
   template <class T>
   T square_distance(const Point<T>& a, const Point<T>& b) const {
     const Point<T> way{b.x - a.x, b.y - a.y, b.z - a.z},

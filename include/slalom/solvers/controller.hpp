@@ -118,7 +118,7 @@ class Controller {
   using State = typename Controlled::State;          ///< the problem's state in double
   using Inputs = Input<double, input_count>;         ///< inputs of a step
 
-  /// With the options of any method, within the bounds that the problem states for its inputs. Throws
+  /// Takes the options of any method, within the bounds that the problem states for its inputs. Throws
   /// std::invalid_argument that names the option, its value and the rule, what the problem says of its
   /// inputs, or what an option needs and the evaluator does not have. The threads are the controller's own
   /// unless a pool is given to share.
@@ -129,7 +129,7 @@ class Controller {
     allocate();
   }
 
-  /// With a solver of one's own, which keeps its own bounds; those of the problem hold besides. Throws
+  /// Takes a solver of one's own, which keeps its own bounds; those of the problem hold besides. Throws
   /// std::invalid_argument if the solver is null or made for another number of inputs.
   Controller(P problem, std::unique_ptr<Solver> solver)
       : evaluator_(std::move(problem)),
@@ -260,7 +260,7 @@ class Controller {
     for (Inputs& u : inputs_) corrections_ += check_inputs(u.value, before.value, bounds_, reach);
   }
 
-  /// How far an input may move in one step; infinite if the evaluator does not tell.
+  /// Returns how far an input may move in a step; infinite if the evaluator does not tell.
   double input_step([[maybe_unused]] std::size_t input) const noexcept {
     if constexpr (Controlled::has_problem) {
       return detail::input_step(evaluator_.problem(), static_cast<int>(input));

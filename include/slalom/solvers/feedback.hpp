@@ -40,7 +40,7 @@ class Feedback {
   using State = detail::StateOf<Problem, double>;  ///< the problem's state in double
   using Inputs = Input<double, nu>;                ///< inputs of a step
 
-  /// For the plans of a controller. All gains are 0 until the first `update`. Allocates.
+  /// Serves the plans of a controller. All gains are 0 until the first `update`. Allocates.
   explicit Feedback(const Controller<P>& controller)
       : gains_(nx, nu, controller.solver().horizon(), controller.bounds()) {}
 

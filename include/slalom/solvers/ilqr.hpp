@@ -106,11 +106,11 @@ class Ilqr {
   using State = detail::StateOf<P, double>;  ///< the problem's state in double
   using Inputs = Input<double, nu>;          ///< inputs of a step
 
-  /// For sequences of `horizon` steps within the bounds that the problem states. Throws std::invalid_argument
+  /// Improves sequences of `horizon` steps within the bounds of the problem. Throws std::invalid_argument
   /// that names the value out of range.
   Ilqr(const P& problem, int horizon, const IlqrOptions& options = {})
       : Ilqr(horizon, detail::stated_bounds(problem), options) {}
-  /// For the horizon and the bounds of a controller. Throws std::invalid_argument if an option is out of
+  /// Takes horizon and bounds of a controller. Throws std::invalid_argument if an option is out of
   /// range.
   template <class C>
   explicit Ilqr(const Controller<C>& controller, const IlqrOptions& options = {})

@@ -9,7 +9,7 @@
 
 namespace slalom {
 
-/// How samples are picked by their probability.
+/// Ways to pick samples by their probability.
 enum class Resampling {
   systematic,  ///< at equal distances along the cumulated probabilities: as often as expected, up to rounding
   multinomial,  ///< independently, with replacement

@@ -43,7 +43,7 @@ struct StageTimes {
 
 /// The outcome of a solve. Its spans point into the solver and stay valid until the next solve or reset.
 struct SolveResult {
-  /// With a smaller effective sample size, a plan is hardly more than the best sample.
+  /// Effective sample size below which a plan is hardly more than the best sample.
   static constexpr double few_samples = 3;
   /// Solves in a row with few samples after which `has_few_samples` reports it.
   static constexpr int few_samples_patience = 20;

@@ -40,7 +40,7 @@ class SolverOptions {
   /// Function that is called with an option and its declaration.
   using FieldVisitor = std::function<void(const Field&, const Declaration&)>;
 
-  /// From the options of a method.
+  /// Takes the options of a method.
   template <MethodOptions Options>
   SolverOptions(Options options)
       : held_(std::unique_ptr<Base>(std::make_unique<Held<Options>>(std::move(options)))) {}

@@ -33,7 +33,7 @@ const CostGradient* Guides::exact_gradient(const BatchEvaluator& evaluator) cons
   return fits ? gradient : nullptr;
 }
 
-/// Where the last step has lowered the cost of a guide, its gradient there. Otherwise the guide returns to
+/// Takes the gradient at a guide if the last step has lowered its cost. Otherwise the guide returns to
 /// where it was, with the gradient of that point, for half the step. Returns the part of the step to make.
 double Guides::take_gradient(const CostGradient& cost, int g, int iteration) noexcept {
   const int own = g * block_ + gradient_samples_;

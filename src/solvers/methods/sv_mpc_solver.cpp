@@ -163,7 +163,7 @@ class SvMpcSolver final : public SolverBase {
       of_steps->resize(rows);
   }
 
-  /// With splines, the solution is a sequence from here on.
+  /// Expands the solution to a sequence if particles are splines.
   void expand_solution() noexcept {
     if (!spline_.active()) return;
     spline_.expand(solution_.data(), step_solution_.data());
@@ -174,7 +174,7 @@ class SvMpcSolver final : public SolverBase {
     }
   }
 
-  /// With splines, the result has the sequences, not their control points.
+  /// Expands the result to sequences if particles are splines.
   void expand_result() noexcept {
     if (!spline_.active()) return;
     spline_.expand(mean_.data(), step_mean_.data());

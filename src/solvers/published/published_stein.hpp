@@ -2,7 +2,7 @@
 
 #include "solvers/kernels/kernels.hpp"
 
-/// Where the published program of Honda et al. (ICRA 2024) differs in Stein variational MPC.
+/// Differences of the published program of Honda et al. (ICRA 2024) in Stein variational MPC.
 namespace slalom::detail {
 
 /// Squared norms of the particles, from which the program takes its bandwidth. Returns their number.

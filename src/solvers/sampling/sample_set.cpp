@@ -102,7 +102,7 @@ void SampleSet::skip(Range r, BatchStatistics& statistics) noexcept {
   statistics.minimum_cost = statistics.minimum_total = infinite;
 }
 
-/// How many samples are drawn and evaluated at a time: for one thread whole tiles of at least 256 samples,
+/// Samples that are drawn and evaluated at a time: for one thread whole tiles of at least 256 samples,
 /// since short loops cost 6 % with 200 rows; for several threads at most 256, so that none waits long for the
 /// last one. Groups of packs stay whole, and nothing that is computed depends on it.
 int SampleSet::part_size(int threads) const noexcept {

@@ -15,7 +15,7 @@ class Spline {
  public:
   /// None: `active` is false.
   Spline() = default;
-  /// At most as many control points as steps are used.
+  /// Uses at most as many control points as steps.
   Spline(int steps, int points, int inputs);
 
   bool active() const noexcept { return points_ > 0; }

@@ -8,7 +8,7 @@
 #include "slalom/solvers/registry.hpp"
 #include "solvers/problems.hpp"
 
-/// What distinguishes `dial_mpc` from `mppi`; solver_contract_test.cpp tests what every method has to do.
+/// Differences between `dial_mpc` and `mppi`; solver_contract_test.cpp tests every method.
 namespace slalom {
 namespace {
 

@@ -9,7 +9,7 @@
 #include "slalom/solvers/registry.hpp"
 #include "solvers/problems.hpp"
 
-/// What distinguishes `icem` from `cem`; solver_contract_test.cpp tests what every method has to do.
+/// Differences between `icem` and `cem`; solver_contract_test.cpp tests every method.
 namespace slalom {
 namespace {
 

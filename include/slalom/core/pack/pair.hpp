@@ -8,7 +8,7 @@
 /// constexpr bool long_steps = true`.
 namespace slalom::simd {
 
-/// In place of an instruction set: pairs of its packs.
+/// Stands in place of an instruction set: pairs of its packs.
 template <class T>
 struct Pair {
   static constexpr int lanes = 2 * T::lanes;  ///< number of float32 values
@@ -21,7 +21,7 @@ struct Mask<Pair<T>> {
   Mask<T> low, high;  ///< masks of the first lanes and of the others
 
   Mask() = default;
-  /// From its halves.
+  /// Joins two halves.
   SLALOM_INLINE Mask(const Mask<T>& a, const Mask<T>& b) : low(a), high(b) {}
   /// Sets all lanes to `value`.
   SLALOM_INLINE explicit Mask(bool value) : low(value), high(value) {}
@@ -52,7 +52,7 @@ struct Pack<Pair<T>> {
   Pack<T> low, high;                           ///< the first lanes and the others
 
   Pack() = default;
-  /// From its halves.
+  /// Joins two halves.
   SLALOM_INLINE Pack(const Pack<T>& a, const Pack<T>& b) : low(a), high(b) {}
   /// Sets all lanes to `value`.
   SLALOM_INLINE_CALLS Pack(float value) : low(value), high(low) {}

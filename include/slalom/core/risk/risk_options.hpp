@@ -6,7 +6,7 @@
 
 namespace slalom {
 
-/// How the costs of one control sequence in several variants of the world become one cost.
+/// Ways to make one cost of the costs of a sequence in several variants of the world.
 enum class RiskMeasure {
   mean,         ///< the expected cost
   worst,        ///< the largest cost
