@@ -1,4 +1,4 @@
-// MCAP recordings: opening, reading attachments, repair.
+// MCAP recordings: opening, reading attachments.
 #include <optional>
 #include <sstream>
 
@@ -6,7 +6,6 @@
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
 #include "view/recording/mcap_reader.hpp"
-#include "view/recording/mcap_repair.hpp"
 #include "view/recording/mcap_writer.hpp"
 #include "view/recording/replay.hpp"
 
@@ -54,19 +53,6 @@ bool run(std::string_view bytes) {
   const auto kept = loaded([&] { return view::load_replay(file, &lost); });
   if (whole) require(kept && *kept == *whole, "a recording that is whole opens the same where a cut one may");
   require(lost <= bytes.size(), "no more is lost than there was");
-
-  std::ostringstream repaired;
-  const auto report = loaded([&] { return view::mcap::repair(file, repaired); });
-  if (!report) return false;
-  std::ostringstream again;
-  const std::string mended = scratch_file("mended.mcap", repaired.str());
-  const auto second = view::mcap::repair(mended, again);
-  require(
-      second.lost == 0 && second.messages == report->messages && second.attachments == report->attachments,
-      "a repaired recording is whole");
-  require(again.str() == repaired.str(), "to repair it again changes nothing");
-  require(view::mcap::read_attachments(mended, "").size() == report->attachments,
-          "its index has its attachments");
   return whole.has_value();
 }
 

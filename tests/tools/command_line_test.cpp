@@ -48,7 +48,6 @@ class CommandLine : public testing::EvaluationFolder {
         "manual " + out,
         "options",
         "race --course wren --config default --method mppi --set samples=256 --laps 1 --json " + out,
-        "replay lap.mcap --repair " + out,
         "track --length 30 --out " + out,
         "tune --method mppi --course wren --config default_kinematic --scenario pt --set temperature=0.5,1"
         " --set samples=32 --budget 2 --laps 1 --rounds 1 --held-out 1 --out " +

@@ -12,7 +12,6 @@
 #include "view/recording/encodings.hpp"
 #include "view/recording/mcap_bytes.hpp"
 #include "view/recording/mcap_reader.hpp"
-#include "view/recording/mcap_repair.hpp"
 #include "view/recording/recorder.hpp"
 #include "view/recording/replay.hpp"
 
@@ -137,7 +136,6 @@ TEST_F(McapRecording, OneThatWasCutOpensUpToItsLastWholeRecord) {
   std::size_t most = 0;
   for (std::size_t size = good.size() - 1; size > 0; size -= std::min<std::size_t>(size, good.size() / 23)) {
     const std::string cut = file(good.substr(0, size));
-    std::ostringstream out;
     std::uint64_t lost = 0;
     std::vector<std::string> segments;
     try {
@@ -149,51 +147,8 @@ TEST_F(McapRecording, OneThatWasCutOpensUpToItsLastWholeRecord) {
     ASSERT_LE(segments.size(), whole.size());
     EXPECT_TRUE(std::equal(segments.begin(), segments.end(), whole.begin()));
     most = std::max(most, segments.size());
-    EXPECT_EQ(mcap::repair(cut, out).attachments, segments.size());
-    EXPECT_EQ(load_replay(write("repaired.mcap", out.str()).string()), segments);
   }
   EXPECT_EQ(most, 3u);
-}
-
-TEST_F(McapRecording, RepairOfAWholeRecordingChangesNothing) {
-  const std::string good = record(true, 12);
-  std::ostringstream out;
-  const mcap::Repaired done = mcap::repair(file(good), out);
-  EXPECT_EQ(out.str(), good);
-  EXPECT_EQ(done.lost, 0u);
-  EXPECT_GT(done.messages, 12u * 5);
-}
-
-TEST_F(McapRecording, RepairStopsAtDamage) {
-  const std::string good = record(false, 900);
-  const mcap::Repaired whole = [&] {
-    std::ostringstream out;
-    return mcap::repair(file(good), out);
-  }();
-  for (std::size_t at = 200; at < good.size(); at += good.size() / 11) {
-    std::string damaged = good;
-    damaged[at] = static_cast<char>(damaged[at] ^ 4);
-    std::ostringstream out;
-    try {
-      const mcap::Repaired done = mcap::repair(file(damaged), out);
-      EXPECT_LE(done.messages, whole.messages);
-    } catch (const IoError&) {
-      continue;  // nothing is whole
-    }
-    EXPECT_NO_THROW(mcap::repair(write("repaired.mcap", out.str()).string(), out));
-  }
-}
-
-TEST_F(McapRecording, RepairStopsAtASecondHeader) {
-  const std::string good = record(false, 900);
-  const std::size_t magic = 8, length = 1 + 8 + static_cast<unsigned char>(good[magic + 1]);
-  std::string damaged = good;
-  damaged.insert(magic, good, magic, length);
-  std::ostringstream out, again;
-  EXPECT_EQ(mcap::repair(file(damaged), out).messages, 0u);
-  const mcap::Repaired second = mcap::repair(write("repaired.mcap", out.str()).string(), again);
-  EXPECT_EQ(second.lost, 0u);
-  EXPECT_EQ(again.str(), out.str());
 }
 
 TEST_F(McapRecording, RejectsOtherAndDamagedFiles) {

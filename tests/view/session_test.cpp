@@ -138,9 +138,9 @@ TEST_F(ViewSession, SendsThePastThatIsAskedFor) {
   while (message.rfind("SLV1", 0) != 0 || message[4] != static_cast<char>(Block::past));
   PayloadReader past(FrameReader(message).block(Block::past));
   for (int tick = 10; tick <= 12; ++tick)
-    for (const char* name : scalar_names()) {
+    for (const std::string& name : scalar_names()) {
       const double value = past.get<double>();
-      if (std::string_view(name) == "tick") {
+      if (name == "tick") {
         EXPECT_EQ(value, tick);
       }
     }

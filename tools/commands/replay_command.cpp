@@ -47,7 +47,6 @@ constexpr struct {
                   {"--config", bag},
                   {"--set", bag},
                   {"--html", bag | recording},
-                  {"--repair", recording},
                   {"--host", bag | recording},
                   {"--port", bag | recording}};
 
@@ -206,11 +205,7 @@ void declare_replay(Subcommand& command) {
   const Option record =
       command.option("--record", arguments->record,
                      "Record to this file: MCAP if its name ends in .mcap, otherwise JSON lines");
-  const Option repair =
-      command.option("--repair", arguments->recording.repair,
-                     "Truncated recording: write its complete part to this file, as a finished recording");
-  for (Option served : {host, port}) served.excludes(html).excludes(record).excludes(repair);
-  command.find("--html").excludes(repair);
+  for (Option served : {host, port}) served.excludes(html).excludes(record);
   command.action([arguments, &command] { return replay(*arguments, command); });
 }
 

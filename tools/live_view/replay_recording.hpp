@@ -6,14 +6,13 @@
 namespace slalom::tools {
 
 struct ReplayArguments {
-  std::string file;    ///< a recording in MCAP; to repair it, also one in JSON lines
+  std::string file;    ///< a recording in MCAP
   std::string html;    ///< write the page with the replay inside to this file instead of serving it
-  std::string repair;  ///< write what is whole of the recording to this file instead
   std::string host = "127.0.0.1";
   std::uint16_t port = 8400;
 };
 
-/// Serves a recording in the live view's page until it is interrupted, or writes it as a file or repaired.
+/// Serves a recording in the live view's page until it is interrupted, or writes it as a file.
 /// Throws IoError.
 int replay_recording(const ReplayArguments& arguments);
 

@@ -55,8 +55,7 @@ std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& file) 
       if (!lines.ended() && number > 1)
         throw IoError(
             file, number,
-            "the recording was cut in this line; slalom replay --repair FILE writes the lines before "
-            "it to a file");
+            "the recording was cut in this line; remove it");
       throw IoError(file, number, std::string("must be a record of a recording: ") + error.what());
     }
   }

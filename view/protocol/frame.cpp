@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <sstream>
 
 #include "slalom/core/gravity.hpp"
 #include "view/protocol/frame_writer.hpp"
@@ -14,52 +16,13 @@ namespace {
 using evaluation::ControlStep;
 using vehicle::PredictedState;
 
-constexpr const char* scalar_labels[] = {"tick",
-                                         "time",
-                                         "x",
-                                         "y",
-                                         "yaw",
-                                         "speed",
-                                         "steer",
-                                         "yaw_rate",
-                                         "slip",
-                                         "command_steer",
-                                         "command_speed",
-                                         "steer_estimate",
-                                         "status",
-                                         "distance_cost",
-                                         "yaw_cost",
-                                         "collision_cost",
-                                         "minimum_cost",
-                                         "expected_cost",
-                                         "effective_samples",
-                                         "samples",
-                                         "collided_share",
-                                         "temperature",
-                                         "iterations",
-                                         "tick_ms",
-                                         "draw_ms",
-                                         "evaluate_ms",
-                                         "guide_ms",
-                                         "update_ms",
-                                         "solve_ms",
-                                         "deadline_ms",
-                                         "lap",
-                                         "lap_time",
-                                         "progress",
-                                         "path_distance",
-                                         "clearance",
-                                         "contact",
-                                         "contacts",
-                                         "sequence_cost",
-                                         "prediction_step",
-                                         "method",
-                                         "slip_estimate",
-                                         "grip_used",
-                                         "friction_estimate",
-                                         "friction_relied_on",
-                                         "steering_gain_estimate",
-                                         "delay_estimate"};
+constexpr std::string_view scalar_labels =
+    "tick time x y yaw speed steer yaw_rate slip command_steer command_speed steer_estimate status "
+    "distance_cost yaw_cost collision_cost minimum_cost expected_cost effective_samples samples "
+    "collided_share temperature iterations tick_ms draw_ms evaluate_ms guide_ms update_ms solve_ms "
+    "deadline_ms lap lap_time progress path_distance clearance contact contacts sequence_cost "
+    "prediction_step method slip_estimate grip_used friction_estimate friction_relied_on "
+    "steering_gain_estimate delay_estimate";
 
 /// How many states a sequence of inputs leads through.
 std::size_t states_of(const vehicle::Planner& planner, std::span<const float> inputs) {
@@ -82,8 +45,12 @@ std::array<double, 6> estimates(const vehicle::PlannerOutput& out) {
 
 }  // namespace
 
-std::span<const char* const> scalar_names() noexcept {
-  return scalar_labels;
+const std::vector<std::string>& scalar_names() {
+  static const std::vector<std::string> names = [] {
+    std::istringstream words{std::string(scalar_labels)};
+    return std::vector<std::string>(std::istream_iterator<std::string>(words), {});
+  }();
+  return names;
 }
 
 std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts) {
@@ -97,53 +64,53 @@ std::string FrameEncoder::encode(const ControlStep& tick, const StepFacts& facts
   if (solve && !out.inputs.empty()) predict(tick.planner, out.inputs);
   const double none = std::numeric_limits<double>::quiet_NaN();
   const auto [slip, grip, friction, cautious, gain, delay] = estimates(out);
-  const std::array<double, std::size(scalar_labels)> values = {
-      static_cast<double>(tick.step),
-      tick.time,
-      car.x,
-      car.y,
-      car.yaw,
-      car.speed,
-      car.steer,
-      car.yaw_rate,
-      car.slip,
-      out.command.steer,
-      out.command.speed,
-      out.steer_estimate,
-      static_cast<double>(out.status),
-      cost_.distance,
-      cost_.state - cost_.distance,
-      cost_.collision,
-      solve ? solve->minimum_cost : none,
-      solve ? solve->expected_cost : none,
-      solve ? solve->effective_sample_size : none,
-      solve && solve->samples ? static_cast<double>(solve->samples->samples()) : 0,
-      solve ? solve->collided_share : none,
-      solve ? solve->temperature : none,
-      solve ? static_cast<double>(solve->iterations) : 0,
-      1e3 * out.tick_time,
-      1e3 * times.draw,
-      1e3 * times.evaluate,
-      1e3 * times.guide,
-      1e3 * times.update,
-      1e3 * times.total,
-      1e3 * facts.deadline,
-      static_cast<double>(laps.laps()),
-      tick.time - laps.lap_start_time(),
-      laps.progress() / world.track().lap_path()->length() - laps.laps(),
-      laps.lateral(),
-      clearance_of(world),
-      tick.seen.collides() ? 1.0 : 0.0,
-      static_cast<double>(tick.collisions),
-      tick.cost.total(),
-      facts.prediction_step,
-      static_cast<double>(facts.method),
-      slip,
-      grip,
-      friction,
-      cautious,
-      gain,
-      delay};
+  const double values[] = {static_cast<double>(tick.step),
+                           tick.time,
+                           car.x,
+                           car.y,
+                           car.yaw,
+                           car.speed,
+                           car.steer,
+                           car.yaw_rate,
+                           car.slip,
+                           out.command.steer,
+                           out.command.speed,
+                           out.steer_estimate,
+                           static_cast<double>(out.status),
+                           cost_.distance,
+                           cost_.state - cost_.distance,
+                           cost_.collision,
+                           solve ? solve->minimum_cost : none,
+                           solve ? solve->expected_cost : none,
+                           solve ? solve->effective_sample_size : none,
+                           solve && solve->samples ? static_cast<double>(solve->samples->samples()) : 0,
+                           solve ? solve->collided_share : none,
+                           solve ? solve->temperature : none,
+                           solve ? static_cast<double>(solve->iterations) : 0,
+                           1e3 * out.tick_time,
+                           1e3 * times.draw,
+                           1e3 * times.evaluate,
+                           1e3 * times.guide,
+                           1e3 * times.update,
+                           1e3 * times.total,
+                           1e3 * facts.deadline,
+                           static_cast<double>(laps.laps()),
+                           tick.time - laps.lap_start_time(),
+                           laps.progress() / world.track().lap_path()->length() - laps.laps(),
+                           laps.lateral(),
+                           clearance_of(world),
+                           tick.seen.collides() ? 1.0 : 0.0,
+                           static_cast<double>(tick.collisions),
+                           tick.cost.total(),
+                           facts.prediction_step,
+                           static_cast<double>(facts.method),
+                           slip,
+                           grip,
+                           friction,
+                           cautious,
+                           gain,
+                           delay};
+  static_assert(std::size(values) == std::ranges::count(scalar_labels, ' ') + 1u);
 
   FrameWriter to;
   to.begin(Block::scalars);

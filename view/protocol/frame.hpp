@@ -12,7 +12,7 @@
 namespace slalom::view {
 
 /// The names of the figures that each frame begins with, in their order.
-std::span<const char* const> scalar_names() noexcept;
+const std::vector<std::string>& scalar_names();
 
 /// Facts about a control step that ControlStep does not contain.
 struct StepFacts {

@@ -3,11 +3,13 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/read_file.hpp"
+#include "view/recording/mcap_bytes.hpp"
 
 namespace slalom::view::mcap {
 namespace {
@@ -15,6 +17,36 @@ namespace {
 constexpr std::uint64_t max_record = std::uint64_t{1} << 30;   // bytes
 constexpr std::uint64_t max_summary = std::uint64_t{1} << 26;  // bytes
 constexpr std::uint64_t footer_size = 1 + 8 + 20;
+
+std::uint32_t crc(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
+
+/// Reads the content of a record from its beginning.
+class Reader {
+ public:
+  Reader(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file) {}
+
+  template <class T>
+  T get() {
+    T value{};
+    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    return value;
+  }
+  std::string text() { return std::string(take(get<std::uint32_t>())); }
+  std::string_view take(std::uint64_t count) {
+    if (count > bytes_.size()) throw IoError(file_, 0, "is damaged: a record ends too soon");
+    const std::string_view taken = bytes_.substr(0, count);
+    bytes_.remove_prefix(count);
+    return taken;
+  }
+  bool done() const { return bytes_.empty(); }
+
+ private:
+  std::string_view bytes_;
+  const std::string& file_;
+};
 
 class File {
  public:
@@ -49,8 +81,7 @@ class File {
     const std::uint64_t at = size_ - magic.size() - footer_size;
     const std::string footer = read(at, footer_size);
     Reader reader(footer, name_);
-    if (reader.get<std::uint8_t>() != static_cast<std::uint8_t>(Op::footer))
-      throw IoError(name_, 0, "is damaged: it has no footer");
+    if (reader.get<Op>() != Op::footer) throw IoError(name_, 0, "is damaged: it has no footer");
     reader.get<std::uint64_t>();
     const auto start = reader.get<std::uint64_t>();
     reader.get<std::uint64_t>();
@@ -73,57 +104,12 @@ class File {
   std::uint64_t size_ = 0;
 };
 
-Attachment attachment_at(File& file, std::uint64_t offset, std::uint64_t length) {
-  const std::string record = file.read(offset, length);
-  Reader head(record, file.name());
-  if (head.get<std::uint8_t>() != static_cast<std::uint8_t>(Op::attachment))
-    throw IoError(file.name(), 0, "is damaged: an index does not point to an attachment");
-  return parse_attachment(head.take(head.get<std::uint64_t>()), file.name());
-}
-
-/// The records of a file, one after another, without any index.
-class Records {
- public:
-  explicit Records(File& file) : file_(file) {}
-
-  /// Reads the next record; false if it is not whole.
-  bool next() {
-    constexpr std::uint64_t head = 1 + 8;
-    if (file_.size() - at_ < head) return false;
-    const std::string bytes = file_.read(at_, head);
-    Reader reader(bytes, file_.name());
-    op_ = static_cast<Op>(reader.get<std::uint8_t>());
-    const auto length = reader.get<std::uint64_t>();
-    if (length > std::min(max_record, file_.size() - at_ - head)) return false;
-    content_ = file_.read(at_ + head, length);
-    at_ += head + length;
-    return true;
-  }
-  Op op() const { return op_; }
-  std::string_view content() const { return content_; }
-  std::uint64_t at() const { return at_; }
-
- private:
-  File& file_;
-  std::uint64_t at_ = magic.size();
-  Op op_ = Op::header;
-  std::string content_;
-};
-
-}  // namespace
-
-std::uint32_t crc(std::string_view bytes) {
-  return static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
-}
-
+/// An attachment from the content of its record.
 Attachment parse_attachment(std::string_view content, const std::string& file) {
   Reader reader(content, file);
-  Attachment attachment;
-  attachment.time = reader.get<std::uint64_t>();
-  reader.get<std::uint64_t>();  // when it was made
-  attachment.name = reader.text();
-  attachment.media_type = reader.text();
+  reader.take(16);  // the times to which it belongs and at which it was made
+  Attachment attachment{.name = reader.text(), .data = {}};
+  reader.text();  // its media type
   attachment.data = reader.take(reader.get<std::uint64_t>());
   const auto sum = reader.get<std::uint32_t>();
   if (sum != 0 && crc(content.substr(0, content.size() - 4)) != sum)
@@ -131,49 +117,64 @@ Attachment parse_attachment(std::string_view content, const std::string& file) {
   return attachment;
 }
 
-std::uint64_t scan(const std::string& name, const std::function<void(Op, std::string_view)>& take) {
-  File file(name);
-  std::uint64_t whole = magic.size();
-  try {
-    for (Records records(file); records.next(); whole = records.at()) {
-      if (records.op() == Op::data_end) return 0;
-      take(records.op(), records.content());
-    }
-  } catch (const IoError&) {
-    if (whole == magic.size()) throw;  // not even a header
+/// The attachments that the index at the end of a file lists.
+std::vector<Attachment> indexed_attachments(File& file, std::string_view prefix) {
+  const std::string summary = file.summary();
+  std::vector<Attachment> found;
+  std::uint64_t end = 0;  // of the attachment before: each is read once, so all fit into the file's size
+  for (Reader reader(summary, file.name()); !reader.done();) {
+    const auto op = reader.get<Op>();
+    Reader content(reader.take(reader.get<std::uint64_t>()), file.name());
+    if (op != Op::attachment_index) continue;
+    const auto offset = content.get<std::uint64_t>(), length = content.get<std::uint64_t>();
+    content.take(24);  // times and size
+    if (!content.text().starts_with(prefix)) continue;
+    if (offset < end) throw IoError(file.name(), 0, "is damaged: its index repeats an attachment");
+    end = offset + length;
+    const std::string record = file.read(offset, length);
+    Reader head(record, file.name());
+    if (head.get<Op>() != Op::attachment)
+      throw IoError(file.name(), 0, "is damaged: an index does not point to an attachment");
+    found.push_back(parse_attachment(head.take(head.get<std::uint64_t>()), file.name()));
   }
-  return file.size() - whole;
+  return found;
 }
+
+/// The attachments of a file that was cut, up to its last whole record.
+std::vector<Attachment> whole_attachments(File& file, std::string_view prefix, std::uint64_t& lost) {
+  constexpr std::uint64_t head = 1 + 8;
+  std::vector<Attachment> found;
+  std::uint64_t at = magic.size();
+  while (file.size() - at >= head) {
+    const std::string bytes = file.read(at, head);
+    Reader reader(bytes, file.name());
+    const Op op = reader.get<Op>();
+    const auto length = reader.get<std::uint64_t>();
+    if (op == Op::data_end) return found;
+    if (length > std::min(max_record, file.size() - at - head)) break;
+    if (op == Op::attachment) {
+      try {
+        Attachment each = parse_attachment(file.read(at + head, length), file.name());
+        if (each.name.starts_with(prefix)) found.push_back(std::move(each));
+      } catch (const IoError&) {
+        break;  // damaged
+      }
+    }
+    at += head + length;
+  }
+  lost = file.size() - at;
+  return found;
+}
+
+}  // namespace
 
 std::vector<Attachment> read_attachments(const std::string& name, std::string_view prefix,
                                          std::uint64_t* lost) {
   File file(name);
   if (lost) *lost = 0;
-  if (!file.finished()) {
-    if (!lost) throw IoError(name, 0, "is incomplete: the recording was not finished");
-    std::vector<Attachment> found;
-    *lost = scan(name, [&](Op op, std::string_view content) {
-      if (op != Op::attachment) return;
-      Attachment each = parse_attachment(content, name);
-      if (each.name.compare(0, prefix.size(), prefix) == 0) found.push_back(std::move(each));
-    });
-    return found;
-  }
-  const std::string summary = file.summary();
-  std::vector<Attachment> found;
-  std::uint64_t end = 0;  // end of the attachment before: each is read once, so all fit into the file's size
-  for (Reader reader(summary, name); !reader.done();) {
-    const auto op = reader.get<std::uint8_t>();
-    Reader content(reader.take(reader.get<std::uint64_t>()), name);
-    if (op != static_cast<std::uint8_t>(Op::attachment_index)) continue;
-    const auto offset = content.get<std::uint64_t>(), length = content.get<std::uint64_t>();
-    content.take(24);  // times and size
-    if (content.text().compare(0, prefix.size(), prefix) != 0) continue;
-    if (offset < end) throw IoError(name, 0, "is damaged: its index repeats an attachment");
-    end = offset + length;
-    found.push_back(attachment_at(file, offset, length));
-  }
-  return found;
+  if (file.finished()) return indexed_attachments(file, prefix);
+  if (!lost) throw IoError(name, 0, "is incomplete: the recording was not finished");
+  return whole_attachments(file, prefix, *lost);
 }
 
 }  // namespace slalom::view::mcap

@@ -28,8 +28,8 @@ std::string figures_schema(bool wall_clock) {
   Json properties = {{"timestamp",
                       {{"type", "object"},
                        {"properties", {{"sec", {{"type", "integer"}}}, {"nsec", {{"type", "integer"}}}}}}}};
-  for (const std::string_view name : scalar_names())
-    if (is_wall_clock(name) == wall_clock) properties[std::string(name)] = {{"type", {"number", "null"}}};
+  for (const std::string& name : scalar_names())
+    if (is_wall_clock(name) == wall_clock) properties[name] = {{"type", {"number", "null"}}};
   if (!wall_clock) {
     properties["covariance"] = {{"type", "array"}, {"items", {{"type", "number"}}}};
     properties["plan"] = {{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
@@ -119,7 +119,7 @@ void Recorder::add_course(std::string_view message) {
 std::string Recorder::without_wall_clock(std::string_view frame, const FrameReader& reader) const {
   std::string copy(frame);
   const double none = std::numeric_limits<double>::quiet_NaN();
-  const auto names = scalar_names();
+  const auto& names = scalar_names();
   const auto erase = [&](std::size_t scalars) {
     for (std::size_t i = 0; i < names.size(); ++i)
       if (is_wall_clock(names[i])) std::memcpy(copy.data() + scalars + 8 * i, &none, sizeof none);
@@ -156,7 +156,7 @@ void Recorder::finish() {
 void Recorder::add_tick(const FrameReader& reader, const std::vector<double>& scalars) {
   const Json stamp = {{"sec", time_ / 1'000'000'000}, {"nsec", time_ % 1'000'000'000}};
   Json tick = {{"timestamp", stamp}}, times = {{"timestamp", stamp}};
-  const auto names = scalar_names();
+  const auto& names = scalar_names();
   for (std::size_t i = 0; i < names.size(); ++i)
     (is_wall_clock(names[i]) ? times : tick)[names[i]] = maybe(scalars[i]);
   Json covariance = Json::array(), plan = Json::array();

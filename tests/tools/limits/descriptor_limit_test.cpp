@@ -100,8 +100,6 @@ TEST_F(DescriptorLimit, Replays) {
                 .status,
             0);
   succeeds_or_says_why("replay ../lap.mcap --html out/lap.html", each);
-  succeeds_or_says_why("replay ../lap.mcap --repair out/lap.mcap", each);
-  succeeds_or_says_why("replay ../lap.jsonl --repair out/lap.jsonl", each);
   succeeds_or_says_why("replay ../laps --lap 0 --record out/lap.jsonl", each);
   succeeds_or_says_why("replay ../laps --lap 0 --plot out/lap.png", some);
 }

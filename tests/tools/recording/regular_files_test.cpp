@@ -18,11 +18,9 @@
 #include "tools/bags/ros_bag.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
 #include "tools/evaluation/tuning_job.hpp"
-#include "tools/json_lines/json_repair.hpp"
 #include "tools/racing/race_result.hpp"
 #include "tools/recorded_drives/driven_samples.hpp"
 #include "vehicle/course_folder.hpp"
-#include "view/recording/mcap_repair.hpp"
 #include "view/recording/replay.hpp"
 
 namespace slalom::tools {
@@ -71,18 +69,8 @@ const FileReader readers[] = {
     {"RaceResult", "race.json", [](const fs::path& pipe) { read_run(pipe.string(), Json::object(), 1); }},
     {"Plan", "plan.json", [](const fs::path& pipe) { keep_plan(pipe, Json::object(), true); }},
     {"JsonLines", "lap.jsonl", [](const fs::path& pipe) { read_driven_samples(pipe.string()); }},
-    {"JsonRepair", "lap.jsonl",
-     [](const fs::path& pipe) {
-       EXPECT_FALSE(is_json_recording(pipe.string()));
-       std::ostringstream out;
-       repair_json_recording(pipe.string(), out);
-     }},
     {"Bag", "drive.bag", [](const fs::path& pipe) { read_bag(pipe.string(), [](const BagMessage&) {}); }},
-    {"Mcap", "lap.mcap", [](const fs::path& pipe) { view::load_replay(pipe.string()); }},
-    {"McapRepair", "lap.mcap", [](const fs::path& pipe) {
-       std::ostringstream out;
-       view::mcap::repair(pipe.string(), out);
-     }}};
+    {"Mcap", "lap.mcap", [](const fs::path& pipe) { view::load_replay(pipe.string()); }}};
 
 class RegularFiles : public ::testing::TestWithParam<FileReader> {
  protected:

@@ -150,6 +150,7 @@ export class Harness {
     return page.evaluate(() => {
       for (const box of document.querySelectorAll("[data-layer]"))
         if (box.checked) slalom.scene.visible.add(box.dataset.layer);
+      slalom.scene.draw();
     });
   }
   /** Waits until the page has drawn what it has received. */

@@ -31,7 +31,7 @@ export class Chart {
   /** Replaces the plot; `unit` stands beside the values of the x axis. */
   draw(unit: string, data: uPlot.AlignedData, options: Partial<uPlot.Options>) {
     this.plot?.destroy();
-    const bottom = axis({ size: 18, values: (_u, all) => all.map((v) => `${v} ${unit}`) });
+    const bottom = axis({ size: 18, space: 50, values: (_u, all) => all.map((v) => `${v} ${unit}`) });
     const usual = {
       cursor: { show: false },
       legend: { show: false },
