@@ -11,7 +11,6 @@ cmake_dependent_option(SLALOM_BUILD_SIM "Build the car and LiDAR simulator" ON "
 cmake_dependent_option(SLALOM_BUILD_EVALUATION "Build laps and drives, and their evaluation" ON "SLALOM_BUILD_SIM;SLALOM_BUILD_VEHICLE;SLALOM_BUILD_NAVIGATION;SLALOM_BUILD_TRACKING" OFF)
 cmake_dependent_option(SLALOM_BUILD_TOOLS "Build the slalom program" ${PROJECT_IS_TOP_LEVEL} "SLALOM_BUILD_EVALUATION" OFF)
 cmake_dependent_option(SLALOM_BUILD_PYTHON "Build the Python package, if pybind11 is there" ${PROJECT_IS_TOP_LEVEL} "SLALOM_BUILD_SOLVERS;SLALOM_BUILD_MAPS" OFF)
-option(SLALOM_MPI "Let mpirun spread the laps of an evaluation, if MPI is there" ON)
 option(SLALOM_BUILD_TESTS "Build the tests" OFF)
 option(SLALOM_BUILD_BENCHMARKS "Add the target `benchmarks`" OFF)
 option(SLALOM_BUILD_EXAMPLES "Build the examples in the tree (they also build against an install)" OFF)

@@ -99,6 +99,7 @@ LapSetup lap_setup(const Evaluation& evaluation, int index) {
   LapSettings& settings = setup.settings;
   settings.obstacles = experiment.obstacles;
   settings.latency = evaluation.latency;
+  if (evaluation.hardware) settings.hardware.emplace();
   settings.additional_costs = evaluation.additional_costs;
   for (const auto& [key, value] : experiment.set)
     if (!set_world_option(settings, key, value))

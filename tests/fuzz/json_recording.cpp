@@ -5,7 +5,7 @@
 #include "slalom/core/error.hpp"
 #include "src/evaluation/json.hpp"
 #include "support/identification_promise.hpp"
-#include "tools/recorded_drives/driven_samples.hpp"
+#include "tools/recording/driven_samples.hpp"
 
 namespace slalom::fuzz {
 namespace {

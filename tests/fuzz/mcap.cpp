@@ -36,7 +36,7 @@ std::vector<std::string> seeds() {
   return seeds;
 }
 
-/// What `load` returns, or nothing where it throws IoError.
+/// Returns the result of `load`, or nothing if it throws IoError.
 template <class Load>
 auto loaded(Load&& load) -> std::optional<decltype(load())> {
   try {

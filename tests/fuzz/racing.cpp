@@ -1,4 +1,4 @@
-// What `slalom course` reads: centre lines and cars.
+// Centre lines and cars, which `slalom course` reads.
 #include <stdexcept>
 
 #include "fuzz/target.hpp"

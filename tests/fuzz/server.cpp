@@ -46,7 +46,7 @@ bool is_utf8(const std::string& text) {
   return parse_json(json_text(text)).get<std::string>() == text;
 }
 
-/// What the server has received is what it may hand over. Whether there was a client.
+/// Checks the messages that the server has received. Returns whether there was a client.
 bool check_received(view::Server& server) {
   int clients = 0;
   for (const view::Received& each : server.take()) {
@@ -60,8 +60,7 @@ bool check_received(view::Server& server) {
 }
 
 bool run(std::string_view bytes) {
-  static view::Server server({.max_message = max_message},
-                             {{"/", {"text/html", "compressed", true}}});
+  static view::Server server({.max_message = max_message}, {{"/", {"text/html", "compressed", true}}});
   if (bytes.empty()) return false;
   std::string answer;
   {

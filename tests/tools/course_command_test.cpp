@@ -100,8 +100,8 @@ TEST_F(CourseCommand, ACarIsANameOrAFile) {
 
 TEST_F(CourseCommand, SaysWhatIsWrong) {
   write("points.csv", "0,0\n1,0\n2,0\n3,1\n");
-  expect_refused("course", {"input is required"});
-  expect_refused("course room.yaml", {"--out is required"});
+  expect_refused("course", {"input: is required"});
+  expect_refused("course room.yaml", {"--out: is required"});
   expect_refused("course none.yaml --out x", {"none.yaml"});
   expect_refused("course room.yaml --out x --car tank", {"car: 'tank'", "f1tenth, passenger"});
   expect_refused("course room.yaml --out x --car passenger",
@@ -110,8 +110,8 @@ TEST_F(CourseCommand, SaysWhatIsWrong) {
                  {"room.yaml", "start: (8.00, 4.00)", "free space"});
   expect_refused("course room.yaml --out x --start 8", {"--start", "x,y,yaw"});
   expect_refused("course room.yaml --out x --start 8,8,0 --reverse", {"--reverse", "--start"});
-  expect_refused("course room.yaml --out x --margin -1", {"margin", "at least 0"});
-  expect_refused("course room.yaml --out x --friction 0", {"friction", "above 0"});
+  expect_refused("course room.yaml --out x --margin -1", {"--margin: '-1' must be a number in [0, 10]"});
+  expect_refused("course room.yaml --out x --friction 0", {"--friction: '0' must be a number in [0.01, 10]"});
   expect_refused("course points.csv --out x", {"points.csv", "no widths", "--line"});
   expect_refused("course points.csv --line points.csv --out x", {"--line", "needs a map"});
   EXPECT_FALSE(fs::exists(folder_ / "x")) << "nothing is written";

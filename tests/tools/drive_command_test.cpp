@@ -268,7 +268,7 @@ TEST(OptionsCommand, ListsDeclarations) {
     EXPECT_EQ(option["min"], 1);
   }
   EXPECT_NE(run_program("options --method svg_mppi").output.find("temperature"), std::string::npos);
-  EXPECT_EQ(run_program("options --config nothing").status, 1);
+  EXPECT_EQ(run_program("options --config nothing").status, 2);
 }
 
 TEST(OptionsCommand, WritesAFileThatIsReadBack) {

@@ -71,25 +71,6 @@ TEST_F(EvalCommand, RepairsATruncatedJournalAndRejectsACorruptOne) {
   EXPECT_TRUE(contains(corrupt.output, "laps.journal.csv:3: checksum")) << corrupt.output;
 }
 
-TEST_F(EvalCommand, ThreeProcessesWriteTheTableOfOne) {
-  if (testing::run_shell("command -v mpirun").status != 0 || !SLALOM_TESTS_MPI)
-    GTEST_SKIP() << "no mpirun here, or built without MPI";
-  ASSERT_EQ(run(small() + "--jobs 1 --out one").status, 0);
-  const std::string mpirun =
-      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 "
-      "timeout 300 mpirun -n 3 '" SLALOM_PROGRAM "' ";
-  const ProgramRun three = testing::run_shell(mpirun + small() + "--out three", folder_.string());
-  ASSERT_EQ(three.status, 0) << three.output;
-  EXPECT_EQ(repeatable(folder_ / "three/laps.csv"), repeatable(folder_ / "one/laps.csv"));
-  EXPECT_TRUE(fs::exists(folder_ / "three/summary.json"));
-
-  const ProgramRun again = testing::run_shell(mpirun + small() + "--out three", folder_.string());
-  EXPECT_NE(again.status, 0);
-  const auto first = again.output.find("give --resume");
-  EXPECT_NE(first, std::string::npos) << again.output;
-  EXPECT_EQ(again.output.find("give --resume", first + 1), std::string::npos) << "said once, not three times";
-}
-
 TEST_F(EvalCommand, AFullDiskIsReportedAndNoLapIsLost) {
   fs::create_directories(folder_ / "full");
   fs::create_symlink("/dev/full", folder_ / "full/settings.json.new");

@@ -9,7 +9,7 @@
 
 namespace slalom::testing {
 
-/// What a run of the program said and how it ended.
+/// The output of a run of the program, and its exit status.
 struct Run {
   int status = -1;
   std::string output;  ///< standard output and standard error

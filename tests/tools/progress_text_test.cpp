@@ -1,11 +1,7 @@
-// Progress bars fit the terminal and never promise a time that is over; nearest words; completion; man pages.
+// Progress bars fit the terminal and never promise a time that is over.
 #include "tools/terminal/progress_text.hpp"
 
 #include <gtest/gtest.h>
-
-#include "tools/command_line/description.hpp"
-#include "tools/command_line/nearest.hpp"
-#include "tools/commands/commands.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -56,39 +52,6 @@ TEST(ProgressText, ColourTakesNoRoom) {
   std::string coloured = progress_bar(0.5, 10, true);
   EXPECT_TRUE(contains(coloured, "\033[32m#####\033[0m....."));
   EXPECT_EQ(progress_bar(0.5, 10, false), "[#####.....]");
-}
-
-TEST(NearestWord, FindsWhatWasMeant) {
-  const std::vector<std::string> words = {"drive", "eval", "explain", "view", "track", "tune"};
-  EXPECT_EQ(nearest_word("drvie", words), "drive");
-  EXPECT_EQ(nearest_word("veiw", words), "view");
-  EXPECT_EQ(nearest_word("evaluate", words), "");
-  EXPECT_EQ(nearest_word("explian", words), "explain");
-  EXPECT_EQ(nearest_word("xyz", words), "");
-}
-
-TEST(Description, EveryCommandHasACompletionAndAManPageWithAllItsOptions) {
-  const auto commands = describe_commands(all_commands());
-  ASSERT_EQ(commands.size(), all_commands().size());
-  const CompletionValues values{.courses = {"eel"}, .configurations = {"default"}, .methods = {"mppi"}};
-  const std::string bash = completion_script("bash", commands, values);
-  const std::string zsh = completion_script("zsh", commands, values);
-  const auto pages = manual_pages(commands);
-  ASSERT_EQ(pages.size(), commands.size() + 1);
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    EXPECT_FALSE(commands[i].summary.empty()) << commands[i].name;
-    EXPECT_EQ(pages[i + 1].file, "slalom-" + commands[i].name + ".1");
-    EXPECT_TRUE(contains(bash, "    " + commands[i].name + ") options=")) << commands[i].name;
-    for (const OptionDescription& option : commands[i].options) {
-      std::string escaped;
-      for (const char c : option.name) escaped += c == '-' ? std::string("\\-") : std::string(1, c);
-      EXPECT_TRUE(contains(pages[i + 1].text, ".B " + escaped)) << commands[i].name << " " << option.name;
-      if (option.name.rfind("--", 0) != 0) continue;
-      EXPECT_TRUE(contains(bash, " " + option.name)) << commands[i].name << " " << option.name;
-      EXPECT_TRUE(contains(zsh, "'*" + option.name + "[")) << commands[i].name << " " << option.name;
-    }
-  }
-  EXPECT_THROW(completion_script("fish", commands, values), std::invalid_argument);
 }
 
 }  // namespace

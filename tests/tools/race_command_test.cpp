@@ -155,7 +155,7 @@ TEST_F(RaceCommand, LapsThatAreNotCompletedCount) {
 TEST_F(RaceCommand, NamesValuesOutOfRange) {
   expect_refused("race --laps 0", {"--laps", "0", "1"});
   expect_refused("race --friction 0", {"--friction", "0.01"});
-  expect_refused("race --plot x.jpg", {"--plot", "x.jpg must end in .png"});
+  expect_refused("race --plot x.jpg", {"--plot", "must end in .png"});
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 class StoredSettings : public testing::TemporaryFolder {
  protected:
-  /// What is wrong with a folder without laps whose settings have this for the experiments and seed.
+  /// The error message for a folder without laps whose settings have these experiments and this seed.
   std::string complaint(const std::string& experiments, const std::string& seed0 = "0") const {
     write("laps.csv", evaluation::checked_header() + "\n");
     write("settings.json",

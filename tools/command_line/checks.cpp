@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
@@ -23,21 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The options that name a file to be written.
+/// Options that name a file to be written.
 constexpr const char* outputs[] = {"--json", "--record", "--plot", "--html", "--table"};
-
-void check_value(const GivenOption& option, const std::string& value) {
-  // An empty value usually comes from an unset shell variable.
-  if (value.empty()) throw CommandLineError(option.name, "the value must not be empty");
-  if (option.type == GivenOption::Type::natural_number) {
-    errno = 0;
-    static_cast<void>(std::strtoull(value.c_str(), nullptr, 0));  // sets errno
-    if (value.find('-') != std::string::npos || errno == ERANGE)
-      throw CommandLineError(option.name, value + " must be a whole number from 0 to 2^64 - 1");
-  }
-  if (option.type == GivenOption::Type::real_number && std::isnan(std::strtod(value.c_str(), nullptr)))
-    throw CommandLineError(option.name, value + " must be a number");
-}
 
 struct NamedFile {
   std::string option, file;
@@ -73,12 +58,8 @@ void require_writable(const std::string& file) {
   const bool there = fs::exists(status);
   const int descriptor =
       ::open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | (there ? 0 : O_CREAT | O_EXCL), 0666);
-  if (descriptor < 0) {
-    const int why = errno;
-    // Under mpirun another process tries the same file.
-    if (why == (there ? ENOENT : EEXIST)) return;
-    throw IoError(file, 0, std::string("cannot be written: ") + std::generic_category().message(why));
-  }
+  if (descriptor < 0)
+    throw IoError(file, 0, std::string("cannot be written: ") + std::generic_category().message(errno));
   ::close(descriptor);
   if (!there) ::unlink(file.c_str());
 }
@@ -88,18 +69,18 @@ void check_output(const std::string& name, const std::string& file) {
   std::string extension = fs::path(file).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (name == "--plot" && !extension.empty() && extension != ".png")
-    throw CommandLineError(name, file + " must end in .png");
+  if (name == "--plot" && !extension.empty() && extension != ".png" && extension != ".svg" &&
+      extension != ".pdf")
+    throw CommandLineError(name, file, "must end in .png, .svg or .pdf");
   require_writable(file);
 }
 
 }  // namespace
 
-void check_options(const std::vector<GivenOption>& options) {
+void check_files(const std::vector<GivenOption>& options) {
   std::vector<NamedFile> files;
   for (const GivenOption& option : options) {
     for (const std::string& value : option.values) {
-      if (option.type != GivenOption::Type::flag) check_value(option, value);
       const bool input = option.positional || option.name == "--config" || option.name == "--compare";
       if (input && fs::is_regular_file(value)) files.push_back({option.name, value});
     }

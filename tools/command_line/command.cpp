@@ -2,19 +2,75 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <deque>
-#include <exception>
 #include <iostream>
+#include <limits>
 #include <new>
 
 #include "slalom/core/instruction_set.hpp"
+#include "slalom/core/option_access.hpp"
 #include "slalom/core/version.hpp"
 #include "tools/command_line/checks.hpp"
-#include "tools/command_line/description.hpp"
-#include "tools/command_line/nearest.hpp"
-#include "tools/ranks/ranks.hpp"
 
 namespace slalom::tools {
+
+struct NumberRule {
+  bool is_whole = false;
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+
+  /// "must be a whole number in [1, 10]"
+  std::string text() const {
+    std::string text = is_whole ? "must be a whole number" : "must be a number";
+    if (std::isinf(least)) return text;
+    if (std::isinf(most)) return text + " from " + range_number(least);
+    return text + " in [" + range_number(least) + ", " + range_number(most) + "]";
+  }
+
+ private:
+  static std::string range_number(double value) {
+    const bool is_short = std::abs(value) < 1e15 && value == std::floor(value);
+    return is_short ? std::to_string(static_cast<std::int64_t>(value)) : to_text(value);
+  }
+};
+
+namespace {
+
+template <class T>
+bool is_number(const std::string& text, const NumberRule& allowed) {
+  T value{};
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  return parsed.ec == std::errc{} && parsed.ptr == end && static_cast<double>(value) >= allowed.least &&
+         static_cast<double>(value) <= allowed.most;
+}
+
+/// Declares an option. The parser converts its value only after this check.
+template <class T, class Stored>
+Option declare_number(CLI::App& parser, const std::string& name, Stored& value, const std::string& help) {
+  const auto numbers = std::make_shared<NumberRule>();
+  numbers->is_whole = std::is_integral_v<T>;
+  if constexpr (std::is_unsigned_v<T>) numbers->least = 0;
+  if constexpr (sizeof(T) < sizeof(int)) numbers->most = std::numeric_limits<T>::max();
+  CLI::Option* parsed = parser.add_option(name, value, help);
+  parsed->type_name(numbers->is_whole ? "INT" : "NUMBER");
+  parsed->check([numbers](const std::string& text) {
+    return is_number<T>(text, *numbers) ? "" : "'" + text + "' " + numbers->text();
+  });
+  return {parsed, numbers};
+}
+
+template <class T>
+Option declare_text(CLI::App& parser, const std::string& name, T& value, const std::string& help) {
+  CLI::Option* parsed = parser.add_option(name, value, help);
+  // An empty value usually comes from a shell variable that is not set.
+  parsed->check([](const std::string& text) { return text.empty() ? "the value must not be empty" : ""; });
+  return {parsed, nullptr};
+}
+
+}  // namespace
 
 Option& Option::required(bool needed) {
   parsed_->required(needed);
@@ -26,13 +82,9 @@ Option& Option::show_default() {
   return *this;
 }
 
-Option& Option::range(int least, int most) {
-  parsed_->check(CLI::Range(least, most));
-  return *this;
-}
-
 Option& Option::range(double least, double most) {
-  parsed_->check(CLI::Range(least, most));
+  numbers_->least = least;
+  numbers_->most = most;
   return *this;
 }
 
@@ -56,11 +108,6 @@ Option& Option::excludes(const Option& other) {
   return *this;
 }
 
-Option& Option::describe(const std::string& help) {
-  parsed_->description(help);
-  return *this;
-}
-
 void Subcommand::summary(const std::string& text) {
   parser_.description(text);
 }
@@ -70,41 +117,41 @@ void Subcommand::footer(const std::string& text) {
 }
 
 Option Subcommand::option(const std::string& name, std::string& value, const std::string& help) {
-  return Option(parser_.add_option(name, value, help));
-}
-
-Option Subcommand::option(const std::string& name, int& value, const std::string& help) {
-  return Option(parser_.add_option(name, value, help));
-}
-
-Option Subcommand::option(const std::string& name, std::uint16_t& value, const std::string& help) {
-  return Option(parser_.add_option(name, value, help));
-}
-
-Option Subcommand::option(const std::string& name, std::uint64_t& value, const std::string& help) {
-  return Option(parser_.add_option(name, value, help));
-}
-
-Option Subcommand::option(const std::string& name, double& value, const std::string& help) {
-  return Option(parser_.add_option(name, value, help));
-}
-
-Option Subcommand::option(const std::string& name, std::optional<double>& value, const std::string& help) {
-  return Option(parser_.add_option(name, value, help));
+  return declare_text(parser_, name, value, help);
 }
 
 Option Subcommand::option(const std::string& name, std::vector<std::string>& value, const std::string& help) {
-  return Option(parser_.add_option(name, value, help));
+  return declare_text(parser_, name, value, help);
+}
+
+Option Subcommand::option(const std::string& name, int& value, const std::string& help) {
+  return declare_number<int>(parser_, name, value, help);
+}
+
+Option Subcommand::option(const std::string& name, std::uint16_t& value, const std::string& help) {
+  return declare_number<std::uint16_t>(parser_, name, value, help);
+}
+
+Option Subcommand::option(const std::string& name, std::uint64_t& value, const std::string& help) {
+  return declare_number<std::uint64_t>(parser_, name, value, help);
+}
+
+Option Subcommand::option(const std::string& name, double& value, const std::string& help) {
+  return declare_number<double>(parser_, name, value, help);
+}
+
+Option Subcommand::option(const std::string& name, std::optional<double>& value, const std::string& help) {
+  return declare_number<double>(parser_, name, value, help);
 }
 
 Option Subcommand::flag(const std::string& name, bool& value, const std::string& help) {
-  return Option(parser_.add_flag(name, value, help));
+  return {parser_.add_flag(name, value, help), nullptr};
 }
 
 Option Subcommand::find(const std::string& name) {
   CLI::Option* found = parser_.get_option_no_throw(name);
   if (found == nullptr) throw std::invalid_argument("unknown option " + name);
-  return Option(found);
+  return {found, nullptr};
 }
 
 bool Subcommand::given(const std::string& name) const {
@@ -121,67 +168,59 @@ bool Subcommand::given_only(const std::vector<std::string>& names) const {
 
 namespace {
 
-GivenOption given_option(const CLI::Option& option) {
-  using Type = GivenOption::Type;
-  const std::string type = option.get_type_name();
-  const auto begins = [&](const char* with) { return type.rfind(with, 0) == 0; };
-  GivenOption given{.name = option.get_name(), .positional = option.get_positional(), .values = {}};
-  given.type = option.get_expected_max() == 0 ? Type::flag
-               : begins("UINT")               ? Type::natural_number
-               : begins("FLOAT")              ? Type::real_number
-                                              : Type::text;
-  for (const std::string& value : option.results()) given.values.push_back(value);
-  return given;
-}
-
-/// Throws CLI::ValidationError, IoError, and std::invalid_argument for an unknown SLALOM_TARGET.
+/// Throws CommandLineError, IoError, and std::invalid_argument for an unknown SLALOM_TARGET.
 void check(const CLI::App& command) {
   std::vector<GivenOption> given;
   for (const CLI::Option* option : command.get_options())
-    if (option->count() > 0) given.push_back(given_option(*option));
-  try {
-    check_options(given);
-  } catch (const CommandLineError& error) {
-    throw CLI::ValidationError(error.option, error.rule);
-  }
+    if (option->count() > 0 && option->get_expected_max() > 0)
+      given.push_back({option->get_name(), option->get_positional(), option->results()});
+  check_files(given);
   // Solvers ask for the target in functions that cannot throw.
   simd::active_target();
 }
 
-/// "Did you mean ...?" for a word that is not in a list; empty if no word is near.
+/// "; did you mean drive?" for a word near one of a list, otherwise empty.
 std::string suggestion(const std::string& typed, const std::vector<std::string>& words) {
-  const std::string nearest = nearest_word(typed, words);
-  return nearest.empty() ? "" : "Did you mean " + nearest + "?\n";
+  const std::string nearest = nearest_name(typed, words);
+  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
 }
 
-/// The answer to the name of a command that does not exist.
-int unknown_command(const std::string& typed, const std::vector<CommandEntry>& entries) {
-  std::vector<std::string> names;
-  for (const CommandEntry& entry : entries) names.emplace_back(entry.name);
-  std::cerr << "slalom: '" << typed << "' is not a command. " << suggestion(typed, names)
-            << "slalom --help lists all commands.\n";
-  return 2;
-}
-
-/// Suggestions for the options that the parser did not expect.
-std::string option_suggestions(const CLI::App& app) {
-  std::string text;
+/// The message for arguments that no command or option takes.
+std::string unexpected(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) {
     std::vector<std::string> names;
     for (const CLI::Option* option : command->get_options())
       if (!option->get_positional()) names.push_back(option->get_name());
-    for (const std::string& typed : app.remaining(true))
-      if (typed.rfind("--", 0) == 0) text += suggestion(typed.substr(0, typed.find('=')), names);
+    for (const std::string& typed : app.remaining(true)) {
+      const std::string name = typed.substr(0, typed.find('='));
+      return name + ": is not an option of " + command->get_name() +
+             (name.rfind("--", 0) == 0 ? suggestion(name, names) : "");
+    }
   }
+  return "unexpected arguments";
+}
+
+/// The parser's error in the words of all others.
+std::string message_of(const CLI::ParseError& error, const CLI::App& app) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected(app);
+  std::string text = error.what();
+  constexpr std::pair<const char*, const char*> words[] = {{" is required", ": is required"},
+                                                           {" requires ", ": needs "},
+                                                           {" excludes ", ": cannot be combined with "},
+                                                           {": 1 required ", ": needs a value; "}};
+  for (const auto& [theirs, ours] : words)
+    if (const auto at = text.find(theirs); at != std::string::npos)
+      return text.replace(at, std::string_view(theirs).size(), ours);
   return text;
 }
 
 int parse_and_run(int argc, const char* const* argv, const std::vector<CommandEntry>& entries) {
   int exit_status = 0;
-  if (argc > 1 && argv[1][0] != '-' &&
-      std::none_of(entries.begin(), entries.end(),
-                   [&](const CommandEntry& entry) { return std::string(entry.name) == argv[1]; }))
-    return unknown_command(argv[1], entries);
+  std::vector<std::string> names;
+  for (const CommandEntry& entry : entries) names.emplace_back(entry.name);
+  if (argc < 2) throw CommandLineError("slalom", "needs a command; slalom --help lists them");
+  if (argv[1][0] != '-' && std::find(names.begin(), names.end(), argv[1]) == names.end())
+    throw CommandLineError(argv[1], "is not a command" + suggestion(argv[1], names));
   CLI::App app{
       "Slalom: real-time sampling-based stochastic optimal control; drives, evaluates and shows 1/10-scale "
       "cars",
@@ -193,33 +232,24 @@ int parse_and_run(int argc, const char* const* argv, const std::vector<CommandEn
     CLI::App* parser = app.add_subcommand(entry.name);
     Subcommand& command = commands.emplace_back(*parser);
     entry.declare(command);
-    parser->callback([&command, &exit_status] {
-      try {
-        exit_status = command.run();
-      } catch (const CommandLineError& error) {
-        throw CLI::ValidationError(error.option, error.rule);
-      }
-    });
+    parser->callback([&command, &exit_status] { exit_status = command.run(); });
   }
   app.parse_complete_callback([&app] {
     for (const CLI::App* command : app.get_subcommands()) check(*command);
   });
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ExtrasError& error) {
-    app.exit(error);
-    std::cerr << option_suggestions(app);
-    return 2;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    std::cerr << "slalom: " << message_of(error, app) << "\n";
+    return 2;
   }
   return exit_status;
 }
 
-/// Under mpirun every process meets the same error; only the first one reports it.
-int report_error(const char* what) {
-  if (rank() == 0) std::cerr << "slalom: " << what << "\n";
-  return 1;
+int report(const char* what, int exit_status) {
+  std::cerr << "slalom: " << what << "\n";
+  return exit_status;
 }
 
 int run_guarded(int argc, const char* const* argv, const std::vector<CommandEntry>& commands) {
@@ -227,32 +257,17 @@ int run_guarded(int argc, const char* const* argv, const std::vector<CommandEntr
     guard_standard_streams();
     return parse_and_run(argc, argv, commands);
   } catch (const std::bad_alloc&) {
-    return report_error("not enough memory; use fewer samples or a shorter horizon");
+    return report("not enough memory; use fewer samples or a shorter horizon", 1);
+  } catch (const CommandLineError& error) {
+    return report(error.what(), 2);
+  } catch (const std::invalid_argument& error) {  // a setting that breaks a rule of the library
+    return report(error.what(), 2);
   } catch (const std::exception& error) {
-    return report_error(error.what());
+    return report(error.what(), 1);
   }
 }
 
 }  // namespace
-
-std::vector<CommandDescription> describe_commands(const std::vector<CommandEntry>& commands) {
-  std::vector<CommandDescription> all;
-  for (const CommandEntry& entry : commands) {
-    CLI::App parser("", entry.name);
-    Subcommand command(parser);
-    entry.declare(command);
-    CommandDescription described{entry.name, parser.get_description(), parser.get_footer(), {}};
-    for (const CLI::Option* option : parser.get_options())
-      if (option != parser.get_help_ptr())
-        described.options.push_back({.name = option->get_name(),
-                                     .help = option->get_description(),
-                                     .value = option->get_expected_max() == 0 ? "" : option->get_type_name(),
-                                     .preset = option->get_default_str(),
-                                     .is_required = option->get_required()});
-    all.push_back(std::move(described));
-  }
-  return all;
-}
 
 int run_command_line(int argc, const char* const* argv, const std::vector<CommandEntry>& commands) {
   return after_output(run_guarded(argc, argv, commands));

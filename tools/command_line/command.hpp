@@ -2,52 +2,74 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "slalom/core/error.hpp"
 
 namespace CLI {
 class App;
 class Option;
 }  // namespace CLI
 
-/// How the program's commands declare what they accept. The parser behind it (CLI11) is compiled once, in
-/// command.cpp.
+/// Commands of the program and their options. Only command.cpp includes the parser, CLI11.
 namespace slalom::tools {
 
-/// An option with a value that it must not have, or options that do not go together.
+/// A mistake on the command line: the program ends with status 2. The message reads `--option: requirement`.
 struct CommandLineError : std::runtime_error {
-  CommandLineError(const std::string& option_name, const std::string& broken_rule)
-      : std::runtime_error(option_name + ": " + broken_rule), option(option_name), rule(broken_rule) {}
-  std::string option, rule;
+  CommandLineError(const std::string& option, const std::string& requirement)
+      : std::runtime_error(option + ": " + requirement) {}
+  /// The message reads `--option: 'value' requirement`.
+  CommandLineError(const std::string& option, const std::string& value, const std::string& requirement)
+      : CommandLineError(option, "'" + value + "' " + requirement) {}
 };
 
-/// An option of a command while it is being declared. Refers to the command, which must outlive it.
+/// Calls `action` and returns its result. If `action` rejects a value, which throws std::invalid_argument or
+/// IoError, throws a CommandLineError of this option with the same message.
+template <class Action>
+auto for_option(const std::string& option, Action&& action) {
+  try {
+    return action();
+  } catch (const std::invalid_argument& error) {
+    throw CommandLineError(option, error.what());
+  } catch (const IoError& error) {
+    throw CommandLineError(option, error.what());
+  }
+}
+
+/// The numbers that an option accepts.
+struct NumberRule;
+
+/// An option of a command while it is declared. It refers to the command, which must outlive it.
 class Option {
  public:
-  explicit Option(CLI::Option* parsed) : parsed_(parsed) {}
+  Option(CLI::Option* parsed, std::shared_ptr<NumberRule> numbers)
+      : parsed_(parsed), numbers_(std::move(numbers)) {}
 
+  /// The command cannot run without the option.
   Option& required(bool needed = true);
-  /// The help shows the variable's value at this moment as the default.
+  /// Shows the present value of the variable in the help, as the default.
   Option& show_default();
-  /// Values outside [least, most] are rejected.
-  Option& range(int least, int most);
+  /// Rejects numbers outside [least, most].
   Option& range(double least, double most);
-  /// A list is given as one text with commas between its values.
+  /// Reads a list from one text with commas between its values.
   Option& comma_separated();
-  /// A list is given by repeating the option, one value each time.
+  /// Reads a list from several uses of the option, one value each.
   Option& repeatable();
+  /// Rejects the option without the other one.
   Option& needs(const Option& other);
+  /// Rejects the option together with the other one.
   Option& excludes(const Option& other);
-  /// Replaces the help text.
-  Option& describe(const std::string& help);
 
  private:
   CLI::Option* parsed_;
+  std::shared_ptr<NumberRule> numbers_;  ///< null for texts and flags
 };
 
-/// A sub-command of the program: its options and what it does.
+/// A command of the program: its options and its action.
 class Subcommand {
  public:
   /// Declares on `parser`, which belongs to the caller.
@@ -55,29 +77,31 @@ class Subcommand {
   Subcommand(const Subcommand&) = delete;
   Subcommand& operator=(const Subcommand&) = delete;
 
+  /// Sets the first line of the help.
   void summary(const std::string& text);
-  /// Text below the options in the help.
+  /// Sets the text below the options in the help.
   void footer(const std::string& text);
 
   /// Declares an option whose value goes to `value`, which must live as long as the action. A name without
-  /// dashes declares a positional argument.
+  /// dashes declares a positional argument. Every value that is not a number, not in the range, or empty is
+  /// rejected in the same words.
   Option option(const std::string& name, std::string& value, const std::string& help);
+  Option option(const std::string& name, std::vector<std::string>& value, const std::string& help);
   Option option(const std::string& name, int& value, const std::string& help);
   Option option(const std::string& name, std::uint16_t& value, const std::string& help);
   Option option(const std::string& name, std::uint64_t& value, const std::string& help);
   Option option(const std::string& name, double& value, const std::string& help);
   Option option(const std::string& name, std::optional<double>& value, const std::string& help);
-  Option option(const std::string& name, std::vector<std::string>& value, const std::string& help);
   Option flag(const std::string& name, bool& value, const std::string& help);
 
-  /// An option that has been declared. Throws std::invalid_argument if there is none of this name.
+  /// The option of this name. Throws std::invalid_argument if there is none.
   Option find(const std::string& name);
   /// Whether the user gave the option.
   bool given(const std::string& name) const;
   /// Whether the user gave no options but some of these.
   bool given_only(const std::vector<std::string>& names) const;
 
-  /// Runs the command once its options are set. Returns the exit status of the program; may throw.
+  /// Sets what the command does with its options. It returns the exit status of the program, and may throw.
   void action(std::function<int()> run) { action_ = std::move(run); }
   int run() const { return action_(); }
 
@@ -86,14 +110,14 @@ class Subcommand {
   std::function<int()> action_;
 };
 
-/// A command by its name, and the function that declares it.
+/// The name of a command, and the function that declares it.
 struct CommandEntry {
   const char* name;
   void (*declare)(Subcommand& command);
 };
 
 /// Parses the command line, checks it and runs the command that it names. Prints help, version and errors.
-/// Returns the exit status: 0 success, 1 failure of the command, 2 a command line that cannot be understood.
+/// Returns the exit status: 0 success, 1 failure of the command, 2 a mistake on the command line.
 int run_command_line(int argc, const char* const* argv, const std::vector<CommandEntry>& commands);
 
 }  // namespace slalom::tools

@@ -88,7 +88,7 @@ class Bench {
         configuration_(configuration_of(arguments)),
         target_(simd::active_target()) {
     for (const std::string& method : arguments.methods)
-      solver_options(method);  // throws if a method is unknown
+      for_option("--methods", [&] { return solver_options(method); });
   }
 
   int run() {
@@ -259,7 +259,8 @@ void declare_bench(Subcommand& command) {
       .show_default();
   command.flag("--scaling", arguments->scaling,
                "Also measure over samples, horizon, threads and instruction sets");
-  command.option("--plot", arguments->plot, "Write a plot of solve times over samples to this PNG");
+  command.option("--plot", arguments->plot,
+                 "Write a plot of solve times over samples to this PNG, SVG or PDF");
   command.option("--json", arguments->json, "Write JSON to this file, or to standard output: -");
   command.footer("SLALOM_TARGET=avx2 (avx512, sse4, generic) forces an instruction set.");
   command.action([arguments] { return Bench(*arguments).run(); });

@@ -4,13 +4,11 @@ namespace slalom::tools {
 
 const std::vector<CommandEntry>& all_commands() {
   static const std::vector<CommandEntry> commands = {
-      {"bench", declare_bench},     {"compare", declare_compare},   {"completion", declare_completion},
-      {"course", declare_course},   {"drive", declare_drive},       {"eval", declare_eval},
-      {"explain", declare_explain}, {"hardware", declare_hardware}, {"identify", declare_identify},
-      {"manual", declare_manual},   {"navigate", declare_navigate}, {"options", declare_options},
-      {"race", declare_race},       {"replay", declare_replay},     {"reproduce", declare_reproduce},
-      {"soak", declare_soak},       {"track", declare_track},       {"tune", declare_tune},
-      {"view", declare_view}};
+      {"bench", declare_bench},       {"compare", declare_compare},   {"course", declare_course},
+      {"drive", declare_drive},       {"eval", declare_eval},         {"explain", declare_explain},
+      {"identify", declare_identify}, {"navigate", declare_navigate}, {"options", declare_options},
+      {"race", declare_race},         {"replay", declare_replay},     {"reproduce", declare_reproduce},
+      {"track", declare_track},       {"view", declare_view}};
   return commands;
 }
 

@@ -9,22 +9,17 @@ namespace slalom::tools {
 
 void declare_bench(Subcommand& command);
 void declare_compare(Subcommand& command);
-void declare_completion(Subcommand& command);
 void declare_course(Subcommand& command);
 void declare_drive(Subcommand& command);
 void declare_eval(Subcommand& command);
 void declare_explain(Subcommand& command);
-void declare_hardware(Subcommand& command);
 void declare_identify(Subcommand& command);
-void declare_manual(Subcommand& command);
 void declare_navigate(Subcommand& command);
 void declare_options(Subcommand& command);
 void declare_race(Subcommand& command);
 void declare_replay(Subcommand& command);
 void declare_reproduce(Subcommand& command);
-void declare_soak(Subcommand& command);
 void declare_track(Subcommand& command);
-void declare_tune(Subcommand& command);
 void declare_view(Subcommand& command);
 
 /// All of them, in alphabetical order.

@@ -15,7 +15,7 @@
 #include "tools/command_line/shell_word.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/course_picture.hpp"
-#include "tools/recorded_drives/driven_line.hpp"
+#include "tools/recording/driven_line.hpp"
 #include "tools/scenario/start_pose.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -33,7 +33,7 @@ struct CourseArguments {
 };
 
 RacingCar chosen_car(const CourseArguments& arguments) {
-  RacingCar car = vehicle::find_racing_car(arguments.car);
+  RacingCar car = for_option("--car", [&] { return vehicle::find_racing_car(arguments.car); });
   if (arguments.friction) vehicle::set_friction(car, *arguments.friction);
   if (arguments.top_speed) car.limits.top_speed = *arguments.top_speed;
   if (arguments.margin) car.margin = *arguments.margin;
@@ -169,10 +169,12 @@ void declare_course(Subcommand& command) {
       "Line to drive along: .csv with x and y, or a recorded drive; else the program finds a loop");
   command.option("--car", arguments->car, "Car: f1tenth, passenger, or a YAML file (docs/courses.md)")
       .show_default();
-  command.option("--friction", arguments->friction,
-                 "Friction coefficient: acceleration in every direction, in g");
-  command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s");
-  command.option("--margin", arguments->margin, "Distance that the body keeps from walls, m");
+  command
+      .option("--friction", arguments->friction,
+              "Friction coefficient: acceleration in every direction, in g")
+      .range(0.01, 10);
+  command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s").range(0.1, 200);
+  command.option("--margin", arguments->margin, "Distance that the body keeps from walls, m").range(0, 10);
   const Option start =
       command.option("--start", arguments->start,
                      "Start pose x,y,yaw, m, m, rad; it sets the direction [the origin of the map frame, if "

@@ -206,12 +206,6 @@ class DriveJob {
   std::vector<LapResult> laps_;
 };
 
-int drive(const DriveArguments& arguments) {
-  if (arguments.laps < 1 || arguments.laps > 100000)
-    throw IoError("--laps", 0, std::to_string(arguments.laps) + " must be in [1, 100000]");
-  return DriveJob(arguments).run();
-}
-
 }  // namespace
 
 void declare_drive(Subcommand& command) {
@@ -219,9 +213,11 @@ void declare_drive(Subcommand& command) {
   const auto arguments = std::make_shared<DriveArguments>();
   add_scenario_options(command, arguments->scenario);
   add_method_option(command, arguments->method);
-  command.option("--seed", arguments->seed, "Seed of the first lap; lap k has seed + k (obstacles + 5)")
+  command.option("--seed", arguments->seed, "Seed of lap 1; lap k has SEED + (k - 1) (obstacles + 5)")
       .show_default();
-  command.option("--laps", arguments->laps, "Number of laps; each starts from standstill").show_default();
+  command.option("--laps", arguments->laps, "Number of laps; each starts from standstill")
+      .range(1, 100000)
+      .show_default();
   command.option("--json", arguments->json,
                  "Write the results as JSON to this file, or to standard output: -");
   const Option record = command.option(
@@ -231,8 +227,8 @@ void declare_drive(Subcommand& command) {
       .flag("--record-times", arguments->record_times,
             "Also record wall-clock times, which differ from run to run; only in MCAP")
       .needs(record);
-  command.option("--plot", arguments->plot, "Write a picture of the last lap to this PNG");
-  command.action([arguments] { return drive(*arguments); });
+  command.option("--plot", arguments->plot, "Write a picture of the last lap to this PNG, SVG or PDF");
+  command.action([arguments] { return DriveJob(*arguments).run(); });
 }
 
 }  // namespace slalom::tools

@@ -31,11 +31,11 @@ std::vector<ExplainedMethod> chosen(const std::vector<std::string>& names) {
     if (at == known.end()) {
       std::string all = "all";
       for (const ExplainedMethod& m : known) all += ", " + m.name;
-      if (name == "all") throw std::invalid_argument("--method: 'all' cannot be combined with other methods");
-      throw std::invalid_argument("--method: " + name + " must be one of " + all);
+      if (name == "all") throw CommandLineError("--method", name, "cannot be combined with other methods");
+      throw CommandLineError("--method", name, "must be one of " + all);
     }
     if (std::count(names.begin(), names.end(), name) > 1)
-      throw std::invalid_argument("--method: " + name + " is given twice");
+      throw CommandLineError("--method", name, "is given twice");
     result.push_back(*at);
   }
   return result;
@@ -44,7 +44,7 @@ std::vector<ExplainedMethod> chosen(const std::vector<std::string>& names) {
 /// `key=value` for every method shown that has such an option, `problem.key=value` for the problem.
 void apply(const std::string& word, std::vector<ExplainedMethod>& methods, problems::PassingPoint& point) {
   const auto equals = word.find('=');
-  if (equals == std::string::npos) throw std::invalid_argument("--set " + word + ": must be key=value");
+  if (equals == std::string::npos) throw CommandLineError("--set", word, "must be key=value");
   std::string key = word.substr(0, equals);
   const std::string value = word.substr(equals + 1);
   bool found = false;
@@ -60,12 +60,13 @@ void apply(const std::string& word, std::vector<ExplainedMethod>& methods, probl
       for (ExplainedMethod& method : methods) try_on(method.options, "");
     }
   } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument("--set " + key + ": " + error.what());
+    throw CommandLineError("--set", "key " + key + ": " + error.what());
   }
   if (found) return;
   const std::string near = nearest_name(key, names);
-  throw std::invalid_argument("--set " + key + ": must be an option of one of the methods shown" +
-                              (near.empty() ? "" : "; did you mean " + near + "?"));
+  throw CommandLineError(
+      "--set", key,
+      "must be an option of one of the methods shown" + (near.empty() ? "" : "; did you mean " + near + "?"));
 }
 
 Json to_json(const Explanation& e) {
@@ -115,7 +116,7 @@ void explain(const ExplainArguments& arguments) {
   }
   if (!arguments.json.empty()) write_json(json, arguments.json);
   if (!arguments.plot.empty())
-    save_png(draw_explanations(explanations), arguments.plot, explanations.size() > 4 ? 1 : 2);
+    save(draw_explanations(explanations), arguments.plot, explanations.size() > 4 ? 1 : 2);
 }
 
 }  // namespace
@@ -138,7 +139,8 @@ void declare_explain(Subcommand& command) {
       .range(1, 100000)
       .show_default();
   command.option("--seed", arguments->seed, "Seed of the random numbers").show_default();
-  command.option("--plot", arguments->plot, "Write a picture of the methods side by side to this PNG");
+  command.option("--plot", arguments->plot,
+                 "Write a picture of the methods side by side to this PNG, SVG or PDF");
   command.option("--json", arguments->json,
                  "Write everything as JSON to this file, or to standard output: -");
   command.action([arguments] {

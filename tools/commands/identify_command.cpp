@@ -5,7 +5,7 @@
 #include "slalom/vehicle/model/tyre_identification.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/recorded_drives/driven_samples.hpp"
+#include "tools/recording/driven_samples.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -152,9 +152,7 @@ void declare_identify(Subcommand& command) {
   command.summary(
       "Estimate steering, delay and wheelbase of a car, or its tyres and friction, from a recording");
   const auto arguments = std::make_shared<IdentifyArguments>();
-  command
-      .option("recording", arguments->recording,
-              "Recording of slalom drive --record in JSON lines, or a ROS 1 bag")
+  command.option("recording", arguments->recording, "Recording of slalom drive --record in JSON lines")
       .required();
   command.option("--least-speed", arguments->options.min_speed, "Samples below this speed are ignored, m/s")
       .range(0.01, 100.0)

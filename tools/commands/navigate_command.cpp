@@ -14,7 +14,6 @@
 #include "tools/commands/navigate_picture.hpp"
 #include "tools/commands/navigate_report.hpp"
 #include "tools/terminal/json_output.hpp"
-#include "tools/terminal/thread_note.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -72,9 +71,9 @@ std::vector<NamedDriver> drivers_of(const NavigateArguments& arguments) {
     const std::string method = rest.substr(0, comma);
     const auto known = solver_names();
     if (std::find(known.begin(), known.end(), method) == known.end())
-      throw CommandLineError("--methods", method + ": must be one of " + method_names());
+      throw CommandLineError("--methods", method, "must be one of " + method_names());
     if (std::any_of(drivers.begin(), drivers.end(), [&](const auto& each) { return each.method == method; }))
-      throw CommandLineError("--methods", method + ": must be named only once");
+      throw CommandLineError("--methods", method, "is given twice");
     drivers.push_back({method, method, true});
     if (arguments.without_detours) drivers.push_back({method + " alone", method, false});
   }
@@ -95,13 +94,12 @@ void write_results(const NavigateArguments& arguments, const std::vector<RoomSer
 }
 
 /// Adds the drive of a seed to each series. Drives do not depend on each other, so threads change no result.
-/// Returns how many threads drove.
-int drive_all(const NavigateArguments& arguments, const std::vector<NamedDriver>& drivers, std::uint64_t seed,
-              std::vector<RoomSeries>& all) {
+void drive_all(const NavigateArguments& arguments, const std::vector<NamedDriver>& drivers,
+               std::uint64_t seed, std::vector<RoomSeries>& all) {
   std::vector<evaluation::RoomDrive> drives(all.size());
   std::vector<std::exception_ptr> errors(all.size());
   std::atomic<std::size_t> next{0};
-  const int threads = evaluation::run_in_threads(arguments.threads, [&] {
+  evaluation::run_in_threads(arguments.threads, [&] {
     for (std::size_t k; (k = next++) < all.size();) {
       try {
         const RoomScenario& scenario = *all[k].scenario;
@@ -115,7 +113,6 @@ int drive_all(const NavigateArguments& arguments, const std::vector<NamedDriver>
     if (errors[k]) std::rethrow_exception(errors[k]);
     all[k].drives.push_back(std::move(drives[k]));
   }
-  return threads;
 }
 
 int navigate(const NavigateArguments& arguments) {
@@ -123,20 +120,19 @@ int navigate(const NavigateArguments& arguments) {
   if (arguments.scenario == "all") {
     for (const RoomScenario& each : evaluation::room_scenarios()) scenarios.push_back(&each);
   } else {
-    scenarios.push_back(&evaluation::room_scenario(arguments.scenario));
+    scenarios.push_back(
+        for_option("--scenario", [&] { return &evaluation::room_scenario(arguments.scenario); }));
   }
   const std::vector<NamedDriver> drivers = drivers_of(arguments);
   std::vector<RoomSeries> all;
   for (const RoomScenario* scenario : scenarios)
     for (const NamedDriver& driver : drivers) all.push_back({scenario, driver.name, {}});
   // Seed by seed, so that what is written when a long run is stopped is complete up to a seed.
-  int threads = arguments.threads;  // the fewest that drove
   for (int i = 0; i < arguments.seeds; ++i) {
     const std::uint64_t seed = arguments.first_seed + static_cast<std::uint64_t>(i);
-    threads = std::min(threads, drive_all(arguments, drivers, seed, all));
+    drive_all(arguments, drivers, seed, all);
     write_results(arguments, all, i + 1 == arguments.seeds);
   }
-  note_fewer_threads("--threads", arguments.threads, threads);
   std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
   print_heading(words);
   for (const RoomSeries& series : all) print_row(series, words);

@@ -12,8 +12,6 @@ namespace {
 using evaluation::RoomDrive;
 using evaluation::RoomScenario;
 
-constexpr Colour colours[] = {
-    {0.10, 0.42, 0.75, 0.75}, {0.85, 0.36, 0.13, 0.75}, {0.16, 0.60, 0.38, 0.75}, {0.55, 0.33, 0.65, 0.75}};
 constexpr int moment_interval = 3;  // s
 constexpr Colour person_fill = {0.93, 0.75, 0.25, 0.55}, person_rim = {0.55, 0.40, 0.05, 1};
 
@@ -32,7 +30,7 @@ std::vector<maps::Point> circle(const maps::Point& middle, double radius) {
   return points;
 }
 
-/// Where robot and people were in a drive, every moment_interval.
+/// Draws robot and people of a drive, every moment_interval.
 void draw_moments(MapPicture& picture, const RoomDrive& drive, const RoomScenario& scenario,
                   const Colour& colour) {
   const auto periods =
@@ -59,7 +57,9 @@ void draw(const std::vector<RoomSeries>& all, const RoomScenario& scenario, cons
   std::size_t index = 0;
   for (const RoomSeries& series : all) {
     if (series.scenario != &scenario) continue;
-    const Colour colour = colours[index++ % std::size(colours)];
+    Colour colour = method_colour(series.driver);
+    colour.opacity = series.driver.find(' ') == std::string::npos ? 0.75 : 0.4;
+    ++index;
     key.emplace_back(series.driver, colour);
     for (const RoomDrive& drive : series.drives) {
       if (index == 1 && &drive == &series.drives.front()) draw_moments(picture, drive, scenario, colour);

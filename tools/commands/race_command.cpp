@@ -313,9 +313,9 @@ void declare_race(Subcommand& command) {
       "JSON file of another slalom race on the same course: shows where the best lap gains or loses time");
   command.option("--json", arguments->json,
                  "Write the results as JSON to this file, or to standard output: -");
-  command.option(
-      "--plot", arguments->plot,
-      "Write a picture of the best lap to this PNG: speed and profile, time behind, accelerations");
+  command.option("--plot", arguments->plot,
+                 "Write a picture of the best lap to this PNG, SVG or PDF: speed and profile, time behind, "
+                 "accelerations");
   command.action([&command, arguments, several] { return run_race(command, *arguments, *several); });
 }
 

@@ -2,18 +2,16 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <random>
+#include <span>
 
 #include "slalom/core/error.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "src/evaluation/json.hpp"
-#include "tools/bags/replay_bag.hpp"
-#include "tools/bags/ros_bag.hpp"
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/lap_picture.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
-#include "tools/live_view/replay_recording.hpp"
 #include "tools/recording/recording.hpp"
+#include "tools/recording/replay_recording.hpp"
 #include "tools/report/lap_json.hpp"
 
 namespace slalom::tools {
@@ -23,38 +21,19 @@ using namespace evaluation;
 
 struct ReplayCommandArguments {
   ReplayArguments recording;
-  std::string folder, method, scenario, course, plot, record, config = "default";
-  std::vector<std::string> set;
+  std::string folder, method, scenario, course, plot, record;
   int lap = 0;
   bool lap_given = false;
 };
 
-/// The kinds of records that can be replayed; each has its own options.
-enum Kind { lap_of_evaluation = 1, bag = 2, recording = 4 };
-constexpr const char* kind_name(Kind kind) {
-  return kind == lap_of_evaluation ? "a lap of an evaluation" : kind == bag ? "a bag" : "a recording in MCAP";
-}
+/// The options of a lap of an evaluation, and those of a recording.
+constexpr const char* lap_options[] = {"--lap", "--scenario", "--plot", "--method", "--course", "--record"};
+constexpr const char* recording_options[] = {"--html", "--host", "--port"};
 
-constexpr struct {
-  const char* option;
-  int kinds;
-} applicable[] = {{"--lap", lap_of_evaluation},
-                  {"--scenario", lap_of_evaluation},
-                  {"--plot", lap_of_evaluation},
-                  {"--method", lap_of_evaluation | bag},
-                  {"--course", lap_of_evaluation | bag},
-                  {"--record", lap_of_evaluation | bag},
-                  {"--config", bag},
-                  {"--set", bag},
-                  {"--html", bag | recording},
-                  {"--host", bag | recording},
-                  {"--port", bag | recording}};
-
-/// Throws IoError if an option was given that has no effect for this kind.
-void reject_inapplicable(const Subcommand& command, Kind kind) {
-  for (const auto& [option, kinds] : applicable)
-    if (command.given(option) && (kinds & kind) == 0)
-      throw IoError(option, 0, std::string("has no effect when ") + kind_name(kind) + " is replayed");
+/// Throws CommandLineError if one of the options was given.
+void reject_options(const Subcommand& command, std::span<const char* const> options, const char* when) {
+  for (const char* option : options)
+    if (command.given(option)) throw CommandLineError(option, std::string("has no effect ") + when);
 }
 
 void plot(const ReplayCommandArguments& arguments, const Scenario& scenario, const LapSetup& setup,
@@ -80,13 +59,12 @@ void plot(const ReplayCommandArguments& arguments, const Scenario& scenario, con
 /// Drives the lap again. The exit status: 1 if it differs from the lap of the evaluation.
 int replay_lap(const ReplayCommandArguments& arguments) {
   const StoredEvaluation stored = load_evaluation(arguments.folder);
-  if (!arguments.lap_given) throw IoError("--lap", 0, "is required to replay a lap of an evaluation");
+  if (!arguments.lap_given) throw CommandLineError("--lap", "is required to repeat a lap of an evaluation");
   const int index = stored.find(arguments.method, arguments.scenario);
   const Experiment& experiment = stored.experiments[static_cast<std::size_t>(index)];
   if (arguments.lap < 0 || arguments.lap >= experiment.laps)
-    throw IoError(
-        "--lap", 0,
-        std::to_string(arguments.lap) + " must be in [0, " + std::to_string(experiment.laps - 1) + "]");
+    throw CommandLineError("--lap", std::to_string(arguments.lap),
+                           "must be in [0, " + std::to_string(experiment.laps - 1) + "]");
   Scenario scenario;
   const Evaluation evaluation = rebuild_evaluation(stored, arguments.course, scenario);
   const LapSetup setup = lap_setup(evaluation, index);
@@ -137,43 +115,13 @@ int replay_lap(const ReplayCommandArguments& arguments) {
   return same ? 0 : 1;
 }
 
-/// The name of a file that is removed at the end of the scope.
-struct TemporaryFile {
-  std::string name = std::filesystem::temp_directory_path() /
-                     ("slalom_replay_" + std::to_string(std::random_device{}()) + ".mcap");
-  ~TemporaryFile() {
-    std::error_code ignored;
-    std::filesystem::remove(name, ignored);
-  }
-};
-
-/// Converts a bag to a recording: to the file of --record, to a page with --html, or else to be shown.
-int replay_bag(ReplayCommandArguments& arguments) {
-  if (!arguments.record.empty() && !arguments.recording.html.empty() &&
-      std::filesystem::path(arguments.record).extension() != ".mcap")
-    throw IoError("--record", 0, arguments.record + " must end in .mcap with --html: the page shows MCAP");
-  const TemporaryFile temporary;
-  BagReplay replay{.file = arguments.folder, .record = arguments.record, .driver = {}};
-  if (replay.record.empty()) replay.record = temporary.name;
-  if (!arguments.method.empty()) replay.method = arguments.method;
-  replay.driver.course = arguments.course;
-  replay.driver.config = arguments.config;
-  replay.driver.set = arguments.set;
-  record_bag(replay);
-  if (!arguments.record.empty()) std::printf("recording: %s\n", arguments.record.c_str());
-  if (!arguments.record.empty() && arguments.recording.html.empty()) return 0;
-  arguments.recording.file = replay.record;
-  return replay_recording(arguments.recording);
-}
-
 int replay(ReplayCommandArguments& arguments, const Subcommand& command) {
-  const Kind kind = std::filesystem::is_directory(arguments.folder) ? lap_of_evaluation
-                    : is_bag(arguments.folder)                      ? bag
-                                                                    : recording;
-  reject_inapplicable(command, kind);
-  arguments.lap_given = command.given("--lap");
-  if (kind == lap_of_evaluation) return replay_lap(arguments);
-  if (kind == bag) return replay_bag(arguments);
+  if (std::filesystem::is_directory(arguments.folder)) {
+    reject_options(command, recording_options, "when a lap of an evaluation is repeated");
+    arguments.lap_given = command.given("--lap");
+    return replay_lap(arguments);
+  }
+  reject_options(command, lap_options, "when a recording is replayed");
   arguments.recording.file = arguments.folder;
   return replay_recording(arguments.recording);
 }
@@ -181,10 +129,9 @@ int replay(ReplayCommandArguments& arguments, const Subcommand& command) {
 }  // namespace
 
 void declare_replay(Subcommand& command) {
-  command.summary("Show a recording or bag in the browser, or repeat a lap of an evaluation");
+  command.summary("Show a recording in the browser, or repeat a lap of an evaluation");
   const auto arguments = std::make_shared<ReplayCommandArguments>();
-  command.option("what", arguments->folder, "MCAP recording, ROS 1 bag, or output folder of an evaluation")
-      .required();
+  command.option("what", arguments->folder, "MCAP recording, or output folder of an evaluation").required();
   const Option html = command.option("--html", arguments->recording.html,
                                      "Write the recording as an HTML page instead of serving it");
   const Option host =
@@ -194,17 +141,13 @@ void declare_replay(Subcommand& command) {
           .show_default();
   command.option("--lap", arguments->lap, "Evaluation: number of the lap, from 0");
   command.option("--method", arguments->method,
-                 "Evaluation: method, or method and options as in the results; bag: planner that "
-                 "processes the scans [svg_mppi]");
-  command.option("--config", arguments->config, "Bag: configuration of the planner").show_default();
-  command.option("--set", arguments->set, "Bag: section.option=value; may be repeated").repeatable();
+                 "Evaluation: method, or method and options as in the results");
   command.option("--scenario", arguments->scenario, "Evaluation: pt or oa");
-  command.option("--course", arguments->course,
-                 "Course folder, if it is not found by name or not contained in the bag");
-  command.option("--plot", arguments->plot, "Evaluation: write a picture of the lap to this PNG");
-  const Option record =
-      command.option("--record", arguments->record,
-                     "Record to this file: MCAP if its name ends in .mcap, otherwise JSON lines");
+  command.option("--course", arguments->course, "Evaluation: course folder, if it is not found by name");
+  command.option("--plot", arguments->plot, "Evaluation: write a picture of the lap to this PNG, SVG or PDF");
+  const Option record = command.option(
+      "--record", arguments->record,
+      "Evaluation: record the lap to this file: MCAP if its name ends in .mcap, otherwise JSON lines");
   for (Option served : {host, port}) served.excludes(html).excludes(record);
   command.action([arguments, &command] { return replay(*arguments, command); });
 }

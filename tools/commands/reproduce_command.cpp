@@ -8,7 +8,6 @@
 #include "tools/commands/commands.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 #include "tools/evaluation/racing_benchmark.hpp"
-#include "tools/ranks/ranks.hpp"
 #include "tools/report/report.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -31,11 +30,6 @@ struct ReproduceArguments {
   bool quick = false, course_given = false, config_given = false;
 };
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
-};
-using UniqueFile = std::unique_ptr<std::FILE, CloseFile>;
-
 /// The course given. The default, Berlin, is not part of this repository; if it is not found, the command
 /// runs on another course.
 std::string course_or_fallback(const ReproduceArguments& arguments, std::FILE* words) {
@@ -43,8 +37,8 @@ std::string course_or_fallback(const ReproduceArguments& arguments, std::FILE* w
   try {
     vehicle::find_course(course, vehicle::course_roots(program_folder()));
     return course;
-  } catch (const IoError&) {
-    if (arguments.course_given) throw;
+  } catch (const IoError& error) {
+    if (arguments.course_given) throw CommandLineError("--course", error.what());
     std::fprintf(words, "note: the course '%s' was not found; driving on '%s' of this repository instead\n",
                  course.c_str(), fallback_course);
     return fallback_course;
@@ -99,19 +93,13 @@ void add_report_rows(const std::string& section, Report& report) {
 void check(const ReproduceArguments& arguments) {
   for (const std::string& section : arguments.sections) {
     if (section != "baseline" && section != "ablation" && section != "sweep")
-      throw IoError("--sections", 0, "'" + section + "' must be baseline, ablation or sweep");
-  }
-  for (const auto& [option, laps] :
-       {std::pair("--laps-pt", arguments.laps_pt), {"--laps-oa", arguments.laps_oa}}) {
-    if (laps < 1 || laps > 1000000)
-      throw IoError(option, 0, std::to_string(laps) + " must be in [1, 1000000]");
+      throw CommandLineError("--sections", section, "must be baseline, ablation or sweep");
   }
 }
 
 int reproduce(ReproduceArguments arguments) {
   check(arguments);
-  const UniqueFile nowhere(rank() > 0 ? std::fopen("/dev/null", "w") : nullptr);
-  std::FILE* words = nowhere ? nowhere.get() : arguments.evaluation.json == "-" ? stderr : stdout;
+  std::FILE* words = arguments.evaluation.json == "-" ? stderr : stdout;
   const auto tenth = [&](int laps) { return arguments.quick ? (laps + 9) / 10 : laps; };
   arguments.evaluation.scenario.course = course_or_fallback(arguments, words);
   const auto experiments = paper_experiments(arguments.sections, tenth(arguments.laps_pt),
@@ -124,7 +112,7 @@ int reproduce(ReproduceArguments arguments) {
   find_references(folders, experiments, {});
 
   Evaluated evaluated;
-  if (!run_evaluation(arguments.evaluation, experiments, evaluated)) return rank() > 0 ? 0 : 1;
+  if (!run_evaluation(arguments.evaluation, experiments, evaluated)) return 1;
   const auto references = find_references(folders, experiments, evaluated.rows);
   auto summary = evaluated.summary();
   for (std::size_t i = 0; i < references.size(); ++i) add_reference(summary["results"][i], references[i]);
@@ -143,7 +131,7 @@ int reproduce(ReproduceArguments arguments) {
 /// Drives the racing benchmark on its four maps.
 int run_racing(ReproduceArguments arguments) {
   if (arguments.benchmark != "racing")
-    throw CommandLineError("--benchmark", "'" + arguments.benchmark + "' must be racing");
+    throw CommandLineError("--benchmark", arguments.benchmark, "must be racing");
   if (!arguments.course_given)
     throw CommandLineError("--course", "must name the folder of the benchmark's maps and centre lines");
   ScenarioArguments& scenario = arguments.evaluation.scenario;
@@ -157,7 +145,7 @@ int run_racing(ReproduceArguments arguments) {
     summary["margin_m"] = arguments.margin;
     summary["car"] = arguments.car;
   }
-  vehicle::RacingCar car = vehicle::find_racing_car(arguments.car);
+  vehicle::RacingCar car = for_option("--car", [&] { return vehicle::find_racing_car(arguments.car); });
   car.margin = arguments.margin;
   std::fprintf(words, "%-4s %10s %10s %12s\n", "map", "mean, s", "completed", "beyond grip");
   for (const char* name : racing_maps) {
@@ -203,6 +191,7 @@ void declare_reproduce(Subcommand& command) {
   command
       .option("--margin", arguments->margin,
               "With --benchmark: distance that the raceline keeps between the car and walls, m")
+      .range(0, 10)
       .show_default();
   command
       .option("--car", arguments->car,
@@ -213,8 +202,11 @@ void declare_reproduce(Subcommand& command) {
       .option("--sections", arguments->sections, "Sections, separated by commas: baseline, ablation, sweep")
       .comma_separated()
       .show_default();
-  command.option("--laps-pt", arguments->laps_pt, "Number of path-tracking laps of each row").show_default();
+  command.option("--laps-pt", arguments->laps_pt, "Number of path-tracking laps of each row")
+      .range(1, 1000000)
+      .show_default();
   command.option("--laps-oa", arguments->laps_oa, "Number of obstacle-avoidance laps of each row")
+      .range(1, 1000000)
       .show_default();
   command.flag("--quick", arguments->quick, "Drive a tenth of the laps");
   command.option("--set", scenario.set, "section.option=value, for all rows; may be repeated").repeatable();

@@ -77,7 +77,8 @@ Json summary_of(const GeneratedTrack& track, const TrackArguments& arguments, co
 
 void track(TrackArguments arguments) {
   TrackGeneratorOptions options = arguments.options;
-  options.character = vehicle::track_character(arguments.character);
+  options.character =
+      for_option("--character", [&] { return vehicle::track_character(arguments.character); });
   options.width = arguments.width.value_or(vehicle::usual_width(options.character));
   options.limits.top_speed = arguments.top_speed.value_or(vehicle::usual_top_speed(options.character));
   if (arguments.name.empty()) arguments.name = folder_name(arguments.out);
@@ -106,19 +107,25 @@ void declare_track(Subcommand& command) {
   command.option("--out", arguments->out, "Output folder; created if it does not exist").required();
   command.option("--seed", options.seed, "Seed; the same options and seed give the same files")
       .show_default();
-  command.option("--length", options.length, "Length of the centre line, m, 20..1000").show_default();
-  command.option("--width", arguments->width,
-                 "Width from wall to wall, m, 1.2..10 [by character: 2.2, 2.6, 2.2, 1.5]");
+  command.option("--length", options.length, "Length of the centre line, m").range(20, 1000).show_default();
+  command.option("--width", arguments->width, "Width from wall to wall, m [by character: 2.2, 2.6, 2.2, 1.5]")
+      .range(1.2, 10);
   command.option("--character", arguments->character, "balanced, fast, twisty or narrow").show_default();
-  command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s [by character: 6, 7, 5, 4.5]");
+  command.option("--top-speed", arguments->top_speed, "Maximum speed, m/s [by character: 6, 7, 5, 4.5]")
+      .range(0.5, 20);
   command
       .option("--lateral-acceleration", options.limits.lateral_acceleration,
               "Limit of the speed profile, m/s^2")
+      .range(0.5, 15)
       .show_default();
   command.option("--acceleration", options.limits.acceleration, "Limit of the speed profile, m/s^2")
+      .range(0.5, 15)
       .show_default();
-  command.option("--braking", options.limits.braking, "Limit of the speed profile, m/s^2").show_default();
+  command.option("--braking", options.limits.braking, "Limit of the speed profile, m/s^2")
+      .range(0.5, 15)
+      .show_default();
   command.option("--wall-margin", options.wall_margin, "Minimum distance of the raceline from the walls, m")
+      .range(0.3, 4.9)
       .show_default();
   command.option("--name", arguments->name, "Name of the course [name of the folder]");
   command.option("--description", arguments->description, "Description for course.yaml");

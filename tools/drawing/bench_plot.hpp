@@ -12,7 +12,7 @@ struct BenchCurve {
   std::vector<double> samples, milliseconds;
 };
 
-/// Writes a PNG of the curves, both axes logarithmic. Throws IoError.
+/// Writes a picture of the curves, both axes logarithmic. Throws IoError.
 void plot_bench(const std::vector<BenchCurve>& curves, const std::string& title,
                 const std::filesystem::path& file);
 

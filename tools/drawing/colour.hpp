@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 namespace slalom::tools {
 
 /// A colour, each part in [0, 1].
@@ -11,6 +13,10 @@ inline constexpr Colour ink{0.13, 0.16, 0.22};        ///< colour of text and li
 inline constexpr Colour faint_ink{0.42, 0.46, 0.54};  ///< colour of remarks
 inline constexpr Colour rule{0.89, 0.91, 0.94};       ///< colour of the lines of a grid
 inline constexpr Colour white{1, 1, 1};
+
+/// The colour of a method in every picture, by its name, which may be followed by more words. Other names
+/// have a colour of their own, too, but may share it.
+Colour method_colour(std::string_view name);
 
 /// `a` at share 0, `b` at share 1, linear between them.
 Colour mixed(Colour a, Colour b, double share);

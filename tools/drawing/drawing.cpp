@@ -1,41 +1,85 @@
 #include "tools/drawing/drawing.hpp"
 
+#include <cairo-pdf.h>
 #include <cairo-svg.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "slalom/core/error.hpp"
 
 namespace slalom::tools {
+namespace {
 
-std::string to_svg(const Drawing& drawing) {
-  require_font_files();
-  std::string text;
-  const auto append = [](void* to, const unsigned char* data, unsigned int size) {
-    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), size);
-    return CAIRO_STATUS_SUCCESS;
-  };
-  const std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface(
-      cairo_svg_surface_create_for_stream(append, &text, drawing.width, drawing.height),
-      cairo_surface_destroy);
-  const std::unique_ptr<cairo_t, void (*)(cairo_t*)> cairo(cairo_create(surface.get()), cairo_destroy);
-  Pen pen(cairo.get());
-  pen.fill_surface({1, 1, 1});
-  drawing.draw(pen);
-  const auto drawn = cairo_status(cairo.get());
-  cairo_surface_finish(surface.get());
-  const auto status = drawn != CAIRO_STATUS_SUCCESS ? drawn : cairo_surface_status(surface.get());
-  if (status != CAIRO_STATUS_SUCCESS) throw IoError("SVG", 0, cairo_status_to_string(status));
-  return text;
+using Surface = std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)>;
+
+cairo_status_t append(void* text, const unsigned char* data, unsigned int size) {
+  static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(data), size);
+  return CAIRO_STATUS_SUCCESS;
 }
 
-void save_png(const Drawing& drawing, const std::filesystem::path& file, double scale) {
-  const Surface surface(static_cast<int>(std::ceil(scale * drawing.width)),
-                        static_cast<int>(std::ceil(scale * drawing.height)), scale);
-  Pen pen = surface.pen();
-  pen.fill_surface({1, 1, 1});
+void require(cairo_status_t status, const std::string& file) {
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw IoError(file, 0, std::string("cannot be drawn: ") + cairo_status_to_string(status));
+}
+
+void draw_on(const Surface& surface, const Drawing& drawing, double scale, const std::string& file) {
+  const std::unique_ptr<cairo_t, void (*)(cairo_t*)> cairo(cairo_create(surface.get()), cairo_destroy);
+  cairo_scale(cairo.get(), scale, scale);
+  Pen pen(cairo.get());
+  pen.fill_surface(white);
   drawing.draw(pen);
-  surface.save(file);
+  require(cairo_status(cairo.get()), file);
+}
+
+/// The bytes of the drawing as an SVG or PDF document.
+template <class Create>
+std::string document(const Drawing& drawing, const std::string& file, Create create) {
+  std::string bytes;
+  const Surface surface(create(append, &bytes, drawing.width, drawing.height), cairo_surface_destroy);
+  draw_on(surface, drawing, 1, file);
+  cairo_surface_finish(surface.get());
+  require(cairo_surface_status(surface.get()), file);
+  return bytes;
+}
+
+std::string to_png(const Drawing& drawing, const std::string& file, double scale) {
+  const Surface surface(
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(scale * drawing.width)),
+                                 static_cast<int>(std::ceil(scale * drawing.height))),
+      cairo_surface_destroy);
+  draw_on(surface, drawing, scale, file);
+  std::string bytes;
+  require(cairo_surface_write_to_png_stream(surface.get(), append, &bytes), file);
+  return bytes;
+}
+
+}  // namespace
+
+Canvas::Canvas(double width, double height)
+    : width_(width),
+      height_(height),
+      surface_(cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, nullptr), cairo_surface_destroy),
+      cairo_(cairo_create(surface_.get()), cairo_destroy),
+      pen_(cairo_.get()) {}
+
+Drawing Canvas::drawing() const {
+  return {width_, height_, [surface = surface_.get()](Pen& pen) { pen.show(surface); }};
+}
+
+std::string to_svg(const Drawing& drawing) {
+  return document(drawing, "SVG", cairo_svg_surface_create_for_stream);
+}
+
+void save(const Drawing& drawing, const std::filesystem::path& file, double scale) {
+  const std::string ending = file.extension().string();
+  const std::string bytes = ending == ".svg" ? to_svg(drawing)
+                            : ending == ".pdf"
+                                ? document(drawing, file.string(), cairo_pdf_surface_create_for_stream)
+                                : to_png(drawing, file.string(), scale);
+  std::ofstream stream(file, std::ios::binary);
+  stream << bytes;
+  if (!stream.flush()) throw IoError(file.string(), 0, "cannot be written");
 }
 
 }  // namespace slalom::tools

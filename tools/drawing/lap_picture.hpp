@@ -26,7 +26,8 @@ struct LapPicture {
   std::string title, facts;
 };
 
-/// Draws map, path, obstacles, driven line coloured by speed, and collisions. Writes a PNG; throws IoError.
+/// Draws map, path, obstacles, driven line coloured by speed, and collisions. Writes PNG, SVG or PDF; throws
+/// IoError.
 void draw_lap(const LapPicture& picture, const std::filesystem::path& file);
 
 }  // namespace slalom::tools

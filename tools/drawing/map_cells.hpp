@@ -8,7 +8,7 @@
 
 namespace slalom::tools {
 
-/// Where a map lies in an image: `scale` pixels per m, `left` and `top` of the image in m, map frame.
+/// The place of a map in an image: `scale` pixels per m, `left` and `top` of the image in m, map frame.
 struct MapView {
   double scale = 1;
   double left = 0, top = 0;

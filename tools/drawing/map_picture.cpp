@@ -46,10 +46,8 @@ MapView view_of(const maps::OccupancyGrid& map, int long_side) {
 }  // namespace
 
 MapPicture::MapPicture(const maps::OccupancyGrid& map, int long_side)
-    : view_(view_of(map, long_side)), surface_(view_.width, view_.height + band), pen_(surface_.pen()) {
-  pen_.fill_surface(white);
-  std::vector<std::uint32_t> cells = map_pixels(map, view_);
-  pen_.image(cells, view_.width);
+    : view_(view_of(map, long_side)), canvas_(view_.width, view_.height + band) {
+  pen_.image(map_pixels(map, view_), view_.width);
 }
 
 Pen::Points MapPicture::pixels(const std::vector<maps::Point>& points) const {

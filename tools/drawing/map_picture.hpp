@@ -8,8 +8,8 @@
 
 #include "slalom/maps/occupancy_grid.hpp"
 #include "slalom/maps/pose.hpp"
+#include "tools/drawing/drawing.hpp"
 #include "tools/drawing/map_cells.hpp"
-#include "tools/drawing/pen.hpp"
 
 namespace slalom::tools {
 
@@ -44,8 +44,8 @@ class MapPicture {
   void key(const std::string& title, const std::string& facts,
            const std::vector<std::pair<std::string, Colour>>& entries);
 
-  /// Writes a PNG. Throws IoError.
-  void save(const std::filesystem::path& file) const { surface_.save(file); }
+  /// Writes the picture as PNG, SVG or PDF, by the ending of the file. Throws IoError.
+  void save(const std::filesystem::path& file) const { tools::save(canvas_.drawing(), file, 1); }
 
  private:
   Pen::Points pixels(const std::vector<maps::Point>& points) const;
@@ -56,8 +56,8 @@ class MapPicture {
   std::vector<std::string> wrapped(const std::string& words, double size, double width);
 
   MapView view_;
-  Surface surface_;
-  Pen pen_;
+  Canvas canvas_;
+  Pen& pen_ = canvas_.pen();
 };
 
 }  // namespace slalom::tools

@@ -1,25 +1,15 @@
 #include "tools/drawing/pen.hpp"
 
 #include <cairo.h>
-#include <fcntl.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <stdexcept>
-#include <system_error>
-
-#include "slalom/core/error.hpp"
+#include <cstring>
 
 namespace slalom::tools {
 
 namespace {
 
 constexpr double full_turn = 6.283185307179586;
-// Files and folders that fontconfig has open at the same time: its configuration includes others. With too
-// few it takes another font.
-constexpr std::size_t font_files = 8;
 
 }  // namespace
 
@@ -103,15 +93,20 @@ void Pen::fill_surface(Colour colour) {
   cairo_paint(cairo_);
 }
 
-void Pen::image(std::vector<std::uint32_t>& pixels, int width) {
-  const int stride = cairo_format_stride_for_width(CAIRO_FORMAT_RGB24, width);  // always 4 bytes a pixel
-  cairo_surface_t* source =
-      cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(pixels.data()), CAIRO_FORMAT_RGB24,
-                                          width, static_cast<int>(pixels.size()) / width, stride);
-  cairo_set_source_surface(cairo_, source, 0, 0);
+void Pen::show(cairo_surface_t* surface) {
+  cairo_set_source_surface(cairo_, surface, 0, 0);
   cairo_paint(cairo_);
-  // The surface may keep a reference to its last source, and the pixels do not outlive this call.
-  set({});
+  set({});  // keeps no reference to the surface
+}
+
+void Pen::image(const std::vector<std::uint32_t>& pixels, int width) {
+  const int height = static_cast<int>(pixels.size()) / width;
+  cairo_surface_t* source = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+  if (unsigned char* const bytes = cairo_image_surface_get_data(source)) {
+    std::memcpy(bytes, pixels.data(), pixels.size() * sizeof pixels[0]);  // a row has no padding
+    cairo_surface_mark_dirty(source);
+  }
+  show(source);
   cairo_surface_destroy(source);
 }
 
@@ -177,39 +172,6 @@ void Pen::text(double x, double y, double size, const std::string& words, Colour
   set(colour);
   cairo_move_to(cairo_, x - align * width, y);
   cairo_show_text(cairo_, words.c_str());
-}
-
-void require_font_files() {
-  std::array<int, font_files> opened{};
-  std::size_t count = 0;
-  int reason = 0;
-  for (; count < opened.size(); ++count) {
-    opened[count] = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-    if (opened[count] >= 0) continue;
-    reason = errno;
-    break;
-  }
-  for (std::size_t i = 0; i < count; ++i) ::close(opened[i]);
-  if (reason == EMFILE || reason == ENFILE)
-    throw std::runtime_error("a picture cannot be drawn: its fonts need " + std::to_string(font_files) +
-                             " free file descriptors, and " + std::to_string(count) + " are free (" +
-                             std::generic_category().message(reason) + "); raise the limit (ulimit -n)");
-}
-
-Surface::Surface(int width, int height, double scale)
-    : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height), cairo_surface_destroy),
-      cairo_(cairo_create(surface_.get()), cairo_destroy) {
-  require_font_files();
-  cairo_scale(cairo_.get(), scale, scale);
-}
-
-void Surface::save(const std::filesystem::path& file) const {
-  // After an error nothing more is drawn.
-  if (const auto drawn = cairo_status(cairo_.get()); drawn != CAIRO_STATUS_SUCCESS)
-    throw IoError(file.string(), 0, std::string("cannot be drawn: ") + cairo_status_to_string(drawn));
-  const auto status = cairo_surface_write_to_png(surface_.get(), file.c_str());
-  if (status != CAIRO_STATUS_SUCCESS)
-    throw IoError(file.string(), 0, std::string("cannot be written: ") + cairo_status_to_string(status));
 }
 
 }  // namespace slalom::tools

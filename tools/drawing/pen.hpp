@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +14,7 @@ struct _cairo_surface;  // NOLINT(bugprone-reserved-identifier)
 /// Drawing with cairo. Lengths are pixels, y points down.
 namespace slalom::tools {
 
-/// How a line is drawn.
+/// The style of a line.
 struct Stroke {
   Colour colour;
   double width = 1;
@@ -53,7 +51,9 @@ class Pen {
   /// How far a text advances.
   double text_width(const std::string& words, double size, bool bold = false);
   /// Pixels 0xAARRGGBB, row by row, `width` of them in a row, with the upper left corner at the origin.
-  void image(std::vector<std::uint32_t>& pixels, int width);
+  void image(const std::vector<std::uint32_t>& pixels, int width);
+  /// Copies what another surface shows, with its upper left corner at the origin.
+  void show(_cairo_surface* surface);
   void fill_surface(Colour colour);
   /// Draws within a rectangle alone, until `unclip`.
   void clip(double x, double y, double width, double height);
@@ -65,25 +65,6 @@ class Pen {
   void set_font(double size, bool bold);
 
   _cairo* cairo_;
-};
-
-/// Throws std::runtime_error if the process cannot open a few more files: cairo would find no fonts and draw
-/// another picture without an error.
-void require_font_files();
-
-/// An image in memory.
-class Surface {
- public:
-  /// Pixels; `scale` of them for a unit of length of the pen. Throws as `require_font_files` does.
-  Surface(int width, int height, double scale = 1);
-
-  Pen pen() const { return Pen(cairo_.get()); }
-  /// Writes a PNG. Throws IoError if it cannot be written, or if not everything could be drawn.
-  void save(const std::filesystem::path& file) const;
-
- private:
-  std::unique_ptr<_cairo_surface, void (*)(_cairo_surface*)> surface_;
-  std::unique_ptr<_cairo, void (*)(_cairo*)> cairo_;
 };
 
 }  // namespace slalom::tools

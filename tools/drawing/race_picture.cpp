@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "tools/drawing/axis.hpp"
 #include "tools/drawing/drawing.hpp"
-#include "tools/drawing/linear_axis.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -28,8 +28,7 @@ std::string number(double value) {
   return text;
 }
 
-void draw_frame(Pen& pen, const LinearAxis& x, const LinearAxis& y, const std::string& title,
-                const std::string& below) {
+void draw_frame(Pen& pen, const Axis& x, const Axis& y, const std::string& title, const std::string& below) {
   pen.text(x.from, y.to - 12, 14, title, ink, 0, true);
   for (const double tick : x.ticks) {
     pen.line(x(tick), y.from, x(tick), y.to, rule, 1);
@@ -42,25 +41,25 @@ void draw_frame(Pen& pen, const LinearAxis& x, const LinearAxis& y, const std::s
   pen.text(0.5 * (x.from + x.to), y.from + 36, 12.5, below, faint_ink, 0.5);
 }
 
-void draw_sectors(Pen& pen, const LinearAxis& x, const LinearAxis& y, double length) {
+void draw_sectors(Pen& pen, const Axis& x, const Axis& y, double length) {
   for (int i = 1; i < evaluation::racing_sectors; ++i) {
     const double at = x(length * i / evaluation::racing_sectors);
     pen.line(at, y.from, at, y.to, faint_ink, 1, true);
   }
 }
 
-Pen::Points speeds(const RacingLap& lap, const LinearAxis& x, const LinearAxis& y) {
+Pen::Points speeds(const RacingLap& lap, const Axis& x, const Axis& y) {
   Pen::Points points;
   for (const RacingSample& sample : lap.samples) points.emplace_back(x(sample.distance), y(sample.speed));
   return points;
 }
 
-void draw_speeds(Pen& pen, const RacePicture& picture, const LinearAxis& x) {
+void draw_speeds(Pen& pen, const RacePicture& picture, const Axis& x) {
   double fastest = 1;
   for (const RacingLap* lap :
        {&picture.lap.lap, &picture.profile.lap, picture.other ? &picture.other->lap : &picture.lap.lap})
     for (const RacingSample& sample : lap->samples) fastest = std::max(fastest, sample.speed);
-  const LinearAxis y = make_linear_axis(0, fastest, speed_bottom, speed_top, 5);
+  const Axis y = linear_axis(0, fastest, speed_bottom, speed_top, 5);
   draw_frame(pen, x, y, "speed, m/s", "");
   draw_sectors(pen, x, y, picture.length);
   pen.stroke(speeds(picture.profile.lap, x, y), {profile_colour, 1.6, 5});
@@ -68,7 +67,7 @@ void draw_speeds(Pen& pen, const RacePicture& picture, const LinearAxis& x) {
   pen.stroke(speeds(picture.lap.lap, x, y), {lap_colour, 2});
 }
 
-void draw_deltas(Pen& pen, const RacePicture& picture, const LinearAxis& x) {
+void draw_deltas(Pen& pen, const RacePicture& picture, const Axis& x) {
   std::vector<std::pair<const RacingLap*, Stroke>> others{{&picture.profile.lap, {profile_colour, 1.6, 5}}};
   if (picture.other) others.emplace_back(&picture.other->lap, Stroke{other_colour, 1.8});
   const auto behind = [&](const RacingLap& other, int i) {
@@ -80,7 +79,7 @@ void draw_deltas(Pen& pen, const RacePicture& picture, const LinearAxis& x) {
       low = std::min(low, behind(*other, i));
       high = std::max(high, behind(*other, i));
     }
-  const LinearAxis y = make_linear_axis(low, high, delta_bottom, delta_top, 4);
+  const Axis y = linear_axis(low, high, delta_bottom, delta_top, 4);
   draw_frame(pen, x, y, "time of the lap minus time of the profile or of the other run, s",
              "distance along the course, m");
   draw_sectors(pen, x, y, picture.length);
@@ -98,9 +97,9 @@ void draw_circle(Pen& pen, const RacePicture& picture) {
     most = std::max({most, std::abs(s.lateral), std::abs(s.longitudinal)});
   most *= 1.05;
   // Lateral accelerations are positive to the left, and so they are drawn.
-  LinearAxis x = make_linear_axis(-most, most, circle_left, circle_right, 6, true);
+  Axis x = linear_axis(-most, most, circle_left, circle_right, 6, true);
   std::swap(x.low, x.high);
-  const LinearAxis y = make_linear_axis(-most, most, circle_bottom, circle_top, 6, true);
+  const Axis y = linear_axis(-most, most, circle_bottom, circle_top, 6, true);
   draw_frame(pen, x, y, "acceleration, m/s\xC2\xB2", "to the left, m/s\xC2\xB2");
   Pen::Points circle;
   constexpr int corners = 180;
@@ -142,12 +141,12 @@ void draw_race(const RacePicture& picture, const std::filesystem::path& file) {
     pen.text(left, 28, 18, picture.title, ink, 0, true);
     pen.text(left, 50, 13, picture.facts, faint_ink);
     draw_key(pen, picture);
-    const LinearAxis x = make_linear_axis(0, picture.length, left, right, 8, true);
+    const Axis x = linear_axis(0, picture.length, left, right, 8, true);
     draw_speeds(pen, picture, x);
     draw_deltas(pen, picture, x);
     draw_circle(pen, picture);
   };
-  save_png({width, height, draw}, file);
+  save({width, height, draw}, file);
 }
 
 }  // namespace slalom::tools

@@ -25,7 +25,7 @@ struct RacePicture {
 };
 
 /// Draws the speed along the lap beside the profile, how far the lap is behind along the way, and its
-/// accelerations in the friction circle. Writes a PNG; throws IoError.
+/// accelerations in the friction circle. Writes PNG, SVG or PDF; throws IoError.
 void draw_race(const RacePicture& picture, const std::filesystem::path& file);
 
 }  // namespace slalom::tools

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tools/drawing/linear_axis.hpp"
+#include "tools/drawing/axis.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -28,19 +28,6 @@ double quantile(const std::vector<double>& sorted, double share) {
   return i + 1 < sorted.size() ? sorted[i] * (1 - rest) + sorted[i + 1] * rest : sorted[i];
 }
 
-/// From values to pixels, and where its lines are.
-struct Axis {
-  bool logarithmic = true;
-  double low = 0, high = 1, left = 0, width = panel_width;
-  std::vector<double> ticks;
-
-  double at(double value) const {
-    const double share = logarithmic ? std::log(std::max(value, low) / low) / std::log(high / low)
-                                     : (value - low) / (high - low);
-    return left + width * std::clamp(share, 0.0, 1.0);
-  }
-};
-
 std::vector<double> all_values(const Panel& panel) {
   std::vector<double> all;
   for (const auto* side : {&panel.ours, &panel.theirs}) {
@@ -53,35 +40,18 @@ std::vector<double> all_values(const Panel& panel) {
   return all;
 }
 
-Axis linear_axis(const std::vector<double>& values) {
-  Axis axis{.logarithmic = false, .ticks = {}};
-  const double most = values.empty() ? 0 : *std::max_element(values.begin(), values.end());
-  const double step = round_step(std::max(most, 1e-9) / 4);
-  axis.high = std::max(step, step * std::ceil(most / step));
-  for (int i = 0; i * step <= axis.high * (1 + 1e-9); ++i) axis.ticks.push_back(i * step);
-  return axis;
-}
-
-Axis logarithmic_axis(std::vector<double> values) {
-  Axis axis{.ticks = {}};
+/// The axis of a panel whose left end is at a pixel.
+Axis axis_of(const Panel& panel, double left) {
+  std::vector<double> values = all_values(panel);
+  const double right = left + panel_width;
+  if (panel.kind == Panel::Kind::bars)
+    return linear_axis(0,
+                       values.empty() ? 1 : std::max(*std::max_element(values.begin(), values.end()), 1e-9),
+                       left, right, 4);
   std::erase_if(values, [](double v) { return v <= 0; });
   if (values.empty()) values = {1, 10};
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  const double greatest = *most;
-  const bool wide = greatest / *least > 200;
-  std::vector<double> steps;
-  for (int decade = -9; decade < 9; ++decade) {
-    for (const double digit : {1.0, 2.0, 5.0})
-      if (!wide || digit == 1) steps.push_back(digit * std::pow(10.0, decade));
-  }
-  axis.low = steps.front();
-  for (const double step : steps)
-    if (step <= *least) axis.low = step;
-  axis.high = *std::find_if(steps.begin(), steps.end() - 1,
-                            [&](double step) { return step >= greatest && step > axis.low; });
-  for (const double step : steps)
-    if (step >= axis.low * 0.999 && step <= axis.high * 1.001) axis.ticks.push_back(step);
-  return axis;
+  return logarithmic_axis(*least, *most, left, right);
 }
 
 void draw_box(Pen& pen, const Axis& axis, double y, std::vector<double> values, Colour fill, Colour light) {
@@ -90,18 +60,18 @@ void draw_box(Pen& pen, const Axis& axis, double y, std::vector<double> values, 
   const double low = *std::find_if(values.begin(), values.end(), [&](double v) { return v >= q1 - reach; });
   const double high =
       *std::find_if(values.rbegin(), values.rend(), [&](double v) { return v <= q3 + reach; });
-  pen.line(axis.at(low), y, axis.at(high), y, fill, 1.4);
-  for (const double end : {low, high}) pen.line(axis.at(end), y - 3.5, axis.at(end), y + 3.5, fill, 1.4);
+  pen.line(axis(low), y, axis(high), y, fill, 1.4);
+  for (const double end : {low, high}) pen.line(axis(end), y - 3.5, axis(end), y + 3.5, fill, 1.4);
   for (const double v : values)
-    if (v < low || v > high) pen.disc(axis.at(v), y, 1.9, {fill.red, fill.green, fill.blue, 0.55});
-  const double left = axis.at(q1), width = std::max(1.5, axis.at(q3) - left);
+    if (v < low || v > high) pen.disc(axis(v), y, 1.9, {fill.red, fill.green, fill.blue, 0.55});
+  const double left = axis(q1), width = std::max(1.5, axis(q3) - left);
   pen.box(left, y - thick / 2, width, thick, white);
   pen.box(left, y - thick / 2, width, thick, light, fill, 1.3);
-  const double middle = axis.at(quantile(values, 0.5));
+  const double middle = axis(quantile(values, 0.5));
   pen.line(middle, y - thick / 2, middle, y + thick / 2, fill, 2.4);
   double sum = 0;
   for (const double v : values) sum += v;
-  pen.diamond(axis.at(sum / static_cast<double>(values.size())), y, 4.2, white, fill);
+  pen.diamond(axis(sum / static_cast<double>(values.size())), y, 4.2, white, fill);
 }
 
 void draw_marks(Pen& pen, const Panel& panel, const Axis& axis, double y, const Marks& marks, Colour fill,
@@ -112,24 +82,21 @@ void draw_marks(Pen& pen, const Panel& panel, const Axis& axis, double y, const 
   }
   if (!marks.span) return;
   const Span& span = *marks.span;
-  const double x = axis.at(span.value);
+  const double x = axis(span.value);
   if (panel.kind == Panel::Kind::bars)
-    pen.box(axis.left, y - thick / 2, std::max(1.0, x - axis.left), thick, light, fill, 1.3);
-  pen.line(axis.at(span.low), y, axis.at(span.high), y, fill, 1.8);
-  for (const double end : {span.low, span.high})
-    pen.line(axis.at(end), y - 4, axis.at(end), y + 4, fill, 1.8);
+    pen.box(axis.from, y - thick / 2, std::max(1.0, x - axis.from), thick, light, fill, 1.3);
+  pen.line(axis(span.low), y, axis(span.high), y, fill, 1.8);
+  for (const double end : {span.low, span.high}) pen.line(axis(end), y - 4, axis(end), y + 4, fill, 1.8);
   if (panel.kind == Panel::Kind::spans) pen.disc(x, y, 4.6, fill);
 }
 
 void draw_panel(Pen& pen, const Panel& panel, double left, std::size_t rows) {
-  const auto values = all_values(panel);
-  Axis axis = panel.kind == Panel::Kind::bars ? linear_axis(values) : logarithmic_axis(values);
-  axis.left = left;
+  const Axis axis = axis_of(panel, left);
   const double end = top + row_height * static_cast<double>(rows);
   pen.text(left, top - 16, 15, panel.title, ink, 0, true);
   for (const double tick : axis.ticks) {
-    pen.line(axis.at(tick), top, axis.at(tick), end, rule, 1);
-    pen.text(axis.at(tick), end + 17, 12, number(tick), faint_ink, 0.5);
+    pen.line(axis(tick), top, axis(tick), end, rule, 1);
+    pen.text(axis(tick), end + 17, 12, number(tick), faint_ink, 0.5);
   }
   pen.text(left + panel_width / 2, end + 36, 12.5, panel.axis, faint_ink, 0.5);
   for (std::size_t i = 0; i < rows; ++i) {

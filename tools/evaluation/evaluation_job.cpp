@@ -13,11 +13,9 @@
 #include "tools/command_line/command.hpp"
 #include "tools/evaluation/build_id.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
-#include "tools/ranks/ranks.hpp"
 #include "tools/terminal/evaluation_progress.hpp"
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
-#include "tools/terminal/thread_note.hpp"
 
 namespace slalom::tools {
 
@@ -48,6 +46,7 @@ Json settings_of(const EvaluationArguments& arguments, const Scenario& scenario,
                 {"seed0", arguments.seed0},
                 {"experiments", list},
                 {"options", options}};
+  if (arguments.scenario.hardware) settings["hardware"] = true;
   if (const std::string folder = folder_without_name(scenario); !folder.empty())
     settings["course_folder"] = folder;
   return settings;
@@ -142,10 +141,10 @@ void add_evaluation_options(Subcommand& command, EvaluationArguments& a) {
               "true: physically correct world; published: world, clock and counting of the paper's program")
       .show_default();
   add_latency_option(command, a.scenario.latency_ms);
+  add_hardware_option(command, a.scenario.hardware);
   command.option("--seed0", a.seed0, "Seed of lap 0; lap k has seed0 + k (obstacles + 5)").show_default();
-  command
-      .option("--jobs", a.jobs,
-              "Number of laps driven in parallel; 0: one per processor core, under mpirun one per process")
+  command.option("--jobs", a.jobs, "Number of laps driven in parallel; 0: one per processor core")
+      .range(0, 1024)
       .show_default();
   command.option("--out", a.out, "Output folder for laps.csv and summary.json").required();
   command.flag("--resume", a.resume, "Continue the evaluation in --out; finished laps are kept");
@@ -226,6 +225,7 @@ Evaluation make_evaluation(const EvaluationArguments& arguments, const Scenario&
           .experiments = experiments,
           .seed0 = arguments.seed0,
           .latency = scenario.lap.latency,
+          .hardware = arguments.scenario.hardware,
           .settings = json_text(settings_of(arguments, scenario, experiments), 2),
           .build = build_id(),
           .any_build = arguments.any_build};
@@ -233,10 +233,8 @@ Evaluation make_evaluation(const EvaluationArguments& arguments, const Scenario&
 
 bool drive_evaluation(const Evaluation& evaluation, const EvaluationArguments& arguments,
                       const std::string& title, const std::atomic<bool>& cancel, std::vector<LapRow>& rows) {
-  if (arguments.jobs < 0 || arguments.jobs > 1024)
-    throw IoError("--jobs", 0, std::to_string(arguments.jobs) + " must be in [0, 1024]");
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const int jobs = arguments.jobs > 0 ? arguments.jobs : rank_count() > 1 ? 1 : cores;
+  const int jobs = arguments.jobs > 0 ? arguments.jobs : cores;
   // Do not create a folder for an evaluation that cannot be driven.
   for (const Experiment& e : evaluation.experiments) {
     vehicle::Configuration trial = evaluation.configuration;
@@ -245,17 +243,12 @@ bool drive_evaluation(const Evaluation& evaluation, const EvaluationArguments& a
   }
   for (int i = 0; i < static_cast<int>(evaluation.experiments.size()); ++i)
     lap_setup(evaluation, i).validate();
-  if (rank() > 0) {
-    drive_for_first_rank(evaluation, jobs, cancel);
-    return false;
-  }
   require_object(std::filesystem::path(arguments.out) / "settings.json");
   LapStore store(arguments.out, evaluation, arguments.resume);
   EvaluationProgressBar bar(title);
   EvaluationQueue work(
       evaluation, store, [&](const EvaluationProgress& p) { bar.show(p); }, cancel);
-  const int threads = drive_with_ranks(evaluation, work, jobs, cancel);
-  note_fewer_threads("--jobs", jobs, threads);
+  drive_laps(evaluation, work, jobs, cancel);
   if (!work.finish()) {
     std::fprintf(stderr, "interrupted after %zu laps; --resume continues\n", store.rows().size());
     return false;
@@ -266,7 +259,7 @@ bool drive_evaluation(const Evaluation& evaluation, const EvaluationArguments& a
 
 bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Experiment>& experiments,
                     Evaluated& evaluated) {
-  if (experiments.empty()) throw IoError("--methods", 0, "must name at least one method");
+  if (experiments.empty()) throw CommandLineError("--methods", "must name at least one method");
   const Scenario scenario = load_scenario(arguments.scenario, experiments.front().method);
   print_notes(stderr, scenario);
   evaluated.course_folder = scenario.folder;

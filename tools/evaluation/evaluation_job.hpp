@@ -23,8 +23,8 @@ struct EvaluationArguments {
   std::string json;  ///< a copy of the summary: a file, or - for standard output
 };
 
-/// Adds --course, --config, --evaluation, --latency-ms, --seed0, --jobs, --out, --resume, --any-build and
-/// --json.
+/// Adds --course, --config, --evaluation, --latency-ms, --hardware, --seed0, --jobs, --out, --resume,
+/// --any-build and --json.
 void add_evaluation_options(Subcommand& command, EvaluationArguments& arguments);
 
 /// Whether an option affects laps of a method: an option of the method, vehicle, planner or world.
@@ -60,7 +60,7 @@ evaluation::Evaluation make_evaluation(const EvaluationArguments& arguments, con
                                        const std::vector<evaluation::Experiment>& experiments);
 
 /// Drives what is still missing in `arguments.out`, with a progress line that begins with `title`. False if
-/// it was interrupted, and under mpirun in all processes but the first, which has the rows.
+/// it was interrupted.
 /// Throws IoError and what a lap throws.
 bool drive_evaluation(const evaluation::Evaluation& evaluation, const EvaluationArguments& arguments,
                       const std::string& title, const std::atomic<bool>& cancel,

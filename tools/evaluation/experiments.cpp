@@ -1,7 +1,6 @@
 // The experiments of an evaluation, from --methods, --scenario and --set.
 #include <set>
 
-#include "slalom/core/error.hpp"
 #include "tools/evaluation/evaluation_job.hpp"
 
 namespace slalom::tools {
@@ -31,10 +30,10 @@ struct Sweep {
 Sweep parse_sweep(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
-    throw IoError("--set", 0, "'" + text + "' must be key=value or key=v1,v2,...");
+    throw CommandLineError("--set", text, "must be key=value or key=v1,v2,...");
   Sweep sweep{text.substr(0, equals), split(text.substr(equals + 1), ',')};
   for (const auto& value : sweep.values) {
-    if (value.empty()) throw IoError("--set", 0, "'" + text + "': a value is missing");
+    if (value.empty()) throw CommandLineError("--set", text, "must have a value behind each comma");
   }
   return sweep;
 }
@@ -67,7 +66,7 @@ void require_driven(const std::string& key, const std::vector<std::string>& meth
     if (applies_to(key, method)) return;
     names += (names.empty() ? "" : ", ") + method;
   }
-  throw IoError("--set", 0, "'" + key + "' must be an option of a method in this evaluation (" + names + ")");
+  throw CommandLineError("--set", key, "must be an option of a method in this evaluation (" + names + ")");
 }
 
 void refuse_twice(const std::string& key, const std::string& other, const std::vector<std::string>& methods) {
@@ -76,21 +75,19 @@ void refuse_twice(const std::string& key, const std::string& other, const std::v
   };
   for (const std::string& method : methods)
     if (full(key, method) == full(other, method))
-      throw IoError("--set", 0,
-                    "'" + key + "' is given twice; separate several values by commas: " + key + "=v1,v2,...");
+      throw CommandLineError("--set", key,
+                             "is given twice; separate several values by commas: " + key + "=v1,v2,...");
 }
 
 std::vector<Experiment> make_experiments(const std::vector<std::string>& methods,
                                          const std::vector<std::string>& scenarios, int laps, int obstacles,
                                          const std::vector<std::string>& texts) {
   std::vector<Experiment> experiments;
-  if (laps < 1 || laps > 1000000)
-    throw IoError("--laps", 0, std::to_string(laps) + " must be in [1, 1000000]");
-  for (const std::string& method : methods) solver_options(method);  // throws if the method is unknown
+  for (const std::string& method : methods) for_option("--methods", [&] { return solver_options(method); });
   const std::vector<Sweep> sweeps = parse_sweeps(texts, methods);
   for (const std::string& scenario : scenarios) {
     if (scenario != "pt" && scenario != "oa")
-      throw IoError("--scenario", 0, "'" + scenario + "' must be pt or oa");
+      throw CommandLineError("--scenario", scenario, "must be pt or oa");
     for (const std::string& method : methods) {
       std::vector<Experiment> variants{{method, {}, scenario, scenario == "pt" ? 0 : obstacles, laps}};
       for (const Sweep& sweep : sweeps) {
@@ -111,8 +108,8 @@ std::vector<Experiment> make_experiments(const std::vector<std::string>& methods
   std::set<std::string> seen;
   for (const Experiment& e : experiments)
     if (!seen.insert(e.label() + ", " + e.scenario).second)
-      throw IoError("--methods, --scenario, --set", 0,
-                    "specify the experiment '" + e.label() + ", " + e.scenario + "' twice");
+      throw CommandLineError("--methods, --scenario, --set",
+                             "specify the experiment '" + e.label() + ", " + e.scenario + "' twice");
   return experiments;
 }
 

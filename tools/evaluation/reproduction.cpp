@@ -34,7 +34,7 @@ std::string ratio_text(double ratio) {
   return format(ratio > 1 ? "MS %.1f %% higher" : "MS %.1f %% lower", 100 * std::abs(ratio - 1));
 }
 
-/// How measured laps differ from a log, of the figures that decide its agreement.
+/// Describes the difference between measured laps and a log, in the figures that decide their agreement.
 std::string difference_text(const LogComparison& c, double our_rate) {
   const bool outside = c.agreement() == Agreement::outside;
   std::string text;
@@ -205,11 +205,12 @@ namespace {
 
 /// A folder that is given must hold at least one of the logs.
 void require_logs(const fs::path& published) {
-  if (!fs::is_directory(published)) throw IoError("--published", 0, published.string() + " is not a folder");
+  if (!fs::is_directory(published))
+    throw CommandLineError("--published", published.string(), "must be a folder");
   for (const PaperRow& row : paper_rows())
     if (fs::is_regular_file(published / row.log_pt) || fs::is_regular_file(published / row.log_oa)) return;
-  throw IoError("--published", 0,
-                published.string() + " contains none of the authors' logs (src/eval/log of " + authors + ")");
+  throw CommandLineError("--published", published.string(),
+                         std::string("must contain logs of the authors (src/eval/log of ") + authors + ")");
 }
 
 }  // namespace

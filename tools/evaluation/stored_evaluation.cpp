@@ -128,6 +128,7 @@ ScenarioArguments evaluation_arguments(const StoredEvaluation& stored, const std
     arguments.config = member<std::string>(settings, "config");
     arguments.evaluation = member<std::string>(settings, "evaluation");
     arguments.latency_ms = member<double>(settings, "latency_ms");
+    arguments.hardware = settings.contains("hardware");
     // The file may say something else by now: every option is set as it was.
     for (const auto& [section, options] : member(settings, "options").items())
       for (const auto& [key, value] : options.items())
@@ -154,6 +155,7 @@ evaluation::Evaluation rebuild_evaluation(const StoredEvaluation& stored, const 
     evaluation.experiments = stored.experiments;
     evaluation.seed0 = member<std::uint64_t>(settings, "seed0");
     evaluation.latency = scenario.lap.latency;
+    evaluation.hardware = arguments.hardware;
     evaluation.settings = stored.settings;
   } catch (const std::invalid_argument& error) {
     throw IoError(file.string(), 0, std::string("is invalid: ") + error.what());

@@ -7,7 +7,7 @@
 #include "slalom/problems/passing_point.hpp"
 #include "slalom/solvers/registry.hpp"
 
-/// How a method solves the smallest problem with two homotopy classes, `problems::PassingPoint`.
+/// Explains how a method solves the smallest problem with two homotopy classes, `problems::PassingPoint`.
 namespace slalom::tools {
 
 /// The lateral position (m, left is positive) at every state of a rollout.

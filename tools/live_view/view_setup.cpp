@@ -63,7 +63,7 @@ view::ServerOptions server_options(const std::string& host, std::uint16_t port, 
     return (c < 128 && std::isalnum(c)) || c == '-' || c == '.' || c == '_' || c == '~';
   };
   if (!std::all_of(token.begin(), token.end(), stands_for_itself))
-    throw IoError("--token", 0, "'" + token + "' must have only letters, digits and - . _ ~");
+    throw CommandLineError("--token", token, "must have only letters, digits and - . _ ~");
   view::ServerOptions options;
   options.host = host;
   options.port = port;

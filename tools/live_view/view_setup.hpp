@@ -17,8 +17,8 @@ int method_index(const view::Choices& choices, const std::string& method);
 /// The command-line arguments besides course, method, configuration, seed and obstacles; begins with a space.
 std::string further_arguments(const ScenarioArguments& arguments);
 
-/// Where to listen. Everybody who can reach the server can control the drive; so other machines need a
-/// token, which is random if none is given. Throws IoError where an address cannot hold the token.
+/// The address to listen on. Everybody who can reach the server can control the drive; so other machines need
+/// a token, which is random if none is given. Throws IoError where an address cannot hold the token.
 view::ServerOptions server_options(const std::string& host, std::uint16_t port, const std::string& token);
 /// Prints the address of the page.
 void print_address(const view::Server& server, const view::ServerOptions& options);

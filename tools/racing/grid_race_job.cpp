@@ -17,7 +17,6 @@
 #include "tools/terminal/interrupt.hpp"
 #include "tools/terminal/json_output.hpp"
 #include "tools/terminal/progress_line.hpp"
-#include "tools/terminal/thread_note.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -183,7 +182,7 @@ class GridRaceJob {
       }
     };
     const int wanted = std::min(arguments_.jobs, arguments_.races);
-    note_fewer_threads("--jobs", wanted, evaluation::run_in_threads(wanted, work));
+    evaluation::run_in_threads(wanted, work);
     if (error) std::rethrow_exception(error);
     for (auto& race : ended)
       if (race) races_.results.push_back(std::move(*race));

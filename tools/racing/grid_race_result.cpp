@@ -48,7 +48,7 @@ std::string number_text(const char* format, double value) {
   return text;
 }
 
-/// How a race ended for a car, in words.
+/// Describes how a race ended for a car.
 std::string end_text(const CarResult& car) {
   if (car.end == CarEnd::wall) return car.contact_before ? "out: wall, after a contact" : "out: wall";
   return car.end == CarEnd::finished ? "" : std::string(evaluation::name(car.end));

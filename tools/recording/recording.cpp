@@ -10,7 +10,7 @@ std::unique_ptr<Recording> make_recording(const std::string& file, const Recordi
   if (file.size() >= 5 && file.compare(file.size() - 5, 5, ".mcap") == 0)
     return std::make_unique<McapRecording>(file, facts);
   if (facts.times)
-    throw IoError("--record-times", 0, "times can be recorded in MCAP only: use a name that ends in .mcap");
+    throw CommandLineError("--record-times", "needs a recording in MCAP, whose name ends in .mcap");
   return std::make_unique<JsonRecording>(file, facts.settings);
 }
 

@@ -10,7 +10,7 @@
 
 namespace slalom::tools {
 
-/// Where laps are recorded. The same settings and seed give the same bytes.
+/// A recording of laps. The same settings and seed give the same bytes.
 class Recording {
  public:
   virtual ~Recording() = default;

@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <fstream>
 
-#include "slalom/core/error.hpp"
 #include "slalom/core/option_access.hpp"
 #include "tools/drawing/row_chart.hpp"
 #include "tools/report/report.hpp"
@@ -11,14 +9,11 @@ namespace {
 
 using evaluation::LapRow;
 
-ReportFigure save(const Drawing& drawing, ReportFigure figure, const std::filesystem::path& folder) {
+ReportFigure saved(const Drawing& drawing, ReportFigure figure, const std::filesystem::path& folder) {
   figure.mime = "image/svg+xml";
   figure.data = to_svg(drawing);
-  const auto file = folder / (figure.name + ".svg");
-  std::ofstream stream(file, std::ios::binary);
-  stream << figure.data;
-  if (!stream.flush()) throw IoError(file.string(), 0, "cannot be written");
-  save_png(drawing, folder / (figure.name + ".png"));
+  save(drawing, folder / (figure.name + ".svg"));
+  save(drawing, folder / (figure.name + ".png"));
   return figure;
 }
 
@@ -172,7 +167,7 @@ std::vector<ReportFigure> report_charts(const Report& report, const std::filesys
       sections.push_back(row.section);
   std::vector<ReportFigure> figures;
   for (const std::string& section : sections) {
-    figures.push_back(save(
+    figures.push_back(saved(
         draw_chart(section_chart(report, section)),
         {section,
          section,
@@ -186,17 +181,17 @@ std::vector<ReportFigure> report_charts(const Report& report, const std::filesys
         folder));
   }
   if (!sections.empty()) {
-    figures.push_back(save(draw_chart(time_chart(report, sections.front())),
-                           {"compute_times",
-                            "",
-                            "Solve times",
-                            "Wall-clock time of a solve, from the mean to the maximum over all laps, "
-                            "on a logarithmic axis. It depends on the machine and its load; every other "
-                            "figure repeats exactly.",
-                            {},
-                            {},
-                            solve_times(report, sections.front())},
-                           folder));
+    figures.push_back(saved(draw_chart(time_chart(report, sections.front())),
+                            {"compute_times",
+                             "",
+                             "Solve times",
+                             "Wall-clock time of a solve, from the mean to the maximum over all laps, "
+                             "on a logarithmic axis. It depends on the machine and its load; every other "
+                             "figure repeats exactly.",
+                             {},
+                             {},
+                             solve_times(report, sections.front())},
+                            folder));
   }
   return figures;
 }

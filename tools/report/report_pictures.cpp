@@ -18,14 +18,7 @@ namespace {
 
 using namespace evaluation;
 
-constexpr Colour blue{0.12, 0.42, 0.78, 1}, orange{0.91, 0.45, 0.10, 1}, path_colour{0.62, 0.66, 0.73, 0.9},
-    obstacle_fill{0.32, 0.36, 0.44, 1};
-constexpr std::array<Colour, 6> palette = {{blue,
-                                            orange,
-                                            {0.20, 0.60, 0.36, 1},
-                                            {0.70, 0.25, 0.55, 1},
-                                            {0.55, 0.42, 0.20, 1},
-                                            {0.35, 0.35, 0.40, 1}}};
+constexpr Colour path_colour{0.62, 0.66, 0.73, 0.9}, obstacle_fill{0.32, 0.36, 0.44, 1};
 constexpr int long_side = 1300;
 
 ReportFigure save(const MapPicture& picture, ReportFigure figure, const std::filesystem::path& folder) {
@@ -115,8 +108,15 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
   std::vector<std::pair<std::string, Colour>> key;
   std::string facts = "lap " + std::to_string(lap + 1);
   std::string csv = "row,lap,x_m,y_m\n";
+  const auto& experiments = evaluation.experiments;
+  const auto colour_of = [&](std::size_t i) {
+    const bool same = pair.size() > 1 && experiments[static_cast<std::size_t>(pair[0])].method ==
+                                             experiments[static_cast<std::size_t>(pair[1])].method;
+    const Colour own = method_colour(experiments[static_cast<std::size_t>(pair[i])].method);
+    return same && i > 0 ? mixed(own, white, 0.45) : own;
+  };
   for (std::size_t i = lines.size(); i-- > 0;) {
-    const Colour colour = i == 0 ? blue : orange;
+    const Colour colour = colour_of(i);
     picture.line(lines[i].driven.points, colour, 4.5, false);
     for (const Collision& collision : lines[i].lap.first_collisions)
       picture.disc({collision.pose.x, collision.pose.y}, 11, colour);
@@ -124,7 +124,7 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const auto row = std::find_if(report.rows.begin(), report.rows.end(),
                                   [&](const ReportRow& r) { return r.experiment == pair[i]; });
-    key.emplace_back(row->name, i == 0 ? blue : orange);
+    key.emplace_back(row->name, colour_of(i));
     char words[80];
     std::snprintf(words, sizeof words, " \xC2\xB7 MS %.2f, %d collision%s", lines[i].lap.mean_sequence_cost,
                   lines[i].lap.collisions, lines[i].lap.collisions == 1 ? "" : "s");
@@ -175,20 +175,13 @@ ReportFigure contact_map(const Report& report, const maps::OccupancyGrid& map,
   MapPicture picture(cropped(map, path, 2.5), long_side);
   picture.line(path, path_colour, 2, evaluation.environment->course.closed, true);
   std::vector<std::pair<std::string, Colour>> key;
-  const auto colour_of = [&](const std::string& method) {
-    auto found = std::find_if(key.begin(), key.end(), [&](const auto& k) { return k.first == method; });
-    if (found == key.end()) found = key.insert(key.end(), {method, palette[key.size() % palette.size()]});
-    return found->second;
-  };
-  // As in the driven lines.
-  const bool with_ours = std::any_of(evaluation.experiments.begin(), evaluation.experiments.end(),
-                                     [](const Experiment& e) { return e.method == "svg_mppi"; });
-  if (with_ours) colour_of("svg_mppi");
-  for (const Experiment& e : evaluation.experiments) colour_of(e.method);
+  for (const Experiment& e : evaluation.experiments)
+    if (std::none_of(key.begin(), key.end(), [&](const auto& k) { return k.first == e.method; }))
+      key.emplace_back(e.method, method_colour(e.method));
   int count = 0;
   std::string csv = "experiment,lap,x_m,y_m\n";
   for (const LapRow& row : report.evaluated.rows) {
-    Colour colour = colour_of(evaluation.experiments[static_cast<std::size_t>(row.experiment)].method);
+    Colour colour = method_colour(evaluation.experiments[static_cast<std::size_t>(row.experiment)].method);
     colour.opacity = 0.75;
     for (const maps::Point& point : contact_points(row.contact_points)) {
       picture.disc(point, 8, colour);

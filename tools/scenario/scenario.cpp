@@ -73,7 +73,7 @@ void apply_settings(const std::vector<std::string>& assignments, const std::stri
   for (const std::string& assignment : assignments) {
     const auto equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw IoError("--set", 0, "'" + assignment + "' must be key=value");
+      throw CommandLineError("--set", assignment, "must be key=value");
     apply_setting(assignment.substr(0, equals), assignment.substr(equals + 1), method, configuration, lap);
   }
 }
@@ -81,19 +81,18 @@ void apply_settings(const std::vector<std::string>& assignments, const std::stri
 /// The configuration as its file has it.
 vehicle::Configuration file_configuration(const std::string& config) {
   const auto roots = vehicle::configuration_roots(program_folder());
-  return vehicle::load_configuration(vehicle::find_configuration(config, roots), roots);
+  const fs::path file = for_option("--config", [&] { return vehicle::find_configuration(config, roots); });
+  return vehicle::load_configuration(file, roots);
 }
 
 }  // namespace
 
 void apply_setting(const std::string& key, const std::string& value, const std::string& method,
                    vehicle::Configuration& configuration, evaluation::LapSettings& lap) {
-  try {
+  for_option("--set", [&] {
     if (!evaluation::set_world_option(lap, key, value))
       vehicle::set_option(configuration, key, value, method);
-  } catch (const std::invalid_argument& error) {
-    throw IoError("--set", 0, error.what());
-  }
+  });
 }
 
 fs::path program_folder() {
@@ -114,19 +113,21 @@ void add_scenario_options(Subcommand& command, ScenarioArguments& a) {
               "section.option=value, or option=value for the method's own; may be repeated (slalom options "
               "lists them)")
       .repeatable();
-  command.option("--obstacles", a.obstacles, "Number of parked cars on the course").show_default();
+  command.option("--obstacles", a.obstacles, "Number of parked cars on the course")
+      .range(0, 1000)
+      .show_default();
   command
       .option(
           "--opponents", a.opponents,
           "Number of cars that drive along the course line at half its speed; only with --evaluation true")
+      .range(0, 16)
       .show_default();
   command.option("--start", a.start,
                  "Start pose x,y,yaw of the car's centre of gravity, m, m, rad [start of the course]");
   add_latency_option(command, a.latency_ms);
-  command.flag(
-      "--hardware", a.hardware,
-      "Conditions of a real car: sensor noise, slip, localisation, a servo that differs from the model");
+  add_hardware_option(command, a.hardware);
   command.option("--threads", a.threads, "Number of solver threads; results do not depend on it")
+      .range(1, 1024)
       .show_default();
 }
 
@@ -138,6 +139,12 @@ void add_latency_option(Subcommand& command, double& latency_ms) {
       .show_default();
 }
 
+void add_hardware_option(Subcommand& command, bool& hardware) {
+  command.flag(
+      "--hardware", hardware,
+      "Conditions of a real car: sensor noise, slip, localisation, a servo that differs from the model");
+}
+
 void add_method_option(Subcommand& command, std::string& method) {
   std::string names;
   for (const char* name : solver_names()) names += (names.empty() ? "" : ", ") + std::string(name);
@@ -145,7 +152,7 @@ void add_method_option(Subcommand& command, std::string& method) {
 }
 
 vehicle::Configuration load_configuration(const ScenarioArguments& arguments, const std::string& method) {
-  solver_options(method);  // throws if the method is unknown
+  for_option("--method", [&] { return solver_options(method); });
   vehicle::Configuration configuration = file_configuration(arguments.config);
   evaluation::LapSettings world;
   apply_settings(arguments.set, method, configuration, world);
@@ -154,10 +161,11 @@ vehicle::Configuration load_configuration(const ScenarioArguments& arguments, co
 
 Scenario load_scenario(const ScenarioArguments& arguments, const std::string& method) {
   Scenario scenario;
-  const auto evaluation = evaluation::protocol_named(arguments.evaluation);
+  const auto evaluation =
+      for_option("--evaluation", [&] { return evaluation::protocol_named(arguments.evaluation); });
   scenario.configuration = load_configuration(arguments, method);
   const auto roots = vehicle::course_roots(program_folder());
-  scenario.folder = vehicle::find_course(arguments.course, roots);
+  scenario.folder = for_option("--course", [&] { return vehicle::find_course(arguments.course, roots); });
   scenario.environment = evaluation::load_environment(scenario.folder, evaluation, roots);
   scenario.lap.obstacles = arguments.obstacles;
   scenario.lap.opponents = arguments.opponents;

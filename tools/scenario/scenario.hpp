@@ -43,6 +43,8 @@ struct ScenarioArguments {
 void add_scenario_options(Subcommand& command, ScenarioArguments& arguments);
 /// Adds --latency-ms, in ms.
 void add_latency_option(Subcommand& command, double& latency_ms);
+/// Adds --hardware.
+void add_hardware_option(Subcommand& command, bool& hardware);
 /// Adds --method to `method`, with the names known.
 void add_method_option(Subcommand& command, std::string& method);
 

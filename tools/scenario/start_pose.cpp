@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "slalom/core/error.hpp"
+#include "tools/command_line/command.hpp"
 
 namespace slalom::tools {
 
@@ -16,7 +16,7 @@ maps::Pose parse_start(const std::string& text) {
     const auto [stopped, error] = std::from_chars(at, end, values[i]);
     const bool separated = i + 1 < values.size() ? stopped < end && *stopped == ',' : stopped == end;
     if (error != std::errc{} || !separated || !std::isfinite(values[i]))
-      throw IoError("--start", 0, "'" + text + "' must be x,y,yaw: three finite numbers, in m, m, rad");
+      throw CommandLineError("--start", text, "must be x,y,yaw: three finite numbers, in m, m, rad");
     at = stopped + 1;
   }
   return {values[0], values[1], values[2]};

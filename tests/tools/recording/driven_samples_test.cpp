@@ -1,5 +1,5 @@
 // The readers of driven laps: what a line must be, and how long it may be.
-#include "tools/recorded_drives/driven_samples.hpp"
+#include "tools/recording/driven_samples.hpp"
 
 #include <cmath>
 #include <fstream>
@@ -17,7 +17,7 @@ class DrivenSamples : public testing::TemporaryFolder {
     std::ofstream(folder_ / "lap.jsonl") << text;
     return (folder_ / "lap.jsonl").string();
   }
-  /// What is said of a recording of this text.
+  /// The error message for a recording with this text.
   std::string refusal(const std::string& text) const {
     try {
       read_driven_samples(written(text));

@@ -15,11 +15,9 @@
 #include "slalom/vehicle/racing/race_course.hpp"
 #include "src/evaluation/json.hpp"
 #include "support/temporary_folder.hpp"
-#include "tools/bags/ros_bag.hpp"
 #include "tools/evaluation/stored_evaluation.hpp"
-#include "tools/evaluation/tuning_job.hpp"
 #include "tools/racing/race_result.hpp"
-#include "tools/recorded_drives/driven_samples.hpp"
+#include "tools/recording/driven_samples.hpp"
 #include "vehicle/course_folder.hpp"
 #include "view/recording/replay.hpp"
 
@@ -67,9 +65,7 @@ const FileReader readers[] = {
     {"Settings", "settings.json", [](const fs::path& pipe) { load_evaluation(pipe.parent_path()); }},
     {"LapLog", "log.csv", [](const fs::path& pipe) { evaluation::read_lap_log(pipe); }},
     {"RaceResult", "race.json", [](const fs::path& pipe) { read_run(pipe.string(), Json::object(), 1); }},
-    {"Plan", "plan.json", [](const fs::path& pipe) { keep_plan(pipe, Json::object(), true); }},
     {"JsonLines", "lap.jsonl", [](const fs::path& pipe) { read_driven_samples(pipe.string()); }},
-    {"Bag", "drive.bag", [](const fs::path& pipe) { read_bag(pipe.string(), [](const BagMessage&) {}); }},
     {"Mcap", "lap.mcap", [](const fs::path& pipe) { view::load_replay(pipe.string()); }}};
 
 class RegularFiles : public ::testing::TestWithParam<FileReader> {

@@ -1,10 +1,10 @@
-#include "tools/recorded_drives/driven_line.hpp"
+#include "tools/recording/driven_line.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "slalom/core/error.hpp"
-#include "tools/recorded_drives/driven_samples.hpp"
+#include "tools/recording/driven_samples.hpp"
 
 namespace slalom::tools {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/live_view/replay_recording.hpp"
+#include "tools/recording/replay_recording.hpp"
 
 #include <chrono>
 #include <cstdio>

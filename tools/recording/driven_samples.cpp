@@ -1,12 +1,10 @@
-#include "tools/recorded_drives/driven_samples.hpp"
+#include "tools/recording/driven_samples.hpp"
 
 #include <limits>
 
 #include "slalom/core/error.hpp"
 #include "src/evaluation/json.hpp"
-#include "tools/bags/bag_drive.hpp"
-#include "tools/bags/ros_bag.hpp"
-#include "tools/json_lines/record_lines.hpp"
+#include "tools/recording/record_lines.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -19,20 +17,9 @@ double entry(const Json& tick, const char* key, std::size_t index) {
   return values[index].is_null() ? std::numeric_limits<double>::quiet_NaN() : values[index].get<double>();
 }
 
-/// The ticks of a bag.
-std::vector<vehicle::DrivenSample> read_bag_samples(const std::string& file) {
-  std::vector<vehicle::DrivenSample> samples;
-  for (const BagTick& tick : load_bag_drive(file).ticks) {
-    const maps::Pose& pose = tick.odometry.pose;
-    samples.push_back({tick.time, pose.x, pose.y, pose.yaw, tick.odometry.speed, tick.command.steer});
-  }
-  return samples;
-}
-
 }  // namespace
 
 std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& file) {
-  if (is_bag(file)) return read_bag_samples(file);
   RecordLines lines(file);
   std::vector<vehicle::DrivenSample> samples;
   std::string line;

@@ -1,4 +1,4 @@
-#include "tools/json_lines/record_lines.hpp"
+#include "tools/recording/record_lines.hpp"
 
 #include <filesystem>
 
