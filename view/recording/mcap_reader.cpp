@@ -121,7 +121,7 @@ Attachment parse_attachment(std::string_view content, const std::string& file) {
 std::vector<Attachment> indexed_attachments(File& file, std::string_view prefix) {
   const std::string summary = file.summary();
   std::vector<Attachment> found;
-  std::uint64_t end = 0;  // of the attachment before: each is read once, so all fit into the file's size
+  std::uint64_t end = 0;  // end of the attachment before: none is read twice
   for (Reader reader(summary, file.name()); !reader.done();) {
     const auto op = reader.get<Op>();
     Reader content(reader.take(reader.get<std::uint64_t>()), file.name());

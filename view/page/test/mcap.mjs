@@ -1,8 +1,8 @@
-// Reads recordings with other people's programs: node test/mcap.mjs PROGRAM [FILE.mcap]...
+// Reads recordings with the programs of others: node test/mcap.mjs PROGRAM [FILE.mcap]...
 // Without files it records a lap first, twice, and once with times.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, openSync, readFileSync, readSync, rmSync, statSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
@@ -11,174 +11,127 @@ import schemas from "@foxglove/schemas/jsonschema.js";
 
 const program = process.argv[2];
 const decompressHandlers = await loadDecompressHandlers();
+const decoder = new TextDecoder();
 
-/** The demands of a schema, without its explanations. */
+/** A schema without its explanations. */
 function bare(schema) {
   if (Array.isArray(schema)) return schema.map(bare);
   if (schema === null || typeof schema !== "object") return schema;
-  return Object.fromEntries(
-    Object.entries(schema)
-      .filter(
-        ([key, value]) => !(["title", "description", "$comment"].includes(key) && typeof value === "string"),
-      )
-      .map(([key, value]) => [key, bare(value)]),
-  );
+  const words = ["title", "description", "$comment"];
+  const demands = Object.entries(schema).filter(([key, v]) => !words.includes(key) || typeof v !== "string");
+  return Object.fromEntries(demands.map(([key, value]) => [key, bare(value)]));
 }
 
-/** Whether a value is what a schema demands; only what the schemas of recordings use. */
-function fits(value, schema, at) {
+const types = {
+  object: (v) => v !== null && typeof v === "object" && !Array.isArray(v),
+  array: Array.isArray,
+  number: (v) => typeof v === "number",
+  integer: Number.isInteger,
+  string: (v) => typeof v === "string",
+  boolean: (v) => typeof v === "boolean",
+  null: (v) => v === null,
+};
+
+/** Checks a value against a schema; knows the keywords that the schemas of recordings use. */
+function check(value, schema, at) {
   if (schema.oneOf)
     return assert.ok(
       schema.oneOf.some((s) => s.const === value),
-      `${at}: ${value} is not one of the choices`,
+      `${at}: ${value}`,
     );
-  const types = [].concat(schema.type ?? []);
-  const is = {
-    object: (v) => v !== null && typeof v === "object" && !Array.isArray(v),
-    array: Array.isArray,
-    number: (v) => typeof v === "number",
-    integer: Number.isInteger,
-    string: (v) => typeof v === "string",
-    boolean: (v) => typeof v === "boolean",
-    null: (v) => v === null,
-  };
+  const allowed = [schema.type ?? []].flat();
   assert.ok(
-    types.some((t) => is[t](value)),
-    `${at}: ${JSON.stringify(value)?.slice(0, 60)} is not of type ${types}`,
+    allowed.some((type) => types[type](value)),
+    `${at}: ${JSON.stringify(value)?.slice(0, 60)} is not of type ${allowed}`,
   );
   if (schema.minimum !== undefined) assert.ok(value >= schema.minimum, at);
   if (schema.maximum !== undefined) assert.ok(value <= schema.maximum, at);
   if (schema.contentEncoding === "base64") assert.match(value, /^[A-Za-z0-9+/]*={0,2}$/, at);
   for (const name of schema.required ?? []) assert.ok(name in value, `${at}.${name} is missing`);
   for (const [name, inner] of Object.entries(schema.properties ?? {}))
-    if (value && name in value) fits(value[name], inner, `${at}.${name}`);
-  if (schema.items) value.forEach((v, i) => fits(v, schema.items, `${at}[${i}]`));
+    if (name in value) check(value[name], inner, `${at}.${name}`);
+  if (schema.items) value.forEach((v, i) => check(v, schema.items, `${at}[${i}]`));
 }
 
-function readAsStream(bytes) {
+/** Counts the records of a file by their type, read as a stream. */
+function countOf(bytes) {
   const reader = new McapStreamReader({ validateCrcs: true, decompressHandlers, includeChunks: false });
-  const found = { schemas: new Map(), channels: new Map(), messages: [], attachments: [], metadata: [] };
-  const take = () => {
-    for (let record; (record = reader.nextRecord());) {
-      if (record.type === "Schema") found.schemas.set(record.id, record);
-      else if (record.type === "Channel") found.channels.set(record.id, record);
-      else if (record.type === "Message") found.messages.push(record);
-      else if (record.type === "Attachment") found.attachments.push(record);
-      else if (record.type === "Metadata") found.metadata.push(record);
-    }
-  };
+  const counts = {};
   for (let at = 0; at < bytes.length; at += 100_000) {
-    reader.append(bytes.subarray(at, at + 100_000));
-    take();
-  } // as from a socket
+    reader.append(bytes.subarray(at, at + 100_000)); // as from a socket
+    for (let record; (record = reader.nextRecord());) counts[record.type] = (counts[record.type] ?? 0) + 1;
+  }
   assert.ok(reader.done(), "the stream ends with the file");
-  assert.equal(reader.bytesRemaining(), 0);
+  return counts;
+}
+
+async function all(records) {
+  const found = [];
+  for await (const each of records) found.push(each);
   return found;
 }
 
-async function readByIndex(file) {
-  const descriptor = openSync(file),
-    size = statSync(file).size;
+async function checkFile(file, { times = false } = {}) {
+  const bytes = readFileSync(file);
   const readable = {
-    size: async () => BigInt(size),
-    read: async (offset, length) => {
-      const to = new Uint8Array(Number(length));
-      assert.equal(readSync(descriptor, to, 0, to.length, Number(offset)), to.length);
-      return to;
-    },
+    size: async () => BigInt(bytes.length),
+    read: async (offset, length) => bytes.subarray(Number(offset), Number(offset + length)),
   };
   const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers });
-  const messages = [];
-  for await (const message of reader.readMessages({ validateCrcs: true })) messages.push(message);
-  const some = [];
-  const middle = (reader.statistics.messageStartTime + reader.statistics.messageEndTime) / 2n;
-  for await (const message of reader.readMessages({
-    topics: ["/plan"],
-    startTime: middle,
-    validateCrcs: true,
-  }))
-    some.push(message);
-  const attachments = [],
-    metadata = [];
-  for await (const each of reader.readAttachments({ validateCrcs: true })) attachments.push(each);
-  for await (const each of reader.readMetadata()) metadata.push(each);
-  return { reader, messages, some, attachments, metadata };
-}
-
-async function check(file, { times = false } = {}) {
-  const stream = readAsStream(readFileSync(file)),
-    { reader, messages, some, attachments, metadata } = await readByIndex(file);
-  const statistics = reader.statistics;
+  const validateCrcs = true;
+  const messages = await all(reader.readMessages({ validateCrcs }));
+  const attachments = await all(reader.readAttachments({ validateCrcs }));
+  const [metadata] = await all(reader.readMetadata());
+  const { statistics, chunkIndexes, channelsById } = reader;
+  const counts = countOf(bytes);
+  assert.equal(counts.Message, messages.length, "as a stream and by index there are as many messages");
+  assert.equal(counts.Attachment, attachments.length);
   assert.equal(Number(statistics.messageCount), messages.length);
-  assert.equal(
-    stream.messages.length,
-    messages.length,
-    "as a stream and by index there are as many messages",
-  );
-  for (const [id, count] of statistics.channelMessageCounts)
-    assert.equal(Number(count), stream.messages.filter((m) => m.channelId === id).length);
-  assert.equal(reader.chunkIndexes.length, statistics.chunkCount);
-  assert.ok(reader.chunkIndexes.every((c) => c.compression === "zstd" && c.messageIndexOffsets.size > 0));
-  assert.equal(attachments.length, statistics.attachmentCount);
-  assert.equal(stream.attachments.length, attachments.length);
-  assert.equal(metadata.length, 1);
-  JSON.parse(metadata[0].metadata.get("settings"));
-  assert.ok(some.length > 0 && some.every((m) => reader.channelsById.get(m.channelId).topic === "/plan"));
+  assert.equal(statistics.attachmentCount, attachments.length);
+  assert.equal(statistics.chunkCount, chunkIndexes.length);
+  assert.ok(chunkIndexes.every((c) => c.compression === "zstd" && c.messageIndexOffsets.size > 0));
+  JSON.parse(metadata.metadata.get("settings"));
+  const middle = (statistics.messageStartTime + statistics.messageEndTime) / 2n;
+  const some = await all(reader.readMessages({ topics: ["/plan"], startTime: middle, validateCrcs }));
+  assert.ok(some.length > 0 && some.every((m) => channelsById.get(m.channelId).topic === "/plan"));
 
-  const topics = [...reader.channelsById.values()].map((c) => c.topic);
+  const topics = [...channelsById.values()].map((c) => c.topic);
   assert.equal(topics.includes("/wall_clock"), times);
-  for (const schema of reader.schemasById.values()) {
+  const parsed = new Map();
+  for (const [id, schema] of reader.schemasById) {
     assert.equal(schema.encoding, "jsonschema");
-    const ours = JSON.parse(new TextDecoder().decode(schema.data)),
-      [maker, name] = schema.name.split(".");
-    if (maker === "foxglove") assert.deepEqual(ours, bare(schemas[name]), schema.name);
-    schema.parsed = ours;
+    parsed.set(id, JSON.parse(decoder.decode(schema.data)));
+    const [maker, name] = schema.name.split(".");
+    if (maker === "foxglove") assert.deepEqual(parsed.get(id), bare(schemas[name]), schema.name);
   }
-  const decoder = new TextDecoder();
-  const estimates = [
-    "slip_estimate",
-    "grip_used",
-    "friction_estimate",
-    "friction_relied_on",
-    "steering_gain_estimate",
-    "delay_estimate",
-  ];
+  const estimates = ["slip_estimate", "grip_used", "friction_estimate", "delay_estimate"];
   for (const message of messages) {
-    const channel = reader.channelsById.get(message.channelId);
-    assert.equal(channel.messageEncoding, "json");
+    const { topic, schemaId, messageEncoding } = channelsById.get(message.channelId);
+    assert.equal(messageEncoding, "json");
     const content = JSON.parse(decoder.decode(message.data));
-    fits(content, reader.schemasById.get(channel.schemaId).parsed, channel.topic);
-    if (channel.topic === "/tick")
-      for (const name of estimates) assert.equal(typeof content[name], "number", `/tick.${name}`);
+    check(content, parsed.get(schemaId), topic);
+    if (topic !== "/tick") continue;
+    for (const name of estimates) assert.equal(typeof content[name], "number", `/tick.${name}`);
   }
-  const counts = `${messages.length} messages, ${topics.length} topics, ${attachments.length} attachments`;
-  console.log(`ok    ${file.split("/").at(-1)}: ${statSync(file).size} bytes, ${counts}`);
+  const found = `${messages.length} messages, ${topics.length} topics, ${attachments.length} attachments`;
+  console.log(`ok    ${file.split("/").at(-1)}: ${bytes.length} bytes, ${found}`);
 }
 
-let files = process.argv.slice(3);
-if (files.length) for (const file of files) await check(file);
-else {
+const files = process.argv.slice(3);
+for (const file of files) await checkFile(file);
+if (!files.length) {
   const folder = mkdtempSync(join(tmpdir(), "slalom-mcap-"));
   const record = (name, ...more) => {
     const file = join(folder, name);
-    execFileSync(
-      program,
-      ["drive", "--course", "wren", "--obstacles", "2", "--seed", "3", "--record", file, ...more],
-      { stdio: ["ignore", "ignore", "inherit"] },
-    );
+    const drive = ["drive", "--course", "wren", "--obstacles", "2", "--seed", "3", "--record", file];
+    execFileSync(program, [...drive, ...more], { stdio: ["ignore", "ignore", "inherit"] });
     return file;
   };
-  const first = record("first.mcap"),
-    second = record("second.mcap"),
-    timed = record("timed.mcap", "--record-times"),
-    laps = record("laps.mcap", "--laps", "2", "--method", "mppi");
-  await check(first);
-  await check(timed, { times: true });
-  await check(laps);
-  assert.ok(
-    readFileSync(first).equals(readFileSync(second)),
-    "the same seed recorded twice gives the same bytes",
-  );
+  const [first, second] = [record("first.mcap"), record("second.mcap")];
+  await checkFile(first);
+  await checkFile(record("timed.mcap", "--record-times"), { times: true });
+  await checkFile(record("laps.mcap", "--laps", "2", "--method", "mppi"));
+  assert.ok(readFileSync(first).equals(readFileSync(second)), "the same seed gives the same bytes");
   console.log("ok    the same seed recorded twice gives the same bytes");
   rmSync(folder, { recursive: true });
 }
