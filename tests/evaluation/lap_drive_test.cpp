@@ -99,11 +99,12 @@ TEST(LapDrive, ACopyGoesOnWithTheSameBits) {
     return all;
   };
   LapSetup setup = lap("svg_mppi", among_all);
-  auto environment = std::make_shared<Environment>(*setup.environment);
-  environment->timeout = 2;
+  auto environment =
+      std::make_shared<Environment>(*load_environment(SLALOM_COURSES "/wren", Protocol::true_physics, {}));
+  environment->timeout = 0.8;
   setup.environment = environment;
   LapDrive drive(setup, 7);
-  for (int i = 0; i < 40; ++i) drive.step();
+  for (int i = 0; i < 16; ++i) drive.step();
   LapDrive copy = drive, assigned(lap("mppi"), 1);
   assigned = copy;
   const LapResult whole = drive.finish();
