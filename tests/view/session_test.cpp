@@ -65,6 +65,10 @@ TEST_F(ViewSession, GoesBackToTheStateOfEveryAction) {
   for (const char* name : {"x", "y", "speed", "samples", "minimum_cost"})
     EXPECT_EQ(scalar(before, name), scalar(again, name)) << name;
   EXPECT_EQ(scalar(ghost, "x"), scalar(FrameReader(again).block(Block::ghost_frame), "x"));
+  tell({{"do", "seek"}, {"tick", 62}});
+  const double shown = scalar(frame(62), "x");
+  tell({{"do", "nudge"}, {"left", 0.01}});
+  EXPECT_NEAR(scalar(step_to_newest(63), "x"), shown, 0.3) << "from where the car is shown";
   tell({{"do", "seek"}, {"tick", 52}});
   EXPECT_EQ(scalar(step_to_newest(58), "samples"), 128) << "before the option was set";
   tell({{"do", "seek"}, {"tick", 45}});

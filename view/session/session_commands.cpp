@@ -60,6 +60,7 @@ void Session::obey(std::uint64_t client, const std::string& what, const Json& co
   if (client != driving_client_)
     throw std::invalid_argument("another page drives this car; take over to change it");
   is_state_changed_ = true;
+  if (what == "nudge" && viewed_ >= 0) perform({});  // it is relative to where the car is shown
   if (const auto action = edit_of(what, command, std::as_const(drives_->car).world().state(0)))
     edit(*action, field::integer(command, "drag", 0));
   else if (!obey_transport(what, command) && !obey_options(what, command))
