@@ -1,4 +1,4 @@
-// Builds the page into one compressed file, which the program contains; `--check` compares instead of writing.
+// Builds the page into one compressed file, which the program contains; `--check` compares instead.
 import { createHash } from "node:crypto";
 import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { build } from "esbuild";
@@ -23,7 +23,7 @@ const entry = '<script type="module" src="/src/main.ts"></script>';
 const source = readFileSync("index.html", "utf8").replace(/\n\s*/g, "\n");
 if (!source.includes(entry)) throw new Error(`index.html must contain ${entry}`);
 const script = built(".js").replace(/<\/script/g, "<\\/script");
-// Only this script may run, neither one that a file brings nor a handler in HTML. The server sends further rules.
+// Only this script may run, neither one that a file brings nor a handler in HTML.
 const policy = [
   "default-src 'none'",
   `script-src 'sha256-${sha256(script, "base64")}'`,
