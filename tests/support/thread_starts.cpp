@@ -5,7 +5,6 @@
 
 #include <atomic>
 #include <cerrno>
-#include <cstdlib>
 
 namespace slalom::testing {
 namespace {
@@ -15,10 +14,7 @@ constexpr int any_number = 1 << 20;
 /// Threads that can still be started. A local variable, since other libraries may start one before the
 /// variables of this file are there.
 std::atomic<int>& allowed() {
-  static std::atomic<int> count{[] {
-    const char* given = std::getenv("SLALOM_TESTS_THREAD_STARTS");
-    return given ? static_cast<int>(std::strtol(given, nullptr, 10)) : any_number;
-  }()};
+  static std::atomic<int> count{any_number};
   return count;
 }
 

@@ -4,8 +4,7 @@ namespace slalom::testing {
 
 /// While it exists, the system starts only `count` more threads; pthread_create then fails with EAGAIN. A
 /// test program that uses it links `slalom_test_thread_starts`, whose pthread_create replaces that of the
-/// system. For another program, SLALOM_TESTS_THREAD_STARTS gives the number if LD_PRELOAD names the library
-/// `slalom_test_few_threads`.
+/// system.
 class FewThreads {
  public:
   explicit FewThreads(int count) noexcept;
