@@ -62,7 +62,7 @@ bool read(const std::string& file, bool truncated) {
 bool run(std::string_view bytes) {
   bool valid = true;
   for (const bool truncated : {false, true}) {
-    valid &= read(scratch_file("laps.csv", bytes), truncated);
+    read(scratch_file("laps.csv", bytes), truncated);
     valid &= read(scratch_file("laps.csv", with_checksums(bytes)), truncated);
   }
   return valid;
