@@ -27,7 +27,7 @@ std::vector<LapTask> open_tasks(const Evaluation& evaluation, const LapStore& st
   return tasks;
 }
 
-void drive_until_empty(const Evaluation& evaluation, LapQueue& queue,
+void drive_until_empty(const Evaluation& evaluation, EvaluationQueue& queue,
                        const std::atomic<bool>& cancel) noexcept {
   try {
     LapSetup setup;
@@ -49,7 +49,8 @@ void drive_until_empty(const Evaluation& evaluation, LapQueue& queue,
 
 }  // namespace
 
-int drive_laps(const Evaluation& evaluation, LapQueue& queue, int jobs, const std::atomic<bool>& cancel) {
+int drive_laps(const Evaluation& evaluation, EvaluationQueue& queue, int jobs,
+               const std::atomic<bool>& cancel) {
   return run_in_threads(jobs, [&] { drive_until_empty(evaluation, queue, cancel); });
 }
 

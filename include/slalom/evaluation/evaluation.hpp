@@ -54,18 +54,12 @@ struct LapTask {
   int lap = 0;         ///< from 0
 };
 
-/// Hands out laps to be driven and takes the results. Called by several threads at a time.
-class LapQueue {
- public:
-  virtual ~LapQueue() = default;
-  virtual std::optional<LapTask> next() = 0;        ///< the next lap; none when all have been handed out
-  virtual void keep(const LapRow& row) = 0;         ///< a lap was driven
-  virtual void fail(std::exception_ptr error) = 0;  ///< a lap could not be driven
-};
+class EvaluationQueue;
 
 /// Drives laps on `jobs` threads until `queue` is empty or `cancel` is true. The results do not depend on
 /// which thread drives which lap. Returns how many threads worked: fewer if the system could not start all.
-int drive_laps(const Evaluation& evaluation, LapQueue& queue, int jobs, const std::atomic<bool>& cancel);
+int drive_laps(const Evaluation& evaluation, EvaluationQueue& queue, int jobs,
+               const std::atomic<bool>& cancel);
 
 /// The settings of an evaluation, as JSON text, with their checksum.
 std::string with_checksum(const std::string& settings);
@@ -105,8 +99,8 @@ class LapStore {
   std::ofstream journal_;
 };
 
-/// The laps that a store does not have yet, in order.
-class EvaluationQueue final : public LapQueue {
+/// The laps that a store does not have yet, in order. Several threads may call its functions.
+class EvaluationQueue {
  public:
   /// `on_progress` is called after every lap; `cancel` is read before each lap is handed out. All arguments
   /// must outlive the queue.
@@ -114,10 +108,9 @@ class EvaluationQueue final : public LapQueue {
                   std::function<void(const EvaluationProgress&)> on_progress,
                   const std::atomic<bool>& cancel);
 
-  std::optional<LapTask> next() override;
-  /// Receives a lap that was driven.
-  void keep(const LapRow& row) override;
-  void fail(std::exception_ptr error) override;
+  std::optional<LapTask> next();        ///< the next lap; none when all have been handed out
+  void keep(const LapRow& row);         ///< a lap was driven
+  void fail(std::exception_ptr error);  ///< a lap could not be driven
 
   /// To be called when no thread drives any more. Rethrows the first error; otherwise completes the store and
   /// returns true if all laps are there.
