@@ -23,7 +23,7 @@ float not_above(double bound) {
   return f > bound ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
 }
 
-/// Throws unless `bound` is finite and not so large that sums of its squares overflow, or `none`.
+/// Throws unless `bound` is `none`, or finite and so small that sums of its squares do not overflow.
 void require_bound(const char* option, double bound, double none) {
   if (bound == none || std::abs(bound) <= detail::finite) return;
   throw std::invalid_argument(std::string(option) + ": " + to_text(bound) + " must be in [-1e12, 1e12], or " +

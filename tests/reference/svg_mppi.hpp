@@ -5,16 +5,16 @@
 #include <functional>
 #include <vector>
 
-/// SVG-MPPI as Honda et al. print it (ICRA 2024), in plain loops: the symbols and the equation numbers in
-/// brackets are theirs. Tests compare the solver with it.
+/// SVG-MPPI as Honda et al. print it (ICRA 2024), in plain loops, with their symbols and, in brackets, their
+/// equation numbers. Tests compare the solver with it.
 namespace slalom::reference {
 
-/// A control sequence or one value for each of its entries: input i of step tau is entry tau * m + i.
+/// A control sequence, or one value for each of its entries. Entry tau * m + i is input i of step tau.
 using Sequence = std::vector<double>;
 
 /// The cost S(V) of a control sequence.
 using SequenceCost = std::function<double(const Sequence&)>;
-/// A standard normal value for entry r of sample i around guide k in iteration l; k = -1: a sample of MPPI.
+/// A standard normal value for entry r of sample i around guide k in iteration l. k = -1: a sample of MPPI.
 using Normal = std::function<double(int l, int k, int i, int r)>;
 
 struct SvgMppi {
@@ -62,7 +62,7 @@ struct SvgMppi {
       for (int r = 0; r < rows; ++r) U_hat[r] += w[k] * V[k][r];  // (7)
   }
 
-  /// The weights w(V) of samples, whose sum is 1 (8).
+  /// Returns the weights w(V) of samples (8). Their sum is 1.
   std::vector<double> weights(const std::vector<Sequence>& V, const SequenceCost& S,
                               const Sequence& variance) const {
     std::vector<double> log_w;
@@ -73,7 +73,7 @@ struct SvgMppi {
     return normalised(log_w);
   }
 
-  /// Values whose logarithms are given but for a common summand, and whose sum is 1.
+  /// Returns exp(log_w), scaled so that the sum is 1.
   static std::vector<double> normalised(std::vector<double> log_w) {
     const double largest = *std::max_element(log_w.begin(), log_w.end());
     double eta = 0;
@@ -82,7 +82,7 @@ struct SvgMppi {
     return log_w;
   }
 
-  /// The variances of Gaussians fitted to the path of the best guide: a are its inputs, b is q* there (13).
+  /// The variances of Gaussians fitted to the path of the best guide (13): a are its inputs, b is q* there.
   Sequence variances(const std::vector<Sequence>& path, const SequenceCost& S) const {
     std::vector<double> q;  // q* of each point of the path (5)
     for (const Sequence& V : path) {
@@ -99,8 +99,8 @@ struct SvgMppi {
     return fitted;
   }
 
-  /// -1 / (2 z2) of the parabola z0 + z1 a + z2 a^2 nearest to ln b, with weights b^2 (Guo 2011); infinite if
-  /// it is convex. Densities below 1e-10 count as 1e-10.
+  /// Fits the parabola z0 + z1 a + z2 a^2 to ln b with weights b^2 (Guo 2011). Returns -1 / (2 z2), or
+  /// infinity if the parabola is convex. Densities below 1e-10 count as 1e-10.
   static double variance(const std::vector<double>& a, const std::vector<double>& b) {
     double s[5] = {}, t[3] = {};  // sums of b^2 a^n and of b^2 a^n ln b
     for (std::size_t j = 0; j < a.size(); ++j) {
@@ -108,7 +108,7 @@ struct SvgMppi {
       for (int n = 0; n < 5; ++n) s[n] += y * y * std::pow(a[j], n);
       for (int n = 0; n < 3; ++n) t[n] += y * y * std::pow(a[j], n) * std::log(y);
     }
-    const auto determinant = [&](const double* c) {  // of the normal equations with c for the last column
+    const auto determinant = [&](const double* c) {  // of the normal equations, with c as the last column
       return s[0] * (s[2] * c[2] - s[3] * c[1]) - s[1] * (s[1] * c[2] - s[3] * c[0]) +
              s[2] * (s[1] * c[1] - s[2] * c[0]);
     };

@@ -4,7 +4,7 @@
 
 #include "slalom/core/simd_operations.hpp"
 
-/// The one mechanism by which batch loops run at the full width of the processor.
+/// Runs batch loops at the full vector width of the processor.
 ///
 /// A kernel is a struct with one static function template over the instruction set (`simd::Generic`, `Sse4`,
 /// `Avx2`, `Avx512`), marked `SLALOM_KERNEL`:
@@ -24,8 +24,8 @@
 /// carries the target attributes of that set. Rules for a kernel:
 ///  - The signature does not depend on `Target`, and `run` is not overloaded.
 ///  - Functions that `run` calls are templates over `Target` or over a pack, marked `SLALOM_INLINE`, or
-///    `SLALOM_INLINE_CALLS` where they call a function that is not ours (of a user's problem) or an operation
-///    of `simd::Operations`. clang inlines only functions with this mark; g++ inlines everything.
+///    `SLALOM_INLINE_CALLS` if they call a function of a user's problem or an operation of
+///    `simd::Operations`. clang inlines only functions with this mark; g++ inlines everything.
 ///  - Packs are passed by reference and returned by value; no pack is part of the signature of `run`.
 ///  - A kernel whose results must have the same bits on every instruction set uses packs of
 ///    `simd::Unfused<Target>`.
@@ -69,9 +69,9 @@ using FunctionsOf = decltype(functions_of<Kernel>(&Kernel::template run<Generic>
 template <class Kernel>
 using KernelPointer = typename detail::FunctionsOf<Kernel>::Pointer;
 
-/// A kernel's function for an instruction set, which the processor has to support. Code that is compiled with
-/// SLALOM_ONLY_TARGET (avx512, avx2, sse4 or generic) has kernels for that instruction set alone, which takes
-/// a fraction of the time, and throws std::logic_error for another one: for tests.
+/// Returns a kernel's function for an instruction set, which the processor must support. Tests define
+/// SLALOM_ONLY_TARGET (avx512, avx2, sse4 or generic) to compile faster: they have kernels only for that
+/// instruction set, and asking for another one throws std::logic_error.
 template <class Kernel>
 KernelPointer<Kernel> kernel(Target target) {
   using Functions = detail::FunctionsOf<Kernel>;
@@ -97,7 +97,8 @@ KernelPointer<Kernel> kernel(Target target) {
 #endif
 }
 
-/// A kernel's function for `active_target()`, chosen at the first call. Throws as `active_target()` does.
+/// Returns a kernel's function for `active_target()`, chosen at the first call. Throws as `active_target()`
+/// does.
 template <class Kernel>
 KernelPointer<Kernel> kernel() {
   static const KernelPointer<Kernel> chosen = kernel<Kernel>(active_target());

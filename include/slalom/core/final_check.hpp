@@ -21,16 +21,17 @@ struct InputBounds {
   std::vector<double> low;   ///< least value of each input
   std::vector<double> high;  ///< largest value of each input
 
-  /// The value in the bounds of `input` that is nearest to `value`; to 0 where `value` is not a number.
+  /// Returns the value within the bounds of `input` that is nearest to `value`, or to 0 if `value` is not a
+  /// number.
   double nearest(std::size_t input, double value) const noexcept {
     return std::clamp(std::isnan(value) ? 0.0 : value, low[input], high[input]);
   }
 };
 
 /// Makes the inputs `u` of a step valid: finite, within the bounds, and no further than `reach(input)` from
-/// those of the step before. A value that is not finite becomes that of the step before, and a reach that is
-/// no number at least 0 becomes 0. `previous` must be valid and becomes `u`. Returns the number of values
-/// that were changed.
+/// those of the step before. A value that is not finite becomes that of the step before. A reach that is
+/// negative or not a number counts as 0. `previous` must be valid and becomes `u`. Returns the number of
+/// values that were changed.
 template <class Reach>
 int check_inputs(std::span<double> u, std::span<double> previous, const InputBounds& bounds,
                  Reach&& reach) noexcept {
@@ -46,8 +47,8 @@ int check_inputs(std::span<double> u, std::span<double> previous, const InputBou
   return changed;
 }
 
-/// Makes a cost finite: where it is infinite or not a number it becomes the largest double. Returns whether
-/// it was changed, 1 or 0.
+/// Replaces a cost that is infinite or not a number by the largest double. Returns 1 if it was replaced,
+/// otherwise 0.
 inline int check_cost(double& cost) noexcept {
   if (std::isfinite(cost)) return 0;
   cost = std::numeric_limits<double>::max();

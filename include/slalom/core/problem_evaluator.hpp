@@ -17,7 +17,7 @@ inline constexpr bool samples_itself = requires(const P& p, SequenceBatch& noise
 
 }  // namespace detail
 
-/// Evaluates batches of a problem struct, at the full width of the processor it runs on.
+/// Evaluates batches of a problem struct at the full vector width of the processor.
 template <Problem P>
 class ProblemEvaluator final : public BatchEvaluator, private Sampler {
  public:
@@ -80,9 +80,9 @@ class ProblemEvaluator final : public BatchEvaluator, private Sampler {
 template <Problem P>
 using CostTermsOf = detail::CostTermsOf<P>;
 
-/// The predicted states of one control sequence, `steps` inputs u[step][input]: x[0] = `state` and the
-/// `steps` that follow, in double; where `terms` is given, the parts of its cost. Returns the cost of the
-/// sequence in double, with its collision. Rates are not limited: see hold_input_rates.
+/// Predicts the states of a control sequence u[step][input] in double: x[0] is `state`, and x[1 ... steps]
+/// follow. Returns the cost of the sequence and whether it collides, and writes the parts of the cost to
+/// `terms`. `x` and `terms` may be null. Does not limit rates: see hold_input_rates.
 template <Problem P>
 Cost<double> predict(const P& problem, const detail::StateOf<P, double>& state,
                      const Input<double, P::inputs>* u, int steps, detail::StateOf<P, double>* x,

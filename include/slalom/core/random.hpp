@@ -9,8 +9,8 @@
 
 namespace slalom {
 
-/// Names one stream of random numbers: the same key gives the same numbers, whoever draws them, in whatever
-/// order and on however many threads.
+/// Identifies a stream of random numbers. The same key gives the same numbers, in any order and on any number
+/// of threads.
 struct RandomKey {
   std::uint64_t seed = 0;    ///< seed of the random numbers
   std::uint64_t stream = 0;  ///< for instance a count of solves and stages
@@ -18,9 +18,9 @@ struct RandomKey {
 
 namespace detail {
 
-/// Threefry-4x32 with 12 rounds (Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011, which
-/// finds that they pass all tests of BigCrush): four words from a counter of four words and a key. `Word`
-/// is a 32-bit unsigned integer or a vector of them.
+/// Returns four random words for a counter of four words and a key: Threefry-4x32 with 12 rounds, which
+/// passes all tests of BigCrush (Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3", SC 2011).
+/// `Word` is a 32-bit unsigned integer or a vector of them.
 template <class Word>
 inline std::array<Word, 4> threefry(Word x0, Word x1, Word x2, Word x3,
                                     const std::array<std::uint32_t, 4>& key) {
@@ -57,14 +57,14 @@ inline std::array<Word, 4> threefry(Word x0, Word x1, Word x2, Word x3,
 
 }  // namespace detail
 
-/// Random numbers one at a time, for everything that is not a batch of samples. Meets
-/// UniformRandomBitGenerator.
+/// Draws random numbers one at a time. Satisfies the concept std::uniform_random_bit_generator. For batches
+/// of samples see `fill_normal`.
 class RandomStream {
  public:
   using result_type = std::uint32_t;  ///< type of the numbers
 
-  /// Starts at the first number of `key`. A mirrored stream is the antithetic one: where the other gives u
-  /// and z, its uniform values are 1 - u and its normal values -z.
+  /// Starts at the first number of `key`. A mirrored stream is antithetic: it gives 1 - u and -z where the
+  /// plain one gives the uniform value u and the normal value z.
   explicit RandomStream(RandomKey key, bool mirrored = false) noexcept : key_(key), mirrored_(mirrored) {}
 
   /// Smallest value.
@@ -105,8 +105,8 @@ class RandomStream {
 };
 
 /// Fills the samples `first` ... `first + count - 1` (and the padding after them) of every row of `batch`
-/// with standard normal values. `first` is a multiple of `simd::padding`. A value depends on the key, its row
-/// and its sample index alone. Threefry and the Box-Muller transform in SIMD lanes; tails reach 6.6.
+/// with standard normal values. `first` is a multiple of `simd::padding`. A value depends only on the key,
+/// its row and its sample index. The largest magnitude is 6.6.
 void fill_normal(SequenceBatch& batch, int first, int count, RandomKey key) noexcept;
 
 }  // namespace slalom

@@ -7,16 +7,16 @@
 #include "slalom/core/problem_parts.hpp"
 #include "slalom/core/sequence_batch.hpp"
 
-/// The rollout loop: one sample per lane, the state in registers, several packs interleaved so that their
-/// latencies hide behind each other.
+/// The rollout loop: one sample per lane, and the state in registers. Several packs are interleaved, so that
+/// each computes while others wait.
 namespace slalom::detail {
 
-// A state may hold arrays, which this list of all scalars fills without braces of their own.
+// A state may hold arrays. This list of all scalars fills them without inner braces.
 #if defined(__clang__)
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Wmissing-braces"
 #endif
-/// A state whose scalars are all given as float values, spread over the lanes of `T`.
+/// Returns a state whose scalars are the values `x`, each in all lanes of `T`.
 template <class P, class T, std::size_t... I>
 SLALOM_INLINE StateOf<P, T> broadcast_state(const float* x, std::index_sequence<I...>) {
   return StateOf<P, T>{T(x[I])...};
@@ -35,7 +35,7 @@ struct NoInput {};
 template <class P, class F>
 using HeldInput = std::conditional_t<limits_rates<P>, InputOf<P, F>, NoInput>;
 
-/// A pack of rollouts on its way.
+/// The rollouts of one pack while they run.
 template <class P, class F>
 struct Rollout {
   StateOf<P, F> x;
@@ -72,7 +72,7 @@ struct InputRows {
 #define SLALOM_UNROLL _Pragma("GCC unroll 8")
 #endif
 
-/// Start of the rollouts of a batch from `initial`, `start_size` values.
+/// Makes the start of the rollouts of a batch from the `start_size` values `initial`.
 template <class P, class F>
 SLALOM_INLINE_CALLS RolloutStart<P, F> rollout_start(const P& problem, const float* initial) {
   RolloutStart<P, F> start;
@@ -87,9 +87,9 @@ SLALOM_INLINE_CALLS RolloutStart<P, F> rollout_start(const P& problem, const flo
   return start;
 }
 
-/// The rollouts of `packs` packs of samples from `sample` on, all in flight at once, so that their latencies
-/// hide behind each other. With `ahead` 1, what a pack sees is looked up while the pack before it takes its
-/// step, since a processor does not see past one pack's step to the loads of the next.
+/// Computes the rollouts of `packs` packs of samples, beginning at `sample`. The packs advance together, so
+/// that each computes while others wait. With `ahead` 1, the look-up of a pack is made while the pack before
+/// it takes its step: a processor does not look so far ahead by itself.
 template <int packs, int ahead, class P, class F>
 SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& start, const InputRows& rows,
                                   int sample, float* costs, std::uint8_t* collided) {
@@ -129,7 +129,8 @@ SLALOM_INLINE_CALLS void roll_out(const P& problem, const RolloutStart<P, F>& st
 
 #undef SLALOM_UNROLL
 
-/// The rollouts of the samples from `sample` to `end`: `packs` packs at a time, the rest one by one.
+/// Computes the rollouts of the samples from `sample` to `end`, `packs` packs at a time and the rest one by
+/// one.
 template <int packs, int ahead, class P, class F>
 SLALOM_INLINE_CALLS void roll_out_all(const P& problem, const RolloutStart<P, F>& start,
                                       const InputRows& rows, int sample, int end, float* costs,
@@ -139,8 +140,8 @@ SLALOM_INLINE_CALLS void roll_out_all(const P& problem, const RolloutStart<P, F>
   for (; sample < end; sample += F::lanes) roll_out<1, 0>(problem, start, rows, sample, costs, collided);
 }
 
-/// The rollouts of the samples `first` ... `first + count - 1`, with as many packs in flight as suit the
-/// instruction set (docs/performance.md) or, where steps are long, in pairs. `initial` holds `start_size`
+/// Computes the rollouts of the samples `first` ... `first + count - 1`, as many packs at a time as suit the
+/// instruction set (docs/performance.md); if steps are long, a pair of packs. `initial` holds `start_size`
 /// values.
 template <class Target, class P>
 SLALOM_INLINE_CALLS void roll_out_range(const P& problem, const float* initial, const InputRows& rows,

@@ -8,8 +8,8 @@ namespace slalom {
 /// A fixed set of threads that works through numbered tasks. The caller works too: a pool of one has no other
 /// thread, and running tasks on it takes no lock and makes no system call.
 ///
-/// Which thread runs which task is open, so tasks must not depend on it: give each task a slot of its own for
-/// its partial result and combine the slots in order.
+/// Any thread may run any task. Give each task its own slot for its partial result and combine the slots in
+/// order.
 class ThreadPool {
  public:
   /// `threads` in [1, 1024], the caller's included. Throws std::invalid_argument otherwise, and
@@ -22,9 +22,9 @@ class ThreadPool {
   /// Number of threads that work on a call, the caller included.
   int threads() const noexcept { return threads_; }
 
-  /// Calls `task(i)` for every i in [0, count) and returns when all have ended. No allocation; tasks may not
-  /// throw. Workers wait 50 us before they sleep on a futex. While the workers serve one caller, another caller
-  /// runs its tasks alone.
+  /// Calls `task(i)` for every i in [0, count) and returns when all have ended. Does not allocate; tasks must
+  /// not throw. Workers wait 50 us before they sleep on a futex. While the workers serve one caller, another
+  /// caller runs its tasks alone.
   template <class Task>
   void run(int count, Task&& task) noexcept {
     using Plain = std::remove_reference_t<Task>;

@@ -22,7 +22,7 @@
 namespace slalom {
 
 /// A batch evaluator that a `Controller` can own in place of a problem: one that evaluates batches on a GPU,
-/// in a physics engine or by hand-written loops. Beside what `BatchEvaluator` asks for it has
+/// in a physics engine or by hand-written loops. In addition to the functions of `BatchEvaluator` it has
 ///
 ///     struct State { double x, y, yaw; };               // `double` members only
 ///     static constexpr int input_count = 2;             // result of inputs()
@@ -45,7 +45,7 @@ concept StateEvaluator = std::derived_from<E, BatchEvaluator> && requires(E& e, 
 
 namespace detail {
 
-/// The facts about the problem or the evaluator that a controller owns.
+/// Properties of the problem or the evaluator that a controller owns.
 template <class P>
 struct Controlled {
   static_assert(check_problem<P>());
@@ -76,34 +76,33 @@ struct Controlled<E> {
 
 }  // namespace detail
 
-/// The answer of a controller: the inputs to apply and the states they are predicted to lead to. Its spans
-/// point into the controller and stay valid until the next solve or reset.
+/// The answer of a controller: the inputs to apply and the predicted states. Its spans point into the
+/// controller and stay valid until the next solve or reset.
 template <class P>
 struct Plan {
   using State = typename detail::Controlled<P>::State;  ///< the problem's state in double
 
   Status status = Status::ok;                                            ///< how the solve ended
   std::span<const Input<double, detail::Controlled<P>::inputs>> inputs;  ///< [horizon]; the first is for now
-  /// [horizon + 1]; the first is the state given. Empty with an evaluator that does not predict.
+  /// [horizon + 1]; the first is the state given. Empty if the evaluator has no `predict`.
   std::span<const State> states;
   double cost = 0;                       ///< cost of the plan
   bool collided = false;                 ///< whether the plan collides
   std::span<const CostTerm> cost_terms;  ///< the parts of the cost, which sum to it
   const SolveResult& stats;              ///< samples, weights, guides, times ...
-  /// Values that the final check changed in this solve: inputs of the solver that were not within bounds or
-  /// rates, costs and states that were not finite, and values given to `set_previous_input` that could not be
-  /// taken. 0 in normal operation.
+  /// Number of values that the final check changed in this solve: inputs outside the bounds or rates, costs
+  /// and states that are not finite, and invalid values given to `set_previous_input`. 0 in normal operation.
   int corrections = 0;
 };
 
-/// A problem, or an evaluator of one's own (`StateEvaluator`), and a solver that solves it over and over:
+/// Joins a problem, or your own evaluator (`StateEvaluator`), with a solver, and solves it again and again:
 ///
 ///     slalom::SvgMppi controller{Pendulum{}, {.horizon = 60, .input_min = {-5}, .input_max = {5}}};
 ///     const auto plan = controller.solve(x, {.elapsed = 0.02, .deadline = 0.002});
 ///     if (plan.status == slalom::Status::ok) apply(plan.inputs[0]);
 ///
-/// Construction allocates and may throw std::invalid_argument; `solve` does neither. Whatever enters, the
-/// inputs of a plan are finite, within the bounds and within the rates, and its cost and states are finite
+/// Construction allocates and may throw std::invalid_argument; `solve` does neither. The inputs of a plan are
+/// always finite, within the bounds and within the rates; its cost and states are always finite
 /// (final_check.hpp).
 ///
 /// A copy goes on with the same bits. It has a problem and a solver of its own and shares the threads; the
@@ -118,10 +117,10 @@ class Controller {
   using State = typename Controlled::State;          ///< the problem's state in double
   using Inputs = Input<double, input_count>;         ///< inputs of a step
 
-  /// Takes the options of any method, within the bounds that the problem states for its inputs. Throws
-  /// std::invalid_argument that names the option, its value and the rule, what the problem says of its
-  /// inputs, or what an option needs and the evaluator does not have. The threads are the controller's own
-  /// unless a pool is given to share.
+  /// Makes a solver from the options of any method. The bounds that the problem states for its inputs narrow
+  /// those of the options. The controller starts its own threads unless `pool` is given. Throws
+  /// std::invalid_argument if an option is out of range, if the problem states invalid bounds, or if an
+  /// option needs something that the evaluator does not have.
   Controller(P problem, const SolverOptions& options, std::shared_ptr<ThreadPool> pool = nullptr)
       : evaluator_(std::move(problem)),
         bounds_(bounds_of(evaluator_, &options)),
@@ -129,7 +128,7 @@ class Controller {
     allocate();
   }
 
-  /// Takes a solver of one's own, which keeps its own bounds; those of the problem hold besides. Throws
+  /// Uses your own solver, which keeps its own bounds; the bounds of the problem hold as well. Throws
   /// std::invalid_argument if the solver is null or made for another number of inputs.
   Controller(P problem, std::unique_ptr<Solver> solver)
       : evaluator_(std::move(problem)),
@@ -138,7 +137,7 @@ class Controller {
     allocate();
   }
 
-  /// The plan from state `x`. If the state is not finite nothing is solved and the last plan is repeated.
+  /// Solves from state `x` and returns the plan. If the state is not finite, repeats the last plan.
   Plan<P> solve(const State& x, const SolveRequest& request = {}) noexcept {
     corrections_ = 0;
     if (!finite(x)) return plan(Status::non_finite_state);
@@ -158,9 +157,10 @@ class Controller {
     return plan(check_prediction(x) ? result.status : Status::degenerate);
   }
 
-  /// Tells the input that was applied before the next solve, for a problem with `input_rate_max`. Without
-  /// this call it is taken to be the last plan's for that time (before the first, the value within the bounds
-  /// that is nearest to 0). A value outside the bounds is moved into them; one that is not finite is ignored.
+  /// Sets the input that was applied before the next solve, for a problem with `input_rate_max`. Without this
+  /// call the controller assumes the input that the last plan has for that time, and before the first plan
+  /// the value within the bounds that is nearest to 0. Values outside the bounds are moved into them; values
+  /// that are not finite are ignored.
   void set_previous_input(const Inputs& u) noexcept {
     given_ = u;
     told_ = true;
@@ -245,7 +245,7 @@ class Controller {
     }
   }
 
-  /// The state of the inputs before the first solve: at the values nearest to 0.
+  /// Sets all inputs to the values within the bounds that are nearest to 0.
   void rest() noexcept {
     for (int i = 0; i < input_count; ++i) previous_[i] = bounds_.nearest(static_cast<std::size_t>(i), 0);
     std::fill(inputs_.begin(), inputs_.end(), previous_);
@@ -260,7 +260,7 @@ class Controller {
     for (Inputs& u : inputs_) corrections_ += check_inputs(u.value, before.value, bounds_, reach);
   }
 
-  /// Returns how far an input may move in a step; infinite if the evaluator does not tell.
+  /// Returns the largest change of an input in a step; infinite if the evaluator states none.
   double input_step([[maybe_unused]] std::size_t input) const noexcept {
     if constexpr (Controlled::has_problem) {
       return detail::input_step(evaluator_.problem(), static_cast<int>(input));
@@ -269,8 +269,8 @@ class Controller {
     }
   }
 
-  /// The final check of cost and states: those that are not finite become the largest double and the state
-  /// before. Returns whether there was none.
+  /// The final check of cost and states. A cost that is not finite becomes the largest double; a state that
+  /// is not finite becomes the state before it. Returns true if all were finite.
   bool check_prediction(const State& x) noexcept {
     int changed = check_cost(cost_.value);
     for (CostTerm& term : terms_) changed += check_cost(term.value);
@@ -283,7 +283,7 @@ class Controller {
     return changed == 0;
   }
 
-  /// Cost of the inputs and the states that they lead to.
+  /// Predicts the states under the plan's inputs, and their cost.
   void predict_plan(const State& x) noexcept {
     const int steps = solver_->horizon();
     if constexpr (!StateEvaluator<P>) {
@@ -307,7 +307,7 @@ class Controller {
     return {status, inputs_, states_, cost_.value, cost_.collided, terms_, solver_->result(), corrections_};
   }
 
-  /// Recalls the input that is being applied: the one that was told, or the one that the last plan had for
+  /// Determines the input that is being applied: that of `set_previous_input`, or else the last plan's input
   /// `elapsed` (s) after it was made.
   void recall_input(double elapsed) noexcept {
     const double step = evaluator_.time_step();

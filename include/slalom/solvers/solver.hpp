@@ -12,7 +12,7 @@ namespace slalom {
 
 class ThreadPool;
 
-/// One control sequence after another, [sequence][step][input].
+/// A list of control sequences.
 struct SequenceList {
   std::span<const float> values;  ///< [sequence][step][input]
   int sequences = 0;              ///< number
@@ -20,15 +20,15 @@ struct SequenceList {
 
 /// The inputs of a solve that change from one to the next.
 struct SolveRequest {
-  /// Time since the last solve, s; the warm start is shifted by it where the solver shifts.
+  /// Time since the last solve, s. Solvers that shift their warm start shift it by this time.
   double elapsed = 0;
-  /// Time the solve may take, s of wall clock from the call; from 1e6 s on there is no limit. After it no new
-  /// part of the samples is begun, and what is best so far is returned. What is under way then (with an
-  /// evaluator of `whole_batches` a whole batch), and the last update and check, may take longer.
+  /// Wall-clock time that the solve may take, s; 1e6 or more: no limit. When it has passed, the solver begins
+  /// no new part of the samples and returns the best solution so far. It ends later by the part that is being
+  /// evaluated (with `whole_batches` the whole batch) and by the last update and check.
   double deadline = std::numeric_limits<double>::infinity();
   /// Control sequences of other controllers that compete with the samples of this solve (proposals.hpp), over
-  /// the solver's horizon. Values outside the bounds are moved into them. Only for a solver that
-  /// `takes_proposals`; others ignore them.
+  /// the solver's horizon. Values outside the bounds are moved into them. Solvers without `takes_proposals`
+  /// ignore them.
   SequenceList proposals{};
 };
 
@@ -43,9 +43,9 @@ struct StageTimes {
 
 /// The outcome of a solve. Its spans point into the solver and stay valid until the next solve or reset.
 struct SolveResult {
-  /// Effective sample size below which a plan is hardly more than the best sample.
+  /// If the effective sample size is below this value, the plan is hardly more than the best sample.
   static constexpr double few_samples = 3;
-  /// Solves in a row with few samples after which `has_few_samples` reports it.
+  /// Number of such solves in a row after which `has_few_samples` is true.
   static constexpr int few_samples_patience = 20;
 
   Status status = Status::ok;        ///< how the solve ended
@@ -58,7 +58,7 @@ struct SolveResult {
   std::span<const float> costs;            ///< costs of the samples
   std::span<const std::uint8_t> collided;  ///< 1 where a sample collides
   std::span<const float> weights;          ///< weights of the samples; the sum is 1, or less with a
-                                           ///< `normaliser_offset`. If no cost is finite they mean nothing
+                                           ///< `normaliser_offset`. Meaningless if no cost is finite
 
   SequenceList guides;               ///< last positions of the guide particles (empty without guides)
   SequenceList guide_path;           ///< all guides after each transport step, [iteration x guide]
@@ -77,8 +77,8 @@ struct SolveResult {
   bool has_few_samples() const noexcept { return few_samples_solves >= few_samples_patience; }
 };
 
-/// A method that solves any problem behind the seam of `BatchEvaluator`. After construction nothing here
-/// allocates or throws; the same seed gives the same bits on any number of threads.
+/// A method that solves any problem through the interface `BatchEvaluator`. `solve`, `reset` and `prepare` do
+/// not allocate or throw. The same seed gives the same bits on any number of threads.
 class Solver {
  public:
   virtual ~Solver() = default;
@@ -103,22 +103,21 @@ class Solver {
   /// The result of the last solve, or the state after the last reset.
   virtual const SolveResult& result() const noexcept = 0;
 
-  /// Solves from the evaluator's current state. Whatever happens, the result's inputs are finite and, if the
-  /// solver `keeps_bounds`, within the bounds.
+  /// Solves from the evaluator's current state. The result's inputs are always finite and, if the solver
+  /// `keeps_bounds`, within the bounds.
   virtual const SolveResult& solve(const BatchEvaluator& evaluator, const SolveRequest& request) noexcept = 0;
 
   /// Forgets the last solution and all other state, and restarts the random numbers from `seed`.
   virtual void reset(std::uint64_t seed) noexcept = 0;
 
-  /// Draws the noise of the next solve ahead, so that it costs nothing inside the deadline; the results do
-  /// not change. `mppi`, `svg_mppi` and `dial_mpc` (for its first update) do so; with the other methods, and
-  /// where the evaluator has a `Sampler`, it has no effect.
+  /// Draws the noise of the next solve ahead of time, outside its deadline. The results do not change. Only
+  /// `mppi`, `svg_mppi` and `dial_mpc` (for its first update) do so, and only if the evaluator has no
+  /// `Sampler`.
   virtual void prepare() noexcept {}
 
-  /// Allocates the memory that an evaluator needs besides that for costs, for instance for exact gradients.
-  /// To be called before the first solve with it; a controller does so when it is made. The solver must not
-  /// keep a reference to the evaluator. Throws std::invalid_argument that names an option that the evaluator
-  /// cannot fulfil.
+  /// Allocates memory that this evaluator needs in addition, for instance for exact gradients. Call it before
+  /// the first solve with an evaluator; a `Controller` does so at construction. The solver must not keep a
+  /// reference to the evaluator. Throws std::invalid_argument if the evaluator cannot fulfil an option.
   virtual void connect(const BatchEvaluator& /*evaluator*/) {}
 };
 

@@ -11,11 +11,11 @@
 #include "slalom/core/thread_pool.hpp"
 #include "slalom/solvers/solver.hpp"
 
-/// The parts that solvers have in common, for those of the library and for your own:
-/// examples/predictive_sampling.hpp.
+/// The parts that solvers have in common. Your own solver can use them, too, as
+/// examples/predictive_sampling.hpp does.
 namespace slalom {
 
-/// The moment at which a solve has to end. Without a limit it never reads the clock.
+/// The time at which a solve must end. A deadline without a limit never reads the clock.
 class Deadline {
  public:
   using Clock = std::chrono::steady_clock;  ///< monotonic
@@ -23,8 +23,8 @@ class Deadline {
   Deadline() = default;
   /// `allowed` seconds after `start`; infinite: no limit.
   Deadline(Clock::time_point start, double allowed);
-  bool passed() const noexcept { return limited_ && Clock::now() >= end_; }  ///< whether it is over
-  /// A deadline after the fraction `share` of the time.
+  bool passed() const noexcept { return limited_ && Clock::now() >= end_; }  ///< whether the time is over
+  /// Returns a deadline after the fraction `share` of the time.
   Deadline part(double share) const noexcept;
 
  private:
@@ -52,9 +52,10 @@ class SolverBase : public Solver {
   const SolveResult& result() const noexcept override { return result_; }
 
  protected:
-  /// `Options` has the fields `horizon`, `input_min`, `input_max`, `seed` and `threads`. The solver has
-  /// threads of its own unless a pool is given. Bounds that hold no float32 value are rounded to the nearest.
-  /// Throws std::invalid_argument if a lower bound is above an upper one, or finite and larger than 1e12.
+  /// `Options` has the fields `horizon`, `input_min`, `input_max`, `seed` and `threads`. The solver starts
+  /// its own threads unless a pool is given. If no float32 value lies within the bounds of an input, both
+  /// become the nearest one. Throws std::invalid_argument if a lower bound is above the upper one, or if the
+  /// magnitude of a finite bound exceeds 1e12.
   template <class Options>
   SolverBase(const Options& options, int inputs, std::shared_ptr<ThreadPool> pool)
       : SolverBase(options.horizon, inputs, options.input_min, options.input_max, options.seed,
@@ -72,13 +73,13 @@ class SolverBase : public Solver {
   }
   /// Counts a solve, so that the next one has other random numbers. Call it once per solve.
   void next_solve() noexcept { ++solves_; }
-  /// Starts the random numbers again: for `reset`.
+  /// Restarts the random numbers from `seed`. Call it in `reset`.
   void restart(std::uint64_t seed) noexcept {
     seed_ = seed;
     solves_ = 0;
   }
 
-  /// A value per row, [step][input], from one per input.
+  /// Returns one value for each row, [step][input], from one for each input.
   std::vector<float> spread(const PerInput& values) const;
   /// Lower bounds, [row].
   const std::vector<float>& low() const noexcept { return low_; }
@@ -86,7 +87,7 @@ class SolverBase : public Solver {
   /// Moves a control sequence [row] into the bounds.
   void clamp(float* sequence) const noexcept;
 
-  /// Evaluates a batch on all threads, until the deadline: `costs` and `collided` hold `batch.stride()`
+  /// Evaluates a batch on all threads, until the deadline. `costs` and `collided` have `batch.stride()`
   /// entries. Costs that are not finite, and those of samples that were not reached, become +infinity.
   BatchOutcome evaluate(const BatchEvaluator& evaluator, const SequenceBatch& batch, const Deadline& deadline,
                         float* costs, std::uint8_t* collided) noexcept;
@@ -96,7 +97,7 @@ class SolverBase : public Solver {
     return static_cast<int>((1.0 - share) * static_cast<double>(samples));
   }
 
-  SolveResult result_;  ///< the last result; `clone` lets its spans point into the copy
+  SolveResult result_;  ///< the last result; `clone` points its spans into the copy
 
  private:
   SolverBase(int horizon, int inputs, const PerInput& input_min, const PerInput& input_max,
@@ -110,8 +111,8 @@ class SolverBase : public Solver {
   std::vector<float> low_, high_;  ///< [row]
 };
 
-/// A control sequence [step][input] moved forward by `shift` >= 0 steps, by linear interpolation; the last
-/// input is held. `sequence` and `result` must not overlap.
+/// Moves a control sequence [step][input] forward by `shift` >= 0 steps, by linear interpolation, and holds
+/// the last input. `sequence` and `result` must not overlap.
 void shift_sequence(const float* sequence, int steps, int inputs, double shift, float* result) noexcept;
 /// Shifts a sequence in double.
 void shift_sequence(const double* sequence, int steps, int inputs, double shift, double* result) noexcept;

@@ -24,7 +24,7 @@ inline const char* const* enum_names(GuideWeight) {
 /// The gradient that the guides of `svg_mppi` follow.
 enum class GuideGradient {
   surrogate,  ///< the surrogate gradient of samples, equation (11)
-  exact,      ///< the derivative of the cost, of an evaluator that has it (`GradientEvaluator`)
+  exact,      ///< the derivative of the cost; needs a `GradientEvaluator`
 };
 inline const char* const* enum_names(GuideGradient) {
   static constexpr const char* const names[] = {"surrogate", "exact", nullptr};
@@ -57,16 +57,15 @@ struct GuideOptions {
   /// Guides that restart search for other modes; the best guide is kept until another is better.
   bool restart = true;
   PerInput restart_variance = 1;
-  /// Without the nominal sequence (`use_nominal`) it is the last solution.
+  /// If `use_nominal` is false, samples are always drawn around the last solution.
   SampleCentre sample_around = SampleCentre::nominal;
-  /// With `exact`, the weights of the gradient (`weight`) must be those of the costs alone, a step is limited
-  /// by `gradient_variance`, and `gradient_samples` and `zero_mean_share` do not count for guides.
+  /// With `exact`, `weight` must be `state_cost`, `gradient_variance` limits a step, and `gradient_samples`
+  /// and `zero_mean_share` have no effect on guides.
   GuideGradient gradient = GuideGradient::surrogate;
 };
 
-/// Options of `svg_mppi`: Stein variational guided MPPI (Honda et al., ICRA 2024), whose equations are cited
-/// here.
-/// `visit_options` below describes the fields.
+/// Options of `svg_mppi`: Stein variational guided MPPI (Honda et al., ICRA 2024). Equation numbers are those
+/// of the paper. `visit_options` below describes the fields.
 struct SvgMppiOptions {
   static constexpr const char* method = "svg_mppi";  ///< name in configurations
 
@@ -83,12 +82,12 @@ struct SvgMppiOptions {
   PerInput variance_min = 0.01;
   PerInput variance_max = 1;
 
-  NoiseOptions noise{};          ///< shape of the noise; white and normal
-  WeightingOptions weighting{};  ///< how costs become weights; exponentially
-  SmoothingOptions smoothing{};  ///< Savitzky-Golay filter of the solution; none
+  NoiseOptions noise{};          ///< shape of the noise; by default white and normal
+  WeightingOptions weighting{};  ///< how costs become weights
+  SmoothingOptions smoothing{};  ///< Savitzky-Golay filter of the solution; none by default
   double control_cost_discount = 0;
   double zero_mean_share = 0;
-  bool shift_warm_start = true;  ///< The guides move, too.
+  bool shift_warm_start = true;  ///< the guides are shifted, too
   std::uint64_t seed = 0;
   int threads = 1;
   PublishedSvgMppi published{};  ///< only to reproduce the program of proj-svg_mppi

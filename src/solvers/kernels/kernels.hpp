@@ -54,7 +54,7 @@ struct CostStatistics {
 /// over the samples of a range, for two lists of weights.
 inline constexpr int moments = 4;
 
-/// Settings of the gradient estimate of particles: see surrogate_gradient.hpp. The exponents are
+/// Settings of the gradient estimate of particles (see `SurrogateGradient` in guides.hpp). The exponents are
 /// S / temperature + sum linear[row] v[row].
 struct GradientSettings {
   int samples = 0;          ///< samples per particle
@@ -156,9 +156,9 @@ void gather(const Rows& from, const int* indices, Range range, const Rows& to);
 /// Replaces `evaluated` and `rejected` by the positive and the negative part of
 /// evaluated / falling - rejected / growing. Returns their sums as `weight` and `squared`.
 WeightSums<float> split_weights(float falling, float growing, Range range, float* evaluated, float* rejected);
-/// -log of the probabilities with which the paper's program keeps samples.
+/// Computes -log of the probabilities with which the paper's program keeps samples.
 void published_rejection(const Rows& v, const RejectionRows& densities, Range range, float* logarithms);
-/// The same for normal densities, given squared distances in units of the variances. Replaces `own`.
+/// Computes the same for normal densities, given squared distances in units of the variances. Replaces `own`.
 void rejection_logarithm(const float* rejected, float offset, Range range, float* own);
 
 }  // namespace kernels

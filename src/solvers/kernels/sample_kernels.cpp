@@ -48,7 +48,7 @@ struct Sample {
   }
 };
 
-/// `Colour` for `packs` packs that begin at sample k. They share each loaded entry of L.
+/// Computes `Colour` for `packs` packs that begin at sample k. They share each loaded entry of L.
 template <int packs, class F>
 SLALOM_INLINE void colour_packs(const Rows& z, const float* factor, int first, int step, int k) {
   const int steps = (z.rows - first + step - 1) / step;

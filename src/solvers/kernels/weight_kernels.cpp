@@ -16,7 +16,7 @@ SLALOM_INLINE float sum_of(const F& value) {
   return total;
 }
 
-/// Pairwise sum: fewer roundings per value and a shorter chain of dependent additions.
+/// Sums the lanes in pairs, which has fewer roundings per value and a shorter chain of dependent additions.
 template <class F>
 SLALOM_INLINE float sum_by_halves(const F& value) {
   float part[F::lanes];

@@ -26,8 +26,8 @@ inline void fit_weights(const double* density, int count, double* square, double
 
 /// Fits `count` points, given their abscissas and the results of `fit_weights`. With t the centred and scaled
 /// abscissas, z2 is the coefficient of p = t^2 - skewness t - 1, which is orthogonal to 1 and t. The fit is
-/// undetermined if `error`, of the logarithms, and the rounding of the abscissas to float32 may change z2 by
-/// a tenth.
+/// undetermined if the error of the logarithms (`error`) and the rounding of the abscissas to float32 may
+/// change z2 by a tenth.
 inline GaussianFit fit_gaussian(const double* x, const double* square, const double* logarithm, int count,
                                 double error) {
   constexpr double rounding = std::numeric_limits<float>::epsilon();
@@ -36,7 +36,8 @@ inline GaussianFit fit_gaussian(const double* x, const double* square, const dou
     for (int k = 0; k < count; ++k) total += square[k] * value(k);
     return total;
   };
-  // Relative to the densest point, whose weight may exceed that of the others by 20 orders of magnitude.
+  // All values are relative to the densest point: its weight may exceed that of the others by 20 orders of
+  // magnitude.
   int densest = 0;
   for (int k = 1; k < count; ++k)
     if (square[k] > square[densest]) densest = k;
@@ -70,8 +71,8 @@ inline double fitted_variance(const GaussianFit& fit, bool absolute_curvature) {
   return -0.5 / curvature;
 }
 
-/// Fits as the paper's program does: by normal equations of the abscissas as they are. Where these are nearly
-/// dependent, rounding decides the result.
+/// Fits as the paper's program does, by the normal equations of the raw abscissas. If these equations are
+/// nearly dependent, rounding decides the result.
 GaussianFit fit_gaussian_as_published(const double* x, const double* square, const double* logarithm,
                                       int count);
 

@@ -252,8 +252,8 @@ void Guides::move_share(int share, const BatchEvaluator& evaluator, RandomKey ke
   const CostGradient* const exact = exact_gradient(evaluator);
   for (int l = 0; l < options_.guides.iterations && !deadline.passed(); ++l) {
     fill_blocks({key.seed, key.stream + l}, first, last);
-    // One guide at a time: the borders of what is evaluated together must not depend on the threads, since a
-    // compiler may fuse products and sums differently at the end of a range.
+    // Guides are evaluated one at a time, so that the ranges do not depend on the threads: a compiler may
+    // fuse products and sums differently at the end of a range.
     for (int g = first; g < last; ++g)
       evaluator.evaluate(batch_, g * block_, block_, costs_.data(), collided_.data());
     kernels::make_finite({first * block_, (last - first) * block_}, costs_.data());
@@ -269,7 +269,7 @@ int Guides::end_move(const BatchEvaluator& evaluator) noexcept {
   kernels::make_finite({0, padded(count_)}, end_costs_.data());
   best_ = 0;
   for (int share = 0; share < shares_; ++share) {
-    // A share that made more iterations than the others has the cost of that point of the path already.
+    // If a share made more iterations than the others, it already has the cost of that point of the path.
     const bool ends_there = iterations_ > 0 && made_[share] == iterations_;
     for (int g = first_guide(share); g < first_guide(share + 1); ++g) {
       if (ends_there) path_costs_[point(iterations_ - 1, g)] = end_costs_[g];
@@ -283,7 +283,7 @@ int Guides::end_move(const BatchEvaluator& evaluator) noexcept {
 }
 
 /// Computes q* (equation (5)) at points of the paths: exp(-S / lambda), multiplied by the density around the
-/// nominal sequence if the fit target is the optimal density, normalised over the points.
+/// nominal sequence if the fit target is the optimal density. The sum over the points is 1.
 void Guides::densities(std::span<const int> points) noexcept {
   const bool with_prior = reproduction().fit_target == FitTarget::optimal_density;
   const double temperature = with_prior ? options_.temperature : reproduction().fit_temperature;

@@ -39,15 +39,15 @@ bool surrogate_gradient(const SurrogateGradient& s, const Rows& v, Range block, 
 
 /// The guide particles of SVG-MPPI (Honda et al., ICRA 2024): a few control sequences that follow the
 /// surrogate gradient to a mode of the optimal distribution, theta <- theta + epsilon g (equations (9) to
-/// (11)), or the exact gradient of the cost, and the Gaussian that is fitted to the path of the best guide
-/// (equations (12) and (13)).
+/// (11)). They can follow the exact gradient of the cost instead. A Gaussian is fitted to the path of the
+/// best guide (equations (12) and (13)).
 class Guides {
  public:
   /// `low` and `high` are the bounds [row].
   Guides(const SvgMppiOptions& options, int inputs, std::span<const float> low, std::span<const float> high);
 
-  /// Gets the working memory for exact gradients of this evaluator, if guides follow them. Throws
-  /// std::invalid_argument if it has none.
+  /// Allocates the working memory for exact gradients, if guides follow them. Throws std::invalid_argument if
+  /// the evaluator has no gradient.
   void connect(const BatchEvaluator& evaluator);
 
   /// Draws new guides from N(0, guide_variance).
@@ -55,8 +55,8 @@ class Guides {
   /// Shifts the guides forward in time by a number of steps, which may be fractional.
   void shift(double steps) noexcept;
 
-  /// Computes the guides' costs from the present state, and lets a solution [row] take the place of the worst
-  /// guide if it costs less.
+  /// Computes the guides' costs from the present state, and replaces the worst guide by `solution` [row] if
+  /// that costs less.
   void take_in(const BatchEvaluator& evaluator, const float* solution) noexcept;
 
   /// With `restart_guides`, moves the best guide to index 0 and draws all others around it.
@@ -66,7 +66,7 @@ class Guides {
   /// `move_share` for each share, which may run at the same time, and `end_move`. `solution` (u) and
   /// `nominal` (n) are [row]; `shares` is in [1, number of guides].
   void begin_move(const float* solution, const float* nominal, int shares) noexcept;
-  /// Stops at the deadline. Iteration l uses the random stream `key.stream` + l.
+  /// Moves the guides of one share, until the deadline. Iteration l uses the random stream `key.stream` + l.
   void move_share(int share, const BatchEvaluator& evaluator, RandomKey key,
                   const Deadline& deadline) noexcept;
   /// Selects the best guide (equation (12)). Returns the number of iterations made.
@@ -74,11 +74,11 @@ class Guides {
 
   /// The index of the guide with the lowest cost after the last move.
   int best() const noexcept { return best_; }
-  /// Whether it collides.
+  /// Whether the best guide collides.
   bool best_collides() const noexcept { return best_collides_; }
-  /// Its cost; infinite if no guide has a finite cost.
+  /// The cost of the best guide; infinite if no guide has a finite cost.
   float best_cost() const noexcept { return best_cost_; }
-  /// Its control sequence [row].
+  /// The control sequence [row] of the best guide.
   std::span<const float> best_sequence() const noexcept;
   /// The number of exact gradients in the last move that were taken at a kink, or were not finite.
   int gradient_kinks() const noexcept;
@@ -91,11 +91,11 @@ class Guides {
   SequenceList sequences() const noexcept { return {guides_.values(), count_}; }
   /// All guides after each iteration of the last move, [iteration][guide][row].
   SequenceList path() const noexcept;
-  /// Their costs [iteration][guide].
+  /// The costs of the points of `path` [iteration][guide].
   std::span<const float> path_costs() const noexcept;
 
  private:
-  /// The departures of the program of proj-svg_mppi from the paper, all off by default.
+  /// The differences between the program proj-svg_mppi and the paper, all off by default.
   const PublishedSvgMppi& reproduction() const noexcept { return options_.published; }
   void fill_blocks(RandomKey key, int first, int last) noexcept;
   const CostGradient* exact_gradient(const BatchEvaluator& evaluator) const noexcept;
@@ -127,7 +127,7 @@ class Guides {
   Matrix<double> theta_, shifted_;  ///< [guide][row]
   Matrix<float> guides_;            ///< theta as float32
   SequenceBatch batch_;             ///< one block for each guide
-  SequenceBatch ends_;              ///< the guides alone, and place for one more
+  SequenceBatch ends_;              ///< the guides alone, and room for one more
   AlignedBuffer costs_, totals_, weights_, end_costs_;
   std::vector<std::uint8_t> collided_, end_collided_;
   Matrix<float> gradient_;                  ///< [guide][row]
@@ -140,7 +140,7 @@ class Guides {
   std::vector<double> workspace_;   ///< workspace of exact gradients, for each guide
   std::vector<int> kinks_;          ///< exact gradients at a kink or not finite [guide]
   Matrix<double> taken_;            ///< with exact gradients: the best point of a guide [guide][row]
-  std::vector<double> part_;        ///< part of a step that a guide makes from there [guide]
+  std::vector<double> part_;        ///< part of a step that a guide makes from `taken_` [guide]
   std::vector<float> taken_costs_;  ///< [guide]
   std::vector<std::uint8_t> taken_collided_;  ///< [guide]
   std::vector<int> made_;                     ///< iterations made [share]

@@ -44,7 +44,7 @@ WeightSums<double> Weighting::seek(SampleSet& samples, ThreadPool& pool) noexcep
     (error < 0 ? low_error : high_error) = error;
     (error < 0 ? below : above) = true;
     if (below && above) {
-      // The Illinois rule: the error of an end that remained twice is halved, so that false position
+      // The Illinois rule: if the same end remains twice, its error is halved, so that false position
       // converges quickly.
       const int now = error < 0 ? -1 : 1;
       if (now == side) (error < 0 ? high_error : low_error) /= 2;

@@ -7,7 +7,7 @@
 
 namespace slalom::detail {
 
-/// Computes the weights of samples from their costs.
+/// Computes the weights of samples from their costs,
 ///
 /// w = exp(-(J - min J) / lambda).
 ///
@@ -32,13 +32,13 @@ class Weighting {
   /// Returns to the configured temperature.
   void reset() noexcept { temperature_ = settings_.temperature; }
 
-  /// Sets the samples' weights from their totals, of which `least` is the lowest. The weights are not
+  /// Sets the samples' weights from their totals. `least` is the lowest total. The weights are not
   /// normalised. Returns their sums.
   WeightSums<double> weigh(SampleSet& samples, float least, ThreadPool& pool) noexcept;
 
   /// Adapts the temperature, then sets the weights as `weigh` does. The samples' stored terms are their
-  /// control terms in units of the temperature. If no temperature gives the effective sample size, the
-  /// configured one is used.
+  /// control terms in units of the temperature. If no temperature gives the wanted effective sample size,
+  /// uses the configured one.
   WeightSums<double> seek(SampleSet& samples, ThreadPool& pool) noexcept;
 
  private:

@@ -12,8 +12,8 @@ namespace slalom {
 namespace {
 
 /// `svg_mppi` (Honda et al., "Stein Variational Guided Model Predictive Path Integral Control", ICRA 2024):
-/// guides lead the closed form of MPPI to one mode. Where the samples are drawn around the nominal sequence,
-/// equation (8) has no control term.
+/// guides lead the closed form of MPPI to one mode. If the samples are drawn around the nominal sequence, the
+/// control term of equation (8) is zero.
 class SvgMppiSolver final : public SolverBase {
  public:
   SvgMppiSolver(const SvgMppiOptions& options, int inputs, std::shared_ptr<ThreadPool> pool)
@@ -75,7 +75,7 @@ class SvgMppiSolver final : public SolverBase {
       nominal_ = mean_;
     }
     if (around_nominal_) mean_ = nominal_;
-    // (c) The variances are fitted to its path (equation (13)).
+    // (c) The variances are fitted to the path of the best guide (equation (13)).
     if (adapt_covariance_) guides_.fit_variance(variance_.data());
     result_.times.guide = detail::seconds(start, detail::Clock::now());
 
@@ -94,7 +94,7 @@ class SvgMppiSolver final : public SolverBase {
   /// The random streams of a solve.
   enum Stage { first_guides, samples, gradients, restarts = 65535 };
 
-  /// Lets the result point to this solver's values.
+  /// Points the spans of the result to this solver's values.
   void bind_result() noexcept {
     result_.inputs = result_.mean = mean_;
     result_.nominal = nominal_;
@@ -118,16 +118,15 @@ class SvgMppiSolver final : public SolverBase {
     }
   }
 
-  /// Moves the guides. With several threads, those that have no guide to move draw the noise of the samples
-  /// until the last guide has moved, but for the tiles that this thread will evaluate: they would have to
-  /// move between caches.
+  /// Moves the guides. Threads that have no guide draw the noise of the samples meanwhile. They leave out the
+  /// first tiles, which the calling thread will evaluate, since those would have to move between caches.
   void move_guides(const BatchEvaluator& evaluator, const Deadline& deadline) noexcept {
     detail::SampleSet& set = update_.samples();
     const bool parallel = pool().threads() > 1;
     const bool draws = parallel && set.lacks_noise(evaluator, key(samples));
     const int shares = parallel ? guides_.sequences().sequences : 1;
     const int first = set.tiles() / pool().threads();
-    // The guides may use half of the time: without samples, they do not give a solution.
+    // The guides may use half of the time, since guides without samples give no solution.
     const Deadline half = deadline.part(0.5);
     guides_.begin_move(mean_.data(), nominal_.data(), shares);
     if (draws) set.begin_prepare(key(samples));

@@ -39,14 +39,14 @@ SampleSet::SampleSet(int steps, int inputs, int samples, NoiseShape shape)
       row_sums_(tiles(), steps * inputs),
       moment_sums_(tiles(), steps * inputs * moments) {}
 
-/// The part with an index, if the set is divided into parts of `size` samples.
+/// Returns part `index` of the set, divided into parts of `size` samples.
 Range SampleSet::part(int index, int size) const noexcept {
   const int first = index * size;
   return {first, std::min(size, values_.stride() - first)};
 }
 
-/// Fills a range of samples with noise: values of the problem's sampler, or normal values if it has none,
-/// shaped.
+/// Fills a range of samples with noise: values of the problem's sampler, or normal values if it has none.
+/// Then gives the noise its shape.
 void SampleSet::fill_noise(const Sampler* sampler, SequenceBatch& to, Range r, RandomKey key) noexcept {
   if (sampler) {
     sampler->fill(to, r.first, r.count, key);
@@ -102,9 +102,9 @@ void SampleSet::skip(Range r, BatchStatistics& statistics) noexcept {
   statistics.minimum_cost = statistics.minimum_total = infinite;
 }
 
-/// Samples that are drawn and evaluated at a time: for one thread whole tiles of at least 256 samples,
-/// since short loops cost 6 % with 200 rows; for several threads at most 256, so that none waits long for the
-/// last one. Groups of packs stay whole, and nothing that is computed depends on it.
+/// Returns how many samples are drawn and evaluated at a time. One thread takes whole tiles, at least 256
+/// samples, since short loops cost 6 % with 200 rows. Several threads take at most 256, so that none waits
+/// long for the last one. Groups of packs stay whole, and no result depends on the size.
 int SampleSet::part_size(int threads) const noexcept {
   constexpr int wanted = 256;
   if (threads > 1) return tile_ > wanted && tile_ % (2 * together) == 0 ? tile_ / 2 : tile_;
@@ -118,8 +118,8 @@ bool SampleSet::prepared(Range r) const noexcept {
   return std::find(first, last + 1, 0) == last + 1;
 }
 
-/// Calls `each(range, statistics)` for all samples, omits what has not begun at the deadline, and combines
-/// the statistics.
+/// Calls `each(range, statistics)` for every part that begins before the deadline, and combines the
+/// statistics.
 template <class Each>
 BatchStatistics SampleSet::run_parts(ThreadPool& pool, const Deadline& deadline, Each&& each) noexcept {
   const int size = part_size(pool.threads());
@@ -178,7 +178,7 @@ BatchStatistics SampleSet::draw_and_evaluate(const BatchEvaluator& evaluator, Ra
 }
 
 /// Draws a range of the samples, from the prepared noise if `ready`. Proposals take the places of the last
-/// samples; a value of theirs that is not finite becomes that of the mean.
+/// samples. A value that is not finite becomes that of the mean.
 void SampleSet::sample_range(const Sampler* sampler, RandomKey key, const SamplingDistribution& to,
                              bool ready, Range r) noexcept {
   if (!ready) fill_noise(sampler, values_, r, key);

@@ -59,16 +59,16 @@ class SampleSet {
 
   /// Draws the normal values for `key` in advance.
   void prepare(RandomKey key, ThreadPool& pool) noexcept;
-  /// The same in parts: after `begin_prepare`, `prepare_tile` for any of `tiles()` tiles, which may run at
-  /// the same time. Tiles that were not prepared are drawn when they are evaluated.
+  /// Draws the normal values in parts: call `begin_prepare`, then `prepare_tile` for any of the `tiles()`
+  /// tiles, also from several threads. The values of other tiles are drawn when the tiles are evaluated.
   void begin_prepare(RandomKey key) noexcept;
   void prepare_tile(int tile, RandomKey key) noexcept;
   /// Whether samples for this evaluator and `key` need normal values that have not been drawn.
   bool lacks_noise(const BatchEvaluator& evaluator, RandomKey key) const noexcept;
   int tiles() const noexcept { return (values_.stride() + tile_ - 1) / tile_; }
 
-  /// From now on, the last samples of every draw are these sequences, moved into the bounds. They must stay
-  /// valid until the next call. Of more sequences than samples, the first ones are used.
+  /// Makes these sequences, moved into the bounds, the last samples of every draw. They must stay valid until
+  /// the next call. If there are more sequences than samples, the first ones are used.
   void propose(const SequenceList& proposals) noexcept;
   /// The number of samples that are proposals.
   int proposed() const noexcept { return proposed_; }
@@ -92,8 +92,8 @@ class SampleSet {
   /// Sets the totals to cost + factor * term and returns the lowest.
   float mix_totals(float factor, ThreadPool& pool) noexcept;
 
-  /// Sets the weights to exp((least - total) / temperature).
-  /// They are not normalised. Returns their sums.
+  /// Sets the weights to exp((least - total) / temperature), which are not normalised, and returns their
+  /// sums.
   WeightSums<double> weigh(float least, float temperature, ThreadPool& pool) noexcept;
 
   /// Sums over the present weights.
@@ -169,7 +169,7 @@ void control_coefficients(double temperature, double discount, double inverse_va
                           const float* mean, const float* nominal, const float* variance, int rows,
                           float* coefficients) noexcept;
 
-/// Lets a result show the samples of `set`.
+/// Points the spans of a result to the samples of `set`.
 void bind_samples(const SampleSet& set, SolveResult& result) noexcept;
 
 /// Writes the samples of `set`, their statistics and the sums of their weights to a result.
