@@ -1,4 +1,4 @@
-// A lap under way: the loop of its cars, and the meters of the first one.
+// A lap while it is driven: the loop of its cars, and the meters of the first one.
 #include "slalom/evaluation/lap.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace slalom::evaluation {
 namespace {
 
-/// sum of |u| over the first input (the steering) of every step, rad
+/// Returns the sum of |u| over the first input (the steering) of every step, rad.
 double sum_of_steering(const vehicle::PlannerOutput& output) {
   double sum = 0;
   for (std::size_t row = 0; row < output.inputs.size();
@@ -101,7 +101,7 @@ struct LapDrive::State {
   double length, timeout;  ///< m, s
 };
 
-/// Drives one control period, which with `past_finish` does not end at the finish.
+/// Drives one control period. It ends early at the finish unless `past_finish` is true.
 void LapDrive::State::step(const ControlStepCallback& on_step, double extra_latency, bool past_finish) {
   Observer observer{[&](std::size_t car, const PlannerUpdate& update) {
                       if (car == 0) measure(update, on_step);
@@ -123,7 +123,7 @@ void LapDrive::State::measure(const PlannerUpdate& update, const ControlStepCall
   const vehicle::Planner& planner = drive.drivers[0].planning().planner();
   if (update.localised) record_estimate(result.estimation, output, seen);
 
-  // If the planner's cost map has the options of the meter's, it is not computed twice.
+  // With the published maps, the meter uses the planner's cost map instead of computing it again.
   meter.observe(update.scan, update.odometry.pose,
                 setup.driver.configuration.planner.published.maps ? &planner.cost_map() : nullptr);
   const SequenceCostMeter::Cost cost = meter.planned(output);

@@ -13,33 +13,32 @@
 
 namespace slalom::evaluation {
 
-/// The differences between the protocols of a lap. The published protocol is implemented in
-/// published_protocol.cpp, the product's own in standard_protocol.cpp; nothing else depends on which of them
-/// applies.
+/// The differences between the two protocols of a lap: published_protocol.cpp implements the published one,
+/// standard_protocol.cpp that of Slalom. No other code depends on which one applies.
 class LapRules {
  public:
   virtual ~LapRules() = default;
 
-  /// How images of maps are read.
+  /// The way images of maps are read.
   virtual maps::MapReading map_reading() const = 0;
   /// Whether a car that leaves the map has hit a wall.
   virtual bool outside_is_wall() const noexcept = 0;
-  /// Sets start and timeout that the table of known courses gives and the protocol prescribes.
+  /// Sets start and timeout from the table of known courses, if the protocol prescribes them.
   virtual void complete(Environment& environment, const std::filesystem::path& folder,
                         const std::vector<std::filesystem::path>& course_roots) const = 0;
 
   /// The world before the settings of a lap are applied.
   virtual sim::WorldOptions world_options() const = 0;
-  /// Applies settings and control period to the world. Throws nothing: `check` has been called.
+  /// Applies settings and control period to the world. Does not throw, since `check` has been called.
   virtual void configure(sim::WorldOptions& options, const LapSettings& settings,
                          const vehicle::Configuration& configuration) const = 0;
   /// Throws std::invalid_argument on settings that the protocol excludes.
   virtual void check(const LapSettings& settings) const = 0;
-  /// s of simulated time per command.
+  /// Simulated time per command, s.
   virtual double control_period(const vehicle::Configuration& configuration) const noexcept = 0;
 
-  /// Where the parked cars of a lap, which are such cars, stand. Throws std::runtime_error if there is no
-  /// room for them.
+  /// Returns the places of the parked cars of a lap, which have the size of `car`. Throws std::runtime_error
+  /// if there is no room for them.
   virtual std::vector<sim::Placement> place_obstacles(const Environment& environment, int obstacles,
                                                       std::uint64_t seed, const maps::Point& start,
                                                       const sim::CarParameters& car) const = 0;
@@ -49,11 +48,11 @@ class LapRules {
   /// The command as the car gets it.
   virtual Command command(const Command& planned) const noexcept = 0;
 
-  /// Whether a course without a loop ends a lap at its end; its length counts from the start otherwise.
+  /// Whether a lap of an open course ends at the end of its path.
   virtual bool finishes_open_courses() const noexcept = 0;
   /// Whether a lap of a closed course is complete; `progress` in [0, 1].
   virtual bool lap_complete(const sim::World& world, double progress) const noexcept = 0;
-  /// s, of a finished lap of a closed course.
+  /// Time of a finished lap of a closed course, s.
   virtual double lap_time(const sim::World& world) const noexcept = 0;
   /// The number of collisions so far.
   virtual int collisions(const sim::CollisionLog& log) const noexcept = 0;

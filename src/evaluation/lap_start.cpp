@@ -24,8 +24,8 @@ std::vector<maps::Pose> place_obstacles(const LapSetup& setup, std::uint64_t lap
                            "; the course may be too narrow to pass a parked car");
 }
 
-/// Positions at equal distances along the course, or one after the other ahead of the start. A position less
-/// than 1 m from another car is moved forward.
+/// Returns positions at equal distances along the course, or with `opponent_gap` at this distance one after
+/// the other ahead of the start. A position less than 1 m from another car is moved forward.
 std::vector<maps::Pose> place_opponents(const LapSetup& setup, const std::vector<maps::Pose>& obstacles) {
   const sim::LapPath& path = *setup.environment->track->lap_path();
   const LapSettings& settings = setup.settings;
@@ -54,7 +54,8 @@ std::vector<maps::Pose> place_opponents(const LapSetup& setup, const std::vector
   return poses;
 }
 
-/// Adds the drivers of the opponents to a drive whose world has been reset. Those that look share one line.
+/// Adds the drivers of the opponents to a drive whose world has been reset. All `RacingOpponent`s share one
+/// racing line.
 void add_opponents(CarDrive& drive, const LapSetup& setup, std::uint64_t seed,
                    const std::vector<maps::Pose>& obstacles) {
   const LapSettings& settings = setup.settings;

@@ -7,17 +7,17 @@
 
 namespace slalom::evaluation {
 
-/// The loop that drives: a world, a driver for each of its cars or robots, and one control period per step.
-/// Laps, races, rooms and the racing benchmark use it. If world and drivers are values, so is the drive: a
-/// copy goes on with the same bits.
+/// The loop that drives a world: in each step all drivers decide, then the world moves for one control
+/// period. Laps, races, rooms and the racing benchmark use it. If world and drivers can be copied, so can the
+/// drive; a copy goes on with the same bits.
 ///
-/// A world moves by `step(commands)`, with one command per driver. A driver has
+/// A world has `step(commands)`, with one command per driver. A driver has
 ///
 ///     Update decide(const World&)       // once per control period: sense and plan
 ///     Command command(const World&)     // before each step of the world
 ///     void moved(const World&)          // after each step of the world
 ///
-/// and an observer, which meters, judges and recorders hang on, has
+/// An observer, such as a meter, judge or recorder, has
 ///
 ///     void decided(std::size_t driver, const Update&)   // after each decision
 ///     bool moved(World&)                                // after each step; false ends the period early
@@ -32,7 +32,7 @@ struct Drive {
   long long steps_per_command = 1;  ///< steps of the world in a control period
   std::vector<Command> commands{};  ///< commands of the last step of the world, one per driver
 
-  /// Drives one control period: all drivers decide in the same world, then it moves.
+  /// Drives one control period: all drivers decide, then the world moves.
   template <class Observer>
   void step(Observer& observer) {
     for (std::size_t i = 0; i < drivers.size(); ++i)
@@ -47,7 +47,7 @@ struct Drive {
   }
 };
 
-/// An observer of two functions.
+/// An observer made of two functions.
 template <class Decided, class Moved>
 struct Observer {
   Decided decided;  ///< called after each decision

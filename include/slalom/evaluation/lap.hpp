@@ -19,12 +19,13 @@
 
 namespace slalom::evaluation {
 
-/// The seed of lap `lap` (from 0): seed0 + lap (obstacles + 5), as in the program of Honda et al. (ICRA
-/// 2024).
+/// Returns the seed of lap `lap` (from 0): seed0 + lap (obstacles + 5), as in the program of Honda et al.
+/// (ICRA 2024).
 constexpr std::uint64_t lap_seed(std::uint64_t seed0, int lap, int obstacles) {
   return seed0 + static_cast<std::uint64_t>(lap) * static_cast<std::uint64_t>(obstacles + 5);
 }
-/// The seed of the solver's random numbers in a lap: a hash of the lap's seed and the name of the method.
+/// Returns the seed of the solver's random numbers in a lap: a hash of the lap's seed and the name of the
+/// method.
 std::uint64_t solver_seed(std::uint64_t lap_seed, std::string_view method);
 
 /// The first collision with a body or a wall.
@@ -65,7 +66,7 @@ struct EstimationRecord {
   double informed_time = -1;          ///< s, when the confidence first reached 0.5; -1 if never
 };
 
-/// A lap that has ended. Costs and other means are over its control steps.
+/// The figures of a lap. Means are over its control steps.
 struct LapResult {
   std::uint64_t seed = 0;         ///< seed of the random numbers
   bool finished = false;          ///< whether the car reached the finish in time
@@ -74,7 +75,7 @@ struct LapResult {
   int collisions = 0;             ///< collisions as the protocol counts them
   int collided_bodies = 0;        ///< number of different bodies hit, all walls as one
   bool wall = false;              ///< whether the car hit a wall
-  double time = 0;                ///< s, of the lap; if it was not finished, until it ended
+  double time = 0;                ///< s, of the lap; of an unfinished lap until it ended
   int steps = 0;                  ///< control steps
   double state_cost = 0;          ///< mean, of distance and yaw error
   double collision_cost = 0;      ///< mean
@@ -86,12 +87,11 @@ struct LapResult {
   double mean_speed = 0;          ///< m/s
   double mean_path_distance = 0;  ///< m, of the rear axle
   double max_path_distance = 0;   ///< m
-  /// m, the least over the control steps: from the corners of the car to a wall (0 in a wall, with the error
-  /// of Track::distance_to_wall) and from its outline to other bodies (negative in a collision). Infinite if
-  /// there is neither.
+  /// Least clearance over the control steps, m: from the corners of the car to a wall (0 in a wall, with the
+  /// error of Track::distance_to_wall) and from its outline to other bodies (negative in a collision).
+  /// Infinite if there are neither walls nor bodies.
   double min_clearance = 0;
-  double mean_variance =
-      0;  ///< mean over solves of the variance of the steering in the solver's distribution, rad^2
+  double mean_variance = 0;                 ///< rad^2, variance of the sampled steering, mean over solves
   double mean_effective_samples = 0;        ///< mean of the solver's effective sample size over solves
   std::array<int, 7> planner_status{};      ///< control steps by vehicle::PlannerStatus
   int corrections = 0;                      ///< values that the planner's final check changed
@@ -106,9 +106,8 @@ struct LapResult {
   OvertakingRecord overtaking;  ///< figures of encounters, with LapSettings::opponents
 };
 
-/// Describes a lap: where it is driven, by whom and under which conditions. All random numbers of a lap
-/// follow from its seed, so laps can be driven in any order and in any number of threads, with the same
-/// results bit for bit.
+/// Describes a lap: its course, driver and conditions. All random numbers of a lap follow from its seed, so
+/// laps can be driven in any order and on any number of threads, with the same bits.
 struct LapSetup {
   std::shared_ptr<const Environment> environment;  ///< course of the lap
   Driver driver;                                   ///< driver of the first car
@@ -120,13 +119,13 @@ struct LapSetup {
 
   maps::Pose start() const;                ///< pose of the centre of gravity
   double control_period() const noexcept;  ///< s of simulated time per command
-  double timeout() const;                  ///< s, after which a lap is stopped
-  /// m along the path of the course from the start of a lap to its finish, which is after
-  /// `settings.rounds` times around the course.
+  double timeout() const;                  ///< s, time limit of a lap
+  /// Length of a lap along the path, m: from the start to the finish, after `settings.rounds` rounds of the
+  /// course.
   double length() const;
 };
 
-/// Cars on a course in a closed loop, of which the first is measured. The caller may change the world and the
+/// Drives cars on a course in closed loop and measures the first one. The caller may change the world and the
 /// driver between steps; the same changes at the same steps give the same drive.
 class LapDrive {
  public:
@@ -140,14 +139,14 @@ class LapDrive {
   LapDrive(LapDrive&&) noexcept;
   LapDrive& operator=(LapDrive&&) noexcept;
 
-  /// Drives one control period, beyond the finish, too. The command takes effect `extra_latency` (s) later
+  /// Drives one control period, also beyond the finish. The command takes effect `extra_latency` (s) later
   /// than the settings say.
   void step(const ControlStepCallback& on_step = {}, double extra_latency = 0);
-  /// Drives to the finish, where the world stops within a control period, or until the timeout or until
-  /// `cancel` becomes true.
+  /// Drives until the finish, the timeout, or until `cancel` becomes true. At the finish the world stops in
+  /// the middle of a control period.
   LapResult finish(const ControlStepCallback& on_step = {}, const std::atomic<bool>* cancel = nullptr);
 
-  /// Lets another driver, with a new planner, drive the first car from the next step on. Throws
+  /// Gives the first car another driver, with a new planner, from the next step on. Throws
   /// std::invalid_argument if an option is out of range or the control period differs.
   void change_driver(const Driver& driver);
 

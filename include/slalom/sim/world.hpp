@@ -64,7 +64,7 @@ struct WorldOptions {
   void validate() const;
 };
 
-/// The knowledge of one car, and the events that it met. Spans point into the world, until it changes.
+/// The measurements of one car and its collisions. Spans are valid until the world changes.
 struct Observation {
   maps::Pose pose;                     ///< pose of the centre of gravity, map frame
   maps::Pose sensor;                   ///< pose of the LiDAR when it scanned, map frame
@@ -121,10 +121,10 @@ class World {
   /// Moves by one time step. Command i is for driven car i; cars without one coast as configured.
   StepStatus step(std::span<const Command> commands) noexcept;
 
-  /// Moves by one time step, at whose end the driven cars are in these states, as somebody saw them: for
-  /// replays. Collisions and laps are found, and nothing responds; with `gym.wall_collision` collisions with
-  /// walls are not found. A car that was taken away is moved, too, and stays off the track. Throws
-  /// std::invalid_argument on states that are not finite or not as many as driven cars.
+  /// Moves by one time step and puts the driven cars into these states, for replays. Finds collisions and
+  /// laps, but no car responds. With `gym.wall_collision` it does not find collisions with walls. A car that
+  /// was taken away is moved, too, and stays off the track. Throws std::invalid_argument on states that are
+  /// not finite or not as many as driven cars.
   void follow(std::span<const CarState> states);
 
   /// Takes a driven car off the track, until the next reset: it stands still, collides with nothing, does not

@@ -20,7 +20,7 @@
 
 namespace slalom::evaluation {
 
-/// An update of a planner, with its inputs. Valid until the driver's next one.
+/// An update of a planner, with its inputs. Valid until the driver's next update.
 struct PlannerUpdate {
   sim::Observation seen;                           ///< the true state of the car
   maps::LaserScanView scan;                        ///< input of the planner
@@ -30,16 +30,16 @@ struct PlannerUpdate {
   std::span<const maps::PredictedObstacle> others{};  ///< input of the planner
 };
 
-/// The planner of a car, its sensors with localiser, tracker and predictor of other cars, and its commands on
-/// their way to the car.
+/// A driver with a planner. It also has sensors and localiser, tracker and predictor of other cars, and the
+/// commands that have not taken effect yet.
 class PlanningDriver {
  public:
-  /// For car `car` of a world that has been reset. All random numbers follow from `seed` and `label`, which
-  /// tells the drivers of one world apart.
+  /// Drives car `car` of a world that has been reset. All random numbers follow from `seed` and `label`;
+  /// drivers of one world have different labels.
   PlanningDriver(const LapSetup& setup, const sim::World& world, std::size_t car, std::uint64_t seed,
                  const std::string& label = {});
 
-  /// Senses, tracks and plans, and sends the command on its way.
+  /// Senses, tracks and plans, and queues the command.
   PlannerUpdate decide(const sim::World& world);
   /// The command for the next step of the world.
   Command command(const sim::World& world);
@@ -48,11 +48,11 @@ class PlanningDriver {
 
   /// Replaces the planner. Sensors and tracker stay.
   void change(vehicle::Planner planner) noexcept { planner_ = std::move(planner); }
-  /// Lets the next commands take effect this much (s) later than the settings say.
+  /// Lets the next commands take effect `latency` (s) later than the settings say.
   void set_extra_latency(double latency) noexcept { extra_latency_ = latency; }
 
   const vehicle::Planner& planner() const noexcept { return planner_; }
-  /// The sensors of a real car; null where the planner gets exact measurements.
+  /// The sensors of a real car; null if the planner gets exact measurements.
   const HardwareModel* hardware() const noexcept { return hardware_ ? &*hardware_ : nullptr; }
   /// The tracker with its figures; null with TrackingMode::off.
   const TrackingMeter* tracking() const noexcept { return tracking_ ? &*tracking_ : nullptr; }
@@ -65,13 +65,14 @@ class PlanningDriver {
   vehicle::Planner planner_;
   std::optional<HardwareModel> hardware_;
   std::optional<TrackingMeter> tracking_;
-  std::optional<tracking::Predictor> predictor_;  ///< predictor of what `tracking_` sees
+  std::optional<tracking::Predictor> predictor_;  ///< predictor of the tracked cars
   Command applied_;                               ///< the command that the car executes now
   /// Commands that were sent but not yet applied, each with the step of the world in which it takes effect.
   std::vector<std::pair<std::int64_t, Command>> pending_;
 };
 
-/// The driver of a car: along the path, by the states of all cars, or with sensors and planner.
+/// The driver of a car: one that follows the path, one that reacts to the true states of all cars, or one
+/// with sensors and a planner.
 class CarDriver {
  public:
   template <class Law>
@@ -83,7 +84,7 @@ class CarDriver {
   Command command(const sim::World& world);
   /// Moves the sensors after a step of the world.
   void moved(const sim::World& world) noexcept;
-  /// The driver with a planner, which this one must be.
+  /// Returns the driver with a planner; this driver must be one.
   PlanningDriver& planning() noexcept { return std::get<PlanningDriver>(law_); }
   const PlanningDriver& planning() const noexcept { return std::get<PlanningDriver>(law_); }
 
@@ -93,26 +94,27 @@ class CarDriver {
   Command decided_;  ///< command of a RacingOpponent, until it decides again
 };
 
-/// Cars in the world of a lap or race.
+/// The drive of a lap or race.
 using CarDrive = Drive<sim::World, CarDriver>;
 
 /// The options of the world in which a lap is driven.
 sim::WorldOptions world_options(const LapSetup& setup);
-/// Steps of such a world from one command to the next.
+/// Number of steps of such a world per command.
 long long steps_per_command(const LapSetup& setup, const sim::WorldOptions& world) noexcept;
 /// The path of the environment with the speeds of the lap's settings.
 std::vector<maps::ReferencePoint> path_of(const LapSetup& setup);
-/// A planner as the driver of a lap describes it.
+/// Makes the planner that `setup.driver` describes.
 vehicle::Planner make_planner(const LapSetup& setup);
 /// Whether the finish of a lap is the end of an open path.
 bool ends_with_path(const LapSetup& setup) noexcept;
-/// Throws std::invalid_argument as LapSetup::validate does, but for the options of drivers.
+/// Checks what LapSetup::validate checks, except for the options of drivers. Throws std::invalid_argument.
 void check_settings(const LapSetup& setup);
-/// The setup with which opponent `index`, which has a planner, drives in the world of a lap. Throws
-/// std::invalid_argument if it is too slow for its configuration.
+/// Returns the setup with which opponent `index` drives; it must have a planner. Throws std::invalid_argument
+/// if it is too slow for its configuration.
 LapSetup setup_of_opponent(const LapSetup& setup, int index);
 
-/// Puts the cars of a lap at their starts, among obstacles at the poses returned in `obstacles`.
+/// Makes the drive of a lap: places the obstacles, whose poses are returned in `obstacles`, and puts the cars
+/// at their starts.
 CarDrive start_lap(const LapSetup& setup, std::uint64_t seed, std::vector<maps::Pose>& obstacles);
 
 }  // namespace slalom::evaluation

@@ -15,7 +15,7 @@ namespace slalom::evaluation {
 namespace {
 
 constexpr double not_finished = std::numeric_limits<double>::quiet_NaN();
-constexpr double pushed_time = 1;  // s, from a contact to the wall that is told with it
+constexpr double pushed_time = 1;  // s; a contact this long before a wall is reported with it
 
 void require_of_race(bool holds, const std::string& message) {
   if (!holds) throw std::invalid_argument(message);
@@ -33,18 +33,18 @@ double line_of(const GridRace& race) {
   return race.environment->track->lap_path()->project({start.x, start.y}).arc;
 }
 
-/// The race of the cars of a drive: their laps, contacts and overtakes, and who leaves the track. Cars have
-/// their numbers in the world here, which are their places on the grid.
+/// Judges the race of the cars of a drive: laps, contacts, overtakes, and cars that leave the track. Cars are
+/// numbered as in the world, by their places on the grid.
 class Referee {
  public:
-  /// Before the first step.
+  /// Construct it before the first step of the world.
   Referee(const GridRace& race, const sim::World& world, int rotation);
 
   // The observer of the drive.
   void decided(std::size_t car, const PlannerUpdate& update);
   bool moved(sim::World& world);
 
-  /// The race before a control period.
+  /// Describes the race before a control period.
   GridRaceStep step_of(const sim::World& world) const;
   int entry_of(std::size_t car) const noexcept { return entry_of_[car]; }
   int driving() const noexcept { return driving_; }  ///< cars on the track
@@ -114,7 +114,7 @@ bool Referee::moved(sim::World& world) {
   return driving_ > 0;
 }
 
-/// Measures where a car has come in a step, and takes it off the track where the race ends for it.
+/// Measures how far a car has come in a step, and takes it off the track if its race has ended.
 void Referee::moved(sim::World& world, std::size_t car) {
   Racer& racer = racers_[car];
   const sim::CarState& state = world.state(car);

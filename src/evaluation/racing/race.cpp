@@ -51,14 +51,14 @@ class LapClock {
     return step;
   }
 
-  /// To be called after each control period.
+  /// Adds the control period that has been driven. Call it after each one.
   void moved(const LapDrive& drive) {
     const Motion now = motion_of(drive.world());
     add(sample_between(before_, now), drive.collisions() > 0);
     before_ = now;
   }
 
-  /// The lap that has ended since the last call, if one has.
+  /// Returns the lap that has ended since the last call, if any.
   std::optional<RacingLap> take_ended() { return std::exchange(ended_, std::nullopt); }
   /// Whether another lap follows without a standing start.
   bool goes_on() const { return goes_on_; }
@@ -115,7 +115,7 @@ class LapClock {
   bool flying_;
   Motion before_;
   RacingSample begin_;  ///< start of the lap, distance and time since the standing start
-  RacingLap lap_;       ///< that is being driven
+  RacingLap lap_;       ///< lap that is being driven
   std::optional<RacingLap> ended_;
   bool goes_on_ = true;
 };

@@ -25,7 +25,7 @@ constexpr double max_range = 16;     // m
 constexpr int beams = 240;
 constexpr double standing = 1e-3;  // m/s and rad/s
 
-/// The walkers of a scenario as a seed has them.
+/// Varies the walkers of a scenario with the seed.
 std::vector<sim::Walker> varied(std::vector<sim::Walker> walkers, const RoomConditions& conditions,
                                 std::uint64_t seed) {
   RandomStream random({seed, 1});
@@ -50,7 +50,7 @@ class RoomWorld {
     room_.people.assign(crowd_.bodies().begin(), crowd_.bodies().end());
   }
 
-  /// Moves robot and people; the robot keeps the velocity of the only command.
+  /// Moves robot and people. The robot has the velocity of the only command.
   void step(std::span<const Velocity> commands) {
     velocity = commands[0];
     const double dt = time_step_, yaw = pose.yaw + 0.5 * dt * velocity.turn;

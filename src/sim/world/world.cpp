@@ -81,7 +81,7 @@ void World::reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::spa
   fixed_.clear();
   for (const maps::Pose& pose : parked)
     fixed_.push_back(Fixed{.box = {pose, options_.car.length, options_.car.width}});
-  // Memory of the last run serves the next.
+  // The memory of the last run is used again.
   if (cars_.size() > cars.size())
     cars_.erase(cars_.begin() + static_cast<std::ptrdiff_t>(cars.size()), cars_.end());
   while (cars_.size() < cars.size())
@@ -252,7 +252,7 @@ StepStatus World::step(std::span<const Command> commands) noexcept {
     boxes_[i].pose = pose_of(car.plant.state());
   }
   ++steps_;
-  // Summed, not multiplied, as f1tenth_gym does: its lap times are sums.
+  // The time is a sum, as in f1tenth_gym, whose lap times are sums.
   time_ += options_.time_step;
   if (options_.gym.wall_collision)
     gym_scan_and_collisions();

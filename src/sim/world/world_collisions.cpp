@@ -85,9 +85,9 @@ void World::respond(std::size_t index) noexcept {
   boxes_[index].pose = {state.x, state.y, state.yaw};
 }
 
-/// Whether this car touches driven cars alone, and only since those moved. Each of them would have touched it
-/// had it stayed where it was, and would not have done so itself: they respond, and away from it. To be
-/// called before any car responds.
+/// Whether other cars drove into this car: it touches only driven cars, and their motion alone makes the
+/// contact. Each of them would have touched it before it moved, and it would not have touched any of them
+/// before they moved. Call it before any car responds.
 bool World::was_struck(std::size_t index) const noexcept {
   const auto before = [&](std::size_t car) {
     const CarState& state = cars_[car].before;
@@ -113,8 +113,8 @@ bool World::is_free(std::size_t car, const maps::Pose& pose) const noexcept {
 }
 
 void World::slide(std::size_t car, const CarState& tried, CarState& state) const noexcept {
-  // The way of least turn that is free, with what the motion has along it: so no normal of the obstacle is
-  // needed.
+  // Tries directions, beginning with the least turn, until one is free, and keeps the motion along it. This
+  // needs no normal of the obstacle.
   const double dx = tried.x - state.x, dy = tried.y - state.y;
   for (const double yaw : {tried.yaw, state.yaw})
     for (int degrees = 0; degrees <= 80; degrees += 10)

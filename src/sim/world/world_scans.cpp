@@ -76,7 +76,7 @@ void World::gym_scan_and_collisions() noexcept {
                                           : time_to_collision_.first_hit(car.ranges, speed)) >= 0;
     if (car.wall) {
       flags_[i] = 1;
-      // The others still see it where it drove to; its own view of them is from its new yaw.
+      // Other cars still see the car where it drove to. The car sees them from its new yaw.
       const Box moved = boxes_[i];
       respond(i);
       boxes_[i] = moved;

@@ -24,7 +24,8 @@ int Guides::gradient_kinks() const noexcept {
   return std::accumulate(kinks_.begin(), kinks_.end(), 0);
 }
 
-/// The exact gradients of this evaluator, if guides follow them and their working memory is there.
+/// Returns the exact gradients of this evaluator, if guides follow them and have their working memory; else
+/// null.
 const CostGradient* Guides::exact_gradient(const BatchEvaluator& evaluator) const noexcept {
   if (options_.guides.gradient != GuideGradient::exact || workspace_.empty()) return nullptr;
   const CostGradient* const gradient = evaluator.gradient();
@@ -33,8 +34,9 @@ const CostGradient* Guides::exact_gradient(const BatchEvaluator& evaluator) cons
   return fits ? gradient : nullptr;
 }
 
-/// Takes the gradient at a guide if the last step has lowered its cost. Otherwise the guide returns to
-/// where it was, with the gradient of that point, for half the step. Returns the part of the step to make.
+/// Computes the gradient at a guide if the last step has lowered its cost. Otherwise moves the guide back to
+/// its best point and keeps the gradient of that point, for half the step. Returns the part of the step to
+/// make.
 double Guides::take_gradient(const CostGradient& cost, int g, int iteration) noexcept {
   const int own = g * block_ + gradient_samples_;
   if (iteration > 0 && !(costs_[own] < taken_costs_[g])) {
@@ -48,8 +50,8 @@ double Guides::take_gradient(const CostGradient& cost, int g, int iteration) noe
   return part_[g] = iteration > 0 ? std::min(2 * part_[g], 1.0) : 1;
 }
 
-/// The gradient of -S / lambda at a guide. It is limited to a length, in units of Sigma_g^-1/2, of one for
-/// each entry in the root mean square: that of the surrogate gradient if a single sample decides it.
+/// Computes the gradient of -S / lambda at a guide. The root mean square of its entries, in units of
+/// Sigma_g^-1/2, is limited to 1: that of the surrogate gradient if a single sample decides it.
 void Guides::differentiate(const CostGradient& cost, int g) noexcept {
   const std::size_t size = workspace_.size() / static_cast<std::size_t>(count_);
   const std::span<double> workspace = std::span(workspace_).subspan(static_cast<std::size_t>(g) * size, size);
@@ -73,7 +75,7 @@ void Guides::differentiate(const CostGradient& cost, int g) noexcept {
   }
 }
 
-/// After the last step: a guide whose cost has not fallen returns to where it was.
+/// Moves a guide back to its best point if the last step has raised its cost.
 void Guides::return_if_worse(int g) noexcept {
   if (!(taken_costs_[g] < end_costs_[g])) return;
   std::copy_n(taken_[g], rows_, theta_[g]);

@@ -11,10 +11,10 @@ namespace {
 
 constexpr double lowest_friction = 0.25, highest_friction = 1.5;
 constexpr double lowest_gain = 0.85, highest_gain = 1.15;
-constexpr double max_delay = 0.2;    // s
-constexpr double slowest = 1.0;      // m/s, below it tyres hardly slip
-constexpr double turning = 3.0;      // m/s^2, lateral acceleration from which on all is learned anew
-constexpr double farthest = 0.5;     // m or rad between poses: a jump of the localisation
+constexpr double max_delay = 0.2;  // s
+constexpr double slowest = 1.0;    // m/s, below it tyres hardly slip
+constexpr double turning = 3.0;    // m/s^2, lateral acceleration at which old evidence fades at the full rate
+constexpr double farthest = 0.5;   // m or rad between poses: a jump of the localisation
 constexpr double largest_error = 5;  // deviations
 
 double ratio() noexcept {
@@ -26,8 +26,8 @@ double gain_at(int i) noexcept {
 double delay_at(int i) noexcept {
   return max_delay * i / (ParameterEstimator::delays - 1);
 }
-/// Mean and deviation of a value over a marginal distribution on a grid of steps `step`, where a grid point
-/// stands for a step about it.
+/// Returns mean and deviation of a value over a marginal distribution on a grid. Each grid point stands for
+/// the interval of length `step` around it.
 template <std::size_t n, class At>
 detail::Moments moments(const std::array<double, n>& share, double step, At&& at) noexcept {
   detail::Moments made;
@@ -83,8 +83,8 @@ const ParameterEstimator::Moment& ParameterEstimator::ago(int periods) const noe
   return history_[static_cast<std::size_t>((newest_ + kept - periods) % kept)];
 }
 
-/// The wheels' angle one period later: the commands that act in it, each for its part. The newest command was
-/// sent at the begin of the period.
+/// Computes the wheels' angle one period later, for each delay. The newest command was sent at the beginning
+/// of the period; two commands act in it, one after the other.
 void ParameterEstimator::turn_wheels(Moment& next) const noexcept {
   const auto sent = [&](int i) { return sent_[static_cast<std::size_t>(std::min(i, kept - 1))]; };
   for (int d = 0; d < delays; ++d) {
@@ -171,7 +171,7 @@ void ParameterEstimator::weigh() noexcept {
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
     const double aside = square(lateral_error_[i] / options_.lateral_noise);
     const double turned = square(yaw_error_[i] / options_.yaw_noise);
-    // An error that is not a number, of a prediction that diverges, counts as the largest.
+    // A prediction that diverges may have an error that is not a number, which counts as the largest.
     const double error = (aside < most ? aside : most) + (turned < most ? turned : most);
     evidence_[i] = remembered * evidence_[i] - share * error;
     best = std::max(best, evidence_[i]);
@@ -179,7 +179,8 @@ void ParameterEstimator::weigh() noexcept {
   for (double& each : evidence_) each -= best;
 }
 
-/// The quantile of the friction's logarithm; the density is constant in the step about a grid point.
+/// Returns the quantile of the friction's logarithm. The density is constant in the interval around a grid
+/// point.
 double ParameterEstimator::log_quantile(const std::array<double, frictions>& shares) const noexcept {
   double below = 0;
   for (int f = 0; f < frictions; ++f) {
@@ -216,8 +217,8 @@ void ParameterEstimator::summarise() noexcept {
   const Moments gain = moments(of_gain, (highest_gain - lowest_gain) / (gains - 1), gain_at);
   const Moments delay = moments(of_delay, max_delay / (delays - 1), delay_at);
   if (moments_ == 0) prior_ = {logarithm, gain, delay};
-  // A grid cuts the prior, whose mean is then not the given value. What has been learned replaces the given
-  // value, not the mean of the cut prior.
+  // The grid cuts the prior off, so the mean of the prior is not the given value. Estimates therefore begin
+  // at the given value and move by what has been learned.
   const auto learned = [](const Moments& now, const Moments& before) {
     return std::clamp(1 - square(now.deviation / before.deviation), 0.0, 1.0);
   };

@@ -14,12 +14,12 @@ namespace {
 enum Index { x, y, yaw, speed, yaw_rate, lateral, bias };
 
 constexpr double piece = 0.005;         // s, of a prediction
-constexpr double reset_distance = 0.5;  // m or rad; a pose further from the predicted one was reset
+constexpr double reset_distance = 0.5;  // m or rad; a pose further from the predicted one is a jump
 constexpr double slow = 0.5;            // m/s, below it tyres do not slip
 constexpr double max_slip = 1.2;        // rad
 constexpr double max_variance = 1e6;    // m^2 and rad^2, of a pose
 constexpr double bias_spread = 0.02, bias_drift = 1e-4;  // rad/s, at the start and in a period
-constexpr double max_bias = 0.5;  // rad/s, of a gyro that works; more is the trace of a wrong reading
+constexpr double max_bias = 0.5;  // rad/s, largest bias of a working gyro; more comes from a wrong reading
 
 /// The values of an array as a vector of Eigen.
 template <std::size_t n>
@@ -41,8 +41,8 @@ double slip_from(double sideways, double along) noexcept {
   return std::asin(std::clamp(sideways / safe, -std::sin(max_slip), std::sin(max_slip)));
 }
 
-/// A covariance of the pose plus the options' variances. Only the options' variances remain if the covariance
-/// is invalid: not finite, larger than that of any car, or with correlations above 1.
+/// Adds the options' variances to the covariance of a pose. An invalid covariance counts as 0: not finite,
+/// larger than that of any car, or with correlations above 1.
 PoseCovariance with_noise(PoseCovariance pose, const ObserverOptions& options) noexcept {
   double sum = 0;
   for (const auto& row : pose)
@@ -78,8 +78,8 @@ void StateObserver::send(const Command& command) noexcept {
   ++sent_since_;
 }
 
-/// The command that acts with this delay at a time, s after the last measurements; the newest was sent one
-/// period before it.
+/// Returns the command that takes effect, after this delay, at a time (s after the last measurements). The
+/// newest command was sent one period before these measurements.
 const Command& StateObserver::acting(double time, double delay) const noexcept {
   const double periods = std::ceil((delay - time) / period_) - 1;
   return sent_[static_cast<std::size_t>(std::clamp(periods, 0.0, static_cast<double>(sent_.size() - 1)))];
@@ -95,7 +95,7 @@ void StateObserver::move(const DynamicVehicleModel& model, VehicleStart& car, do
   }
 }
 
-/// The state one period after `from`; `steer` (rad) is that of the wheels.
+/// Returns the state one period after `from`. `steer` (rad) is the angle of the wheels and moves, too.
 StateObserver::Vector StateObserver::moved(const DynamicVehicleModel& model, const Vector& from,
                                            double& steer) const noexcept {
   VehicleStart car{{from[x], from[y], from[yaw]},
@@ -109,7 +109,7 @@ StateObserver::Vector StateObserver::moved(const DynamicVehicleModel& model, con
           from[bias]};
 }
 
-/// Begins anew, as a car whose tyres do not slip.
+/// Restarts the filter, with the state of a car whose tyres do not slip.
 void StateObserver::begin(const DynamicVehicleModel& model, const ObserverInput& input) noexcept {
   const VehicleTraits traits = model.traits();
   const double slope = std::tan(now_.steer) / traits.wheelbase;
@@ -129,7 +129,7 @@ void StateObserver::begin(const DynamicVehicleModel& model, const ObserverInput&
   covariance_[bias][bias] = bias_variance;
 }
 
-/// Predicts one period: F P F' + Q, with the accelerometers' share.
+/// Predicts state and covariance one period ahead: F P F' + Q. Accelerometers share in the prediction.
 void StateObserver::predict(const DynamicVehicleModel& model, const std::optional<ImuReading>& imu) noexcept {
   const Vector before = state_;
   const double steer_before = now_.steer;
@@ -182,7 +182,7 @@ void StateObserver::predict(const DynamicVehicleModel& model, const std::optiona
   map(covariance_).diagonal() += map(noise);
 }
 
-/// Takes one measurement of `row` times the state, which differs by `difference` from what the state says.
+/// Takes a measurement of `row` times the state. `difference` is the measured minus the predicted value.
 void StateObserver::correct(const Vector& row, double difference, double variance) noexcept {
   Eigen::Matrix<double, size, 1> shared;
   shared.setZero();
@@ -192,12 +192,12 @@ void StateObserver::correct(const Vector& row, double difference, double varianc
   map(covariance_) -= shared * shared.transpose() / total;
 }
 
-/// Takes the pose as three measurements whose errors do not depend on each other: with its covariance L D L^T
-/// (L with ones on its diagonal), L^-1 times the pose has the variances D.
+/// Takes the pose as three independent measurements. Its covariance is L D L^T (L has ones on its diagonal),
+/// so L^-1 times the pose has the variances D and no correlations.
 void StateObserver::correct_pose(const ObserverInput& input) noexcept {
   const PoseCovariance c = with_noise(input.covariance, options_);
   const double yx = c[1][0] / c[0][0], hx = c[2][0] / c[0][0];
-  // The bounds hold for every positive semidefinite matrix; others must do no harm.
+  // These bounds hold for every positive semidefinite matrix. They protect against others.
   const double y_variance = std::max(c[1][1] - yx * c[1][0], square(options_.position_noise));
   const double coupling = c[2][1] - hx * c[1][0], hy = coupling / y_variance;
   const double yaw_variance =

@@ -5,16 +5,15 @@
 
 namespace slalom::vehicle::detail {
 
-/// Reversing out of a dead end. A car that stands in front of an obstacle that it cannot steer around, since
-/// every plan collides, reverses straight for a short time to gain room. If it soon stands again, it reverses
-/// for longer.
+/// Decides when to reverse out of a dead end. If the car stands and every plan collides, it reverses straight
+/// for a short time to gain room. If it soon stands again, it reverses for longer.
 class BackUp {
  public:
   static constexpr double speed = 0.5;  ///< m/s
 
   void reset() noexcept { *this = {}; }
 
-  /// Advances by one control period (s), with whether a plan is `free` and the speed of the car (m/s).
+  /// Advances by one control period (s). `free` tells whether a plan has no collision; `speed_now` is in m/s.
   /// Returns whether to reverse now.
   bool update(bool free, double speed_now, double period) noexcept {
     if (back_for_ > 0) {
@@ -40,7 +39,7 @@ class BackUp {
   static constexpr double shortest = 0.6;  ///< s of reversing at least, at first
   static constexpr double longest = 2.0;   ///< s of reversing at most, at first
   static constexpr double furthest = 4.0;  ///< s of reversing, upper bound
-  static constexpr double relief = 3.0;    ///< s of driving after which the dead end is left
+  static constexpr double relief = 3.0;    ///< s of driving after which the dead end counts as left
 
   double least_ = shortest, most_ = longest;   ///< s of reversing
   double standing_for_ = 0, driving_for_ = 0;  ///< s

@@ -9,8 +9,8 @@
 
 namespace slalom::vehicle::detail {
 
-/// State and parameters of a car whose tyres slip, for the planner. The steering of states and plans is the
-/// angle of the wheels; commands to the car are larger where its steering gain is smaller than 1.
+/// Estimates state and parameters of a car whose tyres slip. States and plans hold the angle of the wheels. A
+/// command is this angle divided by the car's steering gain.
 class CarEstimator {
  public:
   CarEstimator(const PlannerOptions& options, const DynamicVehicleModel& model)
@@ -28,8 +28,8 @@ class CarEstimator {
     parameters_.reset();
   }
 
-  /// Takes the measurements of one control period after the last; the observer predicts with the mean of the
-  /// friction.
+  /// Takes the measurements one control period after the last ones. The observer predicts with the mean of
+  /// the friction.
   void update(const DynamicVehicleModel& model, const ObserverInput& input) noexcept {
     ObserverInput checked = input;
     if (input.imu && !plausible(*input.imu)) checked.imu.reset();
@@ -40,8 +40,8 @@ class CarEstimator {
     observer_.set_dead_time(std::max(0.0, parameters_.estimate().delay - latency_));
   }
 
-  /// Records the command that is sent for this angle of the wheels, and returns it: an angle at which the
-  /// steering settles.
+  /// Returns the command for this angle of the wheels and records it as sent. The angle is rounded to the
+  /// resolution of the steering.
   Command send(const Command& wheels, double steer_limit) noexcept {
     Command command = wheels;
     const double gain = parameters().steering_gain;
@@ -55,7 +55,7 @@ class CarEstimator {
     return command;
   }
 
-  /// The estimate of car and ground; the given values where nothing is learned.
+  /// Returns the estimate of car and ground, or the given values if nothing is learned.
   ParameterEstimate parameters() const noexcept {
     if (identify_) return parameters_.estimate();
     return {.friction = friction_, .cautious_friction = friction_};

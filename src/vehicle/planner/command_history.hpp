@@ -8,12 +8,12 @@
 
 namespace slalom::vehicle::detail {
 
-/// The steering commands that were sent, one per control period, each of which acts on the steering after a
-/// delay. They predict the car until a new command can take effect, and the wheels' angle, which is not
-/// measured.
+/// Remembers the steering commands that were sent, one per control period. Each takes effect after a delay.
+/// Predicts the car until a new command can take effect, and the wheels' angle, which is not measured.
 class CommandHistory {
  public:
-  /// `delay` (s) at most 32 `period`s (s); `time_constant` (s) of the steering's lag; `wheelbase` m.
+  /// `delay` (s) is at most 32 `period`s (s). `time_constant` (s) is that of the steering's lag. `wheelbase`
+  /// is in m.
   CommandHistory(double period, double delay, double time_constant, double wheelbase)
       : period_(period), delay_(delay), time_constant_(time_constant), wheelbase_(wheelbase) {}
 
@@ -33,7 +33,7 @@ class CommandHistory {
                     [&](double command, double duration) { turn_wheels(steer_, command, duration); });
   }
 
-  /// The predicted state when the next command takes effect, at constant speed.
+  /// Predicts the state when the next command takes effect, at constant speed.
   VehicleStart lead_ahead(VehicleStart car) const noexcept {
     for_each_acting(-delay_, 0, 0, [&](double command, double duration) {
       const int pieces = static_cast<int>(std::ceil(duration / 0.01 - 1e-9));
@@ -50,8 +50,8 @@ class CommandHistory {
   }
 
  private:
-  /// Calls `act(command, duration)` for the commands sent in the time from `begin` to `end` (s; 0 is when the
-  /// newest command was sent if `newest` is 1, and a period later if it is 0).
+  /// Calls `act(command, duration)` for the commands sent from `begin` to `end` (s). If `newest` is 1, time 0
+  /// is when the newest command was sent; if it is 0, one period later.
   template <class Act>
   void for_each_acting(double begin, double end, int newest, Act&& act) const noexcept {
     const int oldest =

@@ -12,7 +12,7 @@ constexpr int columns = 80, rows = 80;        // along the car's x and y
 constexpr double first_x = -2, first_y = -4;  // m, robot's frame, corner of the grid
 constexpr double speed_limit = 1.5;           // m/s on the detour
 constexpr double cautious = 0.2;              // m beside the car's corridor in which driving costs more
-constexpr double nearness_price = 4;          // times as much at its inner edge
+constexpr double nearness_price = 4;          // extra price at its inner edge
 constexpr double start_reach = 0.5;           // m around the car that counts as free
 constexpr double spacing = 0.1, min_path_length = 3;  // m between points, and along the course to the end
 constexpr double dead_end_radius = 0.4;               // m
@@ -28,7 +28,7 @@ maps::ReferenceFieldOptions field_options() {
   return options;
 }
 
-/// A path to construct the field with, before there is one.
+/// A path for the construction of the field, until there is a detour.
 std::vector<maps::ReferencePoint> any_path() {
   std::vector<maps::ReferencePoint> path(max_points);
   for (std::size_t i = 0; i < path.size(); ++i)
@@ -76,8 +76,8 @@ void Detour::set_prices(const maps::ClearanceMap& obstacles, const maps::Pose& p
   }
 }
 
-/// The furthest point of the course that is reached before the course leaves the grid, as an index; -1 if
-/// there is none.
+/// Returns the index of the furthest point of the course that the search has reached before the course leaves
+/// the grid; -1 if there is none.
 int Detour::furthest_reached(const maps::Pose& pose, int nearest) const noexcept {
   std::size_t at = static_cast<std::size_t>(nearest);
   const std::size_t count = points_from(at);
@@ -113,7 +113,7 @@ bool Detour::search(const maps::ClearanceMap& obstacles, const maps::Pose& pose,
   set_prices(obstacles, pose);
   grid_.spread(grid_.cell_at({0, 0}));
   const int end = furthest_reached(pose, nearest);
-  if (end < 0 && dead_end_count_ > 0) {  // all ways were tried: again from the first
+  if (end < 0 && dead_end_count_ > 0) {  // all ways were tried; try them again
     dead_end_count_ = 0;
     return search(obstacles, pose, nearest);
   }

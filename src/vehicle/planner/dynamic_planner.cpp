@@ -35,14 +35,14 @@ class DynamicPlanner final : public PlannerBase {
 
  private:
   void plan(const PlannerInput& input) noexcept override {
-    // Estimate: the car when the next command takes effect, and the ground.
+    // Estimate: where the car is when the next command takes effect, and the friction of the ground.
     const Odometry& odometry = input.odometry;
     car_.update(model(), {odometry.pose, odometry.speed, odometry.covariance, input.imu});
     const VehicleStart start = car_.state().ahead(model());
     const double speed_ahead = car_.state().speed_ahead(model());
     set_friction(car_.parameters().cautious_friction);
 
-    // Maps: the path and the obstacles around, as far as the car can get and stop.
+    // Maps: the path and the obstacles around it, as far as the car can get and stop.
     const maps::Pose scan_pose = pose_of_scan(odometry);
     const double fastest = std::max(std::abs(odometry.speed), 1.0);
     field_.update({start.pose.x, start.pose.y}, 1 + fastest * horizon_time(), time_in_view());
@@ -58,7 +58,7 @@ class DynamicPlanner final : public PlannerBase {
     // Solve.
     const SolveResult& result = solve();
 
-    // Choose: the solution, the last plan, a slower sequence or a way around; and where all collide, a stop.
+    // Choose: the solution, the last plan, a slower sequence or a way around; a stop if all collide.
     Choice chosen{result.inputs, choice_.predict(*model_, result.inputs, states_)};
     if (options_.verify_plan) chosen = choose(result, chosen, start);
 
@@ -70,7 +70,8 @@ class DynamicPlanner final : public PlannerBase {
     if (chosen.cost.collided || recovery_.reversing()) output_.status = PlannerStatus::blocked;
   }
 
-  /// Plans for ground of this friction. The path's speeds follow in steps of 2 %.
+  /// Sets the friction of the ground for plans. The speeds of the path change only if it changes by more than
+  /// 2 %.
   void set_friction(double friction) noexcept {
     conditions_.friction = friction;
     if (std::abs(friction - path_friction_) <= 0.02 * path_friction_) return;
@@ -79,8 +80,8 @@ class DynamicPlanner final : public PlannerBase {
     field_.set_speeds(speeds_.speeds());
   }
 
-  /// The place of the scan. A pose with a covariance is an estimate, and plans begin where the filter says;
-  /// if the scan were taken from elsewhere, they would keep a wrong distance from walls.
+  /// Returns the pose of the scan. A pose with a covariance is an estimate; then plans begin at the pose of
+  /// the filter. The scan must have the same pose, or plans would keep a wrong distance from walls.
   maps::Pose pose_of_scan(const Odometry& odometry) const noexcept {
     return odometry.covariance[0][0] > 0 ? car_.state().now().pose : odometry.pose;
   }
@@ -90,7 +91,7 @@ class DynamicPlanner final : public PlannerBase {
     return horizon_time() + stopping_time_ * traits_.friction / path_friction_;
   }
 
-  /// Limits the speed to one at which the car stops within the part of the path that is in sight.
+  /// Limits the speed, so that the car can stop within the part of the path that is in sight.
   void look_ahead(const maps::LaserScanView& scan, const maps::Pose& scan_pose) noexcept {
     seen_ = sight_.look(scan, scan_pose, field_.nearest());
     obstacles_.add(sight_.unknown());
@@ -118,7 +119,7 @@ class DynamicPlanner final : public PlannerBase {
     }
   }
 
-  /// The sequence to send.
+  /// Returns the sequence to send.
   Choice choose(const SolveResult& result, Choice solution, const VehicleStart& start) noexcept {
     Choice chosen = solution;
     if (!recovery_.reversing()) {
@@ -133,7 +134,7 @@ class DynamicPlanner final : public PlannerBase {
     return chosen;
   }
 
-  /// Sends the angle by which this car's steering turns its wheels to the planned one.
+  /// Completes the output: its estimates, and the command that turns the wheels to the planned angle.
   void send() noexcept override {
     const VehicleStart& now = car_.state().now();
     output_.speed_estimate = now.speed;
@@ -159,7 +160,7 @@ class DynamicPlanner final : public PlannerBase {
   CarEstimator car_;
   FeasibleSpeeds speeds_;
   Sight sight_;
-  PathInSight seen_;  ///< with `sight_deceleration`
+  PathInSight seen_;  ///< set only with `sight_deceleration`
   Recovery recovery_;
   Detour detour_;
   WaysAround ways_;

@@ -70,8 +70,8 @@ void FeasibleSpeeds::update(const DrivingLimits& limits) noexcept {
   look_ahead(limits.lead);
 }
 
-/// The least speed of the way that the car drives within its delay: a car that follows late must find a limit
-/// earlier.
+/// Lowers each speed to the least one on the way that the car drives within its delay, so that a car that
+/// follows late sees a limit earlier.
 void FeasibleSpeeds::anticipate(double delay) noexcept {
   const std::size_t n = speed_.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -81,9 +81,9 @@ void FeasibleSpeeds::anticipate(double delay) noexcept {
   }
 }
 
-/// The speed at the place that a car reaches in this time. A step of a plan looks its limit up where it
-/// begins, and the limit must hold where it ends: with that of its start, a car that leaves a curve would be
-/// a step late all the way.
+/// Replaces each speed by that of the place which a car reaches within `lead` (s). A step of a plan looks up
+/// its limit where it begins, but the limit applies where it ends: otherwise a car that leaves a curve would
+/// accelerate one step late.
 void FeasibleSpeeds::look_ahead(double lead) noexcept {
   if (!(lead > 0)) return;
   const std::size_t n = speed_.size();

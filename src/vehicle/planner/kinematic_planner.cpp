@@ -26,7 +26,7 @@ class KinematicPlanner final : public PlannerBase {
     const Odometry& odometry = input.odometry;
     const VehicleStart start = history_.lead_ahead({odometry.pose, odometry.speed, history_.steer()});
 
-    // Maps: the path and the obstacles around, as far as the car can get.
+    // Maps: the path and the obstacles around it, as far as the car can get.
     const bool jumps = traits_.unlimited_acceleration;
     const double gain = jumps ? 0 : traits_.max_acceleration * horizon_time();
     const double fastest = std::max(std::abs(odometry.speed), 1.0) + gain;
@@ -38,7 +38,7 @@ class KinematicPlanner final : public PlannerBase {
     // Solve.
     const SolveResult& result = solve();
 
-    // Choose: where the solution collides, another sequence.
+    // Choose: another sequence if the solution collides.
     Choice chosen{result.inputs, choice_.predict(*model_, result.inputs, states_)};
     if (options_.verify_plan && chosen.cost.collided) {
       chosen = choice_.cheapest(*model_, result, chosen, states_);
@@ -52,7 +52,7 @@ class KinematicPlanner final : public PlannerBase {
     if (options_.verify_plan && options_.stop_when_blocked) slow_down(chosen.cost, odometry.speed);
   }
 
-  /// The speed to command where that of the path is `here`.
+  /// Returns the speed to command; `here` is the speed of the path.
   double command_speed(double here) const noexcept {
     if (!traits_.follows_path) return std::min(traits_.reference_speed, options_.max_speed);
     const bool planned = traits_.plans_speed;
@@ -65,8 +65,8 @@ class KinematicPlanner final : public PlannerBase {
     return cell.distance < field_.options().outside.distance ? cell.speed : here;
   }
 
-  /// Brakes where every plan collides. Where the start itself collides, braking does not help: the car
-  /// follows the best plan, slowly once it is slow, and if it stays where it is it reverses.
+  /// Brakes if every plan collides. If the start itself collides, braking does not help: then the car follows
+  /// the best plan, slowly once it is slow. If it does not get away, it reverses.
   void slow_down(const PredictedCost& cost, double speed) noexcept {
     constexpr double creep = 0.5;  // m/s
     const bool too_near = model_->start_collides();
@@ -81,8 +81,9 @@ class KinematicPlanner final : public PlannerBase {
     if (cost.collided) output_.status = PlannerStatus::blocked;
   }
 
-  /// Records the angle that the observer follows: that of the command. The paper's program does not limit it;
-  /// if only the limit made the difference, it is that of the plan.
+  /// Records the angle that the observer of the wheels follows: that of the command. The observer of the
+  /// paper's program follows the planned angle, which is not limited; so does this one with `wrap_steer`, if
+  /// the command is the limited planned angle.
   void send() noexcept override {
     const double sent = output_.command.steer;
     const bool unlimited =
@@ -99,7 +100,7 @@ class KinematicPlanner final : public PlannerBase {
   double limited(double steer) const noexcept {
     return std::clamp(steer, -options_.steer_limit, options_.steer_limit);
   }
-  /// The paper's program sends the planned angle less whole turns, as a float32.
+  /// Removes whole turns from the planned angle and rounds it to float32, as the paper's program does.
   double without_turns(double angle) const noexcept {
     if (!options_.published.wrap_steer) return angle;
     return static_cast<double>(static_cast<float>(std::atan2(std::sin(angle), std::cos(angle))));

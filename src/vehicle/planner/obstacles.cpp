@@ -9,13 +9,13 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-constexpr double tracking_error = 0.12;  // m, between readings of a car and its box
+constexpr double tracking_error = 0.12;  // m, between a reading of a car and its predicted box
 
 /// Least margins (m) to other cars, whose predictions are less certain than walls.
 constexpr double least_margin = 0.05, least_soft_margin = 0.25;
 
 constexpr double close_ahead = 3,
-                 close_beside = 1;  // m from the rear axle, of a car for which the own one waits
+                 close_beside = 1;  // m from the rear axle; the own car waits for a car that is nearer
 
 maps::MovingObstacleOptions moving_options(const PlannerOptions& options, const BodyOptions& body) {
   maps::MovingObstacleOptions made;
@@ -100,7 +100,8 @@ VehicleMaps Obstacles::seen_from(const maps::Pose& robot, const GridView<4>& ref
 /// The scan without the readings that end on other cars as they are now.
 maps::LaserScanView Obstacles::without_others(const PlannerInput& input) noexcept {
   maps::LaserScanView scan = input.scan;
-  // A scan whose beams run clockwise keeps all readings: the cars of now are obstacles, too.
+  // A scan with clockwise beams keeps all its readings, so the other cars are also obstacles where they are
+  // now.
   if (scan.ranges.size() > ranges_.size() || !(scan.angle_increment > 0)) return scan;
   std::copy(scan.ranges.begin(), scan.ranges.end(), ranges_.begin());
   const maps::Point at = maps::transform(input.odometry.pose, {laser_.x, laser_.y});

@@ -12,36 +12,35 @@
 
 namespace slalom::vehicle::detail {
 
-/// The obstacles of the planner: the maps that it makes of scans, and the predictions of other cars.
+/// The obstacles of the planner: maps of the scans, and predictions of other cars.
 class Obstacles {
  public:
   /// Plans have `horizon` steps, and maps reach `reach` (m).
   Obstacles(const PlannerOptions& options, const VehicleTraits& traits, int horizon, double reach);
 
   /// Takes the scan and the other inputs of an update. Readings of predicted cars are left out of the maps.
-  /// `placed`: the odometry can be used.
+  /// `placed` tells whether the odometry can be used.
   maps::ScanReport update(const PlannerInput& input, bool placed) noexcept;
   /// Adds obstacles that no scan shows (m, frame of the robot). Call it after `update`.
   void add(std::span<const maps::Point> points) noexcept { clearance_map_.add(points); }
-  /// Makes plans that end behind a slower car cost the time that is lost there; after `update`. The car is
-  /// at `own` in the field's frame, which begins at `origin` (m, map frame).
+  /// Charges plans that end behind a slower car for the time that is lost there. Call it after `update`.
+  /// `own`, the pose of the car, and the field are relative to `origin` (m, map frame).
   void charge_time_behind(const maps::ReferenceField& field, const maps::Point& origin,
                           const maps::Pose& own) noexcept;
-  /// Forgets all.
+  /// Forgets all obstacles.
   void reset() noexcept;
 
-  /// The maps for rollouts over this reference field, by a robot there; in the frame that begins at `origin`
-  /// (m, map frame).
+  /// Returns the maps for rollouts: this reference field and the obstacles seen from `robot`. All are
+  /// relative to `origin` (m, map frame).
   VehicleMaps seen_from(const maps::Pose& robot, const GridView<4>& reference,
                         const maps::Point& origin) const noexcept;
 
-  /// Whether a car that drives is close ahead of one at `own`, which is in the frame that begins at `origin`
-  /// (m, map frame).
+  /// Whether a moving car is close ahead of a car at `own`, which is relative to `origin` (m, map frame).
   bool one_drives_ahead(const maps::Pose& own, const maps::Point& origin) const noexcept;
 
   const maps::LocalCostMap& cost_map() const noexcept { return cost_map_; }
   const maps::ClearanceMap& clearance_map() const noexcept { return clearance_map_; }
-  /// The obstacles that move, in the frame that begins at `origin` (m, map frame).
+  /// The moving obstacles, relative to `origin` (m, map frame).
   maps::MovingObstaclesView others(const maps::Point& origin) const noexcept {
     return others_.view().relative_to(origin);
   }

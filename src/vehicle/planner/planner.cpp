@@ -15,7 +15,7 @@ namespace slalom::vehicle {
 namespace detail {
 namespace {
 
-/// Throws std::invalid_argument unless a planner can be made of these parts.
+/// Throws std::invalid_argument unless a planner can be made from these parts.
 void check_parts(const PlannerOptions& options, const VehicleModel* model,
                  std::span<const maps::ReferencePoint> path, const Solver* solver) {
   validate_options(options, "planner");
@@ -33,15 +33,15 @@ void check_parts(const PlannerOptions& options, const VehicleModel* model,
   maps::check_reference_path(path);
 }
 
-/// The point of the 100 km grid that is nearest to the path's first point, m; (0, 0) for most courses. The
-/// planner works relative to it. With UTM coordinates (5e6 m) double resolves 1e-9 m, so every sum would
-/// round otherwise than near the origin; the difference to this point is exact.
+/// Returns the point of a 100 km grid that is nearest to the path's first point, m; (0, 0) for most courses.
+/// The planner works relative to this point. The difference of a coordinate to it is exact, whereas sums of
+/// UTM coordinates (5e6 m, which double resolves to 1e-9 m) would round differently than near the origin.
 maps::Point grid_origin(std::span<const maps::ReferencePoint> path) {
   constexpr double grid = 1e5;
   return {grid * std::round(path[0].x / grid), grid * std::round(path[0].y / grid)};
 }
 
-/// Moves predicted states from the frame that begins at `origin` to the map frame.
+/// Moves predicted states, which are relative to `origin`, to the map frame.
 void shift(std::span<PredictedState> states, const maps::Point& origin) noexcept {
   for (PredictedState& state : states) {
     state.pose.x += origin.x;
@@ -49,13 +49,13 @@ void shift(std::span<PredictedState> states, const maps::Point& origin) noexcept
   }
 }
 
-/// Whether odometry is a number and as large as that of a car may be.
+/// Whether odometry is finite and within the limits of `Odometry`.
 bool plausible(const Odometry& o) {
   return std::abs(o.pose.x) <= Odometry::furthest && std::abs(o.pose.y) <= Odometry::furthest &&
          std::abs(o.pose.yaw) <= Odometry::max_yaw && std::abs(o.speed) <= Odometry::fastest;
 }
 
-/// Moves a value into a range, or to `otherwise` where it is not finite. Returns whether it was changed, 1 or
+/// Moves a value into a range; one that is not finite becomes `otherwise`. Returns 1 if it was changed, else
 /// 0.
 int check_value(double& value, double least, double most, double otherwise) noexcept {
   const double valid = std::clamp(std::isfinite(value) ? value : otherwise, least, most);
@@ -152,8 +152,8 @@ void PlannerBase::publish(const Choice& chosen) noexcept {
   output_.collision_cost = chosen.cost.collision;
 }
 
-/// Makes the command finite and moves it into its limits: a steering angle that is not a number becomes
-/// `wheels` (rad), such a speed 0. Returns the number of values that were changed.
+/// Moves the command into its limits. A steering angle that is not finite becomes `wheels` (rad), and a speed
+/// that is not finite becomes 0. Returns the number of values that were changed.
 int PlannerBase::check_command(const Odometry& odometry, double wheels) noexcept {
   const double now = std::isfinite(odometry.speed) ? std::max(odometry.speed, 0.0) : 0;
   const double fastest = brakes_ ? std::min(now, options_.max_speed) : options_.max_speed;
@@ -162,10 +162,10 @@ int PlannerBase::check_command(const Odometry& odometry, double wheels) noexcept
          check_value(output_.command.speed, slowest(), fastest, 0);
 }
 
-/// The last step before an output leaves the planner: the command is checked again, and estimates that are
-/// not finite become 0. Where a cost is not finite, it becomes the largest double, and no prediction is
-/// returned; where an input is not finite, no inputs are either. A status that claims a plan becomes
-/// `solver_degenerate` then.
+/// The last step before an output leaves the planner. Checks the command again and sets estimates that are
+/// not finite to 0. If a cost or an input is not finite, the output has no prediction, and a status that
+/// claims a plan becomes `solver_degenerate`. Such a cost becomes the largest double; such inputs are left
+/// out.
 void PlannerBase::check_output(const Odometry& odometry) noexcept {
   constexpr double most = std::numeric_limits<double>::max();
   PlannerOutput& out = output_;

@@ -13,8 +13,8 @@
 
 namespace slalom::vehicle::detail {
 
-/// The parts and steps that both planners have: KinematicPlanner for a car whose tyres do not slip, and
-/// DynamicPlanner for one whose tyres do. A copy shares nothing with the original but threads.
+/// The parts and steps that two planners share: KinematicPlanner for a car whose tyres do not slip, and
+/// DynamicPlanner for a car whose tyres slip. A copy shares only threads with the original.
 class PlannerBase {
  public:
   /// `path` is in the frame that begins at `origin` (m, map frame).
@@ -29,18 +29,18 @@ class PlannerBase {
   const Solver& solver() const noexcept { return *solver_; }
   const maps::LocalCostMap& cost_map() const noexcept { return obstacles_.cost_map(); }
 
-  /// Makes rollouts use the maps of this object; to be called on a copy, whose model still has the maps of
-  /// the original.
+  /// Makes rollouts use the maps of this object. Call it on a copy: its model still has the maps of the
+  /// original.
   void take_own_maps() noexcept;
 
  protected:
   using Choice = SequenceChoice::Choice;
 
-  /// Plans from scan and odometry, whose pose is in the frame that begins at `origin_`.
+  /// Plans from scan and odometry. The pose is relative to `origin_`.
   virtual void plan(const PlannerInput& input) noexcept = 0;
   /// Records the output's command as sent.
   virtual void send() noexcept = 0;
-  /// Forgets all but the solver's state and obstacles.
+  /// Forgets the state of the derived planner, for `reset`.
   virtual void forget() noexcept = 0;
   /// The angle of the wheels now, rad.
   virtual double steer_estimate() const noexcept = 0;
@@ -49,16 +49,16 @@ class PlannerBase {
   /// The field that plans follow.
   virtual GridView<4> followed() const noexcept { return field_.view(); }
 
-  /// Keeps the wheels' angle and stops, without a plan.
+  /// Commands a stop at the present angle of the wheels, without a plan.
   void stop(PlannerStatus status) noexcept;
   /// Whether the car is further from the path than the field reaches, and must stop.
   bool must_stop(const maps::ReferenceCell& here) const noexcept;
-  /// Begins rollouts at `start`, where the path has this speed (m/s), among the obstacles of a scan from
-  /// `robot`.
+  /// Lets rollouts begin at `start`, among the obstacles of a scan from `robot`. `path_speed` (m/s) is the
+  /// speed of the path there.
   void begin_rollouts(const maps::Pose& robot, const VehicleStart& start, double path_speed) noexcept;
-  /// Solves.
+  /// Solves the problem and sets the status of the output.
   const SolveResult& solve() noexcept;
-  /// Writes a choice, whose prediction is in `states_`, into the output.
+  /// Writes a choice into the output. Its prediction is in `states_`.
   void publish(const Choice& chosen) noexcept;
   /// The duration of a plan, s.
   double horizon_time() const noexcept { return traits_.time_step * solver_->horizon(); }
@@ -68,8 +68,8 @@ class PlannerBase {
   Polymorphic<VehicleModel> model_;
   VehicleTraits traits_;
   Polymorphic<Solver> solver_;
-  double stopping_time_;  ///< s, by which maps reach beyond plans at the given friction
-  double reach_;          ///< m, of maps
+  double stopping_time_;  ///< s; maps reach this much beyond plans, at the given friction
+  double reach_;          ///< m; how far the maps reach
   Obstacles obstacles_;
   maps::ReferenceField field_;
   SequenceChoice choice_;
@@ -78,7 +78,7 @@ class PlannerBase {
   PlannerOutput output_;
 
  private:
-  /// The begin of the last rollouts.
+  /// The arguments of the last `begin_rollouts`.
   struct Rollouts {
     maps::Pose robot;
     VehicleStart start;

@@ -5,14 +5,13 @@
 
 namespace slalom::vehicle::detail {
 
-/// Decides when to drive backwards: where the car makes no progress along the course, whatever its plans say.
-/// Then it reverses, steered by the same solver, and drives on; if that did not help, it reverses further.
-/// Plans are urgent from the moment when it crawls or stands until it is past that place: a way around must
-/// not cost more than standing.
+/// Decides when to reverse. If the car makes no progress along the course, it reverses, steered by the same
+/// solver, and drives on. If that does not help, it reverses further. Plans are urgent from the moment when
+/// the car crawls or stands until it is past that place, so that driving around costs less than standing.
 class Recovery {
  public:
-  /// m/s at most, in reverse. Slow, since a car that reverses steers with its rear; and the car of
-  /// f1tenth_gym diverges in reverse at more than 0.5 m/s (sim::GymDynamics::reverse).
+  /// Largest speed in reverse, m/s. It is low because a reversing car steers with its rear. The car of
+  /// f1tenth_gym diverges above 0.5 m/s (sim::GymDynamics::reverse).
   static constexpr double speed = 0.45;
 
   void reset() noexcept { *this = {}; }
@@ -20,20 +19,20 @@ class Recovery {
   bool reversing() const noexcept { return reversing_; }
   /// Whether the car is not yet well past a place where it crawled or stood.
   bool leaving() const noexcept { return leaving_; }
-  /// Whether it drives on after reversing and is not yet well past that place.
+  /// Whether the car drives on after reversing and is not yet well past that place.
   bool tries_again() const noexcept { return trying_again_ && !reversing_; }
 
-  /// Whether the car stood too near to obstacles to reverse at all, until it is well past that place. A car
-  /// just outside of its margin finds no way that does not touch it, in either direction, though there is
+  /// Whether the car was too near to obstacles even to reverse, until it is well past that place. A car whose
+  /// margin just touches an obstacle finds no plan without a collision in either direction, though there is
   /// room.
   bool confined() const noexcept { return confined_; }
   /// The share of the margin around the body that plans keep.
   double margin_share() const noexcept { return confined_ ? confined_margin : 1; }
 
-  /// Advances by one control period (s), with where the car is along the course (m) of this length (m), 0
-  /// where it is not closed, its speed (m/s) and the one at which it would drive if the path were free.
-  /// `waits`: a moving car is close ahead, which will drive off, so that the own car is not stuck. Returns
-  /// whether to reverse now.
+  /// Advances by one control period (s). `arc` is the place of the car along the course (m), and `length`
+  /// that of a closed course (m), 0 if it is open. The car drives at `speed_now` and would drive at
+  /// `free_speed` (m/s) if the path were free. `waits` tells that a moving car is close ahead, so the own car
+  /// is not stuck. Returns whether to reverse now.
   bool update(double arc, double length, double speed_now, double free_speed, double period,
               bool waits = false) noexcept {
     if (!started_) furthest_ = arc, started_ = true;
@@ -48,25 +47,25 @@ class Recovery {
   }
 
  private:
-  static constexpr double progress = 0.5;                 ///< m, that counts as getting on
+  static constexpr double progress = 0.5;                 ///< m, counts as progress
   static constexpr double patience = 3;                   ///< s without progress
   static constexpr double standing = 0.15;                ///< m/s, a slower car stands
   static constexpr double crawling = 0.4;                 ///< share of the free speed: a slower car crawls
   static constexpr double hesitation = 0.5;               ///< s of crawling
   static constexpr double stand_still = 0.7;              ///< s of standing
   static constexpr double shortest = 0.8, longest = 3.0;  ///< m to reverse
-  static constexpr double moved = 0.1;                    ///< m, a car that reverses less is confined
-  static constexpr double confined_margin = 0.2;          ///< share of the margin that it keeps then
+  static constexpr double moved = 0.1;                    ///< m; a car that reverses less is confined
+  static constexpr double confined_margin = 0.2;          ///< share of the margin that a confined car keeps
   static constexpr double slowest_try = 10;               ///< s of reversing at most
-  static constexpr double relief = 4;                     ///< m of progress after which the dead end is left
+  static constexpr double relief = 4;  ///< m of progress after which the dead end counts as left
 
-  /// m from one place to another along the course.
+  /// Returns the distance (m) from one place to another along the course.
   static double way(double from, double to, double length) noexcept {
     return length > 0 ? std::remainder(to - from, length) : to - from;
   }
   void watch(double arc, double length, double speed_now, double period) noexcept {
     double ahead = way(furthest_, arc, length);
-    if (std::abs(ahead) > 10) {  // put somewhere else
+    if (std::abs(ahead) > 10) {  // the car was put somewhere else
       furthest_ = arc;
       ahead = since_progress_ = 0;
       leaving_ = trying_again_ = confined_ = false;

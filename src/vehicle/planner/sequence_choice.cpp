@@ -9,11 +9,10 @@ namespace slalom::vehicle::detail {
 
 namespace {
 
-/// Shares of the largest deceleration: that of a car which brakes among curves, and that of one which
-/// accelerates.
+/// Deceleration while braking in curves, and acceleration, as shares of the largest deceleration.
 constexpr double braking_share = 0.8, accelerating_share = 0.4;
 
-/// m, by which the nearest of many noisy readings is nearer than a wall.
+/// m, between a wall and the nearest of many noisy readings of it.
 constexpr double reading_error = 0.02;
 
 /// A body without margin.
@@ -23,7 +22,8 @@ BodyOptions bare(BodyOptions body) {
   return body;
 }
 
-/// Whether one sequence is better than another: without collision, else at the lower cost.
+/// Whether one sequence is better than another: without a collision if the other has one, else at a lower
+/// cost.
 bool cheaper(const PredictedCost& one, const PredictedCost& other) {
   if (one.collided != other.collided) return other.collided;
   return one.state + one.collision < other.state + other.collision;
@@ -90,7 +90,7 @@ bool SequenceChoice::body_collides(std::span<const PredictedState> states) const
   return !was_free;
 }
 
-/// Whether it collides with another car after the first state that is free of them.
+/// Whether the car collides with another one after the first state that is free of them.
 bool SequenceChoice::others_collide(std::span<const PredictedState> states) const noexcept {
   if (others_.empty()) return false;
   bool was_free = false;
@@ -179,8 +179,8 @@ SequenceChoice::Choice SequenceChoice::slower(const VehicleModel& model, const C
   return best;
 }
 
-/// Sets `candidate_` to inputs that brake for these steps, then accelerate, with the wheels' angles of
-/// `path_` at the same places.
+/// Sets `candidate_` to inputs that brake for `braking_steps` steps and then accelerate. At each place the
+/// wheels have the same angle as in `path_`.
 void SequenceChoice::follow_slower(int braking_steps) noexcept {
   const double dt = traits_.time_step;
   const std::size_t steps = path_.size() - 1;
@@ -203,7 +203,7 @@ void SequenceChoice::follow_slower(int braking_steps) noexcept {
   }
 }
 
-/// The cheapest full stop, along one of the known sequences.
+/// Returns the cheapest full stop with the steering of one of the known sequences.
 SequenceChoice::Choice SequenceChoice::brake(const VehicleModel& model, const SolveResult& result,
                                              const Choice& solution, bool reversing,
                                              std::vector<PredictedState>& states) noexcept {
@@ -230,15 +230,15 @@ SequenceChoice::Choice SequenceChoice::brake(const VehicleModel& model, const So
   return best;
 }
 
-/// The harm of a sequence: the squared speed (m^2/s^2) at which it first collides, times the share of its
-/// steps that is left then, since a collision far ahead can still be avoided. 0 without a collision.
+/// Returns the harm of a sequence: the squared speed (m^2/s^2) of its first collision, times the share of its
+/// steps after it, since a collision far ahead can still be avoided. Returns 0 without a collision.
 double SequenceChoice::harm(const VehicleModel& model, std::span<const float> inputs) noexcept {
   const std::size_t steps = inputs.size() / inputs_;
   const auto collides = [&](std::size_t end) {
     return predict(model, inputs.first(end * inputs_), candidate_states_).collided;
   };
   if (!collides(steps)) return 0;
-  std::size_t free = 0, collided = steps;  // states; where the start does not collide
+  std::size_t free = 0, collided = steps;  // states; the start does not collide
   while (collided - free > 1) {
     const std::size_t middle = free + (collided - free) / 2;
     (collides(middle) ? collided : free) = middle;
@@ -248,10 +248,10 @@ double SequenceChoice::harm(const VehicleModel& model, std::span<const float> in
   return left * square(candidate_states_[collided].speed);
 }
 
-/// The least harmful of sequences that all collide: the solution, the sequence sent before moved by the time
-/// since (`kept_`), the nominal sequence or a guide, each as it is and with brakes, or a stop with straight
-/// wheels, which has all the grip for braking. One with brakes must do clearly less harm: brakes take grip
-/// from the turn that the car is in.
+/// Returns the least harmful of sequences that all collide: the solution, the sequence sent last (`kept_`),
+/// the nominal sequence or a guide, each with its own acceleration and with full braking; or full braking
+/// with straight wheels, which leaves all the grip for braking. A braking sequence must do clearly less harm,
+/// since braking takes grip from the turn that the car is in.
 SequenceChoice::Choice SequenceChoice::least_harm(const VehicleModel& model, const SolveResult& result,
                                                   const Choice& solution,
                                                   std::vector<PredictedState>& states) noexcept {

@@ -10,7 +10,7 @@
 
 namespace slalom::vehicle::detail {
 
-/// Chooses the sequence that is sent, where another one is better than the solution.
+/// Chooses the sequence to send, which may be better than the solver's solution.
 class SequenceChoice {
  public:
   /// A sequence, valid until the next choice, and its cost.
@@ -19,53 +19,56 @@ class SequenceChoice {
     PredictedCost cost;
   };
 
-  /// Sequences have `horizon` steps with so many inputs each, for a car with these traits.
+  /// Sequences have `horizon` steps of `inputs` inputs.
   SequenceChoice(int horizon, int inputs, const VehicleTraits& traits);
 
-  /// Sets the clearances (m, robot's frame) around the car, and the obstacles that move (in the frame of
-  /// predictions), until the next call.
+  /// Sets the clearances (m, robot's frame) around the car and the moving obstacles (in the frame of
+  /// predictions). Both are used until the next call.
   void sees(const GridView<1>& clearances, const maps::MovingObstaclesView& others) noexcept;
 
-  /// The prediction of a sequence, with which all choices compare. Where plans seek the shortest time and the
-  /// body has a margin, it collides with fixed obstacles only where the body itself does: nearness has a cost
-  /// instead. Scans are noisy, so at a wall that a plan passes closely each of them decides anew whether the
-  /// margin is kept. A car that brakes for it at the limit of grip turns in, and hits the wall that it would
-  /// have passed.
+  /// Predicts a sequence; all choices compare these predictions. If plans seek the shortest time and the body
+  /// has a margin, only the body itself can collide with fixed obstacles, and the margin has a cost instead.
+  /// The reason is noise: near a wall, each scan decides anew whether a plan keeps the margin. A car that
+  /// braked for the margin at the limit of grip would turn in and hit the wall that it would otherwise have
+  /// passed.
   PredictedCost predict(const VehicleModel& model, std::span<const float> inputs,
                         std::vector<PredictedState>& states) const noexcept;
 
-  /// The cheapest of the solution and of sequences along its path at other speeds: slower ones, which brake
-  /// first for some steps, and faster ones. Samples of the solver rarely brake for long, so it would brake
-  /// too late; and around a solution that stands still no sample drives. For models whose tyres slip.
-  /// `states` as in `cheapest`.
+  /// Returns the cheapest of the solution and of sequences along its path at other speeds: some brake first
+  /// for a few steps, one only accelerates. The solver alone would brake too late, since few samples brake
+  /// for long; and it would not drive off, since samples around a car at rest stand still. For models whose
+  /// tyres slip. `states` as in `cheapest`.
   Choice slower(const VehicleModel& model, const Choice& solution,
                 std::vector<PredictedState>& states) noexcept;
 
-  /// The cheaper of the solution and the sequence sent last, moved forward by `elapsed` (s), with its last
-  /// inputs held. A solution is a mean over the few samples that count; if it is worse than the last plan,
-  /// collisions first, nothing calls for a change. `states` as in `cheapest`.
+  /// Returns the cheaper of the solution and the sequence sent last, moved forward by `elapsed` (s) with its
+  /// last inputs held. A solution is a mean over few samples and may be worse than the last plan. Collisions
+  /// count before costs. `states` as in `cheapest`.
   Choice kept(const VehicleModel& model, const Choice& solution, double elapsed,
               std::vector<PredictedState>& states) noexcept;
 
-  /// The cheaper of the solution and another sequence, collisions first; `states` as in `cheapest`.
+  /// Returns the cheaper of the solution and another sequence. Collisions count before costs. `states` as in
+  /// `cheapest`.
   Choice better(const VehicleModel& model, const Choice& solution, std::span<const float> other,
                 std::vector<PredictedState>& states) noexcept;
 
-  /// The cheapest of the solution, the nominal sequence, the guides and the best sample, collisions first.
-  /// `states` holds the prediction of the solution, afterwards that of the choice.
+  /// Returns the cheapest of the solution, the nominal sequence, the guides and the best sample. Collisions
+  /// count before costs. `states` must hold the prediction of the solution and is replaced by that of the
+  /// choice.
   Choice cheapest(const VehicleModel& model, const SolveResult& result, const Choice& solution,
                   std::vector<PredictedState>& states) noexcept;
 
-  /// A full stop where every sequence collides: along the solution, the sequence sent last, the nominal one
-  /// or a guide, as hard as the tyres allow; the cheapest that does not collide, else the cheapest of all.
-  /// Where plans seek the shortest time with a margin, the sequence that does least harm instead: see
-  /// `least_harm`. For models whose tyres slip. `states` as in `cheapest`.
+  /// Returns a full stop, for when every sequence collides. The car brakes as hard as the tyres allow and
+  /// steers like the solution, the sequence sent last, the nominal one or a guide: like the cheapest one that
+  /// does not collide, or else the cheapest of all. If plans seek the shortest time with a margin, returns
+  /// the sequence that does the least harm instead (`least_harm`). For models whose tyres slip. `states` as
+  /// in `cheapest`.
   Choice stop(const VehicleModel& model, const SolveResult& result, const Choice& solution, bool reversing,
               std::vector<PredictedState>& states) noexcept;
 
-  /// Keeps the sequence that is sent.
+  /// Remembers the sequence that is sent.
   void sent(std::span<const float> inputs) noexcept;
-  /// Forgets it.
+  /// Forgets the sequence sent last.
   void reset() noexcept { has_previous_ = false; }
 
  private:
@@ -83,7 +86,7 @@ class SequenceChoice {
   float max_deceleration_;
   std::vector<float> candidate_, braking_, previous_, kept_, slower_;
   std::vector<PredictedState> candidate_states_, path_;
-  std::optional<ObstacleCost> body_;  ///< without its margin, if it has one and plans seek the shortest time
+  std::optional<ObstacleCost> body_;  ///< body without margin, if it has one and plans seek the shortest time
   maps::MovingObstaclesView others_;
   bool has_previous_ = false;
 };

@@ -9,15 +9,16 @@ namespace slalom::vehicle::detail {
 
 namespace {
 
-constexpr double too_near = 0.4;      // m, from the laser: no beam needs to reach it
-constexpr double leeway = 0.45;       // m, from the path: that far the car may leave it unseen
-constexpr double range_error = 0.15;  // m, of a reading on a wall that a beam meets at a small angle
-constexpr double hit_error = 0.03;    // m, of a reading on a body
+constexpr double too_near = 0.4;      // m from the laser; nearer places count as seen
+constexpr double leeway = 0.45;       // m; how far beside the path the car may drive where it does not see
+constexpr double range_error = 0.15;  // m, error of a reading of a wall at a small angle
+constexpr double hit_error = 0.03;    // m, error of a reading of a body
 constexpr double gap = 0.1;           // m, from the car to what it stops before
 constexpr double least_speed = 1;     // m/s: at this speed a car sees around any corner in time
 
-/// The longest of the reading in a direction (rad, frame of the laser) and its neighbours, since a point is
-/// in sight if one of them passes it; infinite where there is no reading, 0 outside of the scan.
+/// Returns the longest of the reading in a direction (rad, frame of the laser) and its neighbours, since a
+/// point is in sight if one of these beams passes it. Returns infinity if a beam hits nothing, and 0 outside
+/// of the scan.
 double reading(const maps::LaserScanView& scan, double bearing) noexcept {
   constexpr double round = 2 * std::numbers::pi;
   double turn = std::fmod(bearing - scan.angle_min, round);
@@ -34,8 +35,8 @@ double reading(const maps::LaserScanView& scan, double bearing) noexcept {
   return longest;
 }
 
-/// Returns the point that hides a place (m, frame of the car) from the laser; none where the place is in
-/// sight, the laser itself where no beam points there.
+/// Returns the point that hides a place (m, frame of the car) from the laser: none if the place is in sight,
+/// the laser itself if no beam points there.
 std::optional<maps::Point> hidden_by(const maps::LaserScanView& scan, const maps::Pose& laser,
                                      const maps::Point& place) noexcept {
   const maps::Point local = maps::inverse_transform(laser, place);
@@ -87,7 +88,7 @@ PathInSight Sight::look(const maps::LaserScanView& scan, const maps::Pose& pose,
   return seen;
 }
 
-/// The places to both sides of a point of the path that the scan does not show.
+/// Adds the places on both sides of a point of the path that the scan does not show.
 void Sight::add_unknown(const maps::LaserScanView& scan, const maps::Pose& pose, std::size_t at) noexcept {
   const maps::ReferencePoint& point = path_[at];
   for (const double side : {-leeway, leeway}) {
@@ -97,7 +98,7 @@ void Sight::add_unknown(const maps::LaserScanView& scan, const maps::Pose& pose,
   }
 }
 
-/// Whether a place is on the path, from one of its points to another.
+/// Whether a place is on the path between two of its points.
 bool Sight::on_path(const maps::Point& point, std::size_t from, std::size_t to) const noexcept {
   for (std::size_t i = from; i != to;) {
     if (std::hypot(path_[i].x - point.x, path_[i].y - point.y) < half_width_) return true;
@@ -106,7 +107,7 @@ bool Sight::on_path(const maps::Point& point, std::size_t from, std::size_t to) 
   return false;
 }
 
-/// Moves to the next point of the path; false at the end of one that is not closed.
+/// Moves to the next point of the path. Returns false at the end of an open path.
 bool Sight::advance(std::size_t& at) const noexcept {
   if (!closed_ && at + 1 == path_.size()) return false;
   at = (at + 1) % path_.size();

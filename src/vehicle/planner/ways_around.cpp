@@ -14,11 +14,11 @@ constexpr double side_step = 0.75;                   // car widths from one way 
 constexpr double slow_speeds[] = {1.5, 3, 1e3};      // m/s at most
 constexpr double turning_share = 0.6;                // share of the usable grip
 constexpr double braking = 0.8, accelerating = 0.5;  // shares of the largest deceleration and acceleration
-constexpr double look_ahead_time = 0.4, min_wheelbases = 2;  // s, and wheelbases on top of it
+constexpr double look_ahead_time = 0.4, min_wheelbases = 2;  // s, and wheelbases in addition
 
 }  // namespace
 
-/// A car on its way, as the kinematic bicycle.
+/// A car that drives one of the ways: a kinematic bicycle.
 struct WaysAround::Car {
   double x, y, yaw, speed;
   std::size_t at;           ///< nearest point of the path
@@ -83,7 +83,7 @@ void WaysAround::draw_way(int way, Car car, std::span<const double> path_speeds,
   }
 }
 
-/// Moves the car's points of the path on: the nearest one, and the first one so far ahead of it.
+/// Moves the car's two points of the path forward: the nearest one, and the one to steer to.
 void WaysAround::look_ahead(Car& car) const noexcept {
   const auto squared_distance = [&](std::size_t i) {
     return square(path_[i].x - car.x) + square(path_[i].y - car.y);
@@ -107,7 +107,7 @@ void WaysAround::look_ahead(Car& car) const noexcept {
   }
 }
 
-/// The tangent of the wheels' angle that leads, on a circle, to the line `offset` m left of the path (pure
+/// Returns the tangent of the wheels' angle for a circle to the point `offset` m left of the path (pure
 /// pursuit; Coulter, CMU-RI-TR-92-01, 1992).
 double WaysAround::steering_to(const Car& car, double offset) const noexcept {
   const Place& to = path_[car.to];
@@ -116,7 +116,7 @@ double WaysAround::steering_to(const Car& car, double offset) const noexcept {
   return 2 * traits_.wheelbase * left / std::max(x * x + y * y, 1e-6);
 }
 
-/// Moves to the next point of the path; false at the end of one that is not closed.
+/// Moves to the next point of the path. Returns false at the end of an open path.
 bool WaysAround::advance(std::size_t& at) const noexcept {
   if (!closed_ && at + 1 == path_.size()) return false;
   at = (at + 1) % path_.size();

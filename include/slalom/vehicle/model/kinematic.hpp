@@ -13,7 +13,7 @@ namespace slalom::vehicle {
 ///     x' = v cos(yaw)    y' = v sin(yaw)    yaw' = v tan(steer) / (l_f + l_r)
 ///
 /// (R. Rajamani, "Vehicle Dynamics and Control", 2nd ed., section 2.2, with the slip angle 0 at the rear
-/// axle), its steering with dead time and first-order lag.
+/// axle). The steering has a dead time and a first-order lag.
 class KinematicBicycle {
  public:
   /// The steering command that is held, rad, is a state too.
@@ -22,7 +22,7 @@ class KinematicBicycle {
     T x, y, yaw;  ///< m, m, rad, of the rear axle, map frame
     T speed;      ///< m/s
     T steer;      ///< rad, of the wheels
-    T held;       ///< rad, the sequence's first input where it is held
+    T held;       ///< rad, the sequence's first input while it is held
   };
   using Options = NoOptions;  ///< the model's own options
 

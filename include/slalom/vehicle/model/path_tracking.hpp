@@ -45,7 +45,7 @@ concept MotionModel = std::constructible_from<M, const PathTrackingOptions&, con
 ///
 /// with d the distance to the path, e the yaw error, c the value of the cost map (Honda et al., ICRA 2024,
 /// section V-A, in the text, without a number). Steering is the only input there, and the speed is the
-/// path's. Where the acceleration is an input too, a cost of the speed is added: `speed_weight` times the
+/// path's. If the acceleration is an input, too, there is also a cost of the speed: `speed_weight` times the
 /// square of the speed below the path's or, with `single_track`, times the share of a time step that is lost
 /// against the path's speed, and then a cost of the grip.
 template <MotionModel Motion>
@@ -95,11 +95,11 @@ class PathTracking {
     others_ = maps.others;
   }
 
-  /// Makes a variant of the world, if the motion model does (see RandomizableProblem).
+  /// Randomizes the motion model, if it can (see RandomizableProblem).
   void randomize(RandomStream& random) noexcept requires requires(Motion& m) { m.randomize(random); }
   { motion_.randomize(random); }
 
-  /// Sets what the next rollouts assume.
+  /// Sets the conditions of the next rollouts.
   void set_conditions(const DrivingConditions& now) noexcept requires requires(Motion& m) {
     m.set_conditions(now);
   }
@@ -114,7 +114,7 @@ class PathTracking {
     return motion_.start(start, reference_speed);
   }
 
-  /// A state as the planner needs it.
+  /// Returns a state as the planner uses it.
   PredictedState predicted(const State<double>& s) const noexcept {
     const maps::Point local = maps::inverse_transform(obstacles_.robot(), {s.x, s.y});
     PredictedState made{
@@ -159,21 +159,21 @@ class PathTracking {
     }
     return with_others(cost, s, others_.last_step());
   }
-  /// The part of a cost that collisions make.
+  /// The part of a cost that is due to collisions.
   double collision_part(const Surroundings<double>& seen, bool last) const {
     return cost_.collision_part(seen, last);
   }
-  /// The part of the cost of a state at step `k` that obstacles which move make.
+  /// The part of the cost of a state at step `k` that is due to moving obstacles.
   double others_part(const State<double>& s, int k) const { return with_others({0.0, false}, s, k).value; }
-  /// The part of a cost that the distance to the path makes.
+  /// The part of a cost that is due to the distance to the path.
   double distance_part(const Surroundings<double>& seen, bool last) const {
     return cost_.distance_part(seen, last);
   }
 
  private:
-  /// The car brakes from the state on and follows the path at its distance from it: the share of the energy
-  /// that is left where it collides with what the map shows, 0 if it can stop before. A plan may only end
-  /// where the car can go on; without this, plans would put off the approach to an obstacle forever.
+  /// Lets the car brake from this state on, along the path at its present distance to it. Returns the share
+  /// of the energy that is left when it collides with an obstacle of the map, or 0 if it stops before. This
+  /// cost makes plans end in states from which the car can stop in time.
   template <class T>
   SLALOM_INLINE T speed_of_collision(const State<T>& s) const {
     constexpr int pieces = 5;
@@ -193,7 +193,7 @@ class PathTracking {
     return share;
   }
 
-  /// `cost` with that of the obstacles that move.
+  /// Returns `cost` plus the cost of moving obstacles.
   template <class T>
   SLALOM_INLINE Cost<T> with_others(const Cost<T>& cost, const State<T>& s, int k) const {
     if (others_.empty()) return cost;

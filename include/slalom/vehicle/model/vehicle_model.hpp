@@ -15,7 +15,7 @@ namespace slalom::vehicle {
 /// The cost of a predicted sequence, by term.
 struct PredictedCost {
   double state = 0;       ///< cost of distance, yaw and speed, without collisions
-  double distance = 0;    ///< the part of `state` that the distance to the path makes
+  double distance = 0;    ///< the part of `state` for the distance to the path
   double collision = 0;   ///< cost of collisions and nearness to obstacles
   bool collided = false;  ///< a state after the first free one collides, or none is free
 };
@@ -32,7 +32,7 @@ class VehicleModel {
   virtual VehicleTraits traits() const noexcept = 0;
   /// Sets the maps that rollouts look up; they must outlive their use.
   virtual void set_maps(const VehicleMaps& maps) noexcept = 0;
-  /// Sets where rollouts start; `reference_speed` (m/s) is that of the path there.
+  /// Sets the start of rollouts. `reference_speed` (m/s) is the speed of the path there.
   virtual void set_start(const VehicleStart& start, double reference_speed) noexcept = 0;
   /// Rollouts from the start over the maps.
   virtual const BatchEvaluator& evaluator() const noexcept = 0;
@@ -50,21 +50,20 @@ class DynamicVehicleModel : public VehicleModel {
  public:
   /// The equations of motion.
   virtual const SingleTrackDynamics& dynamics() const noexcept = 0;
-  /// Sets what predictions assume from the next `set_start` on; before the first call, the friction is that
-  /// of the options and all else as in `DrivingConditions`.
+  /// Sets the conditions of predictions from the next `set_start` on. Before the first call, the friction is
+  /// that of the options and all other conditions have their defaults.
   virtual void set_conditions(const DrivingConditions& conditions) noexcept = 0;
-  /// Returns the car `duration` (s) after `start`, on ground of this friction, where this command acts; with
-  /// a speed that is not finite the car rolls.
+  /// Predicts the car `duration` (s) after `start` under this command, on ground of this friction. If the
+  /// speed of the command is not finite, the car rolls.
   virtual VehicleStart advance(const VehicleStart& start, const Command& command, double duration,
                                double friction) const noexcept = 0;
-  /// Returns the command for `period` (s) to a car at `speed` (m/s) by which the sequence, [step][input],
-  /// begins.
+  /// Returns the command that begins the sequence [step][input], for `period` (s) and a car at `speed` (m/s).
   virtual Command command(std::span<const float> inputs, double speed, double period) const noexcept = 0;
 };
 
 /// Makes the model that `options` name; rollouts use the instruction set `target`. It is a
-/// DynamicVehicleModel where tyres slip (`traits().friction` above 0). Throws std::invalid_argument on an
-/// option out of range and on an option of another model that is set.
+/// DynamicVehicleModel if tyres slip (`traits().friction` above 0). Throws std::invalid_argument if an option
+/// is out of range or if an option of another model is set.
 std::unique_ptr<VehicleModel> make_vehicle_model(const VehicleOptions& options,
                                                  simd::Target target = simd::active_target());
 

@@ -9,7 +9,7 @@
 #include "slalom/maps/pose.hpp"
 #include "slalom/vehicle/model/path_tracking_options.hpp"
 
-/// The functions by which a planner drives any vehicle problem.
+/// The functions through which a planner uses any vehicle problem.
 namespace slalom::vehicle {
 
 /// The start of a rollout, from odometry and observers.
@@ -23,11 +23,10 @@ struct VehicleStart {
 
 /// A predicted state.
 struct PredictedState {
-  maps::Pose pose;   ///< pose of the rear axle, map frame
-  double speed = 0;  ///< m/s
-  double steer = 0;  ///< rad, of the wheels
-  maps::Pose
-      local;  ///< pose at which the body is looked up, in the frame of the robot at the time of the scan
+  maps::Pose pose;      ///< pose of the rear axle, map frame
+  double speed = 0;     ///< m/s
+  double steer = 0;     ///< rad, of the wheels
+  maps::Pose local;     ///< pose of the body in the frame of the robot at the time of the scan
   double yaw_rate = 0;  ///< rad/s; 0 where the model has none
   double slip = 0;      ///< rad; 0 where the model has none
 };
@@ -52,28 +51,29 @@ struct VehicleMaps {
 
 /// The content of the map of obstacles.
 enum class ObstacleMap {
-  inflated,  ///< cost map: 100 where the body of now, in its heading of now, would collide
+  inflated,  ///< cost map: 100 where the body, with its present heading, would collide
   clearance  ///< distance to the nearest obstacle, m, up to `clearance_reach`
 };
 
 /// The price of lost time. A car that stands usually pays less than one that passes close to an obstacle or
-/// far from the path, which is right for a moment and wrong for good.
+/// far from the path. That is right for a moment, but the car must not stand forever.
 enum class Urgency {
   usual,    ///< the weights of the options
-  passing,  ///< any way that leads on: lost time costs 4 times as much, the distance to the path a tenth
-  detour    ///< the path is a way around an obstacle, to be followed: lost time costs 10 times as much
+  passing,  ///< lost time costs 4 times as much, the distance to the path a tenth
+  detour    ///< the path leads around an obstacle: lost time costs 10 times as much
 };
 
-/// The ground, and how a car whose tyres slip is to drive on it. The defaults are those of an open road.
+/// The ground, and the way in which a car whose tyres slip should drive on it. The defaults are for a free
+/// road.
 struct DrivingConditions {
-  double friction = 1;     ///< coefficient between tyres and ground, > 0
-  double top_speed = 1e3;  ///< m/s, the highest speed of predictions
-  double reverse = 0;      ///< m/s; above 0, the car drives backwards along the path, at most so fast
+  double friction = 1;               ///< coefficient between tyres and ground, > 0
+  double top_speed = 1e3;            ///< m/s, the highest speed of predictions
+  double reverse = 0;                ///< m/s; above 0, the car reverses along the path, at most at this speed
   Urgency urgency = Urgency::usual;  ///< price of lost time
-  double margin_share = 1;           ///< 0 to 1, of the body's margin, within which predictions collide
+  double margin_share = 1;           ///< 0 to 1, share of the body's margin that predictions keep
 };
 
-/// Properties of a model besides its rollouts.
+/// Properties of a vehicle model.
 struct VehicleTraits {
   double time_step = 0;         ///< s, of the prediction, > 0
   double wheelbase = 0;         ///< m, > 0
@@ -89,33 +89,31 @@ struct VehicleTraits {
   ObstacleMap obstacle_map = ObstacleMap::inflated;  ///< content of the map of obstacles
   double clearance_reach = 0;                        ///< m
   BodyOptions body;                                  ///< the body that must not collide
-  /// The friction that the options give, > 0 where tyres slip, else 0.
+  /// The friction that the options give, > 0 if tyres slip, else 0.
   double friction = 0;
-  double usable_grip = 0;       ///< the share of the friction that plans may use
-  double braking_share = 1;     ///< the share of the usable grip that the mean deceleration may use
-  bool seeks_lap_time = false;  ///< plans seek the shortest time, whatever the path's speeds
-  double half_steer_speed =
-      0;  ///< m/s, with tyres that slip: an input steers half as much as at a standstill
+  double usable_grip = 0;            ///< the share of the friction that plans may use
+  double braking_share = 1;          ///< the share of the usable grip that the mean deceleration may use
+  bool seeks_lap_time = false;       ///< plans seek the shortest time, whatever the path's speeds
+  double half_steer_speed = 0;       ///< m/s, with tyre slip: an input steers half as much as at standstill
   double stopping_deceleration = 0;  ///< m/s^2, with tyres that slip: by which a plan must be able to stop
   double switch_speed = 0;           ///< m/s, with tyres that slip: above it the motor's power is the limit
 };
 
-/// The traits of models that take these options as they are.
+/// Returns the traits of a model that uses these options unchanged.
 VehicleTraits traits_of(const PathTrackingOptions& options, bool plans_speed);
 
-/// A Problem whose input 0 is the steering angle, rad (a further one may be the acceleration, m/s^2), whose
-/// costs are `Cost<T>` with the collision, and which has besides
+/// A Problem whose input 0 is the steering angle, rad; input 1 may be the acceleration, m/s^2. Its costs are
+/// `Cost<T>` with the collision. In addition it has
 ///  - `set_maps(const VehicleMaps&)`: the maps for the next rollouts;
-///  - `start(const VehicleStart&, double reference_speed)`: the state in which they start; the reference
-///  speed
-///    (m/s) is that of the path there;
+///  - `start(const VehicleStart&, double reference_speed)`: the state in which they start, where the path has
+///    this speed (m/s);
 ///  - `predicted(state)`: the pose, speed and steering angle of a state;
-///  - `collision_part(seen, last)`, `distance_part(seen, last)`: the parts of a state's cost that collisions
-///    and the distance to the path make; `seen` was returned by `look_up`, `last` says whether the state is
+///  - `collision_part(seen, last)`, `distance_part(seen, last)`: the parts of a state's cost for collisions
+///    and for the distance to the path; `seen` was returned by `look_up`, `last` tells whether the state is
 ///    the last one of a sequence;
 ///  - `traits()`.
-/// The layout of the state is the problem's own. `ProblemModel` gives it maps and start in a frame that
-/// begins at the start's position, so "map frame" means that one in a problem.
+/// The problem chooses the layout of its state. `ProblemModel` gives it maps and start relative to the
+/// position of the start; in a problem, "map frame" means this frame.
 template <class P>
 concept VehicleProblem = Problem<P> && requires(P& p, const P& c, const slalom::detail::StateOf<P, double>& x,
                                                 const VehicleMaps& maps, const VehicleStart& start) {
@@ -127,8 +125,8 @@ concept VehicleProblem = Problem<P> && requires(P& p, const P& c, const slalom::
   { c.traits() } -> std::same_as<VehicleTraits>;
 };
 
-/// A vehicle problem of a car whose tyres slip. Its function `set_conditions` sets what the next rollouts
-/// assume, and `motion()` returns a motion model like SingleTrack.
+/// A vehicle problem of a car whose tyres slip. `set_conditions` sets the conditions of the next rollouts,
+/// and `motion()` returns a motion model like SingleTrack.
 template <class P>
 concept DynamicVehicleProblem = VehicleProblem<P> &&
     requires(P& p, const P& c, const VehicleStart& start, const slalom::detail::StateOf<P, double>& x) {

@@ -31,14 +31,14 @@ namespace detail {
 class PlannerBase;
 }
 
-/// Pose (of the rear axle, map frame) and speed (m/s) as odometry or localisation gives them.
+/// Pose of the rear axle and speed, from odometry or localisation.
 struct Odometry {
   static constexpr double furthest = 1e7;  ///< m, largest magnitude that a planner takes as a coordinate
   static constexpr double max_yaw = 1e6;   ///< rad, largest magnitude that a planner takes as a yaw
   static constexpr double fastest = 200;   ///< m/s, largest magnitude that a planner takes as a speed
   maps::Pose pose;                         ///< m, m, rad, in the map frame
   double speed = 0;                        ///< m/s
-  PoseCovariance covariance{};             ///< covariance of `pose`; all 0 where the pose counts as exact
+  PoseCovariance covariance{};             ///< covariance of `pose`; all 0: the pose counts as exact
 };
 
 /// The reason for a command.
@@ -53,7 +53,7 @@ enum class PlannerStatus {
   solver_degenerate,  ///< no usable weights or no finite cost; the sequence that the solver falls back to was
                       ///< sent
 };
-/// The name of a status, as results have it.
+/// Returns the name of a status, as it is written in results.
 constexpr const char* name(PlannerStatus status) noexcept {
   switch (status) {
     case PlannerStatus::ok:
@@ -81,31 +81,31 @@ struct PlannerInput {
   std::span<const maps::Point> obstacles{};  ///< further obstacle points, robot frame, m
   std::optional<ImuReading> imu{};  ///< mean since the last update, where there is a unit; it is used
                                     ///< with models whose tyres slip, if it is `plausible`
-  /// Other cars and their predictions from the time of the scan on, map frame; with `predict_others`. The
-  /// readings that end on them are not obstacles, and count as invalid in the report of the scan.
+  /// Other cars and their predictions from the time of the scan on, map frame; used with `predict_others`.
+  /// Readings of these cars are not obstacles, and count as invalid in the report of the scan.
   std::span<const maps::PredictedObstacle> others{};
 };
 
-/// The outcome of an update. Spans stay valid until the next one. For any input the command is finite,
-/// within `steer_limit` and `max_speed`, in reverse at most 0.7 m/s fast, and where the planner brakes it is
-/// not faster than the car.
+/// The outcome of an update. Spans stay valid until the next one. For any input the command is finite and
+/// within `steer_limit` and `max_speed`. In reverse it is at most 0.7 m/s. If the planner brakes, it is not
+/// faster than the car.
 struct PlannerOutput {
   PlannerStatus status = PlannerStatus::ok;  ///< result of the update
   Command command;                           ///< to send now
   std::span<const float> inputs;  ///< [step][input], the sequence that is sent: steering in rad, and with
                                   ///< two inputs acceleration in m/s^2; empty where none is
   int inputs_per_step = 1;        ///< number of inputs of a step
-  /// horizon + 1 states of the sequence that is sent; empty where none is, or where its cost is not finite
+  /// The horizon + 1 states of the sequence that is sent. Empty if none is sent or its cost is not finite.
   std::span<const PredictedState> predicted;
-  double state_cost = 0;         ///< cost of the predicted states without collisions
-  double collision_cost = 0;     ///< cost of the collisions of the predicted states
-  double steer_estimate = 0;     ///< rad, of the steering observer
-  double speed_estimate = 0;     ///< m/s, of the observer; 0 where tyres do not slip
-  double yaw_rate_estimate = 0;  ///< rad/s, of the observer; 0 where tyres do not slip
-  double slip_estimate = 0;      ///< rad, of the observer; 0 where tyres do not slip
-  ParameterEstimate parameters;  ///< estimate of car and ground; a friction of 0 where tyres do not slip
-  const SolveResult* solve = nullptr;  ///< result of the solver; null where nothing was solved
-  maps::ScanReport scan;               ///< how many beams were used and why others were not
+  double state_cost = 0;               ///< cost of the predicted states without collisions
+  double collision_cost = 0;           ///< cost of the collisions of the predicted states
+  double steer_estimate = 0;           ///< rad, of the steering observer
+  double speed_estimate = 0;           ///< m/s, of the observer; 0 if tyres do not slip
+  double yaw_rate_estimate = 0;        ///< rad/s, of the observer; 0 if tyres do not slip
+  double slip_estimate = 0;            ///< rad, of the observer; 0 if tyres do not slip
+  ParameterEstimate parameters;        ///< estimate of car and ground; its friction is 0 if tyres do not slip
+  const SolveResult* solve = nullptr;  ///< result of the solver; null if nothing was solved
+  maps::ScanReport scan;               ///< number of beams that were used, and why others were not
   double tick_time = 0;                ///< s of wall clock for the whole update
   int corrections = 0;                 ///< values that the final check changed; 0 in normal operation
 };
@@ -114,9 +114,8 @@ struct PlannerOutput {
 class Planner {
  public:
   /// Drives `model` along `path` with `solver`. The points are as for ReferenceField. The path is closed if
-  /// its ends are near each other (see path_geometry), otherwise open. Throws std::invalid_argument where an
-  /// option is out of range, the path is not valid, model or solver is null, or the solver has another number
-  /// of inputs than the model.
+  /// its ends are near each other (see path_geometry), otherwise open. Throws std::invalid_argument if an
+  /// option is out of range, the path is invalid, model or solver is null, or their numbers of inputs differ.
   Planner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
           std::span<const maps::ReferencePoint> path, std::unique_ptr<Solver> solver);
   ~Planner();
@@ -126,21 +125,21 @@ class Planner {
   Planner(Planner&&) noexcept;
   Planner& operator=(Planner&&) noexcept;
 
-  /// Plans from scan and odometry; to be called once per `control_period`.
+  /// Plans from scan and odometry. Call it once per `control_period`.
   const PlannerOutput& update(const PlannerInput& input) noexcept;
 
-  /// Forgets solver state, steering observer and the commands sent.
+  /// Forgets everything learned and all commands sent. The solver restarts its random numbers from `seed`.
   void reset(std::uint64_t seed) noexcept;
 
-  /// The states (one more than steps) and costs of any control sequence, [step][input], from where the last
-  /// update that made a plan began, over its maps. For viewers; it may be called between updates. Before the
-  /// first such update, and after `reset`, the cost is 0 and the states are not set.
+  /// Predicts the states (one more than steps) under any control sequence [step][input] and returns their
+  /// cost. Starts where the last plan started, on the maps of that plan. For viewers; may be called between
+  /// updates. Before the first plan, and after `reset`, the cost is 0 and the states are not set.
   PredictedCost predict(std::span<const float> inputs, std::span<PredictedState> states) const noexcept;
 
   /// The solver in use.
   const Solver& solver() const noexcept;
-  /// The cost map of the last scan. Where the model takes a map of distances (`vehicle.body: discs`), only
-  /// its points.
+  /// The cost map of the last scan. If the model uses a map of distances (`vehicle.body: discs`), only its
+  /// points are set.
   const maps::LocalCostMap& cost_map() const noexcept;
 
  private:

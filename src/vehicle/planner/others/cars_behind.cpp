@@ -9,15 +9,15 @@ namespace slalom::vehicle::detail {
 namespace {
 
 constexpr double attention = 0.9;      // probability that a car behind sees the own one and gives way
-constexpr double reaction_time = 0.3;  // s, after which it does
+constexpr double reaction_time = 0.3;  // s, until it brakes
 constexpr double full_braking = 8;     // m/s^2
-constexpr double along_own_way = 1;    // rad, between the cars
-constexpr double furthest = 1e7;       // m, of poses
+constexpr double along_own_way = 1;    // rad, largest difference of the cars' directions
+constexpr double furthest = 1e7;       // m and rad, largest magnitude of a pose
 
 constexpr auto most = static_cast<std::size_t>(maps::PredictedObstacle::max_hypotheses);
 
-/// The time of its own prediction (s) at which a car with this speed (m/s) is `time` (s) from now if it
-/// brakes after its reaction time.
+/// Takes a car with this speed (m/s) that brakes after its reaction time. Returns when (s) the prediction
+/// without braking reaches the place that this car reaches after `time` (s).
 double delayed(double time, double speed) noexcept {
   const double braked = std::min(time - reaction_time, speed / full_braking);
   return braked > 0 ? reaction_time + braked * (1 - 0.5 * full_braking * braked / speed) : time;
@@ -43,7 +43,8 @@ std::span<const maps::PredictedObstacle> CarsBehind::giving_way(
   return predicted_;
 }
 
-/// Whether its front axle is behind the rear axle of a car at `own`, which drives the same way.
+/// Whether the other car drives the same way as a car at `own`, with its front axle behind that car's rear
+/// axle.
 bool CarsBehind::is_behind(const maps::PredictedObstacle& other, const maps::Pose& own) const noexcept {
   const bool usable = other.hypotheses > 0 && other.hypotheses <= maps::PredictedObstacle::max_hypotheses &&
                       other.interval > 0 && !other.poses.empty() && other.times() <= max_times &&
@@ -55,7 +56,8 @@ bool CarsBehind::is_behind(const maps::PredictedObstacle& other, const maps::Pos
   return maps::inverse_transform(own, {now.x, now.y}).x < -0.5 * wheelbase_;
 }
 
-/// Adds its likeliest hypothesis, driven with brakes, in place of the least likely one if there is no room.
+/// Adds a hypothesis: the car's likeliest one, with braking. If there is no room, it replaces the least
+/// likely one.
 void CarsBehind::give_way(maps::PredictedObstacle& other,
                           std::span<maps::PredictedPose> poses) const noexcept {
   const maps::PredictedObstacle before = other;

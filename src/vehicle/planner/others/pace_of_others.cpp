@@ -9,14 +9,14 @@ namespace slalom::vehicle::detail {
 namespace {
 
 constexpr double memory = 3;              // s, time constant of the mean of a car's speed
-constexpr double short_memory = 0.15;     // s, time constant by which a share that rises is recognised
-constexpr double rising = 0.05;           // share of the path's speed, above the mean over the short memory
-constexpr double largest_share = 0.25;    // largest share of the time that counts as lost: a car that stands
+constexpr double short_memory = 0.15;     // s, time constant of the mean that shows whether a share rises
+constexpr double rising = 0.05;           // share of the path's speed above that mean; a larger one rises
+constexpr double largest_share = 0.25;    // largest share of the time that counts as lost: a standing car
                                           // need not be passed at any risk
-constexpr double behind = 10, ahead = 1;  // m along the other car, where the own car is taken to follow it
+constexpr double behind = 10, ahead = 1;  // m along the other car; in between the own car follows it
 constexpr double beside = 3;              // m across it
 constexpr double same_way = 1;            // rad, between the cars, and between a car and the path
-constexpr double slowest_path = 0.5;      // m/s, below which a share of the path's speed says nothing
+constexpr double slowest_path = 0.5;      // m/s; for a slower path the share says nothing
 
 bool follows(const maps::Pose& own, const maps::Pose& other) noexcept {
   const maps::Point place = maps::inverse_transform(other, {own.x, own.y});
@@ -37,7 +37,7 @@ std::span<const double> PaceOfOthers::steps_lost(std::span<const maps::Predicted
   ++calls_;
   for (std::size_t i = 0; i < others.size(); ++i) {
     const maps::PredictedObstacle& other = *others[i];
-    // The first pose may hold an error of the tracker that the hypothesis removes: the next two are its path.
+    // The first pose may hold an error of the tracker, so the next two give the direction and the speed.
     const maps::Pose from = other.at(other.likeliest(), other.interval).pose,
                      to = other.at(other.likeliest(), 2 * other.interval).pose;
     const maps::Pose place{from.x - origin.x, from.y - origin.y, from.yaw};
@@ -46,7 +46,7 @@ std::span<const double> PaceOfOthers::steps_lost(std::span<const maps::Predicted
     if (path.distance < field.options().outside.distance && path.speed >= slowest_path &&
         std::abs(wrap_angle(place.yaw - double(path.yaw))) < same_way) {
       const double share = std::hypot(to.x - from.x, to.y - from.y) / other.interval / double(path.speed);
-      // A car that gets up to speed, as after a start, has not shown its pace yet.
+      // A car that speeds up, as after a start, has not shown its pace yet.
       if (share < pace.latest + rising) pace.share += weight_of_new_ * (share - pace.share);
       pace.latest += weight_of_latest_ * (share - pace.latest);
     }
@@ -55,8 +55,7 @@ std::span<const double> PaceOfOthers::steps_lost(std::span<const maps::Predicted
   return {lost_.data(), others.size()};
 }
 
-/// Returns the memory of this car; a car not seen before takes the place of the one that was seen longest
-/// ago.
+/// Returns the memory of this car. A new car replaces the one that was seen longest ago.
 PaceOfOthers::Pace& PaceOfOthers::pace_of(int id) noexcept {
   auto found = std::find_if(paces_.begin(), paces_.end(),
                             [id](const Pace& each) { return each.noted > 0 && each.id == id; });
