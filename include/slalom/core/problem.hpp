@@ -56,7 +56,7 @@ struct Cost {
   mask_t<T> collided;  ///< whether the state collides
 };
 
-/// A cost in terms, which the problem names in `cost_names`; their sum counts. `{{a, b}}` or `{{a, b}, hit}`.
+/// A cost as a sum of terms, which the problem names in `cost_names`: `{{a, b}}` or `{{a, b}, hit}`.
 template <class T, int N>
 struct CostTerms {
   /// The cost terms, in the order of their names.
@@ -65,7 +65,7 @@ struct CostTerms {
   mask_t<T> collided = mask_t<T>(false);
 };
 
-/// Stands in where a problem looks nothing up.
+/// Replaces the look-up of a problem that has none.
 struct NoLookUp {};
 
 namespace detail {

@@ -20,28 +20,28 @@ enum class Protocol {
   published,  ///< as in the program of Honda et al. (ICRA 2024): f1tenth_gym, one step of 0.01 s per command,
               ///< its way of counting
 };
-/// The name of a protocol in configurations and results: "true" or "published".
+/// Returns the name of a protocol in configurations and results: "true" or "published".
 const char* name(Protocol protocol);
-/// The protocol of this name. Throws std::invalid_argument unless `text` is "true" or "published".
+/// Returns the protocol of this name. Throws std::invalid_argument unless `text` is "true" or "published".
 Protocol protocol_named(std::string_view text);
 
-/// A course prepared for driving under one protocol. Expensive to make; immutable and shared by any number of
-/// laps and threads.
+/// A course prepared for driving under one protocol. It is expensive to make, does not change, and can be
+/// shared by any number of laps and threads.
 struct Environment {
   Protocol protocol = Protocol::true_physics;  ///< rules of world, clock and counting
   vehicle::Course course;                      ///< the course
   std::shared_ptr<const sim::Track>
       track;                               ///< walls with their distance field, and the path that counts laps
   std::vector<maps::ReferencePoint> path;  ///< the waypoints of the course
-  /// m, for each point of the course's obstacle path: the distance to the wall on its wider side, at most 10.
+  /// Distance to the wall on the wider side, for each point of the course's obstacle path, m; at most 10.
   std::vector<double> obstacle_room;
   maps::Pose start;        ///< pose of the centre of gravity, relative to the course's origin
-  double start_moved = 0;  ///< m along the waypoints from the first, where the body is in a wall
+  double start_moved = 0;  ///< m along the waypoints; above 0 if the first one is in a wall
   double timeout = 0;      ///< s, for one time around the course; 0: three laps of the speed profile
   std::optional<sim::LidarOptions> lidar;  ///< replaces the LiDAR of the protocol
 
-  /// The world of the protocol, with `lidar` where it is given. Settings of a lap (noise, friction, control
-  /// period) are not applied.
+  /// Returns the options of the protocol's world, with `lidar` if it is given, without the settings of a lap
+  /// (noise, friction, control period).
   sim::WorldOptions world_options() const;
 };
 

@@ -26,15 +26,15 @@ struct Driver {
   double speed_share = 1;                ///< share of the path's speeds that the planner is given, (0, 1]
 };
 
-/// The settings of a lap besides environment, configuration and method.
-/// `visit_options` below describes the fields.
+/// The settings of a lap, in addition to its environment and driver. `visit_options` below describes the
+/// fields.
 struct LapSettings {
   int obstacles = 0;                  ///< parked cars, 0 ... 1000
   std::optional<maps::Pose> start{};  ///< pose of the centre of gravity; default: the environment's
   int threads = 1;                    ///< threads of the solver, 1 ... 1024; they do not change the result
-  std::optional<HardwareConditions> hardware{};  ///< as on a real car; Protocol::true_physics only
+  std::optional<HardwareConditions> hardware{};  ///< sensors of a real car; Protocol::true_physics only
   std::optional<std::uint64_t> layout{};         ///< seed of the obstacle placement; default: the lap's
-  /// Driver of the `planning_opponents`, at the control period of the car. Null: as the car itself.
+  /// Driver of the `planning_opponents`, with the control period of the car. Null: the driver of the car.
   std::shared_ptr<const Driver> opponent_planner{};
   bool additional_costs = false;  ///< also compute `paper_model_cost` and `driven_cost` (slower)
 
@@ -97,10 +97,10 @@ void visit_options(Options& o, Visit&& visit) {
 
 /// Whether opponent `index` (from 0, in the order in which they start ahead of the car) has a planner.
 bool has_planner(const LapSettings& settings, int index) noexcept;
-/// The sensors and actuators of a real car that a lap has, if it has them: `hardware`, or with `localised`
+/// Returns the sensors and actuators of a real car, if the lap has them: `hardware`, or with `localised`
 /// HardwareConditions::sensors.
 std::optional<HardwareConditions> hardware_of(const LapSettings& settings);
-/// The driver of opponent `index` if it has no planner.
+/// Returns the driver of opponent `index`, which has no planner.
 sim::OpponentDriver driver_of(const LapSettings& settings, int index) noexcept;
 
 /// Sets the option that `key` names, for instance "world.friction", from text. Returns false if `key` does

@@ -26,13 +26,13 @@ namespace slalom::detail {
 ///
 ///     W ~ K(t, t_k) K(t_k, t_k)^-1,   each row of W has length 1,   z = W y,   C = W W^T
 ///
-/// It is drawn as z <- L z too, where W = L Q, Q has orthonormal rows, and L is lower triangular.
+/// It is also drawn as z <- L z, where W = L Q, Q has orthonormal rows, and L is lower triangular.
 class NoiseShape {
  public:
   /// White normal noise.
   NoiseShape() = default;
-  /// More knots than steps are as many as steps. Throws std::invalid_argument if a correlated sequence is too
-  /// long, or if noise has both a colour and knots.
+  /// The number of knots is limited to that of steps. Throws std::invalid_argument if a correlated sequence
+  /// is too long, or if noise has both a colour and knots.
   NoiseShape(const NoiseOptions& options, int steps, int inputs);
 
   /// Whether the noise of any input is correlated along the steps: coloured or interpolated.
@@ -41,8 +41,8 @@ class NoiseShape {
   /// Shapes the samples of a range of `z`, which holds white noise.
   void apply(SequenceBatch& z, Range range) const noexcept;
 
-  /// Multiplies a sequence [row] by C^-1, in place. Between knots, C has no inverse, and its pseudo-inverse
-  /// is taken: only the part of the sequence counts along which samples differ.
+  /// Multiplies a sequence [row] by C^-1, in place. With knots, C has no inverse, and its pseudo-inverse is
+  /// used: only the part of the sequence in which samples differ counts.
   void whiten_twice(double* sequence) const noexcept;
 
  private:
@@ -60,10 +60,10 @@ class NoiseShape {
   std::vector<std::vector<float>> factor_float_;  ///< the same in float32
 };
 
-/// The correlations c(0) ... c(steps - 1) of noise with power 1/f^exponent.
+/// Returns the correlations c(0) ... c(steps - 1) of noise with power 1/f^exponent.
 std::vector<double> coloured_correlation(double exponent, int steps);
 
-/// W [step][knot] of noise that is interpolated between knots.
+/// Returns W [step][knot] of noise that is interpolated between knots.
 std::vector<double> knot_weights(int steps, int knots);
 
 }  // namespace slalom::detail

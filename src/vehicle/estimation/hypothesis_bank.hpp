@@ -4,7 +4,7 @@
 
 namespace slalom::vehicle::detail {
 
-/// A stretch of driving and the hypotheses that predict it. The state at its begin is that of the origin.
+/// A stretch of driving and the hypotheses that predict it. It begins at the origin.
 struct BankInput {
   const SingleTrackDynamics* dynamics = nullptr;
   int steps = 0;

@@ -14,31 +14,29 @@
 
 namespace slalom::vehicle::detail {
 
-/// A path around an obstacle on the course, found by a search in the map of obstacles. Plans look one horizon
-/// ahead, and from there the side of an obstacle that is a dead end can look better than the one that is
-/// open.
+/// Finds a path around an obstacle on the course, by a search in the map of obstacles. A plan looks only one
+/// horizon ahead, so a dead end beside the obstacle can look better to it than the open side.
 ///
-/// The search covers the cells of a grid around the car (maps::GridSearch), in which the car is a disc of its
-/// width and margin, and cells near obstacles cost more. Its end is the furthest point of the course in the
-/// grid that can be reached. The path goes on along the course from there. After construction nothing
-/// allocates.
+/// The search covers a grid around the car (maps::GridSearch). The car is a disc of its width and margin, and
+/// cells near obstacles cost more. The search ends at the furthest point of the course in the grid that can
+/// be reached; from there the path follows the course. After construction nothing allocates.
 class Detour {
  public:
-  /// Takes the course, which may be closed, and the body of the car.
+  /// Takes the course, whether it is closed, and the body of the car.
   Detour(std::span<const maps::ReferencePoint> course, bool closed, const BodyOptions& body);
 
-  /// Notes the state of the recovery and the place of the car (frame of the course). Call it once a control
-  /// period. A place where the car on a detour had to reverse is a dead end to the next searches, until the
-  /// car is past it.
+  /// Notes the state of the recovery and the pose of the car (frame of the course). Call it once per control
+  /// period. A place where the car had to reverse on a detour counts as a dead end in later searches, until
+  /// the car is past it.
   void note(const Recovery& recovery, const maps::Pose& pose) noexcept;
 
-  /// Searches from `pose` (frame of the course), in the map of obstacles around it, with the point of the
-  /// course that is nearest to the car. Returns whether there is a path.
+  /// Searches from `pose` (frame of the course) in the map of obstacles around it. `nearest` is the point of
+  /// the course nearest to the car. Returns whether there is a path.
   bool search(const maps::ClearanceMap& obstacles, const maps::Pose& pose, int nearest) noexcept;
 
   /// The path of the last search that found one, with speeds of at most 1.5 m/s.
   std::span<const maps::ReferencePoint> path() const noexcept { return path_; }
-  /// Computes the field of that path around a position (m).
+  /// Computes the field of the path around a position (m).
   void update_field(const maps::Point& position) noexcept { field_.update(position); }
   /// The field of the path, as of the last `update_field`.
   const maps::ReferenceField& field() const noexcept { return field_; }

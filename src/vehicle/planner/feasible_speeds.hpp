@@ -13,41 +13,42 @@ struct DrivingLimits {
   double grip = 9;           ///< m/s^2, of the tyres in any direction
   double acceleration = 9;   ///< m/s^2, of the motor below `switch_speed`
   double braking = 9;        ///< m/s^2
-  double braking_share = 1;  ///< share of the grip that turning leaves, for braking
-  double delay = 0;          ///< s, by which the car follows the speeds late
-  double lead = 0;           ///< s, from where a speed is looked up to where the car has it
+  double braking_share = 1;  ///< share of the grip that turning leaves and braking may use
+  double delay = 0;          ///< s; the car follows the speeds this late
+  double lead = 0;           ///< s from the look-up of a speed until the car has it
   double switch_speed = 7;   ///< m/s, above it the motor's power is the limit
 };
 
 /// The limits of a model with tyres that slip, on ground of this friction.
 DrivingLimits driving_limits(const VehicleTraits& traits, double friction);
 
-/// The highest speeds along a path that a car can drive, no higher than the path's own:
+/// Computes the highest speeds that a car can drive along a path, no higher than the path's own:
 ///
 ///     v^2 |k| <= grip,   -braking <= dv/dt <= acceleration,   (v^2 k)^2 + (b dv/dt)^2 <= grip^2
 ///
 /// with b = 1 / braking_share for dv/dt < 0, else 1, by a pass forward and one backward (Heilmeier et al.
-/// 2020, Sec. 4; see speed_profile). At every point they are slow enough for all that follows; with `lead`
-/// they are those of the place that a car reaches in this time, so higher than the car can drive at the point
-/// itself where they rise. Where feasible_speeds is computed once, this follows the friction while the car
-/// drives.
+/// 2020, Sec. 4; see speed_profile). Each speed is low enough for the rest of the path. With `lead`, a point
+/// has the speed of the place that the car reaches after this time; where speeds rise, that is more than the
+/// car can drive at the point itself. The speeds can be updated while the car drives, when the friction
+/// changes.
 class FeasibleSpeeds {
  public:
-  /// `grip_shares`: of the grip in the limits, one for each of so many equal parts of the path; at least one.
+  /// `grip_shares` are shares of the grip in the limits, one for each part of the path; the parts have equal
+  /// lengths. At least one share.
   explicit FeasibleSpeeds(std::span<const maps::ReferencePoint> path,
                           std::span<const double> grip_shares = std::span(&whole, 1));
 
   /// Computes the speeds. Allocates nothing.
   void update(const DrivingLimits& limits) noexcept;
 
-  /// m along the path, of a point.
+  /// The distance of a point along the path, m.
   double arc(int point) const noexcept { return arc_[static_cast<std::size_t>(point)]; }
-  /// m, of a closed path; 0 of an open one.
+  /// The length of a closed path, m; 0 if it is open.
   double length() const noexcept { return gap_.back() > 0 ? arc_.back() + gap_.back() : 0; }
 
-  /// 1/m, of the path, positive to the left, a point each.
+  /// The curvature of the path at each point, 1/m, positive to the left.
   std::span<const double> curvatures() const noexcept { return curvature_; }
-  /// m/s, a point each, looked up ahead with `lead`; those of the path before the first update.
+  /// The speed at each point, m/s, looked up ahead with `lead`. Before the first update, the path's own.
   std::span<const double> speeds() const noexcept { return speed_; }
 
  private:

@@ -12,19 +12,20 @@
 /// The options of the planner's maps, and its path.
 namespace slalom::vehicle::detail {
 
-/// The path with the speeds that the options allow: where plans seek the shortest time, `max_speed`.
+/// Returns the path with the speeds that the options allow; if plans seek the shortest time, all are
+/// `max_speed`.
 std::vector<maps::ReferencePoint> limited_path(std::span<const maps::ReferencePoint> path,
                                                const PlannerOptions& options, const VehicleTraits& traits);
 
-/// The factor by which cells and lengths of maps are larger than those of a 1/10-scale car.
+/// Returns the factor by which cells and lengths of maps are larger than those of a 1/10-scale car.
 double map_scale(const PlannerOptions& options);
 
-/// The time (s) in which a car at the path's highest speed drives its stopping distance, where plans must be
-/// able to stop; else 0.
+/// Returns the time (s) in which a car at the path's highest speed drives its stopping distance, or 0 if
+/// plans need not be able to stop.
 double stopping_time(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                      const VehicleTraits& traits);
 
-/// The way (m) that the car can drive in this time (s).
+/// Returns the distance (m) that the car can drive in this time (s).
 double plan_reach(std::span<const maps::ReferencePoint> path, const PlannerOptions& options,
                   const VehicleTraits& traits, double duration);
 

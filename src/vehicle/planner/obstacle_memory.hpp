@@ -12,8 +12,8 @@
 
 namespace slalom::vehicle::detail {
 
-/// The obstacle points of the last seconds in the frame of the odometry, so that a car that reverses knows
-/// the obstacles behind it: where the scan does not reach, old points still count.
+/// Remembers the obstacle points of the last seconds, in the frame of the odometry. Where the scan does not
+/// reach, old points still count, so a reversing car knows the obstacles behind it.
 class ObstacleMemory {
  public:
   /// The lengths of maps are `scale` times those for a 1/10-scale car.
@@ -24,7 +24,7 @@ class ObstacleMemory {
     age_ = interval;
   }
 
-  /// Keeps points (robot's frame, m) of the scan at `pose`; to be called once a control period (s).
+  /// Remembers points (robot's frame, m) of the scan at `pose`. Call it once per control period (s).
   void remember(std::span<const maps::ScanPoint> seen, const maps::Pose& pose, double period) noexcept {
     age_ += period;
     if (age_ < interval) return;
@@ -40,8 +40,8 @@ class ObstacleMemory {
     }
   }
 
-  /// The points that the scan of a laser there, robot's frame, does not reach, in the robot's frame at
-  /// `pose`.
+  /// Returns the remembered points outside of the scan `view`, in the robot's frame at `pose`. `laser` is the
+  /// pose of the laser in the robot's frame.
   std::span<const maps::Point> blind_points(const maps::Pose& pose, const maps::Pose& laser,
                                             const maps::LaserScanView& view) noexcept {
     blind_.clear();
@@ -76,7 +76,7 @@ class ObstacleMemory {
     bool contains(const maps::Point& point) const noexcept {
       const double x = point.x - laser_.x, y = point.y - laser_.y, distance = std::sqrt(x * x + y * y);
       const double inside = along_x_ * x + along_y_ * y - border_ * distance;
-      // Only at the border does the angle itself decide: it takes most of the time.
+      // The angle is computed only at the border, since that takes most of the time.
       if (std::abs(inside) > 1e-6 * distance) return inside > 0;
       const double angle = maps::wrap_angle(std::atan2(y, x) - laser_.yaw);
       return !(angle < first_ || angle > last_);
@@ -99,7 +99,7 @@ class ObstacleMemory {
   std::array<Scan, scans> scans_{};
   std::size_t next_ = 0;
   double age_ = interval;
-  double reach_;  ///< m, of points that are kept
+  double reach_;  ///< m; points that are further away are not kept
   ReservedVector<maps::Point> blind_;
 };
 

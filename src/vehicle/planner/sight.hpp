@@ -15,25 +15,25 @@ namespace slalom::vehicle::detail {
 /// The part of the path ahead that a scan shows.
 struct PathInSight {
   static constexpr double all = std::numeric_limits<double>::infinity();
-  double way = all;       ///< m along the path, to the first place that something beside the path hides
-  double obstacle = all;  ///< m along the path, to the first thing that stands on it
+  double way = all;       ///< m along the path, to the first place that an obstacle beside the path hides
+  double obstacle = all;  ///< m along the path, to the first obstacle on it
 };
 
-/// How far the path ahead is in sight. A car that drives faster than it can stop within this way cannot avoid
-/// an obstacle behind the next corner.
+/// Computes how far the path ahead is in sight. A car that cannot stop within this distance cannot avoid an
+/// obstacle behind the next corner.
 class Sight {
  public:
-  /// Along this path, up to `reach` (m) ahead, for a car with this body and a laser as in the options. An
-  /// obstacle that its body would meet stands on the path.
+  /// Looks along this path, up to `reach` (m) ahead. The options give the pose of the laser. An obstacle that
+  /// the body of the car would touch stands on the path.
   Sight(std::span<const maps::ReferencePoint> path, bool closed, double reach, const PlannerOptions& options,
         const BodyOptions& body);
 
-  /// From a pose in the frame of the path, with its nearest point. A beam without a reading shows everything.
-  /// Obstacles on the path hide nothing: plans that pass them see the path behind them on their way.
+  /// Looks from a pose in the frame of the path, with its nearest point. A beam without a reading shows
+  /// everything. Obstacles on the path hide nothing, since a plan that passes them sees the path behind them
+  /// in time.
   PathInSight look(const maps::LaserScanView& scan, const maps::Pose& pose, int nearest) noexcept;
-  /// m, in the frame of the car: points beside the part of the path that the last scan did not show, where it
-  /// showed nothing either. There only the path is known to be free, and a car that leaves it for a shorter
-  /// way may meet a wall.
+  /// Points (m, frame of the car) beside the hidden part of the path that are hidden, too. Only the path
+  /// itself is known to be free there: a car that leaves it for a shorter way may meet a wall.
   std::span<const maps::Point> unknown() const noexcept { return {unknown_.data(), unknown_count_}; }
 
   /// The highest speed (m/s, > 0) at which the car stops within `way` (m) with `sight_deceleration`.

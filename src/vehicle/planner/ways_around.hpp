@@ -11,18 +11,17 @@
 
 namespace slalom::vehicle::detail {
 
-/// Plans that drive beside the path, to either side of it and at several speeds: the ways around an obstacle
-/// on it. A solver samples near its last solution: if that stands in front of an obstacle, hardly a sample
+/// Makes plans that drive beside the path, on either side of it and at several speeds, around an obstacle on
+/// it. A solver samples near its last solution: if the car stands in front of an obstacle, hardly a sample
 /// drives around it within the horizon.
 class WaysAround {
  public:
-  /// Plans have `horizon` steps with so many inputs each, along this path, for a car with these traits whose
-  /// wheels turn as far as the limit (rad).
+  /// Plans have `horizon` steps of `inputs` inputs. The wheels turn as far as `steer_limit` (rad).
   WaysAround(std::span<const maps::ReferencePoint> path, bool closed, int horizon, int inputs,
              const VehicleTraits& traits, double steer_limit);
 
-  /// Draws the ways from `start`, near the point `nearest` of the path whose points have these speeds (m/s),
-  /// on ground of this friction.
+  /// Draws the ways from `start`, near the point `nearest` of the path, on ground of this friction.
+  /// `path_speeds` (m/s) are those of the points of the path.
   void draw(const VehicleStart& start, int nearest, std::span<const double> path_speeds,
             double friction) noexcept;
 
@@ -36,7 +35,7 @@ class WaysAround {
   /// A point of the path.
   struct Place {
     double x, y;            ///< m
-    double left_x, left_y;  ///< to the left of the path
+    double left_x, left_y;  ///< unit vector to the left of the path
     double gap;             ///< m, to the next point
   };
   void draw_way(int way, Car car, std::span<const double> path_speeds, double grip) noexcept;

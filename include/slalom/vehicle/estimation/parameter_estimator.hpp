@@ -9,7 +9,7 @@
 
 namespace slalom::vehicle {
 
-/// The estimate of the car and the ground.
+/// Estimates of the car and the ground.
 struct ParameterEstimate {
   double friction = 0;                 ///< mean
   double friction_deviation = 0;       ///< standard deviation
@@ -37,26 +37,26 @@ struct Moments {
 };
 }  // namespace detail
 
-/// Friction, steering gain and steering delay of a car while it drives.
+/// Estimates friction, steering gain and steering delay of a car while it drives.
 ///
-/// Each combination of values on a grid is a hypothesis. In every control period the dynamics predict, for
-/// all hypotheses at once in SIMD lanes, the last `window` seconds from the measured state at their begin,
-/// with the commands that were sent, delayed and scaled by the hypothesis, and with the measured speed. The
-/// logarithm of a hypothesis' weight falls by
+/// Each combination of values on a grid is a hypothesis. In every control period, the dynamics predict the
+/// last `window` seconds for all hypotheses at once, in SIMD lanes. A prediction starts at the measured
+/// state, uses the measured speed, and delays and scales the sent commands by the hypothesis. The logarithm
+/// of a hypothesis' weight falls by
 ///
 ///     (period / window) / 2 * ((lateral error / lateral_noise)^2 + (yaw error / yaw_noise)^2)
 ///
-/// with the errors of the predicted pose at the end; the factor allows for the overlap of successive windows.
+/// with the errors of the predicted pose at the end. The factor allows for the overlap of successive windows.
 /// Errors beyond five deviations count as five, so that a collision or a jump of the localisation decides
-/// nothing. What was learned is forgotten within `memory` seconds of turning: on a straight line, where
-/// nothing can be learned about the tyres, nothing is forgotten either. Prior: independent normal
-/// distributions around the given values, of the friction's logarithm.
+/// nothing. The estimator forgets within `memory` seconds of turning. On a straight line it can learn nothing
+/// about the tyres and forgets nothing either. The prior consists of independent normal distributions around
+/// the given values; that of the friction is for its logarithm.
 ///
 /// The means are those of the posterior; before the first turn they are the given values.
 /// `cautious_friction` is the `friction_quantile` of the posterior, never above the given friction: before
 /// the first turn it is that of the prior.
 ///
-/// An update takes no time that depends on data, and neither allocates nor throws.
+/// The time of an update does not depend on data. It neither allocates nor throws.
 class ParameterEstimator {
  public:
   static constexpr int frictions = 16;   ///< geometric, 0.25 .. 1.5
@@ -64,7 +64,7 @@ class ParameterEstimator {
   static constexpr int delays = 9;       ///< 0 .. 0.2 s
   static constexpr int max_window = 40;  ///< control periods
 
-  /// `friction` and `delay` (s) are those that were given, `period` (s) is the control period.
+  /// `friction` and `delay` (s) are the given values; `period` (s) is the control period.
   ParameterEstimator(const SingleTrackDynamics& dynamics, const EstimationOptions& options, double friction,
                      double delay, double period);
 
@@ -77,7 +77,7 @@ class ParameterEstimator {
   /// Learns from the motion of the last control period.
   const ParameterEstimate& update(const MeasuredMotion& now) noexcept;
 
-  /// The estimate of now.
+  /// The present estimate.
   const ParameterEstimate& estimate() const noexcept { return estimate_; }
 
   /// The friction of a grid point, 0 .. frictions - 1.
@@ -94,8 +94,7 @@ class ParameterEstimator {
 
   /// Moments of the prior alone.
   struct Prior {
-    detail::Moments logarithm, gain,
-        delay;  ///< moments of the friction's logarithm, the gain and the delay, s
+    detail::Moments logarithm, gain, delay;  ///< logarithm of the friction; gain; delay, s
   };
 
   const Moment& ago(int periods) const noexcept;

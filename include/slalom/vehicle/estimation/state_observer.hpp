@@ -9,7 +9,7 @@
 
 namespace slalom::vehicle {
 
-/// The covariance of a pose: x, y (m, map frame) and yaw (rad). All 0 where it is not known.
+/// The covariance of a pose: x, y (m, map frame) and yaw (rad). All 0 if it is not known.
 using PoseCovariance = std::array<std::array<double, 3>, 3>;
 
 /// The readings of the sensors at one moment.
@@ -20,15 +20,15 @@ struct ObserverInput {
   std::optional<ImuReading> imu{};  ///< mean over the last control period
 };
 
-/// The state of a car whose tyres slip, from pose, speed and, where there is one, an inertial measurement
-/// unit: an extended Kalman filter over pose, speed, yaw rate, sideways velocity and the gyro's bias
-/// (S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics" (2005), Table 3.3). The vehicle model and the
-/// commands sent predict the state, and accelerometers share in the prediction of speed and sideways velocity
-/// by the inverse of their variances. Derivatives are differences.
+/// Estimates the state of a car whose tyres slip, from pose, speed and, if there is one, an inertial
+/// measurement unit. It is an extended Kalman filter over pose, speed, yaw rate, sideways velocity and the
+/// gyro's bias (S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics" (2005), Table 3.3). The vehicle model
+/// and the commands sent predict the state, and accelerometers share in the prediction of speed and sideways
+/// velocity by the inverse of their variances. Derivatives are differences.
 ///
 /// Commands are sent once per control period; a speed takes effect after `latency`, a steering angle
 /// `dead_time` later. Below 0.5 m/s, after a missed period and after a jump of the pose by more than 0.5 m or
-/// 0.5 rad the filter begins anew as a car whose tyres do not slip. An update neither allocates nor throws.
+/// 0.5 rad the filter restarts as a car whose tyres do not slip. An update neither allocates nor throws.
 class StateObserver {
  public:
   /// All times in s; latency and dead time together at most 32 periods.
@@ -37,11 +37,11 @@ class StateObserver {
   /// Forgets everything.
   void reset() noexcept;
 
-  /// Takes the measurements of one control period after the last; predictions are for ground of this
+  /// Takes the measurements one control period after the last ones. Predictions assume ground of this
   /// friction.
   void update(const DynamicVehicleModel& model, const ObserverInput& input, double friction) noexcept;
 
-  /// Records the command that is sent now; for the next update.
+  /// Records the command that is sent now. The next updates use it.
   void send(const Command& command) noexcept;
 
   /// Sets the time (s) after `latency` at which the steering reacts.

@@ -8,17 +8,17 @@
 
 namespace slalom::vehicle::detail {
 
-/// The time that the car would lose behind each other car, from how fast that one has driven so far, as a
+/// Computes the time that the car would lose behind each other car, from the speed of that car so far as a
 /// share of the path's speed.
 class PaceOfOthers {
  public:
-  /// A car that stays behind another is taken to do so for `steps_behind` time steps. `control_period`: s
+  /// Assumes that a car stays behind another for `steps_behind` time steps. `control_period` (s) is the time
   /// between calls of `steps_lost`.
   PaceOfOthers(double steps_behind, double control_period) noexcept;
 
-  /// Notes the speeds of these cars, and returns for each how many time steps the car loses that stays behind
-  /// it: 0 unless it is slower than the path, near ahead of the own car, and drives the same way. `own` and
-  /// `field` are in the frame that begins at `origin` (m, map frame). Valid until the next call.
+  /// Notes the speeds of these cars. Returns for each the number of time steps that the own car loses behind
+  /// it: 0 unless that car is slower than the path, close ahead, and drives the same way. `own` and `field`
+  /// are relative to `origin` (m, map frame). Valid until the next call.
   std::span<const double> steps_lost(std::span<const maps::PredictedObstacle* const> others,
                                      const maps::ReferenceField& field, const maps::Point& origin,
                                      const maps::Pose& own) noexcept;
