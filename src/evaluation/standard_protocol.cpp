@@ -25,7 +25,7 @@ class StandardRules final : public LapRules {
 
   void configure(sim::WorldOptions& options, const LapSettings& settings,
                  const vehicle::Configuration& configuration) const override {
-    // A whole number of simulation steps and one scan per command, whatever the control period is.
+    // For any control period, a command has a whole number of simulation steps and one scan.
     const double period = configuration.planner.control_period;
     options.time_step = period / std::max(1.0, std::ceil(period / options.time_step - 1e-9));
     options.lidar.rate = 1 / period;

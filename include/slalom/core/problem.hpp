@@ -19,20 +19,20 @@
 ///
 /// `State<T>` is an aggregate of `T` (nested arrays are fine). Optional:
 ///  - `step` and `stage_cost` may take the step index `int k` (0 ... horizon - 1) as their last argument;
-///  - `template <class T> auto look_up(const State<T>& x) const`: the values of maps at a state. It
-///    is evaluated once a state and handed, after the state, to `step`, `stage_cost` and `terminal_cost`;
+///  - `template <class T> auto look_up(const State<T>& x) const`: the values of maps at a state. It is called
+///    once per state; `step`, `stage_cost` and `terminal_cost` then take its result after the state;
 ///  - a cost may be returned as `Cost<T>`, which also says whether the state collides, or as
-///    `CostTerms<T, N>`, whose terms `static constexpr std::array cost_names{"distance", "effort"}` names:
-///    plans tell each;
+///    `CostTerms<T, N>`, whose terms have names:
+///    `static constexpr std::array cost_names{"distance", "effort"}`. Plans report each term;
 ///  - a member `dt` or a function `time_step()`: the duration of a step, s. With it solvers shift their last
 ///    solution by the time that has passed;
-///  - members `input_min` and `input_max`, a `double` or a `std::array<double, inputs>`: bounds that hold
-///    besides those of a method's options; read when a controller is made;
-///  - a member `input_rate_max`, of the same kind, in 1/s: inputs move no faster, in rollouts as in plans;
-///  - `void sample(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept`: noise of its
-///    own in place of independent standard normal values (see `Sampler`);
-///  - `static constexpr bool long_steps = true`: a step is several hundred instructions long, so that
-///    rollouts are faster if each of them takes two packs. It changes no result (see pack/pair.hpp).
+///  - members `input_min` and `input_max`, a `double` or a `std::array<double, inputs>`: bounds in
+///    addition to those of a method's options, read when a controller is made;
+///  - a member `input_rate_max`, of the same type: the largest rate of each input in rollouts and plans, 1/s;
+///  - `void sample(SequenceBatch& noise, int first, int count, RandomKey key) const noexcept`: its own
+///    noise instead of independent standard normal values (see `Sampler`);
+///  - `static constexpr bool long_steps = true`: a step has several hundred instructions, so
+///    rollouts of two packs at a time are faster. Results do not change (see pack/pair.hpp).
 namespace slalom {
 
 /// The `M` inputs of one step.

@@ -29,7 +29,7 @@ SLALOM_INLINE StateOf<P, T> broadcast_state(const float* x, std::index_sequence<
 template <class P, class F>
 using SeenOf = decltype(look_up<P, F>(std::declval<const P&>(), std::declval<const StateOf<P, F>&>()));
 
-/// Stands for the previous input where none has to be remembered.
+/// Replaces the previous input if none must be remembered.
 struct NoInput {};
 /// The inputs of the step before, of a problem that limits their rates.
 template <class P, class F>
@@ -53,7 +53,7 @@ struct RolloutStart {
   [[no_unique_address]] HeldInput<P, F> reach;     ///< how far an input may move in a step
 };
 
-/// Size of the start of a rollout: the state, then the inputs applied before where rates are limited.
+/// Size of the start of a rollout: the state, then the previous inputs if rates are limited.
 template <class P>
 inline constexpr int start_size = state_size<P> + (limits_rates<P> ? P::inputs : 0);
 

@@ -57,7 +57,7 @@ struct ControlStep {
 /// Function that is called in every control step.
 using ControlStepCallback = std::function<void(const ControlStep&)>;
 
-/// Errors of the planner's estimates of state and parameters in a lap; empty where tyres do not slip.
+/// Errors of the planner's estimates of state and parameters in a lap; empty if tyres do not slip.
 struct EstimationRecord {
   std::vector<float> yaw_rate_error;  ///< rad/s, of each control step, absolute
   std::vector<float> slip_error;      ///< rad, the same

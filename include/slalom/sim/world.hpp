@@ -27,17 +27,17 @@
 ///       world.step(std::array{Command{steer, speed}});
 ///     }
 ///
-/// A world is a value: a copy behaves as its original does. All worlds of a track share its walls. So
-/// thousands can run in parallel threads, each thread with worlds of its own.
+/// A world is a value: a copy behaves as its original does. All worlds of a track share its walls, so
+/// thousands of worlds can run in parallel, each in one thread.
 namespace slalom::sim {
 
 /// The effect of a collision on a driven car.
 enum class CollisionResponse {
-  stop,        ///< it returns to where it was before the step, at rest
-  slide,       ///< it loses the speed into the obstacle and keeps the speed along it
-  count_only,  ///< nothing: it drives through, and the collision is counted
-  /// As `slide`, but a car that touches nothing but cars that drive into it keeps its motion: only they lose
-  /// speed. With `slide` both lose speed, so that a car that is hit from behind may stop.
+  stop,        ///< the car returns to its place before the step, at rest
+  slide,       ///< the car loses the speed into the obstacle and keeps the speed along it
+  count_only,  ///< the car drives through, and the collision is counted
+  /// As `slide`, but a car that touches only cars which drive into it keeps its motion: only those lose
+  /// speed. With `slide` both lose speed, so a car that is hit from behind may stop.
   slide_unless_struck,
 };
 
@@ -54,10 +54,10 @@ struct WorldOptions {
   GymWorld gym{};               ///< reproduction of f1tenth_gym
   bool start_anywhere = false;  ///< cars may start in walls and in each other, as those of f1tenth_gym may
 
-  /// The options with which a world behaves as that of f1tenth_gym: all `gym` switches, one integration step
-  /// per time step, LiDAR at the centre of gravity, cars that drive through each other, and starts anywhere.
-  /// Load the map with MapRule::grey_threshold and construct the track with TrackOptions::outside_is_wall =
-  /// false.
+  /// Returns the options with which a world behaves like f1tenth_gym: all `gym` switches, one integration
+  /// step per time step, LiDAR at the centre of gravity, cars that drive through each other, and starts
+  /// anywhere. Load the map with MapRule::grey_threshold and construct the track with
+  /// TrackOptions::outside_is_wall = false.
   static WorldOptions gym_compatible();
 
   /// Throws std::invalid_argument naming the field, its value and the rule it breaks.
@@ -82,7 +82,7 @@ struct Observation {
   bool collides() const { return wall || !colliding.empty(); }  ///< whether it collides with a wall or a body
 };
 
-/// Result of a step; where both errors apply, non_finite_command.
+/// Result of a step. If both errors apply, it is non_finite_command.
 enum class StepStatus {
   ok,
   missing_command,     ///< fewer commands than cars; the others coasted
@@ -101,8 +101,8 @@ class World {
   /// in another body.
   void reset(std::uint64_t seed, std::span<const maps::Pose> cars, std::span<const maps::Pose> parked = {});
 
-  /// Places a fixed body and returns its number. Throws std::invalid_argument on sizes that
-  /// are not positive and poses that are not finite. It may be placed onto a car.
+  /// Adds a parked car and returns its index. It may be placed onto a car. Throws std::invalid_argument if
+  /// the size of a body is not positive or its pose is not finite; so do `add_box` and `add_disc`.
   int add_parked_car(const maps::Pose& pose);
   /// Adds a fixed body and returns its index.
   int add_box(const Box& box);
@@ -111,11 +111,12 @@ class World {
   /// Moves a parked car, box or disc. Throws std::invalid_argument on a body that does not exist or that
   /// drives.
   void move_body(int body, const maps::Pose& pose);
-  /// Takes a parked car, box or disc away; the numbers of later bodies fall by one. Throws as move_body does.
+  /// Removes a parked car, box or disc. The numbers of later bodies fall by one. Throws as move_body does.
   void remove_body(int body);
 
-  /// Puts a driven car into a state without a check for collisions; commands under way stay under way. Throws
-  /// std::invalid_argument on a state that is not finite and std::out_of_range on a car that does not exist.
+  /// Puts a driven car into a state without a check for collisions. Delayed commands still take effect.
+  /// Throws std::invalid_argument on a state that is not finite and std::out_of_range on a car that does not
+  /// exist.
   void set_state(std::size_t car, const CarState& state);
 
   /// Moves by one time step. Command i is for driven car i; cars without one coast as configured.
@@ -134,15 +135,15 @@ class World {
   /// Whether a driven car has not been taken away; `car` must be less than `cars()`.
   bool on_track(std::size_t car) const noexcept { return !cars_[car].away; }
 
-  /// Whether a car scans: a new car does, and a car keeps the setting over a reset. Throws std::out_of_range
-  /// on a car that does not exist.
+  /// Sets whether a car scans. New cars do, and a car keeps the setting over a reset. Throws
+  /// std::out_of_range on a car that does not exist.
   void set_scanning(std::size_t car, bool scans);
 
   /// Scan and state of a car. Here and in the three functions below, `car` must be less than `cars()`.
   Observation observe(std::size_t car) const noexcept;
   /// State of a car.
   const CarState& state(std::size_t car) const noexcept { return cars_[car].plant.state(); }
-  /// Laps by arc length; nullptr where the track has no lap path.
+  /// Laps by arc length; nullptr if the track has no lap path.
   const LapTimer* laps(std::size_t car) const noexcept {
     return cars_[car].timer ? &*cars_[car].timer : nullptr;
   }

@@ -105,8 +105,8 @@ struct Plan {
 /// always finite, within the bounds and within the rates; its cost and states are always finite
 /// (final_check.hpp).
 ///
-/// A copy goes on with the same bits. It has a problem and a solver of its own and shares the threads; the
-/// two may be used at the same time (ThreadPool).
+/// A copy goes on with the same bits. It has its own problem and solver and shares only the threads. Both
+/// controllers may be used at the same time (see ThreadPool).
 template <class P>
 class Controller {
   using Controlled = detail::Controlled<P>;

@@ -96,8 +96,8 @@ class Solver {
   /// Whether `solve` uses the proposals of a request.
   virtual bool takes_proposals() const noexcept { return false; }
 
-  /// A copy that goes on with the same bits: with the same requests from the same states both give the same
-  /// results. Its last result points into the copy. The two share their threads; see ThreadPool.
+  /// Returns a copy that goes on with the same bits: the same requests from the same states give the same
+  /// results. The last result of the copy points into the copy. Both share their threads; see ThreadPool.
   virtual std::unique_ptr<Solver> clone() const = 0;
 
   /// The result of the last solve, or the state after the last reset.

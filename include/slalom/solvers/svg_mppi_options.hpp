@@ -72,7 +72,7 @@ struct SvgMppiOptions {
   int horizon = 30;
   int samples = 1024;
   double temperature = 1;
-  PerInput variance = 1;  ///< variance of the samples where it is not adapted
+  PerInput variance = 1;  ///< variance of the samples if it is not adapted
   PerInput input_min = -std::numeric_limits<double>::infinity();
   PerInput input_max = std::numeric_limits<double>::infinity();
 

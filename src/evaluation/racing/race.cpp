@@ -32,7 +32,7 @@ RacingSample sample_between(const Motion& before, const Motion& now) {
           .lateral = (now.speed + before.speed) * std::sin(half_turn) / duration};
 }
 
-/// Times the laps of a drive from a standing start on.
+/// Times the laps of a drive, beginning at a standing start.
 class LapClock {
  public:
   LapClock(const LapDrive& drive, std::uint64_t seed, bool flying)

@@ -76,8 +76,8 @@ bool SampleSet::lacks_noise(const BatchEvaluator& evaluator, RandomKey key) cons
   return !evaluator.sampler() && !(all && prepared_for(key));
 }
 
-/// Evaluates a range if `evaluator` is not null, sets its costs to infinity where they are not finite and in
-/// the padding, and computes its totals and statistics.
+/// Evaluates a range if `evaluator` is not null. Sets costs that are not finite, and those in the padding, to
+/// infinity. Computes the totals and statistics of the range.
 void SampleSet::finish(Range r, const BatchEvaluator* evaluator, const float* linear,
                        BatchStatistics& statistics) noexcept {
   const int count = std::min(r.count, samples() - r.first);

@@ -62,7 +62,7 @@ class FeasibleSpeeds {
   std::vector<double> arc_;          ///< m
   std::vector<double> curvature_;    ///< 1/m, positive to the left
   std::vector<double> share_;        ///< share of the grip at each point
-  std::vector<double> gap_;          ///< m, from each point to the next; 0 where the path is not joined
+  std::vector<double> gap_;          ///< m, from each point to the next; 0 at the end of an open path
 };
 
 }  // namespace slalom::vehicle::detail

@@ -8,8 +8,8 @@
 namespace slalom::vehicle::detail {
 namespace {
 
-/// The planner of a car whose tyres do not slip. It plans the steering; the speed is that of the path, or of
-/// the plan where the acceleration is an input.
+/// The planner of a car whose tyres do not slip. It plans the steering. The speed is that of the path, or
+/// that of the plan if the acceleration is an input.
 class KinematicPlanner final : public PlannerBase {
  public:
   KinematicPlanner(const PlannerOptions& options, std::unique_ptr<VehicleModel> model,

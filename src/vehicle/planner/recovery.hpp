@@ -17,7 +17,7 @@ class Recovery {
   void reset() noexcept { *this = {}; }
 
   bool reversing() const noexcept { return reversing_; }
-  /// Whether the car is not yet well past a place where it crawled or stood.
+  /// Whether the car is not yet well past the place where it crawled or stood.
   bool leaving() const noexcept { return leaving_; }
   /// Whether the car drives on after reversing and is not yet well past that place.
   bool tries_again() const noexcept { return trying_again_ && !reversing_; }

@@ -27,8 +27,8 @@ struct PredictedState {
   double speed = 0;     ///< m/s
   double steer = 0;     ///< rad, of the wheels
   maps::Pose local;     ///< pose of the body in the frame of the robot at the time of the scan
-  double yaw_rate = 0;  ///< rad/s; 0 where the model has none
-  double slip = 0;      ///< rad; 0 where the model has none
+  double yaw_rate = 0;  ///< rad/s; 0 if the model has none
+  double slip = 0;      ///< rad; 0 if the model has none
 };
 
 /// The maps that rollouts look up; they must outlive their use.
@@ -80,7 +80,7 @@ struct VehicleTraits {
   double rear_length = 0;       ///< m, centre of gravity to rear axle
   double dead_time = 0;         ///< s, of the steering, which the planner compensates; 0 if the model does
   double max_acceleration = 0;  ///< m/s^2, of the predicted speed
-  double max_deceleration = 0;  ///< m/s^2, with which the car brakes
+  double max_deceleration = 0;  ///< m/s^2, of a braking car
   bool unlimited_acceleration = false;  ///< the predicted speed may be at once that of the reference field
   bool plans_speed = false;             ///< the speed to command is that of the plan, not that of the path
   bool meets_others = false;            ///< rollouts meet obstacles that move
@@ -95,8 +95,8 @@ struct VehicleTraits {
   double braking_share = 1;          ///< the share of the usable grip that the mean deceleration may use
   bool seeks_lap_time = false;       ///< plans seek the shortest time, whatever the path's speeds
   double half_steer_speed = 0;       ///< m/s, with tyre slip: an input steers half as much as at standstill
-  double stopping_deceleration = 0;  ///< m/s^2, with tyres that slip: by which a plan must be able to stop
-  double switch_speed = 0;           ///< m/s, with tyres that slip: above it the motor's power is the limit
+  double stopping_deceleration = 0;  ///< m/s^2, with tyre slip: a plan must be able to stop with it
+  double switch_speed = 0;           ///< m/s, with tyre slip: above it the motor's power is the limit
 };
 
 /// Returns the traits of a model that uses these options unchanged.
