@@ -154,13 +154,5 @@ void plant_step(benchmark::State& state) {
 }
 BENCHMARK(plant_step);
 
-void cast_parked_car(benchmark::State& state) {
-  const Lidar lidar(LidarOptions{});
-  std::vector<float> ranges(lidar.padded_beams(), 30.0f);
-  for (auto _ : state) lidar.cast({0, 0, 0.1}, Box{{3, 0.5, 1}, 0.58, 0.31}, ranges);
-  if (!(ranges[560] < 4)) state.SkipWithError("the car was not seen");
-}
-BENCHMARK(cast_parked_car);
-
 }  // namespace
 }  // namespace slalom::sim

@@ -1,5 +1,6 @@
 #include "bench/workload/measurements.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -77,6 +78,21 @@ class Rollouts {
 };
 
 }  // namespace
+
+void compare_with_yardstick(const ReferenceWorkload& workload, simd::Target target) {
+  constexpr int samples = 2000;
+  const SequenceBatch batch = workload.sequences(samples);
+  const auto model = workload.model(reference_problem(false), target);
+  std::vector<double> expected(samples);
+  workload.yardstick().evaluate(workload.start(), batch, samples, expected.data());
+  AlignedBuffer costs(static_cast<std::size_t>(batch.stride()));
+  std::vector<std::uint8_t> collided(costs.size());
+  model->evaluator().evaluate(batch, 0, samples, costs.data(), collided.data());
+  int different = 0;
+  for (std::size_t k = 0; k < samples; ++k)
+    different += std::abs(static_cast<double>(costs[k]) - expected[k]) > 1e-3 * std::max(1.0, expected[k]);
+  if (different > samples / 500) throw std::logic_error("the costs of rollouts and yardstick differ");
+}
 
 RolloutSpeed measure_rollouts(const ReferenceWorkload& workload, const vehicle::VehicleOptions& problem,
                               int samples, int steps, simd::Target target, double seconds) {

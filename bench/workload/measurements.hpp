@@ -12,6 +12,10 @@
 /// measurement takes `seconds` of wall-clock time or 30 repetitions, whichever is longer.
 namespace slalom::workload {
 
+/// Throws std::logic_error if rollouts of the reference problem and the yardstick differ in more than 0.2 %
+/// of their costs. Rounding may move a state at the edge of a cell into the next one.
+void compare_with_yardstick(const ReferenceWorkload& workload, simd::Target target);
+
 struct RolloutSpeed {
   TimeStatistics yardstick;  ///< ns per step
   TimeStatistics rollout;    ///< ns per step

@@ -8,7 +8,6 @@
 #include "bench/workload/peak.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
-#include "tools/drawing/bench_plot.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -16,7 +15,7 @@ namespace slalom::tools {
 namespace {
 
 struct BenchArguments {
-  std::string config, json, plot;
+  std::string config, json;
   std::vector<std::string> set, methods;
   double seconds = 0.5;
   bool scaling = false;
@@ -108,13 +107,14 @@ class Bench {
       if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end()) method(options);
     }
     tick();
-    if (arguments_.scaling || !arguments_.plot.empty()) scaling();
+    if (arguments_.scaling) scaling();
     if (!arguments_.json.empty()) write_json(json_, arguments_.json);
     return 0;
   }
 
  private:
   void rollouts() {
+    workload::compare_with_yardstick(workload_, target_);
     const workload::RolloutSpeed speed =
         workload::measure_rollouts(workload_, configuration_.vehicle, 8000,
                                    workload::ReferenceWorkload::steps, target_, arguments_.seconds);
@@ -195,17 +195,12 @@ class Bench {
 
   void scaling() {
     Json& json = json_["scaling"];
-    std::vector<BenchCurve> curves;
     for (const char* name : {"mppi", "svg_mppi"}) {
-      BenchCurve curve{name, {}, {}};
       for (int log2 = 7; log2 <= 17; ++log2) {
         const workload::SolveSpeed s = solve(name, 1 << log2, 1);
-        curve.samples.push_back(1 << log2);
-        curve.milliseconds.push_back(s.solve.p50);
         json["samples"][name].push_back({{"samples", 1 << log2}, {"solve_ms", s.solve.p50}});
         std::fprintf(words_, "%-9s K %6d  %9.3f ms\n", name, 1 << log2, s.solve.p50);
       }
-      curves.push_back(curve);
     }
     for (int horizon = 7; horizon <= 112; horizon *= 2) {
       const workload::SolveSpeed s = solve("svg_mppi", 0, 1, horizon);
@@ -230,8 +225,6 @@ class Bench {
       std::fprintf(words_, "rollouts  %-8s %6.3f ns a step, %.1f times the yardstick\n", simd::name(target),
                    s.rollout.p50, s.yardstick.p50 / s.rollout.p50);
     }
-    if (!arguments_.plot.empty())
-      plot_bench(curves, processor() + ", " + simd::name(target_) + ", one thread", arguments_.plot);
   }
 
   const BenchArguments& arguments_;
@@ -259,8 +252,6 @@ void declare_bench(Subcommand& command) {
       .show_default();
   command.flag("--scaling", arguments->scaling,
                "Also measure over samples, horizon, threads and instruction sets");
-  command.option("--plot", arguments->plot,
-                 "Write a plot of solve times over samples to this PNG, SVG or PDF");
   command.option("--json", arguments->json, "Write JSON to this file, or to standard output: -");
   command.footer("SLALOM_TARGET=avx2 (avx512, sse4, generic) forces an instruction set.");
   command.action([arguments] { return Bench(*arguments).run(); });

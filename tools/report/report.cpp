@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <map>
 
 #include "slalom/core/error.hpp"
 #include "slalom/core/version.hpp"
@@ -93,50 +92,12 @@ std::string table(const Report& report, const std::string& section, const std::s
          "</tbody></table></div>\n";
 }
 
-/// A figure with its text and its data, which say the same without the image.
+/// A figure with its text.
 std::string image(const ReportFigure& figure) {
   const std::string& title = figure.title.empty() ? heading(figure.section) : figure.title;
   return "<img alt=\"" + escaped(title + ". " + figure.caption) + "\" src=\"data:" + figure.mime +
          ";base64," + view::base64(figure.data) + "\"><p class=\"caption\">" + escaped(figure.caption) +
-         "</p>\n<details><summary>Data of this figure (CSV)</summary><pre>" + escaped(figure.table) +
-         "</pre></details>\n";
-}
-
-std::string tile(const std::string& value, const std::string& words) {
-  return "<div class=\"tile\"><b>" + value + "</b><span>" + escaped(words) + "</span></div>\n";
-}
-
-std::string tiles(const Report& report) {
-  std::string out = "<div class=\"tiles\">\n";
-  std::map<std::string, int> kinds;
-  for (const Reference& r : report.references)
-    if (r.published) ++kinds[verdict_parts(r.verdict).first];
-  if (!kinds.empty())
-    out +=
-        tile(std::to_string(kinds[verdicts::log]) + " \xC2\xB7 " + std::to_string(kinds[verdicts::released]) +
-                 " \xC2\xB7 " + std::to_string(kinds[verdicts::neither] + kinds[verdicts::not_log]),
-             "experiments that agree with the published log, with the paper's program but not the log, and "
-             "with neither");
-  for (const char* scenario : {"pt", "oa"}) {
-    const auto row = std::find_if(report.rows.begin(), report.rows.end(), [&](const ReportRow& r) {
-      return report.experiment(r).scenario == scenario && report.experiment(r).method == "svg_mppi" &&
-             report.experiment(r).set.empty();
-    });
-    if (row == report.rows.end()) continue;
-    const auto& r = report.result(*row);
-    const Reference* reference = report.reference(*row);
-    const bool tracking = scenario == std::string("pt");
-    out += tile(number(r.ms_mean),
-                std::string("MS of SVG-MPPI, ") + (tracking ? "path tracking" : "obstacles") +
-                    (reference ? "; published " + number(reference->published->ms_mean) : ""));
-    if (r.collision_rate)
-      out +=
-          tile(number(100 * *r.collision_rate, 1) + " %",
-               "collision rate of SVG-MPPI" +
-                   (reference ? "; published " + number(100 * *reference->published->collision_rate, 1) + " %"
-                              : std::string()));
-  }
-  return out + "</div>\n";
+         "</p>\n";
 }
 
 std::string page(const Report& report, const std::vector<ReportFigure>& figures) {
@@ -150,7 +111,7 @@ std::string page(const Report& report, const std::vector<ReportFigure>& figures)
       " laps on " + word("course") + " \xC2\xB7 configuration " + word("config") + " \xC2\xB7 evaluation " +
       word("evaluation") + " \xC2\xB7 slalom " + version() + "</p>\n";
   for (const std::string& note : report.notes) html += "<p class=\"note\">" + escaped(note) + "</p>\n";
-  html += verdict_html(report) + tiles(report);
+  html += paired_table(report);
   std::vector<std::string> sections;
   for (const ReportRow& row : report.rows)
     if (std::find(sections.begin(), sections.end(), row.section) == sections.end())
@@ -158,7 +119,6 @@ std::string page(const Report& report, const std::vector<ReportFigure>& figures)
   for (const std::string& section : sections)
     html += std::string("<section><h2>") + heading(section) + "</h2>\n" + table(report, section, "pt") +
             table(report, section, "oa") + "</section>\n";
-  html += paired_table(report);
   for (const ReportFigure& figure : figures)
     html += "<section><h2>" + escaped(figure.title.empty() ? heading(figure.section) : figure.title) +
             "</h2>\n" + image(figure) + "</section>\n";

@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "slalom/core/option_access.hpp"
 #include "tools/drawing/row_chart.hpp"
 #include "tools/report/report.hpp"
 
@@ -22,30 +21,6 @@ Marks cost_marks(const Report& report, const ReportRow& row) {
   for (const LapRow& lap : report.evaluated.rows)
     if (lap.experiment == row.experiment) marks.values.push_back(lap.mean_sequence_cost());
   return marks;
-}
-
-/// Cost of every lap of a section's rows, as CSV.
-std::string lap_costs(const Report& report, const std::string& section) {
-  std::string csv = "row,scenario,lap,mean_sequence_cost,collisions\n";
-  for (const ReportRow& row : report.rows) {
-    if (row.section != section) continue;
-    for (const LapRow& lap : report.evaluated.rows)
-      if (lap.experiment == row.experiment)
-        csv += row.name + "," + report.experiment(row).scenario + "," + std::to_string(lap.lap + 1) + "," +
-               to_text(lap.mean_sequence_cost()) + "," + std::to_string(lap.collisions) + "\n";
-  }
-  return csv;
-}
-
-/// Solve times of a section's rows, ms, as CSV.
-std::string solve_times(const Report& report, const std::string& section) {
-  std::string csv = "row,scenario,mean_ms,maximum_ms\n";
-  for (const ReportRow& row : report.rows)
-    if (row.section == section)
-      csv += row.name + "," + report.experiment(row).scenario + "," +
-             to_text(report.result(row).solve_ms_mean) + "," + to_text(report.result(row).solve_ms_max) +
-             "\n";
-  return csv;
 }
 
 /// Rows of a section, by name: its experiment in each scenario.
@@ -169,28 +144,18 @@ std::vector<ReportFigure> report_charts(const Report& report, const std::filesys
   for (const std::string& section : sections) {
     figures.push_back(saved(
         draw_chart(section_chart(report, section)),
-        {section,
-         section,
-         "",
+        {section, section, "",
          "Every lap counts. Boxes: quartiles and median, whiskers to 1.5 times the box, laps beyond them as "
          "points, the mean as a diamond; the axes of costs are logarithmic. Bars: collision rate with its "
-         "95 % Wilson interval.",
-         {},
-         {},
-         lap_costs(report, section)},
+         "95 % Wilson interval."},
         folder));
   }
   if (!sections.empty()) {
     figures.push_back(saved(draw_chart(time_chart(report, sections.front())),
-                            {"compute_times",
-                             "",
-                             "Solve times",
+                            {"compute_times", "", "Solve times",
                              "Wall-clock time of a solve, from the mean to the maximum over all laps, "
                              "on a logarithmic axis. It depends on the machine and its load; every other "
-                             "figure repeats exactly.",
-                             {},
-                             {},
-                             solve_times(report, sections.front())},
+                             "figure repeats exactly."},
                             folder));
   }
   return figures;

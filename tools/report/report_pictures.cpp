@@ -1,12 +1,9 @@
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <map>
 
-#include "slalom/core/error.hpp"
-#include "slalom/core/option_access.hpp"
 #include "slalom/sim/shapes.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "tools/drawing/lap_picture.hpp"
@@ -107,7 +104,6 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
   }
   std::vector<std::pair<std::string, Colour>> key;
   std::string facts = "lap " + std::to_string(lap + 1);
-  std::string csv = "row,lap,x_m,y_m\n";
   const auto& experiments = evaluation.experiments;
   const auto colour_of = [&](std::size_t i) {
     const bool same = pair.size() > 1 && experiments[static_cast<std::size_t>(pair[0])].method ==
@@ -129,9 +125,6 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
     std::snprintf(words, sizeof words, " \xC2\xB7 MS %.2f, %d collision%s", lines[i].lap.mean_sequence_cost,
                   lines[i].lap.collisions, lines[i].lap.collisions == 1 ? "" : "s");
     facts += words;
-    for (const maps::Point& point : lines[i].driven.points)
-      csv +=
-          row->name + "," + std::to_string(lap + 1) + "," + to_text(point.x) + "," + to_text(point.y) + "\n";
   }
   const bool tracking = scenario == "pt";
   picture.key(tracking ? "Path tracking" : "Among obstacles", facts, key);
@@ -142,69 +135,9 @@ ReportFigure driven_lines(const Report& report, const maps::OccupancyGrid& map, 
         "The lap is the first in which only the second method collides, if there is one: it "
         "shows how collisions happen, not how often.";
   return save(picture,
-              {"driven_" + scenario,
-               "",
-               tracking ? "Driven lines: path tracking" : "Driven lines: obstacles",
-               caption,
-               {},
-               {},
-               csv},
+              {"driven_" + scenario, "", tracking ? "Driven lines: path tracking" : "Driven lines: obstacles",
+               caption},
               folder);
-}
-
-std::vector<maps::Point> contact_points(const std::string& text) {
-  std::vector<maps::Point> points;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (at < end) {
-    maps::Point point;
-    const auto x = std::from_chars(at, end, point.x);
-    if (x.ec != std::errc{} || x.ptr == end) break;
-    const auto y = std::from_chars(x.ptr + 1, end, point.y);
-    if (y.ec != std::errc{}) break;
-    points.push_back(point);
-    at = y.ptr < end ? y.ptr + 1 : end;
-  }
-  return points;
-}
-
-ReportFigure contact_map(const Report& report, const maps::OccupancyGrid& map,
-                         const std::filesystem::path& folder) {
-  const Evaluation& evaluation = report.evaluated.evaluation;
-  const auto path = points_of(evaluation.environment->path);
-  MapPicture picture(cropped(map, path, 2.5), long_side);
-  picture.line(path, path_colour, 2, evaluation.environment->course.closed, true);
-  std::vector<std::pair<std::string, Colour>> key;
-  for (const Experiment& e : evaluation.experiments)
-    if (std::none_of(key.begin(), key.end(), [&](const auto& k) { return k.first == e.method; }))
-      key.emplace_back(e.method, method_colour(e.method));
-  int count = 0;
-  std::string csv = "experiment,lap,x_m,y_m\n";
-  for (const LapRow& row : report.evaluated.rows) {
-    Colour colour = method_colour(evaluation.experiments[static_cast<std::size_t>(row.experiment)].method);
-    colour.opacity = 0.75;
-    for (const maps::Point& point : contact_points(row.contact_points)) {
-      picture.disc(point, 8, colour);
-      csv += evaluation.experiments[static_cast<std::size_t>(row.experiment)].label() + "," +
-             std::to_string(row.lap + 1) + "," + to_text(point.x) + "," + to_text(point.y) + "\n";
-      ++count;
-    }
-  }
-  picture.key(
-      "Where collisions happen",
-      std::to_string(count) + " collisions in " + std::to_string(report.evaluated.rows.size()) + " laps",
-      key);
-  return save(
-      picture,
-      {"contacts",
-       "",
-       "Where collisions happen",
-       "The car's centre of gravity at every first collision with a body or wall, all laps of all rows. "
-       "Clusters mark narrow stretches and turns with a short view.",
-       {},
-       {},
-       csv},
-      folder);
 }
 
 }  // namespace
@@ -217,9 +150,6 @@ std::vector<ReportFigure> report_pictures(const Report& report, const std::files
     const auto pair = pair_of(report, scenario);
     if (!pair.empty()) figures.push_back(driven_lines(report, map, scenario, pair, folder));
   }
-  const auto& rows = report.evaluated.rows;
-  if (std::any_of(rows.begin(), rows.end(), [](const LapRow& row) { return !row.contact_points.empty(); }))
-    figures.push_back(contact_map(report, map, folder));
   return figures;
 }
 

@@ -22,10 +22,6 @@ p{margin:6px 0;max-width:92ch}
 .sub,.caption{color:var(--faint)}
 .caption{font-size:13.5px}
 section{background:var(--paper);border:1px solid var(--rule);border-radius:12px;padding:24px 26px;margin-top:22px}
-.tiles{display:flex;flex-wrap:wrap;gap:14px;margin-top:22px}
-.tile{flex:1 1 210px;background:var(--paper);border:1px solid var(--rule);border-radius:12px;padding:15px 18px}
-.tile b{display:block;font-size:27px;line-height:1.25;font-variant-numeric:tabular-nums}
-.tile span{color:var(--faint);font-size:13.5px}
 .note{border-left:3px solid #e0a030;background:var(--note);padding:8px 14px;border-radius:0 8px 8px 0;margin-top:14px}
 .scroll{overflow-x:auto}
 table{border-collapse:collapse;width:100%;font-size:14px;font-variant-numeric:tabular-nums}
@@ -41,11 +37,10 @@ td small{color:var(--faint);font-size:12.5px}
 .pill{display:inline-block;border-radius:99px;padding:0 9px;font-size:12.5px;font-weight:600;color:#fff;background:var(--faint)}
 .inside{background:var(--good)}.outside{background:var(--bad)}
 img{max-width:100%;max-height:1000px;display:block;margin:14px auto 6px;background:#fff;border-radius:8px;padding:6px}
-.verdict p{font-size:18px;line-height:1.45}
 details{margin-top:10px}summary{cursor:pointer;color:var(--blue)}
 pre{overflow-x:auto;background:var(--code);padding:12px;border-radius:8px;font-size:12.5px}
 @media(max-width:600px){main{padding:18px 10px 40px}section{padding:14px 12px}h1{font-size:24px}h2{font-size:18px}
-.verdict p{font-size:16px}td,th{padding:5px 6px}}
+td,th{padding:5px 6px}}
 @media print{body{background:#fff}section{break-inside:avoid;border:0;padding:8px 0}}
 )";
 

@@ -17,11 +17,8 @@ std::string p_value(double p);
 /// The style sheet of the report: for screens of any width, in light and dark colours, and for paper.
 const char* report_style() noexcept;
 
-/// The answer of an evaluation: one HTML paragraph for each experiment that is compared with the reference
-/// experiment of its scenario on the same seeds. Empty if nothing is compared.
-std::string verdict_html(const Report& report);
-
-/// A table of these comparisons, as a section; empty if nothing is compared.
+/// A table of the experiments that are compared with the reference experiment of their scenario on the same
+/// seeds, as a section; empty if nothing is compared.
 std::string paired_table(const Report& report);
 
 /// The terms that this report uses, as a section with the settings.
