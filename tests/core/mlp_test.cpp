@@ -9,6 +9,7 @@
 
 #include "slalom/core/derivatives/linearize.hpp"
 #include "slalom/core/problem_evaluator.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom {
 namespace {
@@ -144,24 +145,14 @@ TEST_P(Activations, HaveDerivatives) {
   EXPECT_FALSE(l.kink);
 }
 
-TEST(Mlp, WithoutParametersIsZero) {
-  const Mlp<2, 1> network;
-  EXPECT_EQ(network(3.0, 4.0)[0], 0);
-}
-
 std::string mistake(const std::function<void(MlpParameters&)>& change) {
   MlpParameters p = random_parameters({3, 4, 2}, Activation::tanh);
   change(p);
-  try {
-    Mlp<3, 2>{p};
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return message_of([&] { Mlp<3, 2>{p}; });
 }
 
 TEST(Mlp, ParametersThatDoNotFitAreRejected) {
-  EXPECT_EQ(mistake([](auto&) {}), "");
+  EXPECT_EQ(mistake([](auto&) {}), "accepted");
   EXPECT_EQ(mistake([](auto& p) { p.layers.clear(); }), "mlp: has 0 layers, must have 1 to 8");
   EXPECT_EQ(mistake([](auto& p) { p.layers[0].inputs = 5; }),
             "mlp: weights_0: has 5 columns, must have 3, the inputs");

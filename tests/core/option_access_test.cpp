@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/thrown_words.hpp"
+
 namespace slalom {
 namespace {
 
@@ -34,12 +36,7 @@ void visit_options(Options& o, Visit&& visit) {
 
 std::string refusal(const char* name, const char* text) {
   SampleOptions options;
-  try {
-    set_option(options, name, text);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "accepted";
+  return message_of([&] { set_option(options, name, text); });
 }
 
 TEST(OptionAccess, SetsEveryType) {
@@ -85,15 +82,10 @@ TEST(OptionAccess, WritesWholeLimitsOut) {
   EXPECT_EQ(range_rule({.name = "step", .min = 1e-6, .max = 0.5}), "must be in [1e-06, 0.5]");
 }
 
-/// What validation says of options; empty if they are valid.
+/// Returns the message of the validation; "accepted" if the options are valid.
 template <class Options>
 std::string validation_error(const Options& options, int inputs) {
-  try {
-    validate_options(options, "sample", inputs);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return {};
+  return message_of([&] { validate_options(options, "sample", inputs); });
 }
 
 struct ListOptions {
@@ -114,7 +106,7 @@ TEST(OptionAccess, ValidationWritesWholeNumbersOut) {
 
 TEST(OptionAccess, AListMayHaveAnyCount) {
   ListOptions o{.samples = 1};
-  EXPECT_EQ(validation_error(o, 2), "");
+  EXPECT_EQ(validation_error(o, 2), "accepted");
   o.shares = std::vector<double>{};
   EXPECT_EQ(validation_error(o, 2), "sample.shares: has 0 values, must have one or more");
   SampleOptions per_input;

@@ -25,11 +25,6 @@ TEST(SequenceBatch, RowsAreStepsTimesInputs) {
   EXPECT_EQ(batch.data(5) - batch.data(4), batch.stride());
 }
 
-TEST(SequenceBatch, RowsExcludePadding) {
-  const SequenceBatch batch(1, 1, 5);
-  EXPECT_EQ(batch[0].size(), 5u);
-}
-
 TEST(SequenceBatch, SamplesAreCopiedInAndOut) {
   SequenceBatch batch(2, 2, 20);
   const std::array<float, 4> sequence{1, 2, 3, 4};

@@ -10,26 +10,6 @@
 namespace slalom::maps {
 namespace {
 
-TEST(ClearanceMap, HoldsTheDistanceToTheNearestPointUpToItsReach) {
-  ClearanceMap map({.reach = 0.6});
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> along(-2.4, 8.4), across(-5.4, 5.4);
-  std::vector<Point> points(60);
-  for (Point& p : points) p = {along(random), across(random)};
-  map.add(points);
-  int near = 0;
-  for (double x = -1.95; x < 8; x += 0.173) {
-    for (double y = -4.95; y < 5; y += 0.131) {
-      double nearest = 1e9;
-      for (const Point& p : points) nearest = std::min(nearest, std::hypot(p.x - x, p.y - y));
-      EXPECT_NEAR(map.at(x, y), std::min(nearest, 0.6),
-                  0.0708);  // half a diagonal each for the point and the position
-      near += nearest < 0.5;
-    }
-  }
-  EXPECT_GT(near, 200);
-}
-
 /// The kernel of a point is written in packs, and cell by cell where it reaches over the edge.
 TEST(ClearanceMap, HoldsTheDistanceBetweenCellsEverywhere) {
   const ClearanceMapOptions options{.length_x = 2.2, .length_y = 3.1, .center_x = 0, .reach = 0.37};

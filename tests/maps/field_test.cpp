@@ -11,6 +11,7 @@
 #include "slalom/core/derivatives/linearize.hpp"
 #include "slalom/core/problem_evaluator.hpp"
 #include "support/allocations.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom::maps {
 namespace {
@@ -213,12 +214,7 @@ TEST(Field, CopiesShareTheirSamplesAndAllocateNothing) {
 }
 
 std::string message(const FieldGeometry& geometry, const std::vector<double>& samples) {
-  try {
-    Field(geometry, samples);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return message_of([&] { Field(geometry, samples); });
 }
 
 TEST(Field, RejectsWhatCannotBeAMap) {

