@@ -10,8 +10,6 @@
 #include "support/temporary_folder.hpp"
 #include "view/protocol/frame.hpp"
 #include "view/recording/encodings.hpp"
-#include "view/recording/mcap_bytes.hpp"
-#include "view/recording/mcap_reader.hpp"
 #include "view/recording/recorder.hpp"
 #include "view/recording/replay.hpp"
 
@@ -159,51 +157,10 @@ TEST_F(McapRecording, RejectsOtherAndDamagedFiles) {
   EXPECT_NE(refusal(file(good.substr(0, good.size() - 100))).find("incomplete"), std::string::npos);
   EXPECT_NE(refusal(file(good.substr(0, 20))).find("incomplete"), std::string::npos);
   std::string damaged = good;
-  damaged[damaged.size() - 60] = static_cast<char>(damaged[damaged.size() - 60] ^ 1);
-  EXPECT_NE(refusal(file(damaged)).find("checksum"), std::string::npos);
-  damaged = good;
   const std::size_t inside = damaged.find("replay/00000.gz") + 200;
   damaged[inside] = static_cast<char>(damaged[inside] ^ 1);
   EXPECT_NE(refusal(file(damaged)).find("checksum"), std::string::npos);
   EXPECT_NE(refusal("/no/such/file.mcap").find("cannot be read"), std::string::npos);
-}
-
-/// An index that names one attachment many times would be held in memory as often.
-TEST_F(McapRecording, RefusesAnIndexThatRepeatsAnAttachment) {
-  using mcap::Bytes, mcap::Op;
-  const std::string data(1000, 'x');
-  const std::uint64_t none = 0;
-  Bytes attachment;
-  attachment.put(none)
-      .put(none)
-      .text("replay/00000.gz")
-      .text("application/gzip")
-      .block(data)
-      .put(std::uint32_t{0});
-  Bytes record;
-  record.record(Op::attachment, attachment.view());
-  Bytes index;
-  index.put(std::uint64_t{mcap::magic.size()})
-      .put(std::uint64_t{record.size()})
-      .put(none)
-      .put(none)
-      .put(none);
-  index.text("replay/00000.gz").text("application/gzip");
-  const auto with_entries = [&](int entries) {
-    Bytes summary;
-    for (int i = 0; i < entries; ++i) summary.record(Op::attachment_index, index.view());
-    Bytes footer;
-    footer.put(std::uint64_t{mcap::magic.size() + record.size()}).put(none).put(std::uint32_t{0});
-    Bytes all;
-    all.raw(mcap::magic)
-        .raw(record.view())
-        .raw(summary.view())
-        .record(Op::footer, footer.view())
-        .raw(mcap::magic);
-    return std::string(all.view());
-  };
-  EXPECT_EQ(load_replay(file(with_entries(1))), std::vector<std::string>{data});
-  EXPECT_NE(refusal(file(with_entries(3))).find("repeats an attachment"), std::string::npos);
 }
 
 TEST(FrameEncoding, RoundTrips) {

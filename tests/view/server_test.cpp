@@ -118,8 +118,8 @@ TEST(ViewServer, SendsAndReceivesMessages) {
   ASSERT_EQ(joined.size(), 1u);
   EXPECT_EQ(joined[0].kind, Received::Kind::joined);
   server.send(joined[0].client, message("one"));
-  server.broadcast({std::make_shared<const std::string>(300000, 'x'), true});
-  server.publish(std::make_shared<const std::string>("frame"));
+  server.send(0, {std::make_shared<const std::string>(300000, 'x'), true});
+  server.publish(0, std::make_shared<const std::string>("frame"));
   EXPECT_EQ(client.next_message(), "one");
   EXPECT_EQ(client.next_message(), std::string(300000, 'x'));
   EXPECT_EQ(client.next_message(), "frame");
@@ -137,11 +137,11 @@ TEST(ViewServer, SendsALargeFileBetweenMessages) {
   client.get("/ws", true);
   until([&] { return server.clients() == 1; });
   const auto file = std::make_shared<const std::string>(std::size_t{100} << 20, 'x');
-  server.broadcast(message("before"));
-  server.broadcast({file, true});
+  server.send(0, message("before"));
+  server.send(0, {file, true});
   EXPECT_EQ(client.next_message(), "before");
   EXPECT_TRUE(client.next_message() == *file);
-  server.broadcast(message("after"));
+  server.send(0, message("after"));
   EXPECT_EQ(client.next_message(), "after");
 }
 
@@ -180,7 +180,7 @@ TEST(ViewServer, AClientThatNeverReadsLosesFramesAndDelaysNobody) {
   until([&] { return server.clients() == 2; });
   constexpr int frames = 100;
   for (int i = 0; i < frames; ++i) {
-    server.publish(std::make_shared<const std::string>(200000, 'f'));
+    server.publish(0, std::make_shared<const std::string>(200000, 'f'));
     EXPECT_EQ(awake.next_message().size(), 200000u) << i;
   }
   EXPECT_GT(server.counters().frames_dropped, frames / 2u);
@@ -201,13 +201,13 @@ TEST(ViewServer, SendsTwoFramesUntilOneIsAcknowledgedAndMessagesOvertakeTheRest)
   acknowledge(client, 1);  // nothing has been sent: refused
   until([&] { return server.counters().refused == 1; });
   for (const char* frame : {"first", "second"}) {
-    server.publish(std::make_shared<const std::string>(frame));
+    server.publish(0, std::make_shared<const std::string>(frame));
     EXPECT_EQ(client.next_message(), frame);
   }
   for (const char* frame : {"third", "fourth", "fifth"}) {
-    server.publish(std::make_shared<const std::string>(frame));
+    server.publish(0, std::make_shared<const std::string>(frame));
     // The server's thread has this frame once the message after it has arrived.
-    server.broadcast(message("message"));
+    server.send(0, message("message"));
     EXPECT_EQ(client.next_message(), "message");
   }
   EXPECT_EQ(server.counters().frames_dropped, 2u);

@@ -7,7 +7,7 @@
 #include "tools/live_view/view_setup.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/interrupt.hpp"
-#include "view/server/page_data.hpp"
+#include "view/embedded.hpp"
 #include "view/server/server.hpp"
 #include "view/session/session.hpp"
 

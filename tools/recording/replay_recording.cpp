@@ -7,9 +7,9 @@
 #include "slalom/core/error.hpp"
 #include "tools/live_view/view_setup.hpp"
 #include "tools/terminal/interrupt.hpp"
+#include "view/embedded.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/replay.hpp"
-#include "view/server/page_data.hpp"
 #include "view/server/server.hpp"
 
 namespace slalom::tools {

@@ -14,9 +14,7 @@
 namespace slalom::view::mcap {
 namespace {
 
-constexpr std::uint64_t max_record = std::uint64_t{1} << 30;   // bytes
-constexpr std::uint64_t max_summary = std::uint64_t{1} << 26;  // bytes
-constexpr std::uint64_t footer_size = 1 + 8 + 20;
+constexpr std::uint64_t head_size = 1 + 8;  // bytes before the content of a record
 
 std::uint32_t crc(std::string_view bytes) {
   return static_cast<std::uint32_t>(
@@ -41,7 +39,6 @@ class Reader {
     bytes_.remove_prefix(count);
     return taken;
   }
-  bool done() const { return bytes_.empty(); }
 
  private:
   std::string_view bytes_;
@@ -60,15 +57,11 @@ class File {
       throw IoError(name, 0, "is not an MCAP recording");
   }
 
-  /// Whether the file has an end: otherwise it was cut.
-  bool finished() {
-    return size_ >= 2 * magic.size() + footer_size && read(size_ - magic.size(), magic.size()) == magic;
-  }
+  /// Whether the file ends as an MCAP file does: otherwise it was cut.
+  bool is_finished() { return read(size_ - magic.size(), magic.size()) == magic; }
   std::uint64_t size() const { return size_; }
 
   std::string read(std::uint64_t offset, std::uint64_t length) {
-    if (offset > size_ || length > size_ - offset)
-      throw IoError(name_, 0, "is damaged: an index points outside the file");
     std::string bytes(length, '\0');
     stream_.seekg(static_cast<std::streamoff>(offset));
     if (!stream_.read(bytes.data(), static_cast<std::streamsize>(length)))
@@ -76,35 +69,13 @@ class File {
     return bytes;
   }
 
-  /// The summary, its checksum checked.
-  std::string summary() {
-    const std::uint64_t at = size_ - magic.size() - footer_size;
-    const std::string footer = read(at, footer_size);
-    Reader reader(footer, name_);
-    if (reader.get<Op>() != Op::footer) throw IoError(name_, 0, "is damaged: it has no footer");
-    reader.get<std::uint64_t>();
-    const auto start = reader.get<std::uint64_t>();
-    reader.get<std::uint64_t>();
-    const auto sum = reader.get<std::uint32_t>();
-    if (start == 0 || start > at) throw IoError(name_, 0, "has no index");
-    if (at - start > max_summary)
-      throw IoError(name_, 0,
-                    "has an index of " + std::to_string(at - start) + " bytes; at most " +
-                        std::to_string(max_summary) + " are read");
-    const std::string bytes = read(start, at + footer_size - 4 - start);
-    if (sum != 0 && crc(bytes) != sum) throw IoError(name_, 0, "is damaged: its index has a wrong checksum");
-    return bytes.substr(0, at - start);
-  }
-
-  const std::string& name() const { return name_; }
-
  private:
   std::string name_;
   std::ifstream stream_;
   std::uint64_t size_ = 0;
 };
 
-/// An attachment from the content of its record.
+/// Reads an attachment from the content of its record.
 Attachment parse_attachment(std::string_view content, const std::string& file) {
   Reader reader(content, file);
   reader.take(16);  // the times to which it belongs and at which it was made
@@ -117,64 +88,36 @@ Attachment parse_attachment(std::string_view content, const std::string& file) {
   return attachment;
 }
 
-/// The attachments that the index at the end of a file lists.
-std::vector<Attachment> indexed_attachments(File& file, std::string_view prefix) {
-  const std::string summary = file.summary();
-  std::vector<Attachment> found;
-  std::uint64_t end = 0;  // end of the attachment before: none is read twice
-  for (Reader reader(summary, file.name()); !reader.done();) {
-    const auto op = reader.get<Op>();
-    Reader content(reader.take(reader.get<std::uint64_t>()), file.name());
-    if (op != Op::attachment_index) continue;
-    const auto offset = content.get<std::uint64_t>(), length = content.get<std::uint64_t>();
-    content.take(24);  // times and size
-    if (!content.text().starts_with(prefix)) continue;
-    if (offset < end) throw IoError(file.name(), 0, "is damaged: its index repeats an attachment");
-    end = offset + length;
-    const std::string record = file.read(offset, length);
-    Reader head(record, file.name());
-    if (head.get<Op>() != Op::attachment)
-      throw IoError(file.name(), 0, "is damaged: an index does not point to an attachment");
-    found.push_back(parse_attachment(head.take(head.get<std::uint64_t>()), file.name()));
-  }
-  return found;
-}
-
-/// The attachments of a file that was cut, up to its last whole record.
-std::vector<Attachment> whole_attachments(File& file, std::string_view prefix, std::uint64_t& lost) {
-  constexpr std::uint64_t head = 1 + 8;
-  std::vector<Attachment> found;
-  std::uint64_t at = magic.size();
-  while (file.size() - at >= head) {
-    const std::string bytes = file.read(at, head);
-    Reader reader(bytes, file.name());
-    const Op op = reader.get<Op>();
-    const auto length = reader.get<std::uint64_t>();
-    if (op == Op::data_end) return found;
-    if (length > std::min(max_record, file.size() - at - head)) break;
-    if (op == Op::attachment) {
-      try {
-        Attachment each = parse_attachment(file.read(at + head, length), file.name());
-        if (each.name.starts_with(prefix)) found.push_back(std::move(each));
-      } catch (const IoError&) {
-        break;  // damaged
-      }
-    }
-    at += head + length;
-  }
-  lost = file.size() - at;
-  return found;
-}
-
 }  // namespace
 
 std::vector<Attachment> read_attachments(const std::string& name, std::string_view prefix,
                                          std::uint64_t* lost) {
   File file(name);
-  if (lost) *lost = 0;
-  if (file.finished()) return indexed_attachments(file, prefix);
-  if (!lost) throw IoError(name, 0, "is incomplete: the recording was not finished");
-  return whole_attachments(file, prefix, *lost);
+  const bool is_cut = !file.is_finished();
+  if (is_cut && !lost) throw IoError(name, 0, "is incomplete: the recording was not finished");
+  std::vector<Attachment> found;
+  std::uint64_t at = magic.size();
+  for (;;) {
+    if (file.size() - at < head_size) break;
+    const std::string head = file.read(at, head_size);
+    Reader reader(head, name);
+    const Op op = reader.get<Op>();
+    const auto length = reader.get<std::uint64_t>();
+    if (op == Op::data_end) at = file.size();
+    if (length > file.size() - std::min(at + head_size, file.size())) break;
+    if (op == Op::attachment) {
+      try {
+        Attachment each = parse_attachment(file.read(at + head_size, length), name);
+        if (each.name.starts_with(prefix)) found.push_back(std::move(each));
+      } catch (const IoError&) {
+        if (is_cut) break;
+        throw;
+      }
+    }
+    at += head_size + length;
+  }
+  if (lost) *lost = is_cut ? file.size() - at : 0;
+  return found;
 }
 
 }  // namespace slalom::view::mcap

@@ -12,10 +12,9 @@ struct Attachment {
   std::string name, data;
 };
 
-/// The attachments of an MCAP file whose names begin with `prefix`, in the order of the file; found by the
-/// index at its end, checksums checked. Of a file that was cut: those that are whole, and `lost` receives the
-/// number of bytes after its last whole record. Throws IoError if a file is not MCAP, damaged, or cut without
-/// `lost`.
+/// Returns the attachments of an MCAP file whose names begin with `prefix`, in the order of the file,
+/// checksums checked. Of a file that was cut: those that are whole, and `lost` receives the number of bytes
+/// after its last whole record. Throws IoError if a file is not MCAP, damaged, or cut without `lost`.
 std::vector<Attachment> read_attachments(const std::string& file, std::string_view prefix,
                                          std::uint64_t* lost = nullptr);
 

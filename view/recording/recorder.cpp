@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "src/evaluation/json.hpp"
+#include "view/embedded.hpp"
 #include "view/protocol/frame.hpp"
-#include "view/recording/foxglove_schemas.hpp"
 
 namespace slalom::view {
 namespace {
@@ -44,13 +44,15 @@ Recorder::Recorder(std::ostream& stream, RecorderOptions options)
       writer_(stream, options_.program),
       replay_([this](const std::string& segment) { attach(segment); }) {
   writer_.add_metadata("slalom", options_.settings);
-  const auto schema = [&](const char* name, const std::string& text) {
+  const Json schemas = Json::parse(foxglove_schemas());
+  const auto schema = [&](const std::string& name, const std::string& text) {
     return writer_.add_schema(name, "jsonschema", text);
   };
-  const auto transform = schema("foxglove.FrameTransform", foxglove::frame_transform_schema());
-  const auto grid = schema("foxglove.Grid", foxglove::grid_schema());
-  const auto scan = schema("foxglove.LaserScan", foxglove::laser_scan_schema());
-  const auto scene = schema("foxglove.SceneUpdate", foxglove::scene_update_schema());
+  const auto foxglove = [&](const std::string& name) {
+    return schema("foxglove." + name, schemas.at("foxglove." + name).dump());
+  };
+  const auto transform = foxglove("FrameTransform"), grid = foxglove("Grid");
+  const auto scan = foxglove("LaserScan"), scene = foxglove("SceneUpdate");
   const auto tick = schema("slalom.Tick", figures_schema(false));
   struct Plan {
     const char* topic;

@@ -118,20 +118,12 @@ std::uint16_t Server::port() const noexcept {
   return implementation_->port;
 }
 
-void Server::publish(std::shared_ptr<const std::string> frame) {
-  publish(0, std::move(frame));
-}
-
 void Server::publish(std::uint64_t client, std::shared_ptr<const std::string> frame) {
   implementation_->post(client, [frame = std::move(frame)](WebSocketClient& to) { to.offer(frame); });
 }
 
 void Server::send(std::uint64_t client, Message message) {
   implementation_->post(client, [message = std::move(message)](WebSocketClient& to) { to.send(message); });
-}
-
-void Server::broadcast(Message message) {
-  send(0, std::move(message));
 }
 
 std::vector<Received> Server::take() {

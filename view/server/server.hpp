@@ -12,7 +12,7 @@
 ///     Server server({.port = 8400}, {{"/", page}});
 ///     while (driving) {
 ///       for (const Received& message : server.take()) execute(message);
-///       server.publish(frame);   // never waits
+///       server.publish(0, frame);   // never waits
 ///     }
 ///
 /// Each client has at most one pending frame, which a newer one replaces; a client that acknowledges frames
@@ -70,12 +70,10 @@ class Server {
 
   std::uint16_t port() const noexcept;
 
-  /// Sends a frame to every client that is ready for it, or to one client.
-  void publish(std::shared_ptr<const std::string> frame);
+  /// Sends a frame to one client, or to all with 0, as soon as it is ready for a frame.
   void publish(std::uint64_t client, std::shared_ptr<const std::string> frame);
-  /// Sends a message to one client or to all.
+  /// Sends a message to one client, or to all with 0.
   void send(std::uint64_t client, Message message);
-  void broadcast(Message message);
 
   /// Returns what has come since the last call. At most 1024 messages are kept.
   std::vector<Received> take();

@@ -5,10 +5,10 @@
 #include <system_error>
 #include <utility>
 
+#include "view/embedded.hpp"
 #include "view/protocol/frame_writer.hpp"
 #include "view/recording/encodings.hpp"
 #include "view/recording/replay.hpp"
-#include "view/server/page_data.hpp"
 
 namespace slalom::view {
 namespace {

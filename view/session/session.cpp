@@ -89,7 +89,7 @@ void Session::install(LoadedScenario loaded, const ScenarioNames& names) {
   scenario_ = std::move(loaded);
   names_ = names;
   undo_ = {};
-  server_.broadcast({scene_, true});
+  server_.send(0, {scene_, true});
   begin(std::move(drives));
 }
 
@@ -171,7 +171,7 @@ StepFacts Session::facts_of(const evaluation::LapDrive& drive) const {
 void Session::publish_newest() {
   if (std::exchange(is_newest_sent_, true) || timeline_.empty()) return;
   last_frame_ = Clock::now();
-  server_.publish(timeline_.steps().back().frame);
+  server_.publish(0, timeline_.steps().back().frame);
 }
 
 void Session::note_laps(const evaluation::LapDrive& drive, const std::string& method, bool is_ghost) {
@@ -198,7 +198,7 @@ void Session::show_step(int tick) {
   tick = std::clamp(tick, timeline_.oldest(), timeline_.newest());
   viewed_ = tick == timeline_.newest() ? -1 : tick;
   paused_ = is_newest_sent_ = is_state_changed_ = true;
-  server_.publish(timeline_.at(tick).frame);
+  server_.publish(0, timeline_.at(tick).frame);
 }
 
 /// Keeps the introduction in slow motion until the obstacle has been passed.
@@ -248,7 +248,7 @@ void Session::edit(const Action& action, int drag) {
   const std::string& frame = *timeline_.steps().back().frame;
   const std::string_view ghost = FrameReader(frame).block(Block::ghost_frame);
   timeline_.show(shared(frame_of(before_bodies(frame), before_bodies(ghost), *drives_)));
-  if (paused_) server_.publish(timeline_.steps().back().frame);
+  if (paused_) server_.publish(0, timeline_.steps().back().frame);
 }
 
 }  // namespace slalom::view
