@@ -22,13 +22,12 @@ import { Readout } from "./readout";
 import { attachSaveMenu, saveFile } from "./save";
 import { Lanes } from "./scene/lanes";
 import { coveredBy, place, showRuler } from "./scene/overlay";
-import { download } from "./scene/picture";
 import { attachPointer } from "./scene/pointer";
 import { SceneView } from "./scene/scene";
 import { showConnection, showRole, showStatus } from "./status";
 import { Themes } from "./theme";
 import { Timeline } from "./timeline";
-import { toast } from "./toast";
+import { download, toast } from "./toast";
 
 fillLists();
 foldHeader();
@@ -298,7 +297,6 @@ const menu = attachSaveMenu(
   send,
   () => scene.draw(),
   () => state,
-  isReplay,
 );
 
 function deleteSelected() {
@@ -330,7 +328,6 @@ if (isReplay) {
 }
 get<HTMLDetailsElement>("layers").open = innerWidth >= 900;
 if (innerWidth < 900) scene.camera.zoom = innerWidth < 480 ? 32 : 42;
-get("no-picture").hidden = scene.canDraw;
 showTheme();
 controls.setTool(isReplay ? "pan" : "disc");
 showPane("charts");

@@ -20,3 +20,12 @@ export function copy(text: string, what: string) {
     );
   else toast(text);
 }
+
+/** Offers bytes to the user as a file. */
+export function download(name: string, content: BlobPart, type: string) {
+  const link = document.createElement("a");
+  link.download = name;
+  link.href = URL.createObjectURL(new Blob([content], { type }));
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}

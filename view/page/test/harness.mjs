@@ -38,8 +38,7 @@ export function chromiumPath() {
 }
 
 export function launchChromium() {
-  const args = ["--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader"];
-  args.push("--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-sync");
+  const args = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"];
   args.push("--disable-background-networking", "--disable-component-update");
   // A page from a file has no local address.
   if (process.env.SLALOM_PAGE) args.push("--disable-features=LocalNetworkAccessChecks");
@@ -60,17 +59,7 @@ export class Harness {
 
   async open_all() {
     this.browser = await launchChromium();
-    this.server = await this.start(
-      "view",
-      "--course",
-      "stag",
-      "--obstacles",
-      "4",
-      "--seed",
-      "3",
-      "--port",
-      "0",
-    );
+    this.server = await this.start(..."view --course stag --obstacles 4 --seed 3 --port 0".split(" "));
     this.page = await this.open();
   }
 
@@ -142,17 +131,6 @@ export class Harness {
     await this.until(isThere, tick + ticks, page);
   }
 
-  /** Hides layers that are slow to draw without a graphics card, for tests that do not look at them. */
-  hideLayers(page = this.page) {
-    return page.evaluate(() => slalom.scene.visible.clear());
-  }
-  showLayers(page = this.page) {
-    return page.evaluate(() => {
-      for (const box of document.querySelectorAll("[data-layer]"))
-        if (box.checked) slalom.scene.visible.add(box.dataset.layer);
-      slalom.scene.draw();
-    });
-  }
   /** Waits until the page has drawn what it has received. */
   drawn(page = this.page) {
     return page.evaluate(

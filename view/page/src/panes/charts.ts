@@ -1,7 +1,6 @@
 import uPlot from "uplot";
 import type { Past } from "../past";
 import type { Frame, Hello } from "../protocol";
-import { Accelerations } from "./accelerations";
 import { axis, Chart, css, padded, vertical } from "./plots";
 import { isEstimate, strips, type Strip } from "./strips";
 
@@ -31,7 +30,6 @@ export class Charts {
   private readonly plotted: Plotted[];
   private readonly covariance: Chart;
   private readonly histogram: Chart;
-  private readonly accelerations: Accelerations;
   private deadline = 25; // ms
   private latest?: Frame;
   private hello?: Hello;
@@ -51,11 +49,8 @@ export class Charts {
       chart.box.hidden = strip.lines.some(isEstimate);
       return { strip, chart, columns: strip.lines.map(() => []) };
     });
-    const one = [{ colour: "" }];
     this.covariance = new Chart(root, "Standard deviation of the steering along the plan, rad", []);
-    this.histogram = new Chart(root, `Planner time, last ${max_ticks} ticks, ms`, one);
-    const { holder, values } = new Chart(root, "Acceleration, m/s²", one);
-    this.accelerations = new Accelerations(holder, values[0]);
+    this.histogram = new Chart(root, `Planner time, last ${max_ticks} ticks, ms`, [{ colour: "" }]);
     new ResizeObserver(() => this.rebuild()).observe(root);
   }
 
@@ -189,8 +184,6 @@ export class Charts {
       this.covariance.plot?.setData([x, [...y, y[y.length - 1]]]);
     }
     this.drawHistogram();
-    const steps = this.positions.map((position) => this.setting.past.at(position));
-    this.accelerations.draw(steps, this.positions.indexOf(this.shown), this.period, this.hello.scalars);
     this.took = performance.now() - time;
   }
 

@@ -1,45 +1,61 @@
 import type { CostMap, Frame, Grid, Guides, Hello, Path, PlanState, Scan } from "../protocol";
 import type { CandidateLook } from "./candidates";
-import type { Painter } from "./painter";
+import { imageOf, type Painter } from "./painter";
 import type { Rgba, Theme } from "./palette";
 import { faded, type Point } from "./shapes";
 
-/** The free cells of a grid as 255, all others as 0, each the mean over 3 x 3 cells, for a smooth border. */
-export function freeSpace({ cells, width, height }: Grid): Uint8Array {
-  const free = cells.map((v) => (v === 0 ? 255 : 0));
-  const rows = new Uint16Array(free.length);
-  const out = new Uint8Array(free.length);
-  for (let i = 1; i + 1 < free.length; ++i) rows[i] = free[i - 1] + free[i] + free[i + 1];
-  for (let i = width; i < width * (height - 1); ++i)
-    out[i] = Math.round((rows[i - width] + rows[i] + rows[i + width]) / 9);
+const mapPixels = 6e6; // pixels of the image of a map at most
+const rim = 0.6; // half the width of the line around the free space, in pixels of the image
+
+/** The free cells of a grid as 1, all others as 0, each the mean over 3 x 3 cells, for a smooth border. */
+function freeSpace({ cells, width, height }: Grid): Float32Array {
+  const free = cells.map((v) => (v === 0 ? 1 : 0));
+  const out = new Float32Array(free.length);
+  for (let i = width + 1; i < width * (height - 1) - 1; ++i)
+    for (const row of [i - width, i, i + width]) out[i] += (free[row - 1] + free[row] + free[row + 1]) / 9;
   return out;
 }
 
-export function drawMap(painter: Painter, theme: Theme, texture: WebGLTexture, grid: Grid) {
-  const { x, y, yaw, resolution } = grid;
-  const place = { x, y, yaw, width: grid.width * resolution, height: grid.height * resolution };
-  painter.cells(texture, place, { inside: theme.free, outside: theme.wall, edge: theme.wallEdge }, 0.6);
+/** The map of a course as an image, finer than its cells. */
+export function mapImage(theme: Theme, grid: Grid): HTMLCanvasElement {
+  const { width, height } = grid;
+  const free = freeSpace(grid);
+  const fine = Math.min(4, Math.max(1, Math.floor(Math.sqrt(mapPixels / (width * height)))));
+  const mix = (a: Rgba, b: Rgba, share: number) => a.map((v, k) => v + share * (b[k] - v)) as Rgba;
+  return imageOf(width * fine, height * fine, (px, py) => {
+    const x = Math.min(width - 1.001, Math.max(0, (px + 0.5) / fine - 0.5));
+    const y = Math.min(height - 1.001, Math.max(0, (py + 0.5) / fine - 0.5));
+    const i = Math.floor(y) * width + Math.floor(x);
+    const [u, v] = [x % 1, y % 1];
+    const below = free[i] + u * (free[i + 1] - free[i]);
+    const above = free[i + width] + u * (free[i + width + 1] - free[i + width]);
+    const inside = 3 * fine * (below + v * (above - below) - 0.5); // pixels from the border, if it is straight
+    if (Math.abs(inside) > rim + 1) return inside > 0 ? theme.free : theme.wall;
+    const edge = Math.min(1, rim + 1 - Math.abs(inside));
+    return mix(inside > 0 ? theme.free : theme.wall, theme.wallEdge, edge);
+  });
 }
 
-/** The cells of a cost map as a texture: from the smallest x and y, with x along a row. */
-export function costMapTexture({ rows, columns, cells }: CostMap): Uint8Array {
-  const turned = new Uint8Array(cells.length);
-  for (let r = 0; r < rows; ++r)
-    for (let c = 0; c < columns; ++c)
-      turned[(columns - 1 - c) * rows + (rows - 1 - r)] = cells[r * columns + c];
-  return turned;
+export function drawMap(painter: Painter, image: HTMLCanvasElement, grid: Grid) {
+  painter.image(image, grid, grid.width * grid.resolution, grid.height * grid.resolution);
 }
 
-export function drawCostMap(painter: Painter, theme: Theme, texture: WebGLTexture, map: CostMap) {
+/** The cells of a cost map as an image: from the smallest x and y, with x along a row. */
+export function costMapImage(theme: Theme, { rows, columns, cells }: CostMap): HTMLCanvasElement {
+  const none: Rgba = [0, 0, 0, 0];
+  return imageOf(rows, columns, (x, y) =>
+    cells[(rows - 1 - x) * columns + (columns - 1 - y)] ? theme.cost : none,
+  );
+}
+
+export function drawCostMap(painter: Painter, image: HTMLCanvasElement, map: CostMap) {
   const { x, y, yaw, resolution } = map;
   const width = map.rows * resolution;
   const height = map.columns * resolution;
   const u = map.centerX - width / 2;
   const v = map.centerY - height / 2;
   const [c, s] = [Math.cos(yaw), Math.sin(yaw)];
-  const place = { x: x + c * u - s * v, y: y + s * u + c * v, yaw, width, height };
-  const none: Rgba = [0, 0, 0, 0];
-  painter.cells(texture, place, { inside: theme.cost, outside: none, edge: none }, 0);
+  painter.image(image, { x: x + c * u - s * v, y: y + s * u + c * v, yaw }, width, height);
 }
 
 export function drawPath(painter: Painter, theme: Theme, { xyv, closed }: Path) {
@@ -47,15 +63,14 @@ export function drawPath(painter: Painter, theme: Theme, { xyv, closed }: Path) 
   for (let i = 0; i < (closed ? n : n - 1); ++i) {
     if (i % 4 >= 2) continue;
     const j = (i + 1) % n;
-    painter.segment(xyv[3 * i], xyv[3 * i + 1], xyv[3 * j], xyv[3 * j + 1], theme.path, 1.3, false);
+    painter.segment(xyv[3 * i], xyv[3 * i + 1], xyv[3 * j], xyv[3 * j + 1], theme.path, 1.3);
   }
 }
 
 export function drawCandidates(painter: Painter, { candidates }: Frame, look: CandidateLook) {
   if (!candidates) return;
   const { xy, points } = candidates;
-  for (const i of look.order)
-    painter.polyline(xy, i * points, points, look.colours[i], look.widths[i], false);
+  for (const i of look.order) painter.polyline(xy, i * points, points, look.colours[i], look.widths[i]);
 }
 
 /** The guide particles in all iterations, and how their ends moved; the last iteration is bright. */
@@ -66,12 +81,12 @@ export function drawGuides(painter: Painter, theme: Theme, { guides, iterations,
     for (let i = 0; i < guides; ++i) {
       const from = (k * guides + i) * points;
       const end = from + points - 1;
-      painter.polyline(xy, from, points, line, last ? 2 : 1, false);
+      painter.polyline(xy, from, points, line, last ? 2 : 1);
       painter.dot(xy[2 * end], xy[2 * end + 1], last ? 6 : 3, faded(theme.guide, last ? 1 : 0.55));
       if (k === 0) continue;
       const before = end - guides * points;
       const [x0, y0, x1, y1] = [xy[2 * before], xy[2 * before + 1], xy[2 * end], xy[2 * end + 1]];
-      painter.segment(x0, y0, x1, y1, faded(theme.guide, 0.8), 1.2, false);
+      painter.segment(x0, y0, x1, y1, faded(theme.guide, 0.8), 1.2);
     }
   }
 }
@@ -82,15 +97,14 @@ export function drawSpread(painter: Painter, theme: Theme, plan: PlanState[]) {
     p.x - side * 2 * p.spread * Math.sin(p.yaw),
     p.y + side * 2 * p.spread * Math.cos(p.yaw),
   ];
-  for (let i = 1; i < plan.length; ++i) {
-    const [a, b] = [plan[i - 1], plan[i]];
-    painter.convex([edge(a, 1), edge(b, 1), edge(b, -1), edge(a, -1)], theme.spread);
-  }
+  const left = plan.map((p) => edge(p, 1));
+  const right = plan.map((p) => edge(p, -1));
+  painter.fill([...left, ...right.reverse()], theme.spread);
 }
 
 export function drawPlan(painter: Painter, theme: Theme, plan: PlanState[]) {
-  for (let i = 1; i < plan.length; ++i)
-    painter.segment(plan[i - 1].x, plan[i - 1].y, plan[i].x, plan[i].y, theme.plan, 3.2);
+  const xy = plan.flatMap((p) => [p.x, p.y]);
+  painter.polyline(xy, 0, plan.length, theme.plan, 3.2);
   for (const p of plan) painter.dot(p.x, p.y, 5, theme.plan);
 }
 

@@ -1,12 +1,11 @@
-import type { Body, Frame, Hello, Pose, Scene } from "../protocol";
+import type { Body, Frame, Grid, Hello, Pose, Scene } from "../protocol";
 import type { Camera } from "./camera";
 import { lookOf, type CandidateLook } from "./candidates";
 import * as draw from "./drawings";
 import { layers, type Layer, type Term } from "./layers";
 import { Painter } from "./painter";
 import type { Rgba, Theme } from "./palette";
-import { circle, corners, dashed, drawCar, drawObstacle, drawTracked, faded, usualCar } from "./shapes";
-import type { Point } from "./shapes";
+import { circle, corners, drawCar, drawObstacle, drawTracked, faded, usualCar } from "./shapes";
 import { Stage } from "./stage";
 
 /** The place of a collision of an evaluation. */
@@ -41,23 +40,15 @@ export class SceneView {
   marks: Mark[] = [];
   private scene: Scene = {};
   private readonly painter: Painter;
-  private readonly map: WebGLTexture;
-  private readonly costMap: WebGLTexture;
-  private costMapOf?: Frame;
+  private map?: { of: unknown[]; image: HTMLCanvasElement };
   private bounds: [number, number, number, number] = [-5, -5, 5, 5]; // m, of course line and walls
   private fitted = "";
 
   constructor(canvas: HTMLCanvasElement, theme: Theme) {
     this.painter = new Painter(canvas);
     this.theme = theme;
-    this.map = this.painter.texture();
-    this.costMap = this.painter.texture();
   }
 
-  /** Whether the browser can draw the scene. */
-  get canDraw() {
-    return this.painter.canDraw;
-  }
   get courseBounds() {
     return this.bounds;
   }
@@ -67,8 +58,7 @@ export class SceneView {
 
   setScene(scene: Scene) {
     this.scene = scene;
-    const { grid, path } = scene;
-    if (grid) this.painter.upload(this.map, grid.width, grid.height, draw.freeSpace(grid));
+    const { path } = scene;
     if (!path) return;
     let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
     for (let i = 0; i < path.xyv.length; i += 3) {
@@ -78,18 +68,6 @@ export class SceneView {
       y1 = Math.max(y1, path.xyv[i + 1]);
     }
     this.bounds = [x0 - 1.5, y0 - 1.5, x1 + 1.5, y1 + 1.5];
-  }
-
-  /** The pose (m, m, rad) on the course line after an arc length (m). */
-  alongPath(length: number): [number, number, number] {
-    const p = this.scene.path?.xyv ?? new Float32Array(6);
-    const at = (k: number): Point => [p[3 * k], p[3 * k + 1]];
-    let k = 0;
-    for (let s = 0; 3 * k + 6 < p.length && s < length; ++k)
-      s += Math.hypot(p[3 * k + 3] - p[3 * k], p[3 * k + 4] - p[3 * k + 1]);
-    const [x, y] = at(k);
-    const [nx, ny] = at(k + 1);
-    return [x, y, Math.atan2(ny - y, nx - x)];
   }
 
   /** Shows the whole course. */
@@ -157,28 +135,26 @@ export class SceneView {
     const end = frame?.plan?.at(-1);
     if (car) camera.track(car.x, car.y, car.yaw, end ? Math.hypot(end.x - car.x, end.y - car.y) : 0);
     painter.look(camera);
-    if (this.scene.grid) draw.drawMap(painter, theme, this.map, this.scene.grid);
+    if (this.scene.grid) draw.drawMap(painter, this.mapImage(this.scene.grid), this.scene.grid);
     if (!frame) return;
-    if (visible.has("costMap")) this.drawCostMap(frame);
+    const { costMap } = frame;
+    if (visible.has("costMap") && costMap)
+      draw.drawCostMap(painter, draw.costMapImage(theme, costMap), costMap);
     if (visible.has("path") && this.scene.path) draw.drawPath(painter, theme, this.scene.path);
-    if (visible.has("driven")) painter.polyline(driven, 0, driven.length / 2, theme.driven, 2, false);
+    if (visible.has("driven")) painter.polyline(driven, 0, driven.length / 2, theme.driven, 2);
     if (visible.has("candidates") && frame.candidates)
       draw.drawCandidates(painter, frame, this.lookOf(frame));
-    painter.flush();
     if (visible.has("spread") && frame.plan) draw.drawSpread(painter, theme, frame.plan);
-    painter.flush();
     if (visible.has("guides") && frame.guides) draw.drawGuides(painter, theme, frame.guides);
     if (visible.has("scan") && frame.scan && this.hello)
       draw.drawScan(painter, theme, frame.scan, this.hello.lidar);
-    painter.flush();
     this.drawBodies(frame);
     this.drawMarks();
     if (this.preview) this.drawPreview(this.preview);
     if (visible.has("nominal") && frame.nominal)
-      dashed(painter, frame.nominal.xy, frame.nominal.points, theme.nominal, 1.6);
+      painter.dashed(frame.nominal.xy, frame.nominal.points, theme.nominal, 1.6);
     if (visible.has("plan") && frame.plan) draw.drawPlan(painter, theme, frame.plan);
     if (visible.has("ghost") && !this.isSideBySide) this.drawGhost(frame);
-    painter.flush();
     if (this.best && visible.has("ghost") && frame === this.frame) this.drawOutline(this.best, theme.driven);
     if (this.probe) this.drawOutline(this.probe, theme.selected);
     if (car) {
@@ -186,7 +162,6 @@ export class SceneView {
       const edge = car.touched ? theme.collided : theme.carEdge;
       drawCar(painter, theme, this.size, car, steer, { body: theme.car, edge });
     }
-    painter.flush();
   }
 
   private get size() {
@@ -201,13 +176,12 @@ export class SceneView {
     return look;
   }
 
-  private drawCostMap(frame: Frame) {
-    const map = frame.costMap;
-    if (!map) return;
-    if (this.costMapOf !== frame)
-      this.painter.upload(this.costMap, map.rows, map.columns, draw.costMapTexture(map));
-    this.costMapOf = frame;
-    draw.drawCostMap(this.painter, this.theme, this.costMap, map);
+  /** The image of the map; a new one for another course or theme. */
+  private mapImage(grid: Grid): HTMLCanvasElement {
+    const of = [grid, this.theme];
+    if (!this.map?.of.every((each, i) => each === of[i]))
+      this.map = { of, image: draw.mapImage(this.theme, grid) };
+    return this.map.image;
   }
 
   private drawBodies(frame: Frame) {
@@ -224,8 +198,7 @@ export class SceneView {
   private drawGhost({ ghost }: Frame) {
     if (!ghost) return;
     const { painter, theme } = this;
-    dashed(painter, ghost.plan, ghost.plan.length / 2, faded(theme.ghost, 0.9), 2.4);
-    painter.flush();
+    painter.dashed(ghost.plan, ghost.plan.length / 2, faded(theme.ghost, 0.9), 2.4);
     const colours = { body: faded(theme.ghost, 0.75), edge: theme.carEdge };
     drawCar(painter, theme, this.size, ghost, ghost.steer, colours);
   }

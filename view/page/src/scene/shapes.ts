@@ -38,16 +38,10 @@ export function circle(x: number, y: number, radius: number, n = 28): Point[] {
   ]);
 }
 
-export function dashed(painter: Painter, xy: Float32Array, count: number, colour: Rgba, width: number) {
-  for (let i = 0; i < count - 1; i += 2)
-    painter.segment(xy[2 * i], xy[2 * i + 1], xy[2 * i + 2], xy[2 * i + 3], colour, width, false);
-}
-
 export function drawObstacle(painter: Painter, theme: Theme, b: Body, isSelected: boolean) {
   const points = b.kind === 3 ? circle(b.x, b.y, b.length / 2) : corners(b);
   const [r, g, blue] = theme.collided;
-  painter.convex(points, b.touched ? [r, g, blue, 1] : theme.obstacle);
-  painter.flush();
+  painter.fill(points, b.touched ? [r, g, blue, 1] : theme.obstacle);
   painter.outline(points, isSelected ? theme.selected : theme.obstacleEdge, isSelected ? 2.5 : 1.2);
   if (b.kind === 1) {
     const [l, w] = [0.12 * b.length, 0.4 * b.width];
@@ -63,7 +57,6 @@ export function drawObstacle(painter: Painter, theme: Theme, b: Body, isSelected
       1,
     );
   }
-  painter.flush();
 }
 
 /** Cars that are tracked: outlines, and a dot for each place where they may be, as opaque as it is likely. */
@@ -89,13 +82,12 @@ export function drawCar(
   const [l, w] = [size.length / 2, size.width / 2];
   const wheel = (along: number, left: number, turn: number) => {
     const [[x, y]] = placed(at, [[along, left]]);
-    painter.convex(corners({ x, y, yaw: at.yaw + turn, length: 0.13, width: 0.055 }), theme.wheel);
+    painter.fill(corners({ x, y, yaw: at.yaw + turn, length: 0.13, width: 0.055 }), theme.wheel);
   };
   for (const left of [-0.86 * w, 0.86 * w]) {
     wheel(size.front, left, steer);
     wheel(-size.rear, left, 0);
   }
-  painter.flush();
   const half: Point[] = [
     [1, 0.38],
     [0.82, 0.74],
@@ -104,8 +96,7 @@ export function drawCar(
     [-1, 0.8],
   ];
   const shape = placed(at, mirrored(half.map(([u, v]) => [u * l, v * w])));
-  painter.convex(shape, body);
-  painter.flush();
+  painter.fill(shape, body);
   painter.outline(shape, edge, 1.2);
   painter.outline(corners({ ...at, length: size.length, width: size.width }), faded(body, 0.55), 1);
   const window = mirrored([
@@ -113,5 +104,5 @@ export function drawCar(
     [0, 0.55 * w],
     [-0.28 * l, 0.55 * w],
   ]);
-  painter.convex(placed(at, window), faded(edge, 0.85));
+  painter.fill(placed(at, window), faded(edge, 0.85));
 }

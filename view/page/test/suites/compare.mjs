@@ -51,7 +51,6 @@ export default async function (h) {
   await h.test("the best lap drives along, and the readout has the time behind it", async () => {
     await h.restart();
     await h.pause();
-    await h.hideLayers();
     for (let turns = 0; turns < 12 && !(await h.state()).laps.length; ++turns) await h.step(150);
     const [first] = (await h.state()).laps;
     assert.equal(first.lap, 1);

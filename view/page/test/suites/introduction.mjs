@@ -19,7 +19,6 @@ export default async function (h) {
     await wait(() =>
       /svg_mppi and mppi drive/.test(document.getElementById("introduction-text").textContent),
     );
-    await h.hideLayers(page);
     await page.evaluate(() => slalom.scene.visible.add("modes"));
     await h.step(30, page);
     // The drive differs between compilers, by rounding: svg_mppi may average for a moment.
@@ -37,7 +36,6 @@ export default async function (h) {
     }
     assert.ok(isTold(), `svg_mppi commits, mppi averages before it does: ${JSON.stringify(said)}`);
     assert.equal((await h.state(page)).rate, 0.1, "in slow motion");
-    await h.showLayers(page);
     await h.drawn(page);
     await h.picture("introduction", page);
     await page.click("#play");

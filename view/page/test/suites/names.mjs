@@ -58,17 +58,7 @@ export default async function (h) {
 
   await h.test("names in a crafted replay are text", async () => {
     const [lap, html] = [join(h.folder, "plain.mcap"), join(h.folder, "hostile.html")];
-    const drive = [
-      "drive",
-      "--course",
-      "wren",
-      "--method",
-      "mppi",
-      "--set",
-      "mppi.samples=64",
-      "--record",
-      lap,
-    ];
+    const drive = "drive --course wren --method mppi --set mppi.samples=64 --record".split(" ").concat(lap);
     execFileSync(h.program, drive, { stdio: "ignore" });
     execFileSync(h.program, ["replay", lap, "--html", html], { stdio: "ignore" });
     const segment = /(<script type="application\/x-slalom-replay">)([^<]*)/g;
