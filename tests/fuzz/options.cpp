@@ -1,7 +1,6 @@
 // Options as text, as `--set key=value` and the page give them: one a line.
-#include "slalom/core/error.hpp"
-
 #include "fuzz/target.hpp"
+#include "tools/command_line/command.hpp"
 #include "tools/scenario/scenario.hpp"
 
 namespace slalom::fuzz {
@@ -47,7 +46,7 @@ bool run(std::string_view bytes) {
     try {
       tools::apply_setting(std::string(line.substr(0, equals)), std::string(line.substr(equals + 1)),
                            "svg_mppi", configuration, lap);
-    } catch (const IoError&) {
+    } catch (const tools::CommandLineError&) {
       valid = false;
     }
   }
