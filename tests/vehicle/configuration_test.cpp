@@ -5,6 +5,7 @@
 
 #include "slalom/core/error.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -13,13 +14,9 @@ class ConfigurationFile : public testing::TemporaryFolder {
  protected:
   /// The message, without the folder, with which a file of this text is refused.
   std::string refusal(const std::string& text) const {
-    try {
-      load_configuration(write("x.yaml", text));
-    } catch (const IoError& error) {
-      const std::string message = error.what(), before = (folder_ / "").string();
-      return message.rfind(before, 0) == 0 ? message.substr(before.size()) : message;
-    }
-    return "accepted";
+    const std::string message = message_of<IoError>([&] { load_configuration(write("x.yaml", text)); }),
+                      before = (folder_ / "").string();
+    return message.rfind(before, 0) == 0 ? message.substr(before.size()) : message;
   }
 };
 
@@ -51,16 +48,10 @@ TEST_F(ConfigurationFile, ErrorsNameFileLineKeyValueAndRule) {
   EXPECT_EQ(
       refusal("vehicle:\n  time_stap: 0.05\n"),
       "x.yaml:2: key vehicle.time_stap: unknown option of section vehicle; did you mean vehicle.time_step?");
-  EXPECT_EQ(refusal("vehicle:\n  time_step: fast\n"),
-            "x.yaml:2: key vehicle.time_step: 'fast' must be a number");
   EXPECT_EQ(refusal("\nvehicle:\n  time_step: 7\n"),
             "x.yaml:3: key vehicle.time_step: '7' must be in [0.001, 1]");
   EXPECT_EQ(refusal("vehicle:\n  time_step: \"0.05\"\n"),
             "x.yaml:2: key vehicle.time_step: '0.05' must not be quoted");
-  EXPECT_EQ(refusal("vehicle:\n  bicycle: mountain\n"),
-            "x.yaml:2: key vehicle.bicycle: 'mountain' must be one of rear_axle, published");
-  EXPECT_EQ(refusal("vehicle:\n  exact_lag: 1\n"),
-            "x.yaml:2: key vehicle.exact_lag: '1' must be true or false");
   EXPECT_EQ(refusal("vehicle:\n  dead_time: 0\n  dead_time: 0.01\n"),
             "x.yaml:3: key vehicle.dead_time: duplicate key");
   EXPECT_EQ(refusal("vehicle: 3\n"), "x.yaml:1: key vehicle: '3' must be a map of options to values");
@@ -149,12 +140,7 @@ TEST_F(ConfigurationFile, IsFoundByName) {
   write("mine.yaml", "");
   EXPECT_EQ(find_configuration("mine", {folder_}), folder_ / "mine.yaml");
   EXPECT_EQ(find_configuration((folder_ / "mine.yaml").string(), {}), folder_ / "mine.yaml");
-  try {
-    find_configuration("yours", {folder_});
-    FAIL();
-  } catch (const IoError& error) {
-    EXPECT_NE(std::string(error.what()).find("known: mine"), std::string::npos) << error.what();
-  }
+  expect_error_with<IoError>({"known: mine"}, [&] { find_configuration("yours", {folder_}); });
   EXPECT_THROW(load_configuration(folder_ / "none.yaml"), IoError);
 }
 
@@ -164,13 +150,8 @@ TEST(ConfigurationKey, IsSetFromText) {
   EXPECT_EQ(c.planner.max_speed, 6);
   set_option(c, "latency", "0.02", "planner");
   EXPECT_EQ(c.planner.latency, 0.02);
-  const auto refusal = [&](const char* key, const char* value) -> std::string {
-    try {
-      set_option(c, key, value);
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "accepted";
+  const auto refusal = [&](const char* key, const char* value) {
+    return message_of([&] { set_option(c, key, value); });
   };
   EXPECT_EQ(refusal("vehicle.max_speed", "0"), "key vehicle.max_speed: '0' must be in [0.01, 100]");
   EXPECT_EQ(refusal("vehicle.max_sped", "5"),
@@ -179,9 +160,6 @@ TEST(ConfigurationKey, IsSetFromText) {
   EXPECT_EQ(
       refusal("vehicle.speed", "input"),
       "key vehicle.speed: 'input' is no longer a speed model; set vehicle.model: kinematic_acceleration");
-  EXPECT_EQ(refusal("vehicle.model", "tricycle")
-                .rfind("key vehicle.model: 'tricycle' must be one of kinematic, ", 0),
-            0u);
   EXPECT_EQ(c.planner.max_speed, 6);
   const std::string before = to_yaml(c);
   EXPECT_NE(refusal("mppi.variance", "[1, 2]").find("key mppi.variance: '[1, 2]' has 2 values"),
@@ -193,12 +171,8 @@ TEST(ConfigurationKey, IsNamedWhereAMethodRejectsIt) {
   Configuration c;
   set_option(c, "mppi.input_min", "1");
   set_option(c, "mppi.input_max", "-1");
-  try {
-    make_solver(c, "mppi", 1);
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_EQ(std::string(error.what()), "mppi.input_min: 1 must be at most input_max, -1");
-  }
+  EXPECT_EQ(message_of([&] { make_solver(c, "mppi", 1); }),
+            "mppi.input_min: 1 must be at most input_max, -1");
 }
 
 }  // namespace

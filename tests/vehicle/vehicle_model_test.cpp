@@ -15,6 +15,8 @@
 #include "slalom/vehicle/configuration/configuration.hpp"
 #include "slalom/vehicle/model/problem_model.hpp"
 #include "slalom/vehicle/planner/planner.hpp"
+#include "support/lane.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -29,11 +31,8 @@ VehicleOptions options_of(const std::string& name) {
   return options;
 }
 
-/// A straight lane along x, driven at 3 m/s.
 std::vector<maps::ReferencePoint> lane() {
-  std::vector<maps::ReferencePoint> path;
-  for (int i = 0; i < 600; ++i) path.push_back({0.1 * i, 0, 0, 3});
-  return path;
+  return testing::lane(3);
 }
 
 class VehicleModelContract : public ::testing::TestWithParam<std::string> {
@@ -124,13 +123,9 @@ TEST_P(VehicleModelContract, HasVariantsOfTheWorldOrRejectsThem) {
   VehicleOptions options = options_of(GetParam());
   options.risk = {.variants = 5, .measure = RiskMeasure::worst};
   if (GetParam() != "single_track") {
-    try {
-      make_vehicle_model(options);
-      FAIL();
-    } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(error.what(), "vehicle.risk_variants: 5 must be 1 for vehicle.model '" + GetParam() +
-                                  "', which has no variants of the world");
-    }
+    EXPECT_EQ(message_of([&] { make_vehicle_model(options); }),
+              "vehicle.risk_variants: 5 must be 1 for vehicle.model '" + GetParam() +
+                  "', which has no variants of the world");
     return;
   }
   constexpr int steps = 20, samples = 64, middle = 32;
@@ -186,26 +181,18 @@ TEST(VehicleModels, HaveNamesAndOptionsOfTheirOwn) {
 }
 
 TEST(VehicleModels, RejectUnknownNamesAndOptionsOfOtherModels) {
-  const auto message = [](auto&& call) -> std::string {
-    try {
-      call();
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "accepted";
-  };
-  const std::string unknown = message([] { vehicle_model("tricycle"); });
+  const std::string unknown = message_of([] { vehicle_model("tricycle"); });
   EXPECT_EQ(unknown.rfind("vehicle.model: 'tricycle' must be one of kinematic, ", 0), 0u) << unknown;
   for (const std::string& name : model_names()) EXPECT_NE(unknown.find(name), std::string::npos) << name;
   VehicleOptions options;
   options.own_of<published::ModelOptions>().exact_lag = false;
-  EXPECT_EQ(message([&] { make_vehicle_model(options); }),
+  EXPECT_EQ(message_of([&] { make_vehicle_model(options); }),
             "vehicle.exact_lag: 'false' is an option of vehicle.model 'published', but vehicle.model is "
             "'kinematic'");
   options.model = vehicle_model("published");
-  EXPECT_EQ(message([&] { make_vehicle_model(options); }), "accepted");
+  EXPECT_EQ(message_of([&] { make_vehicle_model(options); }), "accepted");
   options.time_step = 0;
-  EXPECT_NE(message([&] { make_vehicle_model(options); }).find("vehicle.time_step"), std::string::npos);
+  EXPECT_NE(message_of([&] { make_vehicle_model(options); }).find("vehicle.time_step"), std::string::npos);
 }
 
 /// A point that moves along x at 1 m/s, whatever its inputs, without maps.

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "slalom/vehicle/course/raceline.hpp"
+#include "support/thrown_words.hpp"
 #include "vehicle/racing/rooms.hpp"
 
 namespace slalom::vehicle {
@@ -148,13 +149,8 @@ TEST(MinimumTime, SaysWhatCurvatureANarrowCornerForces) {
 
 TEST(MinimumTime, RejectsNarrowCorridorsAndInvalidCars) {
   RacingCar car;
-  try {
-    minimum_time_raceline(circle(5, 0.2), car);
-    FAIL() << "the car is wider";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("0.400 m wide"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("0.430 m"), std::string::npos) << error.what();
-  }
+  expect_error_with<std::invalid_argument>({"0.400 m wide", "0.430 m"},
+                                           [&] { minimum_time_raceline(circle(5, 0.2), car); });
   // A bend of 0.5 m whose corridor lies beyond the middle of the bend.
   Corridor beyond = circle(0.5, 3);
   for (double& right : beyond.right) right = -1;

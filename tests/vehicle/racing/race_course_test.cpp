@@ -58,7 +58,7 @@ TEST(RaceCourse, FindsTheLoopInTheMiddleOfTheCorridor) {
 
 TEST(RaceCourse, TheLineUsesAllOfTheWidthAtAnyResolution) {
   // The same map at other scales, with a car whose distance to walls scales with it.
-  for (const double resolution : {0.0431, 0.05, 0.0731, 0.09585}) {
+  for (const double resolution : {0.0431, 0.09585}) {
     maps::OccupancyGrid map = rectangular_course();
     const double scale = resolution / map.resolution;
     map.resolution = resolution;
@@ -176,12 +176,7 @@ TEST(RaceCourse, SurroundingsOfACourseThatIsDrawnAsOutlinesAreNoWay) {
 TEST(RaceCourse, SaysThatAMapHasNoLoop) {
   maps::OccupancyGrid map = rectangular_course();
   fill(map, 7, -1.2, 8, 1, Occupancy::occupied);
-  try {
-    race_course(map, RacingCar{});
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("no closed way"), std::string::npos) << error.what();
-  }
+  expect_error_with<std::invalid_argument>({"no closed way"}, [&] { race_course(map, RacingCar{}); });
 }
 
 TEST(RaceCourse, AnOpenLineIsDrivenFromEndToEnd) {
