@@ -13,84 +13,15 @@
 #include <cstdlib>
 #include <vector>
 
+#include "bench/gpu/problems.hpp"
 #include "bench/workload/statistics.hpp"
-#include "slalom/core/grid_view.hpp"
 #include "slalom/core/problem_evaluator.hpp"
 #include "slalom/solvers/mppi_options.hpp"
 
 namespace slalom {
 namespace {
 
-struct Disc {
-  double x, y, radius;  // m
-};
-constexpr Disc discs[] = {{8, 8, 0.4}, {4, 6, 0.5}, {6, 5, 0.3}};
-constexpr double disc_cost = 250;
-
-/// Costs in cells of 0.1 m over 11 x 11 m, with a border of zeros for positions outside.
-class CostMap {
- public:
-  CostMap() : cells_(static_cast<std::size_t>(rows + 2) << stride_log2) {
-    for (int row = 1; row <= rows; ++row) {
-      for (int column = 1; column <= rows; ++column) {
-        const double x = length - (row - 0.5) * resolution, y = length - (column - 0.5) * resolution;
-        for (const Disc& d : discs) {
-          if (std::hypot(x - d.x, y - d.y) < d.radius)
-            cells_[static_cast<std::size_t>((row << stride_log2) + column)] = static_cast<float>(disc_cost);
-        }
-      }
-    }
-  }
-  GridView<1> view() const {
-    return {cells_.data(), rows, rows, stride_log2, resolution, length / 2, length / 2};
-  }
-
- private:
-  static constexpr double length = 11, resolution = 0.1;  // m
-  static constexpr int rows = 110, stride_log2 = 7;
-  std::vector<float> cells_;
-};
-
-struct Navigation {
-  template <class T>
-  struct State {
-    T x, y, yaw;  // m, m, rad
-  };
-  static constexpr int inputs = 2;  // speed, m/s; yaw rate, rad/s
-  static constexpr const char* cost_names[] = {"goal_x", "goal_y", "goal_yaw", "discs"};
-  double dt = 0.02;  // s
-  double goal_x = 10, goal_y = 10, goal_yaw = 0;
-  double weight_x = 5, weight_y = 5, weight_yaw = 20;
-  GridView<1> map;
-
-  template <class T>
-  T look_up(const State<T>& s) const {
-    return slalom::look_up(map, s.x, s.y);
-  }
-  template <class T>
-  State<T> step(const State<T>& s, const T&, const Input<T, 2>& u) const {
-    T sine, cosine;
-    sin_cos(s.yaw, sine, cosine);
-    const T travelled = u[0] * T(dt);
-    return {s.x + travelled * cosine, s.y + travelled * sine, s.yaw + u[1] * T(dt)};
-  }
-  template <class T>
-  CostTerms<T, 4> stage_cost(const State<T>& s, const T& disc, const Input<T, 2>&) const {
-    return cost(s, disc);
-  }
-  template <class T>
-  CostTerms<T, 4> terminal_cost(const State<T>& s, const T& disc) const {
-    return cost(s, disc);
-  }
-
- private:
-  template <class T>
-  CostTerms<T, 4> cost(const State<T>& s, const T& disc) const {
-    return {{T(weight_x) * square(s.x - T(goal_x)), T(weight_y) * square(s.y - T(goal_y)),
-             T(weight_yaw) * square(wrap_angle(s.yaw - T(goal_yaw))), disc},
-            disc > T(0)};
-  }
-};
+using bench::CostMap, bench::Navigation;
 
 MppiOptions options_for(int samples) {
   MppiOptions o;
@@ -131,7 +62,7 @@ bool drive(int samples, int cycles) {
     for (std::size_t i = 0; i < 3; ++i) terms[i] += cost.value[i];
     x = problem.step(x, disc, u);
   }
-  terms[3] = disc_cost * collided;  // of the samples that collided: the robot itself should not
+  terms[3] = CostMap::disc_cost * collided;  // of the samples that collided: the robot itself should not
   const workload::TimeStatistics t = workload::time_statistics(times);
   const double cycle_ns = 1e6 * t.p50 / (static_cast<double>(samples) * 100);
   std::printf("K %6d  mean %.3f ms, p50 %.3f, min %.3f, max %.3f; %.2f ns a rollout step; terms", samples,

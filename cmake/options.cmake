@@ -11,6 +11,8 @@ cmake_dependent_option(SLALOM_BUILD_SIM "Build the car and LiDAR simulator" ON "
 cmake_dependent_option(SLALOM_BUILD_EVALUATION "Build laps and drives, and their evaluation" ON "SLALOM_BUILD_SIM;SLALOM_BUILD_VEHICLE;SLALOM_BUILD_NAVIGATION;SLALOM_BUILD_TRACKING" OFF)
 cmake_dependent_option(SLALOM_BUILD_TOOLS "Build the slalom program" ${PROJECT_IS_TOP_LEVEL} "SLALOM_BUILD_EVALUATION" OFF)
 cmake_dependent_option(SLALOM_BUILD_PYTHON "Build the Python package, if pybind11 is there" ${PROJECT_IS_TOP_LEVEL} "SLALOM_BUILD_SOLVERS;SLALOM_BUILD_MAPS" OFF)
+cmake_dependent_option(SLALOM_BUILD_GPU "Build the controllers on a GPU (its code needs a CUDA toolkit)" OFF "SLALOM_BUILD_SOLVERS" OFF)
+set(SLALOM_GPU_ARCHITECTURES "" CACHE STRING "Architectures for which the benchmark of the GPU is built, for example 90; empty: it is not")
 option(SLALOM_BUILD_TESTS "Build the tests" OFF)
 option(SLALOM_BUILD_BENCHMARKS "Add the target `benchmarks`" OFF)
 option(SLALOM_BUILD_EXAMPLES "Build the examples in the tree (they also build against an install)" OFF)

@@ -59,6 +59,8 @@ class GridView {
   int rows() const noexcept { return rows_; }
   /// Cells along y.
   int columns() const noexcept { return columns_; }
+  /// A row has 2^stride_log2 cells in memory.
+  int stride_log2() const noexcept { return stride_log2_; }
   /// Edge of a cell, m.
   double resolution() const noexcept { return resolution_; }
   /// Centre of the grid, x, m, in the frame of the map whatever the view is relative to.
@@ -77,6 +79,10 @@ class GridView {
   /// The storage index of the cell at (x, y), in the ring for positions outside.
   template <Scalar T>
   std::ptrdiff_t index(T x, T y) const {
+    if constexpr (detail::gpu::computes<T>)
+      return detail::gpu::cell_index(x * scale_.rounded() + offset_x_.rounded(),
+                                     y * scale_.rounded() + offset_y_.rounded(), last_row_, last_column_,
+                                     stride_log2_);
     const int row = axis_index(x + static_cast<T>(origin_x_), center_x_, rows_),
               column = axis_index(y + static_cast<T>(origin_y_), center_y_, columns_);
     return row == 0 || column == 0 ? 0 : (static_cast<std::ptrdiff_t>(row) << stride_log2_) + column;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "slalom/core/pack/gpu.hpp"
 #include "slalom/core/pack/pair.hpp"
 
 /// Mathematics that a problem may use, written once for `float`, `double` and packs of SIMD lanes: call these
@@ -52,11 +53,13 @@ concept Scalar = std::is_same_v<T, float> || std::is_same_v<T, double>;  ///< `f
 /// Sine of an angle, rad.
 template <Scalar T>
 T sin(T x) {
+  if constexpr (detail::gpu::computes<T>) return detail::gpu::sin(x);
   return std::sin(x);
 }
 /// Cosine of an angle, rad.
 template <Scalar T>
 T cos(T x) {
+  if constexpr (detail::gpu::computes<T>) return detail::gpu::cos(x);
   return std::cos(x);
 }
 /// Tangent of an angle, rad.
@@ -210,6 +213,7 @@ inline bool all(bool condition) {
 /// Sine and cosine of an angle, rad.
 template <Scalar T>
 void sin_cos(T x, T& s, T& c) {
+  if constexpr (detail::gpu::computes<T>) return detail::gpu::sin_cos(x, s, c);
   s = std::sin(x);
   c = std::cos(x);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstring>
+#include <span>
 
 #include "slalom/core/batch_evaluator.hpp"
 #include "slalom/core/dispatch.hpp"
@@ -46,6 +47,9 @@ class ProblemEvaluator final : public BatchEvaluator, private Sampler {
       for (int i = 0; i < P::inputs; ++i) state_[detail::state_size<P> + i] = static_cast<float>(u[i]);
     }
   }
+
+  /// Where the next rollouts start: the state, then what was applied before if the problem limits rates.
+  std::span<const float> start() const noexcept { return state_; }
 
   int inputs() const noexcept override { return P::inputs; }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,6 +56,21 @@ class MlpNetwork {
   MlpNetwork(int inputs, int outputs);
   /// Throws std::invalid_argument where the parameters do not fit together or to these sizes.
   MlpNetwork(const MlpParameters& parameters, int inputs, int outputs);
+
+  /// Weights and biases in the order in which the layers read them.
+  std::span<const float> weights() const noexcept {
+    std::size_t count = 0;
+    for (int i = 0; i < layers_; ++i)
+      count += static_cast<std::size_t>((sizes_[i + 1] + block - 1) / block * block * (sizes_[i] + 1));
+    return {weights_.get(), count};
+  }
+
+  /// The outputs of the samples of a warp of a GPU; false where they have to be computed one by one.
+  template <class T, int Inputs, int Outputs>
+  bool evaluate_warp(const T (&inputs)[Inputs], T (&outputs)[Outputs]) const {
+    return gpu::dense_layers(weights_.get(), layers_, sizes_, inputs, outputs,
+                             [this](T(&sum)[block]) { activate(sum); });
+  }
 
   /// The outputs for `values` [inputs], which become those [outputs]; the array has room for `max_neurons`.
   template <class T>
@@ -112,6 +128,8 @@ class MlpNetwork {
   SLALOM_INLINE_CALLS static T quick_tanh(const T& x) {
     if constexpr (is_pack<T>) {
       return T(1.0f) - T(2.0f) / (exp(x + x) + T(1.0f));
+    } else if constexpr (gpu::computes<T>) {
+      return gpu::tanh(x);
     } else {
       return tanh(x);
     }
@@ -176,17 +194,24 @@ class Mlp {
   requires(1 + sizeof...(More) == Inputs) SLALOM_INLINE_CALLS Result<T>
   operator()(const T& first, const More&... more) const {
     const T inputs[Inputs] = {first, T(more)...};
-    T values[detail::MlpNetwork::max_neurons], other[detail::MlpNetwork::max_neurons];
-    for (int i = 0; i < Inputs; ++i) values[i] = inputs[i];
-    network_.evaluate(values, other);
     Result<T> result;
-    for (int i = 0; i < Outputs; ++i) result.value[i] = values[i];
+    bool evaluated = false;
+    if constexpr (detail::gpu::computes<T>) evaluated = network_.evaluate_warp(inputs, result.value);
+    if (!evaluated) {
+      T values[detail::MlpNetwork::max_neurons], other[detail::MlpNetwork::max_neurons];
+      for (int i = 0; i < Inputs; ++i) values[i] = inputs[i];
+      network_.evaluate(values, other);
+      for (int i = 0; i < Outputs; ++i) result.value[i] = values[i];
+    }
     if constexpr (Outputs <= Inputs) {
       if (residual_)
         for (int i = 0; i < Outputs; ++i) result.value[i] = result.value[i] + inputs[i];
     }
     return result;
   }
+
+  /// Weights and biases in the order in which the layers read them.
+  std::span<const float> weights() const noexcept { return network_.weights(); }
 
  private:
   detail::MlpNetwork network_;

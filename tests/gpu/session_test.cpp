@@ -1,0 +1,55 @@
+#include <gtest/gtest.h>
+
+#include "fake_cuda.hpp"
+#include "slalom/gpu/gpu.hpp"
+#include "slalom/problems/pendulum.hpp"
+
+namespace slalom::gpu {
+
+using problems::Pendulum;
+
+template <>
+std::span<const Image> images<Pendulum>() {
+  static const Image all[] = {{90}};
+  return all;
+}
+
+namespace {
+
+/// A driver whose kernels never end.
+class GpuErrors : public ::testing::Test {
+ protected:
+  GpuErrors() {
+    fake_query = 600, fake_allocation = 0;
+    const int layout[] = {sizeof(Pendulum), alignof(Pendulum), sizeof(Arguments<Pendulum>), 1};
+    std::copy_n(layout, 4, fake_layout);
+  }
+  const MppiOptions options_{.horizon = 10, .samples = 64};
+};
+
+TEST_F(GpuErrors, ThereMustBeCodeOfThisVersionAndMemory) {
+  EXPECT_THROW(Session({}, {}), DeviceError);
+  fake_allocation = 2;
+  EXPECT_THROW((GpuSolver<Pendulum, MppiOptions>(options_)), DeviceError);
+  fake_allocation = 0, ++fake_layout[2];
+  EXPECT_THROW((GpuSolver<Pendulum, MppiOptions>(options_)), DeviceError);
+}
+
+TEST_F(GpuErrors, AProblemThatComputesSomethingElseIsRefused) {
+  EXPECT_THROW(Mppi<Pendulum>(Pendulum{}, options_), std::invalid_argument);
+}
+
+TEST_F(GpuErrors, ASolveEndsWithItsDeadlineAndWhenTheDeviceIsLost) {
+  GpuSolver<Pendulum, MppiOptions> solver(options_);
+  ProblemEvaluator<Pendulum> evaluator{{}};
+  EXPECT_EQ(solver.solve(evaluator, {.deadline = 0.01}).status, Status::deadline);
+  EXPECT_EQ(solver.session().fault(), "");
+  fake_query = 700;
+  EXPECT_EQ(solver.solve(evaluator, {}).status, Status::degenerate);
+  EXPECT_EQ(solver.session().fault(), "GPU: kernel: fake failure");
+  EXPECT_EQ(solver.solve(evaluator, {}).status, Status::degenerate);
+  EXPECT_EQ(solver.result().inputs.size(), 10u);
+}
+
+}  // namespace
+}  // namespace slalom::gpu
