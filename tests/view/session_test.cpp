@@ -76,21 +76,6 @@ TEST_F(ViewSession, GoesBackToTheStateOfEveryAction) {
   EXPECT_EQ(last_state_ticks()["ghost"], "");
 }
 
-TEST_F(ViewSession, AnObstacleInTheWayChangesThePlan) {
-  const std::string before = step_to(40);
-  const double x = scalar(before, "x"), y = scalar(before, "y"), yaw = scalar(before, "yaw");
-  const std::string untouched = step_to(41);
-  tell({{"do", "seek"}, {"tick", 40}});
-  tell({{"do", "add"},
-        {"kind", "disc"},
-        {"x", x + 2 * std::cos(yaw)},
-        {"y", y + 2 * std::sin(yaw)},
-        {"length", 0.4}});
-  tell({{"do", "step"}, {"ticks", 2}});
-  const std::string touched = frame(42);
-  EXPECT_GT(scalar(touched, "collided_share"), scalar(untouched, "collided_share"));
-}
-
 TEST_F(ViewSession, SetsUndoesAndForks) {
   step_to(10);
   tell({{"do", "set"}, {"key", "svg_mppi.samples"}, {"value", "64"}});

@@ -8,7 +8,7 @@
 
 #include "slalom/evaluation/lap.hpp"
 
-/// The message of a control step: everything that the page draws.
+/// The message of a control step contains everything that the page draws.
 namespace slalom::view {
 
 /// The names of the figures that each frame begins with, in their order.
@@ -21,14 +21,13 @@ struct StepFacts {
   int method = 0;              ///< index of the method that drove
 };
 
-/// Encodes control steps. Draws on the planner for what the candidates would have led to, outside the time
-/// that the planner is measured by.
+/// Encodes control steps. The planner predicts where the candidates lead, outside of its measured time.
 class FrameEncoder {
  public:
-  /// `candidates`: at most so many of the samples are sent.
+  /// `candidates`: limit of the number of samples that are sent.
   explicit FrameEncoder(int candidates = 160) : max_candidates_(candidates) {}
 
-  /// A control step without its bodies.
+  /// Returns the message of a control step, without its bodies.
   std::string encode(const evaluation::ControlStep& tick, const StepFacts& facts);
 
  private:
@@ -48,16 +47,16 @@ class FrameEncoder {
   vehicle::PredictedCost cost_;
 };
 
-/// The bodies of a world as a block, to be appended to a frame; body 0 is the driven car.
+/// Returns the block with the bodies of a world, to be appended to a frame. Body 0 is the driven car.
 std::string encode_bodies(const sim::World& world);
-/// A second car on the same course, likewise.
+/// Returns the block with the car of the ghost, to be appended to a frame.
 std::string encode_ghost(const sim::World& world, std::span<const maps::Pose> plan);
-/// The second controller, likewise: `frame` is its control step with its bodies, a message.
+/// Returns the block with the message `frame` of the ghost's control step, to be appended to a frame.
 std::string encode_ghost_frame(std::string_view frame);
-/// The course's map and line as a message of its own.
+/// Returns the message with the map and the line of the course.
 std::string encode_scene(const evaluation::Environment& environment);
 
-/// From the driven car's body to the nearest wall or other body, m; negative inside.
+/// Returns the distance from the driven car to the nearest wall or other body, m; negative if they overlap.
 double clearance_of(const sim::World& world);
 
 }  // namespace slalom::view

@@ -11,8 +11,8 @@
 
 namespace slalom::view {
 
-/// Reads a binary message of the live view (docs/live-view.md): which blocks it has, and what stands in them.
-/// Throws std::invalid_argument where it ends too soon.
+/// The blocks of a binary message of the live view (docs/live-view.md). Throws std::invalid_argument if the
+/// message ends too soon.
 class FrameReader {
  public:
   explicit FrameReader(std::string_view message) {
@@ -28,12 +28,12 @@ class FrameReader {
     }
   }
 
-  /// A block's payload; empty where the message has none of this kind.
+  /// Returns the payload of a block; empty if the message has none of this kind.
   std::string_view block(Block kind) const {
     const auto found = blocks_.find(kind);
     return found == blocks_.end() ? std::string_view{} : found->second.payload;
   }
-  /// Where it begins in the message.
+  /// Returns the position of the payload in the message.
   std::size_t offset(Block kind) const { return blocks_.at(kind).offset; }
 
  private:

@@ -11,7 +11,7 @@
 
 namespace slalom::view {
 
-/// The blocks of a binary message; docs/live-view.md says what each holds.
+/// The blocks of a binary message, which docs/live-view.md describes.
 enum class Block : std::uint16_t {
   scalars = 1,
   scan = 2,
@@ -32,10 +32,10 @@ enum class Block : std::uint16_t {
 };
 
 /// Writes a binary message: "SLV1", then blocks of kind (u16), 0 (u16), length (u32) and payload, padded with
-/// zeros to four bytes. Little-endian, as every machine is that this runs on.
+/// zeros to four bytes. Numbers are little-endian, as in the memory of all supported machines.
 class FrameWriter {
  public:
-  static constexpr std::size_t head_bytes = 12;  ///< before the payload of a message's first block
+  static constexpr std::size_t head_bytes = 12;  ///< before the payload of the first block
 
   FrameWriter() { bytes_ = "SLV1"; }
 
@@ -64,8 +64,8 @@ class FrameWriter {
     put(pose.yaw);
   }
 
-  /// The head of a list of points: their origin and what one count is worth, m. Each point follows as its
-  /// difference to the one before, which compresses better.
+  /// Begins a list of points with their origin and unit (m). Each point is stored as its difference to the
+  /// one before, which compresses better.
   void begin_points(const maps::Point& origin) {
     origin_ = origin;
     last_x_ = last_y_ = 0;
@@ -80,7 +80,7 @@ class FrameWriter {
 
   void append(std::string_view bytes) { bytes_ += bytes; }
   std::string take() { return std::move(bytes_); }
-  /// Without the four bytes that a message begins with, to be appended to another message.
+  /// Takes the blocks without the head of the message, to be appended to another message.
   std::string take_blocks() { return take().substr(4); }
 
  private:
@@ -90,7 +90,7 @@ class FrameWriter {
     return static_cast<std::int16_t>(value > 32767 ? 32767 : value > -32767 ? value : -32767);
   }
 
-  /// Modulo 2^16, so that it always fits.
+  /// Stores a difference modulo 2^16, so that it always fits.
   void put_difference(std::int16_t now, std::int16_t& last) {
     put(static_cast<std::int16_t>(now - last));
     last = now;

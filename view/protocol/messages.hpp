@@ -35,14 +35,14 @@ std::string hello_message(const evaluation::Environment& environment, const Choi
 struct OptionsFacts {
   ScenarioNames names;
   const vehicle::Configuration& now;
-  const vehicle::Configuration& loaded;  ///< before anything was changed
+  const vehicle::Configuration& loaded;  ///< the configuration without the changes
   const std::string& further_arguments;  ///< further arguments of the command line, begin with a space
-  std::size_t undo = 0, redo = 0;        ///< how many steps there are
+  std::size_t undo = 0, redo = 0;        ///< number of steps
 };
-/// Declaration and value of every option, and the equivalent command line.
+/// Returns declaration and value of every option, and the equivalent command line.
 std::string options_message(const OptionsFacts& facts);
 
-/// The command line that drives the same.
+/// Returns the command line of the same drive.
 std::string command_line(const OptionsFacts& facts);
 
 /// A lap that was driven.

@@ -5,10 +5,11 @@
 
 namespace slalom::view {
 
+/// Encodes bytes as text, with padding.
 std::string base64(std::string_view bytes);
-/// Depends on the bytes alone: no time, no name.
+/// Compresses bytes. The result depends on them alone: it contains no time and no name.
 std::string gzip(std::string_view bytes);
-/// Throws std::invalid_argument on what gzip did not make.
+/// Decompresses bytes. Throws std::invalid_argument if they are not gzip, damaged or incomplete.
 std::string gunzip(std::string_view bytes);
 
 }  // namespace slalom::view

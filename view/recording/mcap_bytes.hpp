@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-/// The elements of MCAP files (https://mcap.dev/spec): records of an opcode, a length and a content, numbers
-/// little-endian, texts and lists behind their length in bytes.
+/// MCAP files (https://mcap.dev/spec) consist of records: an opcode, a length and a content. Numbers are
+/// little-endian; texts and lists follow their length in bytes.
 namespace slalom::view::mcap {
 
 inline constexpr std::string_view magic{"\x89MCAP0\r\n", 8};
@@ -30,7 +30,7 @@ enum class Op : std::uint8_t {
   data_end = 0x0f,
 };
 
-/// Appends what records hold to a text.
+/// The content of records, built by appending.
 class Bytes {
  public:
   template <class T>
@@ -50,14 +50,14 @@ class Bytes {
     for (const auto& [key, value] : values) inner.text(key).text(value);
     return text(inner.view());
   }
-  /// Pairs of numbers behind their length in bytes.
+  /// Appends a list of pairs of numbers.
   template <class Pairs>
   Bytes& pairs(const Pairs& values) {
     Bytes inner;
     for (const auto& [key, value] : values) inner.put(key).put(value);
     return text(inner.view());
   }
-  /// A whole record.
+  /// Appends a whole record.
   Bytes& record(Op op, std::string_view content) { return put(static_cast<std::uint8_t>(op)).block(content); }
 
   std::string_view view() const noexcept { return out_; }

@@ -11,9 +11,8 @@
 
 namespace slalom::view::mcap {
 
-/// Writes an MCAP file: messages in chunks compressed with zstd, message and chunk indexes, statistics,
-/// checksums throughout. Its output depends on its input only, so equal recordings are equal
-/// bytes.
+/// Writes an MCAP file: messages in chunks compressed with zstd, indexes of messages and chunks, statistics,
+/// and checksums of everything. Equal input gives equal bytes.
 ///
 ///     Writer writer(stream, "slalom 1.0");
 ///     const auto schema = writer.add_schema("foxglove.LaserScan", "jsonschema", text);
@@ -34,7 +33,7 @@ class Writer {
                       std::string_view data);
   void add_metadata(const std::string& name, const std::map<std::string, std::string>& values);
 
-  /// Closes the file's structure. The state of the stream says whether everything was written.
+  /// Writes the indexes and the end of the file. The state of the stream tells whether all was written.
   void finish();
 
  private:
@@ -60,7 +59,7 @@ class Writer {
   std::uint64_t chunk_first_ = 0, chunk_last_ = 0, first_ = 0, last_ = 0;
   bool chunk_has_messages_ = false;
   std::map<std::uint16_t, Times> chunk_times_;
-  std::vector<std::string> schemas_, channels_;  ///< their contents
+  std::vector<std::string> schemas_, channels_;  ///< contents of their records
   std::map<std::uint16_t, std::uint64_t> counts_;
   std::vector<ChunkIndex> chunks_;
   Bytes attachment_index_, metadata_index_;

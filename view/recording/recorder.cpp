@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t gap_between_drives = 1'000'000'000;  // ns
 
-/// Whether a figure of a frame is of the clock of the wall.
+/// Whether a scalar of a frame is a wall-clock time.
 bool is_wall_clock(std::string_view name) {
   return name.size() > 3 && name.substr(name.size() - 3) == "_ms" && name != "deadline_ms";
 }
@@ -23,7 +23,7 @@ Json maybe(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-/// Each name a number, or null where there is none.
+/// The schema of an object whose fields are scalars of a frame, or null where there is no value.
 std::string figures_schema(bool wall_clock) {
   Json properties = {{"timestamp",
                       {{"type", "object"},

@@ -16,26 +16,26 @@ namespace slalom::view {
 
 /// The facts that a recording contains about itself.
 struct RecorderOptions {
-  std::string program = "slalom";                         ///< who wrote it
-  std::map<std::string, std::string> settings;            ///< kept as the metadata "slalom"
+  std::string program = "slalom";                         ///< name of the program that writes the recording
+  std::map<std::string, std::string> settings;            ///< stored as the metadata "slalom"
   double lidar_angle_min = 0, lidar_angle_increment = 0;  ///< rad
   double lidar_range_max = 30;                            ///< m
-  bool wall_clock = false;  ///< also how long things took; without, the same drive gives the same bytes
+  bool wall_clock = false;  ///< records wall-clock times; without them the same drive gives the same bytes
 };
 
 /// Writes a drive as an MCAP file (docs/recording.md): topics with Foxglove's messages for other programs,
-/// and the live view's own messages as attachments, from which the page replays.
+/// and the messages of the live view as attachments, which the page replays.
 class Recorder {
  public:
   Recorder(std::ostream& stream, RecorderOptions options);
 
   /// Begins another drive, whose times start at 0 again; it is recorded after the previous one.
   void begin_drive();
-  /// A text message as the page gets it: hello, options, state.
+  /// Adds a text message to the page: hello, options or state.
   void add_text(std::string_view json);
-  /// The course: its map and line.
+  /// Adds the message with the map and line of the course.
   void add_course(std::string_view message);
-  /// A control step.
+  /// Adds the message of a control step.
   void add_frame(std::string_view frame);
   /// Closes the file's structure.
   void finish();

@@ -1,4 +1,4 @@
-// A control step as Foxglove messages.
+// The conversion of a control step to Foxglove messages.
 #include <algorithm>
 #include <cmath>
 
@@ -9,13 +9,13 @@ namespace {
 
 using foxglove::Color;
 
-constexpr std::size_t max_candidates = 40;  // in Foxglove's JSON; the page's own messages have them all
+constexpr std::size_t max_candidates = 40;  // in Foxglove's messages; those of the page have all
 constexpr Color car_color{0.95, 0.96, 0.98, 1}, ghost_color{0.78, 0.61, 1, 0.7},
     plan_color{0.1, 0.8, 0.65, 1}, nominal_color{0.6, 0.65, 0.7, 0.9}, guide_color{0.8, 0.35, 0.85, 0.9},
     obstacle_color{0.91, 0.63, 0.23, 1}, hit_color{1, 0.35, 0.21, 1}, collided_color{1, 0.35, 0.21, 0.35};
 constexpr double car_height = 0.15, obstacle_height = 0.25;  // m
 
-/// From the best (0) to the worst (1): yellow, green, blue.
+/// The colour of a cost between the best (0) and the worst (1): yellow, green, blue.
 Color cost_color(double share) {
   constexpr double stops[3][3] = {{0.93, 0.89, 0.52}, {0.1, 0.66, 0.62}, {0.16, 0.27, 0.6}};
   const double at = 2 * std::clamp(share, 0.0, 1.0);

@@ -6,9 +6,8 @@
 #include <string_view>
 #include <vector>
 
-/// The data of a replay: the messages of a live drive, in their order, cut
-/// into segments that are compressed one by one. A message is its kind (a byte: 0 text, 1 binary), its length
-/// (u32) and its bytes.
+/// A replay: the messages of a live drive in their order, in segments that are compressed one by one. A
+/// message is stored as its kind (a byte: 0 text, 1 binary), its length (u32) and its bytes.
 namespace slalom::view {
 
 /// Cuts messages into segments.
@@ -32,11 +31,11 @@ class ReplaySegments {
   int frames_ = 0;
 };
 
-/// The page with a replay inside: one file that needs no server. `page`: the page's HTML.
+/// Returns the page with a replay inside: one file that needs no server. `page`: HTML.
 std::string replay_page(std::string page, const std::vector<std::string>& segments);
 
-/// The segments of an MCAP recording. Of one that was cut: those that are whole, and `lost` receives the
-/// number of bytes that are not. Throws IoError if it is not a recording, or cut without `lost`.
+/// Returns the segments of an MCAP recording. Of one that was cut: those that are whole, and `lost` receives
+/// the number of bytes after the last one. Throws IoError if it is not a recording, or cut without `lost`.
 std::vector<std::string> load_replay(const std::string& file, std::uint64_t* lost = nullptr);
 
 }  // namespace slalom::view

@@ -1,11 +1,7 @@
 #pragma once
 
-#include <atomic>
-#include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "view/recording/recorder.hpp"
@@ -19,18 +15,8 @@ struct SavedDrive {
   std::vector<std::shared_ptr<const std::string>> frames;
 };
 
-/// Makes files of the last minute in a thread of its own, while the drive continues.
-class FileSaver {
- public:
-  enum class Kind { recording, replay };
-  /// Begins to make a file. `done` gets the file as a message to the page; `failed` gets the reason. Both are
-  /// called from the thread. Throws if the previous file is not finished or the thread cannot be started.
-  void save(Kind kind, const std::string& name, SavedDrive drive, RecorderOptions options,
-            std::function<void(std::string)> done, std::function<void(std::string)> failed);
-
- private:
-  std::atomic<bool> is_busy_{false};
-  std::jthread thread_;
-};
+/// Makes a file of a drive, as a message to the page: a page that plays it, or an MCAP recording.
+std::string replay_message(const std::string& name, const SavedDrive& drive);
+std::string recording_message(const std::string& name, const SavedDrive& drive, RecorderOptions options);
 
 }  // namespace slalom::view

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <future>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -14,7 +15,6 @@
 #include "view/protocol/messages.hpp"
 #include "view/server/server.hpp"
 #include "view/session/drives.hpp"
-#include "view/session/saving.hpp"
 #include "view/session/scenario.hpp"
 #include "view/session/slow_motion.hpp"
 #include "view/session/timeline.hpp"
@@ -134,7 +134,7 @@ class Session {
   bool is_newest_sent_ = true;  ///< false if the newest tick came too early for a frame
   bool is_state_changed_ = true;
   std::uint64_t refused_ = 0;
-  FileSaver saver_;  ///< the last member: its thread ends before what it uses
+  std::future<void> saving_;  ///< the last member: its thread ends before what it uses
 };
 
 }  // namespace slalom::view

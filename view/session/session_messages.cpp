@@ -4,6 +4,7 @@
 
 #include "src/evaluation/json.hpp"
 #include "view/protocol/frame_writer.hpp"
+#include "view/session/saving.hpp"
 #include "view/session/session.hpp"
 
 namespace slalom::view {
@@ -101,32 +102,32 @@ OptionsFacts Session::options_facts() const {
           .redo = undo_.redos()};
 }
 
-/// Sends the last minute to a client as a file.
+/// Sends the last minute to a client as a file, which a thread makes while the drive continues.
 void Session::save(std::uint64_t client, const std::string& what) {
-  if (what != "recording" && what != "replay")
-    throw std::invalid_argument("what: must be recording or replay");
+  const bool is_replay = what == "replay";
+  if (!is_replay && what != "recording") throw std::invalid_argument("what: must be recording or replay");
   if (timeline_.empty()) throw std::invalid_argument("nothing has been driven yet");
+  if (saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    throw std::invalid_argument("the previous file is still being written");
   SavedDrive drive{hello(), options_message(options_facts()), state(), scene_, {}};
   for (const Timeline::Step& step : timeline_.steps()) drive.frames.push_back(step.frame);
   const sim::WorldOptions world = scenario_.environment->world_options();
   const Json settings = {{"command_line", command_line(options_facts())}};
-  RecorderOptions recorder{.program = options_.program,
-                           .settings = {{"settings", json_text(settings)}},
-                           .lidar_angle_min = world.lidar.angle_min(),
-                           .lidar_angle_increment = world.lidar.angle_increment(),
-                           .wall_clock = options_.record_times};
-  const bool is_replay = what == "replay";
+  const RecorderOptions recorder{.program = options_.program,
+                                 .settings = {{"settings", json_text(settings)}},
+                                 .lidar_angle_min = world.lidar.angle_min(),
+                                 .lidar_angle_increment = world.lidar.angle_increment(),
+                                 .wall_clock = options_.record_times};
   const std::string name = "slalom-" + scenario_.environment->course.name + "-" + driver().method + "-" +
                            std::to_string(timeline_.newest()) + (is_replay ? ".html" : ".mcap");
-  saver_.save(
-      is_replay ? FileSaver::Kind::replay : FileSaver::Kind::recording, name, std::move(drive),
-      std::move(recorder),
-      [this, client](std::string file) {
-        server_.send(client, {std::make_shared<const std::string>(std::move(file)), true});
-      },
-      [this, client](std::string why) {
-        tell(client, {{"type", "error"}, {"message", why}});
-      });
+  saving_ = std::async(std::launch::async, [=, this, drive = std::move(drive)] {
+    try {
+      std::string file = is_replay ? replay_message(name, drive) : recording_message(name, drive, recorder);
+      server_.send(client, {std::make_shared<const std::string>(std::move(file)), true});
+    } catch (const std::exception& error) {
+      tell(client, {{"type", "error"}, {"message", error.what()}});
+    }
+  });
 }
 
 }  // namespace slalom::view

@@ -1,4 +1,4 @@
-// Several pages, a slow one, foreign ones, and a lost connection.
+// Several pages, a slow one, and a lost connection.
 import assert from "node:assert/strict";
 
 export default async function (h) {
@@ -48,20 +48,6 @@ export default async function (h) {
     await other.close();
     await h.until(() => document.getElementById("take-over").hidden); // the page that is left drives
     await h.restart();
-  });
-
-  await h.test("the page of another origin cannot connect", async () => {
-    const other = await h.browser.newPage();
-    await other.goto("data:text/html,<p>elsewhere</p>");
-    const outcome = await other.evaluate((port) => {
-      const socket = new WebSocket(`ws://127.0.0.1:${port}/ws`);
-      return new Promise((done) => {
-        socket.onopen = () => done("open");
-        socket.onerror = () => done("refused");
-      });
-    }, h.server.port);
-    assert.equal(outcome, "refused");
-    await other.close();
   });
 
   await h.test("says that the connection is lost, and shows what a new server drives", async () => {

@@ -1,6 +1,5 @@
 // Files that the page saves, and links.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
 import { readFileSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { patience } from "../harness.mjs";
@@ -68,13 +67,5 @@ export default async function (h) {
     const shown = await h.start("replay", file, "--port", "0");
     await plays(shown.address);
     await shown.stop();
-  });
-
-  await h.test("a recording of slalom drive becomes a page", async () => {
-    const [file, html] = [join(h.folder, "lap.mcap"), join(h.folder, "lap.html")];
-    const drive = ["drive", "--course", "wren", "--seed", "2", "--obstacles", "3", "--record", file];
-    execFileSync(h.program, drive, { stdio: "ignore" });
-    execFileSync(h.program, ["replay", file, "--html", html], { stdio: "ignore" });
-    await plays("file://" + html);
   });
 }
