@@ -15,8 +15,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t max_json_bytes = 1ULL << 24;  ///< the largest JSON file that is read
 
-/// Parses a text. Throws std::invalid_argument, which names line and column, if it is not JSON or nests deeper
-/// than 64 levels.
+/// Parses a text. Throws std::invalid_argument, which names line and column, if it is not JSON or nests
+/// deeper than 64 levels.
 inline Json parse_json(std::string_view text) {
   const auto limit_depth = [](int depth, Json::parse_event_t, const Json&) {
     return depth <= 64 ? true : throw std::invalid_argument("must not nest deeper than 64 levels");
@@ -24,7 +24,8 @@ inline Json parse_json(std::string_view text) {
   try {
     return Json::parse(text, limit_depth);
   } catch (const Json::exception& error) {
-    const std::string message = error.what();  // "[json.exception.parse_error.101] parse error at line 1, ..."
+    const std::string message =
+        error.what();  // "[json.exception.parse_error.101] parse error at line 1, ..."
     throw std::invalid_argument("is not JSON: " + message.substr(message.find(' ') + 1));
   }
 }
@@ -38,7 +39,8 @@ inline Json parse_json_or_null(std::string_view text) {
   }
 }
 
-/// The text in one line, or with `indent` spaces per level. Bytes that are not UTF-8 become U+FFFD.
+/// The text in one line, or with `indent` spaces per level. Bytes that are not UTF-8 become U+FFFD, numbers
+/// that are not finite null.
 inline std::string json_text(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -20,6 +21,25 @@ int run_in_threads(int threads, const std::function<void()>& work) {
   const int started = static_cast<int>(others.size()) + 1;
   others.clear();
   return started;
+}
+
+void for_each_in_threads(int threads, int count, const std::function<void(int)>& work,
+                         const std::atomic<bool>* cancel) {
+  std::atomic<int> next{0};
+  std::mutex mutex;
+  std::exception_ptr error;
+  run_in_threads(std::min(threads, count), [&] {
+    for (int i; !(cancel && cancel->load()) && (i = next++) < count;) {
+      try {
+        work(i);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!error) error = std::current_exception();
+        next = count;
+      }
+    }
+  });
+  if (error) std::rethrow_exception(error);
 }
 
 }  // namespace slalom::evaluation

@@ -195,7 +195,6 @@ TEST_F(EvalCommand, WritesASummary) {
   EXPECT_FALSE(contains(html, "the authors' laps")) << "only terms that are used are explained";
   EXPECT_TRUE(contains(r.output, "one/report.html")) << "the path of the report";
   EXPECT_TRUE(fs::exists(folder_ / "one/figures/methods.svg"));
-  EXPECT_TRUE(fs::exists(folder_ / "one/figures/driven_oa.png"));
 }
 
 TEST_F(EvalCommand, ReplaysALapBitForBitAndComparesTwoRuns) {

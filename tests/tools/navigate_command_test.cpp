@@ -17,7 +17,6 @@ TEST_F(NavigateCommand, DrivesAScenarioWithBothMethodsOnTheSameSeeds) {
   const auto run = program(
       "navigate --scenario no-way --seeds 2 --threads 2 --json out.json --table out.md --pictures pictures");
   ASSERT_EQ(run.status, 0) << run.output;
-  EXPECT_NE(run.output.find("no-way               svg_mppi          2/2"), std::string::npos) << run.output;
   const auto results = nlohmann::json::parse(content(folder_ / "out.json"));
   ASSERT_EQ(results["results"].size(), 2u);
   for (const auto& row : results["results"]) {
@@ -29,6 +28,7 @@ TEST_F(NavigateCommand, DrivesAScenarioWithBothMethodsOnTheSameSeeds) {
   EXPECT_EQ(results["results"][1]["driver"], "mppi");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "pictures/no-way.png"));
   const std::string table = content(folder_ / "out.md");
+  EXPECT_NE(run.output.find(table), std::string::npos) << run.output;
   EXPECT_NE(table.find("| `no-way` | `svg_mppi` | 2 of 2 (34 to 100 %) | 0 |"), std::string::npos) << table;
   EXPECT_NE(table.find("| all | `svg_mppi` minus `mppi` | 0.000 [0.000, 0.000] |"), std::string::npos)
       << table;

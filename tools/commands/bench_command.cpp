@@ -1,5 +1,4 @@
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -8,6 +7,7 @@
 #include "bench/workload/peak.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/commands/commands.hpp"
+#include "tools/evaluation/build_id.hpp"
 #include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"
 
@@ -20,14 +20,6 @@ struct BenchArguments {
   double seconds = 0.5;
   bool scaling = false;
 };
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  }
-  return "unknown";
-}
 
 /// The given configuration. Without one, the workload `reference`: the configuration `published` with one
 /// trajectory per rollout.
@@ -92,11 +84,11 @@ class Bench {
 
   int run() {
     json_["target"] = simd::name(target_);
-    json_["cpu"] = processor();
+    json_["cpu"] = processor_name();
     json_["compiler"] = __VERSION__;
     json_["config"] = arguments_.config.empty() ? "reference" : arguments_.config;
-    std::fprintf(words_, "%s, %s, %s; workload %s\n", processor().c_str(), simd::name(target_), __VERSION__,
-                 json_["config"].get<std::string>().c_str());
+    std::fprintf(words_, "%s, %s, %s; workload %s\n", processor_name().c_str(), simd::name(target_),
+                 __VERSION__, json_["config"].get<std::string>().c_str());
     rollouts();
     vehicle_models();
     std::fprintf(words_, "%-14s %8s %8s %8s %10s %9s | %s\n", "ms", "p50", "p99", "max", "yardstick",

@@ -16,7 +16,7 @@
 #include "tools/commands/commands.hpp"
 #include "tools/drawing/course_picture.hpp"
 #include "tools/recording/driven_line.hpp"
-#include "tools/scenario/start_pose.hpp"
+#include "tools/scenario/scenario.hpp"
 #include "tools/terminal/json_output.hpp"
 
 namespace slalom::tools {

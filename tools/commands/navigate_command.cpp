@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -97,22 +95,12 @@ void write_results(const NavigateArguments& arguments, const std::vector<RoomSer
 void drive_all(const NavigateArguments& arguments, const std::vector<NamedDriver>& drivers,
                std::uint64_t seed, std::vector<RoomSeries>& all) {
   std::vector<evaluation::RoomDrive> drives(all.size());
-  std::vector<std::exception_ptr> errors(all.size());
-  std::atomic<std::size_t> next{0};
-  evaluation::run_in_threads(arguments.threads, [&] {
-    for (std::size_t k; (k = next++) < all.size();) {
-      try {
-        const RoomScenario& scenario = *all[k].scenario;
-        drives[k] = drive_room(scenario, driver_of(drivers[k % drivers.size()], scenario), seed);
-      } catch (...) {
-        errors[k] = std::current_exception();
-      }
-    }
+  evaluation::for_each_in_threads(arguments.threads, static_cast<int>(all.size()), [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    const RoomScenario& scenario = *all[k].scenario;
+    drives[k] = drive_room(scenario, driver_of(drivers[k % drivers.size()], scenario), seed);
   });
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    if (errors[k]) std::rethrow_exception(errors[k]);
-    all[k].drives.push_back(std::move(drives[k]));
-  }
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].drives.push_back(std::move(drives[k]));
 }
 
 int navigate(const NavigateArguments& arguments) {
@@ -134,8 +122,7 @@ int navigate(const NavigateArguments& arguments) {
     write_results(arguments, all, i + 1 == arguments.seeds);
   }
   std::ostream& words = arguments.json == "-" ? std::cerr : std::cout;
-  print_heading(words);
-  for (const RoomSeries& series : all) print_row(series, words);
+  words << markdown_table(all) << std::flush;
   if (!arguments.pictures.empty()) {
     std::filesystem::create_directories(arguments.pictures);
     for (const RoomScenario* scenario : scenarios) draw(all, *scenario, arguments.pictures);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 
 #include "slalom/evaluation/statistics.hpp"
 #include "src/evaluation/json.hpp"
@@ -136,24 +135,6 @@ Json summary_of(const RoomSeries& series) {
           {"reversals", mean_of(values_of(drives, reversals_of))},
           {"update_max_ms", 1e3 * slowest},
           {"by_seed", by_seed}};
-}
-
-void print_heading(std::ostream& out) {
-  out << "scenario             driver          success collisions   time s length m side changes  "
-         "reversals\n";
-}
-
-void print_row(const RoomSeries& series, std::ostream& out) {
-  const Drives drives = drives_of(series);
-  const auto mean = [&](double (*value)(const RoomDrive&)) {
-    return evaluation::mean(values_of(drives, value));
-  };
-  char text[256];
-  std::snprintf(text, sizeof text, "%-20s %-15s %3d/%-3d %10d %8.1f %8.1f %12.1f %10.1f\n",
-                series.scenario->name, series.driver.c_str(), count_of(drives, successes_of),
-                static_cast<int>(drives.size()), count_of(drives, collisions_of), mean(time_of),
-                mean(length_of), mean(sides_of), mean(reversals_of));
-  out << text << std::flush;
 }
 
 std::string markdown_table(const std::vector<RoomSeries>& all) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -21,11 +20,6 @@ bool collided(const evaluation::RoomDrive& drive);
 
 /// Means, intervals and every drive.
 nlohmann::ordered_json summary_of(const RoomSeries& series);
-/// The names of the columns of print_row, in one line.
-void print_heading(std::ostream& out);
-/// The means of a series in one line, for the terminal.
-void print_row(const RoomSeries& series, std::ostream& out);
-
 /// A table in Markdown: each series, the sums of each driver over all scenarios, and how the others differ
 /// from the first one on the same scenarios and seeds.
 std::string markdown_table(const std::vector<RoomSeries>& all);

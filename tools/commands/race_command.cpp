@@ -27,9 +27,8 @@ using evaluation::RacingLap;
 
 struct RaceArguments {
   ScenarioArguments scenario;
-  std::string method = "svg_mppi", compare, json, plot;
-  std::uint64_t seed = 0;
-  int laps = 5;
+  GridRaceArguments race;  ///< laps, seed and JSON file of both kinds, and what only several cars have
+  std::string method = "svg_mppi", compare, plot;
   bool standing = false, learn = false;
   double friction = 0.9;
 };
@@ -51,14 +50,14 @@ class RaceJob {
  public:
   explicit RaceJob(const RaceArguments& arguments)
       : arguments_(arguments),
-        words_(arguments.json == "-" ? stderr : stdout),
+        words_(arguments.race.json == "-" ? stderr : stdout),
         scenario_(load_scenario(arguments.scenario, arguments.method)),
         setup_{scenario_.environment, {scenario_.configuration, arguments.method}, scenario_.lap},
         settings_(settings_json(arguments.scenario, scenario_, arguments.method)) {
     setup_.validate();
     if (arguments.learn) check_learning();
-    settings_["seed"] = arguments.seed;
-    settings_["laps"] = arguments.laps;
+    settings_["seed"] = arguments.race.seed;
+    settings_["laps"] = arguments.race.laps;
     settings_["standing"] = arguments.standing;
     settings_["friction"] = arguments.friction;
     settings_["learn"] = arguments.learn;
@@ -77,7 +76,7 @@ class RaceJob {
     std::fprintf(words_, "%s on %s, configuration %s, %.1f m, %d obstacles, seed %llu\n",
                  arguments_.method.c_str(), scenario_.environment->course.name.c_str(),
                  arguments_.scenario.config.c_str(), race_.length, scenario_.lap.obstacles,
-                 static_cast<unsigned long long>(arguments_.seed));
+                 static_cast<unsigned long long>(arguments_.race.seed));
     print_lap_header(words_, race_.grip);
     if (scenario_.environment->course.closed) print_lap(words_, "profile", race_.profile, race_.grip);
     print_lap(words_, "profile from rest", race_.profile_from_rest, race_.grip);
@@ -87,7 +86,7 @@ class RaceJob {
     const auto flying = race_statistics(race_, false), standing = race_statistics(race_, true);
     if (learned_)
       return learned_->best().empty() ? 1 : 0;  // a lap that asks for too much is part of learning
-    return flying.completed + standing.completed == arguments_.laps ? 0 : 1;
+    return flying.completed + standing.completed == arguments_.race.laps ? 0 : 1;
   }
 
  private:
@@ -95,7 +94,7 @@ class RaceJob {
     const InterruptFlag interrupt;
     ProgressLine progress(words_);
     const auto on_step = [&](int lap, const evaluation::ControlStep& step) {
-      progress.show(lap + 1, arguments_.laps, step);
+      progress.show(lap + 1, arguments_.race.laps, step);
       if (step.output.solve) solve_ms_.push_back(static_cast<float>(1e3 * step.output.solve->times.total));
     };
     const auto on_lap = [&](const RacingLap& lap) {
@@ -106,7 +105,7 @@ class RaceJob {
     };
     if (arguments_.learn) return drive_and_learn(on_step, on_lap, interrupt.raised());
     evaluation::drive_race(
-        setup_, {.laps = arguments_.laps, .seed = arguments_.seed, .standing = arguments_.standing},
+        setup_, {.laps = arguments_.race.laps, .seed = arguments_.race.seed, .standing = arguments_.standing},
         {.on_step = on_step, .on_lap = on_lap}, &interrupt.raised());
   }
 
@@ -127,10 +126,10 @@ class RaceJob {
     const maps::Pose start = setup_.start();
     learned_.emplace(race_.length, scenario_.environment->track->lap_path()->project({start.x, start.y}).arc,
                      std::max(static_cast<int>(race_.length / part_length), 1), own.usable_grip, race_.grip);
-    for (int lap = 0; lap < arguments_.laps && learned_->without_gain() < patience; ++lap) {
+    for (int lap = 0; lap < arguments_.race.laps && learned_->without_gain() < patience; ++lap) {
       evaluation::LapSetup setup = setup_;
       setup.driver.configuration = evaluation::with_belief(scenario_.configuration, learned_->next());
-      const auto seed = evaluation::lap_seed(arguments_.seed, lap, scenario_.lap.obstacles);
+      const auto seed = evaluation::lap_seed(arguments_.race.seed, lap, scenario_.lap.obstacles);
       const auto on_step_of_lap = [&](int, const evaluation::ControlStep& step) { on_step(lap, step); };
       const auto driven = evaluation::drive_race(setup, {.laps = 1, .seed = seed, .standing = true},
                                                  {.on_step = on_step_of_lap, .on_lap = on_lap}, &cancel);
@@ -160,7 +159,7 @@ class RaceJob {
                    best->standing ? "standing start" : "flying lap");
     if (best) print_along(words_, race_, *best, theirs, arguments_.compare);
     if (learned_ && !learned_->best().empty()) print_learned();
-    if (!arguments_.json.empty()) write_json(results(best, theirs), arguments_.json);
+    if (!arguments_.race.json.empty()) write_json(results(best, theirs), arguments_.race.json);
     if (arguments_.plot.empty()) return;
     if (!best) {
       std::fprintf(words_, "note: no picture, since no lap was completed\n");
@@ -236,7 +235,7 @@ class RaceJob {
 };
 
 /// Several cars, or laps against the clock.
-int run_race(const Subcommand& command, const RaceArguments& arguments, const GridRaceArguments& several) {
+int run_race(const Subcommand& command, const RaceArguments& arguments) {
   const bool grid = command.given("--cars") || command.given("--against");
   for (const char* name : {"--races", "--jobs"})
     if (!grid && command.given(name)) throw CommandLineError(name, "needs --cars or --against");
@@ -244,11 +243,7 @@ int run_race(const Subcommand& command, const RaceArguments& arguments, const Gr
     if (grid && command.given(name))
       throw CommandLineError(name, "is for laps against the clock, without --cars and --against");
   if (!grid) return RaceJob(arguments).run();
-  GridRaceArguments asked = several;
-  asked.laps = arguments.laps;
-  asked.seed = arguments.seed;
-  asked.json = arguments.json;
-  return drive_grid_races(arguments.scenario, arguments.method, asked);
+  return drive_grid_races(arguments.scenario, arguments.method, arguments.race);
 }
 
 /// The options of races of several cars.
@@ -280,25 +275,24 @@ void declare_race(Subcommand& command) {
       "Drive timed laps on tyres that saturate: lap times, sectors, grip used, and where time is lost; or a "
       "race of several cars");
   const auto arguments = std::make_shared<RaceArguments>();
-  const auto several = std::make_shared<GridRaceArguments>();
   arguments->scenario.config = "race";
   arguments->scenario.saturating_tyres = true;
   add_scenario_options(command, arguments->scenario);
   add_method_option(command, arguments->method);
   command
       .option(
-          "--seed", arguments->seed,
+          "--seed", arguments->race.seed,
           "Seed of lap 1; a standing start in lap k has the seed SEED + (k - 1) (obstacles + 5), and race k "
           "SEED + k - 1")
       .show_default();
   command
       .option(
-          "--laps", arguments->laps,
+          "--laps", arguments->race.laps,
           "Number of laps: a standing start, then flying laps; after a collision, a standing start again. "
           "In a race, those of each car")
       .range(1, 100000)
       .show_default();
-  add_grid_options(command, *several);
+  add_grid_options(command, arguments->race);
   command.flag("--standing", arguments->standing, "Begin every lap with a standing start");
   command.flag("--learn", arguments->learn,
                "After each lap, a standing start, use more grip where the lap stayed inside the friction "
@@ -311,12 +305,12 @@ void declare_race(Subcommand& command) {
   command.option(
       "--compare", arguments->compare,
       "JSON file of another slalom race on the same course: shows where the best lap gains or loses time");
-  command.option("--json", arguments->json,
+  command.option("--json", arguments->race.json,
                  "Write the results as JSON to this file, or to standard output: -");
   command.option("--plot", arguments->plot,
                  "Write a picture of the best lap to this PNG, SVG or PDF: speed and profile, time behind, "
                  "accelerations");
-  command.action([&command, arguments, several] { return run_race(command, *arguments, *several); });
+  command.action([&command, arguments] { return run_race(command, *arguments); });
 }
 
 }  // namespace slalom::tools

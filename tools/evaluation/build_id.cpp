@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <string_view>
 
 namespace slalom::tools {
@@ -59,6 +60,13 @@ std::string build_id() {
   std::string text;
   dl_iterate_phdr(visit, &text);
   return text;
+}
+
+std::string processor_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  return "unknown";
 }
 
 }  // namespace slalom::tools

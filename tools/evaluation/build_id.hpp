@@ -9,4 +9,7 @@ namespace slalom::tools {
 /// none.
 std::string build_id();
 
+/// Names the processor as /proc/cpuinfo does, or "unknown".
+std::string processor_name();
+
 }  // namespace slalom::tools

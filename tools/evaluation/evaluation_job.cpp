@@ -59,9 +59,13 @@ void require_object(const std::filesystem::path& file) {
   if (!there.is_null() && !there.is_object()) throw IoError(file.string(), 0, "is not a JSON object");
 }
 
-Json interval_json(const Interval& i) {
-  return {i.low, i.high};
+Json rate_json(const std::optional<double>& rate) {
+  return rate ? Json(*rate) : Json(nullptr);
 }
+Json interval_json(const std::optional<Interval>& i) {
+  return i ? Json{i->low, i->high} : Json(nullptr);
+}
+
 /// Writes the figures of an evaluation's tracker.
 Json tracking_json(const TrackingFigures& t, int laps) {
   const auto rate = [](int part, int whole) {
@@ -86,29 +90,12 @@ Json overtaking_json(const OvertakingFigures& o) {
           {"not_overtaken", o.not_overtaken},
           {"rate", decided > 0 ? Json(static_cast<double>(o.overtaken) / decided) : Json(nullptr)},
           {"rate_ci",
-           decided > 0 ? interval_json(evaluation::wilson_interval(o.overtaken, decided)) : Json(nullptr)},
+           interval_json(decided > 0 ? std::optional(wilson_interval(o.overtaken, decided)) : std::nullopt)},
           {"overtaking_time_s", o.overtaken > 0 ? Json(o.duration) : Json(nullptr)},
           {"contacts", o.contacts},
           {"contacts_caused", o.caused},
           {"side_changes", o.side_changes}};
 }
-template <class Value, class Make>
-Json optional_json(const std::optional<Value>& value, Make&& make) {
-  return value ? Json(make(*value)) : Json(nullptr);
-}
-
-Json machine_json() {
-  Json machine{{"cores", std::thread::hardware_concurrency()}, {"cpu", nullptr}};
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.rfind("model name", 0) == 0) {
-      machine["cpu"] = line.substr(line.find(':') + 2);
-      break;
-    }
-  }
-  return machine;
-}
-
 }  // namespace
 
 std::string course_hash(const Environment& environment) {
@@ -165,7 +152,6 @@ Json Evaluated::summary() const {
   Json list = Json::array();
   for (const ExperimentResult& r : results) {
     const Experiment& e = evaluation.experiments[static_cast<std::size_t>(r.experiment)];
-    const auto rate = [](double v) { return v; };
     Json result({{"method", e.method},
                  {"set", e.set_text()},
                  {"scenario", e.scenario},
@@ -180,12 +166,12 @@ Json Evaluated::summary() const {
                  {"ms_ci", interval_json(r.ms_ci)},
                  {"state_cost_mean", r.state_cost_mean},
                  {"collision_cost_mean", r.collision_cost_mean},
-                 {"collision_rate", optional_json(r.collision_rate, rate)},
-                 {"collision_rate_ci", optional_json(r.collision_rate_ci, interval_json)},
-                 {"collision_rate_bootstrap_ci", optional_json(r.collision_rate_bootstrap_ci, interval_json)},
+                 {"collision_rate", rate_json(r.collision_rate)},
+                 {"collision_rate_ci", interval_json(r.collision_rate_ci)},
+                 {"collision_rate_bootstrap_ci", interval_json(r.collision_rate_bootstrap_ci)},
                  {"success_rate", r.success_rate},
                  {"success_rate_ci", interval_json(r.success_rate_ci)},
-                 {"lap_time_mean", std::isnan(r.lap_time_mean) ? Json(nullptr) : Json(r.lap_time_mean)},
+                 {"lap_time_mean", r.lap_time_mean},
                  {"solve_ms",
                   {{"mean", r.solve_ms_mean},
                    {"p50", r.solve_ms_p50},
@@ -213,7 +199,7 @@ Json Evaluated::summary() const {
   return {{"program", std::string("slalom ") + version()},
           {"build", build_id()},
           {"settings", parse_json(evaluation.settings)},
-          {"machine", machine_json()},
+          {"machine", {{"cores", std::thread::hardware_concurrency()}, {"cpu", processor_name()}}},
           {"results", list},
           {"comparisons", pairs}};
 }
@@ -262,7 +248,6 @@ bool run_evaluation(const EvaluationArguments& arguments, const std::vector<Expe
   if (experiments.empty()) throw CommandLineError("--methods", "must name at least one method");
   const Scenario scenario = load_scenario(arguments.scenario, experiments.front().method);
   print_notes(stderr, scenario);
-  evaluated.course_folder = scenario.folder;
   evaluated.evaluation = make_evaluation(arguments, scenario, experiments);
   const InterruptFlag interrupt;
   if (!drive_evaluation(evaluated.evaluation, arguments, "", interrupt.raised(), evaluated.rows))

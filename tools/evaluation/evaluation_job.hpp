@@ -49,7 +49,6 @@ struct Evaluated {
   evaluation::Evaluation evaluation;
   std::vector<evaluation::LapRow> rows;
   std::vector<evaluation::ExperimentResult> results;
-  std::filesystem::path course_folder;
   nlohmann::ordered_json summary() const;
   /// The laps of an experiment in which an obstacle stands where the car starts.
   std::vector<int> laps_begun_in_contact(int experiment) const;

@@ -1,8 +1,6 @@
 #include "tools/racing/grid_race_job.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -149,9 +147,7 @@ class GridRaceJob {
     const InterruptFlag interrupt;
     ProgressLine progress(words_);
     std::vector<std::optional<GridRaceResult>> ended(static_cast<std::size_t>(arguments_.races));
-    std::atomic<int> next{0};
     std::mutex mutex;
-    std::exception_ptr error;
     std::size_t reported = 0;
     const auto drive_one = [&](int number) {
       evaluation::GridRaceCallback on_step;
@@ -168,22 +164,7 @@ class GridRaceJob {
         if (arguments_.races > 1)
           print_race_line(words_, races_.names, *ended[reported], static_cast<int>(reported) + 1);
     };
-    const auto work = [&] {
-      while (!interrupt.raised()) {
-        const int number = next++;
-        if (number >= arguments_.races) return;
-        try {
-          drive_one(number);
-        } catch (...) {
-          const std::lock_guard lock(mutex);
-          if (!error) error = std::current_exception();
-          next = arguments_.races;
-        }
-      }
-    };
-    const int wanted = std::min(arguments_.jobs, arguments_.races);
-    evaluation::run_in_threads(wanted, work);
-    if (error) std::rethrow_exception(error);
+    evaluation::for_each_in_threads(arguments_.jobs, arguments_.races, drive_one, &interrupt.raised());
     for (auto& race : ended)
       if (race) races_.results.push_back(std::move(*race));
   }

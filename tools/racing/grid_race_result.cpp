@@ -67,16 +67,12 @@ std::string contacts_text(const ContactRate& rate) {
   return rate.kilometres > 0 ? text : "-";
 }
 
-Json or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json rate_json(const ContactRate& rate) {
   return {{"contacts", rate.contacts},
           {"contacts_caused", rate.caused},
           {"distance_km", rate.kilometres},
-          {"caused_per_100_km", or_null(rate.per_100_km)},
-          {"caused_per_100_km_ci", {or_null(rate.interval.low), or_null(rate.interval.high)}}};
+          {"caused_per_100_km", rate.per_100_km},
+          {"caused_per_100_km_ci", {rate.interval.low, rate.interval.high}}};
 }
 
 Json standing_json(const CarResult& car, const std::string& name) {
@@ -86,8 +82,8 @@ Json standing_json(const CarResult& car, const std::string& name) {
             {"end", std::string(evaluation::name(car.end))},
             {"laps", static_cast<int>(car.lap_times.size())},
             {"time_s", car.time},
-            {"gap_s", or_null(car.gap)},
-            {"best_lap_s", or_null(car.best_lap())},
+            {"gap_s", car.gap},
+            {"best_lap_s", car.best_lap()},
             {"lap_times_s", car.lap_times},
             {"progress_m", car.progress},
             {"distance_m", car.distance},
@@ -134,7 +130,7 @@ Json summary_json(const CarSummary& summary, const std::string& name) {
             {"finished", summary.finished},
             {"walls", summary.walls},
             {"timeouts", summary.timeouts},
-            {"best_lap_s", or_null(summary.best_lap)},
+            {"best_lap_s", summary.best_lap},
             {"overtakes", summary.overtakes},
             {"overtaken", summary.overtaken}};
   json.update(rate_json(summary.contacts));

@@ -13,10 +13,6 @@ Json pose_json(const maps::Pose& pose) {
   return {pose.x, pose.y, pose.yaw};
 }
 
-Json finite_or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 /// Mean and 99th percentile; of no values, null.
 Json error_json(std::vector<float> errors) {
   if (errors.empty()) return nullptr;
@@ -90,17 +86,17 @@ Json lap_json(const evaluation::LapResult& lap, int number) {
             {"wall_touched", lap.wall},
             {"time_s", lap.time},
             {"steps", lap.steps},
-            {"state_cost", finite_or_null(lap.state_cost)},
-            {"collision_cost", finite_or_null(lap.collision_cost)},
-            {"mean_sequence_cost", finite_or_null(lap.mean_sequence_cost)},
-            {"input_error", finite_or_null(lap.input_error)},
-            {"mean_speed", finite_or_null(lap.mean_speed)},
-            {"mean_path_distance", finite_or_null(lap.mean_path_distance)},
-            {"max_path_distance", finite_or_null(lap.max_path_distance)},
-            {"least_clearance", finite_or_null(lap.min_clearance)},
+            {"state_cost", lap.state_cost},
+            {"collision_cost", lap.collision_cost},
+            {"mean_sequence_cost", lap.mean_sequence_cost},
+            {"input_error", lap.input_error},
+            {"mean_speed", lap.mean_speed},
+            {"mean_path_distance", lap.mean_path_distance},
+            {"max_path_distance", lap.max_path_distance},
+            {"least_clearance", lap.min_clearance},
             {"impassable", lap.impassable},
-            {"mean_variance", finite_or_null(lap.mean_variance)},
-            {"mean_effective_samples", finite_or_null(lap.mean_effective_samples)},
+            {"mean_variance", lap.mean_variance},
+            {"mean_effective_samples", lap.mean_effective_samples},
             {"planner_status", status},
             {"corrections", lap.corrections},
             {"touches", collisions},

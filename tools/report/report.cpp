@@ -95,9 +95,8 @@ std::string table(const Report& report, const std::string& section, const std::s
 /// A figure with its text.
 std::string image(const ReportFigure& figure) {
   const std::string& title = figure.title.empty() ? heading(figure.section) : figure.title;
-  return "<img alt=\"" + escaped(title + ". " + figure.caption) + "\" src=\"data:" + figure.mime +
-         ";base64," + view::base64(figure.data) + "\"><p class=\"caption\">" + escaped(figure.caption) +
-         "</p>\n";
+  return "<img alt=\"" + escaped(title + ". " + figure.caption) + "\" src=\"data:image/svg+xml;base64," +
+         view::base64(figure.svg) + "\"><p class=\"caption\">" + escaped(figure.caption) + "</p>\n";
 }
 
 std::string page(const Report& report, const std::vector<ReportFigure>& figures) {
@@ -132,8 +131,7 @@ void write_report(const Report& report, const fs::path& folder) {
   std::error_code error;
   fs::create_directories(pictures, error);
   if (error) throw IoError(pictures.string(), 0, "cannot be created: " + error.message());
-  auto figures = report_charts(report, pictures);
-  for (ReportFigure& figure : report_pictures(report, pictures)) figures.push_back(std::move(figure));
+  const auto figures = report_charts(report, pictures);
   const fs::path file = folder / "report.html";
   std::ofstream stream(file, std::ios::binary);
   stream << page(report, figures);

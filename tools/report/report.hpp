@@ -41,14 +41,12 @@ struct ReportFigure {
   std::string name;     ///< name of its files
   std::string section;  ///< below which it stands; empty: at the end
   std::string title, caption;
-  std::string mime{}, data{};  ///< type and bytes of the image
+  std::string svg{};  ///< the image
 };
 
 /// Boxes of costs and bars of collision rates for every section; times of computation. Writes SVG and PNG to
 /// `folder`.
 std::vector<ReportFigure> report_charts(const Report& report, const std::filesystem::path& folder);
-/// Driven lines of two methods on one map. Drives up to 4 laps again. Writes PNG.
-std::vector<ReportFigure> report_pictures(const Report& report, const std::filesystem::path& folder);
 
 /// Writes report.html, and figures/ beside it. Throws IoError.
 void write_report(const Report& report, const std::filesystem::path& folder);

@@ -9,8 +9,7 @@ namespace {
 using evaluation::LapRow;
 
 ReportFigure saved(const Drawing& drawing, ReportFigure figure, const std::filesystem::path& folder) {
-  figure.mime = "image/svg+xml";
-  figure.data = to_svg(drawing);
+  figure.svg = to_svg(drawing);
   save(drawing, folder / (figure.name + ".svg"));
   save(drawing, folder / (figure.name + ".png"));
   return figure;

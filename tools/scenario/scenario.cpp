@@ -1,5 +1,7 @@
 #include "tools/scenario/scenario.hpp"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <system_error>
 
@@ -8,7 +10,6 @@
 #include "slalom/vehicle/course/course_check.hpp"
 #include "src/evaluation/json.hpp"
 #include "tools/command_line/command.hpp"
-#include "tools/scenario/start_pose.hpp"
 
 namespace slalom::tools {
 namespace {
@@ -93,6 +94,20 @@ void apply_setting(const std::string& key, const std::string& value, const std::
     if (!evaluation::set_world_option(lap, key, value))
       vehicle::set_option(configuration, key, value, method);
   });
+}
+
+maps::Pose parse_start(const std::string& text) {
+  std::array<double, 3> values{};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto [stopped, error] = std::from_chars(at, end, values[i]);
+    const bool separated = i + 1 < values.size() ? stopped < end && *stopped == ',' : stopped == end;
+    if (error != std::errc{} || !separated || !std::isfinite(values[i]))
+      throw CommandLineError("--start", text, "must be x,y,yaw: three finite numbers, in m, m, rad");
+    at = stopped + 1;
+  }
+  return {values[0], values[1], values[2]};
 }
 
 fs::path program_folder() {

@@ -24,6 +24,9 @@ inline constexpr const char* config_help =
 /// The folder of the running program.
 std::filesystem::path program_folder();
 
+/// The pose of `--start x,y,yaw` (m, m, rad). Throws CommandLineError.
+maps::Pose parse_start(const std::string& text);
+
 struct ScenarioArguments {
   std::string course = "fox";
   std::string config = "default";
