@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "slalom/solvers/svg_mppi_options.hpp"
+#include "support/lane.hpp"
+#include "support/thrown_words.hpp"
 #include "vehicle/planner/back_up.hpp"
 
 namespace slalom::vehicle {
@@ -16,11 +18,8 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A straight lane along x, 60 m long, driven at 3 m/s.
 std::vector<maps::ReferencePoint> lane() {
-  std::vector<maps::ReferencePoint> path;
-  for (int i = 0; i < 600; ++i) path.push_back({0.1 * i, 0, 0, 3});
-  return path;
+  return testing::lane(3);
 }
 
 PlannerOptions careful() {
@@ -302,14 +301,8 @@ TEST(Planner, ResetMakesItNew) {
 
 TEST(Planner, RejectsInvalidArguments) {
   const auto refusal = [](const PlannerOptions& options, std::unique_ptr<VehicleModel> model,
-                          const std::vector<maps::ReferencePoint>& path,
-                          std::unique_ptr<Solver> solver) -> std::string {
-    try {
-      Planner(options, std::move(model), path, std::move(solver));
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "accepted";
+                          const std::vector<maps::ReferencePoint>& path, std::unique_ptr<Solver> solver) {
+    return message_of([&] { Planner(options, std::move(model), path, std::move(solver)); });
   };
   const auto car = [] { return make_vehicle_model(small_car()); };
   const auto solver = [](int inputs) { return make_solver(SvgMppiOptions{}, inputs); };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slalom/vehicle/planner/planner.hpp"
+#include "support/lane.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -37,8 +38,6 @@ struct Steered {
 
 /// Drives one period with a solver that plans `angle` (rad).
 Steered steer(bool wrap, float angle) {
-  std::vector<maps::ReferencePoint> lane;
-  for (int i = 0; i < 600; ++i) lane.push_back({0.1 * i, 0, 0, 3});
   const std::vector<float> ranges(271, 20.0f);
   const PlannerInput input{{ranges, -2.35, 4.7 / 270, 0.05, 30}, {{5, 0, 0}, 3}};
   PlannerOptions options;
@@ -46,7 +45,8 @@ Steered steer(bool wrap, float angle) {
   options.published.wrap_steer = wrap;
   VehicleOptions car;
   car.hold_first_input = true;  // so the observer has no dead time
-  Planner planner(options, make_vehicle_model(car), lane, std::make_unique<ConstantSolver>(angle));
+  Planner planner(options, make_vehicle_model(car), testing::lane(3),
+                  std::make_unique<ConstantSolver>(angle));
   const double command = planner.update(input).command.steer;
   return {command, planner.update(input).steer_estimate / (1 - std::exp(-0.25))};
 }

@@ -10,32 +10,29 @@
 #include <vector>
 
 #include "support/allocations.hpp"
+#include "support/predicted.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
 
 constexpr double wheelbase = 0.33;   // m
 constexpr maps::Pose own{10, 2, 0};  // of the rear axle
-constexpr std::size_t times = 17;    // poses of a hypothesis, 0.1 s apart
+constexpr int times = 17;            // poses of a hypothesis, 0.1 s apart
 constexpr double limit = 0.2;        // of the probability of a collision, by default
 
 /// A car whose middle is `ahead` (m) of the own rear axle, with hypotheses at these speeds (m/s) along x.
-struct Car {
-  Car(double ahead, std::vector<double> speeds, std::vector<double> weights, double yaw = 0) {
-    for (const double speed : speeds)
-      for (std::size_t k = 0; k < times; ++k)
-        poses.push_back(
-            {{own.x + ahead + 0.1 * static_cast<double>(k) * speed * std::cos(yaw), own.y, yaw}, 0.05, 0.02});
-    obstacle.length = 0.58;
-    obstacle.width = 0.31;
-    obstacle.interval = 0.1;
-    obstacle.hypotheses = static_cast<int>(speeds.size());
-    std::copy(weights.begin(), weights.end(), obstacle.weights.begin());
-    obstacle.poses = poses;
+struct Car : testing::Predicted {
+  Car(double ahead, const std::vector<double>& speeds, const std::vector<double>& weights, double yaw = 0)
+      : Predicted(0.58, 0.31, hypotheses(ahead, speeds, weights, yaw), times) {}
+
+ private:
+  static std::vector<Hypothesis> hypotheses(double ahead, const std::vector<double>& speeds,
+                                            const std::vector<double>& weights, double yaw) {
+    std::vector<Hypothesis> made;
+    for (std::size_t h = 0; h < speeds.size(); ++h)
+      made.push_back({weights[h], {own.x + ahead, own.y, yaw}, speeds[h], 0.05, 0.02});
+    return made;
   }
-  Car(const Car&) = delete;
-  std::vector<maps::PredictedPose> poses;
-  maps::PredictedObstacle obstacle;
 };
 
 double sum_of(const maps::PredictedObstacle& obstacle) {
@@ -49,7 +46,7 @@ TEST(CarsBehind, BrakeAfterTheirReactionTime) {
   ASSERT_EQ(reacting.size(), 1u);
   const maps::PredictedObstacle& car = reacting[0];
   ASSERT_EQ(car.hypotheses, 3);
-  ASSERT_EQ(car.times(), times);
+  ASSERT_EQ(car.times(), 17u);
   const double start = own.x - 1;
   EXPECT_NEAR(car.at(0, 0.3).pose.x, start + 1.8, 1e-9) << "it has not reacted yet";
   EXPECT_NEAR(car.at(0, 0.8).pose.x, start + 0.8 * 6 - 0.5 * 8 * 0.5 * 0.5, 1e-9);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/allocations.hpp"
+#include "support/lane.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
@@ -19,12 +20,6 @@ constexpr double period = 0.025;
 constexpr maps::Pose car{10, 0, 0};  // on the course
 const BodyOptions body;
 
-/// A straight course along x at 5 m/s, one point each 0.1 m.
-std::vector<maps::ReferencePoint> straight() {
-  std::vector<maps::ReferencePoint> path;
-  for (int i = 0; i < 600; ++i) path.push_back({0.1 * i, 0, 0, 5});
-  return path;
-}
 constexpr int nearest = 100;
 
 /// Walls across the way, 2 m ahead of the car, each from its right to its left end (m) as the car sees them.
@@ -67,7 +62,7 @@ Recovery trying_again() {
 
 TEST(Detour, LeadsThroughTheGapAndBackToTheCourse) {
   const Walls walls{{-9, 0.8}, {1.5, 9}};
-  Detour detour(straight(), false, body);
+  Detour detour(testing::lane(5), false, body);
   ASSERT_TRUE(detour.search(walls.map(), car, nearest));
   const auto path = detour.path();
   EXPECT_LT(std::hypot(path.front().x - car.x, path.front().y - car.y), 0.1);
@@ -91,7 +86,7 @@ TEST(Detour, LeadsThroughTheGapAndBackToTheCourse) {
 
 TEST(Detour, EndsWhereAnOpenCourseEnds) {
   const Walls walls{{-9, 0.8}, {1.5, 9}};
-  const std::vector<maps::ReferencePoint> course = straight();
+  const std::vector<maps::ReferencePoint> course = testing::lane(5);
   Detour detour(std::span<const maps::ReferencePoint>(course).first(160), false, body);
   ASSERT_TRUE(detour.search(walls.map(), car, nearest));
   EXPECT_NEAR(detour.path().back().x, 15.9, 0.2);
@@ -99,7 +94,7 @@ TEST(Detour, EndsWhereAnOpenCourseEnds) {
 
 TEST(Detour, GoesOnOverTheSeamOfAClosedCourse) {
   const Walls walls{{-9, 0.8}, {1.5, 9}};
-  std::vector<maps::ReferencePoint> course = straight();
+  std::vector<maps::ReferencePoint> course = testing::lane(5);
   std::rotate(course.begin(), course.begin() + 110, course.end());  // the seam is 1 m ahead of the car
   Detour detour(course, true, body);
   ASSERT_TRUE(detour.search(walls.map(), car, static_cast<int>(course.size()) - 10));
@@ -108,20 +103,20 @@ TEST(Detour, GoesOnOverTheSeamOfAClosedCourse) {
 
 TEST(Detour, PrefersTheShorterWay) {
   const Walls walls{{-9, -2.5}, {-1.5, 0.8}, {1.5, 9}};
-  Detour detour(straight(), false, body);
+  Detour detour(testing::lane(5), false, body);
   ASSERT_TRUE(detour.search(walls.map(), car, nearest));
   EXPECT_GT(crossing(detour.path()), 0);
 }
 
 TEST(Detour, FindsNoWayWhereThereIsNoneOrItIsTooNarrow) {
-  Detour detour(straight(), false, body);
+  Detour detour(testing::lane(5), false, body);
   EXPECT_FALSE(detour.search(Walls{{-9, 9}}.map(), car, nearest));
   EXPECT_FALSE(detour.search(Walls{{-9, 0.8}, {1.1, 9}}.map(), car, nearest));
 }
 
 TEST(Detour, TriesAnotherWayWhereTheCarHadToReverse) {
   const Walls walls{{-9, -2.5}, {-1.5, 0.8}, {1.5, 9}};
-  Detour detour(straight(), false, body);
+  Detour detour(testing::lane(5), false, body);
   Recovery recovery = trying_again();
   detour.note(recovery, car);
   ASSERT_TRUE(detour.search(walls.map(), car, nearest));
@@ -147,7 +142,7 @@ TEST(Detour, TriesAnotherWayWhereTheCarHadToReverse) {
 
 TEST(Detour, AllocatesNothing) {
   const Walls walls{{-9, 0.8}, {1.5, 9}};
-  Detour detour(straight(), false, body);
+  Detour detour(testing::lane(5), false, body);
   const long before = testing::allocations();
   for (int k = 0; k < 5; ++k) {
     EXPECT_TRUE(detour.search(walls.map(), {car.x + 0.1 * k, 0.05 * k, 0.1 * k}, nearest + k));

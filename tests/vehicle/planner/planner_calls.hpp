@@ -14,17 +14,11 @@
 #include "solvers/set_option.hpp"
 #include "support/adversary.hpp"
 #include "support/any_others.hpp"
+#include "support/lane.hpp"
 #include "support/promise.hpp"
 
 /// Planners as state machines: updates with any scan and odometry, and what every command promises.
 namespace slalom::testing {
-
-/// A straight lane along x, 60 m long.
-inline std::vector<maps::ReferencePoint> lane(double speed) {
-  std::vector<maps::ReferencePoint> path;
-  for (int i = 0; i < 600; ++i) path.push_back({0.1 * i, 0, 0, speed});
-  return path;
-}
 
 /// A method's options for short solves of a car.
 inline SolverOptions few_samples(const char* method) {

@@ -4,25 +4,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <vector>
 
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/moving_obstacles.hpp"
 #include "slalom/maps/reference_field.hpp"
+#include "support/lane.hpp"
+#include "support/predicted.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
 
 constexpr int horizon = 20;
 constexpr double time_step = 0.05;  // s
-
-std::vector<maps::ReferencePoint> straight() {
-  std::vector<maps::ReferencePoint> path;
-  for (int i = 0; i < 600; ++i) path.push_back({0.1 * i, 0, 0, 5});
-  return path;
-}
 
 VehicleOptions car() {
   VehicleOptions options;
@@ -36,7 +31,7 @@ VehicleOptions car() {
 class SequenceSelection : public ::testing::Test {
  protected:
   SequenceSelection()
-      : field_(straight()),
+      : field_(testing::lane(5)),
         model_(make_vehicle_model(car())),
         choice_(horizon, 2, model_->traits()),
         states_(horizon + 1) {
@@ -95,7 +90,7 @@ TEST_F(SequenceSelection, TakesTheSolutionWhereItIsBetter) {
 /// A car at 6 m/s in whose way there may be walls.
 class PlanNearAWall : public ::testing::Test {
  protected:
-  explicit PlanNearAWall(Objective objective = Objective::lap_time) : field_(straight()) {
+  explicit PlanNearAWall(Objective objective = Objective::lap_time) : field_(testing::lane(5)) {
     VehicleOptions options = car();
     options.body.margin = 0.05;
     options.own_of<SingleTrackOptions>().objective = objective;
@@ -152,19 +147,12 @@ TEST_F(PlanNearAWall, PaysForTheMarginOfTheBody) {
 }
 
 /// Another car as it stands on the way, 3 m ahead and `offset` m to the left.
-struct Standing {
-  explicit Standing(double offset) : obstacles(maps::MovingObstacleOptions{}, horizon) {
-    for (auto& pose : poses) pose = {{13, offset, 0}, 0.02, 0.02};
-    predicted.length = 0.58;
-    predicted.width = 0.31;
-    predicted.interval = 0.1;
-    predicted.hypotheses = 1;
-    predicted.weights[0] = 1;
-    predicted.poses = poses;
-    obstacles.update({&predicted, 1}, {10, 0}, 0, time_step);
+struct Standing : testing::Predicted {
+  explicit Standing(double offset)
+      : Predicted(0.58, 0.31, {{1, {13, offset, 0}, 0, 0.02, 0.02}}, 3),
+        obstacles(maps::MovingObstacleOptions{}, horizon) {
+    obstacles.update({&obstacle, 1}, {10, 0}, 0, time_step);
   }
-  std::array<maps::PredictedPose, 3> poses;
-  maps::PredictedObstacle predicted;
   maps::MovingObstacles obstacles;
 };
 

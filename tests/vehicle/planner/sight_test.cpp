@@ -9,8 +9,6 @@
 #include <numbers>
 #include <vector>
 
-#include "support/allocations.hpp"
-
 namespace slalom::vehicle::detail {
 namespace {
 
@@ -133,14 +131,6 @@ TEST(Sight, WhatIsBesideTheScanIsNotInSight) {
   const Scan left({}, 0);  // from straight ahead to the left, and not to the right
   EXPECT_EQ(sight().look(left.view(), {0, 0, -0.5}, 0).way, PathInSight::all);
   EXPECT_LT(sight().look(left.view(), {0, 0, 0.5}, 0).way, 1);
-}
-
-TEST(Sight, AllocatesNothing) {
-  Sight made = sight();
-  const Scan scan({parked, inner_wall});
-  const long before = testing::allocations();
-  EXPECT_LT(made.look(scan.view(), {}, 0).way, 12);
-  EXPECT_EQ(testing::allocations(), before);
 }
 
 TEST(Sight, ACarStopsFromTheStoppingSpeed) {

@@ -12,23 +12,19 @@
 #include "slalom/maps/clearance_map.hpp"
 #include "slalom/maps/reference_field.hpp"
 #include "slalom/vehicle/model/vehicle_model.hpp"
+#include "support/lane.hpp"
 
 namespace slalom::vehicle::detail {
 namespace {
 
 constexpr int horizon = 28;
 
-std::vector<maps::ReferencePoint> straight() {
-  std::vector<maps::ReferencePoint> path;
-  for (int i = 0; i < 600; ++i) path.push_back({0.1 * i, 0, 0, 5});
-  return path;
-}
-
 /// A car on a straight course at x = 10 m, with a wall of points across the way from `right` to `left` (m),
 /// `ahead` (m) of it.
 class Lane {
  public:
-  Lane(double ahead, double right, double left) : field_(straight()), model_(make_vehicle_model(car())) {
+  Lane(double ahead, double right, double left)
+      : field_(testing::lane(5)), model_(make_vehicle_model(car())) {
     std::vector<maps::Point> points;
     for (double y = right; y <= left; y += 0.04) points.push_back({ahead, y});
     clearance_.add(points);
@@ -69,7 +65,7 @@ class Lane {
 };
 
 WaysAround ways(VehicleModel& model) {
-  return WaysAround(straight(), true, horizon, 2, model.traits(), 0.42);
+  return WaysAround(testing::lane(5), true, horizon, 2, model.traits(), 0.42);
 }
 
 std::vector<float> inputs_of(float steering, float acceleration) {
