@@ -53,8 +53,8 @@ TEST_F(NodeDrive, EndsAfterTheNumberOfLaps) {
 
 /// The car stops metres from the place that was kept, and parked cars hide walls there.
 TEST_F(NodeDrive, ALocaliserThatIsRestartedContinuesWhereverTheCarStops) {
-  for (int k = 0; k < 8; ++k) {
-    drive_.run(1.1 + 0.07 * k);
+  for (int k = 0; k < 4; ++k) {
+    drive_.run(1.1 + 0.14 * k);
     drive_.begin({.name = "localiser dies", .of = "localiser", .change = "dies", .value = 0, .reason = "tf"});
     ASSERT_TRUE(drive_.run_until(5, [&] { return drive_.car_stands(); })) << drive_.log();
     drive_.end();

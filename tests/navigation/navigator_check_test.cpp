@@ -13,7 +13,7 @@
 #include "support/promise.hpp"
 #include "support/repetitions.hpp"
 
-/// What leaves a navigator is a velocity that the base may have, whatever enters it.
+/// Every command of a navigator is a velocity that the base may have, whatever its inputs.
 namespace slalom::navigation {
 namespace {
 
@@ -125,7 +125,7 @@ void call_navigator(testing::Adversary& adversary, const Hall& hall, Tally& tall
 }
 
 TEST(NavigatorCheck, EveryCommandIsValidForAnyInput) {
-  const long calls = testing::repetitions(3000);
+  const long calls = testing::repetitions(1000);
   const Hall hall;
   Tally tally;
   for (std::uint64_t seed = testing::first_seed(); tally.updates < calls; ++seed) {

@@ -1,15 +1,15 @@
-// What moves: plans meet it where it will be, the robot brakes before it, and waiting for it does not count
-// as a dead end.
+// A robot among others that move: plans meet them where they will be, the robot brakes before them, and
+// waiting for them is no dead end.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 
 #include "navigation/grids.hpp"
 #include "slalom/navigation/navigator.hpp"
 #include "support/allocations.hpp"
+#include "support/predicted.hpp"
 
 namespace slalom::navigation {
 namespace {
@@ -21,20 +21,10 @@ const maps::Pose straight[] = {{1, 0, 0}, {7, 0, 0}};
 /// Somebody who keeps a velocity.
 struct Other {
   maps::Point at, velocity;  // m, m/s
-  std::array<maps::PredictedPose, 2> poses{};
 
-  maps::PredictedObstacle predicted() {
-    const double yaw = std::atan2(velocity.y, velocity.x);
-    for (int i = 0; i < 2; ++i)
-      poses[static_cast<std::size_t>(i)] = {
-          {at.x + 0.1 * i * velocity.x, at.y + 0.1 * i * velocity.y, yaw}, 0.02, 0.02};
-    maps::PredictedObstacle made;
-    made.length = made.width = size;
-    made.interval = 0.1;
-    made.hypotheses = 1;
-    made.weights[0] = 1;
-    made.poses = poses;
-    return made;
+  testing::Predicted predicted() const {
+    const maps::Pose from{at.x, at.y, std::atan2(velocity.y, velocity.x)};
+    return {size, size, {{1, from, std::hypot(velocity.x, velocity.y), 0.02, 0.02}}, 2};
   }
   void move() { at = {at.x + period * velocity.x, at.y + period * velocity.y}; }
 };
@@ -59,8 +49,9 @@ struct Meeting {
   double drive(double duration, bool predicts) {
     double nearest = 100;
     for (double time = 0; time < duration && status != NavigationStatus::goal_reached; time += period) {
-      const maps::PredictedObstacle predicted = other.predicted();
-      const auto others = predicts ? std::span(&predicted, 1) : std::span<const maps::PredictedObstacle>{};
+      const testing::Predicted predicted = other.predicted();
+      const auto others =
+          predicts ? std::span(&predicted.obstacle, 1) : std::span<const maps::PredictedObstacle>{};
       const NavigationResult result = navigator.update(pose, velocity, costmap, period, others);
       status = result.status;
       detours += status == NavigationStatus::detour;
@@ -104,9 +95,9 @@ TEST(NavigatorOthers, TheRobotBrakesBeforeWhatIsTooNear) {
   EXPECT_GT(meeting.velocity.forward, 0.4);
   // Ahead of its front, and coming fast: no plan avoids it.
   meeting.other = {{meeting.pose.x + 1.0, meeting.pose.y}, {-2, 0}};
-  const maps::PredictedObstacle predicted = meeting.other.predicted();
-  const NavigationResult result =
-      meeting.navigator.update(meeting.pose, meeting.velocity, meeting.costmap, period, {&predicted, 1});
+  const testing::Predicted predicted = meeting.other.predicted();
+  const NavigationResult result = meeting.navigator.update(meeting.pose, meeting.velocity, meeting.costmap,
+                                                           period, {&predicted.obstacle, 1});
   EXPECT_EQ(result.status, NavigationStatus::braking);
   EXPECT_LT(result.command.forward, meeting.velocity.forward);
 }
@@ -116,9 +107,10 @@ TEST(NavigatorOthers, TheRobotDoesNotTouchSomebodyWhoStopsBesideIt) {
   for (const double x : {0.8, 1.1, 1.3}) {
     Meeting meeting({{x, 0.58}, {0, -0.75}});
     for (int i = 0; i < 20; ++i) {
-      const maps::PredictedObstacle predicted = meeting.other.predicted();
+      const testing::Predicted predicted = meeting.other.predicted();
       const Velocity v =
-          meeting.navigator.update(meeting.pose, meeting.velocity, meeting.costmap, period, {&predicted, 1})
+          meeting.navigator
+              .update(meeting.pose, meeting.velocity, meeting.costmap, period, {&predicted.obstacle, 1})
               .command;
       meeting.velocity = v;
       maps::Pose& at = meeting.pose;
@@ -150,9 +142,9 @@ TEST(NavigatorOthers, WaitingForThemIsNoDeadEnd) {
 TEST(NavigatorOthers, AllocateNothingInAnUpdate) {
   Meeting meeting({{4, 0}, {-0.5, 0}});
   meeting.drive(0.5, true);
-  const maps::PredictedObstacle predicted = meeting.other.predicted();
+  const testing::Predicted predicted = meeting.other.predicted();
   const long before = testing::allocations();
-  meeting.navigator.update(meeting.pose, meeting.velocity, meeting.costmap, period, {&predicted, 1});
+  meeting.navigator.update(meeting.pose, meeting.velocity, meeting.costmap, period, {&predicted.obstacle, 1});
   EXPECT_EQ(testing::allocations(), before);
 }
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "navigation/grids.hpp"
-#include "support/allocations.hpp"
 
 namespace slalom::navigation {
 namespace {
@@ -71,18 +70,6 @@ TEST(PathPlanner, KeepsToTheWayThatWasChosen) {
   EXPECT_GT(crossed(chosen, {}), 4);
   const ClosedPlace dead_end[] = {{{4, 4.5}, PathPlanner::dead_end_radius}};
   EXPECT_LT(crossed(chosen, dead_end), 2);
-}
-
-TEST(PathPlanner, SearchesDoNotAllocate) {
-  const Costmap costmap = costmap_of(two_doors());
-  PathPlanner planner(costmap.geometry(), body.half_width());
-  const std::vector<maps::Pose> kept = plan_path(costmap, body, {1, 1, 0}, {7, 1, 0});
-  const long before = testing::allocations();
-  planner.read(costmap, kept, {});
-  ASSERT_TRUE(planner.search_from({1, 1}));
-  EXPECT_TRUE(std::isfinite(planner.cost_to({7, 5})));
-  EXPECT_GT(planner.path_to({7, 5}).size(), 100u);
-  EXPECT_EQ(testing::allocations(), before);
 }
 
 }  // namespace

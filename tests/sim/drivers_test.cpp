@@ -61,11 +61,5 @@ TEST(ObstaclePlacement, ApartCarsDoNotOverlapAndLeaveTheStart) {
   EXPECT_THROW(place_at_random(path, 1, 1, nan), std::invalid_argument);
 }
 
-TEST(Lidar, HokuyoPreset) {
-  const LidarOptions options = LidarOptions::hokuyo_utm_30lx();
-  EXPECT_NO_THROW(options.validate());
-  EXPECT_NEAR(options.angle_increment(), 0.25 * 3.141592653589793 / 180, 1e-12);
-}
-
 }  // namespace
 }  // namespace slalom::sim

@@ -66,7 +66,7 @@ void call_localiser(testing::Adversary& adversary, const maps::OccupancyGrid& ma
 }
 
 TEST(LocaliserCheck, EstimatesAreFiniteForAnyInput) {
-  const long calls = testing::repetitions(1500);
+  const long calls = testing::repetitions(600);
   const maps::OccupancyGrid map = room();
   Tally tally;
   for (std::uint64_t seed = testing::first_seed(); tally.updates < calls; ++seed) {

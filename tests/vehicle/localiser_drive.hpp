@@ -35,6 +35,11 @@ struct Place {
   }
 };
 
+inline const Place& wren() {
+  static const Place place("wren");
+  return place;
+}
+
 /// A car that follows the path by its true pose, with a LiDAR of 1081 beams at 40 Hz and wheel odometry.
 class Drive {
  public:

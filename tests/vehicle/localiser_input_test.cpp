@@ -12,12 +12,7 @@ namespace {
 
 using test::Drive;
 using test::error_of;
-using test::Place;
-
-const Place& wren() {
-  static const Place place("wren");
-  return place;
-}
+using test::wren;
 
 class InvalidLocaliserInput : public testing::Test {
  protected:

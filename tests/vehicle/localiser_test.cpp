@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "support/thrown_words.hpp"
 #include "vehicle/localiser_drive.hpp"
 
 namespace slalom::vehicle {
@@ -15,11 +16,7 @@ namespace {
 using test::Drive;
 using test::error_of;
 using test::Place;
-
-const Place& wren() {
-  static const Place place("wren");
-  return place;
-}
+using test::wren;
 
 /// A room with a notch, so that no two poses look alike.
 maps::OccupancyGrid room() {
@@ -32,26 +29,16 @@ maps::OccupancyGrid room() {
   return map;
 }
 
-template <class Call>
-std::string refusal(Call call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(LocaliserConstruction, RejectsInvalidOptionsByName) {
-  const auto with = [](LocaliserOptions o) { return refusal([&] { Localiser(room(), o); }); };
-  EXPECT_EQ(with({}), "");
+  const auto with = [](LocaliserOptions o) { return message_of([&] { Localiser(room(), o); }); };
+  EXPECT_EQ(with({}), "accepted");
   EXPECT_NE(with({.beams = 4}).find("localiser.beams"), std::string::npos);
   EXPECT_NE(with({.hit_deviation = NAN}).find("localiser.hit_deviation"), std::string::npos);
   EXPECT_NE(with({.min_particles = 900, .max_particles = 800}).find("min_particles"), std::string::npos);
 }
 
 TEST(LocaliserConstruction, RejectsInvalidMaps) {
-  const auto with = [](const maps::OccupancyGrid& map) { return refusal([&] { Localiser{map}; }); };
+  const auto with = [](const maps::OccupancyGrid& map) { return message_of([&] { Localiser{map}; }); };
   maps::OccupancyGrid map = room();
   std::fill(map.cells.begin(), map.cells.end(), maps::Occupancy::occupied);
   EXPECT_NE(with(map).find("free cell"), std::string::npos);

@@ -120,58 +120,29 @@ void check_in_double(const Checked<Problem>& checked, const Case& c, double& wor
   note(worst_cost, state + collision, c.sample_cost);
 }
 
-template <class F, class Problem>
-SLALOM_INLINE_CALLS void visited_cells(const Checked<Problem>& checked, const Case& c,
-                                       std::vector<Cells>& visited) {
-  const VehicleMaps maps = checked.maps.relative_to(checked.origin);
-  auto s = checked.template start<F>(c);
-  for (int k = 0; k < 15; ++k) {
-    F local_x = s.x + F(checked.origin.x), local_y = s.y + F(checked.origin.y);
-    if constexpr (two_trajectories<Problem>) {
-      local_x = s.local_x;
-      local_y = s.local_y;
+/// Appends the cells that a rollout visits in packs.
+template <class Problem>
+struct VisitedCells {
+  template <class Target>
+  SLALOM_KERNEL static void run(const Checked<Problem>& checked, const Case& c, std::vector<Cells>& visited) {
+    using F = Pack<Target>;
+    const VehicleMaps maps = checked.maps.relative_to(checked.origin);
+    auto s = checked.template start<F>(c);
+    for (int k = 0; k < 15; ++k) {
+      F local_x = s.x + F(checked.origin.x), local_y = s.y + F(checked.origin.y);
+      if constexpr (two_trajectories<Problem>) {
+        local_x = s.local_x;
+        local_y = s.local_y;
+      }
+      const auto r = maps.reference.index(s.x, s.y);
+      const auto o = maps.obstacles.index(local_x, local_y);
+      visited.push_back({r.v[0], o.v[0]});
+      const auto seen = checked.problem.look_up(s);
+      const Input<F, 1> u{{F(k < 14 ? c.inputs[static_cast<std::size_t>(k)] : 0)}};
+      s = checked.problem.step(s, seen, u, k);
     }
-    const auto r = maps.reference.index(s.x, s.y);
-    const auto o = maps.obstacles.index(local_x, local_y);
-    visited.push_back({r.v[0], o.v[0]});
-    const auto seen = checked.problem.look_up(s);
-    const Input<F, 1> u{{F(k < 14 ? c.inputs[static_cast<std::size_t>(k)] : 0)}};
-    s = checked.problem.step(s, seen, u, k);
   }
-}
-
-template <class Problem>
-using Visit = void (*)(const Checked<Problem>&, const Case&, std::vector<Cells>&);
-template <class Problem>
-SLALOM_TARGET_GENERIC void visit_generic(const Checked<Problem>& p, const Case& c, std::vector<Cells>& v) {
-  visited_cells<Pack<simd::Generic>>(p, c, v);
-}
-#if SLALOM_X86
-template <class Problem>
-SLALOM_TARGET_SSE4 void visit_sse4(const Checked<Problem>& p, const Case& c, std::vector<Cells>& v) {
-  visited_cells<Pack<simd::Sse4>>(p, c, v);
-}
-template <class Problem>
-SLALOM_TARGET_AVX2 void visit_avx2(const Checked<Problem>& p, const Case& c, std::vector<Cells>& v) {
-  visited_cells<Pack<simd::Avx2>>(p, c, v);
-}
-template <class Problem>
-SLALOM_TARGET_AVX512 void visit_avx512(const Checked<Problem>& p, const Case& c, std::vector<Cells>& v) {
-  visited_cells<Pack<simd::Avx512>>(p, c, v);
-}
-#endif
-
-template <class Problem>
-Visit<Problem> visit_on(simd::Target target) {
-#if SLALOM_X86
-  if (target == simd::Target::avx512) return visit_avx512<Problem>;
-  if (target == simd::Target::avx2) return visit_avx2<Problem>;
-  if (target == simd::Target::sse4) return visit_sse4<Problem>;
-#else
-  static_cast<void>(target);
-#endif
-  return visit_generic<Problem>;
-}
+};
 
 /// Whether a position lies within 1e-4 m of an edge between two cells of a grid, along either axis.
 template <int Layers>
@@ -194,7 +165,7 @@ void check_in_float(const Checked<Problem>& in_map, const Case& c, simd::Target 
   const GridView<4>& reference = checked.maps.reference;
   const GridView<1>& obstacles = checked.maps.obstacles;
   std::vector<Cells> visited;
-  visit_on<Problem>(target)(checked, c, visited);
+  simd::kernel<VisitedCells<Problem>>(target)(checked, c, visited);
   bool differs = false;
   for (std::size_t k = 0; k < 15; ++k) {
     const auto& golden = c.states[k];

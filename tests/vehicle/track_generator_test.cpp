@@ -10,6 +10,7 @@
 #include "slalom/maps/distance_field.hpp"
 #include "slalom/vehicle/course/course.hpp"
 #include "support/temporary_folder.hpp"
+#include "support/thrown_words.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -35,7 +36,7 @@ class TrackProperty : public ::testing::TestWithParam<Case> {
     result.limits.top_speed = usual_top_speed(result.character);
     return result;
   }
-  static constexpr std::uint64_t seeds = 5;
+  static constexpr std::uint64_t seeds = 3;
 };
 
 double cross(maps::Point a, maps::Point b, maps::Point c) {
@@ -183,12 +184,8 @@ TEST(TrackGenerator, RejectsInvalidOptionsByName) {
   const auto refused = [](const char* key, auto&& change) {
     TrackGeneratorOptions options;
     change(options);
-    try {
-      generate_track(options);
-      ADD_FAILURE() << key << " was accepted";
-    } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(std::string(error.what()).rfind(key, 0), 0u) << error.what();
-    }
+    const std::string message = message_of([&] { generate_track(options); });
+    EXPECT_EQ(message.rfind(key, 0), 0u) << message;
   };
   refused("length", [](TrackGeneratorOptions& o) { o.length = 5; });
   refused("length", [](TrackGeneratorOptions& o) { o.length = 1e6; });

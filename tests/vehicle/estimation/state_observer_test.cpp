@@ -11,7 +11,6 @@
 #include "slalom/sim/imu.hpp"
 #include "slalom/sim/plant.hpp"
 #include "slalom/sim/wheel_odometry.hpp"
-#include "support/allocations.hpp"
 
 namespace slalom::vehicle {
 namespace {
@@ -204,17 +203,6 @@ TEST(StateObserver, BeginsAnewAfterAJumpAndAtAStandstill) {
   observer.update(*model, {{20, 5, 1}, 0}, model.friction);
   EXPECT_EQ(observer.now().speed, 0);
   EXPECT_EQ(observer.now().slip, 0);
-}
-
-TEST(StateObserver, DoesNotAllocate) {
-  const auto model = model_with(1);
-  StateObserver observer({}, period, 0, 0.02);
-  const auto before = testing::allocations();
-  for (int i = 0; i < 40; ++i) {
-    observer.update(*model, {{0.1 * i, 0, 0}, 4, {}, ImuReading{}}, model.friction);
-    observer.send({0.1, 4});
-  }
-  EXPECT_EQ(testing::allocations(), before);
 }
 
 }  // namespace
