@@ -103,8 +103,11 @@ std::vector<Attachment> read_attachments(const std::string& name, std::string_vi
     Reader reader(head, name);
     const Op op = reader.get<Op>();
     const auto length = reader.get<std::uint64_t>();
-    if (op == Op::data_end) at = file.size();
-    if (length > file.size() - std::min(at + head_size, file.size())) break;
+    if (op == Op::data_end) {
+      at = file.size();
+      break;
+    }
+    if (length > file.size() - at - head_size) break;
     if (op == Op::attachment) {
       try {
         Attachment each = parse_attachment(file.read(at + head_size, length), name);
@@ -116,6 +119,7 @@ std::vector<Attachment> read_attachments(const std::string& name, std::string_vi
     }
     at += head_size + length;
   }
+  if (!is_cut && at < file.size()) throw IoError(name, 0, "is damaged: a record ends too soon");
   if (lost) *lost = is_cut ? file.size() - at : 0;
   return found;
 }
