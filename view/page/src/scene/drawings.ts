@@ -29,7 +29,7 @@ export function mapImage(theme: Theme, grid: Grid): HTMLCanvasElement {
     const [u, v] = [x % 1, y % 1];
     const below = free[i] + u * (free[i + 1] - free[i]);
     const above = free[i + width] + u * (free[i + width + 1] - free[i + width]);
-    const inside = 3 * fine * (below + v * (above - below) - 0.5); // pixels from the border, if it is straight
+    const inside = 3 * fine * (below + v * (above - below) - 0.5); // pixels from a straight border
     if (Math.abs(inside) > rim + 1) return inside > 0 ? theme.free : theme.wall;
     const edge = Math.min(1, rim + 1 - Math.abs(inside));
     return mix(inside > 0 ? theme.free : theme.wall, theme.wallEdge, edge);

@@ -2,7 +2,7 @@ import type { Pose } from "../protocol";
 import type { Camera } from "./camera";
 import { css, type Rgba } from "./palette";
 
-/** Draws lines and shapes in the order of the calls. Positions are in m of the map frame, widths in pixels. */
+/** Draws lines and shapes in the order of the calls. Positions are in m (map frame), widths in pixels. */
 export class Painter {
   private readonly pen: CanvasRenderingContext2D;
   private ratio = 1; // pixels of the canvas per CSS pixel
