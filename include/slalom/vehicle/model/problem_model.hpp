@@ -115,7 +115,7 @@ class DynamicProblemModel final : public detail::ProblemModelBase<P, Evaluator, 
   using Base::evaluator_, Base::start_;
 
  public:
-  using Base::ProblemModelBase;
+  using detail::ProblemModelBase<P, Evaluator, DynamicVehicleModel>::ProblemModelBase;
 
   std::unique_ptr<VehicleModel> clone() const override {
     return std::make_unique<DynamicProblemModel>(*this);
