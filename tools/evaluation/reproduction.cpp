@@ -6,6 +6,7 @@
 
 #include "slalom/core/error.hpp"
 #include "src/evaluation/json.hpp"
+#include "tools/command_line/command.hpp"
 #include "tools/evaluation/paper_program.hpp"
 
 namespace slalom::tools {

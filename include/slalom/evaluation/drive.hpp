@@ -53,5 +53,8 @@ struct Observer {
   Decided decided;  ///< called after each decision
   Moved moved;      ///< called after each step of the world
 };
+/// Deduces the types of the functions, which clang 14 does not do for an aggregate.
+template <class Decided, class Moved>
+Observer(Decided, Moved) -> Observer<Decided, Moved>;
 
 }  // namespace slalom::evaluation

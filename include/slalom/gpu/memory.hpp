@@ -25,18 +25,21 @@ namespace slalom::gpu {
 struct SharedMemory {
   std::size_t member, member_bytes;  ///< where in the problem
   const void* data;                  ///< memory of the host
-  std::size_t bytes;
+  std::size_t bytes;                 ///< size of that memory
 };
 
+/// The cells of a map with their border.
 template <int Layers>
 std::span<const std::byte> memory_of_member(const GridView<Layers>& grid) {
   const auto cells = static_cast<std::size_t>(grid.rows() + 2) << grid.stride_log2();
   return std::as_bytes(std::span(grid.cells(), grid.cells() ? cells * Layers : 0));
 }
+/// The weights of a network.
 template <int Inputs, int Outputs>
 std::span<const std::byte> memory_of_member(const Mlp<Inputs, Outputs>& network) {
   return std::as_bytes(network.weights());
 }
+/// The values of a vector or span.
 template <std::ranges::contiguous_range Values>
 std::span<const std::byte> memory_of_member(const Values& values) {
   static_assert(std::is_trivially_copyable_v<std::ranges::range_value_t<Values>>,

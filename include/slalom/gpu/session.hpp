@@ -19,9 +19,10 @@ class DeviceError : public std::runtime_error {
 
 /// Code of a problem for one architecture, or PTX for later ones; `slalom_gpu_problem` makes it.
 struct Image {
-  int architecture = 0;  ///< 90: compute capability 9.0
-  bool ptx = false;
-  const unsigned char *begin = nullptr, *end = nullptr;
+  int architecture = 0;                  ///< 90: compute capability 9.0
+  bool ptx = false;                      ///< PTX, which the driver compiles
+  const unsigned char* begin = nullptr;  ///< first byte of the code
+  const unsigned char* end = nullptr;    ///< end of the code
 };
 
 /// The code of problem `P`. Defined by `slalom_gpu_problem(... PROBLEM P)`; without it, the program does not
@@ -29,10 +30,13 @@ struct Image {
 template <class P>
 std::span<const Image> images();
 
-/// The layout that host and device must have in common: size and alignment of the problem, size of the
-/// arguments, inputs.
+/// The layout that host and device must have in common.
 struct Layout {
-  int problem, alignment, arguments, inputs;
+  int problem;    ///< size of the problem, bytes
+  int alignment;  ///< alignment of the problem, bytes
+  int arguments;  ///< size of the arguments of a kernel, bytes
+  int inputs;     ///< number of inputs
+  /// Whether two layouts are the same.
   bool operator==(const Layout&) const = default;
 };
 
@@ -43,6 +47,7 @@ class Session {
  public:
   using Address = std::uint64_t;  ///< on the device
 
+  /// Loads the code for the first device. Throws if there is none, or if its layout differs.
   Session(std::span<const Image> images, const Layout& layout);
   ~Session();
   Session(const Session&) = delete;
@@ -52,7 +57,9 @@ class Session {
   Address allocate(std::size_t bytes);
   /// Zeroed memory of the host that the device writes; `device` is its address there.
   void* allocate_on_host(std::size_t bytes, Address& device);
+  /// Copies to the device and waits until it is done.
   void copy_in(Address to, const void* from, std::size_t bytes);
+  /// Copies from the device and waits until it is done.
   void copy_out(void* to, Address from, std::size_t bytes);
 
   /// An entry point of the code, for launches with so much shared memory. Throws if a block does not fit.
@@ -62,6 +69,7 @@ class Session {
 
   /// Queues a copy to the device; `from` is read before this returns.
   bool refresh(Address to, const void* from, std::size_t bytes) noexcept;
+  /// Queues a launch of a kernel with its argument.
   bool launch(void* kernel, int blocks, int threads, int shared_bytes, const void* argument) noexcept;
   /// Whether the device still works; asks it, which takes some microseconds.
   bool alive() noexcept;

@@ -16,17 +16,20 @@ namespace slalom::gpu {
 
 /// Floats of shared memory that a block may take: 64 KiB, which every GPU from architecture 75 on has.
 constexpr int most_shared_floats = 16384;
-/// The most groups of tiles, each for a block, and how many keep a large GPU busy.
-constexpr int most_groups = 256, enough_groups = 128;
+/// The most groups of tiles, each for a block.
+constexpr int most_groups = 256;
+/// Groups that keep a large GPU busy.
+constexpr int enough_groups = 128;
 /// Samples from which a thread draws its own sample.
 constexpr int fused_samples = 32768;
 
 /// How the samples are spread over blocks. A function of the problem's size alone, so that the results do not
 /// depend on the device.
 struct Shape {
-  bool fused = false;
-  int tile = 32;  ///< samples
+  bool fused = false;  ///< each thread draws and rolls out its own sample
+  int tile = 32;       ///< samples of a tile
 
+  /// Returns the shape for a problem with so many inputs and steps.
   static Shape of(int inputs, int horizon, int samples) {
     if (8 % inputs == 0 && samples >= fused_samples) return {true, block_threads};
     Shape shape;

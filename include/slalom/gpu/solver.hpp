@@ -117,6 +117,7 @@ class GpuSolver final : public Solver {
       if (memory_[i].bytes > 0) session_.refresh(copies_[i], memory_[i].data, memory_[i].bytes);
   }
 
+  /// The session on the device.
   const Session& session() const noexcept { return session_; }
 
   /// For benchmarks: queues a solve without waiting for it.
@@ -133,7 +134,9 @@ class GpuSolver final : public Solver {
     if (guided) session_.launch(guides_, a_.settings.guides, block_threads, guide_bytes_, &a_);
     session_.launch(samples_, blocks_, block_threads, sample_bytes_, &a_);
   }
+  /// Waits for queued solves.
   bool synchronize() noexcept { return session_.synchronize(); }
+  /// Blocks of a launch.
   int blocks() const noexcept { return blocks_; }
   /// For tests: another number of blocks, as on a smaller device; the results must not change.
   void set_blocks(int blocks) noexcept { blocks_ = std::min(blocks, blocks_); }
