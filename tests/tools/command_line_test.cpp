@@ -146,8 +146,8 @@ TEST_F(CommandLine, ChecksItsOutputFilesFirst) {
   std::ofstream(folder_ / "lap.jsonl") << "{}\n";
   for (const std::string arguments :
        {"drive --course wren --json kept.json --plot ", "drive --course wren --record new.jsonl --json ",
-        "bench --json ", "explain --plot ", "replay lap.jsonl --html ",
-        "identify lap.jsonl --json ", "eval --out e --json "})
+        "bench --json ", "explain --plot ", "replay lap.jsonl --html ", "identify lap.jsonl --json ",
+        "eval --out e --json "})
     refuses(arguments + "nodir/x.png", {"slalom: nodir/x.png: cannot be written: No such file"});
   refuses("explain --json .", {".: cannot be written: is a folder"});
   EXPECT_EQ(content(folder_ / "kept.json"), "kept");

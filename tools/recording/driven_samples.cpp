@@ -40,9 +40,7 @@ std::vector<vehicle::DrivenSample> read_driven_samples(const std::string& file) 
                          entry(record, "odometry", 3), entry(record, "command", 0)});
     } catch (const std::invalid_argument& error) {
       if (!lines.ended() && number > 1)
-        throw IoError(
-            file, number,
-            "the recording was cut in this line; remove it");
+        throw IoError(file, number, "the recording was cut in this line; remove it");
       throw IoError(file, number, std::string("must be a record of a recording: ") + error.what());
     }
   }

@@ -6,8 +6,8 @@
 namespace slalom::tools {
 
 struct ReplayArguments {
-  std::string file;    ///< a recording in MCAP
-  std::string html;    ///< write the page with the replay inside to this file instead of serving it
+  std::string file;  ///< a recording in MCAP
+  std::string html;  ///< write the page with the replay inside to this file instead of serving it
   std::string host = "127.0.0.1";
   std::uint16_t port = 8400;
 };
