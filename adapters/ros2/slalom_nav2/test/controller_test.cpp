@@ -2,7 +2,6 @@
 // moves with it: to a goal round an obstacle, to a goal behind a wall, and until it is cancelled.
 //
 // usage: controller_test FILE     FILE is the parameter file that it writes
-#include <exception>
 #include <fstream>
 
 #include <ament_index_cpp/get_package_prefix.hpp>
@@ -12,7 +11,6 @@
 #include <rclcpp_action/rclcpp_action.hpp>
 
 #include "drive.hpp"
-#include "processes.hpp"
 
 namespace slalom_nav2_test {
 namespace {
@@ -20,6 +18,7 @@ namespace {
 using lifecycle_msgs::msg::Transition;
 using lifecycle_msgs::srv::ChangeState;
 using nav2_msgs::action::FollowPath;
+using slalom_ros_test::expect;
 using GoalHandle = rclcpp_action::ClientGoalHandle<FollowPath>;
 
 constexpr const char* parameters = R"(
@@ -75,21 +74,17 @@ class ControllerTest {
         ament_index_cpp::get_package_prefix("nav2_controller") + "/lib/nav2_controller/controller_server";
     server_ = std::make_unique<slalom_ros_test::Process>(
         std::vector<std::string>{server, "--ros-args", "--params-file", file});
-    states_ = drive_.node->create_client<ChangeState>("/controller_server/change_state");
     follow_ = rclcpp_action::create_client<FollowPath>(drive_.node, "/follow_path");
     drive_.show({pallet});
-    drive_.wait(
-        "the server is there", [&] { return states_->service_is_ready(); }, 30);
     change(Transition::TRANSITION_CONFIGURE, "the server configures the controller");
     change(Transition::TRANSITION_ACTIVATE, "the server is active");
   }
 
   void drives_to_a_goal() {
     start({1, 3, 0}, {9, 3, 0});
-    drive_.wait(
-        "it drives round an obstacle to the goal", [&] { return ended_; }, 60);
-    check(result_.code == rclcpp_action::ResultCode::SUCCEEDED, "the goal is reached");
-    check(std::hypot(drive_.pose.x - 9, drive_.pose.y - 3) < 0.25, "the robot is there");
+    drive_.wait("it drives round an obstacle to the goal", 60, [&] { return ended_; });
+    expect(result_.code == rclcpp_action::ResultCode::SUCCEEDED, "the goal is reached");
+    expect(std::hypot(drive_.pose.x - 9, drive_.pose.y - 3) < 0.25, "the robot is there");
   }
 
   /// The wall is longer than the costmap sees.
@@ -97,27 +92,24 @@ class ControllerTest {
     drive_.show({pallet, {3, -4, 3.2, 10}});
     drive_.run(1);
     start({9, 3, 3.1416}, {1, 3, 3.1416});
-    drive_.wait(
-        "it gives up in front of a wall", [&] { return ended_; }, 40);
-    check(result_.code == rclcpp_action::ResultCode::ABORTED, "the goal is aborted");
+    drive_.wait("it gives up in front of a wall", 40, [&] { return ended_; });
+    expect(result_.code == rclcpp_action::ResultCode::ABORTED, "the goal is aborted");
     const auto why = result_.result->error_code;
-    check(why == FollowPath::Result::PATIENCE_EXCEEDED || why == FollowPath::Result::NO_VALID_CONTROL,
-          "since there is no valid control");
-    check(drive_.pose.x > 3.4, "it has not passed the wall");
+    expect(why == FollowPath::Result::PATIENCE_EXCEEDED || why == FollowPath::Result::NO_VALID_CONTROL,
+           "since there is no valid control");
+    expect(drive_.pose.x > 3.4, "it has not passed the wall");
   }
 
   void can_be_cancelled() {
     drive_.show({pallet});
     drive_.run(1);
     start({drive_.pose.x, drive_.pose.y, 0}, {9, drive_.pose.y, 0});
-    drive_.wait(
-        "it drives again", [&] { return std::abs(drive_.command.linear.x) > 0.1; }, 20);
+    drive_.wait("it drives again", 20, [&] { return std::abs(drive_.command.linear.x) > 0.1; });
     follow_->async_cancel_goal(handle_);
-    drive_.wait(
-        "it can be cancelled", [&] { return ended_; }, 5);
-    check(result_.code == rclcpp_action::ResultCode::CANCELED, "the goal is cancelled");
+    drive_.wait("it can be cancelled", 5, [&] { return ended_; });
+    expect(result_.code == rclcpp_action::ResultCode::CANCELED, "the goal is cancelled");
     drive_.run(0.2);
-    check(std::abs(drive_.command.linear.x) < 0.01, "the robot stands");
+    expect(std::abs(drive_.command.linear.x) < 0.01, "the robot stands");
   }
 
   void ends() {
@@ -128,17 +120,10 @@ class ControllerTest {
  private:
   static constexpr Box pallet{4.5, 2.5, 5.5, 3.5};
 
-  static void check(bool holds, const std::string& what) {
-    if (!holds) throw std::runtime_error("FAILED: " + what);
-  }
-
   void change(unsigned char transition, const std::string& what) {
-    const auto request = std::make_shared<ChangeState::Request>();
-    request->transition.id = transition;
-    auto answer = states_->async_send_request(request);
-    drive_.wait(
-        what, [&] { return answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }, 60);
-    check(answer.get()->success, what);
+    ChangeState::Request request;
+    request.transition.id = transition;
+    expect(drive_.call<ChangeState>("/controller_server/change_state", request)->success, what);
   }
 
   /// Sends a straight path.
@@ -161,37 +146,30 @@ class ControllerTest {
       result_ = result;
       ended_ = true;
     };
-    drive_.wait(
-        "the server takes paths", [&] { return follow_->action_server_is_ready(); }, 20);
+    drive_.wait("the server takes paths", 20, [&] { return follow_->action_server_is_ready(); });
     follow_->async_send_goal(goal, options);
-    drive_.wait(
-        "the path is accepted", [&] { return handle_ != nullptr; }, 10);
+    drive_.wait("the path is accepted", 10, [&] { return handle_ != nullptr; });
   }
 
   Drive drive_;
   std::unique_ptr<slalom_ros_test::Process> server_;
-  rclcpp::Client<ChangeState>::SharedPtr states_;
   rclcpp_action::Client<FollowPath>::SharedPtr follow_;
   GoalHandle::SharedPtr handle_;
   GoalHandle::WrappedResult result_;
   bool ended_ = false;
 };
 
+void test(const std::string& file) {
+  ControllerTest all(file);
+  all.drives_to_a_goal();
+  all.gives_up_in_front_of_a_wall();
+  all.can_be_cancelled();
+  all.ends();
+}
+
 }  // namespace
 }  // namespace slalom_nav2_test
 
-int main(int argc, char** argv) try {
-  rclcpp::init(argc, argv);
-  if (argc != 2) throw std::runtime_error("usage: controller_test FILE");
-  {
-    slalom_nav2_test::ControllerTest test(argv[1]);
-    test.drives_to_a_goal();
-    test.gives_up_in_front_of_a_wall();
-    test.can_be_cancelled();
-    test.ends();
-  }
-  rclcpp::shutdown();
-} catch (const std::exception& error) {
-  std::printf("%s\n", error.what());
-  return 1;
+int main(int argc, char** argv) {
+  return slalom_ros_test::run_test(argc, argv, &slalom_nav2_test::test);
 }

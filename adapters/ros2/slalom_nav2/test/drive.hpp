@@ -1,22 +1,16 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <functional>
-#include <memory>
-#include <stdexcept>
-#include <string>
-#include <thread>
+#include <vector>
 
 #include <geometry_msgs/msg/twist.hpp>
 #include <nav_msgs/msg/occupancy_grid.hpp>
 #include <nav_msgs/msg/odometry.hpp>
-#include <rclcpp/rclcpp.hpp>
 #include <tf2_msgs/msg/tf_message.hpp>
 
 #include "conversions.hpp"
+#include "harness.hpp"
 
 namespace slalom_nav2_test {
 
@@ -28,20 +22,19 @@ struct Box {
 };
 
 /// A simulated differential base in real time: moves as `cmd_vel` says, and publishes odometry, transforms
-/// and a map with obstacles.
-class Drive {
+/// and a map with obstacles. A wait throws if the robot hits something.
+class Drive : public slalom_ros_test::TestNode {
  public:
   static constexpr double radius = 0.22;  ///< m, of the robot
 
-  Drive() : node(std::make_shared<rclcpp::Node>("drive")) {
-    executor_.add_node(node);
+  Drive() : TestNode("drive") {
     odometry_out_ = node->create_publisher<nav_msgs::msg::Odometry>("/odom", 10);
     transforms_out_ = node->create_publisher<tf2_msgs::msg::TFMessage>("/tf", 100);
     map_out_ = node->create_publisher<nav_msgs::msg::OccupancyGrid>("/map", rclcpp::QoS(1).transient_local());
     commands_in_ = node->create_subscription<geometry_msgs::msg::Twist>(
         "/cmd_vel", 10, [this](const geometry_msgs::msg::Twist::ConstSharedPtr m) {
           command = *m;
-          commanded_ = seconds();
+          commanded_ = slalom_ros_test::steady_seconds();
         });
     show({});
   }
@@ -67,35 +60,12 @@ class Drive {
     map_out_->publish(map);
   }
 
-  /// Drives until a condition holds. Throws if it does not within this time (s), or the robot hits something.
-  void wait(const std::string& what, const std::function<bool()>& holds, double duration) {
-    const double begin = seconds();
-    while (!holds()) {
-      if (seconds() - begin > duration) throw std::runtime_error("FAILED: " + what);
-      executor_.spin_some();
-      move();
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    std::printf("ok: %s (%.1f s)\n", what.c_str(), seconds() - begin);
-    std::fflush(stdout);
-  }
-  void run(double duration) {
-    const double end = seconds() + duration;
-    wait(
-        "drives", [&] { return seconds() >= end; }, duration + 1);
-  }
-
-  rclcpp::Node::SharedPtr node;
   Pose pose{1, 3, 0};
   geometry_msgs::msg::Twist command;  ///< the last
 
  private:
-  static double seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-  }
-
-  void move() {
-    const double now = seconds(), elapsed = now - moved_;
+  void step() override {
+    const double now = slalom_ros_test::steady_seconds(), elapsed = now - moved_;
     if (elapsed < 0.02) return;
     moved_ = now;
     if (now - commanded_ > 0.5) command = geometry_msgs::msg::Twist();
@@ -108,7 +78,7 @@ class Drive {
       const double x = std::clamp(pose.x, box.x0, box.x1) - pose.x;
       const double y = std::clamp(pose.y, box.y0, box.y1) - pose.y;
       // The map's cells and the movement of a period are coarser than this.
-      if (std::hypot(x, y) < radius - 0.05) throw std::runtime_error("FAILED: the robot hits an obstacle");
+      slalom_ros_test::expect(std::hypot(x, y) >= radius - 0.05, "the robot hits no obstacle");
     }
     nav_msgs::msg::Odometry odometry;
     odometry.header.stamp = node->now();
@@ -125,7 +95,6 @@ class Drive {
     transforms_out_->publish(transforms);
   }
 
-  rclcpp::executors::SingleThreadedExecutor executor_;
   std::vector<Box> obstacles_;
   double moved_ = 0, commanded_ = 0;  // s
   rclcpp::Publisher<nav_msgs::msg::Odometry>::SharedPtr odometry_out_;

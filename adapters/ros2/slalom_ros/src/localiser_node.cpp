@@ -5,7 +5,6 @@
 #include <limits>
 #include <optional>
 
-#include <tf2_ros/transform_listener.h>
 #include <geometry_msgs/msg/pose_array.hpp>
 #include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>
 #include <nav_msgs/msg/odometry.hpp>
@@ -13,10 +12,8 @@
 #include <tf2_msgs/msg/tf_message.hpp>
 #include <tf2_ros/qos.hpp>
 
-#include "conversions.hpp"
+#include "core_node.hpp"
 #include "logic/localiser_core.hpp"
-#include "managed_node.hpp"
-#include "option_parameters.hpp"
 
 namespace slalom_ros {
 
@@ -30,17 +27,13 @@ using sensor_msgs::msg::LaserScan;
 using slalom::vehicle::LocaliserOutput;
 using tf2_msgs::msg::TFMessage;
 
-class LocaliserNode : public ManagedNode {
+class LocaliserNode : public CoreNode<LocaliserCore> {
  public:
   explicit LocaliserNode(const rclcpp::NodeOptions& options)
-      : ManagedNode("localiser", options, std::chrono::milliseconds(2)),
-        base_(setting<std::string>("base_frame", "base_link", "frame of the car, x ahead and y to the left")),
-        map_(setting<std::string>("map_frame", "map", "frame of the map")),
+      : CoreNode("localiser", options),
         pose_file_(setting<std::string>(
             "pose_file", "",
             "keeps the last pose; a node that is restarted within 10 s continues from it; empty: none")) {
-    settings_.course = setting("course", settings_.course,
-                               "a name or a folder, whose map is used; empty: that of the topic map");
     settings_.everywhere = setting("everywhere", settings_.everywhere, "search the whole map at the start");
     settings_.trust_scans =
         setting("trust_scans", settings_.trust_scans,
@@ -48,8 +41,6 @@ class LocaliserNode : public ManagedNode {
     settings_.trust_health = setting("trust_health", settings_.trust_health, "of these scans, 0 to 1");
     settings_.transform_tolerance = setting("transform_tolerance", settings_.transform_tolerance,
                                             "how far the stamps of the transforms are in the future [s]");
-    settings_.rear_axle =
-        setting("rear_axle", settings_.rear_axle, "x of the middle of the rear axle in the base frame [m]");
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     const Pose start{setting("initial_pose.x", none, "of the car at the start [m]"),
                      setting("initial_pose.y", none, "of the car at the start [m]"),
@@ -63,75 +54,46 @@ class LocaliserNode : public ManagedNode {
 
  protected:
   void set_up() override {
-    pose_out_ = create_publisher<Odometry>("pf/pose/odom", rclcpp::QoS(1));
-    cloud_out_ = create_publisher<PoseArray>("particlecloud", rclcpp::QoS(1));
-    tf_out_ = create_publisher<TFMessage>("/tf", tf2_ros::DynamicBroadcasterQoS());
+    pose_out_ = advertise<Odometry>("pf/pose/odom", rclcpp::QoS(1));
+    cloud_out_ = advertise<PoseArray>("particlecloud", rclcpp::QoS(1));
+    tf_out_ = advertise<TFMessage>("/tf", tf2_ros::DynamicBroadcasterQoS());
     LocaliserCore::Settings settings = settings_;
     settings.start = told_;
     settings.earlier = nodes::read_place(pose_file_, wall_time());
-    core_.emplace(settings, clocks(), transforms_of(buffer_, map_, base_),
-                  LocaliserCore::Outputs{
-                      [this](const Pose& base, const LocaliserOutput& estimate, Stamp scan) {
-                        publish(base, estimate, scan);
-                      },
-                      [this](const Pose& odometry_frame, Stamp stamp) {
-                        set_transform(transforms_.transforms[0], odometry_frame, stamp);
-                        tf_out_->publish(transforms_);
-                      },
-                      [this](const maps::OccupancyGrid& map) { course_map_ = message_of(map, map_); },
-                      [this](const std::string& message) { warn(message); },
-                      [this](const std::string& message) { inform(message); }});
-    parameters_.emplace(
-        *this, [this] { return core_->options(); },
-        [this](const nodes::Changes& changes) { core_->change(changes); });
+    make_core(settings, {[this](const Pose& base, const LocaliserOutput& estimate, Stamp scan) {
+                           publish(base, estimate, scan);
+                         },
+                         [this](const Pose& odometry_frame, Stamp stamp) {
+                           set_transform(transforms_.transforms[0], odometry_frame, stamp);
+                           tf_out_->publish(transforms_);
+                         },
+                         [this](const maps::OccupancyGrid& map) { course_map_ = message_of(map, map_); },
+                         {},
+                         {}});
+    declare_options();
     core_->use_course();
-    if (!settings_.course.empty()) map_out_ = latched_publisher<OccupancyGrid>("map");
+    if (!settings_.course.empty()) map_out_ = advertise_latched<OccupancyGrid>("map");
   }
 
   void start() override {
-    listener_.emplace(buffer_, shared_from_this(), true, tf2_ros::DynamicListenerQoS(),
-                      tf2_ros::StaticListenerQoS(), from_middleware(), from_middleware());
+    CoreNode::start();
     if (map_out_) {
       course_map_.header.stamp = now();
       map_out_->publish(course_map_);
     } else {
-      map_in_ = subscribe<OccupancyGrid>(
+      subscribe<OccupancyGrid>(
           "map", rclcpp::QoS(1).transient_local(),
           [this](const OccupancyGrid& m) { core_->hear_map(grid_of(m)); }, from_middleware());
     }
-    const auto sensor = rclcpp::SensorDataQoS();
-    odometry_in_ = subscribe<Odometry>("odom", rclcpp::SensorDataQoS().keep_last(10),
-                                       [this](const Odometry& m) { hear(m); });
-    scan_in_ = subscribe<LaserScan>("scan", sensor, [this](const LaserScan& m) {
-      core_->hear_scan(stamp_of(m.header.stamp), m.header.frame_id, scan_of(m),
-                       static_cast<double>(m.angle_max));
-    });
-    start_in_ = subscribe<PoseWithCovarianceStamped>(
+    subscribe<Odometry>("odom", rclcpp::SensorDataQoS().keep_last(10),
+                        [this](const Odometry& m) { hear(m); });
+    subscribe<LaserScan>("scan", rclcpp::SensorDataQoS(), [this](const LaserScan& m) { hear_scan(m); });
+    subscribe<PoseWithCovarianceStamped>(
         "initialpose", rclcpp::QoS(1),
         [this](const PoseWithCovarianceStamped& m) { core_->hear_start(pose_of(m.pose.pose)); });
   }
 
-  void stop() override {
-    map_in_.reset();
-    odometry_in_.reset();
-    scan_in_.reset();
-    start_in_.reset();
-    listener_.reset();
-  }
-
-  void tear_down() override {
-    parameters_.reset();
-    core_.reset();
-    pose_out_.reset();
-    cloud_out_.reset();
-    tf_out_.reset();
-    map_out_.reset();
-  }
-
-  void tick() override { core_->tick(); }
-
   nodes::Report report() override {
-    parameters_->refresh();
     if (const auto place = core_->reliable();
         place && !pose_file_.empty() && !nodes::write_place(pose_file_, *place, wall_time()))
       RCLCPP_WARN_ONCE(get_logger(), "pose_file: %s cannot be written", pose_file_.c_str());
@@ -142,7 +104,7 @@ class LocaliserNode : public ManagedNode {
       for (const Pose& p : core_->particles(300)) cloud.poses.push_back(message_of(p));
       cloud_out_->publish(cloud);
     }
-    return core_->report();
+    return CoreNode::report();
   }
 
  private:
@@ -166,22 +128,16 @@ class LocaliserNode : public ManagedNode {
     pose_out_->publish(out_);
   }
 
-  LocaliserCore::Settings settings_;
-  std::string base_, map_, pose_file_;
+  std::string pose_file_;
   std::optional<Pose> told_;  ///< the start, if the parameters have one
-  tf2::BufferCore buffer_;
-  std::optional<tf2_ros::TransformListener> listener_;
-  std::shared_ptr<LifecyclePublisher<Odometry>> pose_out_;
-  std::shared_ptr<LifecyclePublisher<PoseArray>> cloud_out_;
-  std::shared_ptr<LifecyclePublisher<TFMessage>> tf_out_;
-  std::shared_ptr<LifecyclePublisher<OccupancyGrid>> map_out_;
+  LifecyclePublisher<Odometry>* pose_out_ = nullptr;
+  LifecyclePublisher<PoseArray>* cloud_out_ = nullptr;
+  LifecyclePublisher<TFMessage>* tf_out_ = nullptr;
+  LifecyclePublisher<OccupancyGrid>* map_out_ = nullptr;  ///< where there is a course
   // These messages are kept so that their memory is reused.
   Odometry out_;
   TFMessage transforms_;
   OccupancyGrid course_map_;
-  std::optional<LocaliserCore> core_;
-  std::optional<OptionParameters> parameters_;
-  rclcpp::SubscriptionBase::SharedPtr map_in_, odometry_in_, scan_in_, start_in_;
 };
 
 }  // namespace slalom_ros

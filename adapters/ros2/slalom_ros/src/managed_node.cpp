@@ -34,11 +34,11 @@ ManagedNode::CallbackReturn ManagedNode::attempt(const char* what, Action&& acti
 
 ManagedNode::CallbackReturn ManagedNode::on_configure(const ManagedNode::State&) {
   const auto result = attempt("configure", [this] {
-    diagnostics_out_ = create_publisher<DiagnosticArray>("/diagnostics", 5);
+    diagnostics_out_ = advertise<DiagnosticArray>("/diagnostics", 5);
     set_up();
     configured_ = true;
   });
-  if (result != CallbackReturn::SUCCESS) attempt("configure", [this] { tear_down(); });
+  if (result != CallbackReturn::SUCCESS) attempt("configure", [this] { end_configuration(); });
   return result;
 }
 
@@ -50,39 +50,47 @@ ManagedNode::CallbackReturn ManagedNode::on_activate(const ManagedNode::State& b
     tick_timer_ = create_wall_timer(tick_period_, [this] { tick(); });
     report_timer_ = create_wall_timer(std::chrono::seconds(1), [this] { send_report(); });
   });
-  if (result != CallbackReturn::SUCCESS) LifecycleNode::on_deactivate(before);
+  if (result != CallbackReturn::SUCCESS) {
+    while_active_.clear();
+    LifecycleNode::on_deactivate(before);
+  }
   return result;
 }
 
 ManagedNode::CallbackReturn ManagedNode::on_deactivate(const ManagedNode::State& before) {
   fall_silent();
-  const auto result = attempt("deactivate", [this] { stop(); });
+  const auto result = attempt("deactivate", [this] { end_activity(); });
   LifecycleNode::on_deactivate(before);
   return result;
 }
 
 ManagedNode::CallbackReturn ManagedNode::on_cleanup(const ManagedNode::State&) {
-  configured_ = false;
-  return attempt("cleanup", [this] {
-    tear_down();
-    diagnostics_out_.reset();
-  });
+  return attempt("cleanup", [this] { end_configuration(); });
 }
 
 ManagedNode::CallbackReturn ManagedNode::on_shutdown(const ManagedNode::State& before) {
   fall_silent();
-  configured_ = false;
   return attempt("shutdown", [this, &before] {
-    if (before.id() == States::PRIMARY_STATE_ACTIVE) stop();
-    tear_down();
-    diagnostics_out_.reset();
+    if (before.id() == States::PRIMARY_STATE_ACTIVE) end_activity();
+    end_configuration();
   });
 }
 
 ManagedNode::CallbackReturn ManagedNode::on_error(const ManagedNode::State&) {
   fall_silent();
+  return attempt("error", [this] { end_configuration(); });
+}
+
+void ManagedNode::end_activity() {
+  stop();
+  while_active_.clear();
+}
+
+void ManagedNode::end_configuration() {
   configured_ = false;
-  return attempt("error", [this] { tear_down(); });
+  while_active_.clear();
+  tear_down();
+  while_configured_.clear();
 }
 
 void ManagedNode::fall_silent() {

@@ -5,6 +5,7 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <diagnostic_msgs/msg/diagnostic_array.hpp>
 #include <rclcpp/rclcpp.hpp>
@@ -39,7 +40,7 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
   // The work of a node in each transition; these may throw std::exception.
   virtual void set_up() = 0;     ///< unconfigured to inactive
   virtual void start() = 0;      ///< inactive to active; publishers are active
-  virtual void stop() = 0;       ///< active to inactive; publishers are still active
+  virtual void stop() {}         ///< active to inactive; publishers are still active
   virtual void tear_down() = 0;  ///< inactive to unconfigured
   virtual void tick() {}         ///< every few milliseconds while active
   /// Reports the events since the last report; once per second while active.
@@ -54,13 +55,21 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
     return declare_parameter<Value>(name, value, descriptor);
   }
 
-  /// A publisher whose last message later subscribers receive. Humble knows no such messages within a
+  /// Makes a publisher that exists until the node is cleaned up.
+  template <class Message>
+  rclcpp_lifecycle::LifecyclePublisher<Message>* advertise(const std::string& topic, const rclcpp::QoS& qos,
+                                                           const rclcpp::PublisherOptions& options = {}) {
+    const auto made = create_publisher<Message>(topic, qos, options);
+    while_configured_.push_back(made);
+    return made.get();
+  }
+  /// Makes a publisher whose last message later subscribers receive. Humble knows no such messages within a
   /// process.
   template <class Message>
-  auto latched_publisher(const std::string& topic) {
+  rclcpp_lifecycle::LifecyclePublisher<Message>* advertise_latched(const std::string& topic) {
     rclcpp::PublisherOptions options;
     options.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
-    return create_publisher<Message>(topic, rclcpp::QoS(1).transient_local(), options);
+    return advertise<Message>(topic, rclcpp::QoS(1).transient_local(), options);
   }
   /// The options of a subscription that receives all messages from the middleware. Messages within a process
   /// are not latched and have no sender.
@@ -70,13 +79,13 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
     return options;
   }
 
-  /// A subscription that hears only while the node is active: an executor may already have taken messages
-  /// when a transition drops their subscription. `hear` takes a message, or a message and its
+  /// Subscribes until the node is deactivated. An executor may already have taken messages when a transition
+  /// drops their subscription, so these are not heard. `hear` takes a message, or a message and its
   /// rclcpp::MessageInfo.
   template <class Message, class Hear>
-  rclcpp::SubscriptionBase::SharedPtr subscribe(const std::string& topic, const rclcpp::QoS& qos, Hear hear,
-                                                const rclcpp::SubscriptionOptions& options = {}) {
-    return create_subscription<Message>(
+  void subscribe(const std::string& topic, const rclcpp::QoS& qos, Hear hear,
+                 const rclcpp::SubscriptionOptions& options = {}) {
+    while_active_.push_back(create_subscription<Message>(
         topic, qos,
         [this, hear = std::move(hear)](const std::shared_ptr<const Message>& m,
                                        const rclcpp::MessageInfo& info) {
@@ -86,17 +95,16 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
           else
             hear(*m);
         },
-        options);
+        options));
   }
-  /// A service that acts only while the node is configured; otherwise the answer has the defaults of its
-  /// type.
+  /// Offers a service until the node is cleaned up; after that, an answer has the defaults of its type.
   template <class Service, class Act>
-  rclcpp::ServiceBase::SharedPtr serve(const std::string& name, Act act) {
-    return create_service<Service>(
+  void serve(const std::string& name, Act act) {
+    while_configured_.push_back(create_service<Service>(
         name, [this, act = std::move(act)](const typename Service::Request::SharedPtr asked,
                                            const typename Service::Response::SharedPtr answer) {
           if (configured_) act(*asked, *answer);
-        });
+        }));
   }
 
   nodes::Clocks clocks() const;
@@ -108,11 +116,13 @@ class ManagedNode : public rclcpp_lifecycle::LifecycleNode {
   CallbackReturn attempt(const char* what, Action&& action);
   void send_report();
   void fall_silent();
+  void end_activity();
+  void end_configuration();
 
   std::chrono::milliseconds tick_period_;
   bool configured_ = false, active_ = false;
-  std::shared_ptr<rclcpp_lifecycle::LifecyclePublisher<diagnostic_msgs::msg::DiagnosticArray>>
-      diagnostics_out_;
+  std::vector<std::shared_ptr<void>> while_configured_, while_active_;
+  rclcpp_lifecycle::LifecyclePublisher<diagnostic_msgs::msg::DiagnosticArray>* diagnostics_out_ = nullptr;
   rclcpp::TimerBase::SharedPtr autostart_timer_, tick_timer_, report_timer_;
 };
 

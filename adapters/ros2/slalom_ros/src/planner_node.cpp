@@ -3,7 +3,6 @@
 #include <cmath>
 #include <optional>
 
-#include <tf2_ros/transform_listener.h>
 #include <ackermann_msgs/msg/ackermann_drive_stamped.hpp>
 #include <nav_msgs/msg/odometry.hpp>
 #include <nav_msgs/msg/path.hpp>
@@ -16,10 +15,8 @@
 #include <std_msgs/msg/float32.hpp>
 #include <visualization_msgs/msg/marker_array.hpp>
 
-#include "conversions.hpp"
+#include "core_node.hpp"
 #include "logic/planner_core.hpp"
-#include "managed_node.hpp"
-#include "option_parameters.hpp"
 
 namespace slalom_ros {
 
@@ -36,22 +33,15 @@ using slalom_msgs::srv::DriveLaps;
 using slalom_msgs::srv::Save;
 using visualization_msgs::msg::MarkerArray;
 
-class PlannerNode : public ManagedNode {
+class PlannerNode : public CoreNode<PlannerCore> {
  public:
-  explicit PlannerNode(const rclcpp::NodeOptions& options)
-      : ManagedNode("planner", options, std::chrono::milliseconds(2)),
-        base_(setting<std::string>("base_frame", "base_link", "frame of the car, x ahead and y to the left")),
-        map_(setting<std::string>("map_frame", "map", "frame of the path")) {
+  explicit PlannerNode(const rclcpp::NodeOptions& options) : CoreNode("planner", options) {
     settings_.configuration = setting("configuration", settings_.configuration, "a name or a file");
     settings_.method = setting("method", settings_.method, "the solver");
-    settings_.course = setting("course", settings_.course,
-                               "a name or a folder, whose path is driven; empty: that of reference_waypoint");
     settings_.limits.max_age =
         setting("timeout", settings_.limits.max_age, "the car stops if scan or odometry is older [s]");
     settings_.limits.settle_time = setting("settle_time", settings_.limits.settle_time,
                                            "how long the car stays stopped after a fault [s]");
-    settings_.rear_axle =
-        setting("rear_axle", settings_.rear_axle, "x of the middle of the rear axle in the base frame [m]");
     settings_.scan_interval =
         setting("scan_interval", settings_.scan_interval,
                 "scans that come sooner after the last one used are not used; 0: all are used [s]");
@@ -62,88 +52,57 @@ class PlannerNode : public ManagedNode {
 
  protected:
   void set_up() override {
-    drive_out_ = create_publisher<AckermannDriveStamped>("drive", rclcpp::QoS(1));
-    metrics_out_ = create_publisher<PlannerMetrics>("mppi/eval_metrics", rclcpp::QoS(1));
-    markers_out_ = create_publisher<MarkerArray>("planner_markers", rclcpp::QoS(1));
-    path_out_ = latched_publisher<nav_msgs::msg::Path>("reference_path");
-    core_.emplace(
-        settings_, clocks(), transforms_of(buffer_, map_, base_),
-        PlannerCore::Outputs{[this](const slalom::Command& command) { send(command); },
-                             [this](const PlannerOutput& output, Stamp scan) { show(output, scan); },
-                             [this](const PlannerCore::Path& path, bool closed) { use_path(path, closed); },
-                             [this](const std::string& message) { warn(message); },
-                             [this](const std::string& message) { inform(message); }});
+    drive_out_ = advertise<AckermannDriveStamped>("drive", rclcpp::QoS(1));
+    metrics_out_ = advertise<PlannerMetrics>("mppi/eval_metrics", rclcpp::QoS(1));
+    markers_out_ = advertise<MarkerArray>("planner_markers", rclcpp::QoS(1));
+    path_out_ = advertise_latched<nav_msgs::msg::Path>("reference_path");
+    make_core(settings_, {[this](const slalom::Command& command) { send(command); },
+                          [this](const PlannerOutput& output, Stamp scan) { show(output, scan); },
+                          [this](const PlannerCore::Path& path, bool closed) { use_path(path, closed); },
+                          {},
+                          {}});
     limit_speed();
-    parameters_.emplace(
-        *this, [this] { return core_->options(); },
-        [this](const nodes::Changes& changes) { core_->change(changes); });
+    declare_options();
     core_->use_course();
-    laps_service_ = serve<DriveLaps>("~/drive_laps",
-                                     [this](const DriveLaps::Request& asked, DriveLaps::Response& answer) {
-                                       attempt(answer, [&] { core_->drive_laps(asked.laps); });
-                                     });
-    save_service_ = serve<Save>("~/save", [this](const Save::Request& asked, Save::Response& answer) {
+    serve<DriveLaps>("~/drive_laps", [this](const DriveLaps::Request& asked, DriveLaps::Response& answer) {
+      attempt(answer, [&] { core_->drive_laps(asked.laps); });
+    });
+    serve<Save>("~/save", [this](const Save::Request& asked, Save::Response& answer) {
       attempt(answer, [&] { core_->save(asked.file); });
     });
   }
 
   void start() override {
-    listener_.emplace(buffer_, shared_from_this(), true, tf2_ros::DynamicListenerQoS(),
-                      tf2_ros::StaticListenerQoS(), from_middleware(), from_middleware());
+    CoreNode::start();
     if (!path_.poses.empty()) path_out_->publish(path_);
     const auto sensor = rclcpp::SensorDataQoS();
-    scan_in_ = subscribe<LaserScan>("scan", sensor, [this](const LaserScan& m) {
-      core_->hear_scan(stamp_of(m.header.stamp), m.header.frame_id, scan_of(m),
-                       static_cast<double>(m.angle_max));
+    subscribe<LaserScan>("scan", sensor, [this](const LaserScan& m) {
+      hear_scan(m);
       core_->tick();
     });
-    odometry_in_ = subscribe<Odometry>("odom", sensor, [this](const Odometry& m) {
+    subscribe<Odometry>("odom", sensor, [this](const Odometry& m) {
       core_->hear_odometry(stamp_of(m.header.stamp), m.twist.twist.linear.x);
     });
-    imu_in_ =
-        subscribe<Imu>("imu", rclcpp::SensorDataQoS().keep_last(50), [this](const Imu& m) { hear_imu(m); });
-    drive_in_ = subscribe<AckermannDriveStamped>(
+    subscribe<Imu>("imu", rclcpp::SensorDataQoS().keep_last(50), [this](const Imu& m) { hear_imu(m); });
+    subscribe<AckermannDriveStamped>(
         "drive", rclcpp::QoS(10),
         [this](const AckermannDriveStamped&, const rclcpp::MessageInfo& info) {
           if (!(*drive_out_ == info.get_rmw_message_info().publisher_gid))
             core_->hear_other_command(others());
         },
         from_middleware());
-    goal_in_ = subscribe<std_msgs::msg::Float32>(
-        "goal_speed", rclcpp::QoS(1),
-        [this](const std_msgs::msg::Float32& m) { core_->hear_goal_speed(static_cast<double>(m.data)); });
+    subscribe<std_msgs::msg::Float32>("goal_speed", rclcpp::QoS(1), [this](const std_msgs::msg::Float32& m) {
+      core_->hear_goal_speed(static_cast<double>(m.data));
+    });
     if (settings_.course.empty())
-      waypoints_in_ = subscribe<Waypoints>(
+      subscribe<Waypoints>(
           "reference_waypoint", rclcpp::QoS(1).transient_local(),
           [this](const Waypoints& m) { hear_waypoints(m); }, from_middleware());
   }
 
   void stop() override {
     core_->halt();
-    scan_in_.reset();
-    odometry_in_.reset();
-    imu_in_.reset();
-    drive_in_.reset();
-    goal_in_.reset();
-    waypoints_in_.reset();
-    listener_.reset();
-  }
-
-  void tear_down() override {
-    laps_service_.reset();
-    save_service_.reset();
-    parameters_.reset();
-    core_.reset();
-    drive_out_.reset();
-    metrics_out_.reset();
-    markers_out_.reset();
-    path_out_.reset();
-  }
-
-  void tick() override { core_->tick(); }
-  nodes::Report report() override {
-    parameters_->refresh();
-    return core_->report();
+    CoreNode::stop();
   }
 
  private:
@@ -169,7 +128,7 @@ class PlannerNode : public ManagedNode {
   /// The names of the other nodes that publish commands.
   std::string others() const {
     std::string names;
-    for (const auto& publisher : get_publishers_info_by_topic(drive_in_->get_topic_name()))
+    for (const auto& publisher : get_publishers_info_by_topic(drive_out_->get_topic_name()))
       if (publisher.node_name() != get_name() || publisher.node_namespace() != get_namespace())
         names += (names.empty() ? "" : ", ") + publisher.node_name();
     return names;
@@ -252,23 +211,15 @@ class PlannerNode : public ManagedNode {
     line.color.a = 1;
   }
 
-  PlannerCore::Settings settings_;
-  std::string base_, map_;
-  tf2::BufferCore buffer_;
-  std::optional<tf2_ros::TransformListener> listener_;
-  std::shared_ptr<LifecyclePublisher<AckermannDriveStamped>> drive_out_;
-  std::shared_ptr<LifecyclePublisher<PlannerMetrics>> metrics_out_;
-  std::shared_ptr<LifecyclePublisher<MarkerArray>> markers_out_;
-  std::shared_ptr<LifecyclePublisher<nav_msgs::msg::Path>> path_out_;
+  LifecyclePublisher<AckermannDriveStamped>* drive_out_ = nullptr;
+  LifecyclePublisher<PlannerMetrics>* metrics_out_ = nullptr;
+  LifecyclePublisher<MarkerArray>* markers_out_ = nullptr;
+  LifecyclePublisher<nav_msgs::msg::Path>* path_out_ = nullptr;
   // These messages are kept so that their memory is reused.
   AckermannDriveStamped drive_;
   PlannerMetrics metrics_;
   MarkerArray markers_;
   nav_msgs::msg::Path path_;
-  std::optional<PlannerCore> core_;
-  std::optional<OptionParameters> parameters_;
-  rclcpp::SubscriptionBase::SharedPtr scan_in_, odometry_in_, imu_in_, drive_in_, goal_in_, waypoints_in_;
-  rclcpp::ServiceBase::SharedPtr laps_service_, save_service_;
 };
 
 }  // namespace slalom_ros

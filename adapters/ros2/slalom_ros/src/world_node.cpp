@@ -52,18 +52,17 @@ class WorldNode : public ManagedNode {
 
  protected:
   void set_up() override {
-    scan_out_ = create_publisher<LaserScan>("scan", rclcpp::QoS(5));
-    odometry_out_ = create_publisher<Odometry>("odom", rclcpp::QoS(10));
-    truth_out_ = create_publisher<Odometry>("ground_truth", rclcpp::QoS(1));
-    laps_out_ = create_publisher<Int32>("laps", rclcpp::QoS(1));
-    contacts_out_ = create_publisher<Int32>("contacts", rclcpp::QoS(1));
-    tf_out_ = create_publisher<TFMessage>("/tf", tf2_ros::DynamicBroadcasterQoS());
-    tf_static_out_ = latched_publisher<TFMessage>("/tf_static");
-    markers_out_ = latched_publisher<MarkerArray>("obstacles");
+    scan_out_ = advertise<LaserScan>("scan", rclcpp::QoS(5));
+    odometry_out_ = advertise<Odometry>("odom", rclcpp::QoS(10));
+    truth_out_ = advertise<Odometry>("ground_truth", rclcpp::QoS(1));
+    laps_out_ = advertise<Int32>("laps", rclcpp::QoS(1));
+    contacts_out_ = advertise<Int32>("contacts", rclcpp::QoS(1));
+    tf_out_ = advertise<TFMessage>("/tf", tf2_ros::DynamicBroadcasterQoS());
+    tf_static_out_ = advertise_latched<TFMessage>("/tf_static");
+    markers_out_ = advertise_latched<MarkerArray>("obstacles");
     car_.emplace(nodes::load_course(course_), static_cast<std::uint64_t>(seed_), obstacles_);
     due_ = nodes::stamp_of(clocks_.now());
-    reset_service_ =
-        serve<Empty>("reset", [this](const Empty::Request&, Empty::Response&) { car_->reset(); });
+    serve<Empty>("reset", [this](const Empty::Request&, Empty::Response&) { car_->reset(); });
   }
 
   void start() override {
@@ -73,7 +72,7 @@ class WorldNode : public ManagedNode {
     fixed.transforms[0].child_frame_id = laser_;
     set_transform(fixed.transforms[0], car_->laser(), now().nanoseconds());
     tf_static_out_->publish(fixed);
-    drive_in_ = subscribe<AckermannDriveStamped>(
+    subscribe<AckermannDriveStamped>(
         "drive", rclcpp::QoS(10),
         [this](const AckermannDriveStamped& m, const rclcpp::MessageInfo& info) {
           hear({static_cast<double>(m.drive.steering_angle), static_cast<double>(m.drive.speed)},
@@ -82,20 +81,7 @@ class WorldNode : public ManagedNode {
         from_middleware());
   }
 
-  void stop() override { drive_in_.reset(); }
-
-  void tear_down() override {
-    reset_service_.reset();
-    car_.reset();
-    scan_out_.reset();
-    odometry_out_.reset();
-    truth_out_.reset();
-    laps_out_.reset();
-    contacts_out_.reset();
-    tf_out_.reset();
-    tf_static_out_.reset();
-    markers_out_.reset();
-  }
+  void tear_down() override { car_.reset(); }
 
   void tick() override {
     constexpr Stamp furthest_ahead = 1'000'000'000, furthest_behind = 500'000'000;  // ns
@@ -225,11 +211,11 @@ class WorldNode : public ManagedNode {
   std::int64_t seed_;
   int obstacles_;
   double command_timeout_;  ///< s
-  std::shared_ptr<LifecyclePublisher<LaserScan>> scan_out_;
-  std::shared_ptr<LifecyclePublisher<Odometry>> odometry_out_, truth_out_;
-  std::shared_ptr<LifecyclePublisher<Int32>> laps_out_, contacts_out_;
-  std::shared_ptr<LifecyclePublisher<TFMessage>> tf_out_, tf_static_out_;
-  std::shared_ptr<LifecyclePublisher<MarkerArray>> markers_out_;
+  LifecyclePublisher<LaserScan>* scan_out_ = nullptr;
+  LifecyclePublisher<Odometry>*odometry_out_ = nullptr, *truth_out_ = nullptr;
+  LifecyclePublisher<Int32>*laps_out_ = nullptr, *contacts_out_ = nullptr;
+  LifecyclePublisher<TFMessage>*tf_out_ = nullptr, *tf_static_out_ = nullptr;
+  LifecyclePublisher<MarkerArray>* markers_out_ = nullptr;
   TFMessage transforms_;
   LaserScan scan_;
   nodes::Clocks clocks_ = clocks();
@@ -240,8 +226,6 @@ class WorldNode : public ManagedNode {
   Stamp due_ = 0;                        ///< time of the next step
   long steps_ = 0;
   std::string why_;  ///< the reason if the car has braked since the last report
-  rclcpp::SubscriptionBase::SharedPtr drive_in_;
-  rclcpp::ServiceBase::SharedPtr reset_service_;
 };
 
 }  // namespace slalom_ros

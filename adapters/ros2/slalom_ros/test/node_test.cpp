@@ -1,7 +1,6 @@
 // Parameters, lifecycle, services and speed limit of the nodes, as a client sees them.
 //
 // usage: node_test processes|composed
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -17,8 +16,8 @@
 #include <slalom_msgs/srv/save.hpp>
 #include <std_srvs/srv/empty.hpp>
 
+#include "client.hpp"
 #include "nodes.hpp"
-#include "recording.hpp"
 
 namespace slalom_ros_test {
 namespace {
@@ -35,7 +34,7 @@ using slalom_msgs::srv::Save;
 
 class NodeTest {
  public:
-  explicit NodeTest(Nodes::Place place) : client_("node_test"), nodes_(place) {
+  explicit NodeTest(const std::string& place) : client_("node_test"), nodes_(place) {
     nodes_.start("world", "world", {"autostart:=true", "course:=wren", "obstacles:=0"});
     nodes_.start("localiser", "localiser", {"autostart:=true", "course:=wren"});
     nodes_.start("planner", "planner", {"course:=wren", "svg_mppi.samples:=500"});
@@ -50,8 +49,7 @@ class NodeTest {
     client_.run(1);
     expect(client_.commanded_at == 0, "an inactive planner sends no commands");
     expect(change("planner", Transition::TRANSITION_ACTIVATE), "activate");
-    client_.wait(
-        "the active planner drives", [&] { return client_.drives(); }, 60);
+    client_.wait("the active planner drives", 60, [&] { return client_.drives(); });
   }
 
   void speed_limit() {
@@ -67,8 +65,7 @@ class NodeTest {
            "a parameter has a range");
     expect(described.additional_constraints.find("must be") != std::string::npos, "and its rule");
     expect(set("planner.max_speed", rclcpp::ParameterValue(2.5)).successful, "it can change while driving");
-    client_.wait(
-        "the car drives faster than 1 m/s", [&] { return client_.speed > 1.2; }, 20);
+    client_.wait("the car drives faster than 1 m/s", 20, [&] { return client_.speed > 1.2; });
     const auto refused = set("planner.max_speed", rclcpp::ParameterValue(-3.0));
     expect(!refused.successful, "a value out of range is refused");
     std::printf("   %s\n", refused.reason.c_str());
@@ -99,13 +96,11 @@ class NodeTest {
     once.laps = 1;
     expect(client_.call<DriveLaps>("/planner/drive_laps", once)->success, "a lap is asked for");
     const double begin = steady_seconds();
-    client_.wait(
-        "after a lap the car stops",
-        [&] { return !client_.reason("all laps are driven", begin).empty() && client_.stops(); }, 120);
+    client_.wait("after a lap the car stops", 120,
+                 [&] { return client_.has_said("all laps are driven", begin) && client_.stops(); });
     DriveLaps::Request forever;
     expect(client_.call<DriveLaps>("/planner/drive_laps", forever)->success, "laps without end");
-    client_.wait(
-        "it drives on", [&] { return client_.drives(); }, 20);
+    client_.wait("it drives on", 20, [&] { return client_.drives(); });
 
     const std::string file = std::filesystem::temp_directory_path() / "slalom_ros_node_test.yaml";
     Save::Request save;
@@ -122,8 +117,7 @@ class NodeTest {
   }
 
   void lifecycle_to_the_end() {
-    client_.wait(
-        "the car drives after the reset", [&] { return client_.drives(); }, 60);
+    client_.wait("the car drives after the reset", 60, [&] { return client_.drives(); });
     expect(change("planner", Transition::TRANSITION_DEACTIVATE), "deactivate");
     expect(client_.speed == 0, "the last command is to stop");
     const double at = client_.commanded_at;
@@ -132,8 +126,7 @@ class NodeTest {
     expect(change("planner", Transition::TRANSITION_CLEANUP), "cleanup");
     expect(change("planner", Transition::TRANSITION_CONFIGURE), "configure again");
     expect(change("planner", Transition::TRANSITION_ACTIVATE), "activate again");
-    client_.wait(
-        "it drives again", [&] { return client_.drives(); }, 60);
+    client_.wait("it drives again", 60, [&] { return client_.drives(); });
     expect(change("planner", Transition::TRANSITION_ACTIVE_SHUTDOWN), "shutdown");
     expect(state("planner") == State::PRIMARY_STATE_FINALIZED, "then it is finalized");
   }
@@ -169,9 +162,8 @@ class NodeTest {
   Nodes nodes_;
 };
 
-void test(int argc, char** argv) {
-  expect(argc == 2, "usage: node_test processes|composed");
-  NodeTest all(place_of(argv[1]));
+void test(const std::string& place) {
+  NodeTest all(place);
   all.lifecycle_until_it_drives();
   all.speed_limit();
   all.parameters();
@@ -183,11 +175,6 @@ void test(int argc, char** argv) {
 }  // namespace
 }  // namespace slalom_ros_test
 
-int main(int argc, char** argv) try {
-  rclcpp::init(1, argv);
-  slalom_ros_test::test(argc, argv);
-  rclcpp::shutdown();
-} catch (const std::exception& error) {
-  std::printf("%s\n", error.what());
-  return 1;
+int main(int argc, char** argv) {
+  return slalom_ros_test::run_test(argc, argv, &slalom_ros_test::test);
 }

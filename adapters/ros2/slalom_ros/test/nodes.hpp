@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <map>
 #include <memory>
 #include <string>
@@ -11,27 +10,26 @@
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_components/node_factory.hpp>
 
-#include "processes.hpp"
+#include "harness.hpp"
 
 namespace slalom_ros_test {
 
 /// The nodes under test: each is a process, or all are components of this process with a thread each.
 class Nodes {
  public:
-  enum class Place { processes, one_process };
-
-  explicit Nodes(Place place) : place_(place) {}
+  /// `place` is "processes" or "composed". Throws std::runtime_error otherwise.
+  explicit Nodes(const std::string& place) : composed_(place == "composed") {
+    expect(composed_ || place == "processes", "'" + place + "' must be processes or composed");
+  }
   ~Nodes() {
     while (!components_.empty()) end(components_.begin()->first);
   }
 
-  /// Starts a node of a kind ("planner") under a name, with parameters "name:=value", and remappings.
-  void start(const std::string& kind, const std::string& name, const std::vector<std::string>& parameters,
-             const std::vector<std::string>& remappings = {}) {
+  /// Starts a node of a kind ("planner") under a name, with parameters "name:=value".
+  void start(const std::string& kind, const std::string& name, const std::vector<std::string>& parameters) {
     std::vector<std::string> words{"--ros-args", "-r", "__node:=" + name};
-    for (const std::string& each : remappings) words.insert(words.end(), {"-r", each});
     for (const std::string& each : parameters) words.insert(words.end(), {"-p", each});
-    if (place_ == Place::one_process) return load(kind, name, words);
+    if (composed_) return load(kind, name, words);
     words.insert(words.begin(), SLALOM_ROS_NODES "/" + kind + "_node");
     processes_[name] = std::make_unique<Process>(words);
   }
@@ -67,17 +65,10 @@ class Nodes {
     made.thread = std::thread([executor = made.executor.get()] { executor->spin(); });
   }
 
-  Place place_;
+  bool composed_;
   class_loader::ClassLoader loader_{SLALOM_ROS_NODES "/libslalom_ros_nodes.so"};
   std::map<std::string, std::unique_ptr<Process>> processes_;
   std::map<std::string, Component> components_;
 };
-
-/// The place that an argument of the program names.
-inline Nodes::Place place_of(const std::string& word) {
-  if (word == "processes") return Nodes::Place::processes;
-  if (word == "composed") return Nodes::Place::one_process;
-  throw std::invalid_argument("'" + word + "' must be processes or composed");
-}
 
 }  // namespace slalom_ros_test

@@ -1,77 +1,50 @@
 // Laps among parked cars: simulator, localiser and planner, each a process or all composed in one.
-// Their messages are recorded and read back.
 //
-// usage: race_test processes|composed [LAPS [OBSTACLES]]
+// usage: race_test processes|composed
 #include <cmath>
 
+#include <nav_msgs/msg/occupancy_grid.hpp>
 #include <nav_msgs/msg/odometry.hpp>
 #include <nav_msgs/msg/path.hpp>
 #include <sensor_msgs/msg/laser_scan.hpp>
 #include <slalom_msgs/msg/planner_metrics.hpp>
 #include <std_msgs/msg/int32.hpp>
+#include <visualization_msgs/msg/marker_array.hpp>
 
+#include "client.hpp"
 #include "nodes.hpp"
-#include "recording.hpp"
 
 namespace slalom_ros_test {
 namespace {
 
 using ackermann_msgs::msg::AckermannDriveStamped;
+using nav_msgs::msg::Odometry;
+using sensor_msgs::msg::LaserScan;
+using std_msgs::msg::Int32;
+using visualization_msgs::msg::MarkerArray;
 
 double seconds(const builtin_interfaces::msg::Time& time) {
   return time.sec + 1e-9 * time.nanosec;
 }
 
-void record_all(Recording& recording) {
-  const auto latched = rclcpp::QoS(1).transient_local();
-  recording.add("scan", "sensor_msgs/msg/LaserScan", rclcpp::SensorDataQoS());
-  recording.add("drive", "ackermann_msgs/msg/AckermannDriveStamped", rclcpp::QoS(50));
-  recording.add("ground_truth", "nav_msgs/msg/Odometry", rclcpp::QoS(10));
-  recording.add("pf/pose/odom", "nav_msgs/msg/Odometry", rclcpp::QoS(10));
-  recording.add("contacts", "std_msgs/msg/Int32", rclcpp::QoS(10));
-  recording.add("laps", "std_msgs/msg/Int32", rclcpp::QoS(10));
-  recording.add("mppi/eval_metrics", "slalom_msgs/msg/PlannerMetrics", rclcpp::QoS(10));
-  recording.add("map", "nav_msgs/msg/OccupancyGrid", latched);
-  recording.add("reference_path", "nav_msgs/msg/Path", latched);
-  recording.add("obstacles", "visualization_msgs/msg/MarkerArray", latched);
-  recording.add("planner_markers", "visualization_msgs/msg/MarkerArray", rclcpp::QoS(10));
-}
-
 template <class Message>
-int last_number(const Recording& recording, const std::string& topic) {
-  const auto all = recording.read<Message>(topic);
-  return all.empty() ? 0 : all.back().data;
-}
-
-/// The stamps increase, and those of the commands follow those of the scans.
-void check_stamps(const Recording& recording) {
-  double last = 0;
-  for (const auto& scan : recording.read<sensor_msgs::msg::LaserScan>("scan")) {
-    expect(seconds(scan.header.stamp) > last, "the stamps of the scans increase");
-    last = seconds(scan.header.stamp);
-    expect(scan.ranges.size() == 1081, "a scan has 1081 ranges");
-  }
-  last = 0;
-  for (const auto& drive : recording.read<AckermannDriveStamped>("drive")) {
-    expect(seconds(drive.header.stamp) >= last, "the stamps of the commands increase");
-    last = seconds(drive.header.stamp);
-    expect(std::abs(drive.drive.steering_angle) < 0.42F && std::isfinite(drive.drive.speed),
-           "a command is valid");
-  }
+void expect_increasing_stamps(const std::vector<Message>& messages, const std::string& name) {
+  for (std::size_t i = 1; i < messages.size(); ++i)
+    expect(seconds(messages[i].header.stamp) >= seconds(messages[i - 1].header.stamp),
+           "the stamps of the " + name + " increase");
 }
 
 /// The estimated pose is that of the simulated car. Both have the stamps of the scans.
-void check_poses(const Recording& recording) {
-  std::map<double, nav_msgs::msg::Odometry> truth;
-  for (const auto& m : recording.read<nav_msgs::msg::Odometry>("ground_truth"))
-    truth[seconds(m.header.stamp)] = m;
+void check_poses(const std::vector<Odometry>& true_poses, const std::vector<Odometry>& estimates) {
+  std::map<double, geometry_msgs::msg::Point> truth;
+  for (const auto& m : true_poses) truth[seconds(m.header.stamp)] = m.pose.pose.position;
   double sum = 0;
   int count = 0;
-  for (const auto& m : recording.read<nav_msgs::msg::Odometry>("pf/pose/odom")) {
+  for (const auto& m : estimates) {
     const auto found = truth.find(seconds(m.header.stamp));
     if (found == truth.end()) continue;
-    const auto &estimate = m.pose.pose.position, &actual = found->second.pose.pose.position;
-    sum += std::hypot(estimate.x - actual.x, estimate.y - actual.y);
+    const auto& estimate = m.pose.pose.position;
+    sum += std::hypot(estimate.x - found->second.x, estimate.y - found->second.y);
     ++count;
   }
   expect(count > 100, "estimates of the pose, with the true pose of the same time");
@@ -94,44 +67,42 @@ void check_diagnostics(const Client& client) {
   }
 }
 
-void test(int argc, char** argv) {
-  expect(argc >= 2, "usage: race_test processes|composed [LAPS [OBSTACLES]]");
-  const int laps = argc > 2 ? std::stoi(argv[2]) : 3;
-  const std::string obstacles = argc > 3 ? argv[3] : "5";
+void test(const std::string& place) {
   Client client("race_test");
-  Recording recording(client);
-  record_all(recording);
-  Nodes nodes(place_of(argv[1]));
-  nodes.start("world", "world", {"autostart:=true", "course:=wren", "obstacles:=" + obstacles});
+  const rclcpp::QoS some(50), latched = rclcpp::QoS(1).transient_local();
+  const auto scans = client.record<LaserScan>("scan", rclcpp::SensorDataQoS());
+  const auto commands = client.record<AckermannDriveStamped>("drive", some);
+  const auto truth = client.record<Odometry>("ground_truth", some);
+  const auto estimates = client.record<Odometry>("pf/pose/odom", some);
+  const auto contacts = client.record<Int32>("contacts", some);
+  const auto laps = client.record<Int32>("laps", some);
+  const auto plans = client.record<slalom_msgs::msg::PlannerMetrics>("mppi/eval_metrics", some);
+  const auto map = client.record<nav_msgs::msg::OccupancyGrid>("map", latched);
+  const auto path = client.record<nav_msgs::msg::Path>("reference_path", latched);
+  const auto parked = client.record<MarkerArray>("obstacles", latched);
+  const auto markers = client.record<MarkerArray>("planner_markers", some);
+  Nodes nodes(place);
+  nodes.start("world", "world", {"autostart:=true", "course:=wren", "obstacles:=5"});
   nodes.start("localiser", "localiser", {"autostart:=true", "course:=wren", "everywhere:=true"});
   nodes.start("planner", "planner", {"autostart:=true", "course:=wren", "planner.max_speed:=100.0"});
-  client.wait(
-      "the car drives", [&] { return client.drives(); }, 60);
-  client.wait(
-      std::to_string(laps) + " laps",
-      [&, checked = 0.0]() mutable {
-        if (steady_seconds() - checked < 0.5) return false;
-        checked = steady_seconds();
-        return last_number<std_msgs::msg::Int32>(recording, "laps") >= laps;
-      },
-      90.0 * laps);
-  expect(last_number<std_msgs::msg::Int32>(recording, "contacts") == 0, "no contacts");
-  for (const char* topic : {"map", "reference_path", "obstacles", "planner_markers"})
-    expect(recording.count(topic) > 0, std::string("something on ") + topic);
-  expect(recording.count("mppi/eval_metrics") > recording.count("scan") / 2, "plans for most scans");
-  check_stamps(recording);
-  check_poses(recording);
+  client.wait("the car drives", 60, [&] { return client.drives(); });
+  client.wait("3 laps", 270, [&] { return !laps->empty() && laps->back().data >= 3; });
+  expect(!contacts->empty() && contacts->back().data == 0, "no contacts");
+  expect(!map->empty() && !path->empty(), "a map and a path");
+  expect(!parked->empty() && !markers->empty(), "markers of parked cars and of plans");
+  expect(plans->size() > scans->size() / 2, "plans for most scans");
+  expect_increasing_stamps(*scans, "scans");
+  expect_increasing_stamps(*commands, "commands");
+  for (const LaserScan& scan : *scans) expect(scan.ranges.size() == 1081, "a scan has 1081 ranges");
+  for (const AckermannDriveStamped& m : *commands)
+    expect(std::abs(m.drive.steering_angle) < 0.42F && std::isfinite(m.drive.speed), "a command is valid");
+  check_poses(*truth, *estimates);
   check_diagnostics(client);
 }
 
 }  // namespace
 }  // namespace slalom_ros_test
 
-int main(int argc, char** argv) try {
-  rclcpp::init(1, argv);
-  slalom_ros_test::test(argc, argv);
-  rclcpp::shutdown();
-} catch (const std::exception& error) {
-  std::printf("%s\n", error.what());
-  return 1;
+int main(int argc, char** argv) {
+  return slalom_ros_test::run_test(argc, argv, &slalom_ros_test::test);
 }
